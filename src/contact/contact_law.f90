@@ -1,0 +1,25 @@
+!> What every normal contact law answers.
+module contact_law
+  use kinds, only: dp
+  implicit none
+  private
+  public :: contact_law_t
+
+  !> A compliant normal contact between pin and bearing.
+  type, abstract :: contact_law_t
+  contains
+    procedure(normal_force), deferred :: normal_force
+  end type contact_law_t
+
+  abstract interface
+    !> The pressing force [N] between pin and bearing, never negative (no adhesion).
+    pure function normal_force(self, penetration, penetration_rate, impact_speed) result(force)
+      import :: contact_law_t, dp
+      class(contact_law_t), intent(in) :: self
+      real(dp), intent(in) :: penetration       !! |e| - c [m]; the force is 0 where it is not positive
+      real(dp), intent(in) :: penetration_rate  !! its rate [m/s], positive while the pin goes deeper
+      real(dp), intent(in) :: impact_speed      !! penetration_rate at the instant contact began [m/s], >= 0
+      real(dp) :: force
+    end function normal_force
+  end interface
+end module contact_law

@@ -1,0 +1,3 @@
+program gudgeon
+  implicit none
+end program gudgeon

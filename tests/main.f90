@@ -1,0 +1,10 @@
+!> Runs every test and prints `N passed, N failed` as its last line.
+program gudgeon_tests
+  use, intrinsic :: iso_fortran_env, only: output_unit
+  use checks, only: checks_t
+  implicit none
+  type(checks_t) :: check
+
+  write (output_unit, '(i0,a,i0,a)') check%passed, ' passed, ', check%failed, ' failed'
+  if (check%failed > 0 .or. check%passed == 0) error stop 1
+end program gudgeon_tests
