@@ -2,8 +2,11 @@
 program gudgeon_tests
   use, intrinsic :: iso_fortran_env, only: output_unit
   use checks, only: checks_t
+  use test_adams, only: run_test_adams
   implicit none
   type(checks_t) :: check
+
+  call run_test_adams(check)
 
   write (output_unit, '(i0,a,i0,a)') check%passed, ' passed, ', check%failed, ' failed'
   if (check%failed > 0 .or. check%passed == 0) error stop 1
