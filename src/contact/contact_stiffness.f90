@@ -1,0 +1,34 @@
+!> What the materials and radii of pin and bearing make of a contact: its stiffness, and the fastest impact for
+!> which an elastic law of this kind is meant.
+module contact_stiffness
+  use kinds, only: dp
+  implicit none
+  private
+  public :: hertz_stiffness, valid_impact_speed
+
+contains
+
+  !> Hertz stiffness of a pin in a bearing [N/m^1.5], from (4.2) and (4.3), both corrected:
+  !> K = 4/(3(sigma_i + sigma_j)) sqrt(Rb Rj/(Rb - Rj)), sigma = (1 - nu^2)/E. Printed (4.2) has Rb + Rj, which is the
+  !> formula of two convex surfaces; printed (4.3) has a radius too many. Rb - Rj is the radial clearance and is taken
+  !> as such, since it would cancel. Limits: 0 < clearance < bearing_radius, E > 0, |nu| < 1.
+  pure function hertz_stiffness(bearing_radius, clearance, youngs_modulus, poissons_ratio) result(stiffness)
+    real(dp), intent(in) :: bearing_radius     !! Rb [m]
+    real(dp), intent(in) :: clearance          !! radial clearance c = Rb - Rj [m]
+    real(dp), intent(in) :: youngs_modulus(2)  !! of pin and bearing [Pa]
+    real(dp), intent(in) :: poissons_ratio(2)  !! of pin and bearing [-]
+    real(dp) :: stiffness
+    real(dp) :: compliance
+    compliance = sum((1 - poissons_ratio**2)/youngs_modulus)
+    stiffness = 4/(3*compliance)*sqrt(bearing_radius*(bearing_radius - clearance)/clearance)
+  end function hertz_stiffness
+
+  !> Fastest impact [m/s] for which the contact laws are valid: 1e-5 sqrt(E/rho) (remark after 4.7), the smaller of the
+  !> two materials'.
+  pure function valid_impact_speed(youngs_modulus, density) result(speed)
+    real(dp), intent(in) :: youngs_modulus(2)  !! of pin and bearing [Pa]
+    real(dp), intent(in) :: density(2)         !! of pin and bearing [kg/m^3]
+    real(dp) :: speed
+    speed = 1e-5_dp*sqrt(minval(youngs_modulus/density))
+  end function valid_impact_speed
+end module contact_stiffness

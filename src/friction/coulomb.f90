@@ -1,0 +1,36 @@
+!> Coulomb friction (4.8).
+module coulomb
+  use kinds, only: dp
+  use friction_law, only: friction_law_t
+  implicit none
+  private
+  public :: coulomb_t, new_coulomb
+
+  !> F_T = -c_f F_N sign(v_T), set-valued at v_T = 0.
+  type, extends(friction_law_t) :: coulomb_t
+    real(dp) :: coefficient = 0   !! c_f [-], >= 0
+  contains
+    procedure :: friction_ratio
+  end type coulomb_t
+
+contains
+
+  pure subroutine new_coulomb(law, coefficient)
+    type(coulomb_t), intent(out) :: law
+    real(dp), intent(in) :: coefficient   !! c_f [-]
+    law%set_valued = .true.
+    law%coefficient = coefficient
+  end subroutine new_coulomb
+
+  !> (4.8). The sign is that of `direction`, which the scene holds fixed between its reversals of sliding: the sliding
+  !> speed itself is not asked, so that the force is smooth within a step.
+  pure function friction_ratio(self, sliding_speed, direction) result(ratio)
+    class(coulomb_t), intent(in) :: self
+    real(dp), intent(in) :: sliding_speed
+    integer, intent(in) :: direction
+    real(dp) :: ratio
+    associate (unused => sliding_speed)
+    end associate
+    ratio = -self%coefficient*direction
+  end function friction_ratio
+end module coulomb

@@ -1,0 +1,123 @@
+!> The Pinkus-Sternlicht film (5.10-5.37): a long bearing, of whose pressure only the positive part acts.
+module pinkus_sternlicht
+  use kinds, only: dp
+  use constants, only: pi
+  use film_law, only: film_law_t, film_motion_t
+  implicit none
+  private
+  public :: pinkus_sternlicht_t, reduced_motion_t, new_pinkus_sternlicht
+
+  !> Largest eccentricity ratio that is evaluated. The force is infinite at 1, which a run never reaches; a state at or
+  !> beyond it is answered with the force here, so that it is finite.
+  real(dp), parameter :: max_eccentricity_ratio = 1 - epsilon(1.0_dp)
+
+  !> A motion in the terms of the film equations.
+  type :: reduced_motion_t
+    real(dp) :: normal(2)    !! n, unit vector along the eccentricity; any where the pin is centred
+    real(dp) :: ratio        !! eps = |e|/c, at most `max_eccentricity_ratio`
+    real(dp) :: ratio_rate   !! eps_dot [1/s]
+    real(dp) :: wedge        !! eps W = eps (omega - 2 gamma_dot) [rad/s]
+  end type reduced_motion_t
+
+  !> The closed form of the force (5.34-5.37).
+  type, extends(film_law_t) :: pinkus_sternlicht_t
+    real(dp) :: clearance = 0        !! c, radial [m]
+    real(dp) :: pressure_scale = 0   !! mu R^2/c^2 [Pa s], R of the pin
+    real(dp) :: force_scale = 0      !! mu w R^3/c^2 [N s]
+    real(dp) :: withdrawal_sign = 1  !! factor of the radial force for eps_dot < 0: 1 corrected, -1 as printed
+  contains
+    procedure :: film_force
+    procedure :: pressure
+    procedure :: reduced
+  end type pinkus_sternlicht_t
+
+contains
+
+  pure subroutine new_pinkus_sternlicht(film, bearing_radius, bearing_length, clearance, viscosity, as_printed)
+    class(pinkus_sternlicht_t), intent(inout) :: film
+    real(dp), intent(in) :: bearing_radius, bearing_length   !! [m]
+    real(dp), intent(in) :: clearance                        !! radial [m], 0 < clearance < bearing_radius
+    real(dp), intent(in) :: viscosity                        !! mu [Pa s]
+    logical, intent(in) :: as_printed                        !! keep the misprinted sign of (5.36)
+    real(dp) :: pin_radius
+    pin_radius = bearing_radius - clearance
+    film%clearance = clearance
+    film%pressure_scale = viscosity*(pin_radius/clearance)**2
+    film%force_scale = film%pressure_scale*bearing_length*pin_radius
+    if (as_printed) film%withdrawal_sign = -1
+  end subroutine new_pinkus_sternlicht
+
+  !> The motion in polar terms. At the centre, where there is no direction, e.g. x is taken.
+  pure function reduced(self, motion) result(state)
+    class(pinkus_sternlicht_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    type(reduced_motion_t) :: state
+    real(dp), parameter :: centred = 1e-200_dp   !! below this square the components' squares lose digits
+    real(dp) :: square, eccentricity, per_clearance
+    associate (e => motion%eccentricity, v => motion%eccentricity_rate)
+      square = e(1)**2 + e(2)**2
+      per_clearance = 1/self%clearance
+      if (square > centred) then
+        eccentricity = sqrt(square)
+        state%normal = e/eccentricity
+        state%ratio = min(eccentricity*per_clearance, max_eccentricity_ratio)
+      else
+        state%normal = [1.0_dp, 0.0_dp]
+        state%ratio = 0
+      end if
+      associate (n => state%normal)
+        state%ratio_rate = (n(1)*v(1) + n(2)*v(2))*per_clearance
+        state%wedge = state%ratio*motion%pin_speed - 2*(n(1)*v(2) - n(2)*v(1))*per_clearance
+      end associate
+    end associate
+  end function reduced
+
+  !> (5.34-5.37), (5.36) with its sign corrected unless `as_printed`. With S = sqrt((1-eps^2)((eps W)^2 + 4 eps_dot^2)),
+  !> |eps_dot| k eps = S/2 and both quotients of k are (S + 6 eps max(eps_dot, 0))/(S + 3 eps |eps_dot|), so that nothing
+  !> is singular at eps = 0 or eps_dot = 0. The theory has pressure only: no moment about the pin centre.
+  pure subroutine film_force(self, motion, force, moment)
+    class(pinkus_sternlicht_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(out) :: force(2)
+    real(dp), intent(out) :: moment
+    type(reduced_motion_t) :: state
+    real(dp) :: gap, root, s, squeeze, denominator, quotient, scale, radial, tangential
+    state = self%reduced(motion)
+    moment = 0
+    associate (eps => state%ratio, eps_dot => state%ratio_rate, n => state%normal)
+      gap = (1 - eps)*(1 + eps)
+      root = sqrt(gap)
+      s = root*sqrt(state%wedge**2 + 4*eps_dot**2)
+      squeeze = 3*eps*abs(eps_dot)
+      denominator = s + squeeze
+      quotient = 1
+      if (denominator > 0) quotient = (s + squeeze + sign(squeeze, eps_dot))/denominator
+      scale = 6*self%force_scale/((2 + eps**2)*root*gap)
+      radial = -scale*(2*eps*s + (2 + eps**2)*pi*eps_dot*quotient)
+      if (eps_dot < 0) radial = self%withdrawal_sign*radial
+      tangential = scale*gap*pi*state%wedge*quotient
+      force(1) = radial*n(1) - tangential*n(2)
+      force(2) = radial*n(2) + tangential*n(1)
+    end associate
+  end subroutine film_force
+
+  !> Pressure of the film [Pa] (5.20), 0 where it would be negative, at the angle theta [rad] from the thinnest place
+  !> (the direction of the eccentricity), x towards y:
+  !> p = 6 mu (R/c)^2 { W eps sin a (2 + eps cos a)/((2 + eps^2) u^2) + eps_dot/eps [1/u^2 - 2/(2 + eps^2)] } with
+  !> a = theta + pi and u = 1 + eps cos a = h/c, written without the division by eps.
+  pure function pressure(self, motion, theta)
+    class(pinkus_sternlicht_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: theta
+    real(dp) :: pressure
+    type(reduced_motion_t) :: state
+    real(dp) :: c, s, bracket
+    state = self%reduced(motion)
+    c = -cos(theta)
+    s = -sin(theta)
+    associate (eps => state%ratio)
+      bracket = state%wedge*s*(2 + eps*c) - state%ratio_rate*(4*c + eps*(2*c**2 - 1))
+      pressure = max(0.0_dp, 6*self%pressure_scale*bracket/((2 + eps**2)*(1 + eps*c)**2))
+    end associate
+  end function pressure
+end module pinkus_sternlicht

@@ -1,0 +1,203 @@
+!> The contact laws: stiffness, restitution, loss, limits, factory.
+module test_contact
+  use kinds, only: dp
+  use errors, only: error_t, status_case_file
+  use checks, only: checks_t
+  use case_definition, only: contact_case_t
+  use contact_law, only: contact_law_t
+  use contact_laws, only: new_contact_law
+  use contact_stiffness, only: hertz_stiffness, valid_impact_speed
+  use lankarani_nikravesh, only: ratio_limit
+  implicit none
+  private
+  public :: run_test_contact
+
+  real(dp), parameter :: bearing_radius = 10e-3_dp, clearance = 20e-6_dp
+
+contains
+
+  subroutine run_test_contact(check)
+    class(checks_t), intent(inout) :: check
+    call test_stiffness(check)
+    call test_restitution(check)
+    call test_hertz(check)
+    call test_dissipation(check)
+    call test_extremes(check)
+    call test_factory(check)
+  end subroutine run_test_contact
+
+  subroutine test_stiffness(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: clearances(5) = [0.5e-3_dp, 0.1e-3_dp, 0.01e-3_dp, 40e-6_dp, 20e-6_dp]
+    real(dp), parameter :: expected(5) = [6.610198e10_dp, 1.508882e11_dp, 4.793144e11_dp, 2.392971e11_dp, 3.387568e11_dp]
+    real(dp), parameter :: steel(2) = 207e9_dp, ratio(2) = 0.3_dp
+    integer :: i
+    do i = 1, size(clearances)
+      call check%relative(hertz_stiffness(bearing_radius, clearances(i), steel, ratio), expected(i), 2e-7_dp, &
+        'Hertz stiffness of steel')
+    end do
+    call check%relative(hertz_stiffness(10e-3_dp, 0.5e-3_dp, [1e9_dp, 3e9_dp], [0.0_dp, 0.5_dp]), &
+      4/(3*(1/1e9_dp + 0.75_dp/3e9_dp))*sqrt(10e-3_dp*9.5e-3_dp/0.5e-3_dp), 1e-14_dp, 'Hertz stiffness of two materials')
+    call check%relative(valid_impact_speed([207e9_dp, 100e9_dp], [7850.0_dp, 2500.0_dp]), 0.05135117_dp, 1e-6_dp, &
+      'valid impact speed is the slower material''s')
+    call check%relative(valid_impact_speed([207e9_dp, 70e9_dp], [7850.0_dp, 8000.0_dp]), 0.0295804_dp, 1e-6_dp, &
+      'valid impact speed is the slower material''s, second')
+  end subroutine test_stiffness
+
+  !> A free impact gives back the restitution of the law's exact solution.
+  subroutine test_restitution(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: e(4) = [0.9_dp, 0.7_dp, 0.5_dp, 0.3_dp]
+    real(dp), parameter :: expected(4) = [0.913176677806_dp, 0.795972595365_dp, 0.725241114010_dp, 0.684224605749_dp]
+    integer :: i
+    real(dp) :: exact
+    do i = 1, size(e)
+      exact = exact_restitution(e(i))
+      call check%close_to(exact, expected(i), 1e-11_dp, 'root of the restitution equation')
+      call check%close_to(impact_restitution('lankarani_nikravesh', e(i), 1.5_dp), exact, 1e-6_dp, 'free impact')
+    end do
+    call check%close_to(impact_restitution('lankarani_nikravesh', 0.5_dp, 1.2_dp), exact_restitution(0.5_dp), 1e-6_dp, &
+      'free impact, exponent 1.2')
+    call check%close_to(impact_restitution('hertz', 0.5_dp, 1.5_dp), 1.0_dp, 1e-6_dp, 'free Hertz impact is elastic')
+  end subroutine test_restitution
+
+  !> Root in (0,1) of chi (1 + x) = ln[(1 + chi)/(1 - chi x)].
+  pure function exact_restitution(restitution) result(root)
+    real(dp), intent(in) :: restitution
+    real(dp) :: root
+    real(dp) :: chi, low, high
+    integer :: i
+    chi = 0.75_dp*(1 - restitution**2)
+    low = 0
+    high = 1
+    do i = 1, 60
+      root = (low + high)/2
+      if (chi*(1 + root) > log((1 + chi)/(1 - chi*root))) then
+        low = root
+      else
+        high = root
+      end if
+    end do
+  end function exact_restitution
+
+  !> Speed after over speed before the impact of a free mass, by the classical Runge-Kutta method.
+  function impact_restitution(name, restitution, exponent) result(ratio)
+    character(len=*), intent(in) :: name
+    real(dp), intent(in) :: restitution, exponent
+    real(dp) :: ratio
+    real(dp), parameter :: mass = 1.3_dp, impact_speed = 0.4_dp
+    integer, parameter :: steps = 20000
+    class(contact_law_t), allocatable :: law
+    type(error_t), allocatable :: error
+    real(dp) :: state(2), k(2, 4), step
+    call new_contact_law(contact_case_t(law=name, restitution=restitution, exponent=exponent, stiffness=1e9_dp), &
+      bearing_radius, clearance, law, error)
+    step = 4*(mass*impact_speed**2/1e9_dp)**(1/(exponent + 1))/impact_speed/steps
+    state = [0.0_dp, impact_speed]
+    do
+      k(:, 1) = rate(state)
+      k(:, 2) = rate(state + step/2*k(:, 1))
+      k(:, 3) = rate(state + step/2*k(:, 2))
+      k(:, 4) = rate(state + step*k(:, 3))
+      state = state + step/6*(k(:, 1) + 2*k(:, 2) + 2*k(:, 3) + k(:, 4))
+      if (state(1) <= 0) exit
+    end do
+    ratio = -state(2)/impact_speed
+  contains
+    pure function rate(y)
+      real(dp), intent(in) :: y(2)
+      real(dp) :: rate(2)
+      rate = [y(2), -law%normal_force(y(1), y(2), impact_speed)/mass]
+    end function rate
+  end function impact_restitution
+
+  subroutine test_hertz(check)
+    class(checks_t), intent(inout) :: check
+    class(contact_law_t), allocatable :: hertz, lossless, linear
+    type(error_t), allocatable :: error
+    real(dp) :: rates(5)
+    integer :: i
+    rates = [-1.0_dp, -0.01_dp, 0.0_dp, 0.01_dp, 1.0_dp]
+    call new_contact_law(contact_case_t(law='hertz'), bearing_radius, clearance, hertz, error)
+    call new_contact_law(contact_case_t(law='lankarani_nikravesh', restitution=1.0_dp), bearing_radius, clearance, &
+      lossless, error)
+    call new_contact_law(contact_case_t(law='hertz', exponent=1.0_dp, stiffness=2e6_dp), bearing_radius, clearance, &
+      linear, error)
+    call check%relative(hertz%normal_force(1e-6_dp, 0.1_dp, 0.2_dp), 338.7568_dp, 1e-6_dp, 'Hertz force at 1 um')
+    call check%relative(linear%normal_force(1e-6_dp, 0.1_dp, 0.2_dp), 2.0_dp, 1e-14_dp, 'linear force at 1 um')
+    do i = 1, size(rates)
+      call check%relative(lossless%normal_force(3e-6_dp, rates(i), 0.1_dp), hertz%normal_force(3e-6_dp, rates(i), 0.1_dp), &
+        1e-15_dp, 'e = 1 is Hertz')
+      call check%relative(lossless%normal_force(3e-6_dp, rates(i), 0.0_dp), hertz%normal_force(3e-6_dp, rates(i), 0.0_dp), &
+        1e-15_dp, 'e = 1 is Hertz after a grazing entry')
+    end do
+    call check%that(abs(hertz%normal_force(-1e-6_dp, 0.1_dp, 0.2_dp)) <= 0, 'no Hertz force at a distance')
+    call check%that(abs(hertz%normal_force(0.0_dp, 0.1_dp, 0.2_dp)) <= 0, 'no Hertz force on touching')
+  end subroutine test_hertz
+
+  !> The law never pulls, gives at least the elastic force on the way in and at most that on the way out.
+  subroutine test_dissipation(check)
+    class(checks_t), intent(inout) :: check
+    class(contact_law_t), allocatable :: law, elastic
+    type(error_t), allocatable :: error
+    real(dp) :: impact, rate, force, reference, previous
+    integer :: i, j
+    call new_contact_law(contact_case_t(restitution=0.3_dp), bearing_radius, clearance, law, error)
+    call new_contact_law(contact_case_t(law='hertz'), bearing_radius, clearance, elastic, error)
+    reference = elastic%normal_force(2e-6_dp, 0.0_dp, 0.0_dp)
+    do i = 0, 12
+      impact = 0.1_dp**i
+      if (i == 12) impact = 0
+      previous = 0
+      do j = -400, 400
+        rate = 0.01_dp*j
+        force = law%normal_force(2e-6_dp, rate, impact)
+        call check%that(force >= 0, 'the contact never pulls')
+        call check%that((force - reference)*rate >= 0, 'the contact dissipates')
+        call check%that(force >= previous, 'the force grows with the rate')
+        call check%that(force <= reference*(1 + ratio_limit), 'the force is bounded')
+        previous = force
+      end do
+      call check%relative(law%normal_force(2e-6_dp, 0.0_dp, impact), reference, 1e-15_dp, 'elastic at rest')
+    end do
+    call check%relative(law%normal_force(2e-6_dp, 0.03_dp, 0.1_dp), reference*(1 + 0.75_dp*0.91_dp*0.3_dp), 1e-14_dp, &
+      'the printed law inside its bounds')
+    call check%relative(law%normal_force(2e-6_dp, 0.99_dp*ratio_limit*0.01_dp, 0.01_dp), &
+      reference*(1 + 0.75_dp*0.91_dp*0.99_dp*ratio_limit), 1e-14_dp, 'the printed law just inside the limit')
+    call check%that(abs(law%normal_force(2e-6_dp, -0.2_dp, 0.1_dp)) <= 0, 'no adhesion')
+    call check%that(abs(law%normal_force(0.0_dp, 0.1_dp, 0.1_dp)) <= 0, 'no force on touching')
+    call check%that(abs(law%normal_force(-1e-6_dp, 0.1_dp, 0.1_dp)) <= 0, 'no force at a distance')
+  end subroutine test_dissipation
+
+  subroutine test_extremes(check)
+    class(checks_t), intent(inout) :: check
+    class(contact_law_t), allocatable :: law
+    type(error_t), allocatable :: error
+    real(dp), parameter :: sizes(8) = [0.0_dp, 1e-310_dp, 1e-300_dp, 1e-20_dp, 1e-6_dp, 1.0_dp, 1e10_dp, 1e100_dp]
+    real(dp) :: force
+    integer :: i, j, k, direction
+    call new_contact_law(contact_case_t(), bearing_radius, clearance, law, error)
+    do i = 1, size(sizes)
+      do j = 1, size(sizes)
+        do k = 1, size(sizes)
+          do direction = -1, 1, 2
+            force = law%normal_force(sizes(i), direction*sizes(j), sizes(k))
+            call check%that(force >= 0 .and. force <= huge(force), 'finite for extreme inputs')
+          end do
+        end do
+      end do
+    end do
+  end subroutine test_extremes
+
+  subroutine test_factory(check)
+    class(checks_t), intent(inout) :: check
+    class(contact_law_t), allocatable :: law
+    type(error_t), allocatable :: error
+    call new_contact_law(contact_case_t(law='velcro'), bearing_radius, clearance, law, error)
+    call check%that(allocated(error) .and. .not. allocated(law), 'an unknown contact law is refused')
+    if (.not. allocated(error)) return
+    call check%equal_text(error%message, "&contact law = 'velcro': must be 'lankarani_nikravesh' or 'hertz'", &
+      'the refusal names the laws')
+    call check%that(error%status == status_case_file, 'the refusal is a case file error')
+  end subroutine test_factory
+end module test_contact

@@ -1,0 +1,226 @@
+!> The Pinkus-Sternlicht film: table, limits, continuity, invariance, dissipation, factory.
+module test_pinkus_sternlicht
+  use kinds, only: dp
+  use constants, only: pi
+  use errors, only: error_t, status_case_file
+  use checks, only: checks_t
+  use case_definition, only: lubrication_case_t
+  use film_law, only: film_law_t, film_motion_t
+  use films, only: new_film_law
+  implicit none
+  private
+  public :: run_test_pinkus_sternlicht
+
+  real(dp), parameter :: bearing_radius = 10e-3_dp, bearing_length = 15e-3_dp, clearance = 20e-6_dp
+  real(dp), parameter :: viscosity = 0.0117_dp
+  real(dp), parameter :: unit_force = viscosity*bearing_length*(bearing_radius - clearance)**3/clearance**2
+  !> eps, W, eps_dot of the tabulated values.
+  real(dp), parameter :: states(3, 6) = reshape([0.5_dp, 1.0_dp, -0.001_dp, 0.5_dp, 1.0_dp, 0.3_dp, &
+    0.5_dp, 1.0_dp, -0.3_dp, 0.9_dp, 1.0_dp, 0.3_dp, 0.9_dp, 1.0_dp, -0.3_dp, 0.99_dp, 1.0_dp, -0.3_dp], [3, 6])
+
+contains
+
+  subroutine run_test_pinkus_sternlicht(check)
+    class(checks_t), intent(inout) :: check
+    call test_table(check)
+    call test_printed_formula(check)
+    call test_limits(check)
+    call test_as_printed(check)
+    call test_invariance(check)
+    call test_extremes(check)
+    call test_factory(check)
+  end subroutine run_test_pinkus_sternlicht
+
+  !> The film of a variant; the tests know its names.
+  subroutine make(variant, film)
+    character(len=*), intent(in) :: variant
+    class(film_law_t), allocatable, intent(out) :: film
+    type(error_t), allocatable :: error
+    call new_film_law(lubrication_case_t(law='pinkus_sternlicht', variant=variant, viscosity=viscosity), &
+      bearing_radius, bearing_length, clearance, 1e-6_dp, film, error)
+    if (allocated(error)) error stop 'test_pinkus_sternlicht: the film cannot be made'
+  end subroutine make
+
+  !> Radial and tangential force in the table's unit, for eps, W, eps_dot and any direction of the eccentricity.
+  function reduced_force(film, eps, w, eps_dot, direction, pin_speed) result(force)
+    class(film_law_t), intent(in) :: film
+    real(dp), intent(in) :: eps, w, eps_dot, direction, pin_speed
+    real(dp) :: force(2)
+    type(film_motion_t) :: motion
+    real(dp) :: n(2), t(2), f(2), moment
+    n = [cos(direction), sin(direction)]
+    t = [-n(2), n(1)]
+    motion%eccentricity = clearance*eps*n
+    motion%eccentricity_rate = clearance*(eps_dot*n + eps*(pin_speed - w)/2*t)
+    motion%pin_speed = pin_speed
+    call film%film_force(motion, f, moment)
+    force = [dot_product(f, n), dot_product(f, t)]/unit_force
+  end function reduced_force
+
+  subroutine test_table(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: expected(2, 6) = reshape([-1.7489_dp, 4.8201_dp, -14.9614_dp, 6.7691_dp, 2.4511_dp, 2.9045_dp, &
+      -133.3184_dp, 22.6048_dp, 3.2411_dp, 5.0958_dp, 80.1125_dp, 6.8756_dp], [2, 6])
+    class(film_law_t), allocatable :: film
+    real(dp) :: force(2)
+    integer :: i
+    call make('closed_form', film)
+    call check%that(.not. film%needs_ideal_motion, 'the film asks for no ideal motion')
+    do i = 1, size(states, 2)
+      force = reduced_force(film, states(1, i), states(2, i), states(3, i), 0.7_dp, 0.4_dp)
+      call check%close_to(force(1), expected(1, i), 0.6e-4_dp, 'closed form, radial')
+      call check%close_to(force(2), expected(2, i), 0.6e-4_dp, 'closed form, tangential')
+    end do
+  end subroutine test_table
+
+  !> The formulas as the equations have them, singular where eps or eps_dot is 0.
+  pure function formula(eps, w, eps_dot) result(force)
+    real(dp), intent(in) :: eps, w, eps_dot
+    real(dp) :: force(2)
+    real(dp) :: k
+    k = sqrt((1 - eps**2)*((w/(2*eps_dot))**2 + 1/eps**2))
+    if (eps_dot >= 0) then
+      force(1) = -6*eps_dot/((2 + eps**2)*(1 - eps**2)**1.5_dp)* &
+        (4*k*eps**2 + (2 + eps**2)*pi*(k + 3)/(k + 1.5_dp))
+      force(2) = 6*pi*eps*w/((2 + eps**2)*sqrt(1 - eps**2))*(k + 3)/(k + 1.5_dp)
+    else
+      force(1) = 6*eps_dot/((2 + eps**2)*(1 - eps**2)**1.5_dp)*(4*k*eps**2 - (2 + eps**2)*pi*k/(k + 1.5_dp))
+      force(2) = 6*pi*eps*w/((2 + eps**2)*sqrt(1 - eps**2))*k/(k + 1.5_dp)
+    end if
+  end function formula
+
+  subroutine test_printed_formula(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: ratios(6) = [0.01_dp, 0.2_dp, 0.5_dp, 0.8_dp, 0.95_dp, 0.999_dp]
+    real(dp), parameter :: speeds(5) = [-100.0_dp, -1.0_dp, 0.0_dp, 0.3_dp, 50.0_dp]
+    real(dp), parameter :: rates(6) = [-20.0_dp, -1.0_dp, -1e-3_dp, 1e-3_dp, 2.0_dp, 70.0_dp]
+    class(film_law_t), allocatable :: film
+    real(dp) :: want(2), got(2)
+    integer :: i, j, k
+    call make('', film)
+    do i = 1, size(ratios)
+      do j = 1, size(speeds)
+        do k = 1, size(rates)
+          want = formula(ratios(i), speeds(j), rates(k))
+          got = reduced_force(film, ratios(i), speeds(j), rates(k), -2.0_dp, 3.0_dp)
+          call check%that(norm2(got - want) <= 1e-11_dp*norm2(want), 'the regular form is the formula')
+        end do
+      end do
+    end do
+  end subroutine test_printed_formula
+
+  subroutine test_limits(check)
+    class(checks_t), intent(inout) :: check
+    class(film_law_t), allocatable :: film
+    type(film_motion_t) :: motion
+    real(dp) :: force(2), other(2), moment, eps
+    integer :: i
+    call make('closed_form', film)
+    do i = 1, 9
+      eps = 0.11_dp*i
+      force = reduced_force(film, eps, 2.0_dp, 0.0_dp, 1.0_dp, 1.0_dp)
+      call check%relative(force(1), -24*eps**2/((2 + eps**2)*(1 - eps**2)), 1e-12_dp, 'steady radial force')
+      call check%relative(force(2), 12*pi*eps/((2 + eps**2)*sqrt(1 - eps**2)), 1e-12_dp, 'steady tangential force')
+      other = reduced_force(film, eps, 2.0_dp, -1e-12_dp, 1.0_dp, 1.0_dp)
+      call check%that(norm2(other - force) <= 1e-10_dp*norm2(force), 'continuous from withdrawal')
+      other = reduced_force(film, eps, 2.0_dp, 1e-12_dp, 1.0_dp, 1.0_dp)
+      call check%that(norm2(other - force) <= 1e-10_dp*norm2(force), 'continuous from approach')
+    end do
+
+    motion = film_motion_t(eccentricity=0, eccentricity_rate=clearance*[0.3_dp, -2.0_dp], pin_speed=5.0_dp)
+    call film%film_force(motion, force, moment)
+    call check%that(norm2(force/unit_force + 6*pi*[0.3_dp, -2.0_dp]) <= 1e-13_dp, 'squeeze force at the centre')
+    call check%that(abs(moment) <= 0, 'no moment')
+    do i = -300, -9
+      eps = 10.0_dp**i
+      motion%eccentricity = clearance*eps*[0.6_dp, 0.8_dp]
+      call film%film_force(motion, other, moment)
+      call check%that(norm2(other - force) <= 10*eps*norm2(force) + 1e-14_dp*norm2(force), 'continuous at the centre')
+    end do
+    motion%eccentricity_rate = 0
+    motion%eccentricity = 1e-7_dp*clearance*[0.6_dp, 0.8_dp]
+    call film%film_force(motion, force, moment)
+    call check%that(norm2(force/unit_force - 3*pi*5*1e-7_dp*[-0.8_dp, 0.6_dp]) <= 1e-12_dp, 'wedge force near the centre')
+  end subroutine test_limits
+
+  !> As printed, the radial force of a withdrawing pin has the other sign.
+  subroutine test_as_printed(check)
+    class(checks_t), intent(inout) :: check
+    class(film_law_t), allocatable :: corrected, printed
+    real(dp) :: one(2), other(2)
+    call make('closed_form', corrected)
+    call make('as_printed', printed)
+    one = reduced_force(corrected, 0.6_dp, 2.0_dp, -0.4_dp, 1.0_dp, 1.0_dp)
+    other = reduced_force(printed, 0.6_dp, 2.0_dp, -0.4_dp, 1.0_dp, 1.0_dp)
+    call check%close_to(other(1), -one(1), 1e-13_dp, 'as printed, radial, withdrawing')
+    call check%close_to(other(2), one(2), 1e-13_dp, 'as printed, tangential, withdrawing')
+    one = reduced_force(corrected, 0.6_dp, 2.0_dp, 0.4_dp, 1.0_dp, 1.0_dp)
+    other = reduced_force(printed, 0.6_dp, 2.0_dp, 0.4_dp, 1.0_dp, 1.0_dp)
+    call check%that(norm2(one - other) <= 0, 'as printed is the same on approach')
+  end subroutine test_as_printed
+
+  !> Turning the whole motion turns the force; mirroring it mirrors the force; the force is linear in the speeds; only W
+  !> counts of the two rotations.
+  subroutine test_invariance(check)
+    class(checks_t), intent(inout) :: check
+    character(len=11), parameter :: variants(1) = ['closed_form']
+    class(film_law_t), allocatable :: film
+    real(dp) :: one(2), other(2)
+    integer :: i
+    do i = 1, size(variants)
+      call make(trim(variants(i)), film)
+      one = reduced_force(film, 0.7_dp, 2.0_dp, -0.4_dp, 0.0_dp, 0.0_dp)
+      other = reduced_force(film, 0.7_dp, 2.0_dp, -0.4_dp, 2.5_dp, 0.0_dp)
+      call check%that(norm2(one - other) <= 1e-12_dp*norm2(one), 'no direction is preferred')
+      other = reduced_force(film, 0.7_dp, 2.0_dp, -0.4_dp, 2.5_dp, 9.0_dp)
+      call check%that(norm2(one - other) <= 1e-12_dp*norm2(one), 'only the relative rotation counts')
+      other = reduced_force(film, 0.7_dp, -2.0_dp, -0.4_dp, 0.0_dp, 0.0_dp)
+      call check%that(norm2(one - [other(1), -other(2)]) <= 1e-12_dp*norm2(one), 'mirror image')
+      other = reduced_force(film, 0.7_dp, 2e3_dp, -0.4e3_dp, 0.0_dp, 0.0_dp)/1e3_dp
+      call check%that(norm2(one - other) <= 1e-12_dp*norm2(one), 'linear in the speeds')
+    end do
+  end subroutine test_invariance
+
+  subroutine test_extremes(check)
+    class(checks_t), intent(inout) :: check
+    character(len=11), parameter :: variants(2) = ['closed_form', 'as_printed ']
+    real(dp), parameter :: ratios(9) = &
+      [0.0_dp, 1e-310_dp, 1e-100_dp, 1e-10_dp, 0.999999_dp, 1.0_dp, 1.0000001_dp, 2.0_dp, 1e10_dp]
+    real(dp), parameter :: speeds(5) = [-1e10_dp, -1e-100_dp, 0.0_dp, 1e-20_dp, 1e10_dp]
+    class(film_law_t), allocatable :: film
+    type(film_motion_t) :: motion
+    real(dp) :: force(2), moment
+    integer :: v, i, j, k
+    do v = 1, size(variants)
+      call make(trim(variants(v)), film)
+      do i = 1, size(ratios)
+        do j = 1, size(speeds)
+          do k = 1, size(speeds)
+            motion%eccentricity = clearance*ratios(i)*[0.6_dp, 0.8_dp]
+            motion%eccentricity_rate = clearance*speeds(k)*[0.8_dp, 0.6_dp]
+            motion%pin_speed = speeds(j)
+            call film%film_force(motion, force, moment)
+            call check%that(all(abs(force) <= huge(1.0_dp)), 'finite for extreme inputs, '//variants(v))
+          end do
+        end do
+      end do
+    end do
+  end subroutine test_extremes
+
+  subroutine test_factory(check)
+    class(checks_t), intent(inout) :: check
+    class(film_law_t), allocatable :: film
+    type(error_t), allocatable :: error
+    call new_film_law(lubrication_case_t(law='honey'), bearing_radius, bearing_length, clearance, 1e-6_dp, film, error)
+    call check%that(allocated(error) .and. .not. allocated(film), 'an unknown film is refused')
+    if (allocated(error)) then
+      call check%equal_text(error%message, &
+        "&lubrication law = 'honey': must be 'pinkus_sternlicht' or 'oscillating_film'", 'the refusal names the laws')
+      call check%that(error%status == status_case_file, 'the refusal is a case file error')
+    end if
+    call new_film_law(lubrication_case_t(variant='thick'), bearing_radius, bearing_length, clearance, 1e-6_dp, film, error)
+    call check%that(allocated(error) .and. .not. allocated(film), 'an unknown variant is refused')
+    if (allocated(error)) call check%that(index(error%message, "variant = 'thick': must be 'closed_form'") > 0, &
+      'the refusal names the variants')
+  end subroutine test_factory
+end module test_pinkus_sternlicht
