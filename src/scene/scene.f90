@@ -29,6 +29,8 @@ module scene
     real(dp) :: crank_moment = 0    !! moment of the drive on the crank [N m]
     real(dp) :: normal_force = 0    !! of the contact, pressing [N]
     real(dp) :: friction_force = 0  !! on the pin along t [N]
+    real(dp) :: cylinder_pressure = 0  !! [Pa]
+    real(dp) :: cylinder_volume = 0    !! [m^3]
     real(dp) :: power = 0           !! of all non-conservative forces and the drive [W]
   end type evaluation_t
 
