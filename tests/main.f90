@@ -5,14 +5,18 @@ program gudgeon_tests
   use test_adams, only: run_test_adams
   use test_contact, only: run_test_contact
   use test_friction, only: run_test_friction
+  use test_mechanism, only: run_test_mechanism
   use test_pinkus_sternlicht, only: run_test_pinkus_sternlicht
+  use test_reference, only: run_test_reference
   implicit none
   type(checks_t) :: check
 
   call run_test_adams(check)
   call run_test_contact(check)
   call run_test_friction(check)
+  call run_test_mechanism(check)
   call run_test_pinkus_sternlicht(check)
+  call run_test_reference(check)
 
   write (output_unit, '(i0,a,i0,a)') check%passed, ' passed, ', check%failed, ' failed'
   if (check%failed > 0 .or. check%passed == 0) error stop 1
