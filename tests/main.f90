@@ -3,6 +3,7 @@ program gudgeon_tests
   use, intrinsic :: iso_fortran_env, only: output_unit
   use checks, only: checks_t
   use test_adams, only: run_test_adams
+  use test_combustion, only: run_test_combustion
   use test_contact, only: run_test_contact
   use test_friction, only: run_test_friction
   use test_mechanism, only: run_test_mechanism
@@ -12,6 +13,7 @@ program gudgeon_tests
   type(checks_t) :: check
 
   call run_test_adams(check)
+  call run_test_combustion(check)
   call run_test_contact(check)
   call run_test_friction(check)
   call run_test_mechanism(check)

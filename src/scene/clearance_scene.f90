@@ -10,7 +10,7 @@ module clearance_scene
   use friction_law, only: friction_law_t
   use film_law, only: film_law_t, film_motion_t
   use scene, only: scene_t, evaluation_t, phase_free, phase_film, phase_contact, event_none, event_contact_begins, &
-    event_contact_ends
+    event_contact_ends, n_gas_events
   implicit none
   private
   public :: clearance_scene_t
@@ -28,6 +28,7 @@ module clearance_scene
     logical :: rejects_deep_entry = .false. !! contact_entry = 'step_rejection': contact begins at the end of a step
     real(dp) :: max_penetration = 0         !! deepest entry then [m]
     real(dp) :: impact_speed = 0            !! penetration rate at which the present contact began [m/s]
+    integer :: n_joint_events = 0           !! event functions of contact and friction
     integer :: sliding = 0                  !! set-valued friction: sign of sliding, 0 sticking
   contains
     procedure :: derivatives
@@ -35,7 +36,7 @@ module clearance_scene
     procedure :: initial_state
     procedure :: natural_scales
     procedure :: reported_event
-    procedure :: events => joint_events
+    procedure :: events => all_events
     procedure :: judge_step
     procedure :: handle_event
     procedure :: lands_on_step_end
@@ -91,6 +92,7 @@ contains
     call self%unpack(t, y, evaluation%motion, evaluation%joint, inside)
     if (.not. inside) return
     associate (now => evaluation, loads => evaluation%loads)
+      if (allocated(self%gas)) call self%add_gas(now)
       if (self%phase == phase_contact) then
         call add_contact(self, now)
       else if (self%phase == phase_film) then
@@ -169,6 +171,23 @@ contains
       - accelerations%rod*self%joint%pin_radius
   end function sliding_acceleration
 
+  pure subroutine all_events(self, t, y, g, g_rate)
+    class(clearance_scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: g(:), g_rate(:)
+    integer :: n
+    n = self%n_joint_events
+    if (n > 0) call joint_events(self, t, y, g(:n), g_rate(:n))
+    if (.not. allocated(self%gas)) return
+    if (self%drive%free_crank) then
+      call self%gas_events(y(1), y(4), g(n + 1:n + n_gas_events), g_rate(n + 1:n + n_gas_events))
+    else
+      call self%gas_events(self%start_angle + self%start_speed*t, self%start_speed, g(n + 1:n + n_gas_events), &
+        g_rate(n + 1:n + n_gas_events))
+    end if
+  end subroutine all_events
+
+  !> Event functions of the joint: contact begins, contact ends, and with set-valued friction the change of sliding.
   pure subroutine joint_events(self, t, y, g, g_rate)
     class(clearance_scene_t), intent(in) :: self
     real(dp), intent(in) :: t, y(:)
@@ -189,7 +208,7 @@ contains
     if (self%phase == phase_contact) then
       g(ends) = self%joint%clearance - distance
       g_rate(ends) = -rate
-      if (self%n_events < sliding_changes) return
+      if (self%n_joint_events < sliding_changes) return
       call self%evaluate(t, y, now, inside)
       if (.not. inside) return
       if (self%sliding == 0) then
@@ -269,7 +288,7 @@ contains
   pure logical function lands_on_step_end(self, index)
     class(clearance_scene_t), intent(in) :: self
     integer, intent(in) :: index
-    lands_on_step_end = self%rejects_deep_entry .and. index == begins
+    lands_on_step_end = self%rejects_deep_entry .and. index == begins .and. index <= self%n_joint_events
   end function lands_on_step_end
 
   subroutine handle_event(self, index, t, y, action)
@@ -281,6 +300,10 @@ contains
     real(dp) :: contact(2)
 
     action = event_continue
+    if (index > self%n_joint_events) then
+      call self%pass_gas_bound(index - self%n_joint_events)
+      return
+    end if
     select case (index)
     case (begins)
       contact = penetration_and_rate(self, y)
@@ -303,7 +326,7 @@ contains
     type(evaluation_t) :: now
     logical :: inside, was_sliding
 
-    if (self%n_events < sliding_changes) return
+    if (self%n_joint_events < sliding_changes) return
     was_sliding = self%sliding /= 0
     self%sliding = 0
     call self%evaluate(t, y, now, inside)
@@ -322,7 +345,7 @@ contains
     reported_event = event_none
     if (index == begins) reported_event = event_contact_begins
     if (index == ends) reported_event = event_contact_ends
-    if (.not. allocated(self%contact)) reported_event = event_none
+    if (index > self%n_joint_events) reported_event = event_none
   end function reported_event
 
   pure function initial_state(self) result(y)

@@ -1,7 +1,7 @@
 !> The scene with an ideal pin joint.
 module ideal_scene
   use kinds, only: dp
-  use mechanism, only: motion_t
+  use ode_problem, only: event_continue
   use ideal_joint, only: ideal_motion, ideal_accelerations
   use scene, only: scene_t, evaluation_t, event_none
   implicit none
@@ -16,6 +16,8 @@ module ideal_scene
     procedure :: initial_state
     procedure :: natural_scales
     procedure :: reported_event
+    procedure :: events => crank_events
+    procedure :: handle_event
   end type ideal_scene_t
 
 contains
@@ -44,6 +46,7 @@ contains
       evaluation%motion = ideal_motion(self%mechanism, self%start_angle + self%start_speed*t, self%start_speed)
     end if
     associate (now => evaluation)
+      if (allocated(self%gas)) call self%add_gas(now)
       now%joint%eccentricity = 0
       now%joint%distance = 0
       call ideal_accelerations(self%mechanism, self%drive, now%motion, now%loads, now%accelerations, now%crank_moment)
@@ -71,6 +74,29 @@ contains
       growing(2) = .false.
     end if
   end subroutine natural_scales
+
+  pure subroutine crank_events(self, t, y, g, g_rate)
+    class(ideal_scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: g(:), g_rate(:)
+    if (self%drive%free_crank) then
+      call self%gas_events(y(1), y(2), g, g_rate)
+    else
+      call self%gas_events(self%start_angle + self%start_speed*t, self%start_speed, g, g_rate)
+    end if
+  end subroutine crank_events
+
+  subroutine handle_event(self, index, t, y, action)
+    class(ideal_scene_t), intent(inout) :: self
+    integer, intent(in) :: index
+    real(dp), intent(in) :: t
+    real(dp), intent(inout) :: y(:)
+    integer, intent(out) :: action
+    associate (unused_t => t, unused_y => y)
+    end associate
+    call self%pass_gas_bound(index)
+    action = event_continue
+  end subroutine handle_event
 
   pure integer function reported_event(self, index)
     class(ideal_scene_t), intent(in) :: self

@@ -8,17 +8,22 @@ module scene
   use mechanism, only: mechanism_t, motion_t, accelerations_t
   use dynamics, only: drive_t, loads_t
   use clearance_joint, only: joint_motion_t
+  use gas_cycle, only: gas_cycle_t, cycle_angle, n_parts
   implicit none
   private
   public :: scene_t, evaluation_t
   public :: phase_free, phase_film, phase_contact
-  public :: event_none, event_contact_begins, event_contact_ends
+  public :: event_none, event_contact_begins, event_contact_ends, n_gas_events
 
   !> What the pin is doing: the values of the column `phase`.
   integer, parameter :: phase_free = 0, phase_film = 1, phase_contact = 2
 
   !> Events that a trace tells of.
   integer, parameter :: event_none = 0, event_contact_begins = 1, event_contact_ends = 2
+
+  !> Passages of the crank from one part of the gas cycle to the next: forwards, backwards. Where there is gas they are
+  !> the last event functions of a scene.
+  integer, parameter :: n_gas_events = 2
 
   !> Everything that one evaluation of a scene finds. Fields of models that the scene does not have stay 0.
   type :: evaluation_t
@@ -42,6 +47,10 @@ module scene
     real(dp) :: start_angle = 0     !! crank angle at t = 0 [rad]
     real(dp) :: start_speed = 0     !! crank speed at t = 0, and always if it is held [rad/s]
     integer :: phase = phase_free
+    type(gas_cycle_t), allocatable :: gas
+    integer :: gas_part = 0            !! part of the gas cycle that acts
+    real(dp) :: gas_cycle_start = 0    !! crank angle at which its cycle began [rad]
+    logical :: gives_volume = .false.  !! whether an evaluation finds the cylinder volume (for the trace)
   contains
     procedure(evaluate), deferred :: evaluate
     procedure(initial_state), deferred :: initial_state
@@ -50,6 +59,10 @@ module scene
     procedure :: energy
     procedure :: energy_scale
     procedure :: speed_scale
+    procedure :: set_gas_part
+    procedure :: add_gas
+    procedure :: gas_events
+    procedure :: pass_gas_bound
   end type scene_t
 
   abstract interface
@@ -113,4 +126,47 @@ contains
         + (m%crank_mass + m%rod_mass + m%piston_mass)*m%gravity*m%crank_length
     end associate
   end function energy_scale
+
+  !> Find the part of the gas cycle that the crank is in, or about to enter.
+  subroutine set_gas_part(self, crank_angle, crank_speed)
+    class(scene_t), intent(inout) :: self
+    real(dp), intent(in) :: crank_angle, crank_speed
+    call self%gas%part_at(crank_angle, crank_speed < 0, self%gas_part, self%gas_cycle_start)
+  end subroutine set_gas_part
+
+  !> Pressure and force of the gas at the crank angle of `now`.
+  pure subroutine add_gas(self, now)
+    class(scene_t), intent(in) :: self
+    type(evaluation_t), intent(inout) :: now
+    now%cylinder_pressure = self%gas%pressure(now%motion%crank_angle, self%gas_part, self%gas_cycle_start)
+    now%loads%gas_force = self%gas%gas_force(now%cylinder_pressure)
+    if (self%gives_volume) now%cylinder_volume = self%gas%cylinder%volume(now%motion%crank_angle)
+  end subroutine add_gas
+
+  !> Event functions of the bounds of the present part of the gas cycle, over the crank angle.
+  pure subroutine gas_events(self, crank_angle, crank_speed, g, g_rate)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: crank_angle, crank_speed
+    real(dp), intent(out) :: g(n_gas_events), g_rate(n_gas_events)
+    real(dp) :: angle
+    angle = crank_angle - self%gas_cycle_start
+    g = [angle - self%gas%bound(self%gas_part), self%gas%bound(self%gas_part - 1) - angle]
+    g_rate = [crank_speed, -crank_speed]
+  end subroutine gas_events
+
+  !> Enter the next part of the gas cycle that is not empty, forwards (1) or backwards (2).
+  subroutine pass_gas_bound(self, direction)
+    class(scene_t), intent(inout) :: self
+    integer, intent(in) :: direction
+    integer :: way
+    way = merge(1, -1, direction == 1)
+    do
+      self%gas_part = self%gas_part + way
+      if (self%gas_part > n_parts .or. self%gas_part < 1) then
+        self%gas_part = merge(1, n_parts, way > 0)
+        self%gas_cycle_start = self%gas_cycle_start + way*cycle_angle
+      end if
+      if (self%gas%bound(self%gas_part) > self%gas%bound(self%gas_part - 1)) exit
+    end do
+  end subroutine pass_gas_bound
 end module scene

@@ -11,7 +11,9 @@ module scene_builder
   use friction_laws, only: new_friction_law
   use films, only: new_film_law
   use ode_method, only: ode_settings_t
-  use scene, only: scene_t, phase_free, phase_film
+  use cylinder, only: new_cylinder
+  use gas_cycle, only: gas_cycle_t, heat_release_t, new_gas_cycle
+  use scene, only: scene_t, phase_free, phase_film, n_gas_events
   use ideal_scene, only: ideal_scene_t
   use clearance_scene, only: clearance_scene_t
   implicit none
@@ -50,6 +52,12 @@ contains
     scene%drive = drive_t(case%drive%kind == 'free', case%drive%torque, case%drive%damping)
     scene%start_angle = case%initial%crank_angle_deg*degree
     scene%start_speed = case%initial%crank_speed
+    if (case%combustion%is_present) then
+      call build_gas(case, scene%gas, error)
+      if (allocated(error)) return
+      call scene%set_gas_part(scene%start_angle, scene%start_speed)
+      scene%n_events = scene%n_events + n_gas_events
+    end if
   end subroutine build_scene
 
   !> The joint's laws, only those that the case asks for.
@@ -64,12 +72,12 @@ contains
       if (case%contact%is_present) then
         call new_contact_law(case%contact, joint%bearing_radius, joint%clearance, scene%contact, error)
         if (allocated(error)) return
-        scene%n_events = 2
+        scene%n_joint_events = 2
       end if
       if (case%friction%is_present) then
         call new_friction_law(case%friction, scene%friction, error)
         if (allocated(error)) return
-        if (scene%friction%set_valued) scene%n_events = 3
+        if (scene%friction%set_valued) scene%n_joint_events = 3
       end if
       if (case%lubrication%is_present) then
         call new_film_law(case%lubrication, joint%bearing_radius, joint%bearing_length, joint%clearance, &
@@ -81,7 +89,24 @@ contains
       scene%max_penetration = case%integrator%max_penetration
       if (.not. scene%max_penetration > 0) scene%max_penetration = default_entry*joint%clearance
     end associate
+    scene%n_events = scene%n_joint_events
   end subroutine build_joint
+
+  !> The gas cycle, integrated ten times finer than the run.
+  subroutine build_gas(case, gas, error)
+    type(case_t), intent(in) :: case
+    type(gas_cycle_t), allocatable, intent(out) :: gas
+    type(error_t), allocatable, intent(out) :: error
+    allocate (gas)
+    associate (c => case%combustion)
+      gas%cylinder = new_cylinder(c%bore, case%mechanism%crank_length, case%mechanism%rod_length, c%compression_ratio)
+      gas%release = heat_release_t(c%heat, c%wiebe_efficiency, c%wiebe_form, c%start_deg*degree, c%duration_deg*degree)
+      gas%heat_capacity_ratio = c%heat_capacity_ratio
+      gas%intake_pressure = c%intake_pressure
+      gas%crankcase_pressure = c%crankcase_pressure
+    end associate
+    call new_gas_cycle(gas, 0.1_dp*case%integrator%relative_tolerance, error)
+  end subroutine build_gas
 
   !> Time to simulate [s]: revolutions are counted at the initial crank speed.
   pure real(dp) function simulated_time(case)
