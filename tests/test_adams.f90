@@ -28,9 +28,9 @@ contains
     integer, intent(in) :: n
     real(dp), intent(in) :: tolerance, span
     type(ode_settings_t) :: s
-    integer :: i
-    s%relative = [(tolerance, i=1, n)]
-    s%absolute = [(tolerance, i=1, n)]
+    allocate (s%relative(n), s%absolute(n))
+    s%relative = tolerance
+    s%absolute = tolerance
     s%span = span
   end function settings
 

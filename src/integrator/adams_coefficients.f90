@@ -58,7 +58,7 @@ contains
     real(dp) :: reach, previous
     integer :: i, ns
 
-    if (h /= h_old) self%ns = 0
+    if (abs(h - h_old) > 0) self%ns = 0
     if (self%ns <= k_old) self%ns = self%ns + 1
     ns = self%ns
     if (k < ns) return
