@@ -9,6 +9,7 @@ program gudgeon_tests
   use test_mechanism, only: run_test_mechanism
   use test_pinkus_sternlicht, only: run_test_pinkus_sternlicht
   use test_reference, only: run_test_reference
+  use test_scenes, only: run_test_scenes
   implicit none
   type(checks_t) :: check
 
@@ -19,6 +20,7 @@ program gudgeon_tests
   call run_test_mechanism(check)
   call run_test_pinkus_sternlicht(check)
   call run_test_reference(check)
+  call run_test_scenes(check)
 
   write (output_unit, '(i0,a,i0,a)') check%passed, ' passed, ', check%failed, ' failed'
   if (check%failed > 0 .or. check%passed == 0) error stop 1
