@@ -36,6 +36,7 @@ contains
     call test_films(check)
     call test_runs(check)
     call test_files(check)
+    call test_shipped_cases(check)
     call test_safe_messages(check)
   end subroutine run_test_case_file
 
@@ -98,7 +99,7 @@ contains
     character(len=40) :: none(0)
     character(len=:), allocatable :: text
     call parse_case(whole, 'x', [character(len=40) :: 'mechanism.crank_length=0.03333333333333', &
-                                 'joint.clearance=1.23456789012345e-5', 'case.title=''quoted'''], c, error)
+                                 'joint.clearance=1.23456789012345e-5', 'case.title=it''s ''so'''], c, error)
     call check%that(.not. allocated(error), 'case to resolve')
     text = write_resolved(c)
     call parse_case(text, 'x', none, back, error)
@@ -344,6 +345,28 @@ contains
     call remove_directory(folder, status)
     call check%that(status == 0, 'scratch folder removed')
   end subroutine test_files
+
+  !> The cases that come with the program are read, and resolved they are the same.
+  subroutine test_shipped_cases(check)
+    class(checks_t), intent(inout) :: check
+    character(len=24), parameter :: names(20) = [character(len=24) :: 'sim_I', 'sim_II', 'sim_III', 'sim_IV', 'sim_V', &
+      'sim_VI', 'sim_I_oscillating', 'sim_II_oscillating', 'sim_III_oscillating', 'sim_IV_oscillating', &
+      'sim_V_oscillating', 'sim_VI_oscillating', 'flores/dry_0500um', 'flores/dry_0100um', 'flores/dry_0010um', &
+      'flores/friction_010', 'flores/friction_050', 'flores/friction_100', 'flores/lubricated_400cP', 'flores/ideal']
+    type(case_t) :: c, back
+    type(error_t), allocatable :: error
+    character(len=1) :: none(0)
+    character(len=:), allocatable :: text
+    integer :: i
+    do i = 1, size(names)
+      call read_case('cases/'//trim(names(i))//'.nml', none, c, error)
+      call check%that(.not. allocated(error), 'cases/'//trim(names(i))//'.nml is read')
+      if (allocated(error)) cycle
+      text = write_resolved(c)
+      call parse_case(text, 'x', none, back, error)
+      call check%equal_text(write_resolved(back), text, trim(names(i))//' resolved')
+    end do
+  end subroutine test_shipped_cases
 
   !> Messages are one printable line of bounded length, whatever the file holds.
   subroutine test_safe_messages(check)
