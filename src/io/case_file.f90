@@ -107,7 +107,7 @@ contains
       associate (entry => list%entries(i))
         call values%find(entry%group, entry%key, at_line(values, entry%line), place, error)
         if (allocated(error)) return
-        call values%assign(place, entry%first, entry%tokens, at_line(values, entry%line), .false., error)
+        call values%assign(place, entry%index, entry%tokens, at_line(values, entry%line), .false., error)
         if (allocated(error)) return
       end associate
     end do
@@ -144,7 +144,7 @@ contains
       return
     end if
     values%is_present(find_group(values%groups, group)) = .true.
-    call values%assign(place, 1, tokens, at, .true., error)
+    call values%assign(place, 0, tokens, at, .true., error)
   end subroutine take_override
 
   !> `path:line: `

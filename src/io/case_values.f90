@@ -14,6 +14,8 @@ module case_values
 
   integer, parameter :: most_reals = 2   !! longest array of reals in the schema
 
+  integer, parameter :: longest_text = 4000
+
   !> The value of one key, in the component of its kind.
   type :: value_t
     logical :: given(most_reals) = .false.   !! in the file or by an override, not by default
@@ -72,16 +74,25 @@ contains
     type(error_t), allocatable, intent(out) :: error
     character(len=24), allocatable :: allowed(:)
     character(len=:), allocatable :: text
-    integer :: i
+    integer :: i, shown
     place = find_key(self%keys, group, key)
     if (place > 0) return
     if (find_group(self%groups, group) == 0) then
-      allowed = [(self%groups(i)%name//repeat(' ', 12), i=1, size(self%groups))]
+      allocate (allowed(size(self%groups)))
+      do i = 1, size(self%groups)
+        allowed(i) = self%groups(i)%name
+      end do
       text = '&'//printable(group, 40)//': unknown group'
       call fail(error, at//text//suggestion(group, allowed), status_case_file)
       return
     end if
-    allowed = pack(self%keys%name, self%keys%group == group)
+    allocate (allowed(count(self%keys%group == group)))
+    shown = 0
+    do i = 1, size(self%keys)
+      if (self%keys(i)%group /= group) cycle
+      shown = shown + 1
+      allowed(shown) = self%keys(i)%name
+    end do
     text = '&'//group//' '//printable(key, 40)//': unknown key'
     do i = 1, size(self%keys)
       if (self%keys(i)%name == key) text = text//' of this group; it belongs to &'//trim(self%keys(i)%group)
@@ -104,26 +115,27 @@ contains
     text = text//')'
   end function suggestion
 
-  !> Give the key at `place` the values written for it, from element `first` on. An override replaces what the file
-  !> says; within a file an element may be given once. `at` names file and line.
-  subroutine assign(self, place, first, tokens, at, is_override, error)
+  !> Give the key at `place` the values written for it, from element `index` on; 0 means all of them. An override
+  !> replaces what the file says; within a file an element may be given once. `at` names file and line.
+  subroutine assign(self, place, index, tokens, at, is_override, error)
     class(case_values_t), intent(inout) :: self
-    integer, intent(in) :: place, first
+    integer, intent(in) :: place, index
     type(token_t), intent(in) :: tokens(:)
     character(len=*), intent(in) :: at
     logical, intent(in) :: is_override
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: wanted, name
-    integer :: i, k, element, total
+    integer :: i, k, element, total, first
+    first = max(1, index)
     associate (key => self%keys(place), value => self%values(place))
       name = at//'&'//trim(key%group)//' '//trim(key%name)
       total = sum([(tokens(i)%repeat, i=1, size(tokens))]) + first - 1
       if (total > key%count) wanted = 'takes '//integer_text(key%count)//' value'//trim(merge('s', ' ', key%count > 1))// &
         ', not '//integer_text(total)
-      if (total < key%count .and. first == 1 .and. key%kind == real_kind) wanted = 'takes '// &
+      if (total < key%count .and. index == 0 .and. key%kind == real_kind) wanted = 'takes '// &
         integer_text(key%count)//' values; as '//integer_text(key%count)//'*'//printable(tokens(1)%text, 40)// &
         ' where they are the same'
-      if (first > 1 .and. key%kind /= real_kind) wanted = 'takes no index'
+      if (index > 0 .and. key%count /= most_reals) wanted = 'takes no index'
       if (allocated(wanted)) then
         call fail(error, name//': '//wanted, status_case_file)
         return
@@ -168,9 +180,11 @@ contains
       if (token%quoted) wanted = 'must be .true. or .false., without quotes'
     case (word_kind)
       value%text = trim(lowercase(token%text))
-      if (.not. is_one_of(value%text, trim(key%words)) .and. value%text /= key%default) wanted = 'must be one of '//key%words
+      if (.not. is_one_of(value%text, trim(key%words)) .and. value%text /= key%default) wanted = 'must be one of '// &
+        trim(key%words)
     case default
       if (.not. is_clean(token%text)) wanted = 'must not hold control characters or bytes that are not UTF-8'
+      if (len(token%text) + len(value%text) > longest_text) wanted = 'must be at most 4000 bytes'
       if (element > 1 .and. key%count > 1 .and. token%quoted) then
         value%text = value%text//','//token%text
       else

@@ -3,8 +3,8 @@
 !> by / or &end, every key has its values, and no value is left out between commas.
 module namelist_reader
   use text_tools, only: printable
-  use text_scanner, only: scanner_t, name_here, skip_blanks, bare_length, at_end, next_is, piece, newline, return, digits, &
-    shown
+  use text_scanner, only: scanner_t, name_here, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line, newline, return, &
+    digits, shown
   implicit none
   private
   public :: namelist_t, named_group_t, entry_t, token_t, read_namelist, read_values
@@ -25,7 +25,7 @@ module namelist_reader
   !> One `key = values` of a group.
   type :: entry_t
     character(len=:), allocatable :: group, key
-    integer :: first = 1                     !! n of key(n)
+    integer :: index = 0                     !! n of key(n); 0 without one
     integer :: line = 0
     type(token_t), allocatable :: tokens(:)
   end type entry_t
@@ -135,7 +135,7 @@ contains
     type(entry_t), intent(inout) :: entry
     character(len=:), allocatable :: place
     entry%line = scan%line
-    entry%first = 1
+    entry%index = 0
     place = '&'//printable(entry%group, shown)
     entry%key = name_here(scan)
     if (entry%key == '') then
@@ -145,8 +145,8 @@ contains
     place = place//' '//printable(entry%key, shown)
     call skip_blanks(scan)
     if (next_is(scan, '(')) then
-      call read_index(scan, entry%first)
-      if (entry%first < 1) then
+      call read_index(scan, entry%index)
+      if (entry%index < 1) then
         scan%message = place//': the index must be a whole number in parentheses, as in key(1)'
         return
       end if
@@ -246,21 +246,27 @@ contains
     type(scanner_t), intent(inout) :: scan
     type(token_t), intent(inout) :: token
     character(len=1) :: quote, c
-    integer :: start
+    character(len=:), allocatable :: inside
+    integer :: start, length
     quote = scan%text(scan%at:scan%at)
     start = scan%at
+    length = 0
     token%quoted = .true.
-    token%text = ''
+    allocate (character(len=rest_of_line(scan)) :: inside)
     scan%at = scan%at + 1
     do while (.not. at_end(scan))
       c = scan%text(scan%at:scan%at)
       if (c == newline .or. c == return) exit
       scan%at = scan%at + 1
       if (c == quote) then
-        if (.not. next_is(scan, quote)) return
+        if (.not. next_is(scan, quote)) then
+          token%text = inside(:length)
+          return
+        end if
         scan%at = scan%at + 1
       end if
-      token%text = token%text//c
+      length = length + 1
+      inside(length:length) = c
     end do
     scan%at = start
     scan%message = 'the string is not closed on its line: '//piece(scan)

@@ -7,7 +7,7 @@ module posix
   private
   public :: open_for_reading, open_for_writing, read_bytes, write_bytes, truncate_file, close_file, rename_file, &
     remove_file, remove_directory, make_directory, is_terminal, error_text, hold_interrupts, interrupted, &
-    ignore_broken_pipes
+    ignore_write_signals
   public :: error_no_entry, error_interrupted, error_exists, error_is_directory, error_no_space
 
   !> Error numbers of Linux.
@@ -16,7 +16,8 @@ module posix
 
   integer(c_int), parameter :: o_cloexec = 524288, read_only = 0, write_only = 1, o_creat = 64, o_trunc = 512
   integer(c_int), parameter :: file_mode = 438, folder_mode = 511   !! rw-rw-rw-, rwxrwxrwx, before the umask
-  integer(c_int), parameter :: signal_hangup = 1, signal_interrupt = 2, signal_pipe = 13, signal_terminate = 15
+  integer(c_int), parameter :: signal_hangup = 1, signal_interrupt = 2, signal_pipe = 13, signal_terminate = 15, &
+    signal_file_size = 25
   integer(c_int), parameter :: held(3) = [signal_hangup, signal_interrupt, signal_terminate]
   integer(c_int), parameter :: signal_block = 0
   integer(c_intptr_t), parameter :: ignore_handler = 1, error_handler = -1
@@ -262,11 +263,13 @@ contains
     end do
   end function interrupted
 
-  !> Writing to a reader that has gone then gives an error number instead of ending the program.
-  subroutine ignore_broken_pipes()
+  !> Writing to a reader that has gone, or past the largest file allowed, then gives an error number instead of ending
+  !> the program.
+  subroutine ignore_write_signals()
     integer(c_intptr_t) :: unused
     unused = c_signal(signal_pipe, ignore_handler)
-  end subroutine ignore_broken_pipes
+    unused = c_signal(signal_file_size, ignore_handler)
+  end subroutine ignore_write_signals
 
   !> 0 after success, else the error number of the call just made.
   function outcome(returned) result(status)

@@ -3,7 +3,7 @@ module text_scanner
   use text_tools, only: lowercase, printable
   implicit none
   private
-  public :: scanner_t, name_here, skip_blanks, bare_length, at_end, next_is, piece
+  public :: scanner_t, name_here, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line
   public :: newline, return, digits, shown
 
   !> A place in the text, and what was found wrong there.
@@ -50,7 +50,7 @@ contains
         scan%at = scan%at + 1
         if (.not. next_is(scan, newline)) scan%line = scan%line + 1
       case ('!')
-        length = scan_for_line_end(scan)
+        length = rest_of_line(scan)
         scan%at = scan%at + length
       case default
         return
@@ -59,13 +59,13 @@ contains
   end subroutine skip_blanks
 
   !> Bytes from here to the end of the line.
-  pure function scan_for_line_end(scan) result(length)
+  pure function rest_of_line(scan) result(length)
     type(scanner_t), intent(in) :: scan
     integer :: length
     do length = 0, len(scan%text) - scan%at
       if (index(newline//return, scan%text(scan%at + length:scan%at + length)) > 0) return
     end do
-  end function scan_for_line_end
+  end function rest_of_line
 
   !> Bytes from here to the next separator.
   pure function bare_length(scan) result(length)
@@ -94,6 +94,6 @@ contains
   pure function piece(scan) result(text)
     type(scanner_t), intent(in) :: scan
     character(len=:), allocatable :: text
-    text = printable(scan%text(scan%at:scan%at + scan_for_line_end(scan) - 1), shown)
+    text = printable(scan%text(scan%at:scan%at + rest_of_line(scan) - 1), shown)
   end function piece
 end module text_scanner
