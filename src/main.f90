@@ -39,8 +39,6 @@ contains
   subroutine run_all(options, status)
     type(command_line_t), intent(in) :: options
     integer, intent(out) :: status
-    character(len=:), allocatable :: line
-    type(error_t), allocatable :: error
     logical :: show_progress
     integer :: i, jobs
 
@@ -50,20 +48,31 @@ contains
     if (jobs == 0) jobs = omp_get_num_procs()
     jobs = min(jobs, size(options%cases))
     show_progress = progress_wanted(options%progress) .and. .not. options%quiet
-    !$omp parallel do schedule(dynamic) num_threads(jobs) private(line, error) reduction(max: status)
+    !$omp parallel do schedule(dynamic) num_threads(jobs) reduction(max: status)
     do i = 1, size(options%cases)
-      call run_case_file(trim(options%cases(i)), options, show_progress, line, error)
-      !$omp critical (messages)
-      if (allocated(error)) then
-        call complain(error)
-        status = max(status, error%status)
-      else if (.not. options%quiet) then
-        call say(line)
-      end if
-      !$omp end critical (messages)
+      call run_one(trim(options%cases(i)), options, show_progress, status)
     end do
     !$omp end parallel do
   end subroutine run_all
+
+  !> Run one case and say how it went; `status` rises to that of an error.
+  subroutine run_one(path, options, show_progress, status)
+    character(len=*), intent(in) :: path
+    type(command_line_t), intent(in) :: options
+    logical, intent(in) :: show_progress
+    integer, intent(inout) :: status
+    character(len=:), allocatable :: line
+    type(error_t), allocatable :: error
+    call run_case_file(path, options, show_progress, line, error)
+    !$omp critical (messages)
+    if (allocated(error)) then
+      call complain(error)
+      status = max(status, error%status)
+    else if (.not. options%quiet) then
+      call say(line)
+    end if
+    !$omp end critical (messages)
+  end subroutine run_one
 
   !> One line on standard output.
   subroutine say(line)

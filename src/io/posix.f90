@@ -7,7 +7,7 @@ module posix
   private
   public :: open_for_reading, open_for_writing, read_bytes, write_bytes, truncate_file, close_file, rename_file, &
     remove_file, remove_directory, make_directory, is_terminal, error_text, hold_interrupts, interrupted, &
-    ignore_write_signals
+    ignore_write_signals, quit
   public :: error_no_entry, error_interrupted, error_exists, error_is_directory, error_no_space
 
   !> Error numbers of Linux.
@@ -126,6 +126,10 @@ module posix
       integer(c_intptr_t), value :: handler
       integer(c_intptr_t) :: old
     end function c_signal
+    subroutine c_exit(status) bind(c, name='exit')
+      import :: c_int
+      integer(c_int), value :: status
+    end subroutine c_exit
   end interface
 
 contains
@@ -270,6 +274,12 @@ contains
     unused = c_signal(signal_pipe, ignore_handler)
     unused = c_signal(signal_file_size, ignore_handler)
   end subroutine ignore_write_signals
+
+  !> End the program with an exit status, without a word.
+  subroutine quit(status)
+    integer, intent(in) :: status
+    call c_exit(int(status, c_int))
+  end subroutine quit
 
   !> 0 after success, else the error number of the call just made.
   function outcome(returned) result(status)

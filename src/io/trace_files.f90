@@ -86,7 +86,7 @@ contains
       if (i == self%phase_column) then
         row = row//achar(iachar('0') + nint(values(i)))
       else
-        row = row//real_text(values(i))
+        row = row//real_text(values(i) + 0.0_dp)   ! no negative zeros
       end if
     end do
     call self%trace%put(row//newline)
