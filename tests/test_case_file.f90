@@ -358,6 +358,7 @@ contains
     character(len=1) :: none(0)
     character(len=:), allocatable :: text
     integer :: i
+    text = ''
     do i = 1, size(names)
       call read_case('cases/'//trim(names(i))//'.nml', none, c, error)
       call check%that(.not. allocated(error), 'cases/'//trim(names(i))//'.nml is read')
