@@ -20,8 +20,6 @@ module scene_builder
   private
   public :: build_scene, simulated_time, sample_interval, settings_for
 
-  real(dp), parameter :: default_entry = 1e-6_dp   !! deepest contact entry by default, parts of the clearance
-
 contains
 
   !> Build the scene of a case; with `ideal_joint` its twin without clearance. The case has been validated by its
@@ -87,7 +85,6 @@ contains
       scene%phase = merge(phase_film, phase_free, allocated(scene%film))
       scene%rejects_deep_entry = case%integrator%contact_entry == 'step_rejection' .and. allocated(scene%contact)
       scene%max_penetration = case%integrator%max_penetration
-      if (.not. scene%max_penetration > 0) scene%max_penetration = default_entry*joint%clearance
     end associate
     scene%n_events = scene%n_joint_events
   end subroutine build_joint
