@@ -30,6 +30,7 @@ count() {   # count NAME COMMAND...: run the command and add up its counts
 count "every module compiles" sh -c 'fpm build --no-prune && echo "1 passed, 0 failed"'
 count "tests, strict" fpm @strict
 count "tests, release" fpm test --profile release
+count "the program" sh -c 'fpm build --profile release && tests/test_program.sh'
 
 failed=$((failed + wrong))
 echo "$passed passed, $failed failed"
