@@ -89,6 +89,13 @@ check "no NaN" [ "$(grep -ci -e nan -e inf "$work/r/sim_I.csv")" = 0 ]
 cp "$work/r/sim_I.resolved.nml" "$work/again.nml"
 run -o "$work/r" "$work/again.nml"
 check "the resolved case gives the same trace" cmp -s "$work/r/sim_I.csv" "$work/r/again.csv"
+for jobs in 1 4; do
+  run -j $jobs -o "$work/j$jobs" -s integrator.revolutions=0.1 cases/sim_I.nml cases/sim_II.nml cases/sim_III.nml \
+    cases/flores/dry_0500um.nml cases/flores/dry_0100um.nml cases/flores/friction_100.nml
+done
+for file in sim_I sim_II sim_III dry_0500um dry_0100um friction_100 sim_I.ideal dry_0100um.events; do
+  check "side by side gives the same bytes: $file" cmp -s "$work/j1/$file.csv" "$work/j4/$file.csv"
+done
 run -q -o "$work/r" -s integrator.revolutions=0.1 cases/flores/ideal.nml
 check "quiet" [ "$status" = 0 -a ! -s "$work/out" -a ! -s "$work/err" ]
 

@@ -32,42 +32,52 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(case_t) :: case
     type(column_list_t) :: list, ideal_list
-    class(scene_t), allocatable :: scene
     type(error_t), allocatable :: ideal_error
     character(len=:), allocatable :: base
+
+    !$omp critical (texts)
+    line = ''
+    call prepare(path, options, case, list, ideal_list, base, error)
+    if (.not. allocated(error) .and. options%check) line = path//': correct'
+    !$omp end critical (texts)
+    if (allocated(error) .or. options%check) return
+
+    call run_one(case, .false., list, base, show_progress, line, error)
+    if (.not. case%output%ideal_twin .or. case%joint%kind == 'ideal') return
+    if (allocated(error)) then
+      if (index(error%message, interrupted_text) > 0) return
+    end if
+    call run_one(case, .true., ideal_list, base, show_progress, line, ideal_error)
+    if (allocated(ideal_error) .and. .not. allocated(error)) call move_alloc(ideal_error, error)
+  end subroutine run_case_file
+
+  !> Read and check a case; unless only that is asked for, make the folder for its results and write the resolved case.
+  !> `base` is the path of the results without their endings.
+  subroutine prepare(path, options, case, list, ideal_list, base, error)
+    character(len=*), intent(in) :: path
+    type(command_line_t), intent(in) :: options
+    type(case_t), intent(out) :: case
+    type(column_list_t), intent(out) :: list, ideal_list
+    character(len=:), allocatable, intent(out) :: base
+    type(error_t), allocatable, intent(out) :: error
+    class(scene_t), allocatable :: scene
     integer :: status
 
-    line = ''
     call read_case(path, with_accuracy(options), case, error)
     if (allocated(error)) return
+    base = options%out//'/'//case%name
     call choose_columns(case, .false., list, error)
     if (.not. allocated(error)) call choose_columns(case, .true., ideal_list, error)
     if (.not. allocated(error)) call build_scene(case, .false., scene, error)
-    if (allocated(error)) then
-      call name_file(path, error)
-      return
-    end if
-    if (options%check) then
-      line = path//': correct'
-      return
-    end if
+    if (allocated(error)) call name_file(path, error)
+    if (allocated(error) .or. options%check) return
     call make_directory(options%out, status)
     if (status /= 0) then
       call fail(error, printable(options%out, 200)//': '//error_text(status), status_output)
-      return
+    else
+      call write_text(base//'.resolved.nml', write_resolved(case), error)
     end if
-    base = options%out//'/'//case%name
-    call write_text(base//'.resolved.nml', write_resolved(case), error)
-    if (allocated(error)) return
-    call run_one(case, .false., list, base, show_progress, line, error)
-    if (case%output%ideal_twin .and. case%joint%kind /= 'ideal') then
-      if (allocated(error)) then
-        if (index(error%message, interrupted_text) > 0) return
-      end if
-      call run_one(case, .true., ideal_list, base//'.ideal', show_progress, line, ideal_error)
-      if (allocated(ideal_error) .and. .not. allocated(error)) call move_alloc(ideal_error, error)
-    end if
-  end subroutine run_case_file
+  end subroutine prepare
 
   !> The overrides of the command line, those of an accuracy preset first.
   function with_accuracy(options) result(overrides)
@@ -94,7 +104,7 @@ contains
     end do
   end function with_accuracy
 
-  !> Run a case or its ideal twin, and write BASE.csv and what belongs to it.
+  !> Run a case and write BASE.csv, events and summary, or its ideal twin and write BASE.ideal.csv.
   subroutine run_one(case, ideal_joint, list, base, show_progress, line, error)
     type(case_t), intent(in) :: case
     logical, intent(in) :: ideal_joint
@@ -104,36 +114,71 @@ contains
     character(len=:), allocatable, intent(inout) :: line
     type(error_t), allocatable, intent(out) :: error
     class(trace_sink_t), allocatable :: sink
-    type(trace_files_t), allocatable :: files
     type(run_report_t) :: report
-    type(error_t), allocatable :: output_error
     integer(int64) :: began, ended, rate
-    real(dp) :: wall_time
+
+    !$omp critical (texts)
+    call open_files(case, ideal_joint, list, base, show_progress, sink, error)
+    !$omp end critical (texts)
+    if (allocated(error)) return
+    call system_clock(began, rate)
+    call simulate(case, ideal_joint, list, sink, report, error)
+    call system_clock(ended)
+    !$omp critical (texts)
+    call close_files(case, ideal_joint, base, sink, report, real(ended - began, dp)/real(rate, dp), line, error)
+    !$omp end critical (texts)
+  end subroutine run_one
+
+  subroutine open_files(case, ideal_joint, list, base, show_progress, sink, error)
+    type(case_t), intent(in) :: case
+    logical, intent(in) :: ideal_joint
+    type(column_list_t), intent(in) :: list
+    character(len=*), intent(in) :: base
+    logical, intent(in) :: show_progress
+    class(trace_sink_t), allocatable, intent(out) :: sink
+    type(error_t), allocatable, intent(out) :: error
+    type(trace_files_t), allocatable :: files
 
     allocate (files)
-    call files%open(base, list, case%contact%is_present .and. .not. ideal_joint, error)
+    if (ideal_joint) then
+      call files%open(base//'.ideal', list, .false., error)
+    else
+      call files%open(base, list, case%contact%is_present, error)
+    end if
     if (allocated(error)) return
     files%end_time = simulated_time(case)
     call files%progress%start(case%name, show_progress)
-    call system_clock(began, rate)
     call move_alloc(files, sink)
-    call simulate(case, ideal_joint, list, sink, report, error)
-    call system_clock(ended)
-    wall_time = real(ended - began, dp)/real(rate, dp)
+  end subroutine open_files
+
+  !> Close the files and write the summary. An error of the output goes before one of the integration.
+  subroutine close_files(case, ideal_joint, base, sink, report, wall_time, line, error)
+    type(case_t), intent(in) :: case
+    logical, intent(in) :: ideal_joint
+    character(len=*), intent(in) :: base
+    class(trace_sink_t), allocatable, intent(inout) :: sink
+    type(run_report_t), intent(inout) :: report
+    real(dp), intent(in) :: wall_time
+    character(len=:), allocatable, intent(inout) :: line
+    type(error_t), allocatable, intent(inout) :: error
+    type(error_t), allocatable :: trace_error, summary_error
+
+    if (allocated(error)) call name_file(case%file, error)
     select type (sink)
     type is (trace_files_t)
-      call sink%close(output_error)
+      call sink%close(trace_error)
     end select
-    if (allocated(output_error)) then
-      report%status = 'stopped: '//output_error%message
-    else if (.not. ideal_joint) then
+    if (allocated(trace_error)) report%status = 'stopped: '//trace_error%message
+    if (.not. ideal_joint) then
       line = summary_line(case, report, wall_time, base)
+      call write_text(base//'.summary.csv', summary_table(case, report, wall_time), summary_error)
     end if
-    if (.not. ideal_joint .and. .not. allocated(output_error)) &
-      call write_text(base//'.summary.csv', summary_table(case, report, wall_time), output_error)
-    if (allocated(error)) call name_file(case%file, error)
-    if (allocated(output_error)) call move_alloc(output_error, error)
-  end subroutine run_one
+    if (allocated(trace_error)) then
+      call move_alloc(trace_error, error)
+    else if (allocated(summary_error)) then
+      call move_alloc(summary_error, error)
+    end if
+  end subroutine close_files
 
   !> A small file, written whole or not at all.
   subroutine write_text(path, text, error)

@@ -4,7 +4,7 @@ module number_text
   use kinds, only: dp
   implicit none
   private
-  public :: real_text, exact_text, short_text
+  public :: real_text, exact_text, short_text, append_real
 
 contains
 
@@ -14,6 +14,25 @@ contains
     character(len=:), allocatable :: text
     text = scientific(value, '(es16.9e2)', '(es17.9e3)')
   end function real_text
+
+  !> Append a real as `real_text` writes it to the first `used` characters of a line that has room for 24 more. A
+  !> subroutine, since gfortran keeps the length of a deferred-length function result in static storage, where
+  !> two threads meet.
+  pure subroutine append_real(line, used, value)
+    character(len=*), intent(inout) :: line
+    integer, intent(inout) :: used
+    real(dp), intent(in) :: value
+    character(len=24) :: digits
+    integer :: first
+    if (abs(value) < 1e90_dp .and. .not. (abs(value) > 0 .and. abs(value) < 1e-90_dp)) then
+      write (digits, '(es24.9e2)') value
+    else
+      write (digits, '(es24.9e3)') value   ! NaN and infinities come here too
+    end if
+    first = verify(digits, ' ')
+    line(used + 1:used + 25 - first) = digits(first:)
+    used = used + 25 - first
+  end subroutine append_real
 
   !> A real that reads back as the same bits: 17 significant digits.
   pure function exact_text(value) result(text)

@@ -1,4 +1,7 @@
 !> The files of a running case: NAME.csv, row by row, and NAME.events.csv.
+!>
+!> Cases run side by side in threads, and gfortran keeps the length of a deferred-length function result in static
+!> storage: what runs during a case makes its text by subroutines, or inside the critical section `texts`.
 module trace_files
   use kinds, only: dp
   use errors, only: error_t
@@ -6,7 +9,7 @@ module trace_files
   use scene, only: event_contact_begins
   use trace_sink, only: trace_sink_t, trace_event_t
   use result_file, only: result_file_t
-  use number_text, only: real_text
+  use number_text, only: append_real
   use progress, only: progress_t
   use posix, only: interrupted
   implicit none
@@ -23,6 +26,7 @@ module trace_files
     real(dp) :: end_time = 1            !! of the run, for the progress [s]
     integer, private :: phase_column = 0
     integer, private :: rows = 0
+    character(len=:), allocatable, private :: line   !! the row being written
   contains
     procedure :: open
     procedure :: close
@@ -52,6 +56,7 @@ contains
       if (column_name(list, i) == 'phase[-]') self%phase_column = i
     end do
     call self%trace%put(header//newline)
+    allocate (character(len=26*max(size(list%id), 7)) :: self%line)
     if (.not. with_events) return
     call self%event_list%open(path//'.events.csv', error)
     if (allocated(error)) then
@@ -77,19 +82,19 @@ contains
     class(trace_files_t), intent(inout) :: self
     real(dp), intent(in) :: values(:)
     integer, parameter :: rows_between_looks = 100
-    character(len=:), allocatable :: row
-    integer :: i
+    integer :: i, used
 
-    row = ''
+    used = 0
     do i = 1, size(values)
-      if (i > 1) row = row//','
+      if (i > 1) call append(self%line, used, ',')
       if (i == self%phase_column) then
-        row = row//achar(iachar('0') + nint(values(i)))
+        call append(self%line, used, achar(iachar('0') + nint(values(i))))
       else
-        row = row//real_text(values(i) + 0.0_dp)   ! no negative zeros
+        call append_real(self%line, used, values(i) + 0.0_dp)   ! no negative zeros
       end if
     end do
-    call self%trace%put(row//newline)
+    call append(self%line, used, newline)
+    call self%trace%put(self%line(:used))
     self%rows = self%rows + 1
     if (mod(self%rows, rows_between_looks) == 0) call look(self)
   end subroutine take_row
@@ -97,21 +102,44 @@ contains
   subroutine take_event(self, event)
     class(trace_files_t), intent(inout) :: self
     type(trace_event_t), intent(in) :: event
-    character(len=:), allocatable :: row
-    row = real_text(event%time)//','//real_text(event%crank_angle)
+    integer :: used
+
+    used = 0
+    call append_real(self%line, used, event%time)
+    call append(self%line, used, ',')
+    call append_real(self%line, used, event%crank_angle)
+    call append(self%line, used, merge(',contact_begins,', ',contact_ends,  ', event%kind == event_contact_begins))
+    if (event%kind /= event_contact_begins) used = used - 2   ! the blanks that merge needs
+    call append_real(self%line, used, event%normal_speed)
     if (event%kind == event_contact_begins) then
-      row = row//',contact_begins,'//real_text(event%normal_speed)//',,,'
+      call append(self%line, used, ',,,')
     else
-      row = row//',contact_ends,'//real_text(event%normal_speed)//','//real_text(event%duration)//','// &
-        real_text(event%max_penetration)//','//real_text(event%max_normal_force)
+      call append(self%line, used, ',')
+      call append_real(self%line, used, event%duration)
+      call append(self%line, used, ',')
+      call append_real(self%line, used, event%max_penetration)
+      call append(self%line, used, ',')
+      call append_real(self%line, used, event%max_normal_force)
     end if
-    call self%event_list%put(row//newline)
+    call append(self%line, used, newline)
+    call self%event_list%put(self%line(:used))
   end subroutine take_event
+
+  !> Append a text to the first `used` characters of a line.
+  pure subroutine append(line, used, text)
+    character(len=*), intent(inout) :: line
+    integer, intent(inout) :: used
+    character(len=*), intent(in) :: text
+    line(used + 1:used + len(text)) = text
+    used = used + len(text)
+  end subroutine append
 
   subroutine take_progress(self, time)
     class(trace_files_t), intent(inout) :: self
     real(dp), intent(in) :: time
+    !$omp critical (texts)
     call self%progress%update(time/self%end_time, time)
+    !$omp end critical (texts)
     call look(self)
   end subroutine take_progress
 

@@ -64,10 +64,13 @@ contains
     call move_alloc(recorder%sink, sink)
     report%statistics = method%statistics
     report%figures = recorder%figures
+    !$omp critical (texts)
     report%status = 'done'
-    if (status == integration_done) return
-    report%status = reason(status)//' at '//place(scene, t, y)
-    call fail(error, report%status, status_integration)
+    if (status /= integration_done) then
+      report%status = reason(status)//' at '//place(scene, t, y)
+      call fail(error, report%status, status_integration)
+    end if
+    !$omp end critical (texts)
   end subroutine simulate
 
   !> Why an integration ended.
