@@ -33,6 +33,9 @@ module ode_method
     integer :: rejected_error = 0        !! estimated error above the tolerance
     integer :: rejected_penetration = 0  !! contact entered too deep
     integer :: rejected_domain = 0       !! a trial state outside the model
+    integer :: rejected_convergence = 0  !! Newton's method did not converge (implicit methods)
+    integer :: jacobians = 0             !! Jacobians evaluated (implicit methods)
+    integer :: stage_count(3) = 0        !! accepted steps of the Radau formulas of 3, 5 and 7 stages
     integer :: evaluations = 0           !! calls of the right-hand side
     integer :: restarts = 0              !! starts after the first one
     real(dp) :: smallest_step = huge(1.0_dp)    !! shortest accepted step
