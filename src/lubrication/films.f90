@@ -4,6 +4,7 @@ module films
   use errors, only: error_t, fail, status_case_file
   use case_definition, only: lubrication_case_t
   use film_law, only: film_law_t
+  use half_film, only: half_film_t
   use pinkus_sternlicht, only: pinkus_sternlicht_t, new_pinkus_sternlicht
   implicit none
   private
@@ -20,6 +21,7 @@ contains
     class(film_law_t), allocatable, intent(out) :: film
     type(error_t), allocatable, intent(out) :: error
     type(pinkus_sternlicht_t), allocatable :: closed_form
+    type(half_film_t), allocatable :: integrated
 
     associate (unused => relative_tolerance)
     end associate
@@ -31,6 +33,10 @@ contains
         call new_pinkus_sternlicht(closed_form, bearing_radius, bearing_length, clearance, definition%viscosity, &
           definition%variant == 'as_printed')
         call move_alloc(closed_form, film)
+      case ('half_film')
+        allocate (integrated)
+        call new_pinkus_sternlicht(integrated, bearing_radius, bearing_length, clearance, definition%viscosity, .false.)
+        call move_alloc(integrated, film)
       case default
         call fail(error, "&lubrication variant = '"//trim(definition%variant)// &
           "': must be 'closed_form', 'as_printed' or 'half_film' for law 'pinkus_sternlicht'", status_case_file)
