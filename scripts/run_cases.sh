@@ -1,0 +1,43 @@
+#!/bin/sh
+# Runs case files with the release build, side by side on the cores there are: a line each as they finish, then a table.
+#
+#   scripts/run_cases.sh [-o DIR] [-j N] [-s GROUP.KEY=VALUE] CASE.nml...      (options go to gudgeon)
+#
+# The exit status is that of gudgeon: not 0 if one case failed.
+cd "$(dirname "$0")/.." || exit 1
+. scripts/setup.sh || exit 1
+
+out=results
+previous=
+for argument in "$@"; do
+  case $previous in -o | --out) out=$argument ;; esac
+  case $argument in --out=*) out=${argument#--out=} ;; esac
+  previous=$argument
+done
+
+fpm build --profile release >build.log 2>&1 || { cat build.log >&2; rm -f build.log; exit 1; }
+rm -f build.log
+fpm run --profile release -- "$@"
+status=$?
+[ "$status" = 2 ] && exit 2
+
+value() { sed -n "s/^$1,\([^,]*\),.*/\1/p" "$2"; }   # value QUANTITY SUMMARY: one value of a summary
+
+printf '\n%-24s %9s %9s %12s %12s %11s %10s %9s  %s\n' case contacts contact 'min film' 'peak pin' 'mean speed' residual \
+  time status
+printf '%-24s %9s %9s %12s %12s %11s %10s %9s\n' '' '' fraction m 'force N' rad/s '' s
+for argument in "$@"; do
+  case $argument in *.nml) ;; *) continue ;; esac
+  name=$(basename "$argument" .nml)
+  summary=$out/$name.summary.csv
+  if [ ! -f "$summary" ]; then
+    printf '%-24s no result\n' "$name"
+    continue
+  fi
+  printf '%-24s %9s %9.4f %12.4e %12.4e %11.3f %10.1e %9.2f  %s\n' "$name" "$(value contacts "$summary")" \
+    "$(value contact_time_fraction "$summary")" "$(value min_film_thickness "$summary")" \
+    "$(value max_pin_force "$summary")" "$(value mean_crank_speed "$summary")" \
+    "$(value max_energy_residual_relative "$summary")" "$(value wall_time "$summary")" \
+    "$(sed -n 's/^status,"\(.*\)",.*/\1/p' "$summary")"
+done
+exit $status

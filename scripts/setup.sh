@@ -1,0 +1,63 @@
+#!/bin/sh
+# Sets up the tool chain: gfortran (Debian package) and fpm (PyPI), each only where it is missing.
+#
+#   . scripts/setup.sh         from the top of the checkout: also puts fpm on the PATH of the calling shell
+#   scripts/setup.sh           the same for scripts and for later shells
+#
+# Needs root or sudo only to install Debian packages. An fpm that is installed here lives in .venv, with a link in
+# /usr/local/bin or ~/.local/bin. POSIX sh; leaves no option of the calling shell changed.
+
+gudgeon_apt() {   # install Debian packages, as root or by sudo
+  if [ "$(id -u)" = 0 ]; then
+    gudgeon_sudo=
+  elif command -v sudo >/dev/null 2>&1; then
+    gudgeon_sudo=sudo
+  else
+    echo "setup: $* must be installed (apt-get install $*), which needs root or sudo" >&2
+    return 1
+  fi
+  $gudgeon_sudo apt-get update -qq >&2 &&
+    $gudgeon_sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@" >&2
+}
+
+gudgeon_link() {   # a link to .venv's fpm where later shells find it
+  for gudgeon_dir in /usr/local/bin "$HOME/.local/bin"; do
+    case ":$PATH:" in *":$gudgeon_dir:"*) ;; *) continue ;; esac
+    mkdir -p "$gudgeon_dir" 2>/dev/null
+    [ -w "$gudgeon_dir" ] && ln -sf "$PWD/.venv/bin/fpm" "$gudgeon_dir/fpm" && return 0
+  done
+  echo "setup: fpm is $PWD/.venv/bin/fpm; add $PWD/.venv/bin to PATH for later shells" >&2
+}
+
+gudgeon_setup() {
+  if [ ! -f fpm.toml ]; then
+    echo "setup: run it from the top of the checkout" >&2
+    return 1
+  fi
+  if ! command -v gfortran >/dev/null 2>&1; then
+    # gcc and libc6-dev come with gfortran; fpm uses gcc and ar too
+    gudgeon_apt gfortran libc6-dev || return 1
+  fi
+  if command -v fpm >/dev/null 2>&1 && fpm --version >/dev/null 2>&1; then
+    return 0
+  fi
+  if ! { command -v python3 >/dev/null 2>&1 && python3 -c 'import venv, ensurepip' >/dev/null 2>&1; }; then
+    gudgeon_apt python3 python3-venv || return 1
+  fi
+  if [ ! -x .venv/bin/fpm ]; then
+    python3 -m venv .venv >&2 && .venv/bin/python -m pip install --quiet --disable-pip-version-check 'fpm>=0.12,<0.14' >&2 ||
+      return 1
+  fi
+  PATH="$PWD/.venv/bin:$PATH"
+  export PATH
+  hash -r 2>/dev/null
+  gudgeon_link
+  return 0
+}
+
+gudgeon_setup
+gudgeon_status=$?
+unset -f gudgeon_apt gudgeon_link gudgeon_setup
+unset gudgeon_sudo gudgeon_dir
+# the status of the last command is that of the set-up, sourced or not
+[ "$gudgeon_status" = 0 ]

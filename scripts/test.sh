@@ -1,0 +1,37 @@
+#!/bin/sh
+# Sets up the tool chain and runs every test twice: with all checks of the compiler, warnings as errors, and as released.
+# Ends with the line "N passed, N failed"; the exit status is 0 if nothing failed.
+cd "$(dirname "$0")/.." || exit 1
+. scripts/setup.sh || { echo "0 passed, 1 failed"; exit 1; }
+
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+passed=0
+failed=0
+wrong=0
+
+count() {   # count NAME COMMAND...: run the command and add up its counts
+  name=$1
+  shift
+  echo "== $name"
+  "$@" >"$log" 2>&1
+  status=$?
+  grep -v '^\[ *[0-9]*%\]' "$log"
+  counts=$(sed -n 's/^\([0-9]*\) passed, \([0-9]*\) failed$/\1 \2/p' "$log" | tail -n 1)
+  if [ -n "$counts" ]; then
+    passed=$((passed + ${counts% *}))
+    failed=$((failed + ${counts#* }))
+    [ "$status" != 0 ] && [ "${counts#* }" = 0 ] && wrong=$((wrong + 1))
+  else
+    wrong=$((wrong + 1))   # did not build, or crashed
+  fi
+}
+
+count "every module compiles" sh -c 'fpm build --no-prune && echo "1 passed, 0 failed"'
+count "tests, strict" fpm @strict
+count "tests, release" fpm test --profile release
+count "the program" sh -c 'fpm build --profile release && tests/test_program.sh'
+
+failed=$((failed + wrong))
+echo "$passed passed, $failed failed"
+[ "$failed" = 0 ]

@@ -1,0 +1,429 @@
+!> The Adams PECE method of Shampine & Gordon, *Computer Solution of Ordinary Differential Equations* (1975):
+!> Adams-Bashforth predictor of order k, Adams-Moulton corrector of order k+1 (local extrapolation), variable step and
+!> order 1-12 in modified divided differences. phi, psi, alpha, beta, sigma and g keep their names.
+!>
+!> Differences from the published code, each deliberate:
+!> - the first step is chosen from the size of y'' by one more evaluation, not from |f| alone;
+!> - trial states outside the model and steps that a problem refuses are rejected like errors;
+!> - the interpolant also matches y at the beginning of the step, so it is continuous with its derivative;
+!> - y is summed with compensation at every tolerance.
+!> The error of a step is its weighted Euclidean norm, as in the published code.
+module adams
+  use kinds, only: dp
+  use ode_problem, only: ode_problem_t, step_admitted, step_too_deep
+  use ode_method, only: ode_method_t, highest_order, step_done, step_too_small, tolerance_too_small, start_outside, &
+    step_statistics_t
+  use adams_coefficients, only: adams_coefficients_t, moulton_constants, interpolation_weights
+  implicit none
+  private
+  public :: adams_t
+
+  !> Reasons to try a step again.
+  integer, parameter :: try_accepted = 0, try_error = 1, try_outside = 2, try_too_deep = 3
+
+  !> Estimated errors of the present try at the neighbouring orders, relative to the tolerance.
+  type :: error_estimates_t
+    real(dp) :: step = 0       !! of the step as taken (order k with local extrapolation)
+    real(dp) :: same = 0       !! at order k
+    real(dp) :: lower = 0      !! at order k-1
+    real(dp) :: lowest = 0     !! at order k-2
+    integer :: order = 1       !! order proposed by them: k or k-1
+  end type error_estimates_t
+
+  !> The state of the method between two steps.
+  type, extends(ode_method_t) :: adams_t
+    private
+    type(adams_coefficients_t) :: coefficients
+    real(dp) :: moulton(highest_order + 1) = 0    !! |gamma*_i|
+    integer :: n = 0                    !! equations
+    integer :: k = 1                    !! order of the next step
+    integer :: k_old = 0                !! order of the last accepted step, 0 at a start
+    logical :: closed = .false.         !! `closing` belongs to the last accepted step
+    real(dp) :: h = 0                   !! size of the next step
+    real(dp) :: h_old = 0               !! size of the last accepted step
+    logical :: opening = .true.         !! order and step are still being raised from the start
+    real(dp), allocatable :: phi(:, :)  !! modified divided differences, (n, highest_order+2)
+    real(dp), allocatable :: predicted(:), f_predicted(:), f_new(:), y_new(:)
+    real(dp), allocatable :: inverse_weight(:)       !! 1/(relative |y| + absolute), 0: not controlled
+    real(dp), allocatable :: carry(:), carry_predicted(:)  !! what the rounding of y left out
+    real(dp), allocatable :: closing(:) !! coefficient of the last polynomial of the interpolant
+  contains
+    procedure :: start
+    procedure :: step
+    procedure :: interpolate
+    procedure, private :: grown
+  end type adams_t
+
+contains
+
+  subroutine start(self, problem, t, y, first, status)
+    class(adams_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    real(dp), intent(in) :: t, y(:)
+    logical, intent(in) :: first
+    integer, intent(out) :: status
+    logical :: inside
+
+    if (first) call prepare(self, problem)
+    self%t = t
+    self%t_old = t
+    self%y = y
+    self%y_old = y
+    self%order = 0
+    self%closed = .false.
+    self%carry = 0
+    self%statistics%evaluations = self%statistics%evaluations + 1
+    if (.not. first) self%statistics%restarts = self%statistics%restarts + 1
+    call problem%derivatives(t, self%y, self%f, inside)
+    status = merge(step_done, start_outside, inside)
+    if (.not. inside) return
+
+    self%k = 1
+    self%k_old = 0
+    self%h_old = 0
+    self%opening = .true.
+    call self%coefficients%reset()
+    self%phi = 0
+    self%phi(:, 1) = self%f(:self%n)
+    call weigh(self)
+    call choose_first_step(self, problem)
+  end subroutine start
+
+  !> Allocate everything, once for a whole integration.
+  subroutine prepare(self, problem)
+    class(adams_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    integer :: n
+    n = problem%n
+    self%n = n
+    self%moulton = moulton_constants()
+    self%statistics = step_statistics_t()
+    if (allocated(self%phi)) deallocate (self%phi, self%predicted, self%f_predicted, self%f_new, self%y_new, &
+      self%inverse_weight, self%carry, self%carry_predicted, self%closing, self%y, self%y_old, self%f)
+    allocate (self%phi(n, highest_order + 2), self%predicted(n), self%f_predicted(n + problem%n_outputs), &
+      self%f_new(n + problem%n_outputs), self%y_new(n), self%inverse_weight(n), self%carry(n), &
+      self%carry_predicted(n), self%closing(n), self%y(n), self%y_old(n), self%f(n + problem%n_outputs))
+  end subroutine prepare
+
+  !> Weights of the error norm at the present state.
+  pure subroutine weigh(self)
+    class(adams_t), intent(inout) :: self
+    real(dp) :: weight
+    integer :: i
+    do i = 1, self%n
+      weight = self%settings%relative(i)*abs(self%y(i)) + self%settings%absolute(i)
+      self%inverse_weight(i) = 0
+      if (weight > 0) self%inverse_weight(i) = 1/weight
+    end do
+  end subroutine weigh
+
+  !> The first step: a step of order 1 whose error, h^2 |y''|/2, is a quarter of the tolerance. y'' is taken from one
+  !> Euler step short enough to stay near (Hairer, Norsett & Wanner 1993, II.4).
+  subroutine choose_first_step(self, problem)
+    class(adams_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    real(dp) :: longest, h, slope, curvature
+    logical :: inside
+    integer :: tries
+
+    longest = min(self%settings%max_step, self%settings%span)
+    slope = norm2(self%f(:self%n)*self%inverse_weight)
+    h = longest*1e-3_dp
+    if (slope*h > 1) h = 1/slope
+    do tries = 1, 60
+      self%predicted = self%y + h*self%f(:self%n)
+      self%statistics%evaluations = self%statistics%evaluations + 1
+      call problem%derivatives(self%t + h, self%predicted, self%f_predicted, inside)
+      if (inside) exit
+      h = 0.1_dp*h
+    end do
+    curvature = 0
+    if (inside) curvature = norm2((self%f_predicted(:self%n) - self%f(:self%n))*self%inverse_weight)/h
+    if (curvature > 0) then
+      self%h = min(sqrt(0.5_dp/curvature), 100*h, longest)
+    else
+      self%h = min(100*h, longest)
+    end if
+  end subroutine choose_first_step
+
+  subroutine step(self, problem, status)
+    class(adams_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    integer, intent(out) :: status
+    type(error_estimates_t) :: errors
+    real(dp) :: t_new, fraction
+    integer :: outcome, failures
+
+    call weigh(self)
+    failures = 0
+    if (0.5_dp < 2*epsilon(1.0_dp)*norm2(self%y*self%inverse_weight)) then
+      status = tolerance_too_small
+      return
+    end if
+    do
+      if (self%h < shortest_step(self)) then
+        status = step_too_small
+        return
+      end if
+      t_new = self%t + self%h
+      call self%coefficients%update(self%h, self%h_old, self%k, self%k_old)
+      call predict(self)
+      call attempt(self, problem, t_new, errors, outcome, fraction)
+      if (outcome == try_accepted) exit
+      call retreat(self, errors, outcome, fraction, failures)
+    end do
+    call accept(self, t_new)
+    call choose_order_and_step(self, errors)
+    status = step_done
+  end subroutine step
+
+  !> The shortest step that the time can still resolve.
+  pure real(dp) function shortest_step(self)
+    class(adams_t), intent(in) :: self
+    shortest_step = 4*epsilon(1.0_dp)*max(abs(self%t), 1e-9_dp*self%settings%span)
+  end function shortest_step
+
+  !> Predict y at the end of the step; phi becomes the differences that the prediction extrapolates.
+  pure subroutine predict(self)
+    class(adams_t), intent(inout) :: self
+    real(dp) :: change
+    integer :: i, j, k
+
+    k = self%k
+    do j = self%coefficients%ns + 1, k
+      self%phi(:, j) = self%coefficients%beta(j)*self%phi(:, j)
+    end do
+    self%phi(:, k + 2) = self%phi(:, k + 1)
+    self%phi(:, k + 1) = 0
+    self%predicted = 0
+    do j = k, 1, -1
+      do i = 1, self%n
+        self%predicted(i) = self%predicted(i) + self%coefficients%g(j)*self%phi(i, j)
+        self%phi(i, j) = self%phi(i, j) + self%phi(i, j + 1)
+      end do
+    end do
+    do i = 1, self%n
+      change = self%h*self%predicted(i) - self%carry(i)
+      self%predicted(i) = self%y(i) + change
+      self%carry_predicted(i) = (self%predicted(i) - self%y(i)) - change
+    end do
+  end subroutine predict
+
+  !> Evaluate, estimate the error, correct, let the problem judge, evaluate again.
+  subroutine attempt(self, problem, t_new, errors, outcome, fraction)
+    class(adams_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    real(dp), intent(in) :: t_new
+    type(error_estimates_t), intent(out) :: errors
+    integer, intent(out) :: outcome
+    real(dp), intent(out) :: fraction   !! part of the step to try next, where the problem refused it
+    integer :: verdict
+    logical :: inside
+
+    fraction = 0.5_dp
+    outcome = try_outside
+    self%statistics%evaluations = self%statistics%evaluations + 1
+    call problem%derivatives(t_new, self%predicted, self%f_predicted, inside)
+    if (.not. inside) return
+    call estimate_errors(self, errors)
+    if (.not. errors%step <= 1) then   ! a NaN is an error too
+      outcome = try_error
+      return
+    end if
+    call correct(self)
+    call problem%judge_step(self%t, self%y, t_new, self%y_new, verdict, fraction)
+    if (verdict == step_too_deep) outcome = try_too_deep
+    if (verdict /= step_admitted) return
+    self%statistics%evaluations = self%statistics%evaluations + 1
+    call problem%derivatives(t_new, self%y_new, self%f_new, inside)
+    if (.not. inside) then
+      fraction = 0.5_dp
+      return
+    end if
+    outcome = try_accepted
+  end subroutine attempt
+
+  !> Errors at orders k, k-1, k-2 and whether the order should fall (Shampine & Gordon, ch. 6).
+  pure subroutine estimate_errors(self, errors)
+    class(adams_t), intent(in) :: self
+    type(error_estimates_t), intent(out) :: errors
+    real(dp) :: correction, weight, same, lower, lowest
+    integer :: i, k
+
+    k = self%k
+    same = 0
+    lower = 0
+    lowest = 0
+    do i = 1, self%n
+      weight = self%inverse_weight(i)
+      correction = self%f_predicted(i) - self%phi(i, 1)
+      same = same + (correction*weight)**2
+      if (k >= 2) lower = lower + ((self%phi(i, k) + correction)*weight)**2
+      if (k >= 3) lowest = lowest + ((self%phi(i, k - 1) + correction)*weight)**2
+    end do
+    same = self%h*sqrt(same)
+    errors%step = same*(self%coefficients%g(k) - self%coefficients%g(k + 1))
+    errors%same = same*self%coefficients%sigma(k + 1)*self%moulton(k)
+    errors%order = k
+    if (k >= 2) errors%lower = self%h*self%coefficients%sigma(k)*self%moulton(k - 1)*sqrt(lower)
+    if (k >= 3) errors%lowest = self%h*self%coefficients%sigma(k - 1)*self%moulton(k - 2)*sqrt(lowest)
+    if (k == 2 .and. errors%lower <= 0.5_dp*errors%same) errors%order = k - 1
+    if (k >= 3 .and. max(errors%lower, errors%lowest) <= errors%same) errors%order = k - 1
+  end subroutine estimate_errors
+
+  !> Correct to order k+1.
+  pure subroutine correct(self)
+    class(adams_t), intent(inout) :: self
+    real(dp) :: factor
+    factor = self%h*self%coefficients%g(self%k + 1)
+    self%y_new = self%predicted + (factor*(self%f_predicted(:self%n) - self%phi(:, 1)) - self%carry_predicted)
+  end subroutine correct
+
+  !> Put phi and psi back to the beginning of the step and shorten it. On the third failure in a row by error
+  !> the order falls to one.
+  pure subroutine retreat(self, errors, outcome, fraction, failures)
+    class(adams_t), intent(inout) :: self
+    type(error_estimates_t), intent(in) :: errors
+    integer, intent(in) :: outcome
+    real(dp), intent(in) :: fraction
+    integer, intent(inout) :: failures    !! failures by error so far in this step
+    real(dp) :: factor
+    integer :: i
+
+    do i = 1, self%k
+      self%phi(:, i) = (self%phi(:, i) - self%phi(:, i + 1))/self%coefficients%beta(i)
+    end do
+    call self%coefficients%take_back(self%h, self%k)
+    self%opening = .false.
+    factor = fraction
+    select case (outcome)
+    case (try_error)
+      self%statistics%rejected_error = self%statistics%rejected_error + 1
+      failures = failures + 1
+      factor = 0.5_dp
+      if (failures > 3 .and. errors%same > 2) factor = sqrt(0.5_dp/errors%same)
+      self%k = merge(1, errors%order, failures >= 3)
+    case (try_too_deep)
+      self%statistics%rejected_penetration = self%statistics%rejected_penetration + 1
+    case default
+      self%statistics%rejected_domain = self%statistics%rejected_domain + 1
+    end select
+    self%h = factor*self%h
+  end subroutine retreat
+
+  !> The step stands: update the differences with the second evaluation.
+  pure subroutine accept(self, t_new)
+    class(adams_t), intent(inout) :: self
+    real(dp), intent(in) :: t_new
+    real(dp) :: highest
+    integer :: i, j, k
+
+    k = self%k
+    self%k_old = k
+    self%h_old = self%h
+    self%t_old = self%t
+    self%t = t_new
+    do i = 1, self%n
+      self%carry(i) = (self%y_new(i) - self%predicted(i)) - &
+        (self%h*self%coefficients%g(k + 1)*(self%f_predicted(i) - self%phi(i, 1)) - self%carry_predicted(i))
+      self%y_old(i) = self%y(i)
+      self%y(i) = self%y_new(i)
+      highest = self%f_new(i) - self%phi(i, 1)
+      self%phi(i, k + 2) = highest - self%phi(i, k + 2)
+      self%phi(i, k + 1) = highest
+      do j = 1, k
+        self%phi(i, j) = self%phi(i, j) + highest
+      end do
+    end do
+    self%f = self%f_new
+    self%order = k
+    self%closed = .false.
+    associate (count => self%statistics)
+      count%accepted = count%accepted + 1
+      count%order_count(k) = count%order_count(k) + 1
+      count%smallest_step = min(count%smallest_step, self%h)
+    end associate
+  end subroutine accept
+
+  !> The order and size of the next step (Shampine & Gordon, ch. 7): order raised while opening; else where the
+  !> errors fall with the order; the step doubled, kept, or cut to what the tolerance allows.
+  pure subroutine choose_order_and_step(self, errors)
+    class(adams_t), intent(inout) :: self
+    type(error_estimates_t), intent(in) :: errors
+    real(dp) :: error, higher, factor
+    integer :: k
+
+    k = self%k
+    error = errors%same
+    if (errors%order < k .or. k >= self%settings%max_order) self%opening = .false.
+    if (self%opening) then
+      self%k = k + 1
+      self%h = self%grown(2.0_dp)
+      return
+    end if
+    if (errors%order < k) then
+      self%k = k - 1
+      error = errors%lower
+    else if (k + 1 <= self%coefficients%ns) then
+      higher = self%h*self%moulton(k + 1)*norm2(self%phi(:, k + 2)*self%inverse_weight)
+      if (k == 1) then
+        if (higher < 0.5_dp*error .and. k < self%settings%max_order) self%k = 2
+      else if (errors%lower <= min(error, higher)) then
+        self%k = k - 1
+        error = errors%lower
+      else if (higher < error .and. k < self%settings%max_order) then
+        self%k = k + 1
+      end if
+      if (self%k > k) error = higher
+    end if
+
+    if (0.5_dp >= error*2.0_dp**(self%k + 1)) then
+      factor = 2
+    else if (0.5_dp >= error) then
+      factor = 1
+    else
+      factor = max(0.5_dp, min(0.9_dp, (0.5_dp/error)**(1.0_dp/(self%k + 1))))
+    end if
+    self%h = self%grown(factor)
+  end subroutine choose_order_and_step
+
+  !> The step size times a factor, within what the user allows.
+  pure real(dp) function grown(self, factor)
+    class(adams_t), intent(in) :: self
+    real(dp), intent(in) :: factor
+    grown = min(factor*self%h, self%settings%max_step)
+  end function grown
+
+  !> The polynomial of degree k+2 whose derivative takes the values f_n+1, f_n, ... f_n+1-k and that passes through
+  !> y_n+1 and y_n: with its derivative it continues that of the step before (compare Watts & Shampine 1986).
+  pure subroutine interpolate(self, t, y)
+    class(adams_t), intent(inout) :: self
+    real(dp), intent(in) :: t
+    real(dp), intent(out) :: y(:)
+    real(dp) :: weights(highest_order + 2), s
+    integer :: j, k
+
+    k = self%k_old
+    s = t - self%t
+    if (k == 0 .or. s >= 0) then
+      y = self%y
+      return
+    end if
+    if (.not. self%closed) then
+      call interpolation_weights(self%coefficients, k, self%t_old - self%t, weights)
+      self%closing = self%y_old - self%y
+      self%closing = self%closing/(self%t_old - self%t)
+      do j = 1, k + 1
+        self%closing = self%closing - weights(j)*self%phi(:, j)
+      end do
+      self%closing = self%closing/weights(k + 2)
+      self%closed = .true.
+    end if
+    call interpolation_weights(self%coefficients, k, s, weights)
+    y = weights(k + 2)*self%closing
+    do j = k + 1, 1, -1
+      y = y + weights(j)*self%phi(:, j)
+    end do
+    y = self%y + s*y
+  end subroutine interpolate
+end module adams

@@ -1,0 +1,156 @@
+!> Coefficients of the variable-step Adams formulas in modified divided differences (Shampine & Gordon 1975, ch. 5).
+module adams_coefficients
+  use kinds, only: dp
+  use ode_method, only: highest_order
+  implicit none
+  private
+  public :: adams_coefficients_t, moulton_constants, interpolation_weights
+
+  !> Coefficients of the step from t_n to t_n+1 = t_n + h at order k, in the notation of Shampine & Gordon.
+  type :: adams_coefficients_t
+    real(dp) :: psi(highest_order) = 0        !! psi_i = t_n+1 - t_n+1-i
+    real(dp) :: alpha(highest_order) = 0      !! alpha_i = h/psi_i
+    real(dp) :: beta(highest_order) = 0       !! beta_i = product over j < i of psi_j(n+1)/psi_j(n)
+    real(dp) :: sigma(highest_order + 1) = 0  !! sigma_i = (i-1)! product over j < i of alpha_j
+    real(dp) :: g(highest_order + 1) = 0      !! g_i = integral of the i-th Newton basis polynomial over the step, by h
+    real(dp) :: v(highest_order) = 0          !! column of the recurrence for g, kept from step to step
+    real(dp) :: w(highest_order) = 0          !! work
+    integer :: ns = 0                         !! steps taken with the present step size, this one included
+  contains
+    procedure :: reset
+    procedure :: update
+    procedure :: take_back
+  end type adams_coefficients_t
+
+contains
+
+  !> Constants |gamma*_i| of the fixed-step Adams-Moulton formulas, i = 1..highest_order+1 (1/2, 1/12, 1/24,
+  !> 19/720, ...), from their recurrence: the sum over j of gamma*_(i-j)/(j+1) is zero, with gamma*_0 = 1.
+  pure function moulton_constants() result(constants)
+    real(dp) :: constants(highest_order + 1)
+    real(dp) :: gamma(0:highest_order + 1)
+    integer :: i, j
+    gamma(0) = 1
+    do i = 1, highest_order + 1
+      gamma(i) = 0
+      do j = 1, i
+        gamma(i) = gamma(i) - gamma(i - j)/(j + 1)
+      end do
+    end do
+    constants = abs(gamma(1:))
+  end function moulton_constants
+
+  !> Forget the past: the next step is the first one.
+  pure subroutine reset(self)
+    class(adams_coefficients_t), intent(inout) :: self
+    self%ns = 0
+    self%g(1) = 1
+    self%g(2) = 0.5_dp
+    self%sigma(1) = 1
+  end subroutine reset
+
+  !> Coefficients for a step of size h at order k after one of size h_old at order k_old. What does not change
+  !> while the step size is constant is not computed again.
+  pure subroutine update(self, h, h_old, k, k_old)
+    class(adams_coefficients_t), intent(inout) :: self
+    real(dp), intent(in) :: h, h_old
+    integer, intent(in) :: k, k_old
+    real(dp) :: reach, previous
+    integer :: i, ns
+
+    if (abs(h - h_old) > 0) self%ns = 0
+    if (self%ns <= k_old) self%ns = self%ns + 1
+    ns = self%ns
+    if (k < ns) return
+
+    self%beta(ns) = 1
+    self%alpha(ns) = 1.0_dp/ns
+    reach = h*ns
+    self%sigma(ns + 1) = 1
+    do i = ns + 1, k
+      previous = self%psi(i - 1)
+      self%psi(i - 1) = reach
+      self%beta(i) = self%beta(i - 1)*self%psi(i - 1)/previous
+      reach = previous + h
+      self%alpha(i) = h/reach
+      self%sigma(i + 1) = i*self%alpha(i)*self%sigma(i)
+    end do
+    self%psi(k) = reach
+    call update_g(self, k, k_old)
+  end subroutine update
+
+  !> The integrals g(ns+1..k+1) by their recurrence in v and w.
+  pure subroutine update_g(self, k, k_old)
+    class(adams_coefficients_t), intent(inout) :: self
+    integer, intent(in) :: k, k_old
+    integer :: i, j, ns
+
+    ns = self%ns
+    if (ns == 1) then
+      do i = 1, k
+        self%v(i) = 1.0_dp/(i*(i + 1))
+        self%w(i) = self%v(i)
+      end do
+    else
+      if (k > k_old) then   ! the order was raised: extend the column
+        self%v(k) = 1.0_dp/(k*(k + 1))
+        do j = 1, ns - 2
+          i = k - j
+          self%v(i) = self%v(i) - self%alpha(j + 1)*self%v(i + 1)
+        end do
+      end if
+      do i = 1, k + 1 - ns
+        self%v(i) = self%v(i) - self%alpha(ns)*self%v(i + 1)
+        self%w(i) = self%v(i)
+      end do
+      self%g(ns + 1) = self%w(1)
+    end if
+    do i = ns + 2, k + 1
+      do j = 1, k + 2 - i
+        self%w(j) = self%w(j) - self%alpha(i - 1)*self%w(j + 1)
+      end do
+      self%g(i) = self%w(1)
+    end do
+  end subroutine update_g
+
+  !> Undo the change of psi by a step of size h at order k that was rejected.
+  pure subroutine take_back(self, h, k)
+    class(adams_coefficients_t), intent(inout) :: self
+    real(dp), intent(in) :: h
+    integer, intent(in) :: k
+    integer :: i
+    do i = 2, k
+      self%psi(i - 1) = self%psi(i) - h
+    end do
+    self%ns = 0
+  end subroutine take_back
+
+  !> Weights of the Newton basis integrated from t_n+1 to t_n+1 + s (-h <= s <= 0) and divided by s: with them
+  !> y(t_n+1 + s) = y_n+1 + s sum_i weights(i) phi_i, i = 1..k+2. The last basis polynomial vanishes at all k+1
+  !> points t_n+1..t_n+1-k, so its coefficient is free to match y at t_n.
+  pure subroutine interpolation_weights(self, k, s, weights)
+    class(adams_coefficients_t), intent(in) :: self
+    integer, intent(in) :: k
+    real(dp), intent(in) :: s
+    real(dp), intent(out) :: weights(:)   !! (k+2) at least
+    real(dp) :: w(highest_order + 2), gamma, eta, scale, term
+    integer :: i, j, last
+
+    last = k + 2
+    do i = 1, last
+      w(i) = 1.0_dp/i
+    end do
+    weights(1) = 1
+    term = 0
+    do j = 2, last
+      scale = self%psi(min(j - 1, k))
+      gamma = (s + term)/scale
+      eta = s/scale
+      do i = 1, last + 1 - j
+        w(i) = gamma*w(i) - eta*w(i + 1)
+      end do
+      weights(j) = w(1)
+      term = scale
+    end do
+  end subroutine interpolation_weights
+end module adams_coefficients

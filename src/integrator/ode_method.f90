@@ -1,0 +1,87 @@
+!> What every integration method offers, its settings, its statistics and its status codes.
+module ode_method
+  use kinds, only: dp
+  use ode_problem, only: ode_problem_t
+  implicit none
+  private
+  public :: ode_method_t, ode_settings_t, step_statistics_t
+  public :: step_done, step_too_small, tolerance_too_small, start_outside
+  public :: highest_order
+
+  integer, parameter :: highest_order = 12   !! of the Adams formulas
+
+  !> Status of a step.
+  integer, parameter :: step_done = 0            !! a step was accepted
+  integer, parameter :: step_too_small = 1       !! the step fell to the rounding of the time
+  integer, parameter :: tolerance_too_small = 2  !! the tolerance is below the rounding of the state
+  integer, parameter :: start_outside = 3        !! the starting state is outside the model
+
+  !> What a user asks of a method. The error of a step in component i is measured against
+  !> relative(i)*|y(i)| + absolute(i); a component with both zero does not take part in the error control.
+  type :: ode_settings_t
+    real(dp), allocatable :: relative(:)  !! relative tolerance of each component, (n)
+    real(dp), allocatable :: absolute(:)  !! absolute tolerance of each component, in its own unit, (n)
+    real(dp) :: max_step = huge(1.0_dp)   !! longest step
+    real(dp) :: span = 1                  !! length of the whole integration: the scale of the shortest step
+    integer :: max_order = highest_order  !! highest order, 1..highest_order
+  end type ode_settings_t
+
+  !> Counts of what a method has done since the beginning of an integration. Only `rejected_*` and
+  !> `evaluations` count work that left nothing behind.
+  type :: step_statistics_t
+    integer :: accepted = 0
+    integer :: rejected_error = 0        !! estimated error above the tolerance
+    integer :: rejected_penetration = 0  !! contact entered too deep
+    integer :: rejected_domain = 0       !! a trial state outside the model
+    integer :: evaluations = 0           !! calls of the right-hand side
+    integer :: restarts = 0              !! starts after the first one
+    real(dp) :: smallest_step = huge(1.0_dp)    !! shortest accepted step
+    integer :: order_count(highest_order) = 0   !! accepted steps taken at each order
+  end type step_statistics_t
+
+  !> A method that advances a problem step by step and knows the solution anywhere inside its last step.
+  type, abstract :: ode_method_t
+    type(ode_settings_t) :: settings
+    type(step_statistics_t) :: statistics
+    real(dp) :: t_old = 0                 !! beginning of the last accepted step
+    real(dp) :: t = 0                     !! its end
+    integer :: order = 0                  !! order of the last accepted step
+    real(dp), allocatable :: y_old(:)     !! state at t_old, (n)
+    real(dp), allocatable :: y(:)         !! state at t, (n)
+    real(dp), allocatable :: f(:)         !! right-hand side and outputs at (t, y), (n + n_outputs)
+  contains
+    procedure(start), deferred :: start
+    procedure(step), deferred :: step
+    procedure(interpolate), deferred :: interpolate
+  end type ode_method_t
+
+  abstract interface
+    !> Begin at (t, y), forgetting the past: after any jump of the right-hand side or of the state. `first` tells
+    !> the start of an integration (which resets the statistics) from a restart (which counts).
+    subroutine start(self, problem, t, y, first, status)
+      import :: ode_method_t, ode_problem_t, dp
+      class(ode_method_t), intent(inout) :: self
+      class(ode_problem_t), intent(in) :: problem
+      real(dp), intent(in) :: t, y(:)
+      logical, intent(in) :: first
+      integer, intent(out) :: status
+    end subroutine start
+
+    !> Advance by one accepted step, however many tries it takes.
+    subroutine step(self, problem, status)
+      import :: ode_method_t, ode_problem_t
+      class(ode_method_t), intent(inout) :: self
+      class(ode_problem_t), intent(in) :: problem
+      integer, intent(out) :: status
+    end subroutine step
+
+    !> State at a time t_old <= t <= self%t, without evaluating the right-hand side; valid until the next step.
+    !> `self` is only changed by what the first call after a step prepares for the others.
+    pure subroutine interpolate(self, t, y)
+      import :: ode_method_t, dp
+      class(ode_method_t), intent(inout) :: self
+      real(dp), intent(in) :: t
+      real(dp), intent(out) :: y(:)
+    end subroutine interpolate
+  end interface
+end module ode_method

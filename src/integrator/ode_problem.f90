@@ -1,0 +1,99 @@
+!> What an integrator needs to know of a system of ordinary differential equations with events.
+!>
+!> The system is y' = f(t, y) with a discrete state that changes only in `handle_event`, so that between two events
+!> f is smooth. Everything that an integrator may call on trial states (`derivatives`, `events`, `judge_step`) is pure:
+!> a rejected step leaves no trace in the problem.
+module ode_problem
+  use kinds, only: dp
+  implicit none
+  private
+  public :: ode_problem_t
+  public :: step_admitted, step_too_deep, step_outside
+  public :: event_continue, event_stop, max_events
+
+  integer, parameter :: max_events = 16   !! most event functions that a problem may have at one time
+
+  !> Verdicts of `judge_step`.
+  integer, parameter :: step_admitted = 0   !! the step stands
+  integer, parameter :: step_too_deep = 1   !! the step goes deeper into contact than allowed: shorten it
+  integer, parameter :: step_outside = 2    !! the state left the model's domain: shorten it
+
+  !> What is to be done after an event.
+  integer, parameter :: event_continue = 0  !! restart the method at the event
+  integer, parameter :: event_stop = 1      !! end the integration at the event
+
+  !> A system of ordinary differential equations.
+  type, abstract :: ode_problem_t
+    integer :: n = 0          !! number of equations
+    integer :: n_outputs = 0  !! further values that `derivatives` puts behind the n derivatives
+    integer :: n_events = 0   !! number of event functions in the present discrete state
+  contains
+    procedure(derivatives), deferred :: derivatives
+    procedure :: events => no_events
+    procedure :: judge_step => admit_every_step
+    procedure :: handle_event => stop_at_event
+    procedure :: lands_on_step_end => never_on_step_end
+  end type ode_problem_t
+
+  abstract interface
+    !> Right-hand side f(t, y). `dydt` has n + n_outputs elements: the derivatives, then quantities of the same
+    !> evaluation that are worth keeping at accepted points. `inside` is false where the model is not defined
+    !> at y; dydt is then not to be used.
+    pure subroutine derivatives(self, t, y, dydt, inside)
+      import :: ode_problem_t, dp
+      class(ode_problem_t), intent(in) :: self
+      real(dp), intent(in) :: t
+      real(dp), intent(in) :: y(:)
+      real(dp), intent(out) :: dydt(:)
+      logical, intent(out) :: inside
+    end subroutine derivatives
+  end interface
+
+contains
+
+  !> Event functions and their rates along the motion, each signed so that the event is a passage from
+  !> negative to positive. g and g_rate have n_events elements. The default is for problems without events.
+  pure subroutine no_events(self, t, y, g, g_rate)
+    class(ode_problem_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: g(:), g_rate(:)
+    associate (unused_self => self, unused_t => t, unused_y => y)
+    end associate
+    g = -1
+    g_rate = 0
+  end subroutine no_events
+
+  !> Whether a step that meets the error tolerance may stand. Where it may not, `fraction` (0 < fraction < 1) of the
+  !> step is proposed for the next try. The default admits every step.
+  pure subroutine admit_every_step(self, t_old, y_old, t, y, verdict, fraction)
+    class(ode_problem_t), intent(in) :: self
+    real(dp), intent(in) :: t_old, y_old(:), t, y(:)
+    integer, intent(out) :: verdict
+    real(dp), intent(out) :: fraction
+    associate (unused_self => self, unused_t_old => t_old, unused_y_old => y_old, unused_t => t, unused_y => y)
+    end associate
+    verdict = step_admitted
+    fraction = 1
+  end subroutine admit_every_step
+
+  !> Take note of event `index` at (t, y): the discrete state, and y itself, may change. The default stops.
+  subroutine stop_at_event(self, index, t, y, action)
+    class(ode_problem_t), intent(inout) :: self
+    integer, intent(in) :: index
+    real(dp), intent(in) :: t
+    real(dp), intent(inout) :: y(:)
+    integer, intent(out) :: action
+    associate (unused_self => self, unused_index => index, unused_t => t, unused_y => y)
+    end associate
+    action = event_stop
+  end subroutine stop_at_event
+
+  !> Whether event `index` is taken at the end of the step that passes it instead of at its root: the default is no.
+  pure logical function never_on_step_end(self, index)
+    class(ode_problem_t), intent(in) :: self
+    integer, intent(in) :: index
+    associate (unused_self => self, unused_index => index)
+    end associate
+    never_on_step_end = .false.
+  end function never_on_step_end
+end module ode_problem

@@ -1,0 +1,58 @@
+!> The root of an event function on the interpolant of a step.
+module roots
+  use kinds, only: dp
+  implicit none
+  private
+  public :: bracket_t, next_abscissa, narrow
+
+  !> A sign change from negative (at a) to not negative (at b), narrowed by the ITP method (Oliveira & Takahashi
+  !> 2020): never more evaluations than bisection and one, superlinear where the function is smooth. a < b or a > b.
+  type :: bracket_t
+    real(dp) :: a, b         !! ends
+    real(dp) :: fa, fb       !! values there: fa < 0 <= fb
+    integer :: steps = 0     !! evaluations so far
+    real(dp) :: width = 0    !! |b - a| at the beginning
+  end type bracket_t
+
+contains
+
+  !> Where to evaluate next. Equal to an end where the bracket cannot be divided any more.
+  pure function next_abscissa(bracket) result(x)
+    type(bracket_t), intent(in) :: bracket
+    real(dp) :: x
+    real(dp) :: middle, secant, truncated, sigma, radius, resolution
+    integer, parameter :: slack = 1
+
+    associate (a => bracket%a, b => bracket%b)
+      middle = a + 0.5_dp*(b - a)
+      x = middle
+      if (.not. (bracket%fb > bracket%fa)) return
+      resolution = spacing(max(abs(a), abs(b)))
+      secant = a - bracket%fa*((b - a)/(bracket%fb - bracket%fa))
+      sigma = sign(1.0_dp, middle - secant)
+      truncated = min(0.2_dp*(b - a)**2/max(bracket%width, resolution), abs(middle - secant))
+      truncated = secant + sigma*max(truncated, min(resolution, abs(middle - secant)))
+      radius = 0.5_dp*bracket%width*2.0_dp**(slack - bracket%steps) - 0.5_dp*abs(b - a)
+      radius = max(radius, 0.0_dp)
+      if (abs(truncated - middle) <= radius) then
+        x = truncated
+      else
+        x = middle - sigma*radius
+      end if
+    end associate
+  end function next_abscissa
+
+  !> Replace the end of the bracket whose sign the value at x has.
+  pure subroutine narrow(bracket, x, value)
+    type(bracket_t), intent(inout) :: bracket
+    real(dp), intent(in) :: x, value
+    bracket%steps = bracket%steps + 1
+    if (value < 0) then
+      bracket%a = x
+      bracket%fa = value
+    else
+      bracket%b = x
+      bracket%fb = value
+    end if
+  end subroutine narrow
+end module roots

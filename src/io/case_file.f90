@@ -1,0 +1,183 @@
+!> Case files: reading one into a case, and writing cases as text. Every error has the exit status of case files and is
+!> one line: file, line or group and key, value as written, what is wanted.
+module case_file
+  use errors, only: error_t, fail, status_case_file
+  use text_tools, only: lowercase, printable, integer_text, case_name
+  use posix, only: open_for_reading, read_bytes, close_file, error_text, error_interrupted
+  use case_definition, only: case_t
+  use case_schema, only: find_group
+  use case_values, only: case_values_t
+  use case_exchange, only: values_to_case, case_to_values
+  use case_rules, only: check_rules
+  use case_text, only: template_text, resolved_text
+  use namelist_reader, only: namelist_t, token_t, read_namelist, read_values
+  implicit none
+  private
+  public :: read_case, parse_case, write_resolved, template
+
+  integer, parameter :: largest_file = 1000000   !! bytes; a case file has a few thousand
+
+contains
+
+  !> Read, complete and check a case file. `overrides` are of the form GROUP.KEY=VALUE and come after the file.
+  subroutine read_case(path, overrides, this, error)
+    character(len=*), intent(in) :: path, overrides(:)
+    type(case_t), intent(out) :: this
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: text
+    call read_file(path, text, error)
+    if (allocated(error)) return
+    call parse_case(text, path, overrides, this, error)
+  end subroutine read_case
+
+  !> The same for a text; `path` names the case and its messages.
+  subroutine parse_case(text, path, overrides, this, error)
+    character(len=*), intent(in) :: text, path, overrides(:)
+    type(case_t), intent(out) :: this
+    type(error_t), allocatable, intent(out) :: error
+    type(case_values_t) :: values
+    integer :: i
+    call values%set_defaults(path)
+    call take_file(values, text, error)
+    if (allocated(error)) return
+    do i = 1, size(overrides)
+      call take_override(values, trim(overrides(i)), error)
+      if (allocated(error)) return
+    end do
+    call values%check(error)
+    if (allocated(error)) return
+    call values_to_case(values, this)
+    this%file = path
+    this%name = case_name(path)
+    if (this%name == '') this%name = 'case'
+    if (this%lubrication%is_present .and. this%lubrication%variant == '') then
+      this%lubrication%variant = 'closed_form'
+      if (this%lubrication%law == 'oscillating_film') this%lubrication%variant = 'bearing_frame'
+    end if
+    call check_rules(this, values, error)
+  end subroutine parse_case
+
+  !> The case with every default filled in; reading it gives the same case, bit for bit.
+  function write_resolved(this) result(text)
+    type(case_t), intent(in) :: this
+    character(len=:), allocatable :: text
+    type(case_values_t) :: values
+    call values%set_defaults('')
+    call case_to_values(this, values)
+    text = resolved_text(values)
+  end function write_resolved
+
+  !> A complete, commented case file that reads back.
+  function template() result(text)
+    character(len=:), allocatable :: text
+    text = template_text()
+  end function template
+
+  !> Groups and keys of the file's text into the values.
+  subroutine take_file(values, text, error)
+    type(case_values_t), intent(inout) :: values
+    character(len=*), intent(in) :: text
+    type(error_t), allocatable, intent(out) :: error
+    type(namelist_t) :: list
+    character(len=:), allocatable :: message
+    integer :: i, line, group, place
+    call read_namelist(text, list, message, line)
+    if (allocated(message)) then
+      call fail(error, at_line(values, line)//message, status_case_file)
+      return
+    end if
+    if (size(list%groups) == 0) then
+      call fail(error, values%file//': the file holds no group; gudgeon --template prints a case', status_case_file)
+      return
+    end if
+    do i = 1, size(list%groups)
+      group = find_group(values%groups, list%groups(i)%name)
+      if (group == 0) then
+        call values%find(list%groups(i)%name, '', at_line(values, list%groups(i)%line), place, error)
+        return
+      end if
+      if (values%is_present(group)) then
+        call fail(error, at_line(values, list%groups(i)%line)//'&'//list%groups(i)%name//': this group stands here twice', &
+                  status_case_file)
+        return
+      end if
+      values%is_present(group) = .true.
+    end do
+    do i = 1, size(list%entries)
+      associate (entry => list%entries(i))
+        call values%find(entry%group, entry%key, at_line(values, entry%line), place, error)
+        if (allocated(error)) return
+        call values%assign(place, entry%index, entry%tokens, at_line(values, entry%line), .false., error)
+        if (allocated(error)) return
+      end associate
+    end do
+  end subroutine take_file
+
+  !> GROUP.KEY=VALUE into the values. A text needs no quotes here.
+  subroutine take_override(values, override, error)
+    type(case_values_t), intent(inout) :: values
+    character(len=*), intent(in) :: override
+    type(error_t), allocatable, intent(out) :: error
+    type(token_t), allocatable :: tokens(:)
+    character(len=:), allocatable :: at, message, group, key, text
+    integer :: dot, equals, place
+    at = values%file//': --set '//printable(override, 60)//': '
+    equals = index(override, '=')
+    dot = index(override(:max(0, equals - 1)), '.')
+    if (dot == 0) then
+      call fail(error, at//'must have the form GROUP.KEY=VALUE', status_case_file)
+      return
+    end if
+    group = trim(adjustl(lowercase(override(:dot - 1))))
+    key = trim(adjustl(lowercase(override(dot + 1:equals - 1))))
+    call values%find(group, key, at, place, error)
+    if (allocated(error)) return
+    text = trim(adjustl(override(equals + 1:)))
+    if (values%takes_bare_text(place) .and. verify(text//' ', '''"') == 1) then
+      allocate (tokens(1))
+      tokens(1)%text = text
+    else
+      call read_values(text, tokens, message)
+    end if
+    if (allocated(message)) then
+      call fail(error, at//message, status_case_file)
+      return
+    end if
+    values%is_present(find_group(values%groups, group)) = .true.
+    call values%assign(place, 0, tokens, at, .true., error)
+  end subroutine take_override
+
+  !> `path:line: `
+  function at_line(values, line) result(at)
+    type(case_values_t), intent(in) :: values
+    integer, intent(in) :: line
+    character(len=:), allocatable :: at
+    at = values%file//':'//integer_text(line)//': '
+  end function at_line
+
+  !> All bytes of a file.
+  subroutine read_file(path, text, error)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable, intent(out) :: text
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: buffer
+    integer :: descriptor, status, ignored, done
+    text = ''
+    allocate (character(len=65536) :: buffer)
+    call open_for_reading(path, descriptor, status)
+    if (status == 0) then
+      do while (len(text) <= largest_file)
+        call read_bytes(descriptor, buffer, done, status)
+        if (status == error_interrupted) cycle
+        if (status /= 0 .or. done == 0) exit
+        text = text//buffer(:done)
+      end do
+      call close_file(descriptor, ignored)
+    end if
+    if (status /= 0) then
+      call fail(error, printable(path, 200)//': '//error_text(status), status_case_file)
+    else if (len(text) > largest_file) then
+      call fail(error, printable(path, 200)//': larger than 1 MB: not a case file', status_case_file)
+    end if
+  end subroutine read_file
+end module case_file

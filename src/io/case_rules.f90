@@ -1,0 +1,198 @@
+!> What must hold between the values of a case: bodies that have inertia, models that fit their joint, a run that ends.
+module case_rules
+  use kinds, only: dp
+  use constants, only: two_pi
+  use errors, only: error_t
+  use case_definition, only: case_t
+  use case_values, only: case_values_t
+  implicit none
+  private
+  public :: check_rules
+
+  real(dp), parameter :: most_samples = 1e9_dp   !! rows that a run may ask for
+
+contains
+
+  !> Refuse a case that no scene can be built from; `values` knows what the user wrote.
+  subroutine check_rules(c, values, error)
+    type(case_t), intent(in) :: c
+    type(case_values_t), intent(in) :: values
+    type(error_t), allocatable, intent(out) :: error
+    call check_bodies(c, values, error)
+    if (allocated(error)) return
+    call check_joint(c, values, error)
+    if (allocated(error)) return
+    call check_models(c, values, error)
+    if (allocated(error)) return
+    call check_combustion(c, values, error)
+    if (allocated(error)) return
+    call check_run(c, values, error)
+    if (allocated(error)) return
+    call check_output(c, values, error)
+  end subroutine check_rules
+
+  !> The rod reaches round, and the mass matrix of crank and rod is positive definite at every angle. With
+  !> A = I_c + m_c |com_c|^2 and B = I_r + m_r |com_r|^2 its smallest determinant is A B + m_r R^2 I_r.
+  subroutine check_bodies(c, values, error)
+    type(case_t), intent(in) :: c
+    type(case_values_t), intent(in) :: values
+    type(error_t), allocatable, intent(out) :: error
+    real(dp) :: reach, crank, rod
+    associate (m => c%mechanism)
+      reach = m%crank_length
+      if (c%joint%kind == 'clearance') reach = reach + c%joint%clearance
+      if (m%rod_length <= reach) then
+        if (c%joint%kind == 'clearance') then
+          call values%refuse('mechanism', 'rod_length', 'must be > crank_length + clearance', error)
+        else
+          call values%refuse('mechanism', 'rod_length', 'must be > crank_length', error)
+        end if
+        return
+      end if
+      crank = m%crank_inertia + m%crank_mass*sum(m%crank_com**2)
+      rod = m%rod_inertia + m%rod_mass*sum(m%rod_com**2)
+      if (c%joint%kind == 'clearance') then
+        if (rod <= 0) then
+          call values%refuse('mechanism', 'rod_inertia', 'must be > 0 unless rod_mass is > 0 away from the crank pin', error)
+        else if (crank*rod + m%rod_mass*m%crank_length**2*m%rod_inertia <= 0) then
+          call values%refuse('mechanism', 'crank_inertia', 'must be > 0 unless crank_mass is > 0 away from the axis, '// &
+                             'or rod_mass and rod_inertia are', error)
+        end if
+      else if (crank + m%rod_inertia <= 0) then
+        call values%refuse('mechanism', 'crank_inertia', 'must be > 0 unless crank_mass is > 0 away from the axis, '// &
+                           'or rod_inertia is', error)
+      end if
+    end associate
+  end subroutine check_bodies
+
+  !> An ideal joint has no room for contact or film; a joint with clearance needs one of them to hold the pin.
+  subroutine check_joint(c, values, error)
+    type(case_t), intent(in) :: c
+    type(case_values_t), intent(in) :: values
+    type(error_t), allocatable, intent(out) :: error
+    if (c%joint%kind == 'ideal') then
+      if (c%contact%is_present .or. c%friction%is_present .or. c%lubrication%is_present) then
+        call values%refuse('joint', 'kind', 'must be clearance with contact, friction or lubrication: an ideal joint '// &
+                           'has no play for them; leave those groups out', error)
+      else if (c%joint%clearance > 0 .and. .not. values%is_given('joint', 'kind')) then
+        call values%refuse('joint', 'clearance', 'needs kind = ''clearance''; the default is ideal', error)
+      end if
+      return
+    end if
+    if (c%joint%clearance <= 0) then
+      call values%refuse('joint', 'clearance', needed('clearance', values, 'with kind = ''clearance'''), error)
+    else if (c%joint%bearing_radius <= 0) then
+      call values%refuse('joint', 'bearing_radius', needed('bearing_radius', values, 'with kind = ''clearance'''), error)
+    else if (c%joint%bearing_radius <= c%joint%clearance) then
+      call values%refuse('joint', 'bearing_radius', 'must be > clearance: the pin''s radius is the difference', error)
+    else if (c%lubrication%is_present .and. c%joint%bearing_length <= 0) then
+      call values%refuse('joint', 'bearing_length', needed('bearing_length', values, 'with lubrication'), error)
+    else if (.not. c%contact%is_present .and. .not. c%lubrication%is_present) then
+      call values%refuse('joint', 'kind', 'needs contact or lubrication: nothing would hold the pin', error)
+    end if
+  end subroutine check_joint
+
+  !> What to say of a length of the joint that is missing, or given as 0.
+  function needed(name, values, why) result(wanted)
+    character(len=*), intent(in) :: name, why
+    type(case_values_t), intent(in) :: values
+    character(len=:), allocatable :: wanted
+    wanted = 'required '//why
+    if (values%is_given('joint', name)) wanted = 'must be > 0'
+  end function needed
+
+  subroutine check_models(c, values, error)
+    type(case_t), intent(in) :: c
+    type(case_values_t), intent(in) :: values
+    type(error_t), allocatable, intent(out) :: error
+    if (c%friction%is_present) then
+      if (.not. c%contact%is_present) then
+        call values%refuse('friction', 'law', 'needs the group contact: dry friction follows the normal force', error)
+      else if (c%friction%law == 'ambrosio' .and. .not. values%is_given('friction', 'v0')) then
+        call values%refuse('friction', 'v0', 'required with law = ''ambrosio''', error)
+      else if (c%friction%law == 'ambrosio' .and. .not. values%is_given('friction', 'v1')) then
+        call values%refuse('friction', 'v1', 'required with law = ''ambrosio''', error)
+      else if (c%friction%v1 < c%friction%v0) then
+        call values%refuse('friction', 'v1', 'must be >= v0', error)
+      end if
+      if (allocated(error)) return
+    end if
+    if (.not. c%lubrication%is_present) return
+    select case (c%lubrication%law)
+    case ('oscillating_film')
+      if (all(c%lubrication%variant /= ['bearing_frame', 'as_printed   '])) then
+        call values%refuse('lubrication', 'variant', 'must be one of bearing_frame, as_printed for oscillating_film', error)
+      else if (c%lubrication%kinematic_viscosity <= 0) then
+        call values%refuse('lubrication', 'kinematic_viscosity', 'must be > 0 for oscillating_film', error)
+      end if
+    case default
+      if (all(c%lubrication%variant /= ['closed_form', 'as_printed ', 'half_film  '])) call values%refuse( &
+        'lubrication', 'variant', 'must be one of closed_form, as_printed, half_film for pinkus_sternlicht', error)
+    end select
+  end subroutine check_models
+
+  subroutine check_combustion(c, values, error)
+    type(case_t), intent(in) :: c
+    type(case_values_t), intent(in) :: values
+    type(error_t), allocatable, intent(out) :: error
+    if (.not. c%combustion%is_present) return
+    if (c%combustion%start_deg + c%combustion%duration_deg > 540) call values%refuse( &
+      'combustion', 'duration_deg', 'start_deg + duration_deg must be <= 540, where the cylinder opens', error)
+  end subroutine check_combustion
+
+  !> The run has one end, and reaches it.
+  subroutine check_run(c, values, error)
+    type(case_t), intent(in) :: c
+    type(case_values_t), intent(in) :: values
+    type(error_t), allocatable, intent(out) :: error
+    associate (run => c%integrator)
+      if (run%revolutions > 0 .and. run%end_time > 0) then
+        call values%refuse('integrator', 'end_time', 'must not be given together with revolutions', error)
+      else if (run%revolutions <= 0 .and. run%end_time <= 0) then
+        call values%refuse('integrator', 'revolutions', 'this or end_time is required, > 0', error)
+      else if (run%revolutions > 0 .and. .not. turns(c)) then
+        call values%refuse('integrator', 'revolutions', 'needs crank_speed other than 0; give end_time', error)
+      else if (run%contact_entry == 'step_rejection' .and. run%max_penetration <= 0) then
+        call values%refuse('integrator', 'max_penetration', 'must be > 0 for contact_entry = ''step_rejection''', error)
+      end if
+    end associate
+  end subroutine check_run
+
+  !> Rows have a spacing, and there are not too many of them.
+  subroutine check_output(c, values, error)
+    type(case_t), intent(in) :: c
+    type(case_values_t), intent(in) :: values
+    type(error_t), allocatable, intent(out) :: error
+    real(dp) :: samples, speed, end_time
+    character(len=*), parameter :: letters = 'abcdefghijklmnopqrstuvwxyz0123456789_, '
+    if (c%output%interval <= 0 .and. .not. turns(c)) then
+      call values%refuse('output', 'interval', 'required with crank_speed = 0', error)
+      return
+    end if
+    if (c%integrator%end_time > 0 .and. c%output%start_time >= c%integrator%end_time) then
+      call values%refuse('output', 'start_time', 'must be < end_time', error)
+      return
+    end if
+    if (verify(c%output%columns, letters) > 0 .or. c%output%columns == '') then
+      call values%refuse('output', 'columns', 'must be ''standard'' or names of columns without their units', error)
+      return
+    end if
+    speed = abs(c%initial%crank_speed)
+    end_time = c%integrator%end_time
+    if (c%integrator%revolutions > 0) end_time = c%integrator%revolutions*two_pi/speed
+    if (c%output%interval > 0) then
+      samples = end_time/c%output%interval
+      if (samples > most_samples) call values%refuse('output', 'interval', 'asks for more than 1e9 rows', error)
+    else
+      samples = end_time*speed/two_pi*c%output%samples_per_revolution
+      if (samples > most_samples) call values%refuse('output', 'samples_per_revolution', 'asks for more than 1e9 rows', error)
+    end if
+  end subroutine check_output
+
+  !> Whether the crank turns at the start.
+  pure function turns(c) result(answer)
+    type(case_t), intent(in) :: c
+    logical :: answer
+    answer = abs(c%initial%crank_speed) > 0
+  end function turns
+end module case_rules

@@ -1,0 +1,200 @@
+!> A case from its file to its results.
+module case_runner
+  use, intrinsic :: iso_fortran_env, only: int64
+  use kinds, only: dp
+  use errors, only: error_t, fail, status_output, status_integration
+  use case_definition, only: case_t
+  use case_file, only: read_case, write_resolved
+  use command_line, only: command_line_t
+  use columns, only: column_list_t, choose_columns
+  use scene, only: scene_t
+  use scene_builder, only: build_scene, simulated_time
+  use simulation, only: simulate, run_report_t, interrupted_text
+  use trace_sink, only: trace_sink_t
+  use trace_files, only: trace_files_t
+  use result_file, only: result_file_t
+  use summary, only: summary_table, summary_line
+  use posix, only: make_directory, error_text
+  use text_tools, only: printable
+  implicit none
+  private
+  public :: run_case_file
+
+contains
+
+  !> Read a case, and unless only a check is asked for run it and write its results. `line` is the summary for people.
+  !> An error's message begins with the case file's name; a case that is wrong writes nothing.
+  subroutine run_case_file(path, options, show_progress, line, error)
+    character(len=*), intent(in) :: path
+    type(command_line_t), intent(in) :: options
+    logical, intent(in) :: show_progress
+    character(len=:), allocatable, intent(out) :: line
+    type(error_t), allocatable, intent(out) :: error
+    type(case_t) :: case
+    type(column_list_t) :: list, ideal_list
+    type(error_t), allocatable :: ideal_error
+    character(len=:), allocatable :: base
+
+    !$omp critical (texts)
+    line = ''
+    call prepare(path, options, case, list, ideal_list, base, error)
+    if (.not. allocated(error) .and. options%check) line = path//': correct'
+    !$omp end critical (texts)
+    if (allocated(error) .or. options%check) return
+
+    call run_one(case, .false., list, base, show_progress, line, error)
+    if (.not. case%output%ideal_twin .or. case%joint%kind == 'ideal') return
+    if (allocated(error)) then
+      if (index(error%message, interrupted_text) > 0) return
+    end if
+    call run_one(case, .true., ideal_list, base, show_progress, line, ideal_error)
+    if (allocated(ideal_error) .and. .not. allocated(error)) call move_alloc(ideal_error, error)
+  end subroutine run_case_file
+
+  !> Read and check a case; unless only that is asked for, make the folder for its results and write the resolved case.
+  !> `base` is the path of the results without their endings.
+  subroutine prepare(path, options, case, list, ideal_list, base, error)
+    character(len=*), intent(in) :: path
+    type(command_line_t), intent(in) :: options
+    type(case_t), intent(out) :: case
+    type(column_list_t), intent(out) :: list, ideal_list
+    character(len=:), allocatable, intent(out) :: base
+    type(error_t), allocatable, intent(out) :: error
+    class(scene_t), allocatable :: scene
+    integer :: status
+
+    call read_case(path, with_accuracy(options), case, error)
+    if (allocated(error)) return
+    base = options%out//'/'//case%name
+    call choose_columns(case, .false., list, error)
+    if (.not. allocated(error)) call choose_columns(case, .true., ideal_list, error)
+    if (.not. allocated(error)) call build_scene(case, .false., scene, error)
+    if (allocated(error)) call name_file(path, error)
+    if (allocated(error) .or. options%check) return
+    call make_directory(options%out, status)
+    if (status /= 0) then
+      call fail(error, printable(options%out, 200)//': '//error_text(status), status_output)
+    else
+      call write_text(base//'.resolved.nml', write_resolved(case), error)
+    end if
+  end subroutine prepare
+
+  !> The overrides of the command line, those of an accuracy preset first.
+  function with_accuracy(options) result(overrides)
+    type(command_line_t), intent(in) :: options
+    character(len=:), allocatable :: overrides(:)
+    character(len=:), allocatable :: tolerance
+    integer :: i
+    select case (options%accuracy)
+    case ('draft')
+      tolerance = 'integrator.relative_tolerance=1e-4'
+    case ('standard')
+      tolerance = 'integrator.relative_tolerance=1e-6'
+    case ('reference')
+      tolerance = 'integrator.relative_tolerance=1e-9'
+    case default
+      allocate (character(len=len(options%overrides)) :: overrides(size(options%overrides)))
+      overrides(:) = options%overrides
+      return
+    end select
+    allocate (character(len=max(len(tolerance), len(options%overrides))) :: overrides(size(options%overrides) + 1))
+    overrides(1) = tolerance
+    do i = 1, size(options%overrides)
+      overrides(i + 1) = options%overrides(i)
+    end do
+  end function with_accuracy
+
+  !> Run a case and write BASE.csv, events and summary, or its ideal twin and write BASE.ideal.csv.
+  subroutine run_one(case, ideal_joint, list, base, show_progress, line, error)
+    type(case_t), intent(in) :: case
+    logical, intent(in) :: ideal_joint
+    type(column_list_t), intent(in) :: list
+    character(len=*), intent(in) :: base
+    logical, intent(in) :: show_progress
+    character(len=:), allocatable, intent(inout) :: line
+    type(error_t), allocatable, intent(out) :: error
+    class(trace_sink_t), allocatable :: sink
+    type(run_report_t) :: report
+    integer(int64) :: began, ended, rate
+
+    !$omp critical (texts)
+    call open_files(case, ideal_joint, list, base, show_progress, sink, error)
+    !$omp end critical (texts)
+    if (allocated(error)) return
+    call system_clock(began, rate)
+    call simulate(case, ideal_joint, list, sink, report, error)
+    call system_clock(ended)
+    !$omp critical (texts)
+    call close_files(case, ideal_joint, base, sink, report, real(ended - began, dp)/real(rate, dp), line, error)
+    !$omp end critical (texts)
+  end subroutine run_one
+
+  subroutine open_files(case, ideal_joint, list, base, show_progress, sink, error)
+    type(case_t), intent(in) :: case
+    logical, intent(in) :: ideal_joint
+    type(column_list_t), intent(in) :: list
+    character(len=*), intent(in) :: base
+    logical, intent(in) :: show_progress
+    class(trace_sink_t), allocatable, intent(out) :: sink
+    type(error_t), allocatable, intent(out) :: error
+    type(trace_files_t), allocatable :: files
+
+    allocate (files)
+    if (ideal_joint) then
+      call files%open(base//'.ideal', list, .false., error)
+    else
+      call files%open(base, list, case%contact%is_present, error)
+    end if
+    if (allocated(error)) return
+    files%end_time = simulated_time(case)
+    call files%progress%start(case%name, show_progress)
+    call move_alloc(files, sink)
+  end subroutine open_files
+
+  !> Close the files and write the summary. An error of the output goes before one of the integration.
+  subroutine close_files(case, ideal_joint, base, sink, report, wall_time, line, error)
+    type(case_t), intent(in) :: case
+    logical, intent(in) :: ideal_joint
+    character(len=*), intent(in) :: base
+    class(trace_sink_t), allocatable, intent(inout) :: sink
+    type(run_report_t), intent(inout) :: report
+    real(dp), intent(in) :: wall_time
+    character(len=:), allocatable, intent(inout) :: line
+    type(error_t), allocatable, intent(inout) :: error
+    type(error_t), allocatable :: trace_error, summary_error
+
+    if (allocated(error)) call name_file(case%file, error)
+    select type (sink)
+    type is (trace_files_t)
+      call sink%close(trace_error)
+    end select
+    if (allocated(trace_error)) report%status = 'stopped: '//trace_error%message
+    if (.not. ideal_joint) then
+      line = summary_line(case, report, wall_time, base)
+      call write_text(base//'.summary.csv', summary_table(case, report, wall_time), summary_error)
+    end if
+    if (allocated(trace_error)) then
+      call move_alloc(trace_error, error)
+    else if (allocated(summary_error)) then
+      call move_alloc(summary_error, error)
+    end if
+  end subroutine close_files
+
+  !> A small file, written whole or not at all.
+  subroutine write_text(path, text, error)
+    character(len=*), intent(in) :: path, text
+    type(error_t), allocatable, intent(out) :: error
+    type(result_file_t) :: file
+    call file%open(path, error)
+    if (allocated(error)) return
+    call file%put(text)
+    call file%close(error)
+  end subroutine write_text
+
+  !> Put the case file's name before an error that does not have it.
+  subroutine name_file(path, error)
+    character(len=*), intent(in) :: path
+    type(error_t), intent(inout) :: error
+    error%message = printable(path, 200)//': '//error%message
+  end subroutine name_file
+end module case_runner

@@ -1,0 +1,104 @@
+!> Cases as text: the template with every key and its default, and the resolved case.
+module case_text
+  use text_tools, only: integer_text
+  use number_text, only: exact_text
+  use case_schema, only: key_t, group_definition_t, schema_groups, schema_keys, real_kind, integer_kind, logical_kind
+  use case_values, only: case_values_t, value_t
+  implicit none
+  private
+  public :: template_text, resolved_text
+
+  character(len=*), parameter :: newline = achar(10)
+
+contains
+
+  !> A complete case file: every group and key, with unit, range, allowed words and default as comments.
+  function template_text() result(text)
+    character(len=:), allocatable :: text
+    type(group_definition_t), allocatable :: groups(:)
+    type(key_t), allocatable :: keys(:)
+    integer :: group, i
+    allocate (groups, source=schema_groups())
+    allocate (keys, source=schema_keys())
+    text = '! A case of gudgeon with every key there is. Keys marked required have no default.'//newline
+    do group = 1, size(groups)
+      text = text//newline//'! '//trim(groups(group)%description)//newline//'&'//trim(groups(group)%name)//newline
+      do i = 1, size(keys)
+        if (keys(i)%group == groups(group)%name) text = text//template_line(keys(i))//newline
+      end do
+      text = text//'/'//newline
+    end do
+  end function template_text
+
+  !> `  key = value   ! unit, range, default: description`
+  function template_line(key) result(line)
+    type(key_t), intent(in) :: key
+    character(len=:), allocatable :: line, value, note
+    value = trim(key%default)
+    if (key%example /= '') value = trim(key%example)
+    if (key%kind > logical_kind) value = quoted(value)
+    if (key%kind == real_kind .and. key%count > 1) value = value//repeat(', '//value, key%count - 1)
+    line = '  '//trim(key%name)//' = '//value
+    line = line//repeat(' ', max(1, 42 - len(line)))//'! '
+    note = ''
+    if (key%unit /= '') note = note//', '//trim(key%unit)
+    if (key%range /= '') note = note//', '//trim(key%range)
+    if (key%words /= '') note = note//', one of '//trim(key%words)
+    if (key%required) note = note//', required'
+    if (.not. key%required .and. key%example /= '' .and. key%default /= '') note = note//', default '//trim(key%default)
+    if (note /= '') line = line//note(3:)//': '
+    line = line//trim(key%description)
+  end function template_line
+
+  !> A case file with every key of every group that is present, reals with 17 significant digits.
+  function resolved_text(values) result(text)
+    type(case_values_t), intent(in) :: values
+    character(len=:), allocatable :: text
+    integer :: group, i
+    text = ''
+    do group = 1, size(values%groups)
+      if (values%groups(group)%is_model .and. .not. values%is_present(group)) cycle
+      text = text//'&'//trim(values%groups(group)%name)//newline
+      do i = 1, size(values%keys)
+        if (values%keys(i)%group == values%groups(group)%name) &
+          text = text//resolved_line(values%keys(i), values%values(i))//newline
+      end do
+      text = text//'/'//newline
+    end do
+  end function resolved_text
+
+  function resolved_line(key, value) result(line)
+    type(key_t), intent(in) :: key
+    type(value_t), intent(in) :: value
+    character(len=:), allocatable :: line
+    integer :: element
+    line = '  '//trim(key%name)//' = '
+    select case (key%kind)
+    case (real_kind)
+      line = line//exact_text(value%reals(1))
+      do element = 2, key%count
+        line = line//', '//exact_text(value%reals(element))
+      end do
+    case (integer_kind)
+      line = line//integer_text(value%whole)
+    case (logical_kind)
+      line = line//trim(merge('.true. ', '.false.', value%switch))
+    case default
+      line = line//quoted(value%text)
+    end select
+    if (key%unit /= '') line = line//'  ! '//trim(key%unit)
+  end function resolved_line
+
+  !> In single quotes, those inside doubled.
+  pure function quoted(text) result(string)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: string
+    integer :: i
+    string = ''''
+    do i = 1, len(text)
+      string = string//text(i:i)
+      if (text(i:i) == '''') string = string//''''
+    end do
+    string = string//''''
+  end function quoted
+end module case_text

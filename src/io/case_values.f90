@@ -1,0 +1,293 @@
+!> The values of one case, key by key as the schema lists them: taken from a file or an override, checked against kind,
+!> count, words and range.
+module case_values
+  use kinds, only: dp
+  use errors, only: error_t, fail, status_case_file
+  use text_tools, only: lowercase, printable, is_clean, integer_text, nearest_word
+  use case_schema, only: key_t, group_definition_t, schema_groups, schema_keys, find_key, find_group, real_kind, &
+    integer_kind, logical_kind, word_kind, text_kind
+  use namelist_reader, only: token_t
+  use value_reader, only: read_real, read_integer, read_logical, is_within
+  implicit none
+  private
+  public :: case_values_t, value_t
+
+  integer, parameter :: most_reals = 2   !! longest array of reals in the schema
+
+  integer, parameter :: longest_text = 4000
+
+  !> The value of one key, in the component of its kind.
+  type :: value_t
+    logical :: given(most_reals) = .false.   !! in the file or by an override, not by default
+    real(dp) :: reals(most_reals) = 0
+    integer :: whole = 0
+    logical :: switch = .false.
+    character(len=:), allocatable :: text
+    character(len=48) :: written(most_reals) = ''   !! as the user wrote it, for messages
+  end type value_t
+
+  type :: case_values_t
+    character(len=:), allocatable :: file          !! the case file as messages name it
+    type(group_definition_t), allocatable :: groups(:)
+    type(key_t), allocatable :: keys(:)
+    logical, allocatable :: is_present(:)          !! by group
+    type(value_t), allocatable :: values(:)        !! by key
+  contains
+    procedure :: set_defaults
+    procedure :: find         !! the place of a key
+    procedure :: assign       !! values as written, to a key
+    procedure :: check        !! required keys and ranges
+    procedure :: refuse       !! the error for a value
+    procedure :: is_given
+    procedure :: takes_bare_text
+  end type case_values_t
+
+contains
+
+  !> Every key at its default, every group absent.
+  subroutine set_defaults(self, file)
+    class(case_values_t), intent(inout) :: self
+    character(len=*), intent(in) :: file
+    character(len=:), allocatable :: wanted
+    type(token_t) :: token
+    integer :: i, element
+    self%file = printable(file, 200)
+    self%groups = schema_groups()
+    self%keys = schema_keys()
+    allocate (self%is_present(size(self%groups)), source=.false.)
+    allocate (self%values(size(self%keys)))
+    do i = 1, size(self%keys)
+      self%values(i)%text = ''
+      if (self%keys(i)%required) cycle
+      token%text = trim(self%keys(i)%default)
+      do element = 1, min(self%keys(i)%count, most_reals)
+        call convert(self%keys(i), token, self%values(i), element, wanted)
+      end do
+    end do
+  end subroutine set_defaults
+
+  !> The place of a key, or an error that says what is there instead. `at` names file and line.
+  subroutine find(self, group, key, at, place, error)
+    class(case_values_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key, at
+    integer, intent(out) :: place
+    type(error_t), allocatable, intent(out) :: error
+    character(len=24), allocatable :: allowed(:)
+    character(len=:), allocatable :: text
+    integer :: i, shown
+    place = find_key(self%keys, group, key)
+    if (place > 0) return
+    if (find_group(self%groups, group) == 0) then
+      allocate (allowed(size(self%groups)))
+      do i = 1, size(self%groups)
+        allowed(i) = self%groups(i)%name
+      end do
+      text = '&'//printable(group, 40)//': unknown group'
+      call fail(error, at//text//suggestion(group, allowed), status_case_file)
+      return
+    end if
+    allocate (allowed(count(self%keys%group == group)))
+    shown = 0
+    do i = 1, size(self%keys)
+      if (self%keys(i)%group /= group) cycle
+      shown = shown + 1
+      allowed(shown) = self%keys(i)%name
+    end do
+    text = '&'//group//' '//printable(key, 40)//': unknown key'
+    do i = 1, size(self%keys)
+      if (self%keys(i)%name == key) text = text//' of this group; it belongs to &'//trim(self%keys(i)%group)
+      if (self%keys(i)%name == key) exit
+    end do
+    call fail(error, at//text//suggestion(key, allowed), status_case_file)
+  end subroutine find
+
+  !> `; did you mean x? (allowed: ...)`
+  pure function suggestion(word, allowed) result(text)
+    character(len=*), intent(in) :: word, allowed(:)
+    character(len=:), allocatable :: text
+    integer :: i
+    text = nearest_word(word, allowed)
+    if (text /= '') text = '; did you mean '//text//'?'
+    text = text//' (allowed: '//trim(allowed(1))
+    do i = 2, size(allowed)
+      text = text//', '//trim(allowed(i))
+    end do
+    text = text//')'
+  end function suggestion
+
+  !> Give the key at `place` the values written for it, from element `index` on; 0 means all of them. An override
+  !> replaces what the file says; within a file an element may be given once. `at` names file and line.
+  subroutine assign(self, place, index, tokens, at, is_override, error)
+    class(case_values_t), intent(inout) :: self
+    integer, intent(in) :: place, index
+    type(token_t), intent(in) :: tokens(:)
+    character(len=*), intent(in) :: at
+    logical, intent(in) :: is_override
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: wanted, name
+    integer :: i, k, element, total, first
+    first = max(1, index)
+    associate (key => self%keys(place), value => self%values(place))
+      name = at//'&'//trim(key%group)//' '//trim(key%name)
+      total = sum([(tokens(i)%repeat, i=1, size(tokens))]) + first - 1
+      if (total > key%count) wanted = 'takes '//integer_text(key%count)//' value'//trim(merge('s', ' ', key%count > 1))// &
+        ', not '//integer_text(total)
+      if (total < key%count .and. index == 0 .and. key%kind == real_kind) wanted = 'takes '// &
+        integer_text(key%count)//' values; as '//integer_text(key%count)//'*'//printable(tokens(1)%text, 40)// &
+        ' where they are the same'
+      if (index > 0 .and. key%count /= most_reals) wanted = 'takes no index'
+      if (allocated(wanted)) then
+        call fail(error, name//': '//wanted, status_case_file)
+        return
+      end if
+      element = first
+      if (key%count > most_reals) value%text = ''
+      do i = 1, size(tokens)
+        do k = 1, tokens(i)%repeat
+          if (value%given(min(element, most_reals)) .and. .not. is_override .and. element <= most_reals) then
+            call fail(error, name//': given twice', status_case_file)
+            return
+          end if
+          call convert(key, tokens(i), value, element, wanted)
+          if (allocated(wanted)) then
+            call fail(error, name//' = '//printable(tokens(i)%text, 48)//': '//wanted//unit_of(key), status_case_file)
+            return
+          end if
+          value%given(min(element, most_reals)) = .true.
+          element = element + 1
+        end do
+      end do
+    end associate
+  end subroutine assign
+
+  !> One value as written, into the component of its key's kind; `wanted` is allocated where it cannot be.
+  subroutine convert(key, token, value, element, wanted)
+    type(key_t), intent(in) :: key
+    type(token_t), intent(in) :: token
+    type(value_t), intent(inout) :: value
+    integer, intent(in) :: element
+    character(len=:), allocatable, intent(out) :: wanted
+    value%written(min(element, most_reals)) = printable(token%text, 45)
+    select case (key%kind)
+    case (real_kind)
+      call read_real(token%text, value%reals(element), wanted)
+      if (token%quoted) wanted = 'must be a number, without quotes'
+    case (integer_kind)
+      call read_integer(token%text, value%whole, wanted)
+      if (token%quoted) wanted = 'must be a whole number, without quotes'
+    case (logical_kind)
+      call read_logical(token%text, value%switch, wanted)
+      if (token%quoted) wanted = 'must be .true. or .false., without quotes'
+    case (word_kind)
+      value%text = trim(lowercase(token%text))
+      if (.not. is_one_of(value%text, trim(key%words)) .and. value%text /= key%default) wanted = 'must be one of '// &
+        trim(key%words)
+    case default
+      if (.not. is_clean(token%text)) wanted = 'must not hold control characters or bytes that are not UTF-8'
+      if (len(token%text) + len(value%text) > longest_text) wanted = 'must be at most 4000 bytes'
+      if (element > 1 .and. key%count > 1 .and. token%quoted) then
+        value%text = value%text//','//token%text
+      else
+        value%text = token%text
+      end if
+    end select
+  end subroutine convert
+
+  !> Whether a word stands in a list with commas between.
+  pure function is_one_of(word, words) result(found)
+    character(len=*), intent(in) :: word, words
+    logical :: found
+    found = word /= '' .and. verify(word, ' ,') > 0 .and. scan(word, ' ,') == 0 .and. &
+            index(', '//words//',', ', '//word//',') > 0
+  end function is_one_of
+
+  !> Required keys are there, and every number is in its range.
+  subroutine check(self, error)
+    class(case_values_t), intent(in) :: self
+    type(error_t), allocatable, intent(out) :: error
+    integer :: i, element, group
+    do i = 1, size(self%keys)
+      associate (key => self%keys(i), value => self%values(i))
+        group = find_group(self%groups, trim(key%group))
+        if (self%groups(group)%is_model .and. .not. self%is_present(group)) cycle
+        if (key%required .and. .not. value%given(1)) then
+          if (self%is_present(group)) then
+            call fail(error, self%file//': &'//trim(key%group)//' '//trim(key%name)//': required'//unit_of(key), &
+                      status_case_file)
+          else
+            call fail(error, self%file//': &'//trim(key%group)//': this group is required', status_case_file)
+          end if
+          return
+        end if
+        if (key%kind > integer_kind .or. key%range == '') cycle
+        do element = 1, key%count
+          if (key%kind == real_kind .and. is_within(value%reals(element), key%range)) cycle
+          if (key%kind == integer_kind .and. is_within(real(value%whole, dp), key%range)) cycle
+          if (is_default(key, value, element)) cycle
+          call self%refuse(trim(key%group), trim(key%name), 'must be '//trim(key%range), error, element)
+          return
+        end do
+      end associate
+    end do
+  end subroutine check
+
+  !> Whether a number equals the default of its key, however it is written.
+  function is_default(key, value, element) result(same)
+    type(key_t), intent(in) :: key
+    type(value_t), intent(in) :: value
+    integer, intent(in) :: element
+    logical :: same
+    type(value_t) :: default
+    type(token_t) :: token
+    character(len=:), allocatable :: wanted
+    same = .false.
+    if (key%required) return
+    token%text = trim(key%default)
+    call convert(key, token, default, element, wanted)
+    if (key%kind == real_kind) then
+      same = .not. abs(value%reals(element) - default%reals(element)) > 0
+    else
+      same = value%whole == default%whole
+    end if
+  end function is_default
+
+  !> The error for the value of a key: file, group, key, value as written, what is wanted, unit.
+  subroutine refuse(self, group, name, wanted, error, element)
+    class(case_values_t), intent(in) :: self
+    character(len=*), intent(in) :: group, name, wanted
+    type(error_t), allocatable, intent(out) :: error
+    integer, intent(in), optional :: element
+    character(len=:), allocatable :: text
+    integer :: place, shown
+    place = find_key(self%keys, group, name)
+    shown = 1
+    if (present(element)) shown = element
+    text = self%file//': &'//group//' '//name
+    if (self%keys(place)%count > 1 .and. self%keys(place)%kind == real_kind) text = text//'('//integer_text(shown)//')'
+    if (self%values(place)%given(shown)) text = text//' = '//trim(self%values(place)%written(shown))
+    call fail(error, text//': '//wanted//unit_of(self%keys(place)), status_case_file)
+  end subroutine refuse
+
+  !> Whether a key is given in the file or by an override.
+  pure function is_given(self, group, name) result(given)
+    class(case_values_t), intent(in) :: self
+    character(len=*), intent(in) :: group, name
+    logical :: given
+    given = self%values(find_key(self%keys, group, name))%given(1)
+  end function is_given
+
+  !> Whether the key at `place` is a text, which an override may give without quotes.
+  pure function takes_bare_text(self, place) result(answer)
+    class(case_values_t), intent(in) :: self
+    integer, intent(in) :: place
+    logical :: answer
+    answer = self%keys(place)%kind == text_kind
+  end function takes_bare_text
+
+  pure function unit_of(key) result(text)
+    type(key_t), intent(in) :: key
+    character(len=:), allocatable :: text
+    text = ''
+    if (key%unit /= '') text = ' ('//trim(key%unit)//')'
+  end function unit_of
+end module case_values

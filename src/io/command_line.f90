@@ -1,0 +1,271 @@
+!> The command line: options, values and case files, from arguments given as an array so that it can be tested.
+module command_line
+  use errors, only: error_t, fail, status_command_line
+  use text_tools, only: printable, nearest_word, case_name
+  implicit none
+  private
+  public :: command_line_t, parse_command_line, program_arguments, help_text
+
+  !> What the user asks for.
+  type :: command_line_t
+    integer, private :: override_count = 0, case_count = 0
+    character(len=:), allocatable :: out          !! folder for results
+    character(len=:), allocatable :: overrides(:) !! GROUP.KEY=VALUE, in their order, blanks behind
+    character(len=:), allocatable :: accuracy     !! draft, standard, reference, or empty: as the case says
+    integer :: jobs = 0                           !! cases side by side; 0: as many as there are cores
+    logical :: check = .false., template = .false., quiet = .false., help = .false., version = .false.
+    character(len=:), allocatable :: progress     !! auto, always, never
+    character(len=:), allocatable :: cases(:)     !! paths of case files, blanks behind
+  end type command_line_t
+
+  !> An option: its names, and whether a value follows.
+  type :: option_t
+    character(len=8) :: long = ''
+    character(len=1) :: short = ''
+    logical :: takes_value = .false.
+  end type option_t
+
+  type(option_t), parameter :: options(10) = [ &
+    option_t('out', 'o', .true.), option_t('set', 's', .true.), option_t('accuracy', 'a', .true.), &
+    option_t('jobs', 'j', .true.), option_t('progress', '', .true.), option_t('check', '', .false.), &
+    option_t('template', '', .false.), option_t('quiet', 'q', .false.), option_t('help', 'h', .false.), &
+    option_t('version', 'V', .false.)]
+
+  character(len=*), parameter :: hint = '; gudgeon --help lists the options'
+  integer, parameter :: most_jobs = 1024
+
+contains
+
+  !> Arguments to a command line. Errors are one line with a hint and the exit status of the command line.
+  subroutine parse_command_line(arguments, line, error)
+    character(len=*), intent(in) :: arguments(:)
+    type(command_line_t), intent(out) :: line
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: text
+    logical :: only_cases
+    integer :: i
+    line%out = 'results'
+    line%accuracy = ''
+    line%progress = 'auto'
+    allocate (character(len=len(arguments)) :: line%overrides(size(arguments)), line%cases(size(arguments)))
+    only_cases = .false.
+    i = 1
+    do while (i <= size(arguments))
+      text = trim(arguments(i))
+      if (only_cases .or. index(text, '-') /= 1) then
+        if (text == '') call fail(error, 'an empty argument is no case file'//hint, status_command_line)
+        line%case_count = line%case_count + 1
+        line%cases(line%case_count) = text
+      else if (text == '--') then
+        only_cases = .true.
+      else if (index(text, '--') == 1) then
+        call take_long(line, arguments, i, error)
+      else
+        call take_short(line, arguments, i, error)
+      end if
+      if (allocated(error)) return
+      i = i + 1
+    end do
+    call shorten(line%overrides, line%override_count)
+    call shorten(line%cases, line%case_count)
+    if (line%help .or. line%version .or. line%template) return
+    if (size(line%cases) == 0) then
+      call fail(error, 'no case file given'//hint, status_command_line)
+      return
+    end if
+    call check_names(line%cases, error)
+  end subroutine parse_command_line
+
+  !> `--name`, `--name value` or `--name=value`; `i` moves on to the last argument used.
+  subroutine take_long(line, arguments, i, error)
+    type(command_line_t), intent(inout) :: line
+    character(len=*), intent(in) :: arguments(:)
+    integer, intent(inout) :: i
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: text, name, near
+    character(len=8) :: names(size(options))
+    integer :: equals, place, k
+    text = trim(arguments(i))
+    equals = index(text, '=')
+    name = text(3:)
+    if (equals > 0) name = text(3:equals - 1)
+    do place = size(options), 1, -1
+      if (options(place)%long == name .and. name /= '') exit
+    end do
+    if (place == 0) then
+      do k = 1, size(options)
+        names(k) = options(k)%long
+      end do
+      near = nearest_word(name, names)
+      if (near /= '') near = '; did you mean --'//near//'?'
+      call fail(error, '--'//printable(name, 40)//': unknown option'//near//hint, status_command_line)
+    else if (.not. options(place)%takes_value) then
+      if (equals > 0) then
+        call fail(error, '--'//name//': takes no value'//hint, status_command_line)
+      else
+        call take(line, options(place)%long, '', error)
+      end if
+    else if (equals > 0) then
+      call take(line, options(place)%long, text(equals + 1:), error)
+    else
+      call take_next(line, options(place)%long, '--'//name, arguments, i, error)
+    end if
+  end subroutine take_long
+
+  !> `-s VALUE`, `-sVALUE`, `-q`, or several without values in one, as `-qh`.
+  subroutine take_short(line, arguments, i, error)
+    type(command_line_t), intent(inout) :: line
+    character(len=*), intent(in) :: arguments(:)
+    integer, intent(inout) :: i
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: text
+    integer :: k, place
+    text = trim(arguments(i))
+    if (len(text) == 1) call fail(error, '-: a case is read from a file, not from standard input'//hint, &
+                                  status_command_line)
+    do k = 2, len(text)
+      do place = size(options), 1, -1
+        if (options(place)%short == text(k:k) .and. text(k:k) /= ' ') exit
+      end do
+      if (place == 0) then
+        call fail(error, printable(text, 40)//': unknown option'//hint, status_command_line)
+        return
+      end if
+      if (options(place)%takes_value) then
+        if (k < len(text)) then
+          call take(line, options(place)%long, text(k + 1:), error)
+        else
+          call take_next(line, options(place)%long, '-'//text(k:k), arguments, i, error)
+        end if
+        return
+      end if
+      call take(line, options(place)%long, '', error)
+    end do
+  end subroutine take_short
+
+  !> The value of an option is the next argument.
+  subroutine take_next(line, name, shown, arguments, i, error)
+    type(command_line_t), intent(inout) :: line
+    character(len=*), intent(in) :: name, shown
+    character(len=*), intent(in) :: arguments(:)
+    integer, intent(inout) :: i
+    type(error_t), allocatable, intent(out) :: error
+    if (i == size(arguments)) then
+      call fail(error, shown//': a value is missing'//hint, status_command_line)
+      return
+    end if
+    i = i + 1
+    call take(line, name, trim(arguments(i)), error)
+  end subroutine take_next
+
+  !> Set what an option stands for.
+  subroutine take(line, name, value, error)
+    type(command_line_t), intent(inout) :: line
+    character(len=*), intent(in) :: name, value
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: wanted
+    integer :: dot
+    select case (name)
+    case ('out')
+      line%out = value
+      if (value == '') wanted = 'must name a folder'
+    case ('set')
+      dot = index(value, '.')
+      if (dot < 2 .or. index(value, '=') < dot + 2) wanted = 'must have the form GROUP.KEY=VALUE'
+      line%override_count = line%override_count + 1
+      line%overrides(line%override_count) = value
+    case ('accuracy')
+      line%accuracy = value
+      if (all(value /= ['draft    ', 'standard ', 'reference'])) wanted = 'must be draft, standard or reference'
+    case ('jobs')
+      line%jobs = 0
+      if (value /= '' .and. verify(value, '0123456789') == 0 .and. len(value) < 6) read (value, *) line%jobs
+      if (line%jobs < 1 .or. line%jobs > most_jobs) wanted = 'must be a whole number from 1 to 1024'
+    case ('progress')
+      line%progress = value
+      if (all(value /= ['auto  ', 'always', 'never '])) wanted = 'must be auto, always or never'
+    case ('check')
+      line%check = .true.
+    case ('template')
+      line%template = .true.
+    case ('quiet')
+      line%quiet = .true.
+    case ('help')
+      line%help = .true.
+    case default
+      line%version = .true.
+    end select
+    if (allocated(wanted)) call fail(error, '--'//trim(name)//' '//printable(value, 60)//': '//wanted//hint, &
+                                     status_command_line)
+  end subroutine take
+
+  !> No two cases may write files of the same name: a/x.nml and b/x.nml, or x.nml and x.ideal.nml.
+  subroutine check_names(cases, error)
+    character(len=*), intent(in) :: cases(:)
+    type(error_t), allocatable, intent(out) :: error
+    character(len=8), parameter :: suffixes(4) = ['        ', '.ideal  ', '.events ', '.summary']
+    character(len=:), allocatable :: one, other
+    integer :: i, k, s
+    do i = 1, size(cases)
+      one = case_name(trim(cases(i)))
+      do k = 1, size(cases)
+        if (k == i) cycle
+        other = case_name(trim(cases(k)))
+        do s = 1, size(suffixes)
+          if (other /= one//trim(suffixes(s)) .or. len(other) /= len_trim(one//suffixes(s))) cycle
+          call fail(error, printable(trim(cases(i)), 100)//' and '//printable(trim(cases(k)), 100)// &
+                    ': their results would have the same names; run them apart with --out', status_command_line)
+          return
+        end do
+      end do
+    end do
+  end subroutine check_names
+
+  !> Keep the first `count` of a list.
+  subroutine shorten(list, count)
+    character(len=:), allocatable, intent(inout) :: list(:)
+    integer, intent(in) :: count
+    character(len=len(list)) :: kept(count)
+    kept = list(:count)
+    deallocate (list)
+    allocate (character(len=len(kept)) :: list(count))
+    list(:) = kept
+  end subroutine shorten
+
+  !> The arguments that this program was started with.
+  function program_arguments() result(arguments)
+    character(len=:), allocatable :: arguments(:)
+    integer :: i, length, longest
+    longest = 1
+    do i = 1, command_argument_count()
+      call get_command_argument(i, length=length)
+      longest = max(longest, length)
+    end do
+    allocate (character(len=longest) :: arguments(command_argument_count()))
+    do i = 1, size(arguments)
+      call get_command_argument(i, value=arguments(i))
+    end do
+  end function program_arguments
+
+  !> What --help prints.
+  pure function help_text() result(text)
+    character(len=:), allocatable :: text
+    character(len=*), parameter :: n = achar(10)
+    text = 'gudgeon [options] CASE.nml [CASE.nml ...]'//n// &
+      'Dynamics of the slider-crank mechanism with clearance in its piston-pin joint.'//n//n// &
+      '  -o, --out DIR             where results go (default: results)'//n// &
+      '  -s, --set GROUP.KEY=VALUE override one case value; repeatable'//n// &
+      '  -a, --accuracy LEVEL      draft, standard or reference: presets of the integrator and of the'//n// &
+      '                            models'' own accuracy'//n// &
+      '  -j, --jobs N              run several cases side by side (default: the cores there are)'//n// &
+      '      --check               read and validate the cases, run nothing'//n// &
+      '      --template            print a complete, commented case file holding every key and its default'//n// &
+      '      --progress WHEN       auto, always or never: progress on standard error (auto: a terminal)'//n// &
+      '  -q, --quiet               errors only'//n// &
+      '  -h, --help                print this'//n// &
+      '  -V, --version             print the version'//n//n// &
+      'Results for CASE.nml: CASE.csv, CASE.events.csv, CASE.summary.csv, CASE.resolved.nml.'//n// &
+      'Exit status: 0 done; 1 internal error; 2 command line; 3 a case file; 4 the integration could not go'//n// &
+      'on; 5 a result could not be written.'//n
+  end function help_text
+end module command_line

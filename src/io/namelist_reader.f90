@@ -1,0 +1,326 @@
+!> The syntax of Fortran namelists, read into groups, keys and values without knowing what they mean. Stricter than a
+!> compiler's reader, which lets mistakes pass: nothing but comments may stand outside a group, every group is closed
+!> by / or &end, every key has its values, and no value is left out between commas.
+module namelist_reader
+  use text_tools, only: printable
+  use text_scanner, only: scanner_t, name_here, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line, newline, return, &
+    digits, shown
+  implicit none
+  private
+  public :: namelist_t, named_group_t, entry_t, token_t, read_namelist, read_values
+
+  !> One value as written, `repeat` times over.
+  type :: token_t
+    character(len=:), allocatable :: text   !! without quotes, doubled quotes undone
+    logical :: quoted = .false.
+    integer :: repeat = 1
+  end type token_t
+
+  !> A group where it begins.
+  type :: named_group_t
+    character(len=:), allocatable :: name
+    integer :: line = 0
+  end type named_group_t
+
+  !> One `key = values` of a group.
+  type :: entry_t
+    character(len=:), allocatable :: group, key
+    integer :: index = 0                     !! n of key(n); 0 without one
+    integer :: line = 0
+    type(token_t), allocatable :: tokens(:)
+  end type entry_t
+
+  !> All of a file; names in lower case.
+  type :: namelist_t
+    type(named_group_t), allocatable :: groups(:)
+    type(entry_t), allocatable :: entries(:)
+  end type namelist_t
+
+  integer, parameter :: most = 1000  !! groups, keys, values of a key: no sane file has as many
+
+contains
+
+  !> Read a whole file's text. `message` is allocated on a mistake, found on `line`.
+  subroutine read_namelist(text, list, message, line)
+    character(len=*), intent(in) :: text
+    type(namelist_t), intent(out) :: list
+    character(len=:), allocatable, intent(out) :: message
+    integer, intent(out) :: line
+    type(scanner_t) :: scan
+    allocate (list%groups(0), list%entries(0))
+    scan%text = text
+    if (index(text, char(239)//char(187)//char(191)) == 1) scan%at = 4
+    do
+      call skip_blanks(scan)
+      if (at_end(scan)) exit
+      if (scan%text(scan%at:scan%at) == '&') then
+        call read_group(scan, list)
+      else
+        scan%message = 'text outside a group: '//piece(scan)
+      end if
+      if (allocated(scan%message)) exit
+    end do
+    line = scan%line
+    if (allocated(scan%message)) call move_alloc(scan%message, message)
+  end subroutine read_namelist
+
+  !> Read the values of one key from a text that holds nothing else.
+  subroutine read_values(text, tokens, message)
+    character(len=*), intent(in) :: text
+    type(token_t), allocatable, intent(out) :: tokens(:)
+    character(len=:), allocatable, intent(out) :: message
+    type(scanner_t) :: scan
+    scan%text = text
+    call read_tokens(scan, tokens)
+    if (.not. allocated(scan%message)) then
+      call skip_blanks(scan)
+      if (.not. at_end(scan)) scan%message = 'unexpected '//piece(scan)
+    end if
+    if (allocated(scan%message)) call move_alloc(scan%message, message)
+  end subroutine read_values
+
+  !> From the & of a group to the / or &end that closes it.
+  subroutine read_group(scan, list)
+    type(scanner_t), intent(inout) :: scan
+    type(namelist_t), intent(inout) :: list
+    type(named_group_t) :: group
+    type(entry_t) :: entry
+    character(len=:), allocatable :: next
+    scan%at = scan%at + 1
+    group%line = scan%line
+    group%name = name_here(scan)
+    if (group%name == '' .or. group%name == 'end') then
+      scan%message = 'a group''s name must follow &'
+      if (group%name == 'end') scan%message = '&end closes no group'
+      return
+    end if
+    if (size(list%groups) == most) scan%message = 'too many groups'
+    if (allocated(scan%message)) return
+    call append_group(list%groups, group)
+    do
+      call skip_blanks(scan)
+      if (at_end(scan)) then
+        call not_closed(scan, group, 'the end of the file')
+        return
+      end if
+      select case (scan%text(scan%at:scan%at))
+      case ('/')
+        scan%at = scan%at + 1
+        return
+      case ('&')
+        scan%at = scan%at + 1
+        next = name_here(scan)
+        if (next /= 'end') call not_closed(scan, group, '&'//printable(next, shown))
+        return
+      end select
+      entry%group = group%name
+      call read_entry(scan, entry)
+      if (size(list%entries) == most) scan%message = 'too many keys'
+      if (allocated(scan%message)) return
+      call append_entry(list%entries, entry)
+    end do
+  end subroutine read_group
+
+  subroutine not_closed(scan, group, next)
+    type(scanner_t), intent(inout) :: scan
+    type(named_group_t), intent(in) :: group
+    character(len=*), intent(in) :: next
+    scan%message = '&'//printable(group%name, shown)//': not closed: / is missing before '//next
+    scan%line = group%line
+  end subroutine not_closed
+
+  !> `key = values` or `key(n) = values`.
+  subroutine read_entry(scan, entry)
+    type(scanner_t), intent(inout) :: scan
+    type(entry_t), intent(inout) :: entry
+    character(len=:), allocatable :: place
+    entry%line = scan%line
+    entry%index = 0
+    place = '&'//printable(entry%group, shown)
+    entry%key = name_here(scan)
+    if (entry%key == '') then
+      scan%message = place//': a key or / was expected, not '//piece(scan)
+      return
+    end if
+    place = place//' '//printable(entry%key, shown)
+    call skip_blanks(scan)
+    if (next_is(scan, '(')) then
+      call read_index(scan, entry%index)
+      if (entry%index < 1) then
+        scan%message = place//': the index must be a whole number in parentheses, as in key(1)'
+        return
+      end if
+      call skip_blanks(scan)
+    end if
+    if (.not. next_is(scan, '=')) then
+      scan%message = place//': = is missing'
+      return
+    end if
+    scan%at = scan%at + 1
+    call read_tokens(scan, entry%tokens)
+    if (allocated(scan%message)) scan%message = place//': '//scan%message
+  end subroutine read_entry
+
+  !> The n of (n), leaving the place behind it; 0 where it is none.
+  subroutine read_index(scan, n)
+    type(scanner_t), intent(inout) :: scan
+    integer, intent(out) :: n
+    character(len=:), allocatable :: inside
+    integer :: length
+    n = 0
+    length = index(scan%text(scan%at:min(scan%at + 20, len(scan%text))), ')')
+    if (length == 0) return
+    inside = trim(adjustl(scan%text(scan%at + 1:scan%at + length - 2)))
+    if (len(inside) < 1 .or. len(inside) > 4 .or. verify(inside, digits) > 0) return
+    read (inside, *) n
+    scan%at = scan%at + length
+  end subroutine read_index
+
+  !> The values of a key, up to the next key, / or &.
+  subroutine read_tokens(scan, tokens)
+    type(scanner_t), intent(inout) :: scan
+    type(token_t), allocatable, intent(out) :: tokens(:)
+    type(token_t) :: token
+    logical :: comma
+    allocate (tokens(0))
+    comma = .true.
+    do
+      call skip_blanks(scan)
+      if (at_end(scan)) exit
+      if (scan%text(scan%at:scan%at) == ',') then
+        if (comma) then
+          scan%message = 'a value is missing before the comma'
+          return
+        end if
+        comma = .true.
+        scan%at = scan%at + 1
+        cycle
+      end if
+      if (scan%text(scan%at:scan%at) == '/' .or. scan%text(scan%at:scan%at) == '&') exit
+      if (key_is_next(scan)) exit
+      call read_token(scan, token)
+      if (size(tokens) == most) scan%message = 'too many values'
+      if (allocated(scan%message)) return
+      call append_token(tokens, token)
+      comma = .false.
+    end do
+    if (size(tokens) == 0) scan%message = 'a value is missing'
+  end subroutine read_tokens
+
+  !> One value: a quoted string or a bare word or number, with its repeat count.
+  subroutine read_token(scan, token)
+    type(scanner_t), intent(inout) :: scan
+    type(token_t), intent(inout) :: token
+    integer :: length, star
+    token%repeat = 1
+    token%quoted = .false.
+    if (.not. next_is(scan, '''') .and. .not. next_is(scan, '"')) then
+      length = bare_length(scan)
+      if (length == 0) then
+        scan%message = 'unexpected '//piece(scan)
+        return
+      end if
+      token%text = scan%text(scan%at:scan%at + length - 1)
+      scan%at = scan%at + length
+      star = index(token%text, '*')
+      if (star < 2) return
+      if (verify(token%text(:star - 1), digits) > 0) return
+      token%repeat = 0
+      if (star <= 5) read (token%text(:star - 1), *) token%repeat
+      if (token%repeat == 0) then
+        scan%message = 'repeat count out of range: '//printable(token%text, shown)
+        return
+      end if
+      token%text = token%text(star + 1:)
+      if (token%text /= '') return
+      if (.not. next_is(scan, '''') .and. .not. next_is(scan, '"')) then
+        scan%message = 'a value is missing after the repeat count'
+        return
+      end if
+    end if
+    call read_string(scan, token)
+  end subroutine read_token
+
+  !> A string in single or double quotes; the quote doubled stands for itself. It ends on the line where it began.
+  subroutine read_string(scan, token)
+    type(scanner_t), intent(inout) :: scan
+    type(token_t), intent(inout) :: token
+    character(len=1) :: quote, c
+    character(len=:), allocatable :: inside
+    integer :: start, length
+    quote = scan%text(scan%at:scan%at)
+    start = scan%at
+    length = 0
+    token%quoted = .true.
+    allocate (character(len=rest_of_line(scan)) :: inside)
+    scan%at = scan%at + 1
+    do while (.not. at_end(scan))
+      c = scan%text(scan%at:scan%at)
+      if (c == newline .or. c == return) exit
+      scan%at = scan%at + 1
+      if (c == quote) then
+        if (.not. next_is(scan, quote)) then
+          token%text = inside(:length)
+          return
+        end if
+        scan%at = scan%at + 1
+      end if
+      length = length + 1
+      inside(length:length) = c
+    end do
+    scan%at = start
+    scan%message = 'the string is not closed on its line: '//piece(scan)
+  end subroutine read_string
+
+  !> Whether a key, not a value, stands here: a name, perhaps an index in parentheses, and =.
+  function key_is_next(scan) result(found)
+    type(scanner_t), intent(inout) :: scan
+    logical :: found
+    integer :: at, line, n
+    at = scan%at
+    line = scan%line
+    found = .false.
+    if (name_here(scan) /= '') then
+      call skip_blanks(scan)
+      n = 1
+      if (next_is(scan, '(')) call read_index(scan, n)
+      if (n > 0) call skip_blanks(scan)
+      found = next_is(scan, '=')
+    end if
+    scan%at = at
+    scan%line = line
+  end function key_is_next
+
+  !> Add a group to the list.
+  subroutine append_group(list, group)
+    type(named_group_t), allocatable, intent(inout) :: list(:)
+    type(named_group_t), intent(in) :: group
+    type(named_group_t), allocatable :: longer(:)
+    allocate (longer(size(list) + 1))
+    longer(:size(list)) = list
+    longer(size(longer)) = group
+    call move_alloc(longer, list)
+  end subroutine append_group
+
+  !> Add a key with its values to the list.
+  subroutine append_entry(list, entry)
+    type(entry_t), allocatable, intent(inout) :: list(:)
+    type(entry_t), intent(in) :: entry
+    type(entry_t), allocatable :: longer(:)
+    allocate (longer(size(list) + 1))
+    longer(:size(list)) = list
+    longer(size(longer)) = entry
+    call move_alloc(longer, list)
+  end subroutine append_entry
+
+  !> Add a value to the list.
+  subroutine append_token(list, token)
+    type(token_t), allocatable, intent(inout) :: list(:)
+    type(token_t), intent(in) :: token
+    type(token_t), allocatable :: longer(:)
+    allocate (longer(size(list) + 1))
+    longer(:size(list)) = list
+    longer(size(longer)) = token
+    call move_alloc(longer, list)
+  end subroutine append_token
+end module namelist_reader

@@ -1,0 +1,294 @@
+!> The few calls of the C library that Fortran has no words for, as thin bindings for Linux. Numbers of errors are
+!> returned, never kept: two threads do not meet here.
+module posix
+  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_intptr_t, c_long, c_null_char, c_ptr, &
+    c_size_t, c_loc, c_f_pointer
+  implicit none
+  private
+  public :: open_for_reading, open_for_writing, read_bytes, write_bytes, truncate_file, close_file, rename_file, &
+    remove_file, remove_directory, make_directory, is_terminal, error_text, hold_interrupts, interrupted, &
+    ignore_write_signals, quit
+  public :: error_no_entry, error_interrupted, error_exists, error_is_directory, error_no_space
+
+  !> Error numbers of Linux.
+  integer, parameter :: error_no_entry = 2, error_interrupted = 4, error_exists = 17, error_not_directory = 20, &
+    error_is_directory = 21, error_no_space = 28
+
+  integer(c_int), parameter :: o_cloexec = 524288, read_only = 0, write_only = 1, o_creat = 64, o_trunc = 512
+  integer(c_int), parameter :: file_mode = 438, folder_mode = 511   !! rw-rw-rw-, rwxrwxrwx, before the umask
+  integer(c_int), parameter :: signal_hangup = 1, signal_interrupt = 2, signal_pipe = 13, signal_terminate = 15, &
+    signal_file_size = 25
+  integer(c_int), parameter :: held(3) = [signal_hangup, signal_interrupt, signal_terminate]
+  integer(c_int), parameter :: signal_block = 0
+  integer(c_intptr_t), parameter :: ignore_handler = 1, error_handler = -1
+
+  !> Room for a sigset_t of Linux, 128 bytes.
+  type, bind(c) :: signal_set_t
+    integer(c_long) :: words(16) = 0
+  end type signal_set_t
+
+  interface
+    function c_open(path, flags, mode) bind(c, name='open') result(descriptor)
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_int), value :: flags, mode
+      integer(c_int) :: descriptor
+    end function c_open
+    function c_read(descriptor, buffer, count) bind(c, name='read') result(done)
+      import :: c_int, c_ptr, c_size_t, c_long
+      integer(c_int), value :: descriptor
+      type(c_ptr), value :: buffer
+      integer(c_size_t), value :: count
+      integer(c_long) :: done
+    end function c_read
+    function c_write(descriptor, buffer, count) bind(c, name='write') result(done)
+      import :: c_int, c_ptr, c_size_t, c_long
+      integer(c_int), value :: descriptor
+      type(c_ptr), value :: buffer
+      integer(c_size_t), value :: count
+      integer(c_long) :: done
+    end function c_write
+    function c_ftruncate(descriptor, length) bind(c, name='ftruncate') result(status)
+      import :: c_int, c_long
+      integer(c_int), value :: descriptor
+      integer(c_long), value :: length
+      integer(c_int) :: status
+    end function c_ftruncate
+    function c_close(descriptor) bind(c, name='close') result(status)
+      import :: c_int
+      integer(c_int), value :: descriptor
+      integer(c_int) :: status
+    end function c_close
+    function c_rename(from, to) bind(c, name='rename') result(status)
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: from(*), to(*)
+      integer(c_int) :: status
+    end function c_rename
+    function c_unlink(path) bind(c, name='unlink') result(status)
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_int) :: status
+    end function c_unlink
+    function c_rmdir(path) bind(c, name='rmdir') result(status)
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_int) :: status
+    end function c_rmdir
+    function c_mkdir(path, mode) bind(c, name='mkdir') result(status)
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_int), value :: mode
+      integer(c_int) :: status
+    end function c_mkdir
+    function c_isatty(descriptor) bind(c, name='isatty') result(answer)
+      import :: c_int
+      integer(c_int), value :: descriptor
+      integer(c_int) :: answer
+    end function c_isatty
+    function c_errno_location() bind(c, name='__errno_location') result(location)
+      import :: c_ptr
+      type(c_ptr) :: location
+    end function c_errno_location
+    function c_strerror_r(number, buffer, length) bind(c, name='__xpg_strerror_r') result(status)
+      import :: c_int, c_char, c_size_t
+      integer(c_int), value :: number
+      character(kind=c_char), intent(out) :: buffer(*)
+      integer(c_size_t), value :: length
+      integer(c_int) :: status
+    end function c_strerror_r
+    function c_sigaddset(set, number) bind(c, name='sigaddset') result(status)
+      import :: signal_set_t, c_int
+      type(signal_set_t), intent(inout) :: set
+      integer(c_int), value :: number
+      integer(c_int) :: status
+    end function c_sigaddset
+    function c_sigismember(set, number) bind(c, name='sigismember') result(answer)
+      import :: signal_set_t, c_int
+      type(signal_set_t), intent(in) :: set
+      integer(c_int), value :: number
+      integer(c_int) :: answer
+    end function c_sigismember
+    function c_sigpending(set) bind(c, name='sigpending') result(status)
+      import :: signal_set_t, c_int
+      type(signal_set_t), intent(inout) :: set
+      integer(c_int) :: status
+    end function c_sigpending
+    function c_sigmask(how, set, old) bind(c, name='pthread_sigmask') result(status)
+      import :: signal_set_t, c_int
+      integer(c_int), value :: how
+      type(signal_set_t), intent(in) :: set
+      type(signal_set_t), intent(inout) :: old
+      integer(c_int) :: status
+    end function c_sigmask
+    function c_signal(number, handler) bind(c, name='signal') result(old)
+      import :: c_int, c_intptr_t
+      integer(c_int), value :: number
+      integer(c_intptr_t), value :: handler
+      integer(c_intptr_t) :: old
+    end function c_signal
+    subroutine c_exit(status) bind(c, name='exit')
+      import :: c_int
+      integer(c_int), value :: status
+    end subroutine c_exit
+  end interface
+
+contains
+
+  !> Open a file to be read; `status` is 0 or the error number.
+  subroutine open_for_reading(path, descriptor, status)
+    character(len=*), intent(in) :: path
+    integer, intent(out) :: descriptor, status
+    descriptor = c_open(path//c_null_char, ior(read_only, o_cloexec), 0_c_int)
+    status = outcome(descriptor)
+  end subroutine open_for_reading
+
+  !> Create a file, or empty the one that is there, to be written; `status` is 0 or the error number.
+  subroutine open_for_writing(path, descriptor, status)
+    character(len=*), intent(in) :: path
+    integer, intent(out) :: descriptor, status
+    descriptor = c_open(path//c_null_char, ior(ior(write_only, o_cloexec), ior(o_creat, o_trunc)), file_mode)
+    status = outcome(descriptor)
+  end subroutine open_for_writing
+
+  !> One read: `done` bytes of `buffer` are filled, 0 at the end of the file.
+  subroutine read_bytes(descriptor, buffer, done, status)
+    integer, intent(in) :: descriptor
+    character(len=*), intent(out), target :: buffer
+    integer, intent(out) :: done, status
+    done = int(c_read(int(descriptor, c_int), c_loc(buffer), len(buffer, c_size_t)))
+    status = outcome(done)
+  end subroutine read_bytes
+
+  !> One write: `done` bytes of `text` went out, possibly fewer than there are.
+  subroutine write_bytes(descriptor, text, done, status)
+    integer, intent(in) :: descriptor
+    character(len=*), intent(in), target :: text
+    integer, intent(out) :: done, status
+    done = int(c_write(int(descriptor, c_int), c_loc(text), len(text, c_size_t)))
+    status = outcome(done)
+  end subroutine write_bytes
+
+  !> Cut an open file to `length` bytes. The position for the next write stays where it was.
+  subroutine truncate_file(descriptor, length, status)
+    integer, intent(in) :: descriptor
+    integer(c_long), intent(in) :: length
+    integer, intent(out) :: status
+    status = outcome(int(c_ftruncate(int(descriptor, c_int), length)))
+  end subroutine truncate_file
+
+  subroutine close_file(descriptor, status)
+    integer, intent(in) :: descriptor
+    integer, intent(out) :: status
+    status = outcome(int(c_close(int(descriptor, c_int))))
+  end subroutine close_file
+
+  !> Give a file another name, replacing what had it.
+  subroutine rename_file(from, to, status)
+    character(len=*), intent(in) :: from, to
+    integer, intent(out) :: status
+    status = outcome(int(c_rename(from//c_null_char, to//c_null_char)))
+  end subroutine rename_file
+
+  subroutine remove_file(path, status)
+    character(len=*), intent(in) :: path
+    integer, intent(out) :: status
+    status = outcome(int(c_unlink(path//c_null_char)))
+  end subroutine remove_file
+
+  !> Remove an empty folder.
+  subroutine remove_directory(path, status)
+    character(len=*), intent(in) :: path
+    integer, intent(out) :: status
+    status = outcome(int(c_rmdir(path//c_null_char)))
+  end subroutine remove_directory
+
+  !> Make a folder and the folders above it; one that exists already is no error.
+  subroutine make_directory(path, status)
+    character(len=*), intent(in) :: path
+    integer, intent(out) :: status
+    integer :: i, descriptor, ignored
+    do i = 2, len(path)
+      if (path(i:i) == '/') status = c_mkdir(path(:i - 1)//c_null_char, folder_mode)
+    end do
+    status = outcome(int(c_mkdir(path//c_null_char, folder_mode)))
+    if (status /= error_exists) return
+    call open_for_reading(path//'/', descriptor, status)
+    if (status == 0) call close_file(descriptor, ignored)
+    if (status /= error_not_directory) status = 0
+  end subroutine make_directory
+
+  !> Whether a file descriptor (1 standard output, 2 standard error) is a terminal.
+  function is_terminal(descriptor) result(answer)
+    integer, intent(in) :: descriptor
+    logical :: answer
+    answer = c_isatty(int(descriptor, c_int)) == 1
+  end function is_terminal
+
+  !> What an error number means, in the words of the system.
+  function error_text(number) result(text)
+    integer, intent(in) :: number
+    character(len=:), allocatable :: text
+    character(kind=c_char, len=1) :: buffer(256)
+    integer :: i
+    if (c_strerror_r(int(number, c_int), buffer, size(buffer, kind=c_size_t)) /= 0) buffer(1) = c_null_char
+    text = ''
+    do i = 1, size(buffer)
+      if (buffer(i) == c_null_char) exit
+      text = text//buffer(i)
+    end do
+    if (text == '') text = 'unknown error'
+  end function error_text
+
+  !> From here on SIGINT, SIGTERM and SIGHUP wait to be asked for by `interrupted` instead of ending the program;
+  !> one that the program was started to ignore stays ignored. Call it before any thread is started.
+  subroutine hold_interrupts()
+    type(signal_set_t) :: set, old
+    integer(c_intptr_t) :: handler, unused
+    integer(c_int) :: status
+    integer :: i
+    do i = 1, size(held)
+      handler = c_signal(held(i), ignore_handler)
+      if (handler == ignore_handler) cycle
+      if (handler /= error_handler) unused = c_signal(held(i), handler)
+      status = c_sigaddset(set, held(i))
+    end do
+    status = c_sigmask(signal_block, set, old)
+  end subroutine hold_interrupts
+
+  !> Whether a held signal has come in.
+  function interrupted() result(answer)
+    logical :: answer
+    type(signal_set_t) :: pending
+    integer :: i
+    answer = .false.
+    if (c_sigpending(pending) /= 0) return
+    do i = 1, size(held)
+      if (c_sigismember(pending, held(i)) == 1) answer = .true.
+    end do
+  end function interrupted
+
+  !> Writing to a reader that has gone, or past the largest file allowed, then gives an error number instead of ending
+  !> the program.
+  subroutine ignore_write_signals()
+    integer(c_intptr_t) :: unused
+    unused = c_signal(signal_pipe, ignore_handler)
+    unused = c_signal(signal_file_size, ignore_handler)
+  end subroutine ignore_write_signals
+
+  !> End the program with an exit status, without a word.
+  subroutine quit(status)
+    integer, intent(in) :: status
+    call c_exit(int(status, c_int))
+  end subroutine quit
+
+  !> 0 after success, else the error number of the call just made.
+  function outcome(returned) result(status)
+    integer, intent(in) :: returned
+    integer :: status
+    integer(c_int), pointer :: number
+    status = 0
+    if (returned >= 0) return
+    call c_f_pointer(c_errno_location(), number)
+    status = number
+  end function outcome
+end module posix

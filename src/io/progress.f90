@@ -1,0 +1,105 @@
+!> Progress on standard error, one line for each case that rewrites itself. Each line goes out in one call, so that
+!> lines of cases side by side do not mix.
+module progress
+  use, intrinsic :: iso_fortran_env, only: int64
+  use kinds, only: dp
+  use text_tools, only: printable, integer_text
+  use number_text, only: short_text
+  use posix, only: is_terminal, write_bytes
+  implicit none
+  private
+  public :: progress_t, progress_wanted
+
+  integer, parameter :: standard_error = 2
+  real(dp), parameter :: least_interval = 0.2_dp   !! between two lines [s]
+
+  !> The progress of one case.
+  type :: progress_t
+    private
+    logical :: is_on = .false.
+    logical :: has_shown = .false.
+    logical :: rewrites = .false.                  !! a terminal: one line, written over
+    character(len=:), allocatable :: name
+    integer(int64) :: began = 0, shown = 0         !! ticks of the clock
+  contains
+    procedure :: start
+    procedure :: update
+    procedure :: finish
+  end type progress_t
+
+contains
+
+  !> Whether progress is to be shown: `when` is auto (a terminal is there), always or never.
+  function progress_wanted(when) result(wanted)
+    character(len=*), intent(in) :: when
+    logical :: wanted
+    wanted = when == 'always'
+    if (when == 'auto') wanted = is_terminal(standard_error)
+  end function progress_wanted
+
+  !> Begin a case; without `is_on` the other calls do nothing.
+  subroutine start(self, name, is_on)
+    class(progress_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    logical, intent(in) :: is_on
+    self%is_on = is_on
+    self%has_shown = .false.
+    self%rewrites = is_terminal(standard_error)
+    self%name = printable(name, 60)
+    call system_clock(self%began)
+    self%shown = self%began
+  end subroutine start
+
+  !> `fraction` of the run is done, at the simulated time `time` [s]. Called as often as one likes.
+  subroutine update(self, fraction, time)
+    class(progress_t), intent(inout) :: self
+    real(dp), intent(in) :: fraction, time
+    integer(int64) :: now, rate
+    real(dp) :: elapsed
+    character(len=:), allocatable :: line
+    if (.not. self%is_on) return
+    call system_clock(now, rate)
+    if (real(now - self%shown, dp) < least_interval*real(rate, dp)) return
+    self%shown = now
+    elapsed = real(now - self%began, dp)/real(rate, dp)
+    line = self%name//': '//integer_text(int(100*min(1.0_dp, max(0.0_dp, fraction))))//' %, t = '//short_text(time)//' s'
+    if (fraction > 1e-6_dp) line = line//', '//duration_text(elapsed*max(0.0_dp, 1/fraction - 1))//' left'
+    call show(self%rewrites, line)
+    self%has_shown = .true.
+  end subroutine update
+
+  !> Clear the line, if there is one.
+  subroutine finish(self)
+    class(progress_t), intent(inout) :: self
+    if (self%has_shown .and. self%rewrites) call show(.true., '')
+    self%is_on = .false.
+    self%has_shown = .false.
+  end subroutine finish
+
+  !> Replace the line on the screen, or add one to a file.
+  subroutine show(rewrites, line)
+    logical, intent(in) :: rewrites
+    character(len=*), intent(in) :: line
+    integer :: done, ignored
+    if (rewrites) then
+      call write_bytes(standard_error, achar(13)//line//achar(27)//'[K', done, ignored)
+    else
+      call write_bytes(standard_error, line//achar(10), done, ignored)
+    end if
+  end subroutine show
+
+  !> A time span for people: 42 s, 3 min 5 s, 2 h 7 min.
+  pure function duration_text(seconds) result(text)
+    real(dp), intent(in) :: seconds
+    character(len=:), allocatable :: text
+    integer :: whole
+    whole = nint(min(seconds, 3.6e8_dp))
+    if (whole < 60) then
+      text = integer_text(whole)//' s'
+    else if (whole < 3600) then
+      text = integer_text(whole/60)//' min '//integer_text(mod(whole, 60))//' s'
+    else
+      text = integer_text(whole/3600)//' h '//integer_text(mod(whole/60, 60))//' min'
+    end if
+  end function duration_text
+end module progress

@@ -1,0 +1,138 @@
+!> A result file that never stands half-written under its final name: rows gather in a buffer, go out to NAME.part in
+!> calls that end between rows, and the file gets its final name when it is closed.
+module result_file
+  use, intrinsic :: iso_c_binding, only: c_long
+  use errors, only: error_t, fail, status_output
+  use text_tools, only: printable
+  use posix, only: open_for_writing, write_bytes, truncate_file, close_file, rename_file, remove_file, error_text, &
+    error_interrupted
+  implicit none
+  private
+  public :: result_file_t
+
+  integer, parameter :: buffer_size = 262144   !! bytes
+
+  !> One file being written. A failed write ends the writing: rows put after it are dropped, `close` keeps what went
+  !> out whole and reports the failure.
+  type :: result_file_t
+    private
+    character(len=:), allocatable :: path      !! final name
+    character(len=:), allocatable :: buffer
+    integer :: used = 0                        !! bytes waiting in the buffer
+    integer :: descriptor = -1
+    integer(c_long) :: written = 0             !! bytes of whole rows in the file
+    integer :: status = 0                      !! error number of the first write that failed
+  contains
+    procedure :: open => open_result
+    procedure :: put
+    procedure :: flush => flush_rows
+    procedure :: has_failed
+    procedure :: close => close_result
+    procedure :: abandon
+  end type result_file_t
+
+contains
+
+  !> Begin the file that is to be called `path`.
+  subroutine open_result(self, path, error)
+    class(result_file_t), intent(inout) :: self
+    character(len=*), intent(in) :: path
+    type(error_t), allocatable, intent(out) :: error
+    integer :: status
+    self%path = path
+    self%used = 0
+    self%written = 0
+    self%status = 0
+    if (.not. allocated(self%buffer)) allocate (character(len=buffer_size) :: self%buffer)
+    do
+      call open_for_writing(path//'.part', self%descriptor, status)
+      if (status /= error_interrupted) exit
+    end do
+    if (status /= 0) call report(self, status, error)
+  end subroutine open_result
+
+  !> Add whole rows; `text` ends with an end of line.
+  subroutine put(self, text)
+    class(result_file_t), intent(inout) :: self
+    character(len=*), intent(in) :: text
+    if (self%descriptor < 0 .or. self%status /= 0) return
+    if (self%used + len(text) > buffer_size) call self%flush()
+    if (len(text) > buffer_size) then
+      call write_rows(self, text)
+    else if (self%status == 0) then
+      self%buffer(self%used + 1:self%used + len(text)) = text
+      self%used = self%used + len(text)
+    end if
+  end subroutine put
+
+  !> Write out what waits in the buffer.
+  subroutine flush_rows(self)
+    class(result_file_t), intent(inout) :: self
+    if (self%used > 0) call write_rows(self, self%buffer(:self%used))
+    self%used = 0
+  end subroutine flush_rows
+
+  !> Whether a write has failed, so that nothing more can be kept.
+  pure function has_failed(self) result(failed)
+    class(result_file_t), intent(in) :: self
+    logical :: failed
+    failed = self%status /= 0
+  end function has_failed
+
+  !> Write out the rest and give the file its final name. After a failed write it holds the whole rows that fitted,
+  !> and `error` names the file and the cause.
+  subroutine close_result(self, error)
+    class(result_file_t), intent(inout) :: self
+    type(error_t), allocatable, intent(out) :: error
+    integer :: status
+    if (self%descriptor < 0) return
+    call self%flush()
+    call close_file(self%descriptor, status)
+    self%descriptor = -1
+    if (self%status == 0 .and. status /= error_interrupted) self%status = status
+    call rename_file(self%path//'.part', self%path, status)
+    if (self%status == 0) self%status = status
+    if (self%status /= 0) call report(self, self%status, error)
+  end subroutine close_result
+
+  !> Give the file up: nothing of it stays.
+  subroutine abandon(self)
+    class(result_file_t), intent(inout) :: self
+    integer :: ignored
+    if (self%descriptor < 0) return
+    call close_file(self%descriptor, ignored)
+    call remove_file(self%path//'.part', ignored)
+    self%descriptor = -1
+    self%used = 0
+  end subroutine abandon
+
+  !> All of `text`, in as many calls as it takes. When one fails the file is cut back to its last whole row.
+  subroutine write_rows(self, text)
+    class(result_file_t), intent(inout) :: self
+    character(len=*), intent(in) :: text
+    integer :: at, done, status, last
+    if (self%status /= 0) return
+    at = 0
+    do while (at < len(text))
+      call write_bytes(self%descriptor, text(at + 1:), done, status)
+      if (status == error_interrupted) cycle
+      if (status /= 0) exit
+      at = at + done
+    end do
+    last = at
+    if (at < len(text)) then
+      self%status = status
+      last = index(text(:at), achar(10), back=.true.)
+    end if
+    self%written = self%written + last
+    if (last < at) call truncate_file(self%descriptor, self%written, status)
+  end subroutine write_rows
+
+  !> The error for an error number of the system.
+  subroutine report(self, status, error)
+    class(result_file_t), intent(in) :: self
+    integer, intent(in) :: status
+    type(error_t), allocatable, intent(out) :: error
+    call fail(error, printable(self%path, 200)//': '//error_text(status), status_output)
+  end subroutine report
+end module result_file

@@ -1,0 +1,106 @@
+!> The summary of a run: NAME.summary.csv, and one line for people.
+module summary
+  use, intrinsic :: iso_fortran_env, only: compiler_version, compiler_options
+  use kinds, only: dp
+  use ode_method, only: highest_order
+  use simulation, only: run_report_t
+  use case_definition, only: case_t
+  use number_text, only: real_text, short_text
+  use text_tools, only: integer_text
+  use version, only: program_version
+  implicit none
+  private
+  public :: summary_table, summary_line
+
+  character(len=*), parameter :: newline = achar(10)
+
+contains
+
+  !> The rows `quantity,value,unit`.
+  function summary_table(case, report, wall_time) result(text)
+    type(case_t), intent(in) :: case
+    type(run_report_t), intent(in) :: report
+    real(dp), intent(in) :: wall_time   !! [s]
+    character(len=:), allocatable :: text
+    integer :: order
+
+    text = 'quantity,value,unit'//newline
+    call add('status', quoted(report%status), '')
+    associate (s => report%statistics, f => report%figures)
+      call add('simulated_time', real_text(f%time), 's')
+      call add('wall_time', real_text(wall_time), 's')
+      call add('method', trim(case%integrator%method), '')
+      call add('steps_accepted', integer_text(s%accepted), '1')
+      call add('steps_rejected_error', integer_text(s%rejected_error), '1')
+      call add('steps_rejected_penetration', integer_text(s%rejected_penetration), '1')
+      call add('steps_rejected_domain', integer_text(s%rejected_domain), '1')
+      call add('rhs_evaluations', integer_text(s%evaluations), '1')
+      call add('restarts', integer_text(s%restarts), '1')
+      if (s%accepted > 0) call add('smallest_step', real_text(s%smallest_step), 's')
+      do order = 1, highest_order
+        call add('steps_of_order_'//integer_text(order), integer_text(s%order_count(order)), '1')
+      end do
+      call add('max_pin_force', real_text(f%max_pin_force), 'N')
+      if (f%time > 0) call add('mean_crank_speed', real_text(f%crank_travel/f%time), 'rad/s')
+      call add('max_energy_residual', real_text(f%max_energy_residual), 'J')
+      call add('max_energy_residual_relative', real_text(relative_residual(report)), '1')
+      if (case%joint%kind == 'clearance') then
+        call add('min_film_thickness', real_text(f%min_film_thickness), 'm')
+        call add('contacts', integer_text(f%contacts), '1')
+        if (f%time > 0) call add('contact_time_fraction', real_text(f%contact_time/f%time), '1')
+        call add('max_penetration', real_text(f%max_penetration), 'm')
+        call add('max_entry_penetration', real_text(f%max_entry_penetration), 'm')
+        call add('impacts_beyond_validity', integer_text(f%impacts_beyond_validity), '1')
+      end if
+    end associate
+    call add('version', program_version, '')
+    call add('compiler', quoted(compiler_version()), '')
+    call add('compiler_options', quoted(compiler_options()), '')
+
+  contains
+
+    subroutine add(quantity, value, unit)
+      character(len=*), intent(in) :: quantity, value, unit
+      text = text//quantity//','//value//','//unit//newline
+    end subroutine add
+  end function summary_table
+
+  !> Largest energy residual over the largest energy [-]; 0 where there is no energy.
+  pure real(dp) function relative_residual(report)
+    type(run_report_t), intent(in) :: report
+    relative_residual = 0
+    if (report%figures%max_energy > 0) relative_residual = report%figures%max_energy_residual/report%figures%max_energy
+  end function relative_residual
+
+  !> A field of a table that may hold commas.
+  pure function quoted(value) result(field)
+    character(len=*), intent(in) :: value
+    character(len=:), allocatable :: field
+    integer :: i
+    field = '"'
+    do i = 1, len(value)
+      field = field//value(i:i)
+      if (value(i:i) == '"') field = field//'"'
+    end do
+    field = field//'"'
+  end function quoted
+
+  !> One line for people.
+  function summary_line(case, report, wall_time, path) result(text)
+    type(case_t), intent(in) :: case
+    type(run_report_t), intent(in) :: report
+    real(dp), intent(in) :: wall_time
+    character(len=*), intent(in) :: path   !! of the results, without their endings
+    character(len=:), allocatable :: text
+    associate (s => report%statistics, f => report%figures)
+      text = case%name//': '//report%status//'; '//short_text(f%time)//' s in '//short_text(wall_time)//' s, '// &
+        integer_text(s%accepted)//' steps, '//integer_text(s%evaluations)//' evaluations; '
+      if (case%joint%kind == 'clearance') then
+        if (case%contact%is_present) text = text//integer_text(f%contacts)//' contacts, '
+        text = text//'film at least '//short_text(f%min_film_thickness)//' m, '
+      end if
+      text = text//'pin force up to '//short_text(f%max_pin_force)//' N, energy residual '// &
+        short_text(relative_residual(report))//'; '//path//'.csv'
+    end associate
+  end function summary_line
+end module summary

@@ -1,0 +1,99 @@
+!> A place in a text that moves forward over blanks, comments and names of namelist syntax.
+module text_scanner
+  use text_tools, only: lowercase, printable
+  implicit none
+  private
+  public :: scanner_t, name_here, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line
+  public :: newline, return, digits, shown
+
+  !> A place in the text, and what was found wrong there.
+  type :: scanner_t
+    character(len=:), allocatable :: text
+    integer :: at = 1, line = 1
+    character(len=:), allocatable :: message
+  end type scanner_t
+
+  character(len=*), parameter :: letters = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_'
+  character(len=*), parameter :: digits = '0123456789'
+  character(len=*), parameter :: tab = achar(9), newline = achar(10), return = achar(13)
+  character(len=*), parameter :: separators = ' ,/!&=()''"'//tab//newline//return
+  integer, parameter :: shown = 40   !! longest piece of a file quoted in a message
+
+contains
+
+  !> The name that begins here, in lower case, leaving the place behind it; empty where there is none.
+  function name_here(scan) result(name)
+    type(scanner_t), intent(inout) :: scan
+    character(len=:), allocatable :: name
+    integer :: length
+    name = ''
+    if (at_end(scan)) return
+    if (verify(scan%text(scan%at:scan%at), letters) > 0) return
+    length = verify(scan%text(scan%at:), letters//digits) - 1
+    if (length < 0) length = len(scan%text) - scan%at + 1
+    name = lowercase(scan%text(scan%at:scan%at + length - 1))
+    scan%at = scan%at + length
+  end function name_here
+
+  !> Pass blanks, ends of lines (LF, CR LF or CR) and comments.
+  subroutine skip_blanks(scan)
+    type(scanner_t), intent(inout) :: scan
+    integer :: length
+    do while (.not. at_end(scan))
+      select case (scan%text(scan%at:scan%at))
+      case (' ', tab)
+        scan%at = scan%at + 1
+      case (newline)
+        scan%line = scan%line + 1
+        scan%at = scan%at + 1
+      case (return)
+        scan%at = scan%at + 1
+        if (.not. next_is(scan, newline)) scan%line = scan%line + 1
+      case ('!')
+        length = rest_of_line(scan)
+        scan%at = scan%at + length
+      case default
+        return
+      end select
+    end do
+  end subroutine skip_blanks
+
+  !> Bytes from here to the end of the line.
+  pure function rest_of_line(scan) result(length)
+    type(scanner_t), intent(in) :: scan
+    integer :: length
+    do length = 0, len(scan%text) - scan%at
+      if (index(newline//return, scan%text(scan%at + length:scan%at + length)) > 0) return
+    end do
+  end function rest_of_line
+
+  !> Bytes from here to the next separator.
+  pure function bare_length(scan) result(length)
+    type(scanner_t), intent(in) :: scan
+    integer :: length
+    do length = 0, len(scan%text) - scan%at
+      if (index(separators, scan%text(scan%at + length:scan%at + length)) > 0) return
+    end do
+  end function bare_length
+
+  pure function at_end(scan) result(ended)
+    type(scanner_t), intent(in) :: scan
+    logical :: ended
+    ended = scan%at > len(scan%text)
+  end function at_end
+
+  pure function next_is(scan, character) result(same)
+    type(scanner_t), intent(in) :: scan
+    character(len=1), intent(in) :: character
+    logical :: same
+    same = .false.
+    if (.not. at_end(scan)) same = scan%text(scan%at:scan%at) == character
+  end function next_is
+
+  !> What stands here, for a message: the rest of the line, shortened.
+  pure function piece(scan) result(text)
+    type(scanner_t), intent(in) :: scan
+    character(len=:), allocatable :: text
+    text = printable(scan%text(scan%at:scan%at + rest_of_line(scan) - 1), shown)
+  end function piece
+end module text_scanner

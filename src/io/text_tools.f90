@@ -1,0 +1,145 @@
+!> Small work on text: case, lists of words, what may be shown to a terminal.
+module text_tools
+  implicit none
+  private
+  public :: lowercase, printable, is_clean, integer_text, nearest_word, base_name, case_name
+
+contains
+
+  pure function lowercase(text) result(lower)
+    character(len=*), intent(in) :: text
+    character(len=len(text)) :: lower
+    integer :: i, code
+    do i = 1, len(text)
+      code = iachar(text(i:i))
+      if (code >= iachar('A') .and. code <= iachar('Z')) code = code + 32
+      lower(i:i) = achar(code)
+    end do
+  end function lowercase
+
+  pure function integer_text(number) result(text)
+    integer, intent(in) :: number
+    character(len=:), allocatable :: text
+    character(len=12) :: digits
+    write (digits, '(i0)') number
+    text = trim(digits)
+  end function integer_text
+
+  !> The text as one safe line: control characters and bytes that are not UTF-8 appear as \xHH, and what would be
+  !> longer than `limit` bytes ends in '...'.
+  pure function printable(text, limit) result(shown)
+    character(len=*), intent(in) :: text
+    integer, intent(in) :: limit
+    character(len=:), allocatable :: shown
+    character(len=4) :: escaped
+    integer :: i, bytes
+    shown = ''
+    i = 1
+    do while (i <= len(text))
+      bytes = clean_length(text, i)
+      if (len(shown) + max(bytes, 4) > limit .and. len(shown) + len(text) - i + 1 > limit) then
+        shown = shown//'...'
+        return
+      end if
+      if (bytes > 0) then
+        shown = shown//text(i:i + bytes - 1)
+      else
+        write (escaped, '(a,z2.2)') '\x', ichar(text(i:i))
+        shown = shown//escaped
+      end if
+      i = i + max(bytes, 1)
+    end do
+  end function printable
+
+  !> Whether the text is UTF-8 without control characters.
+  pure function is_clean(text) result(clean)
+    character(len=*), intent(in) :: text
+    logical :: clean
+    integer :: i, bytes
+    clean = .true.
+    i = 1
+    do while (i <= len(text) .and. clean)
+      bytes = clean_length(text, i)
+      clean = bytes > 0
+      i = i + bytes
+    end do
+  end function is_clean
+
+  !> Bytes of the character of UTF-8 that begins at `i`; 0 where there is none or it is a control character.
+  pure function clean_length(text, i) result(bytes)
+    character(len=*), intent(in) :: text
+    integer, intent(in) :: i
+    integer :: bytes, lead, k, next
+    lead = ichar(text(i:i))
+    bytes = 0
+    if (lead >= 32 .and. lead < 127) bytes = 1
+    if (lead >= 194 .and. lead < 224) bytes = 2
+    if (lead >= 224 .and. lead < 240) bytes = 3
+    if (lead >= 240 .and. lead < 245) bytes = 4
+    if (i + bytes - 1 > len(text)) bytes = 0
+    do k = 1, bytes - 1
+      next = ichar(text(i + k:i + k))
+      if (next < 128 .or. next > 191) then
+        bytes = 0
+        return
+      end if
+      if (k > 1) cycle
+      if (lead == 194 .and. next < 160 .or. lead == 224 .and. next < 160 .or. lead == 237 .and. next > 159 .or. &
+          lead == 240 .and. next < 144 .or. lead == 244 .and. next > 143) then
+        bytes = 0
+        return
+      end if
+    end do
+  end function clean_length
+
+  !> The word of the list nearest to a misspelt one; empty where none is near.
+  pure function nearest_word(word, list) result(nearest)
+    character(len=*), intent(in) :: word, list(:)
+    character(len=:), allocatable :: nearest
+    integer :: i, distance, least
+    nearest = ''
+    least = max(1, min(3, len_trim(word)/2)) + 1
+    do i = 1, size(list)
+      distance = edits(trim(word), trim(list(i)))
+      if (distance < least) then
+        least = distance
+        nearest = trim(list(i))
+      end if
+    end do
+  end function nearest_word
+
+  !> Letters to insert, remove or replace to make one word of the other (Levenshtein); long words count as far.
+  pure function edits(a, b) result(distance)
+    character(len=*), intent(in) :: a, b
+    integer :: distance, i, j, diagonal, above, row(0:len(b))
+    distance = huge(distance)
+    if (len(a) > 64) return
+    row = [(j, j=0, len(b))]
+    do i = 1, len(a)
+      diagonal = row(0)
+      row(0) = i
+      do j = 1, len(b)
+        above = row(j)
+        row(j) = min(above + 1, row(j - 1) + 1, diagonal + merge(0, 1, a(i:i) == b(j:j)))
+        diagonal = above
+      end do
+    end do
+    distance = row(len(b))
+  end function edits
+
+  !> A path without its folders.
+  pure function base_name(path) result(name)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: name
+    name = path(index(path, '/', back=.true.) + 1:)
+  end function base_name
+
+  !> The NAME of a case: its file's name without folder and without .nml.
+  pure function case_name(path) result(name)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: name
+    name = base_name(path)
+    if (len(name) < 4) return
+    if (lowercase(name(len(name) - 3:)) == '.nml') name = name(:len(name) - 4)
+  end function case_name
+end module text_tools

@@ -1,0 +1,380 @@
+!> The scene with clearance in the pin joint: free flight or film while apart, contact while touching.
+module clearance_scene
+  use kinds, only: dp
+  use ode_problem, only: step_admitted, step_too_deep, event_continue
+  use mechanism, only: motion_t, accelerations_t
+  use dynamics, only: loads_t, accelerations_under
+  use ideal_joint, only: ideal_motion, ideal_rod_acceleration
+  use clearance_joint, only: joint_geometry_t, joint_motion_t, joint_motion, clearance_motion, eccentricity_acceleration
+  use contact_law, only: contact_law_t
+  use friction_law, only: friction_law_t
+  use film_law, only: film_law_t, film_motion_t
+  use scene, only: scene_t, evaluation_t, phase_free, phase_film, phase_contact, event_none, event_contact_begins, &
+    event_contact_ends, n_gas_events
+  implicit none
+  private
+  public :: clearance_scene_t
+
+  !> Event functions of the integrator.
+  integer, parameter :: begins = 1, ends = 2, sliding_changes = 3
+
+  !> y = (q, e_x, e_y, q', e_x', e_y', work), or (e_x, e_y, e_x', e_y', work) where the crank speed is held. A law that
+  !> the case does not ask for is not allocated.
+  type, extends(scene_t) :: clearance_scene_t
+    type(joint_geometry_t) :: joint
+    class(contact_law_t), allocatable :: contact
+    class(friction_law_t), allocatable :: friction
+    class(film_law_t), allocatable :: film
+    logical :: rejects_deep_entry = .false. !! contact_entry = 'step_rejection': contact begins at the end of a step
+    real(dp) :: max_penetration = 0         !! deepest entry then [m]
+    real(dp) :: impact_speed = 0            !! penetration rate at which the present contact began [m/s]
+    integer :: n_joint_events = 0           !! event functions of contact and friction
+    integer :: sliding = 0                  !! set-valued friction: sign of sliding, 0 sticking
+  contains
+    procedure :: derivatives
+    procedure :: evaluate
+    procedure :: initial_state
+    procedure :: natural_scales
+    procedure :: reported_event
+    procedure :: events => all_events
+    procedure :: judge_step
+    procedure :: handle_event
+    procedure :: lands_on_step_end
+    procedure, private :: unpack
+  end type clearance_scene_t
+
+contains
+
+  pure subroutine derivatives(self, t, y, dydt, inside)
+    class(clearance_scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: dydt(:)
+    logical, intent(out) :: inside
+    type(evaluation_t) :: now
+    integer :: n
+    call self%evaluate(t, y, now, inside)
+    if (.not. inside) return
+    n = self%n
+    if (self%drive%free_crank) then
+      dydt(1) = now%motion%crank_speed
+      dydt(4) = now%accelerations%crank
+    end if
+    dydt(n/2 - 1:n/2) = now%joint%eccentricity_rate
+    dydt(n - 2:n - 1) = eccentricity_acceleration(self%mechanism, now%motion, now%accelerations)
+    dydt(n) = now%power
+    dydt(n + 1:n + 2) = now%loads%pin_force
+  end subroutine derivatives
+
+  !> The state by its parts: bodies and pin.
+  pure subroutine unpack(self, t, y, motion, joint, reachable)
+    class(clearance_scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    type(motion_t), intent(out) :: motion
+    type(joint_motion_t), intent(out) :: joint
+    logical, intent(out) :: reachable
+    integer :: n
+    n = self%n
+    if (self%drive%free_crank) then
+      call clearance_motion(self%mechanism, y(1), y(4), y(2:3), y(5:6), motion, reachable)
+    else
+      call clearance_motion(self%mechanism, self%start_angle + self%start_speed*t, self%start_speed, y(1:2), y(3:4), &
+        motion, reachable)
+    end if
+    if (reachable) joint = joint_motion(self%joint, y(n/2 - 1:n/2), y(n - 2:n - 1), -motion%rod_speed)
+  end subroutine unpack
+
+  pure subroutine evaluate(self, t, y, evaluation, inside)
+    class(clearance_scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    type(evaluation_t), intent(out) :: evaluation
+    logical, intent(out) :: inside
+
+    call self%unpack(t, y, evaluation%motion, evaluation%joint, inside)
+    if (.not. inside) return
+    associate (now => evaluation, loads => evaluation%loads)
+      if (allocated(self%gas)) call self%add_gas(now)
+      if (self%phase == phase_contact) then
+        call add_contact(self, now)
+      else if (self%phase == phase_film) then
+        inside = now%joint%distance < self%joint%clearance .or. .not. self%film%singular_at_wall
+        if (.not. inside) return
+        call self%film%film_force(film_motion(self, now), loads%pin_force, loads%pin_moment)
+      end if
+      call accelerations_under(self%mechanism, self%drive, loads, now%motion, now%accelerations, now%crank_moment)
+      now%power = (now%crank_moment - self%drive%damping*now%motion%crank_speed)*now%motion%crank_speed &
+        - loads%gas_force*now%motion%piston_velocity + dot_product(loads%pin_force, now%joint%eccentricity_rate) &
+        - loads%pin_moment*now%motion%rod_speed
+    end associate
+  end subroutine evaluate
+
+  !> The motion as a film sees it.
+  pure function film_motion(self, now) result(film)
+    class(clearance_scene_t), intent(in) :: self
+    type(evaluation_t), intent(in) :: now
+    type(film_motion_t) :: film
+    type(motion_t) :: ideal
+    film = film_motion_t(now%joint%eccentricity, now%joint%eccentricity_rate, -now%motion%rod_speed)
+    if (self%film%needs_ideal_motion) then
+      ideal = ideal_motion(self%mechanism, now%motion%crank_angle, now%motion%crank_speed)
+      film%ideal_pin_speed = -ideal%rod_speed
+      film%ideal_pin_acceleration = -ideal_rod_acceleration(self%mechanism, ideal)
+      film%frequency = abs(now%motion%crank_speed)
+    end if
+  end function film_motion
+
+  !> Contact and friction: force -F_N n + F_T t on the pin, moment F_T R_pin.
+  pure subroutine add_contact(self, now)
+    class(clearance_scene_t), intent(in) :: self
+    type(evaluation_t), intent(inout) :: now
+    associate (joint => now%joint)
+      now%normal_force = self%contact%normal_force(joint%penetration, joint%penetration_rate, self%impact_speed)
+      now%friction_force = 0
+      now%loads%pin_force = -now%normal_force*joint%normal
+      now%loads%pin_moment = 0
+      if (.not. allocated(self%friction)) return
+      if (self%friction%set_valued .and. self%sliding == 0) then
+        now%friction_force = sticking_force(self, now)
+      else
+        now%friction_force = now%normal_force*self%friction%friction_ratio(joint%sliding_speed, self%sliding)
+      end if
+      now%loads%pin_force = now%loads%pin_force + now%friction_force*[-joint%normal(2), joint%normal(1)]
+      now%loads%pin_moment = now%friction_force*self%joint%pin_radius
+    end associate
+  end subroutine add_contact
+
+  !> The friction force that keeps the sliding speed constant: v_T' is linear in it. `now` holds the normal force.
+  pure real(dp) function sticking_force(self, now)
+    class(clearance_scene_t), intent(in) :: self
+    type(evaluation_t), intent(in) :: now
+    real(dp) :: without, change, unit
+    unit = max(now%normal_force, 1.0_dp)
+    without = sliding_acceleration(self, now, 0.0_dp)
+    change = sliding_acceleration(self, now, unit) - without
+    sticking_force = -unit*without/change
+  end function sticking_force
+
+  !> v_T' = t . e'' - gamma' n . e' + omega_rod' R_pin under a friction force, with gamma' = t . e'/|e| [m/s^2].
+  pure real(dp) function sliding_acceleration(self, now, friction_force)
+    class(clearance_scene_t), intent(in) :: self
+    type(evaluation_t), intent(in) :: now
+    real(dp), intent(in) :: friction_force
+    type(accelerations_t) :: accelerations
+    type(loads_t) :: loads
+    real(dp) :: tangent(2), moment
+    tangent = [-now%joint%normal(2), now%joint%normal(1)]
+    loads = now%loads
+    loads%pin_force = -now%normal_force*now%joint%normal + friction_force*tangent
+    loads%pin_moment = friction_force*self%joint%pin_radius
+    call accelerations_under(self%mechanism, self%drive, loads, now%motion, accelerations, moment)
+    sliding_acceleration = dot_product(tangent, eccentricity_acceleration(self%mechanism, now%motion, accelerations)) &
+      - now%joint%tangential_rate*now%joint%penetration_rate/now%joint%distance &
+      - accelerations%rod*self%joint%pin_radius
+  end function sliding_acceleration
+
+  pure subroutine all_events(self, t, y, g, g_rate)
+    class(clearance_scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: g(:), g_rate(:)
+    integer :: n
+    n = self%n_joint_events
+    if (n > 0) call joint_events(self, t, y, g(:n), g_rate(:n))
+    if (.not. allocated(self%gas)) return
+    if (self%drive%free_crank) then
+      call self%gas_events(y(1), y(4), g(n + 1:n + n_gas_events), g_rate(n + 1:n + n_gas_events))
+    else
+      call self%gas_events(self%start_angle + self%start_speed*t, self%start_speed, g(n + 1:n + n_gas_events), &
+        g_rate(n + 1:n + n_gas_events))
+    end if
+  end subroutine all_events
+
+  !> Event functions of the joint: contact begins, contact ends, and with set-valued friction the change of sliding.
+  pure subroutine joint_events(self, t, y, g, g_rate)
+    class(clearance_scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: g(:), g_rate(:)
+    type(evaluation_t) :: now
+    logical :: inside
+    real(dp) :: x, vx, distance, rate
+    integer :: n
+
+    n = self%n
+    x = y(n/2 - 1)
+    vx = y(n - 2)
+    distance = sqrt(x**2 + y(n/2)**2)
+    rate = 0
+    if (distance > 0) rate = (x*vx + y(n/2)*y(n - 1))/distance
+    g = -1
+    g_rate = 0
+    if (self%phase == phase_contact) then
+      g(ends) = self%joint%clearance - distance
+      g_rate(ends) = -rate
+      if (self%n_joint_events < sliding_changes) return
+      call self%evaluate(t, y, now, inside)
+      if (.not. inside) return
+      if (self%sliding == 0) then
+        g(sliding_changes) = abs(now%friction_force) - sticking_limit(self, now%normal_force)
+      else
+        g(sliding_changes) = -self%sliding*now%joint%sliding_speed
+        g_rate(sliding_changes) = -self%sliding*sliding_acceleration(self, now, now%friction_force)
+      end if
+    else
+      g(begins) = distance - self%joint%clearance
+      g_rate(begins) = rate
+    end if
+  end subroutine joint_events
+
+  !> Largest friction force that a set-valued law can give [N].
+  pure real(dp) function sticking_limit(self, normal_force)
+    class(clearance_scene_t), intent(in) :: self
+    real(dp), intent(in) :: normal_force
+    sticking_limit = abs(self%friction%friction_ratio(0.0_dp, 1))*normal_force
+  end function sticking_limit
+
+  !> A step that begins apart may go no deeper into contact than `max_penetration` (4.12-4.13), nor pass through it. The
+  !> penetration inside the step is taken as the cubic through its values and rates at both ends.
+  pure subroutine judge_step(self, t_old, y_old, t, y, verdict, fraction)
+    class(clearance_scene_t), intent(in) :: self
+    real(dp), intent(in) :: t_old, y_old(:), t, y(:)
+    integer, intent(out) :: verdict
+    real(dp), intent(out) :: fraction
+    real(dp) :: left(2), right(2), lower, upper, middle
+    integer :: i
+    integer, parameter :: scan = 16
+
+    verdict = step_admitted
+    fraction = 1
+    if (.not. self%rejects_deep_entry .or. self%phase == phase_contact) return
+    left = penetration_and_rate(self, y_old)
+    right = penetration_and_rate(self, y)
+    left(2) = left(2)*(t - t_old)
+    right(2) = right(2)*(t - t_old)
+    if (right(1) >= 0 .and. right(1) <= self%max_penetration) return
+    lower = 0
+    do i = 1, scan
+      upper = real(i, dp)/scan
+      if (hermite(left, right, upper) > merge(0.0_dp, self%max_penetration, right(1) < 0 .and. i < scan)) exit
+      lower = upper
+    end do
+    if (i > scan) return
+    verdict = step_too_deep
+    do i = 1, 40   ! land half way into the allowed depth
+      middle = 0.5_dp*(lower + upper)
+      if (hermite(left, right, middle) < 0.5_dp*self%max_penetration) then
+        lower = middle
+      else
+        upper = middle
+      end if
+    end do
+    fraction = max(upper, 1e-3_dp)
+  end subroutine judge_step
+
+  pure function penetration_and_rate(self, y) result(values)
+    class(clearance_scene_t), intent(in) :: self
+    real(dp), intent(in) :: y(:)
+    real(dp) :: values(2), distance
+    integer :: n
+    n = self%n
+    distance = norm2(y(n/2 - 1:n/2))
+    values = [distance - self%joint%clearance, 0.0_dp]
+    if (distance > 0) values(2) = dot_product(y(n/2 - 1:n/2), y(n - 2:n - 1))/distance
+  end function penetration_and_rate
+
+  !> The cubic on [0, 1] with given values and slopes at the ends.
+  pure real(dp) function hermite(left, right, s)
+    real(dp), intent(in) :: left(2), right(2), s
+    hermite = (1 + 2*s)*(1 - s)**2*left(1) + s*(1 - s)**2*left(2) + s**2*(3 - 2*s)*right(1) - s**2*(1 - s)*right(2)
+  end function hermite
+
+  pure logical function lands_on_step_end(self, index)
+    class(clearance_scene_t), intent(in) :: self
+    integer, intent(in) :: index
+    lands_on_step_end = self%rejects_deep_entry .and. index == begins .and. index <= self%n_joint_events
+  end function lands_on_step_end
+
+  subroutine handle_event(self, index, t, y, action)
+    class(clearance_scene_t), intent(inout) :: self
+    integer, intent(in) :: index
+    real(dp), intent(in) :: t
+    real(dp), intent(inout) :: y(:)
+    integer, intent(out) :: action
+    real(dp) :: contact(2)
+
+    action = event_continue
+    if (index > self%n_joint_events) then
+      call self%pass_gas_bound(index - self%n_joint_events)
+      return
+    end if
+    select case (index)
+    case (begins)
+      contact = penetration_and_rate(self, y)
+      self%phase = phase_contact
+      self%impact_speed = max(contact(2), 0.0_dp)
+      call choose_sliding(self, t, y, .true.)
+    case (ends)
+      self%phase = merge(phase_film, phase_free, allocated(self%film))
+    case (sliding_changes)
+      call choose_sliding(self, t, y, .false.)
+    end select
+  end subroutine handle_event
+
+  !> Set-valued friction: where the sliding speed is not zero it tells the direction. At zero (where it `may_slide` at the
+  !> beginning of a contact it is taken as it is) the pin sticks if friction can hold it and slides against it if not.
+  subroutine choose_sliding(self, t, y, may_slide)
+    class(clearance_scene_t), intent(inout) :: self
+    real(dp), intent(in) :: t, y(:)
+    logical, intent(in) :: may_slide
+    type(evaluation_t) :: now
+    logical :: inside, was_sliding
+
+    if (self%n_joint_events < sliding_changes) return
+    was_sliding = self%sliding /= 0
+    self%sliding = 0
+    call self%evaluate(t, y, now, inside)
+    if (.not. inside) return
+    if (may_slide .and. abs(now%joint%sliding_speed) > 0) then
+      self%sliding = nint(sign(1.0_dp, now%joint%sliding_speed))
+    else if (abs(now%friction_force) > sticking_limit(self, now%normal_force) .or. &
+             .not. (may_slide .or. was_sliding)) then
+      self%sliding = -nint(sign(1.0_dp, now%friction_force))
+    end if
+  end subroutine choose_sliding
+
+  pure integer function reported_event(self, index)
+    class(clearance_scene_t), intent(in) :: self
+    integer, intent(in) :: index
+    reported_event = event_none
+    if (index == begins) reported_event = event_contact_begins
+    if (index == ends) reported_event = event_contact_ends
+    if (index > self%n_joint_events) reported_event = event_none
+  end function reported_event
+
+  pure function initial_state(self) result(y)
+    class(clearance_scene_t), intent(in) :: self
+    real(dp) :: y(self%n)
+    y = 0
+    if (self%drive%free_crank) then
+      y(1) = self%start_angle
+      y(4) = self%start_speed
+    end if
+  end function initial_state
+
+  !> The eccentricity is measured by the clearance, its rate by the clearance in the time of one radian.
+  pure subroutine natural_scales(self, span, scales, growing)
+    class(clearance_scene_t), intent(in) :: self
+    real(dp), intent(in) :: span
+    real(dp), intent(out) :: scales(:)
+    logical, intent(out) :: growing(:)
+    integer :: n
+    n = self%n
+    growing = .false.
+    scales(n/2 - 1:n/2) = self%joint%clearance
+    scales(n - 2:n - 1) = self%joint%clearance*self%speed_scale(span)
+    scales(n) = self%energy_scale(span)
+    growing(n) = .true.
+    if (self%drive%free_crank) then
+      scales(1) = 1
+      growing(1) = .true.
+      scales(4) = self%speed_scale(span)
+    end if
+  end subroutine natural_scales
+end module clearance_scene

@@ -1,0 +1,136 @@
+!> The columns of a trace: their names with units, which of them a scene has, and their values.
+module columns
+  use kinds, only: dp
+  use scene, only: scene_t, evaluation_t, phase_film
+  use case_definition, only: case_t
+  use errors, only: error_t, fail, status_case_file
+  use reactions, only: reactions_t, reactions_of
+  implicit none
+  private
+  public :: column_list_t, choose_columns, row_values, column_name
+
+  integer, parameter :: n_columns = 35
+  integer, parameter :: name_length = 32
+
+  !> Names of all columns, in the order of a row.
+  character(len=name_length), parameter :: names(n_columns) = [character(len=name_length) :: &
+    'time[s]', 'crank_angle[rad]', 'rod_angle[rad]', 'piston_position[m]', 'crank_speed[rad/s]', 'rod_speed[rad/s]', &
+    'piston_velocity[m/s]', 'crank_acceleration[rad/s2]', 'rod_acceleration[rad/s2]', 'piston_acceleration[m/s2]', &
+    'crank_moment[N.m]', 'pin_force_x[N]', 'pin_force_y[N]', 'crankpin_force_x[N]', 'crankpin_force_y[N]', &
+    'crank_bearing_force_x[N]', 'crank_bearing_force_y[N]', 'guide_force[N]', 'frame_force_x[N]', 'frame_force_y[N]', &
+    'energy[J]', 'energy_residual[J]', &
+    'eccentricity_x[m]', 'eccentricity_y[m]', 'eccentricity_ratio[-]', 'film_thickness[m]', 'phase[-]', &
+    'normal_force[N]', 'friction_force[N]', 'sliding_speed[m/s]', 'film_force_x[N]', 'film_force_y[N]', &
+    'cylinder_pressure[Pa]', 'cylinder_volume[m3]', 'gas_force[N]']
+
+  !> Groups of columns: the first and last of each.
+  integer, parameter :: always(2) = [1, 22], clearance(2) = [23, 27], contact(2) = [28, 30], film(2) = [31, 32], &
+    gas(2) = [33, 35]
+
+  !> The columns of one trace.
+  type :: column_list_t
+    integer, allocatable :: id(:)       !! positions in `names`
+    real(dp) :: clearance = 1           !! of the joint [m], for the eccentricity ratio
+    logical :: needs_reactions = .false.
+    logical :: needs_energy = .false.
+  end type column_list_t
+
+contains
+
+  !> The columns that the case asks for, of those that its scene has. Error: a name that the scene does not have.
+  subroutine choose_columns(case, ideal_joint, list, error)
+    type(case_t), intent(in) :: case
+    logical, intent(in) :: ideal_joint   !! of the ideal twin: it has what an ideal joint has, and ignores other names
+    type(column_list_t), intent(out) :: list
+    type(error_t), allocatable, intent(out) :: error
+    logical :: has(n_columns), wanted(n_columns)
+    integer :: i
+
+    has = .false.
+    has(always(1):always(2)) = .true.
+    if (case%joint%kind == 'clearance' .and. .not. ideal_joint) then
+      list%clearance = case%joint%clearance
+      has(clearance(1):clearance(2)) = .true.
+      has(contact(1):contact(2)) = case%contact%is_present
+      has(film(1):film(2)) = case%lubrication%is_present
+    end if
+    has(gas(1):gas(2)) = case%combustion%is_present
+    wanted = .true.
+    if (allocated(case%output%columns)) then
+      if (case%output%columns /= 'standard') call read_names(case%output%columns, has, ideal_joint, wanted, error)
+      if (allocated(error)) return
+    end if
+    list%id = pack([(i, i=1, n_columns)], has .and. wanted)
+    list%needs_reactions = any(list%id >= 14 .and. list%id <= 20)
+    list%needs_energy = any(list%id == 21 .or. list%id == 22)
+  end subroutine choose_columns
+
+  !> Mark the columns named in a text such as 'time, crank_angle'.
+  subroutine read_names(text, has, ignores_missing, wanted, error)
+    character(len=*), intent(in) :: text
+    logical, intent(in) :: has(:), ignores_missing
+    logical, intent(out) :: wanted(:)
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: rest, name, known
+    integer :: i, comma
+    logical :: found
+
+    wanted = .false.
+    rest = text//','
+    do
+      comma = scan(rest, ',')
+      if (comma == 0) exit
+      name = trim(adjustl(rest(:comma - 1)))
+      rest = rest(comma + 1:)
+      found = .false.
+      do i = 1, n_columns
+        if (name /= names(i) .and. name /= names(i)(:scan(names(i), '[') - 1)) cycle
+        found = has(i) .or. ignores_missing
+        wanted(i) = .true.
+      end do
+      if (.not. found) then
+        known = ''
+        do i = 1, n_columns
+          if (has(i)) known = known//' '//names(i)(:scan(names(i), '[') - 1)
+        end do
+        call fail(error, "&output columns = '"//name//"': no such column in this scene; it has:"//known, status_case_file)
+        return
+      end if
+    end do
+  end subroutine read_names
+
+  !> Name and unit of column i of the list.
+  pure function column_name(list, i) result(name)
+    type(column_list_t), intent(in) :: list
+    integer, intent(in) :: i
+    character(len=:), allocatable :: name
+    name = trim(names(list%id(i)))
+  end function column_name
+
+  !> The values of a row from one evaluation of the scene at time t, with the work of the non-conservative forces so far.
+  pure subroutine row_values(list, scene, t, now, work, initial_energy, values)
+    type(column_list_t), intent(in) :: list
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t                !! [s]
+    type(evaluation_t), intent(in) :: now
+    real(dp), intent(in) :: work             !! [J]
+    real(dp), intent(in) :: initial_energy   !! [J]
+    real(dp), intent(out) :: values(:)       !! (size(list%id))
+    real(dp) :: all_values(n_columns), energy, in_film
+    type(reactions_t) :: reaction
+
+    energy = 0
+    if (list%needs_reactions) reaction = reactions_of(scene%mechanism, now%loads, now%motion, now%accelerations)
+    if (list%needs_energy) energy = scene%energy(now%motion)
+    in_film = merge(1.0_dp, 0.0_dp, scene%phase == phase_film)
+    associate (m => now%motion, a => now%accelerations, joint => now%joint)
+      all_values = [t, m%crank_angle, atan2(m%sin_rod, m%cos_rod), m%piston_position, m%crank_speed, m%rod_speed, &
+        m%piston_velocity, a%crank, a%rod, a%piston, now%crank_moment, now%loads%pin_force, reaction%crankpin, &
+        reaction%crank_bearing, reaction%guide, reaction%frame, energy, energy - initial_energy - work, &
+        joint%eccentricity, joint%distance/list%clearance, -joint%penetration, real(scene%phase, dp), &
+        now%normal_force, now%friction_force, joint%sliding_speed, in_film*now%loads%pin_force, &
+        now%cylinder_pressure, now%cylinder_volume, now%loads%gas_force]
+    end associate
+    values = all_values(list%id)
+  end subroutine row_values
+end module columns

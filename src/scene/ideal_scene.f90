@@ -1,0 +1,108 @@
+!> The scene with an ideal pin joint.
+module ideal_scene
+  use kinds, only: dp
+  use ode_problem, only: event_continue
+  use ideal_joint, only: ideal_motion, ideal_accelerations
+  use scene, only: scene_t, evaluation_t, event_none
+  implicit none
+  private
+  public :: ideal_scene_t
+
+  !> y = (q, q', work), or (work) where the crank speed is held.
+  type, extends(scene_t) :: ideal_scene_t
+  contains
+    procedure :: derivatives
+    procedure :: evaluate
+    procedure :: initial_state
+    procedure :: natural_scales
+    procedure :: reported_event
+    procedure :: events => crank_events
+    procedure :: handle_event
+  end type ideal_scene_t
+
+contains
+
+  pure subroutine derivatives(self, t, y, dydt, inside)
+    class(ideal_scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: dydt(:)
+    logical, intent(out) :: inside
+    type(evaluation_t) :: now
+    call self%evaluate(t, y, now, inside)
+    if (self%drive%free_crank) dydt(1:2) = [now%motion%crank_speed, now%accelerations%crank]
+    dydt(self%n) = now%power
+    dydt(self%n + 1:self%n + 2) = now%loads%pin_force
+  end subroutine derivatives
+
+  pure subroutine evaluate(self, t, y, evaluation, inside)
+    class(ideal_scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    type(evaluation_t), intent(out) :: evaluation
+    logical, intent(out) :: inside
+    inside = .true.
+    if (self%drive%free_crank) then
+      evaluation%motion = ideal_motion(self%mechanism, y(1), y(2))
+    else
+      evaluation%motion = ideal_motion(self%mechanism, self%start_angle + self%start_speed*t, self%start_speed)
+    end if
+    associate (now => evaluation)
+      if (allocated(self%gas)) call self%add_gas(now)
+      now%joint%eccentricity = 0
+      now%joint%distance = 0
+      call ideal_accelerations(self%mechanism, self%drive, now%motion, now%loads, now%accelerations, now%crank_moment)
+      now%power = (now%crank_moment - self%drive%damping*now%motion%crank_speed)*now%motion%crank_speed &
+        - now%loads%gas_force*now%motion%piston_velocity
+    end associate
+  end subroutine evaluate
+
+  pure function initial_state(self) result(y)
+    class(ideal_scene_t), intent(in) :: self
+    real(dp) :: y(self%n)
+    y = 0
+    if (self%drive%free_crank) y(1:2) = [self%start_angle, self%start_speed]
+  end function initial_state
+
+  pure subroutine natural_scales(self, span, scales, growing)
+    class(ideal_scene_t), intent(in) :: self
+    real(dp), intent(in) :: span
+    real(dp), intent(out) :: scales(:)
+    logical, intent(out) :: growing(:)
+    growing = .true.
+    scales(self%n) = self%energy_scale(span)
+    if (self%drive%free_crank) then
+      scales(1:2) = [1.0_dp, self%speed_scale(span)]
+      growing(2) = .false.
+    end if
+  end subroutine natural_scales
+
+  pure subroutine crank_events(self, t, y, g, g_rate)
+    class(ideal_scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: g(:), g_rate(:)
+    if (self%drive%free_crank) then
+      call self%gas_events(y(1), y(2), g, g_rate)
+    else
+      call self%gas_events(self%start_angle + self%start_speed*t, self%start_speed, g, g_rate)
+    end if
+  end subroutine crank_events
+
+  subroutine handle_event(self, index, t, y, action)
+    class(ideal_scene_t), intent(inout) :: self
+    integer, intent(in) :: index
+    real(dp), intent(in) :: t
+    real(dp), intent(inout) :: y(:)
+    integer, intent(out) :: action
+    associate (unused_t => t, unused_y => y)
+    end associate
+    call self%pass_gas_bound(index)
+    action = event_continue
+  end subroutine handle_event
+
+  pure integer function reported_event(self, index)
+    class(ideal_scene_t), intent(in) :: self
+    integer, intent(in) :: index
+    associate (unused_self => self, unused_index => index)
+    end associate
+    reported_event = event_none
+  end function reported_event
+end module ideal_scene

@@ -1,0 +1,195 @@
+!> The observer of a run: samples on a fixed grid of time, events of contact, and the figures of the summary. Peaks are
+!> taken at accepted points and events only.
+module recorder
+  use kinds, only: dp
+  use ode_problem, only: ode_problem_t
+  use ode_method, only: ode_method_t
+  use solver, only: observer_t
+  use scene, only: scene_t, evaluation_t, phase_contact, event_none, event_contact_begins, event_contact_ends
+  use columns, only: column_list_t, row_values
+  use trace_sink, only: trace_sink_t, trace_event_t
+  implicit none
+  private
+  public :: recorder_t, run_figures_t
+
+  !> The figures of a run. Those of a joint with clearance are 0 without one.
+  type :: run_figures_t
+    integer :: contacts = 0                   !! contacts begun
+    integer :: impacts_beyond_validity = 0    !! of them faster than the contact law is meant for
+    real(dp) :: contact_time = 0              !! [s]
+    real(dp) :: max_penetration = 0           !! [m]
+    real(dp) :: max_entry_penetration = 0     !! penetration at the beginning of a contact [m]
+    real(dp) :: max_pin_force = 0             !! [N]
+    real(dp) :: min_film_thickness = huge(1.0_dp)  !! c - |e| [m]
+    real(dp) :: max_energy = 0                !! largest |kinetic + potential energy| [J]
+    real(dp) :: max_energy_residual = 0       !! largest |energy residual| [J]
+    real(dp) :: crank_travel = 0              !! crank angle turned through, signed [rad]
+    real(dp) :: time = 0                      !! simulated [s]
+  end type run_figures_t
+
+  type, extends(observer_t) :: recorder_t
+    type(column_list_t) :: list
+    type(run_figures_t) :: figures
+    class(trace_sink_t), allocatable :: sink
+    real(dp) :: first_sample = 0      !! time of the first row [s]
+    real(dp) :: interval = 0          !! from row to row [s]
+    real(dp) :: end_time = 0          !! [s]
+    logical :: every_step = .false.   !! a row at every accepted step instead
+    real(dp) :: validity_limit = huge(1.0_dp)  !! largest impact speed that the contact law is meant for [m/s]
+    real(dp), private :: initial_energy = 0, start_angle = 0
+    integer, private :: next_row = 0, steps = 0
+    type(trace_event_t), private :: contact   !! the present contact
+    logical, private :: has_joint = .false.
+    real(dp), allocatable, private :: y(:), values(:)
+  contains
+    procedure :: begin
+    procedure :: step_taken
+    procedure :: event_taken
+    procedure :: finish
+    procedure, private :: take_point
+    procedure, private :: write_row
+  end type recorder_t
+
+contains
+
+  !> Look at the initial state, and write the first row if it is due.
+  subroutine begin(self, scene, y)
+    class(recorder_t), intent(inout) :: self
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: y(:)
+    type(evaluation_t) :: now
+    logical :: inside
+
+    allocate (self%y(size(y)), self%values(size(self%list%id)))
+    call scene%evaluate(0.0_dp, y, now, inside)
+    self%initial_energy = scene%energy(now%motion)
+    self%start_angle = now%motion%crank_angle
+    call self%take_point(scene, 0.0_dp, y)
+    if (self%first_sample <= 0) then
+      call self%write_row(scene, 0.0_dp, y)
+      self%next_row = 1
+    end if
+  end subroutine begin
+
+  subroutine step_taken(self, method, problem, t_to)
+    class(recorder_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    class(ode_problem_t), intent(in) :: problem
+    real(dp), intent(in) :: t_to
+    integer, parameter :: steps_between_reports = 2000
+    real(dp) :: t
+
+    select type (problem)
+    class is (scene_t)
+      if (self%every_step) then
+        if (t_to >= self%first_sample) then
+          call method%interpolate(t_to, self%y)
+          call self%write_row(problem, t_to, self%y)
+        end if
+      else
+        do
+          t = self%first_sample + self%next_row*self%interval
+          if (t > t_to .or. t > self%end_time*(1 + 4*epsilon(t))) exit
+          call method%interpolate(t, self%y)
+          call self%write_row(problem, t, self%y)
+          self%next_row = self%next_row + 1
+        end do
+      end if
+      if (t_to < method%t) then
+        call method%interpolate(t_to, self%y)
+        call self%take_point(problem, t_to, self%y)
+      else
+        call self%take_point(problem, method%t, method%y)
+      end if
+    end select
+    self%steps = self%steps + 1
+    if (mod(self%steps, steps_between_reports) == 0) call self%sink%take_progress(t_to)
+    self%wants_to_stop = self%sink%wants_to_stop
+  end subroutine step_taken
+
+  !> The figures of one accepted point.
+  subroutine take_point(self, scene, t, y)
+    class(recorder_t), intent(inout) :: self
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(:)
+    type(evaluation_t) :: now
+    logical :: inside
+    real(dp) :: energy
+
+    call scene%evaluate(t, y, now, inside)
+    if (.not. inside) return
+    energy = scene%energy(now%motion)
+    associate (f => self%figures)
+      f%max_pin_force = max(f%max_pin_force, norm2(now%loads%pin_force))
+      f%max_energy = max(f%max_energy, abs(energy))
+      f%max_energy_residual = max(f%max_energy_residual, abs(energy - self%initial_energy - y(scene%n)))
+      f%min_film_thickness = min(f%min_film_thickness, -now%joint%penetration)
+      f%crank_travel = now%motion%crank_angle - self%start_angle
+      if (scene%phase == phase_contact) then
+        f%contact_time = f%contact_time + (t - f%time)
+        f%max_penetration = max(f%max_penetration, now%joint%penetration)
+        self%contact%max_penetration = max(self%contact%max_penetration, now%joint%penetration)
+        self%contact%max_normal_force = max(self%contact%max_normal_force, now%normal_force)
+      end if
+      f%time = t
+    end associate
+  end subroutine take_point
+
+  subroutine event_taken(self, problem, index, t, y)
+    class(recorder_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    integer, intent(in) :: index
+    real(dp), intent(in) :: t, y(:)
+    type(evaluation_t) :: now
+    logical :: inside
+
+    select type (problem)
+    class is (scene_t)
+      if (problem%reported_event(index) == event_none) return
+      call problem%evaluate(t, y, now, inside)
+      associate (contact => self%contact, figures => self%figures)
+        contact%kind = problem%reported_event(index)
+        if (contact%kind == event_contact_begins) then
+          figures%contacts = figures%contacts + 1
+          figures%max_entry_penetration = max(figures%max_entry_penetration, now%joint%penetration)
+          if (now%joint%penetration_rate > self%validity_limit) &
+            figures%impacts_beyond_validity = figures%impacts_beyond_validity + 1
+          contact%duration = 0
+          contact%max_penetration = 0
+          contact%max_normal_force = 0
+          contact%time = t
+        else
+          contact%duration = t - contact%time
+          contact%time = t
+        end if
+        contact%crank_angle = now%motion%crank_angle
+        contact%normal_speed = now%joint%penetration_rate
+        call self%sink%take_event(contact)
+      end associate
+    end select
+  end subroutine event_taken
+
+  !> The run ended at (t, y): with a row at every step, and for the last of a grid that rounding left out.
+  subroutine finish(self, scene, t, y)
+    class(recorder_t), intent(inout) :: self
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(:)
+    real(dp) :: due
+    if (self%every_step) return
+    due = self%first_sample + self%next_row*self%interval
+    if (abs(due - t) <= 1e-9_dp*self%interval) call self%write_row(scene, t, y)
+    call self%sink%take_progress(t)
+  end subroutine finish
+
+  subroutine write_row(self, scene, t, y)
+    class(recorder_t), intent(inout) :: self
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(:)
+    type(evaluation_t) :: now
+    logical :: inside
+    call scene%evaluate(t, y, now, inside)
+    if (.not. inside) return
+    call row_values(self%list, scene, t, now, y(scene%n), self%initial_energy, self%values)
+    call self%sink%take_row(self%values)
+  end subroutine write_row
+end module recorder

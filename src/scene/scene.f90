@@ -1,0 +1,172 @@
+!> A scene: the mechanism with the models that its case asks for, as a system of differential equations.
+!>
+!> What is common to scenes with an ideal joint and with clearance: bodies, drive, gas, the layout of the state and the
+!> one evaluation that feeds both the equations and the trace.
+module scene
+  use kinds, only: dp
+  use ode_problem, only: ode_problem_t
+  use mechanism, only: mechanism_t, motion_t, accelerations_t
+  use dynamics, only: drive_t, loads_t
+  use clearance_joint, only: joint_motion_t
+  use gas_cycle, only: gas_cycle_t, cycle_angle, n_parts
+  implicit none
+  private
+  public :: scene_t, evaluation_t
+  public :: phase_free, phase_film, phase_contact
+  public :: event_none, event_contact_begins, event_contact_ends, n_gas_events
+
+  !> What the pin is doing: the values of the column `phase`.
+  integer, parameter :: phase_free = 0, phase_film = 1, phase_contact = 2
+
+  !> Events that a trace tells of.
+  integer, parameter :: event_none = 0, event_contact_begins = 1, event_contact_ends = 2
+
+  !> Passages of the crank from one part of the gas cycle to the next: forwards, backwards. Where there is gas they are
+  !> the last event functions of a scene.
+  integer, parameter :: n_gas_events = 2
+
+  !> Everything that one evaluation of a scene finds. Fields of models that the scene does not have stay 0.
+  type :: evaluation_t
+    type(motion_t) :: motion
+    type(accelerations_t) :: accelerations
+    type(loads_t) :: loads
+    type(joint_motion_t) :: joint
+    real(dp) :: crank_moment = 0    !! moment of the drive on the crank [N m]
+    real(dp) :: normal_force = 0    !! of the contact, pressing [N]
+    real(dp) :: friction_force = 0  !! on the pin along t [N]
+    real(dp) :: cylinder_pressure = 0  !! [Pa]
+    real(dp) :: cylinder_volume = 0    !! [m^3]
+    real(dp) :: power = 0           !! of all non-conservative forces and the drive [W]
+  end type evaluation_t
+
+  !> A scene as an ode_problem: y holds positions, then their rates, then the work of all non-conservative
+  !> forces and the drive [J]. With a held crank speed the crank angle is no unknown.
+  type, abstract, extends(ode_problem_t) :: scene_t
+    type(mechanism_t) :: mechanism
+    type(drive_t) :: drive
+    real(dp) :: start_angle = 0     !! crank angle at t = 0 [rad]
+    real(dp) :: start_speed = 0     !! crank speed at t = 0, and always if it is held [rad/s]
+    integer :: phase = phase_free
+    type(gas_cycle_t), allocatable :: gas
+    integer :: gas_part = 0            !! part of the gas cycle that acts
+    real(dp) :: gas_cycle_start = 0    !! crank angle at which its cycle began [rad]
+    logical :: gives_volume = .false.  !! whether an evaluation finds the cylinder volume (for the trace)
+  contains
+    procedure(evaluate), deferred :: evaluate
+    procedure(initial_state), deferred :: initial_state
+    procedure(natural_scales), deferred :: natural_scales
+    procedure(reported_event), deferred :: reported_event
+    procedure :: energy
+    procedure :: energy_scale
+    procedure :: speed_scale
+    procedure :: set_gas_part
+    procedure :: add_gas
+    procedure :: gas_events
+    procedure :: pass_gas_bound
+  end type scene_t
+
+  abstract interface
+    !> Everything at (t, y). `inside` is false where a model is not defined.
+    pure subroutine evaluate(self, t, y, evaluation, inside)
+      import :: scene_t, evaluation_t, dp
+      class(scene_t), intent(in) :: self
+      real(dp), intent(in) :: t, y(:)
+      type(evaluation_t), intent(out) :: evaluation
+      logical, intent(out) :: inside
+    end subroutine evaluate
+
+    !> State at t = 0: the pin centred, speeds of the ideal joint.
+    pure function initial_state(self) result(y)
+      import :: scene_t, dp
+      class(scene_t), intent(in) :: self
+      real(dp) :: y(self%n)
+    end function initial_state
+
+    !> Sizes of the components of y against which a tolerance is meant. `growing` marks those that grow without
+    !> bound, for which a tolerance relative to themselves means nothing.
+    pure subroutine natural_scales(self, span, scales, growing)
+      import :: scene_t, dp
+      class(scene_t), intent(in) :: self
+      real(dp), intent(in) :: span      !! of the simulation [s]
+      real(dp), intent(out) :: scales(:)
+      logical, intent(out) :: growing(:)
+    end subroutine natural_scales
+
+    !> Which event of the trace event `index` of the integrator is.
+    pure integer function reported_event(self, index)
+      import :: scene_t
+      class(scene_t), intent(in) :: self
+      integer, intent(in) :: index
+    end function reported_event
+  end interface
+
+contains
+
+  !> Kinetic and potential energy of the bodies [J].
+  pure real(dp) function energy(self, motion)
+    class(scene_t), intent(in) :: self
+    type(motion_t), intent(in) :: motion
+    energy = self%mechanism%kinetic_energy(motion) + self%mechanism%potential_energy(motion)
+  end function energy
+
+  !> Size of the crank speed [rad/s]: the start speed; from rest, one radian in the time simulated.
+  pure real(dp) function speed_scale(self, span)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: span
+    speed_scale = abs(self%start_speed)
+    if (.not. speed_scale > 0) speed_scale = 1/span
+  end function speed_scale
+
+  !> Size of the energy [J]: the bodies at the speed scale, and the weights lifted by a crank length.
+  pure real(dp) function energy_scale(self, span)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: span
+    associate (m => self%mechanism)
+      energy_scale = 0.5_dp*(m%crank_term() + m%piston_mass*m%crank_length**2)*self%speed_scale(span)**2 &
+        + (m%crank_mass + m%rod_mass + m%piston_mass)*m%gravity*m%crank_length
+    end associate
+  end function energy_scale
+
+  !> Find the part of the gas cycle that the crank is in, or about to enter.
+  subroutine set_gas_part(self, crank_angle, crank_speed)
+    class(scene_t), intent(inout) :: self
+    real(dp), intent(in) :: crank_angle, crank_speed
+    call self%gas%part_at(crank_angle, crank_speed < 0, self%gas_part, self%gas_cycle_start)
+  end subroutine set_gas_part
+
+  !> Pressure and force of the gas at the crank angle of `now`.
+  pure subroutine add_gas(self, now)
+    class(scene_t), intent(in) :: self
+    type(evaluation_t), intent(inout) :: now
+    now%cylinder_pressure = self%gas%pressure(now%motion%crank_angle, self%gas_part, self%gas_cycle_start)
+    now%loads%gas_force = self%gas%gas_force(now%cylinder_pressure)
+    if (self%gives_volume) now%cylinder_volume = self%gas%cylinder%volume(now%motion%crank_angle)
+  end subroutine add_gas
+
+  !> Event functions of the bounds of the present part of the gas cycle, over the crank angle.
+  pure subroutine gas_events(self, crank_angle, crank_speed, g, g_rate)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: crank_angle, crank_speed
+    real(dp), intent(out) :: g(n_gas_events), g_rate(n_gas_events)
+    real(dp) :: angle
+    angle = crank_angle - self%gas_cycle_start
+    g = [angle - self%gas%bound(self%gas_part), self%gas%bound(self%gas_part - 1) - angle]
+    g_rate = [crank_speed, -crank_speed]
+  end subroutine gas_events
+
+  !> Enter the next part of the gas cycle that is not empty, forwards (1) or backwards (2).
+  subroutine pass_gas_bound(self, direction)
+    class(scene_t), intent(inout) :: self
+    integer, intent(in) :: direction
+    integer :: way
+    way = merge(1, -1, direction == 1)
+    do
+      self%gas_part = self%gas_part + way
+      if (self%gas_part > n_parts .or. self%gas_part < 1) then
+        self%gas_part = merge(1, n_parts, way > 0)
+        self%gas_cycle_start = self%gas_cycle_start + way*cycle_angle
+      end if
+      if (self%gas%bound(self%gas_part) > self%gas%bound(self%gas_part - 1)) exit
+    end do
+  end subroutine pass_gas_bound
+end module scene

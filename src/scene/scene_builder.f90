@@ -1,0 +1,141 @@
+!> From a case to the scene that it asks for.
+module scene_builder
+  use kinds, only: dp
+  use constants, only: two_pi, degree
+  use errors, only: error_t
+  use case_definition, only: case_t
+  use mechanism, only: mechanism_t
+  use dynamics, only: drive_t
+  use clearance_joint, only: joint_geometry_t
+  use contact_laws, only: new_contact_law
+  use friction_laws, only: new_friction_law
+  use films, only: new_film_law
+  use ode_method, only: ode_settings_t
+  use cylinder, only: new_cylinder
+  use gas_cycle, only: gas_cycle_t, heat_release_t, new_gas_cycle
+  use scene, only: scene_t, phase_free, phase_film, n_gas_events
+  use ideal_scene, only: ideal_scene_t
+  use clearance_scene, only: clearance_scene_t
+  implicit none
+  private
+  public :: build_scene, simulated_time, sample_interval, settings_for
+
+contains
+
+  !> Build the scene of a case; with `ideal_joint` its twin without clearance. The case has been validated by its
+  !> reader; errors are names of laws and variants that do not exist.
+  subroutine build_scene(case, ideal_joint, scene, error)
+    type(case_t), intent(in) :: case
+    logical, intent(in) :: ideal_joint
+    class(scene_t), allocatable, intent(out) :: scene
+    type(error_t), allocatable, intent(out) :: error
+    type(ideal_scene_t), allocatable :: ideal
+    type(clearance_scene_t), allocatable :: clearance
+
+    if (ideal_joint .or. case%joint%kind == 'ideal') then
+      allocate (ideal)
+      ideal%n = merge(3, 1, case%drive%kind == 'free')
+      call move_alloc(ideal, scene)
+    else
+      allocate (clearance)
+      call build_joint(case, clearance, error)
+      if (allocated(error)) return
+      call move_alloc(clearance, scene)
+    end if
+    scene%n_outputs = 2
+    associate (m => case%mechanism)
+      scene%mechanism = mechanism_t(m%crank_length, m%crank_mass, m%crank_inertia, m%crank_com, m%rod_length, m%rod_mass, &
+        m%rod_inertia, m%rod_com, m%piston_mass, m%gravity)
+    end associate
+    scene%drive = drive_t(case%drive%kind == 'free', case%drive%torque, case%drive%damping)
+    scene%start_angle = case%initial%crank_angle_deg*degree
+    scene%start_speed = case%initial%crank_speed
+    if (case%combustion%is_present) then
+      call build_gas(case, scene%gas, error)
+      if (allocated(error)) return
+      call scene%set_gas_part(scene%start_angle, scene%start_speed)
+      scene%n_events = scene%n_events + n_gas_events
+    end if
+  end subroutine build_scene
+
+  !> The joint's laws, only those that the case asks for.
+  subroutine build_joint(case, scene, error)
+    type(case_t), intent(in) :: case
+    type(clearance_scene_t), intent(inout) :: scene
+    type(error_t), allocatable, intent(out) :: error
+
+    scene%n = merge(7, 5, case%drive%kind == 'free')
+    associate (joint => case%joint)
+      scene%joint = joint_geometry_t(joint%clearance, joint%bearing_radius, joint%bearing_radius - joint%clearance)
+      if (case%contact%is_present) then
+        call new_contact_law(case%contact, joint%bearing_radius, joint%clearance, scene%contact, error)
+        if (allocated(error)) return
+        scene%n_joint_events = 2
+      end if
+      if (case%friction%is_present) then
+        call new_friction_law(case%friction, scene%friction, error)
+        if (allocated(error)) return
+        if (scene%friction%set_valued) scene%n_joint_events = 3
+      end if
+      if (case%lubrication%is_present) then
+        call new_film_law(case%lubrication, joint%bearing_radius, joint%bearing_length, joint%clearance, &
+          case%integrator%relative_tolerance, scene%film, error)
+        if (allocated(error)) return
+      end if
+      scene%phase = merge(phase_film, phase_free, allocated(scene%film))
+      scene%rejects_deep_entry = case%integrator%contact_entry == 'step_rejection' .and. allocated(scene%contact)
+      scene%max_penetration = case%integrator%max_penetration
+    end associate
+    scene%n_events = scene%n_joint_events
+  end subroutine build_joint
+
+  !> The gas cycle, integrated ten times finer than the run.
+  subroutine build_gas(case, gas, error)
+    type(case_t), intent(in) :: case
+    type(gas_cycle_t), allocatable, intent(out) :: gas
+    type(error_t), allocatable, intent(out) :: error
+    allocate (gas)
+    associate (c => case%combustion)
+      gas%cylinder = new_cylinder(c%bore, case%mechanism%crank_length, case%mechanism%rod_length, c%compression_ratio)
+      gas%release = heat_release_t(c%heat, c%wiebe_efficiency, c%wiebe_form, c%start_deg*degree, c%duration_deg*degree)
+      gas%heat_capacity_ratio = c%heat_capacity_ratio
+      gas%intake_pressure = c%intake_pressure
+      gas%crankcase_pressure = c%crankcase_pressure
+    end associate
+    call new_gas_cycle(gas, 0.1_dp*case%integrator%relative_tolerance, error)
+  end subroutine build_gas
+
+  !> Time to simulate [s]: revolutions are counted at the initial crank speed.
+  pure real(dp) function simulated_time(case)
+    type(case_t), intent(in) :: case
+    simulated_time = case%integrator%end_time
+    if (case%integrator%revolutions > 0) simulated_time = case%integrator%revolutions*two_pi/abs(case%initial%crank_speed)
+  end function simulated_time
+
+  !> Time from sample to sample [s].
+  pure real(dp) function sample_interval(case)
+    type(case_t), intent(in) :: case
+    sample_interval = case%output%interval
+    if (.not. sample_interval > 0) &
+      sample_interval = two_pi/(abs(case%initial%crank_speed)*case%output%samples_per_revolution)
+  end function sample_interval
+
+  !> Settings of the integrator for a scene of the case. Component i is held to relative_tolerance*|y_i| (unless it grows
+  !> without bound) + a*scale_i, a = absolute_tolerance or, where that is 0, relative_tolerance.
+  pure function settings_for(case, scene) result(settings)
+    type(case_t), intent(in) :: case
+    class(scene_t), intent(in) :: scene
+    type(ode_settings_t) :: settings
+    real(dp) :: scales(scene%n), factor
+    logical :: growing(scene%n)
+
+    settings%span = simulated_time(case)
+    call scene%natural_scales(settings%span, scales, growing)
+    factor = case%integrator%absolute_tolerance
+    if (.not. factor > 0) factor = case%integrator%relative_tolerance
+    settings%relative = merge(0.0_dp, case%integrator%relative_tolerance, growing)
+    settings%absolute = factor*scales
+    if (case%integrator%max_step > 0) settings%max_step = case%integrator%max_step
+    settings%max_order = case%integrator%max_order
+  end function settings_for
+end module scene_builder

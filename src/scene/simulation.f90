@@ -1,0 +1,111 @@
+!> One run of one case: build the scene, integrate it, give rows, events and figures to a sink.
+module simulation
+  use kinds, only: dp
+  use errors, only: error_t, fail, status_integration, status_internal
+  use case_definition, only: case_t
+  use ode_method, only: step_statistics_t, step_too_small, tolerance_too_small, start_outside
+  use adams, only: adams_t
+  use solver, only: integrate, integration_done, step_limit_reached, integration_interrupted, chattering
+  use scene, only: scene_t, evaluation_t, phase_free, phase_film, phase_contact
+  use scene_builder, only: build_scene, simulated_time, sample_interval, settings_for
+  use columns, only: choose_columns, column_list_t
+  use contact_stiffness, only: valid_impact_speed
+  use recorder, only: recorder_t, run_figures_t
+  use trace_sink, only: trace_sink_t
+  use constants, only: degree
+  implicit none
+  private
+  public :: simulate, run_report_t, interrupted_text
+
+  character(len=*), parameter :: interrupted_text = 'interrupted'
+
+  !> What is known of a run when it has ended.
+  type :: run_report_t
+    character(len=:), allocatable :: status      !! 'done', or in words why and where it ended
+    type(step_statistics_t) :: statistics
+    type(run_figures_t) :: figures
+  end type run_report_t
+
+contains
+
+  !> Run a case, or its ideal twin. The sink is lent to the run and given back. Errors: the scene cannot be built
+  !> (status_case_file); the integration could not go on (status_integration, `report` and the sink hold what there is).
+  subroutine simulate(case, ideal_joint, list, sink, report, error)
+    type(case_t), intent(in) :: case
+    logical, intent(in) :: ideal_joint
+    type(column_list_t), intent(in) :: list
+    class(trace_sink_t), allocatable, intent(inout) :: sink
+    type(run_report_t), intent(out) :: report
+    type(error_t), allocatable, intent(out) :: error
+    class(scene_t), allocatable :: scene
+    type(adams_t) :: method
+    type(recorder_t) :: recorder
+    real(dp), allocatable :: y(:)
+    real(dp) :: t
+    integer :: status
+
+    call build_scene(case, ideal_joint, scene, error)
+    if (allocated(error)) return
+    recorder%list = list
+    recorder%interval = sample_interval(case)
+    recorder%first_sample = case%output%start_time
+    recorder%end_time = simulated_time(case)
+    recorder%every_step = case%output%every_step
+    if (case%contact%is_present) &
+      recorder%validity_limit = valid_impact_speed(case%contact%youngs_modulus, case%contact%density)
+    call move_alloc(sink, recorder%sink)
+
+    method%settings = settings_for(case, scene)
+    y = scene%initial_state()
+    t = 0
+    call recorder%begin(scene, y)
+    call integrate(scene, method, t, y, recorder%end_time, case%integrator%max_steps, recorder, status)
+    call recorder%finish(scene, t, y)
+    call move_alloc(recorder%sink, sink)
+    report%statistics = method%statistics
+    report%figures = recorder%figures
+    !$omp critical (texts)
+    report%status = 'done'
+    if (status /= integration_done) then
+      report%status = reason(status)//' at '//place(scene, t, y)
+      call fail(error, report%status, status_integration)
+    end if
+    !$omp end critical (texts)
+  end subroutine simulate
+
+  !> Why an integration ended.
+  pure function reason(status) result(text)
+    integer, intent(in) :: status
+    character(len=:), allocatable :: text
+    select case (status)
+    case (step_too_small)
+      text = 'step too small'
+    case (tolerance_too_small)
+      text = 'tolerance below the rounding of the state'
+    case (start_outside)
+      text = 'state outside the model'
+    case (step_limit_reached)
+      text = 'too many steps (&integrator max_steps)'
+    case (integration_interrupted)
+      text = interrupted_text
+    case (chattering)
+      text = 'contact events without progress in time (chatter)'
+    case default
+      text = 'stopped'
+    end select
+  end function reason
+
+  !> Where a run stands: time, crank angle and phase.
+  function place(scene, t, y) result(text)
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(:)
+    character(len=:), allocatable :: text
+    character(len=*), parameter :: phase_names(0:2) = [character(len=13) :: 'free flight', 'film', 'contact']
+    character(len=80) :: figures
+    type(evaluation_t) :: now
+    logical :: inside
+    call scene%evaluate(t, y, now, inside)
+    write (figures, '(a,es15.8,a,f0.4,a)') 't =', t, ' s, crank angle ', now%motion%crank_angle/degree, ' deg'
+    text = trim(figures)//', phase '//trim(phase_names(scene%phase))
+  end function place
+end module simulation

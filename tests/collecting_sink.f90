@@ -1,0 +1,170 @@
+!> A sink that keeps rows and events in memory, and one call to run a case file into it.
+module collecting_sink
+  use kinds, only: dp
+  use errors, only: error_t
+  use case_definition, only: case_t
+  use case_file, only: read_case
+  use columns, only: column_list_t, choose_columns, column_name
+  use simulation, only: simulate, run_report_t
+  use trace_sink, only: trace_sink_t, trace_event_t
+  implicit none
+  private
+  public :: collecting_sink_t, trace_t, run_case, load_trace, column, last_row_time
+
+  type, extends(trace_sink_t) :: collecting_sink_t
+    integer :: rows = 0, events = 0
+    real(dp), allocatable :: values(:, :)           !! (columns, rows)
+    type(trace_event_t), allocatable :: event(:)
+  contains
+    procedure :: take_row
+    procedure :: take_event
+    procedure :: take_progress
+  end type collecting_sink_t
+
+  !> A trace with the names of its columns.
+  type :: trace_t
+    character(len=40), allocatable :: names(:)
+    real(dp), allocatable :: values(:, :)           !! (columns, rows)
+    type(trace_event_t), allocatable :: event(:)
+    type(run_report_t) :: report
+    type(error_t), allocatable :: error
+  end type trace_t
+
+contains
+
+  !> Run cases/FILE with overrides.
+  function run_case(file, overrides, ideal_joint) result(trace)
+    character(len=*), intent(in) :: file, overrides(:)
+    logical, intent(in), optional :: ideal_joint
+    type(trace_t) :: trace
+    type(case_t) :: case
+    type(column_list_t) :: list
+    class(trace_sink_t), allocatable :: sink
+    type(error_t), allocatable :: error
+    logical :: ideal
+    integer :: i
+
+    ideal = .false.
+    if (present(ideal_joint)) ideal = ideal_joint
+    call read_case(file, overrides, case, error)
+    if (.not. allocated(error)) call choose_columns(case, ideal, list, error)
+    if (allocated(error)) then
+      print '(a)', error%message
+      call move_alloc(error, trace%error)
+      return
+    end if
+    allocate (collecting_sink_t :: sink)
+    call simulate(case, ideal, list, sink, trace%report, trace%error)
+    allocate (trace%names(size(list%id)))
+    do i = 1, size(list%id)
+      trace%names(i) = column_name(list, i)
+    end do
+    select type (sink)
+    type is (collecting_sink_t)
+      if (.not. allocated(sink%values)) allocate (sink%values(size(list%id), 0))
+      if (.not. allocated(sink%event)) allocate (sink%event(0))
+      trace%values = sink%values(:, :sink%rows)
+      trace%event = sink%event(:sink%events)
+    end select
+  end function run_case
+
+  !> Read a reference curve and its events.
+  function load_trace(name) result(trace)
+    character(len=*), intent(in) :: name
+    type(trace_t) :: trace
+    character(len=2000) :: line
+    character(len=40) :: label
+    integer :: unit, status, i, rows, commas
+
+    open (newunit=unit, file='data/'//name//'.csv', status='old', action='read')
+    read (unit, '(a)') line
+    commas = count([(line(i:i) == ',', i=1, len_trim(line))])
+    allocate (trace%names(commas + 1), trace%values(commas + 1, 3000))
+    trace%names = split(line, commas + 1)
+    rows = 0
+    do
+      read (unit, *, iostat=status) trace%values(:, rows + 1)
+      if (status /= 0) exit
+      rows = rows + 1
+    end do
+    close (unit)
+    trace%values = trace%values(:, :rows)
+    open (newunit=unit, file='data/'//name//'.events.csv', status='old', action='read')
+    read (unit, '(a)') line
+    allocate (trace%event(1000))
+    rows = 0
+    do
+      read (unit, *, iostat=status) trace%event(rows + 1)%time, label, trace%event(rows + 1)%normal_speed
+      if (status /= 0) exit
+      rows = rows + 1
+      trace%event(rows)%kind = merge(1, 2, label == 'contact_begins')
+    end do
+    close (unit)
+    trace%event = trace%event(:rows)
+  end function load_trace
+
+  !> The fields of a line, split at commas (list-directed input would stop at the / of a unit).
+  pure function split(line, n) result(fields)
+    character(len=*), intent(in) :: line
+    integer, intent(in) :: n
+    character(len=40) :: fields(n)
+    integer :: i, first, next
+    first = 1
+    do i = 1, n
+      next = index(line(first:)//',', ',')
+      fields(i) = line(first:first + next - 2)
+      first = first + next
+    end do
+  end function split
+
+  !> The position of a named column, 0 where there is none.
+  pure integer function column(trace, name)
+    type(trace_t), intent(in) :: trace
+    character(len=*), intent(in) :: name
+    integer :: i
+    column = 0
+    do i = 1, size(trace%names)
+      if (trace%names(i) == name) column = i
+    end do
+  end function column
+
+  pure real(dp) function last_row_time(trace)
+    type(trace_t), intent(in) :: trace
+    last_row_time = trace%values(1, size(trace%values, 2))
+  end function last_row_time
+
+  subroutine take_row(self, values)
+    class(collecting_sink_t), intent(inout) :: self
+    real(dp), intent(in) :: values(:)
+    real(dp), allocatable :: larger(:, :)
+    if (.not. allocated(self%values)) allocate (self%values(size(values), 1000))
+    if (self%rows == size(self%values, 2)) then
+      allocate (larger(size(values), 2*self%rows))
+      larger(:, :self%rows) = self%values
+      call move_alloc(larger, self%values)
+    end if
+    self%rows = self%rows + 1
+    self%values(:, self%rows) = values
+  end subroutine take_row
+
+  subroutine take_event(self, event)
+    class(collecting_sink_t), intent(inout) :: self
+    type(trace_event_t), intent(in) :: event
+    type(trace_event_t), allocatable :: larger(:)
+    if (.not. allocated(self%event)) allocate (self%event(100))
+    if (self%events == size(self%event)) then
+      allocate (larger(2*self%events))
+      larger(:self%events) = self%event
+      call move_alloc(larger, self%event)
+    end if
+    self%events = self%events + 1
+    self%event(self%events) = event
+  end subroutine take_event
+
+  subroutine take_progress(self, time)
+    class(collecting_sink_t), intent(inout) :: self
+    real(dp), intent(in) :: time
+    associate (unused_self => self, unused_time => time)
+    end associate
+  end subroutine take_progress
+end module collecting_sink

@@ -1,0 +1,160 @@
+!> The Adams method: coefficients, accuracy, order, interpolant, events, restarts.
+module test_adams
+  use kinds, only: dp
+  use constants, only: pi
+  use checks, only: checks_t
+  use ode_method, only: ode_settings_t, step_done
+  use adams_coefficients, only: moulton_constants
+  use adams, only: adams_t
+  use solver, only: integrate, silent_observer_t, integration_done
+  use test_problems, only: oscillator_t, two_body_t, bouncing_ball_t, hopper_t
+  implicit none
+  private
+  public :: run_test_adams
+
+contains
+
+  subroutine run_test_adams(check)
+    class(checks_t), intent(inout) :: check
+    call constants_are_exact(check)
+    call tolerance_is_kept(check)
+    call interpolant_is_smooth(check)
+    call ball_impacts(check)
+    call double_passages_are_found(check)
+  end subroutine run_test_adams
+
+  !> Settings with one tolerance for n components.
+  function settings(n, tolerance, span) result(s)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: tolerance, span
+    type(ode_settings_t) :: s
+    allocate (s%relative(n), s%absolute(n))
+    s%relative = tolerance
+    s%absolute = tolerance
+    s%span = span
+  end function settings
+
+  subroutine constants_are_exact(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: exact(13) = [1/2.0_dp, 1/12.0_dp, 1/24.0_dp, 19/720.0_dp, 3/160.0_dp, 863/60480.0_dp, &
+      275/24192.0_dp, 33953/3628800.0_dp, 8183/1036800.0_dp, 3250433/479001600.0_dp, 4671/788480.0_dp, &
+      13695779093.0_dp/2615348736000.0_dp, 2224234463.0_dp/475517952000.0_dp]
+    real(dp) :: got(13)
+    got = moulton_constants()
+    call check%close_to(maxval(abs(got/exact - 1)), 0.0_dp, 1e-13_dp, 'Adams-Moulton constants against rationals')
+  end subroutine constants_are_exact
+
+  subroutine tolerance_is_kept(check)
+    class(checks_t), intent(inout) :: check
+    type(two_body_t) :: problem
+    type(adams_t) :: method
+    type(silent_observer_t) :: observer
+    real(dp) :: y(4), t, error, tolerance
+    integer :: status, i, previous
+    character(len=16) :: label
+
+    problem%n = 4
+    previous = 0
+    do i = 3, 12, 3
+      tolerance = 10.0_dp**(-i)
+      method%settings = settings(4, tolerance, 6*pi)
+      t = 0
+      y = [0.7_dp, 0.0_dp, 0.0_dp, sqrt(1.3_dp/0.7_dp)]   ! eccentricity 0.3, period 2 pi
+      call integrate(problem, method, t, y, 6*pi, 0, observer, status)
+      error = norm2(y - [0.7_dp, 0.0_dp, 0.0_dp, sqrt(1.3_dp/0.7_dp)])
+      write (label, '(a,i0)') ' at 1e-', i
+      call check%that(status == integration_done, 'two bodies are integrated'//trim(label))
+      call check%close_to(error, 0.0_dp, 1000*tolerance, 'three orbits close'//trim(label))
+      call check%that(method%statistics%evaluations > previous, 'more accuracy costs more'//trim(label))
+      previous = method%statistics%evaluations
+    end do
+    call check%that(previous < 1100, 'three orbits at 1e-12 need fewer than 1100 evaluations')
+  end subroutine tolerance_is_kept
+
+  !> Value and derivative of the interpolant agree across every mesh point, and its error is that of the steps.
+  subroutine interpolant_is_smooth(check)
+    class(checks_t), intent(inout) :: check
+    type(oscillator_t) :: problem
+    type(adams_t) :: method
+    real(dp) :: y(2), before(2), after(2), worst, jump, slope_jump, step_error, h
+    integer :: status, i, j
+
+    problem%n = 2
+    method%settings = settings(2, 1e-8_dp, 20.0_dp)
+    call method%start(problem, 0.0_dp, [0.0_dp, 1.0_dp], .true., status)
+    worst = 0
+    jump = 0
+    slope_jump = 0
+    step_error = 0
+    before = 1   ! slope of y(1) at t = 0
+    do i = 1, 150
+      call method%step(problem, status)
+      if (status /= step_done) exit
+      h = method%t - method%t_old
+      call method%interpolate(method%t_old, y)
+      jump = max(jump, maxval(abs(y - method%y_old)))
+      call method%interpolate(method%t_old + 1e-4_dp*h, after)
+      slope_jump = max(slope_jump, abs((after(1) - y(1))/(1e-4_dp*h) - &
+        (y(2) - 0.5e-4_dp*h*y(1))))
+      do j = 1, 9
+        call method%interpolate(method%t_old + j*h/10, y)
+        worst = max(worst, abs(y(1) - sin(method%t_old + j*h/10)))
+      end do
+      step_error = max(step_error, abs(method%y(1) - sin(method%t)))
+    end do
+    call check%that(status == step_done, 'the oscillator is integrated')
+    call check%close_to(jump, 0.0_dp, 1e-14_dp, 'the interpolant meets the beginning of the step')
+    call check%close_to(slope_jump, 0.0_dp, 1e-7_dp, 'the interpolant has the slope f there')
+    call check%that(worst <= 1.5_dp*step_error + 1e-9_dp, 'the interpolant is as accurate as the steps')
+  end subroutine interpolant_is_smooth
+
+  subroutine ball_impacts(check)
+    class(checks_t), intent(inout) :: check
+    type(bouncing_ball_t) :: problem
+    type(adams_t) :: method
+    type(silent_observer_t) :: observer
+    real(dp) :: y(2), t, exact, worst
+    integer :: status, i
+
+    problem%n = 2
+    problem%n_events = 1
+    problem%restitution = 0.9_dp
+    method%settings = settings(2, 1e-10_dp, 20.0_dp)
+    t = 0
+    y = [1.0_dp, 0.0_dp]
+    call integrate(problem, method, t, y, 20.0_dp, 0, observer, status)
+    call check%that(status == integration_done, 'the ball is integrated')
+    exact = sqrt(2.0_dp)
+    worst = 0
+    do i = 1, problem%impacts
+      worst = max(worst, abs(problem%times(i) - exact))
+      exact = exact + 2*sqrt(2.0_dp)*0.9_dp**i
+    end do
+    call check%that(exact > 20, 'no impact of the ball is missed')
+    call check%that(problem%impacts == method%statistics%restarts, 'one restart an impact')
+    call check%close_to(worst, 0.0_dp, 1e-8_dp, 'impact times of the ball')
+  end subroutine ball_impacts
+
+  subroutine double_passages_are_found(check)
+    class(checks_t), intent(inout) :: check
+    type(hopper_t) :: problem
+    type(adams_t) :: method
+    type(silent_observer_t) :: observer
+    real(dp) :: y(2), t, worst
+    integer :: status, i
+
+    problem%n = 2
+    problem%n_events = 1
+    problem%level = 1 - 1e-6_dp
+    method%settings = settings(2, 1e-9_dp, 40.0_dp)
+    t = 0
+    y = [0.0_dp, 1.0_dp]
+    call integrate(problem, method, t, y, 40.0_dp, 0, observer, status)
+    call check%that(problem%passages == 7, 'tips above the level for 3 ms in 6 s are all found')
+    worst = 0
+    do i = 1, min(7, problem%passages)
+      worst = max(worst, abs(problem%times(i) - (asin(problem%level) + 2*pi*(i - 1))))
+    end do
+    call check%close_to(worst, 0.0_dp, 1e-4_dp, 'their times')
+  end subroutine double_passages_are_found
+end module test_adams

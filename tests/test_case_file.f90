@@ -1,0 +1,446 @@
+!> Case files: what is read, what is refused and with which words, and that a resolved case is the same case.
+module test_case_file
+  use kinds, only: dp
+  use errors, only: error_t, status_case_file
+  use case_definition, only: case_t
+  use case_file, only: read_case, parse_case, write_resolved, template
+  use posix, only: make_directory, remove_directory, remove_file
+  use result_file, only: result_file_t
+  use checks, only: checks_t
+  implicit none
+  private
+  public :: run_test_case_file
+
+  character(len=*), parameter :: n = achar(10)
+  character(len=*), parameter :: bodies = '&mechanism crank_length=0.05, crank_mass=0.3, crank_inertia=1d-5'//n// &
+    'rod_length=0.12 rod_mass=.21 rod_inertia=2.5E-4'//n//'piston_mass=0.14 /'//n//'&initial crank_speed=100 /'//n
+  character(len=*), parameter :: joint = '&joint kind=''clearance'' clearance=5e-4 bearing_radius=0.01 /'//n
+  character(len=*), parameter :: contact = '&contact /'//n
+  character(len=*), parameter :: run = '&integrator revolutions=2 /'//n
+  character(len=*), parameter :: whole = bodies//joint//contact//run
+  character(len=*), parameter :: joint_keys = ' (allowed: kind, clearance, bearing_radius, bearing_length)'
+
+contains
+
+  subroutine run_test_case_file(check)
+    class(checks_t), intent(inout) :: check
+    call test_values(check)
+    call test_forms(check)
+    call test_resolved(check)
+    call test_syntax(check)
+    call test_names(check)
+    call test_numbers(check)
+    call test_ranges(check)
+    call test_bodies(check)
+    call test_joint(check)
+    call test_films(check)
+    call test_runs(check)
+    call test_files(check)
+    call test_shipped_cases(check)
+    call test_safe_messages(check)
+  end subroutine run_test_case_file
+
+  !> Values arrive, defaults fill in, groups left out are absent.
+  subroutine test_values(check)
+    class(checks_t), intent(inout) :: check
+    type(case_t) :: c
+    type(error_t), allocatable :: error
+    character(len=40) :: none(0)
+    call parse_case(whole, 'folder/x.nml', none, c, error)
+    call check%that(.not. allocated(error), 'a plain case is read')
+    call check%equal_text(c%name, 'x', 'name without folder and .nml')
+    call check%equal_text(c%file, 'folder/x.nml', 'file as given')
+    call check%relative(c%mechanism%crank_inertia, 1e-5_dp, 0.0_dp, 'd exponent')
+    call check%relative(c%mechanism%gravity, 9.80665_dp, 0.0_dp, 'gravity by default')
+    call check%that(c%contact%is_present .and. .not. c%friction%is_present, 'presence of models')
+    call check%that(c%contact%law == 'lankarani_nikravesh', 'law by default')
+    call check%that(c%output%samples_per_revolution == 720 .and. c%output%columns == 'standard', 'output by default')
+    call check%that(c%integrator%max_order == 12 .and. c%integrator%method == 'adams', 'integrator by default')
+    call parse_case(whole, 'x.nml', [character(len=40) :: 'friction.coefficient=.1', 'friction.law=coulomb', &
+                                     'contact.youngs_modulus=1e11,2e11', 'case.title=A, b ''c''', &
+                                     'friction.coefficient=0.2'], c, error)
+    call check%that(.not. allocated(error), 'overrides are taken')
+    call check%that(c%friction%is_present, 'an override makes its group present')
+    call check%relative(c%friction%coefficient, 0.2_dp, 0.0_dp, 'the last override counts')
+    call check%relative(c%contact%youngs_modulus(2), 2e11_dp, 0.0_dp, 'override of an array')
+    call check%equal_text(c%title, 'A, b ''c''', 'text of an override without quotes')
+  end subroutine test_values
+
+  !> Every form of namelists that is allowed.
+  subroutine test_forms(check)
+    class(checks_t), intent(inout) :: check
+    type(case_t) :: c
+    type(error_t), allocatable :: error
+    character(len=1) :: none(0)
+    character(len=*), parameter :: bom = char(239)//char(187)//char(191), crlf = achar(13)//n
+    call parse_case(bom//'! comment / & ="'//crlf//'&CASE TITLE="it''s ""so"" ! / &" &END'//crlf//bodies//joint// &
+                    '&Contact'//achar(9)//'poissons_ratio=2*0.25, youngs_modulus(2)=1.5D+11'//crlf// &
+                    ' restitution = 0.5, ! comment'//crlf//' Law=''HERTZ'','//crlf//'/ ! comment'//crlf// &
+                    '&output every_step=T, ideal_twin=.TRUE., columns=''time'', ''rod_angle''/'//run(:len(run) - 1), &
+                    'x', none, c, error)
+    call check%that(.not. allocated(error), 'forms of namelists')
+    if (allocated(error)) call check%equal_text(error%message, '', 'forms')
+    call check%equal_text(c%title, 'it''s "so" ! / &', 'quotes, and what is no comment inside them')
+    call check%relative(c%contact%poissons_ratio(2), 0.25_dp, 0.0_dp, 'repeat count')
+    call check%relative(c%contact%youngs_modulus(1), 207e9_dp, 0.0_dp, 'element by default')
+    call check%relative(c%contact%youngs_modulus(2), 1.5e11_dp, 0.0_dp, 'element by index')
+    call check%that(c%contact%law == 'hertz', 'words in any case')
+    call check%that(c%output%every_step .and. c%output%ideal_twin, 'logicals')
+    call check%equal_text(c%output%columns, 'time,rod_angle', 'list of texts')
+    call parse_case(whole//'&case title='''//repeat('x', 3000)//''' /', 'x', none, c, error)
+    call check%that(len(c%title) == 3000, 'long lines')
+  end subroutine test_forms
+
+  !> A resolved case reads back as the same bits and the same text; so does the template.
+  subroutine test_resolved(check)
+    class(checks_t), intent(inout) :: check
+    type(case_t) :: c, back
+    type(error_t), allocatable :: error
+    character(len=40) :: none(0)
+    character(len=:), allocatable :: text
+    call parse_case(whole, 'x', [character(len=40) :: 'mechanism.crank_length=0.03333333333333', &
+                                 'joint.clearance=1.23456789012345e-5', 'case.title=it''s ''so'''], c, error)
+    call check%that(.not. allocated(error), 'case to resolve')
+    text = write_resolved(c)
+    call parse_case(text, 'x', none, back, error)
+    call check%that(.not. allocated(error), 'a resolved case is read')
+    call check%equal_text(write_resolved(back), text, 'resolved again')
+    call check%that(transfer(back%mechanism%crank_length, 1_8) == transfer(c%mechanism%crank_length, 1_8), 'bits of a length')
+    call check%that(transfer(back%joint%clearance, 1_8) == transfer(c%joint%clearance, 1_8), 'bits of the clearance')
+    call check%that(index(text, '&lubrication') == 0 .and. index(text, '&contact') > 0, 'absent groups stay absent')
+    call check%that(index(text, 'max_order = 12') > 0, 'defaults are written')
+    call parse_case(template(), 'x', none, c, error)
+    call check%that(.not. allocated(error), 'the template is a case')
+    text = write_resolved(c)
+    call parse_case(text, 'x', none, back, error)
+    call check%equal_text(write_resolved(back), text, 'the template resolved again')
+    call check%that(c%combustion%is_present .and. c%lubrication%is_present, 'the template has all models')
+    call parse_case(bodies//run, 'x', none, c, error)
+    text = write_resolved(c)
+    call parse_case(text, 'x', none, back, error)
+    call check%that(.not. allocated(error), 'a resolved case with an ideal joint is read')
+    call check%equal_text(write_resolved(back), text, 'ideal joint resolved again')
+  end subroutine test_resolved
+
+  subroutine test_syntax(check)
+    class(checks_t), intent(inout) :: check
+    call refused(check, '', 'x.nml: the file holds no group; gudgeon --template prints a case')
+    call refused(check, n//' ! only a comment', 'x.nml: the file holds no group; gudgeon --template prints a case')
+    call refused(check, 'words', 'x.nml:1: text outside a group: words')
+    call refused(check, whole//'/', 'x.nml:8: text outside a group: /')
+    call refused(check, '&joint', 'x.nml:1: &joint: not closed: / is missing before the end of the file')
+    call refused(check, '&joint'//n//' clearance=1 '//n//'&contact /', &
+                 'x.nml:1: &joint: not closed: / is missing before &contact')
+    call refused(check, n//'&joint kind=''a'//n//'/', 'x.nml:2: &joint kind: the string is not closed on its line: ''a')
+    call refused(check, '&joint clearance 1 /', 'x.nml:1: &joint clearance: = is missing')
+    call refused(check, '&joint clearance = /', 'x.nml:1: &joint clearance: a value is missing')
+    call refused(check, '&contact density=1,,2 /', 'x.nml:1: &contact density: a value is missing before the comma')
+    call refused(check, '&joint 5=3 /', 'x.nml:1: &joint: a key or / was expected, not 5=3 /')
+    call refused(check, '&joint clearance=1=2 /', 'x.nml:1: &joint clearance: unexpected =2 /')
+    call refused(check, '&end', 'x.nml:1: &end closes no group')
+    call refused(check, '& /', 'x.nml:1: a group''s name must follow &')
+    call refused(check, '&contact density(0)=1 /', &
+                 'x.nml:1: &contact density: the index must be a whole number in parentheses, as in key(1)')
+    call refused(check, '&contact density=2*, /', 'x.nml:1: &contact density: a value is missing after the repeat count')
+    call refused(check, '&contact density=99999*1 /', 'x.nml:1: &contact density: repeat count out of range: 99999*1')
+    call refused(check, '&joint '//repeat('clearance=1 ', 2000)//'/', 'x.nml:1: too many keys')
+    call refused_with(check, 'joint.clearance', 'x.nml: --set joint.clearance: must have the form GROUP.KEY=VALUE')
+    call refused_with(check, 'joint.clearance=1 /', 'x.nml: --set joint.clearance=1 /: unexpected /')
+  end subroutine test_syntax
+
+  subroutine test_names(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: groups = ' (allowed: case, mechanism, drive, initial, joint, contact, friction, '// &
+      'lubrication, combustion, integrator, output)'
+    call refused(check, '&jiont /', 'x.nml:1: &jiont: unknown group; did you mean joint?'//groups)
+    call refused(check, '&joint /'//n//'&joint /', 'x.nml:2: &joint: this group stands here twice')
+    call refused(check, '&joint'//n//'clearnce=1 /', 'x.nml:2: &joint clearnce: unknown key; did you mean clearance?'//joint_keys)
+    call refused(check, '&joint rod_length=1 /', &
+                 'x.nml:1: &joint rod_length: unknown key of this group; it belongs to &mechanism'//joint_keys)
+    call refused(check, '&joint clearance=1, clearance=2 /', 'x.nml:1: &joint clearance: given twice')
+    call refused(check, '&contact density(1)=1 density=2*1 /', 'x.nml:1: &contact density: given twice')
+    call refused_with(check, 'joint.clearnce=1', &
+                      'x.nml: --set joint.clearnce=1: &joint clearnce: unknown key; did you mean clearance?'//joint_keys)
+    call refused(check, '&joint kind=''fixed'' /', 'x.nml:1: &joint kind = fixed: must be one of ideal, clearance')
+    call refused(check, '&integrator method=''euler'' /', 'x.nml:1: &integrator method = euler: must be one of adams')
+    call refused(check, '&case /', 'x.nml: &mechanism: this group is required')
+    call refused(check, '&mechanism /', 'x.nml: &mechanism crank_length: required (m)')
+    call refused(check, whole//'&friction /', 'x.nml: &friction coefficient: required')
+  end subroutine test_names
+
+  subroutine test_numbers(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: at = 'x.nml:1: &joint clearance = ', reach = ': must be 0 or of a size from 1e-30 to 1e30 (m)'
+    call refused(check, '&joint clearance=abc /', at//'abc: must be a number (m)')
+    call refused(check, '&joint clearance=1e /', at//'1e: must be a number (m)')
+    call refused(check, '&joint clearance=1.2.3 /', at//'1.2.3: must be a number (m)')
+    call refused(check, '&joint clearance=. /', at//'.: must be a number (m)')
+    call refused(check, '&joint clearance=''1'' /', at//'1: must be a number, without quotes (m)')
+    call refused(check, '&joint clearance=NaN /', at//'NaN: must be a finite number (m)')
+    call refused(check, '&joint clearance=-Infinity /', at//'-Infinity: must be a finite number (m)')
+    call refused(check, '&joint clearance=1e400 /', at//'1e400'//reach)
+    call refused(check, '&joint clearance=1e99999999999 /', at//'1e99999999999'//reach)
+    call refused(check, '&joint clearance=1e-400 /', at//'1e-400'//reach)
+    call refused(check, '&joint clearance=1'//repeat('0', 35)//' /', at//'1'//repeat('0', 35)//reach)
+    call refused(check, '&joint clearance=1, 2 /', 'x.nml:1: &joint clearance: takes 1 value, not 2')
+    call refused(check, '&contact density=3*1 /', 'x.nml:1: &contact density: takes 2 values, not 3')
+    call refused(check, '&contact density=1 /', 'x.nml:1: &contact density: takes 2 values; as 2*1 where they are the same')
+    call refused(check, '&contact density(3)=1 /', 'x.nml:1: &contact density: takes 2 values, not 3')
+    call refused(check, '&integrator max_order=5.0 /', 'x.nml:1: &integrator max_order = 5.0: must be a whole number')
+    call refused(check, '&integrator max_steps=2147483648 /', &
+                 'x.nml:1: &integrator max_steps = 2147483648: must be a whole number up to 2147483647')
+    call refused(check, '&integrator max_steps=99999999999999999999 /', &
+                 'x.nml:1: &integrator max_steps = 99999999999999999999: must be a whole number up to 2147483647')
+    call refused(check, '&output every_step=yes /', 'x.nml:1: &output every_step = yes: must be .true. or .false.')
+  end subroutine test_numbers
+
+  subroutine test_ranges(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: fire = '&combustion bore=.07 compression_ratio=9 heat_capacity_ratio=1.4 heat=165 '// &
+      'wiebe_efficiency=5 wiebe_form=3 start_deg=340 duration_deg=40 /'
+    call refused_with(check, 'joint.clearance=-1e-5', 'x.nml: &joint clearance = -1e-5: must be > 0 (m)')
+    call refused_with(check, 'joint.clearance=0', 'x.nml: &joint clearance = 0: must be > 0 (m)')
+    call refused_with(check, 'mechanism.crank_length=0', 'x.nml: &mechanism crank_length = 0: must be > 0 (m)')
+    call refused_with(check, 'mechanism.piston_mass=0', 'x.nml: &mechanism piston_mass = 0: must be > 0 (kg)')
+    call refused_with(check, 'mechanism.rod_inertia=-1', 'x.nml: &mechanism rod_inertia = -1: must be >= 0 (kg m^2)')
+    call refused_with(check, 'contact.restitution=1.1', 'x.nml: &contact restitution = 1.1: must be >= 0 and <= 1')
+    call refused_with(check, 'contact.exponent=.9', 'x.nml: &contact exponent = .9: must be >= 1')
+    call refused_with(check, 'contact.youngs_modulus=1,0', 'x.nml: &contact youngs_modulus(2) = 0: must be > 0 (Pa)')
+    call refused_with(check, 'contact.poissons_ratio=.6,0', &
+                      'x.nml: &contact poissons_ratio(1) = .6: must be >= 0 and <= 0.5')
+    call refused_with(check, 'contact.stiffness=-1', 'x.nml: &contact stiffness = -1: must be > 0 (N/m^exponent)')
+    call refused_with(check, 'integrator.relative_tolerance=0', &
+                      'x.nml: &integrator relative_tolerance = 0: must be > 0 and <= 0.1')
+    call refused_with(check, 'integrator.relative_tolerance=.2', &
+                      'x.nml: &integrator relative_tolerance = .2: must be > 0 and <= 0.1')
+    call refused_with(check, 'integrator.max_order=13', 'x.nml: &integrator max_order = 13: must be >= 1 and <= 12')
+    call refused_with(check, 'integrator.max_order=0', 'x.nml: &integrator max_order = 0: must be >= 1 and <= 12')
+    call refused_with(check, 'integrator.max_steps=-1', 'x.nml: &integrator max_steps = -1: must be > 0')
+    call accepted(check, whole//fire, 'combustion')
+    call refused_with(check, 'combustion.bore=0', 'x.nml: &combustion bore = 0: must be > 0 (m)', fire)
+    call refused_with(check, 'combustion.compression_ratio=1', 'x.nml: &combustion compression_ratio = 1: must be > 1', fire)
+    call refused_with(check, 'combustion.heat_capacity_ratio=1', &
+                      'x.nml: &combustion heat_capacity_ratio = 1: must be > 1', fire)
+    call refused_with(check, 'combustion.heat=-1', 'x.nml: &combustion heat = -1: must be >= 0 (J)', fire)
+    call refused_with(check, 'combustion.wiebe_form=0', 'x.nml: &combustion wiebe_form = 0: must be > 0', fire)
+    call refused_with(check, 'combustion.wiebe_efficiency=0', 'x.nml: &combustion wiebe_efficiency = 0: must be > 0', fire)
+    call refused_with(check, 'combustion.start_deg=179', &
+                      'x.nml: &combustion start_deg = 179: must be >= 180 and < 540 (degrees)', fire)
+    call refused_with(check, 'combustion.duration_deg=0', 'x.nml: &combustion duration_deg = 0: must be > 0 (degrees)', fire)
+    call refused_with(check, 'combustion.duration_deg=201', 'x.nml: &combustion duration_deg = 201: '// &
+                      'start_deg + duration_deg must be <= 540, where the cylinder opens (degrees)', fire)
+    call refused_with(check, 'combustion.intake_pressure=0', 'x.nml: &combustion intake_pressure = 0: must be > 0 (Pa)', fire)
+  end subroutine test_ranges
+
+  !> The rod reaches round, and the mass matrix is positive definite.
+  subroutine test_bodies(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: crank = 'must be > 0 unless crank_mass is > 0 away from the axis, or '
+    call refused_with(check, 'mechanism.rod_length=0.05', &
+                      'x.nml: &mechanism rod_length = 0.05: must be > crank_length + clearance (m)')
+    call refused_with(check, 'mechanism.rod_length=0.0504', &
+                      'x.nml: &mechanism rod_length = 0.0504: must be > crank_length + clearance (m)')
+    call refused_on(check, bodies//run, ['mechanism.rod_length=0.05'], &
+                    'x.nml: &mechanism rod_length = 0.05: must be > crank_length (m)')
+    call refused_with(check, 'mechanism.rod_inertia=0', 'x.nml: &mechanism rod_inertia = 0: must be > 0 unless rod_mass '// &
+                      'is > 0 away from the crank pin (kg m^2)')
+    call refused_on(check, whole, [character(len=40) :: 'mechanism.crank_inertia=0', 'mechanism.rod_mass=0'], &
+                    'x.nml: &mechanism crank_inertia = 0: '//crank//'rod_mass and rod_inertia are (kg m^2)')
+    call refused_on(check, bodies//run, [character(len=40) :: 'mechanism.crank_inertia=0', 'mechanism.rod_inertia=0'], &
+                    'x.nml: &mechanism crank_inertia = 0: '//crank//'rod_inertia is (kg m^2)')
+    call accepted(check, whole, 'rod with its mass away from the pin', &
+                  [character(len=40) :: 'mechanism.rod_inertia=0', 'mechanism.rod_com=0.06,0'])
+    call accepted(check, whole, 'crank without inertia', [character(len=40) :: 'mechanism.crank_inertia=0'])
+    call accepted(check, bodies//run, 'rod without mass in an ideal joint', &
+                  [character(len=40) :: 'mechanism.rod_inertia=0', 'mechanism.rod_mass=0'])
+  end subroutine test_bodies
+
+  subroutine test_joint(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: no_play = 'must be clearance with contact, friction or lubrication: an ideal joint has '// &
+      'no play for them; leave those groups out'
+    call refused_with(check, 'joint.kind=ideal', 'x.nml: &joint kind = ideal: '//no_play)
+    call refused(check, bodies//run//contact, 'x.nml: &joint kind: '//no_play)
+    call refused(check, bodies//run//'&lubrication viscosity=1 /', 'x.nml: &joint kind: '//no_play)
+    call refused(check, bodies//run//'&joint clearance=1e-5 /', &
+                 'x.nml: &joint clearance = 1e-5: needs kind = ''clearance''; the default is ideal (m)')
+    call refused(check, bodies//run//'&joint kind=''clearance'' /'//contact, &
+                 'x.nml: &joint clearance: required with kind = ''clearance'' (m)')
+    call refused(check, bodies//run//'&joint kind=''clearance'' clearance=1e-5 /'//contact, &
+                 'x.nml: &joint bearing_radius: required with kind = ''clearance'' (m)')
+    call refused(check, bodies//run//joint, &
+                 'x.nml: &joint kind = clearance: needs contact or lubrication: nothing would hold the pin')
+    call refused_with(check, 'joint.bearing_radius=5e-4', &
+                      'x.nml: &joint bearing_radius = 5e-4: must be > clearance: the pin''s radius is the difference (m)')
+    call refused_with(check, 'friction.coefficient=0.1', 'x.nml: &friction v0: required with law = ''ambrosio'' (m/s)')
+    call refused_with(check, 'friction.v1=0.001', 'x.nml: &friction v1 = 0.001: must be >= v0 (m/s)', &
+                      '&friction coefficient=0.1 v0=0.01 v1=1 /')
+    call refused_with(check, 'friction.v0=-1', 'x.nml: &friction v0 = -1: must be >= 0 (m/s)', '&friction coefficient=0.1 /')
+    call refused_with(check, 'friction.coefficient=-1', 'x.nml: &friction coefficient = -1: must be >= 0')
+    call refused(check, bodies//run//'&joint kind=''clearance'' clearance=1e-5 bearing_radius=.01 bearing_length=.01 /'// &
+                 '&lubrication viscosity=1 / &friction coefficient=0 /', &
+                 'x.nml: &friction law: needs the group contact: dry friction follows the normal force')
+  end subroutine test_joint
+
+  subroutine test_films(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: film = '&lubrication viscosity=0.01 /'
+    character(len=*), parameter :: long = 'joint.bearing_length=0.015'
+    call refused(check, whole//film, 'x.nml: &joint bearing_length: required with lubrication (m)')
+    call accepted(check, whole//film, 'a film', [long])
+    call refused_with(check, 'lubrication.viscosity=0', 'x.nml: &lubrication viscosity = 0: must be > 0 (Pa s)', film)
+    call refused_on(check, whole//film, [character(len=40) :: long, 'lubrication.law=oscillating_film'], &
+                    'x.nml: &lubrication kinematic_viscosity: must be > 0 for oscillating_film (m^2/s)')
+    call refused_on(check, whole//film, [character(len=40) :: long, 'lubrication.variant=bearing_frame'], &
+                    'x.nml: &lubrication variant = bearing_frame: must be one of closed_form, as_printed, half_film for '// &
+                    'pinkus_sternlicht')
+    call refused_on(check, whole//film, [character(len=40) :: long, 'lubrication.law=oscillating_film', &
+                                         'lubrication.variant=half_film'], 'x.nml: &lubrication variant = half_film: '// &
+                    'must be one of bearing_frame, as_printed for oscillating_film')
+  end subroutine test_films
+
+  subroutine test_runs(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: still = 'initial.crank_speed=0   ', ends = 'integrator.end_time=1   '
+    call refused_with(check, 'integrator.end_time=1', &
+                      'x.nml: &integrator end_time = 1: must not be given together with revolutions (s)')
+    call refused_with(check, 'integrator.revolutions=0', &
+                      'x.nml: &integrator revolutions = 0: this or end_time is required, > 0')
+    call refused_with(check, 'integrator.revolutions=-1', 'x.nml: &integrator revolutions = -1: must be > 0')
+    call refused_with(check, still, 'x.nml: &integrator revolutions = 2: needs crank_speed other than 0; give end_time')
+    call refused_on(check, bodies, [still, ends], 'x.nml: &output interval: required with crank_speed = 0 (s)')
+    call accepted(check, bodies, 'a run from rest', [still, ends, 'output.interval=0.01    '])
+    call refused_on(check, bodies, [character(len=24) :: ends, 'output.start_time=1'], &
+                    'x.nml: &output start_time = 1: must be < end_time (s)')
+    call refused_with(check, 'output.interval=1e-20', 'x.nml: &output interval = 1e-20: asks for more than 1e9 rows (s)')
+    call refused_with(check, 'output.columns=time[s]', 'x.nml: &output columns = time[s]: must be ''standard'' or names of '// &
+                      'columns without their units')
+    call refused_with(check, 'integrator.contact_entry=step_rejection', 'x.nml: &integrator max_penetration: must be > 0 '// &
+                      'for contact_entry = ''step_rejection'' (m)')
+  end subroutine test_runs
+
+  !> Files that are none, and one that is.
+  subroutine test_files(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: folder = 'build/test_case_file'
+    type(result_file_t) :: file
+    type(case_t) :: c
+    type(error_t), allocatable :: error
+    character(len=1) :: none(0)
+    integer :: status
+    call make_directory(folder, status)
+    call read_case(folder//'/none.nml', none, c, error)
+    call expect(check, error, folder//'/none.nml: No such file or directory')
+    call read_case(folder, none, c, error)
+    call expect(check, error, folder//': Is a directory')
+    call read_case('/dev/zero', none, c, error)
+    call expect(check, error, '/dev/zero: larger than 1 MB: not a case file')
+    call file%open(folder//'/y.nml', error)
+    call file%put(whole)
+    call file%close(error)
+    call read_case(folder//'/y.nml', none, c, error)
+    call check%that(.not. allocated(error), 'a case file is read')
+    if (.not. allocated(error)) call check%equal_text(c%name, 'y', 'name of a case file')
+    call remove_file(folder//'/y.nml', status)
+    call remove_directory(folder, status)
+    call check%that(status == 0, 'scratch folder removed')
+  end subroutine test_files
+
+  !> The cases that come with the program are read, and resolved they are the same.
+  subroutine test_shipped_cases(check)
+    class(checks_t), intent(inout) :: check
+    character(len=24), parameter :: names(20) = [character(len=24) :: 'sim_I', 'sim_II', 'sim_III', 'sim_IV', 'sim_V', &
+      'sim_VI', 'sim_I_oscillating', 'sim_II_oscillating', 'sim_III_oscillating', 'sim_IV_oscillating', &
+      'sim_V_oscillating', 'sim_VI_oscillating', 'flores/dry_0500um', 'flores/dry_0100um', 'flores/dry_0010um', &
+      'flores/friction_010', 'flores/friction_050', 'flores/friction_100', 'flores/lubricated_400cP', 'flores/ideal']
+    type(case_t) :: c, back
+    type(error_t), allocatable :: error
+    character(len=1) :: none(0)
+    character(len=:), allocatable :: text
+    integer :: i
+    text = ''
+    do i = 1, size(names)
+      call read_case('cases/'//trim(names(i))//'.nml', none, c, error)
+      call check%that(.not. allocated(error), 'cases/'//trim(names(i))//'.nml is read')
+      if (allocated(error)) cycle
+      text = write_resolved(c)
+      call parse_case(text, 'x', none, back, error)
+      call check%equal_text(write_resolved(back), text, trim(names(i))//' resolved')
+    end do
+  end subroutine test_shipped_cases
+
+  !> Messages are one printable line of bounded length, whatever the file holds.
+  subroutine test_safe_messages(check)
+    class(checks_t), intent(inout) :: check
+    type(case_t) :: c
+    type(error_t), allocatable :: error
+    character(len=1) :: none(0)
+    call refused(check, '&joint clearance='//achar(27)//'[31m /', 'x.nml:1: &joint clearance = \x1B[31m: must be a number (m)')
+    call refused(check, '&case title=''a'//achar(7)//''' /', 'x.nml:1: &case title = a\x07: must not hold control '// &
+                 'characters or bytes that are not UTF-8')
+    call refused(check, achar(0)//char(255), 'x.nml:1: text outside a group: \x00\xFF')
+    call parse_case('&joint '//repeat('k', 5000)//'=1 /', repeat('p', 5000)//n//achar(27), none, c, error)
+    call check%that(allocated(error), 'long names are refused')
+    if (.not. allocated(error)) return
+    call check%that(len(error%message) < 500, 'messages are short')
+    call check%that(scan(error%message, n//achar(27)) == 0, 'no control characters in messages')
+  end subroutine test_safe_messages
+
+  !> A case is refused with exactly this message.
+  subroutine refused(check, text, message)
+    class(checks_t), intent(inout) :: check
+    character(len=*), intent(in) :: text, message
+    character(len=1) :: none(0)
+    call refused_on(check, text, none, message)
+  end subroutine refused
+
+  !> The plain case, perhaps with more groups, is refused with one override.
+  subroutine refused_with(check, override, message, more)
+    class(checks_t), intent(inout) :: check
+    character(len=*), intent(in) :: override, message
+    character(len=*), intent(in), optional :: more
+    if (present(more)) then
+      call refused_on(check, whole//more, [override], message)
+    else
+      call refused_on(check, whole, [override], message)
+    end if
+  end subroutine refused_with
+
+  subroutine refused_on(check, text, overrides, message)
+    class(checks_t), intent(inout) :: check
+    character(len=*), intent(in) :: text, overrides(:), message
+    type(case_t) :: c
+    type(error_t), allocatable :: error
+    call parse_case(text, 'x.nml', overrides, c, error)
+    call expect(check, error, message)
+  end subroutine refused_on
+
+  subroutine accepted(check, text, name, overrides)
+    class(checks_t), intent(inout) :: check
+    character(len=*), intent(in) :: text, name
+    character(len=*), intent(in), optional :: overrides(:)
+    type(case_t) :: c
+    type(error_t), allocatable :: error
+    character(len=1) :: none(0)
+    if (present(overrides)) then
+      call parse_case(text, 'x.nml', overrides, c, error)
+    else
+      call parse_case(text, 'x.nml', none, c, error)
+    end if
+    if (allocated(error)) then
+      call check%equal_text(error%message, '', name)
+    else
+      call check%that(.true., name)
+    end if
+  end subroutine accepted
+
+  subroutine expect(check, error, message)
+    class(checks_t), intent(inout) :: check
+    type(error_t), allocatable, intent(in) :: error
+    character(len=*), intent(in) :: message
+    call check%that(allocated(error), 'refused: '//message)
+    if (.not. allocated(error)) return
+    call check%equal_text(error%message, message, 'message')
+    call check%that(error%status == status_case_file, 'status of '//message)
+  end subroutine expect
+end module test_case_file

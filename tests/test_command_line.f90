@@ -1,0 +1,92 @@
+!> The command line: every option in every form, and what is refused.
+module test_command_line
+  use errors, only: error_t, status_command_line
+  use command_line, only: command_line_t, parse_command_line, help_text
+  use checks, only: checks_t
+  implicit none
+  private
+  public :: run_test_command_line
+
+  character(len=*), parameter :: hint = '; gudgeon --help lists the options'
+
+contains
+
+  subroutine run_test_command_line(check)
+    class(checks_t), intent(inout) :: check
+    call test_options(check)
+    call test_refusals(check)
+  end subroutine run_test_command_line
+
+  subroutine test_options(check)
+    class(checks_t), intent(inout) :: check
+    type(command_line_t) :: line
+    type(error_t), allocatable :: error
+    call parse_command_line(['a.nml'], line, error)
+    call check%that(.not. allocated(error), 'one case')
+    call check%equal_text(line%out, 'results', 'folder by default')
+    call check%equal_text(line%progress, 'auto', 'progress by default')
+    call check%equal_text(line%accuracy, '', 'accuracy by default')
+    call check%that(line%jobs == 0 .and. size(line%overrides) == 0 .and. size(line%cases) == 1, 'nothing else by default')
+    call parse_command_line([character(len=40) :: '-o', 'out dir', 'b/a.nml', '--set=joint.clearance=1e-5', '-s', &
+                             'case.title=x', '-scase.title=y', '--accuracy', 'draft', '-j4', '--progress=never', '-q', &
+                             '--check', '--', '-c.nml'], line, error)
+    call check%that(.not. allocated(error), 'all options')
+    call check%equal_text(line%out, 'out dir', '-o')
+    call check%that(size(line%overrides) == 3, 'three overrides')
+    call check%equal_text(trim(line%overrides(1)), 'joint.clearance=1e-5', '--set=')
+    call check%equal_text(trim(line%overrides(2)), 'case.title=x', '-s')
+    call check%equal_text(trim(line%overrides(3)), 'case.title=y', '-sVALUE')
+    call check%equal_text(line%accuracy, 'draft', '--accuracy')
+    call check%equal_text(line%progress, 'never', '--progress=')
+    call check%that(line%jobs == 4, '-jN')
+    call check%that(line%quiet .and. line%check .and. .not. line%help, 'switches')
+    call check%that(size(line%cases) == 2, 'two cases')
+    call check%equal_text(trim(line%cases(2)), '-c.nml', 'a case after --')
+    call parse_command_line(['-qh'], line, error)
+    call check%that(.not. allocated(error) .and. line%help .and. line%quiet, 'switches in one')
+    call parse_command_line(['-V'], line, error)
+    call check%that(.not. allocated(error) .and. line%version, 'version needs no case')
+    call parse_command_line(['--template'], line, error)
+    call check%that(.not. allocated(error) .and. line%template, 'template needs no case')
+    call check%that(index(help_text(), '--accuracy LEVEL') > 0, 'help lists options')
+  end subroutine test_options
+
+  subroutine test_refusals(check)
+    class(checks_t), intent(inout) :: check
+    character(len=1) :: none(0)
+    call refused(check, none, 'no case file given'//hint)
+    call refused(check, ['--chekc'], '--chekc: unknown option; did you mean --check?'//hint)
+    call refused(check, ['--xyzzy'], '--xyzzy: unknown option'//hint)
+    call refused(check, ['-x'], '-x: unknown option'//hint)
+    call refused(check, ['-'], '-: a case is read from a file, not from standard input'//hint)
+    call refused(check, [''], 'an empty argument is no case file'//hint)
+    call refused(check, ['--out'], '--out: a value is missing'//hint)
+    call refused(check, ['-o'], '-o: a value is missing'//hint)
+    call refused(check, ['--out='], '--out : must name a folder'//hint)
+    call refused(check, ['--quiet=1'], '--quiet: takes no value'//hint)
+    call refused(check, ['-sclearance=1'], '--set clearance=1: must have the form GROUP.KEY=VALUE'//hint)
+    call refused(check, ['-sjoint.clearance'], '--set joint.clearance: must have the form GROUP.KEY=VALUE'//hint)
+    call refused(check, ['-abest'], '--accuracy best: must be draft, standard or reference'//hint)
+    call refused(check, ['--progress=on'], '--progress on: must be auto, always or never'//hint)
+    call refused(check, ['-j0'], '--jobs 0: must be a whole number from 1 to 1024'//hint)
+    call refused(check, ['-j-1'], '--jobs -1: must be a whole number from 1 to 1024'//hint)
+    call refused(check, ['-j4 ', '-jx '], '--jobs x: must be a whole number from 1 to 1024'//hint)
+    call refused(check, ['a/x.nml', 'b/x.nml'], &
+                 'a/x.nml and b/x.nml: their results would have the same names; run them apart with --out')
+    call refused(check, [character(len=12) :: 'x.nml', 'x.ideal.nml'], &
+                 'x.nml and x.ideal.nml: their results would have the same names; run them apart with --out')
+    call refused(check, ['--'//achar(27)//achar(10)], '--\x1B\x0A: unknown option'//hint)
+  end subroutine test_refusals
+
+  subroutine refused(check, arguments, message)
+    class(checks_t), intent(inout) :: check
+    character(len=*), intent(in) :: arguments(:), message
+    type(command_line_t) :: line
+    type(error_t), allocatable :: error
+    call parse_command_line(arguments, line, error)
+    call check%that(allocated(error), 'refused: '//message)
+    if (.not. allocated(error)) return
+    call check%equal_text(error%message, message, 'message')
+    call check%that(error%status == status_command_line, 'status of '//message)
+  end subroutine refused
+end module test_command_line

@@ -1,0 +1,140 @@
+!> Small problems with known solutions for the tests of the integrator.
+module test_problems
+  use kinds, only: dp
+  use ode_problem, only: ode_problem_t, event_continue
+  implicit none
+  private
+  public :: oscillator_t, two_body_t, bouncing_ball_t, hopper_t
+
+  !> y'' = -y.
+  type, extends(ode_problem_t) :: oscillator_t
+  contains
+    procedure :: derivatives => oscillator_derivatives
+  end type oscillator_t
+
+  !> Kepler's problem in the plane (DETEST class D).
+  type, extends(ode_problem_t) :: two_body_t
+  contains
+    procedure :: derivatives => two_body_derivatives
+  end type two_body_t
+
+  !> A ball under g = 1 that rebounds from y = 0 with restitution r; `impacts` counts.
+  type, extends(ode_problem_t) :: bouncing_ball_t
+    real(dp) :: restitution = 0.5_dp
+    integer :: impacts = 0
+    real(dp) :: times(100) = 0
+  contains
+    procedure :: derivatives => ball_derivatives
+    procedure :: events => ball_events
+    procedure :: handle_event => ball_rebounds
+  end type bouncing_ball_t
+
+  !> A sine of which only the tips exceed a level: two passages close together inside one step.
+  type, extends(ode_problem_t) :: hopper_t
+    real(dp) :: level = 0.9999_dp
+    integer :: passages = 0
+    real(dp) :: times(100) = 0
+  contains
+    procedure :: derivatives => hopper_derivatives
+    procedure :: events => hopper_events
+    procedure :: handle_event => hopper_passes
+  end type hopper_t
+
+contains
+
+  pure subroutine oscillator_derivatives(self, t, y, dydt, inside)
+    class(oscillator_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: dydt(:)
+    logical, intent(out) :: inside
+    associate (unused_self => self, unused_t => t)
+    end associate
+    dydt(1) = y(2)
+    dydt(2) = -y(1)
+    inside = .true.
+  end subroutine oscillator_derivatives
+
+  pure subroutine two_body_derivatives(self, t, y, dydt, inside)
+    class(two_body_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: dydt(:)
+    logical, intent(out) :: inside
+    real(dp) :: r3
+    associate (unused_self => self, unused_t => t)
+    end associate
+    r3 = norm2(y(1:2))**3
+    dydt(1:2) = y(3:4)
+    dydt(3:4) = -y(1:2)/r3
+    inside = .true.
+  end subroutine two_body_derivatives
+
+  pure subroutine ball_derivatives(self, t, y, dydt, inside)
+    class(bouncing_ball_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: dydt(:)
+    logical, intent(out) :: inside
+    associate (unused_self => self, unused_t => t)
+    end associate
+    dydt(1) = y(2)
+    dydt(2) = -1
+    inside = .true.
+  end subroutine ball_derivatives
+
+  pure subroutine ball_events(self, t, y, g, g_rate)
+    class(bouncing_ball_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: g(:), g_rate(:)
+    associate (unused_self => self, unused_t => t)
+    end associate
+    g = -y(1)
+    g_rate = -y(2)
+  end subroutine ball_events
+
+  subroutine ball_rebounds(self, index, t, y, action)
+    class(bouncing_ball_t), intent(inout) :: self
+    integer, intent(in) :: index
+    real(dp), intent(in) :: t
+    real(dp), intent(inout) :: y(:)
+    integer, intent(out) :: action
+    self%impacts = self%impacts + index
+    if (self%impacts <= size(self%times)) self%times(self%impacts) = t
+    y(1) = 0
+    y(2) = -self%restitution*y(2)
+    action = event_continue
+  end subroutine ball_rebounds
+
+  pure subroutine hopper_derivatives(self, t, y, dydt, inside)
+    class(hopper_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: dydt(:)
+    logical, intent(out) :: inside
+    associate (unused_self => self, unused_t => t)
+    end associate
+    dydt(1) = y(2)
+    dydt(2) = -y(1)
+    inside = .true.
+  end subroutine hopper_derivatives
+
+  pure subroutine hopper_events(self, t, y, g, g_rate)
+    class(hopper_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: g(:), g_rate(:)
+    associate (unused_t => t)
+    end associate
+    g = y(1) - self%level
+    g_rate = y(2)
+  end subroutine hopper_events
+
+  subroutine hopper_passes(self, index, t, y, action)
+    class(hopper_t), intent(inout) :: self
+    integer, intent(in) :: index
+    real(dp), intent(in) :: t
+    real(dp), intent(inout) :: y(:)
+    integer, intent(out) :: action
+    associate (unused_y => y)
+    end associate
+    self%passages = self%passages + index
+    if (self%passages <= size(self%times)) self%times(self%passages) = t
+    action = event_continue
+  end subroutine hopper_passes
+end module test_problems

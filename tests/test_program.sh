@@ -1,0 +1,125 @@
+#!/bin/sh
+# The program as a user meets it: messages, exit statuses, files. Run from the top of the checkout, after a release
+# build; ends with the line "N passed, N failed".
+passed=0
+failed=0
+work=$(mktemp -d)
+trap 'chmod -R u+w "$work" 2>/dev/null; rm -rf "$work"' EXIT
+gudgeon=$(find build -path '*/app/gudgeon' -o -path '*/gudgeon' -type f -perm -u+x | xargs ls -t | head -n 1)
+[ -x "$gudgeon" ] || { echo "0 passed, 1 failed"; exit 1; }
+
+check() {   # check NAME CONDITION...: a test command
+  name=$1
+  shift
+  if "$@"; then passed=$((passed + 1)); else failed=$((failed + 1)); echo "FAILED: $name"; fi
+}
+
+run() {   # run ARGUMENTS...: sets status, $work/out and $work/err
+  "$gudgeon" "$@" >"$work/out" 2>"$work/err" </dev/null
+  status=$?
+}
+
+refused() {   # refused NAME STATUS PATTERN ARGUMENTS...: one line on standard error, nothing written
+  name=$1
+  want=$2
+  pattern=$3
+  shift 3
+  run -o "$work/refused" "$@"
+  check "$name: exit status $want, got $status" [ "$status" = "$want" ]
+  check "$name: one line, got $(cat "$work/err")" [ "$(wc -l <"$work/err")" = 1 ]
+  check "$name: message $(cat "$work/err")" grep -q "^gudgeon: .*$pattern" "$work/err"
+  check "$name: nothing written" [ ! -e "$work/refused" ]
+  check "$name: nothing on standard output" [ ! -s "$work/out" ]
+}
+
+edit() { sed "$1" cases/sim_I.nml >"$work/case.nml"; }   # edit SED: a changed simulation I
+
+# bad case files
+refused "missing file" 3 "No such file" "$work/none.nml"
+: >"$work/empty.nml"
+refused "empty file" 3 "empty.nml" "$work/empty.nml"
+edit 's/&drive/\&dirve/'
+refused "unknown group" 3 "dirve" "$work/case.nml"
+edit 's/ clearance =/ clearence =/'
+refused "misspelt key" 3 "&joint clearence.*did you mean clearance" "$work/case.nml"
+edit '/bearing_length/{n;d}'
+refused "missing /" 3 "/" "$work/case.nml"
+edit 's/20.0e-6/twenty/'
+refused "text for a number" 3 "&joint clearance" "$work/case.nml"
+edit 's/clearance = 20.0e-6/clearance = 0/'
+refused "clearance 0" 3 "&joint clearance = 0.*must be > 0 (m)" "$work/case.nml"
+edit 's/clearance = 20.0e-6/clearance = -1e-5/'
+refused "clearance < 0" 3 "&joint clearance = -1e-5.*must be > 0 (m)" "$work/case.nml"
+edit 's/rod_length = 0.2032/rod_length = 0.05/'
+refused "rod shorter than crank" 3 "rod_length" "$work/case.nml"
+edit 's/clearance = 20.0e-6/clearance = NaN/'
+refused "NaN" 3 "&joint clearance" "$work/case.nml"
+edit 's/samples_per_revolution = 720/columns = "time, cylinder_pressure"/'
+refused "a column that the scene does not have" 3 "cylinder_pressure" "$work/case.nml"
+refused "a folder for a case" 3 "." cases
+
+# bad command lines
+refused "no case" 2 "no case"
+refused "unknown option" 2 "unknown option" --colour cases/sim_I.nml
+refused "bad override" 3 "joint.clearance" --set joint.clearance=-1 cases/sim_I.nml
+refused "override without value" 2 "GROUP.KEY=VALUE" --set joint.clearance cases/sim_I.nml
+
+# what it tells
+run --help
+check "help" [ "$status" = 0 -a "$(grep -c -- --template "$work/out")" = 1 ]
+run --version
+check "version is that of fpm.toml" [ "$(cat "$work/out")" = "gudgeon $(sed -n 's/^version = "\(.*\)"/\1/p' fpm.toml)" ]
+run --template
+cp "$work/out" "$work/template.nml"
+run --check "$work/template.nml"
+check "the template is a correct case" [ "$status" = 0 ]
+run --check -o "$work/refused" cases/*.nml cases/flores/*.nml
+check "all cases are correct" [ "$status" = 0 -a ! -e "$work/refused" ]
+
+# results
+run -o "$work/r" -s integrator.revolutions=0.1 cases/sim_I.nml cases/flores/dry_0500um.nml cases/flores/ideal.nml
+check "three cases side by side" [ "$status" = 0 -a "$(wc -l <"$work/out")" = 3 -a ! -s "$work/err" ]
+for file in sim_I.csv sim_I.events.csv sim_I.summary.csv sim_I.resolved.nml sim_I.ideal.csv dry_0500um.csv ideal.csv; do
+  check "$file is there" [ -s "$work/r/$file" ]
+done
+check "no file under a temporary name" [ -z "$(find "$work/r" -name '*.part')" ]
+check "rows: 72 samples and the first, and the header" [ "$(wc -l <"$work/r/sim_I.csv")" = 74 ]
+check "every row has every column" [ "$(awk -F, '{print NF}' "$work/r/sim_I.csv" | sort -u | wc -l)" = 1 ]
+check "no NaN" [ "$(grep -ci -e nan -e inf "$work/r/sim_I.csv")" = 0 ]
+cp "$work/r/sim_I.resolved.nml" "$work/again.nml"
+run -o "$work/r" "$work/again.nml"
+check "the resolved case gives the same trace" cmp -s "$work/r/sim_I.csv" "$work/r/again.csv"
+for jobs in 1 4; do
+  run -j $jobs -o "$work/j$jobs" -s integrator.revolutions=0.1 cases/sim_I.nml cases/sim_II.nml cases/sim_III.nml \
+    cases/flores/dry_0500um.nml cases/flores/dry_0100um.nml cases/flores/friction_100.nml
+done
+for file in sim_I sim_II sim_III dry_0500um dry_0100um friction_100 sim_I.ideal dry_0100um.events; do
+  check "side by side gives the same bytes: $file" cmp -s "$work/j1/$file.csv" "$work/j4/$file.csv"
+done
+run -q -o "$work/r" -s integrator.revolutions=0.1 cases/flores/ideal.nml
+check "quiet" [ "$status" = 0 -a ! -s "$work/out" -a ! -s "$work/err" ]
+
+# failures keep what there is
+run -o "$work/f" -s integrator.max_steps=2000 cases/sim_I.nml
+check "a run that cannot go on has exit status 4, got $status" [ "$status" = 4 ]
+check "and says why and where" grep -q "max_steps.*t = .*crank angle.*phase film" "$work/err"
+check "and keeps its rows" [ "$(wc -l <"$work/f/sim_I.csv")" -gt 2 ]
+check "and its summary" grep -q '^status,"too many steps' "$work/f/sim_I.summary.csv"
+run -o "$work/m" -s integrator.revolutions=0.1 "$work/none.nml" cases/flores/ideal.nml
+check "one wrong case of two: the other runs" [ "$status" = 3 -a -s "$work/m/ideal.csv" ]
+: >"$work/file"
+run -o "$work/file" cases/flores/ideal.nml
+check "a results folder that is a file: exit status 5, got $status" [ "$status" = 5 -a "$(wc -l <"$work/err")" = 1 ]
+"$gudgeon" -o "$work/i" -s integrator.revolutions=4000 cases/sim_I.nml >"$work/out" 2>"$work/err" &
+pid=$!
+sleep 1
+kill -TERM $pid   # a shell starts background commands with SIGINT ignored
+wait $pid
+status=$?
+check "an interrupted run has exit status 4, got $status" [ "$status" = 4 ]
+check "and says so" grep -q "interrupted at t = " "$work/err"
+check "and keeps whole rows" [ "$(awk -F, '{print NF}' "$work/i/sim_I.csv" | sort -u | wc -l)" = 1 -a \
+  "$(wc -l <"$work/i/sim_I.csv")" -gt 100 ]
+
+echo "$passed passed, $failed failed"
+[ "$failed" = 0 ]

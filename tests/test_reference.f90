@@ -1,0 +1,81 @@
+!> Whole runs against the reference curves in data/ (an independent implementation, see data/README.md).
+module test_reference
+  use kinds, only: dp
+  use checks, only: checks_t
+  use collecting_sink, only: trace_t, run_case, load_trace, column
+  implicit none
+  private
+  public :: run_test_reference
+
+  character(len=20), parameter :: states(6) = [character(len=20) :: 'crank_angle[rad]', 'rod_angle[rad]', &
+    'piston_position[m]', 'crank_speed[rad/s]', 'rod_speed[rad/s]', 'piston_velocity[m/s]']
+
+contains
+
+  subroutine run_test_reference(check)
+    class(checks_t), intent(inout) :: check
+    call compare_states(check, 'cases/sim_I.nml', 'sim_I', '1e-9', 1e-5_dp)
+    call compare_states(check, 'cases/sim_II.nml', 'sim_II', '1e-9', 1e-5_dp)
+    call compare_states(check, 'cases/sim_III.nml', 'sim_III', '1e-9', 1e-5_dp)
+    call compare_states(check, 'cases/sim_IV.nml', 'sim_IV', '1e-9', 1e-5_dp)
+    call compare_states(check, 'cases/sim_V.nml', 'sim_V', '1e-9', 1e-5_dp)
+    call compare_states(check, 'cases/sim_VI.nml', 'sim_VI', '1e-9', 1e-5_dp)
+    call compare_states(check, 'cases/flores/lubricated_400cP.nml', 'flores_lubricated_400cP', '1e-9', 1e-5_dp)
+    call compare_events(check, 'cases/flores/dry_0500um.nml', 'flores_dry_0500um', '1e-10', 20, 1e-8_dp)
+    call compare_events(check, 'cases/flores/dry_0100um.nml', 'flores_dry_0100um', '1e-10', 100, 1e-6_dp)
+    call compare_events(check, 'cases/flores/dry_0010um.nml', 'flores_dry_0010um', '1e-10', 100, 1e-6_dp)
+    call compare_events(check, 'cases/flores/friction_010.nml', 'flores_friction_010', '1e-10', 100, 1e-6_dp)
+    call compare_events(check, 'cases/flores/friction_050.nml', 'flores_friction_050', '1e-10', 100, 1e-6_dp)
+    call compare_events(check, 'cases/flores/friction_100.nml', 'flores_friction_100', '1e-10', 100, 1e-6_dp)
+  end subroutine run_test_reference
+
+  !> Every state over the whole span of the reference, relative to the largest value that it takes.
+  subroutine compare_states(check, file, name, tolerance, allowed)
+    class(checks_t), intent(inout) :: check
+    character(len=*), intent(in) :: file, name, tolerance
+    real(dp), intent(in) :: allowed
+    type(trace_t) :: want, got
+    real(dp) :: error
+    character(len=200) :: overrides(4)
+    integer :: i, rows
+
+    want = load_trace(name)
+    rows = size(want%values, 2)
+    overrides(1) = 'integrator.relative_tolerance='//tolerance
+    overrides(2) = 'integrator.revolutions=0'
+    write (overrides(3), '(a,es23.16)') 'integrator.end_time=', want%values(1, rows)
+    write (overrides(4), '(a,es23.16)') 'output.interval=', want%values(1, rows)/(rows - 1)
+    got = run_case(file, overrides)
+    call check%that(.not. allocated(got%error), name//' runs')
+    call check%that(size(got%values, 2) == rows, name//' has every row')
+    if (size(got%values, 2) /= rows) return
+    do i = 1, size(states)
+      associate (g => got%values(column(got, states(i)), :), w => want%values(column(want, states(i)), :))
+        error = maxval(abs(g - w))/maxval(abs(w))
+        call check%close_to(error, 0.0_dp, allowed, name//' '//trim(states(i)))
+      end associate
+    end do
+  end subroutine compare_states
+
+  !> The first contact instants of the reference, at most `most` of them.
+  subroutine compare_events(check, file, name, tolerance, most, allowed)
+    class(checks_t), intent(inout) :: check
+    character(len=*), intent(in) :: file, name, tolerance
+    integer, intent(in) :: most
+    real(dp), intent(in) :: allowed
+    type(trace_t) :: want, got
+    integer :: n
+    character(len=200) :: overrides(1)
+
+    want = load_trace(name)
+    overrides(1) = 'integrator.relative_tolerance='//tolerance
+    got = run_case(file, overrides)
+    n = min(most, size(want%event))
+    call check%that(.not. allocated(got%error), name//' runs')
+    call check%that(size(got%event) >= n, name//' has the events')
+    n = min(n, size(got%event))
+    call check%that(all(got%event(:n)%kind == want%event(:n)%kind), name//' has events of the same kinds')
+    call check%close_to(maxval(abs(got%event(:n)%time - want%event(:n)%time)), 0.0_dp, allowed, &
+      name//' contact instants [s]')
+  end subroutine compare_events
+end module test_reference

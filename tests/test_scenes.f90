@@ -1,0 +1,155 @@
+!> Contact and friction inside whole scenes: entry by step rejection, sticking, energy, what a run leaves out.
+module test_scenes
+  use kinds, only: dp
+  use checks, only: checks_t
+  use collecting_sink, only: trace_t, run_case, column
+  implicit none
+  private
+  public :: run_test_scenes
+
+  integer, parameter :: long = 60
+
+contains
+
+  subroutine run_test_scenes(check)
+    class(checks_t), intent(inout) :: check
+    call step_rejection_limits_entry(check)
+    call sticking_is_the_limit_of_ramps(check)
+    call energy_is_accounted_for(check)
+    call contact_events_are_consistent(check)
+    call columns_are_those_asked_for(check)
+    call failures_name_their_place(check)
+  end subroutine run_test_scenes
+
+  !> Entry no deeper than allowed, no impact missed, and the instants converge to those of the root with the depth.
+  subroutine step_rejection_limits_entry(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: root, coarse, fine
+    character(len=long) :: common(2)
+    real(dp) :: error(2)
+
+    common = [character(len=long) :: 'integrator.relative_tolerance=1e-9', 'integrator.revolutions=0.4']
+    root = run_case('cases/flores/dry_0100um.nml', common)
+    coarse = run_case('cases/flores/dry_0100um.nml', [character(len=long) :: common, &
+      'integrator.contact_entry=step_rejection', 'integrator.max_penetration=1e-8'])
+    fine = run_case('cases/flores/dry_0100um.nml', [character(len=long) :: common, &
+      'integrator.contact_entry=step_rejection', 'integrator.max_penetration=1e-10'])
+    call check%that(size(root%event) >= 20, 'there are contacts')
+    call check%that(root%report%figures%max_entry_penetration < 1e-14_dp, 'a root enters without penetration')
+    call check%that(coarse%report%figures%max_entry_penetration <= 1e-8_dp, 'entry within 1e-8 m')
+    call check%that(fine%report%figures%max_entry_penetration <= 1e-10_dp, 'entry within 1e-10 m')
+    call check%that(coarse%report%statistics%rejected_penetration > 0, 'steps were rejected for their depth')
+    call check%that(root%report%statistics%rejected_penetration == 0, 'with roots none is')
+    call check%that(size(coarse%event) == size(root%event) .and. size(fine%event) == size(root%event), &
+      'step rejection misses no contact')
+    if (size(coarse%event) /= size(root%event) .or. size(fine%event) /= size(root%event)) return
+    error(1) = maxval(abs(coarse%event(:10)%time - root%event(:10)%time))
+    error(2) = maxval(abs(fine%event(:10)%time - root%event(:10)%time))
+    call check%that(error(1) < 1e-6_dp .and. error(2) < 0.05_dp*error(1), 'instants converge with the depth')
+  end subroutine step_rejection_limits_entry
+
+  !> Coulomb friction with sticking resolved by events against Ambrosio's ramps as they steepen.
+  subroutine sticking_is_the_limit_of_ramps(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: coulomb, ramp
+    character(len=long) :: common(2)
+    real(dp) :: error(3)
+    integer :: i, n
+    character(len=long), parameter :: speeds(3) = [character(len=long) :: '1e-2', '1e-3', '1e-4']
+
+    common = [character(len=long) :: 'integrator.relative_tolerance=1e-9', 'integrator.revolutions=0.5']
+    coulomb = run_case('cases/flores/friction_100.nml', [character(len=long) :: common, 'friction.law=coulomb', &
+      'friction.v0=0', 'friction.v1=0'])
+    call check%that(.not. allocated(coulomb%error), 'Coulomb friction runs')
+    do i = 1, 3
+      ramp = run_case('cases/flores/friction_100.nml', [character(len=long) :: common, 'friction.v0=0', &
+        'friction.v1='//trim(speeds(i))])
+      n = min(size(ramp%event), size(coulomb%event), 10)
+      call check%that(n == 10, 'there are contacts')
+      error(i) = maxval(abs(ramp%event(:n)%time - coulomb%event(:n)%time))
+    end do
+    call check%that(error(2) < 0.3_dp*error(1) .and. error(3) < 0.3_dp*error(2), 'ramps converge to Coulomb friction')
+    call check%close_to(coulomb%report%figures%max_energy_residual/coulomb%report%figures%max_energy, 0.0_dp, 1e-7_dp, &
+      'energy with Coulomb friction')
+  end subroutine sticking_is_the_limit_of_ramps
+
+  !> Energy residual relative to the peak energy.
+  subroutine energy_is_accounted_for(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    character(len=40), parameter :: files(4) = [character(len=40) :: 'cases/sim_I.nml', 'cases/flores/dry_0500um.nml', &
+      'cases/flores/friction_050.nml', 'cases/flores/lubricated_400cP.nml']
+    integer :: i
+    do i = 1, size(files)
+      trace = run_case(trim(files(i)), [character(len=long) :: 'integrator.relative_tolerance=1e-9', &
+        'integrator.revolutions=1'])
+      call check%close_to(trace%report%figures%max_energy_residual/trace%report%figures%max_energy, 0.0_dp, 1e-7_dp, &
+        'energy residual of '//trim(files(i)))
+      associate (r => trace%values(column(trace, 'energy_residual[J]'), :))
+        call check%that(maxval(abs(r)) <= trace%report%figures%max_energy_residual*(1 + 1e-6_dp) + 1e-9_dp, &
+          'rows show no more than the accepted points')
+      end associate
+    end do
+  end subroutine energy_is_accounted_for
+
+  subroutine contact_events_are_consistent(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    integer :: i
+    real(dp) :: contact_time, total
+
+    trace = run_case('cases/flores/dry_0500um.nml', [character(len=long) :: 'integrator.relative_tolerance=1e-9', &
+      'integrator.revolutions=1'])
+    contact_time = 0
+    do i = 1, size(trace%event)
+      call check%that(trace%event(i)%kind == merge(1, 2, mod(i, 2) == 1), 'begins and ends take turns')
+      if (i > 1) call check%that(trace%event(i)%time > trace%event(i - 1)%time, 'and follow in time')
+      if (trace%event(i)%kind == 1) then
+        call check%that(trace%event(i)%normal_speed > 0, 'the pin moves outwards where contact begins')
+      else
+        call check%that(trace%event(i)%normal_speed < 0, 'inwards where it ends')
+        call check%relative(trace%event(i)%duration, trace%event(i)%time - trace%event(i - 1)%time, 1e-12_dp, 'duration')
+        call check%that(trace%event(i)%max_penetration > 0 .and. trace%event(i)%max_normal_force > 0, 'peaks of a contact')
+        contact_time = contact_time + trace%event(i)%duration
+      end if
+    end do
+    total = trace%report%figures%contact_time
+    if (mod(size(trace%event), 2) == 0) call check%relative(total, contact_time, 1e-9_dp, 'contact time')
+    call check%that(trace%report%figures%max_entry_penetration < 1e-14_dp, 'contact begins at zero penetration')
+    associate (f => trace%values(column(trace, 'normal_force[N]'), :), h => trace%values(column(trace, 'film_thickness[m]'), :))
+      call check%that(all(f >= 0), 'the contact never pulls')
+      call check%that(all(f > 0 .eqv. h < -1e-15_dp), 'and presses exactly where there is penetration')
+    end associate
+    associate (fx => trace%values(column(trace, 'pin_force_x[N]'), :), &
+               ax => trace%values(column(trace, 'piston_acceleration[m/s2]'), :))
+      call check%close_to(maxval(abs(fx + 0.14_dp*ax)), 0.0_dp, 1e-9_dp, 'force and acceleration of the piston in every row')
+    end associate
+  end subroutine contact_events_are_consistent
+
+  subroutine columns_are_those_asked_for(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    trace = run_case('cases/flores/dry_0500um.nml', [character(len=long) :: 'integrator.revolutions=0.1', &
+      'output.columns=time, phase, crank_angle', 'output.samples_per_revolution=100'])
+    call check%that(size(trace%names) == 3 .and. size(trace%values, 2) == 11, 'three columns, eleven rows')
+    call check%that(trace%names(2) == 'crank_angle[rad]', 'in the order of the interface')
+    trace = run_case('cases/flores/dry_0500um.nml', [character(len=long) :: 'output.columns=time, cylinder_pressure'])
+    call check%that(allocated(trace%error), 'a column that the scene does not have is refused')
+    trace = run_case('cases/sim_I.nml', [character(len=long) :: 'integrator.revolutions=0.02'])
+    call check%that(column(trace, 'film_force_x[N]') > 0 .and. column(trace, 'cylinder_pressure[Pa]') == 0, &
+      'a scene has the columns of its models')
+  end subroutine columns_are_those_asked_for
+
+  subroutine failures_name_their_place(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    trace = run_case('cases/sim_I.nml', [character(len=long) :: 'integrator.max_steps=1000'])
+    call check%that(allocated(trace%error), 'too many steps end a run')
+    if (.not. allocated(trace%error)) return
+    call check%that(index(trace%error%message, 'max_steps') > 0 .and. index(trace%error%message, 'crank angle') > 0 &
+      .and. index(trace%error%message, 'phase film') > 0, 'with the reason and the place')
+    call check%that(size(trace%values, 2) > 1 .and. trace%report%statistics%accepted == 1000, 'and keep their rows')
+    trace = run_case('cases/sim_I.nml', [character(len=long) :: 'integrator.relative_tolerance=1e-16'])
+    call check%that(allocated(trace%error), 'a tolerance below rounding is refused')
+  end subroutine failures_name_their_place
+end module test_scenes
