@@ -90,11 +90,12 @@ contains
     class(contact_law_t), allocatable :: law
     type(error_t), allocatable :: error
     real(dp) :: state(2), k(2, 4), step
+    integer :: i
     call new_contact_law(contact_case_t(law=name, restitution=restitution, exponent=exponent, stiffness=1e9_dp), &
       bearing_radius, clearance, law, error)
     step = 4*(mass*impact_speed**2/1e9_dp)**(1/(exponent + 1))/impact_speed/steps
     state = [0.0_dp, impact_speed]
-    do
+    do i = 1, 4*steps
       k(:, 1) = rate(state)
       k(:, 2) = rate(state + step/2*k(:, 1))
       k(:, 3) = rate(state + step/2*k(:, 2))
@@ -165,6 +166,9 @@ contains
     call check%relative(law%normal_force(2e-6_dp, 0.99_dp*ratio_limit*0.01_dp, 0.01_dp), &
       reference*(1 + 0.75_dp*0.91_dp*0.99_dp*ratio_limit), 1e-14_dp, 'the printed law just inside the limit')
     call check%that(abs(law%normal_force(2e-6_dp, -0.2_dp, 0.1_dp)) <= 0, 'no adhesion')
+    call check%that(abs(law%normal_force(2e-6_dp, -1e-9_dp, 0.0_dp)) <= 0, 'no force on leaving a grazing contact')
+    call check%relative(law%normal_force(2e-6_dp, 1e-9_dp, 0.0_dp), reference*(1 + 0.75_dp*0.91_dp*ratio_limit), 1e-14_dp, &
+      'the limit on deepening a grazing contact')
     call check%that(abs(law%normal_force(0.0_dp, 0.1_dp, 0.1_dp)) <= 0, 'no force on touching')
     call check%that(abs(law%normal_force(-1e-6_dp, 0.1_dp, 0.1_dp)) <= 0, 'no force at a distance')
   end subroutine test_dissipation

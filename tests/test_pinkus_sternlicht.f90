@@ -7,6 +7,8 @@ module test_pinkus_sternlicht
   use case_definition, only: lubrication_case_t
   use film_law, only: film_law_t, film_motion_t
   use films, only: new_film_law
+  use half_film, only: half_film_t
+  use pinkus_sternlicht, only: new_pinkus_sternlicht
   implicit none
   private
   public :: run_test_pinkus_sternlicht
@@ -26,6 +28,10 @@ contains
     call test_printed_formula(check)
     call test_limits(check)
     call test_as_printed(check)
+    call test_half_film_table(check)
+    call test_half_film_integral(check)
+    call test_half_film_limits(check)
+    call test_pressure(check)
     call test_invariance(check)
     call test_extremes(check)
     call test_factory(check)
@@ -159,11 +165,172 @@ contains
     call check%that(norm2(one - other) <= 0, 'as printed is the same on approach')
   end subroutine test_as_printed
 
+  subroutine test_half_film_table(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: expected(2, 6) = reshape([-1.7488_dp, 4.8261_dp, -14.7324_dp, 6.6629_dp, 2.6801_dp, 3.0107_dp, &
+      -135.4481_dp, 23.1470_dp, 1.1114_dp, 4.5537_dp, 0.6850_dp, 4.9871_dp], [2, 6])
+    class(film_law_t), allocatable :: film
+    real(dp) :: force(2)
+    integer :: i
+    call make('half_film', film)
+    do i = 1, size(states, 2)
+      force = reduced_force(film, states(1, i), states(2, i), states(3, i), 0.7_dp, 0.4_dp)
+      call check%close_to(force(1), expected(1, i), 0.6e-4_dp, 'half film, radial')
+      call check%close_to(force(2), expected(2, i), 0.6e-4_dp, 'half film, tangential')
+    end do
+  end subroutine test_half_film_table
+
+  !> The half film against adaptive quadrature of the positive pressure.
+  subroutine test_half_film_integral(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: ratios(10) = &
+      [0.001_dp, 0.01_dp, 0.1_dp, 0.3_dp, 0.5_dp, 0.8_dp, 0.95_dp, 0.99_dp, 0.999_dp, 0.9999_dp]
+    real(dp), parameter :: speeds(9) = &
+      [-1e3_dp, -10.0_dp, -1.0_dp, -1e-3_dp, 0.0_dp, 1e-3_dp, 1.0_dp, 10.0_dp, 1e3_dp]
+    class(film_law_t), allocatable :: film
+    real(dp) :: got(2), want(2)
+    integer :: i, j, k
+    call make('half_film', film)
+    do i = 1, size(ratios)
+      do j = 1, size(speeds)
+        do k = 1, size(speeds)
+          got = reduced_force(film, ratios(i), speeds(j), speeds(k), 0.0_dp, 0.0_dp)
+          want = integrated_pressure(ratios(i), speeds(j), speeds(k))
+          call check%that(norm2(got - want) <= 1e-10_dp*norm2(want), 'half film is the integral of its pressure')
+        end do
+      end do
+    end do
+  end subroutine test_half_film_integral
+
+  !> Pressure (5.20) times (2 + eps^2)/6 at the angle a from the thickest place.
+  pure function reduced_pressure(eps, w, eps_dot, a) result(p)
+    real(dp), intent(in) :: eps, w, eps_dot, a
+    real(dp) :: p
+    p = (w*eps*sin(a)*(2 + eps*cos(a)) - eps_dot*(4*cos(a) + eps*cos(2*a)))/((1 + eps*cos(a))**2)
+  end function reduced_pressure
+
+  !> Radial and tangential force in the table's unit from the positive part of the pressure.
+  pure function integrated_pressure(eps, w, eps_dot) result(force)
+    real(dp), intent(in) :: eps, w, eps_dot
+    real(dp) :: force(2)
+    integer, parameter :: pieces = 64
+    real(dp) :: a, b, low, high, middle
+    integer :: i, j
+    force = 0
+    do i = 1, pieces
+      a = 2*pi*(i - 1)/pieces
+      b = 2*pi*i/pieces
+      low = a
+      high = b
+      if (reduced_pressure(eps, w, eps_dot, a) > 0 .neqv. reduced_pressure(eps, w, eps_dot, b) > 0) then
+        do j = 1, 60
+          middle = (low + high)/2
+          if (reduced_pressure(eps, w, eps_dot, middle) > 0 .eqv. reduced_pressure(eps, w, eps_dot, a) > 0) then
+            low = middle
+          else
+            high = middle
+          end if
+        end do
+      else
+        low = b
+      end if
+      if (reduced_pressure(eps, w, eps_dot, (a + low)/2) > 0) then
+        force = force + adaptive(eps, w, eps_dot, a, low, 0)
+      else if (low < b) then
+        force = force + adaptive(eps, w, eps_dot, low, b, 0)
+      end if
+    end do
+    force = 6/(2 + eps**2)*force
+  end function integrated_pressure
+
+  !> Integral of the pressure times (cos, sin) over [a, b], halved until five-point Gauss rules agree.
+  pure recursive function adaptive(eps, w, eps_dot, a, b, depth) result(total)
+    real(dp), intent(in) :: eps, w, eps_dot, a, b
+    integer, intent(in) :: depth
+    real(dp) :: total(2)
+    real(dp) :: whole(2), left(2), right(2), middle
+    middle = (a + b)/2
+    whole = gauss(eps, w, eps_dot, a, b)
+    left = gauss(eps, w, eps_dot, a, middle)
+    right = gauss(eps, w, eps_dot, middle, b)
+    total = left + right
+    if (depth == 0 .or. (depth < 12 .and. norm2(total - whole) > 1e-12_dp*norm2(total))) &
+      total = adaptive(eps, w, eps_dot, a, middle, depth + 1) + adaptive(eps, w, eps_dot, middle, b, depth + 1)
+  end function adaptive
+
+  pure function gauss(eps, w, eps_dot, a, b) result(total)
+    real(dp), intent(in) :: eps, w, eps_dot, a, b
+    real(dp) :: total(2)
+    real(dp) :: x(5), weight(5), angle
+    integer :: i
+    x(4:5) = sqrt(5 + 2*sqrt(10/7.0_dp)*[-1, 1])/3
+    x(3) = 0
+    x(1:2) = -x(4:5)
+    weight(4:5) = (322 - 13*sqrt(70.0_dp)*[-1, 1])/900
+    weight(3) = 128/225.0_dp
+    weight(1:2) = weight(4:5)
+    total = 0
+    do i = 1, 5
+      angle = (a + b)/2 + (b - a)/2*x(i)
+      total = total + (b - a)/2*weight(i)*reduced_pressure(eps, w, eps_dot, angle)*[cos(angle), sin(angle)]
+    end do
+  end function gauss
+
+  subroutine test_half_film_limits(check)
+    class(checks_t), intent(inout) :: check
+    class(film_law_t), allocatable :: film
+    type(film_motion_t) :: motion
+    real(dp) :: force(2), other(2), moment, eps
+    integer :: i
+    call make('half_film', film)
+    do i = 1, 9
+      eps = 0.11_dp*i
+      force = reduced_force(film, eps, 2.0_dp, 0.0_dp, 1.0_dp, 1.0_dp)
+      call check%relative(force(1), -24*eps**2/((2 + eps**2)*(1 - eps**2)), 1e-12_dp, 'half film, steady radial force')
+      call check%relative(force(2), 12*pi*eps/((2 + eps**2)*sqrt(1 - eps**2)), 1e-12_dp, 'half film, steady tangential')
+    end do
+    motion = film_motion_t(eccentricity=0, eccentricity_rate=clearance*[0.3_dp, -2.0_dp], pin_speed=5.0_dp)
+    call film%film_force(motion, force, moment)
+    call check%that(norm2(force/unit_force + 6*pi*[0.3_dp, -2.0_dp]) <= 1e-13_dp, 'half film, squeeze force at the centre')
+    do i = -100, -9
+      eps = 10.0_dp**i
+      motion%eccentricity = clearance*eps*[0.6_dp, 0.8_dp]
+      call film%film_force(motion, other, moment)
+      call check%that(norm2(other - force) <= 10*eps*norm2(force) + 1e-14_dp*norm2(force), 'half film, the centre')
+    end do
+    motion%eccentricity_rate = 0
+    motion%pin_speed = 0
+    call film%film_force(motion, force, moment)
+    call check%that(norm2(force) <= 0 .and. abs(moment) <= 0, 'half film, no force at rest')
+  end subroutine test_half_film_limits
+
+  !> The pressure function integrates to the half film's force.
+  subroutine test_pressure(check)
+    class(checks_t), intent(inout) :: check
+    integer, parameter :: points = 20000
+    type(half_film_t) :: film
+    type(film_motion_t) :: motion
+    real(dp) :: force(2), total(2), moment, angle, line_of_centres
+    integer :: i
+    call new_pinkus_sternlicht(film, bearing_radius, bearing_length, clearance, viscosity, .false.)
+    motion = film_motion_t(eccentricity=clearance*[0.3_dp, -0.5_dp], eccentricity_rate=clearance*[3.0_dp, 20.0_dp], &
+      pin_speed=70.0_dp)
+    call film%film_force(motion, force, moment)
+    line_of_centres = atan2(-0.5_dp, 0.3_dp)
+    total = 0
+    do i = 1, points
+      angle = 2*pi*i/points
+      total = total - film%pressure(motion, angle - line_of_centres)*[cos(angle), sin(angle)]
+    end do
+    total = total*2*pi/points*(bearing_radius - clearance)*bearing_length
+    call check%that(norm2(total - force) <= 1e-6_dp*norm2(force), 'the pressure pushes the pin with the force')
+  end subroutine test_pressure
+
   !> Turning the whole motion turns the force; mirroring it mirrors the force; the force is linear in the speeds; only W
   !> counts of the two rotations.
   subroutine test_invariance(check)
     class(checks_t), intent(inout) :: check
-    character(len=11), parameter :: variants(1) = ['closed_form']
+    character(len=11), parameter :: variants(2) = ['closed_form', 'half_film  ']
     class(film_law_t), allocatable :: film
     real(dp) :: one(2), other(2)
     integer :: i
@@ -183,7 +350,7 @@ contains
 
   subroutine test_extremes(check)
     class(checks_t), intent(inout) :: check
-    character(len=11), parameter :: variants(2) = ['closed_form', 'as_printed ']
+    character(len=11), parameter :: variants(3) = ['closed_form', 'as_printed ', 'half_film  ']
     real(dp), parameter :: ratios(9) = &
       [0.0_dp, 1e-310_dp, 1e-100_dp, 1e-10_dp, 0.999999_dp, 1.0_dp, 1.0000001_dp, 2.0_dp, 1e10_dp]
     real(dp), parameter :: speeds(5) = [-1e10_dp, -1e-100_dp, 0.0_dp, 1e-20_dp, 1e10_dp]

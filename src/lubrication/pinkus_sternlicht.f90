@@ -28,7 +28,7 @@ module pinkus_sternlicht
   contains
     procedure :: film_force
     procedure :: pressure
-    procedure :: reduced
+    procedure, non_overridable :: reduced
   end type pinkus_sternlicht_t
 
 contains
