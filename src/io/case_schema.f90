@@ -130,7 +130,7 @@ contains
     type(key_t), allocatable :: keys(:)
     character(len=*), parameter :: i = 'integrator', o = 'output'
     keys = [ &
-      word_key(i, 'method', 'adams', 'adams', 'variable step, variable order'), &
+      word_key(i, 'method', 'adams', 'adams, radau', 'adams: Shampine and Gordon; radau: implicit, for films'), &
       real_key(i, 'revolutions', '', '> 0', '0: end_time is given', default='0.0', example='4.0'), &
       real_key(i, 'end_time', 's', '> 0', '0: revolutions is given', default='0.0'), &
       real_key(i, 'relative_tolerance', '', '> 0 and <= 0.1', 'local error', default='1.0e-6'), &
