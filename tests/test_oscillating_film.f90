@@ -176,7 +176,7 @@ contains
     end do
   end subroutine test_points
 
-  !> Largest relative difference of two responses.
+  !> Largest difference of two responses, relative to pressure and shear together, since either may vanish.
   pure function distance(one, other, eps, wave_number)
     type(oscillating_response_t), intent(in) :: one, other
     real(dp), intent(in) :: eps, wave_number
@@ -184,8 +184,8 @@ contains
     type(film_phasors_t) :: a, b
     a = one%phasors(eps, wave_number**2/4)
     b = other%phasors(eps, wave_number**2/4)
-    distance = max(abs(a%pressure - b%pressure)/abs(b%pressure), abs(a%shear - b%shear)/abs(b%moment), &
-      abs(a%moment - b%moment)/abs(b%moment))
+    distance = max(abs(a%pressure - b%pressure), abs(a%shear - b%shear), abs(a%moment - b%moment)) &
+      /(abs(b%pressure) + abs(b%moment))
   end function distance
 
   !> The rule's own choice of points keeps the accuracy asked for.
