@@ -131,7 +131,7 @@ contains
   pure integer function first_level(self)
     class(radau_t), intent(in) :: self
     real(dp) :: tolerance
-    tolerance = maxval(self%settings%relative)
+    tolerance = self%nominal_tolerance()
     first_level = 2
     if (tolerance > 1e-4_dp) first_level = 1
     if (tolerance < 1e-9_dp) first_level = 3
@@ -150,7 +150,7 @@ contains
     class(radau_t), intent(inout) :: self
     real(dp) :: tolerance, factor, weight
     integer :: i
-    tolerance = max(maxval(self%settings%relative), tiny(1.0_dp))
+    tolerance = self%nominal_tolerance()
     factor = inner_tolerance(tolerance, self%formula(self%level)%stages)/tolerance
     do i = 1, self%n
       weight = factor*(self%settings%relative(i)*abs(self%y(i)) + self%settings%absolute(i))
@@ -202,8 +202,7 @@ contains
     integer :: outcome
 
     call weigh(self)
-    if (inner_tolerance(max(maxval(self%settings%relative), tiny(1.0_dp)), self%formula(self%level)%stages) &
-        < 20*epsilon(1.0_dp)) then
+    if (inner_tolerance(self%nominal_tolerance(), self%formula(self%level)%stages) < 20*epsilon(1.0_dp)) then
       status = tolerance_too_small
       return
     end if
@@ -403,7 +402,7 @@ contains
     class(radau_t), intent(in) :: self
     real(dp) :: tolerance, s
     s = self%formula(self%level)%stages
-    tolerance = inner_tolerance(max(maxval(self%settings%relative), tiny(1.0_dp)), self%formula(self%level)%stages)
+    tolerance = inner_tolerance(self%nominal_tolerance(), self%formula(self%level)%stages)
     newton_goal = max(10*epsilon(1.0_dp)/tolerance, min(0.03_dp, tolerance**(2*s/(s + 1) - 1)))
   end function newton_goal
 

@@ -132,6 +132,7 @@ contains
     logical :: growing(scene%n)
 
     settings%span = simulated_time(case)
+    settings%tolerance = case%integrator%relative_tolerance
     call scene%natural_scales(settings%span, scales, growing)
     factor = case%integrator%absolute_tolerance
     if (.not. factor > 0) factor = case%integrator%relative_tolerance
