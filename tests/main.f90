@@ -7,6 +7,7 @@ program gudgeon_tests
   use test_combustion, only: run_test_combustion
   use test_command_line, only: run_test_command_line
   use test_contact, only: run_test_contact
+  use test_findings, only: run_test_findings
   use test_friction, only: run_test_friction
   use test_mechanism, only: run_test_mechanism
   use test_oscillating_film, only: run_test_oscillating_film
@@ -22,6 +23,7 @@ program gudgeon_tests
   call run_test_combustion(check)
   call run_test_command_line(check)
   call run_test_contact(check)
+  call run_test_findings(check)
   call run_test_friction(check)
   call run_test_mechanism(check)
   call run_test_oscillating_film(check)
