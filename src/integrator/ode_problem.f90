@@ -7,7 +7,7 @@ module ode_problem
   use kinds, only: dp
   implicit none
   private
-  public :: ode_problem_t
+  public :: ode_problem_t, difference_jacobian
   public :: step_admitted, step_too_deep, step_outside
   public :: event_continue, event_stop, max_events
 
