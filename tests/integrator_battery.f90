@@ -43,6 +43,8 @@ program integrator_battery
   select case (mode)
   case ('reference')
     call print_references()
+  case ('orders')
+    call print_orders(trim(file))
   case ('scenes')
     call print_scenes(trim(file))
   case default
@@ -127,6 +129,26 @@ contains
     end do
     close (unit)
   end subroutine print_scenes
+
+  subroutine print_orders(reference_file)
+    character(len=*), intent(in) :: reference_file
+    type(result_t) :: got
+    real(dp) :: final(watched), largest(watched), spread, tolerance
+    integer :: unit, i, j, number, order
+    open (newunit=unit, file=reference_file, status='old', action='read')
+    do i = 1, 2
+      read (unit, *) number, final, largest, spread
+      do j = 1, n_tolerances
+        tolerance = 10.0_dp**(-4 - 2*j)
+        do order = 4, 12
+          call run(i, tolerance, order, got)
+          print '(2i3,i7,i4,es10.2)', i, j, got%method%statistics%evaluations, order, &
+            maxval(abs(got%final(:6) - final(:6))/largest(:6))
+        end do
+      end do
+    end do
+    close (unit)
+  end subroutine print_orders
 
   pure real(dp) function mean_order(counts)
     integer, intent(in) :: counts(:)

@@ -4,6 +4,10 @@
 !>
 !> Differences from the published code, each deliberate:
 !> - the first step is chosen from the size of y'' by one more evaluation, not from |f| alone;
+!> - after a start where the problem says that f is smooth in sqrt(t - t_start) (a contact that begins: the force goes
+!>   with the power 1.5 of the penetration) the method steps in x = sqrt(t - t_start), y' = 2 x f: order and step rise
+!>   as from a smooth start;
+!> - a step may also grow by a quarter, not only double;
 !> - trial states outside the model and steps that a problem refuses are rejected like errors;
 !> - the interpolant also matches y at the beginning of the step, so it is continuous with its derivative;
 !> - y is summed with compensation at every tolerance.
@@ -39,7 +43,11 @@ module adams
     integer :: k = 1                    !! order of the next step
     integer :: k_old = 0                !! order of the last accepted step, 0 at a start
     logical :: closed = .false.         !! `closing` belongs to the last accepted step
-    real(dp) :: h = 0                   !! size of the next step
+    logical :: rooted = .false.         !! the clock is x = sqrt(t - t_origin), else the time itself
+    real(dp) :: t_origin = 0            !! where a rooted clock began
+    real(dp) :: x = 0                   !! the clock at the end of the last accepted step
+    real(dp) :: x_old = 0               !! at its beginning
+    real(dp) :: h = 0                   !! size of the next step, by the clock
     real(dp) :: h_old = 0               !! size of the last accepted step
     logical :: opening = .true.         !! order and step are still being raised from the start
     real(dp), allocatable :: phi(:, :)  !! modified divided differences, (n, highest_order+2)
@@ -72,6 +80,10 @@ contains
     self%order = 0
     self%closed = .false.
     self%carry = 0
+    self%rooted = problem%smooth_in_root
+    self%t_origin = t
+    self%x = merge(0.0_dp, t, self%rooted)
+    self%x_old = self%x
     self%statistics%evaluations = self%statistics%evaluations + 1
     if (.not. first) self%statistics%restarts = self%statistics%restarts + 1
     call problem%derivatives(t, self%y, self%f, inside)
@@ -84,7 +96,7 @@ contains
     self%opening = .true.
     call self%coefficients%reset()
     self%phi = 0
-    self%phi(:, 1) = self%f(:self%n)
+    if (.not. self%rooted) self%phi(:, 1) = self%f(:self%n)
     call weigh(self)
     call choose_first_step(self, problem)
   end subroutine start
@@ -137,21 +149,42 @@ contains
       if (inside) exit
       h = 0.1_dp*h
     end do
-    curvature = 0
-    if (inside) curvature = norm2((self%f_predicted(:self%n) - self%f(:self%n))*self%inverse_weight)/h
-    if (curvature > 0) then
+    if (self%rooted) then   ! by the clock, y'' is 2 f at the start
+      longest = sqrt(longest)
+      h = sqrt(h)
+      curvature = 2*norm2(self%f_predicted(:self%n)*self%inverse_weight)
+    else
+      curvature = norm2((self%f_predicted(:self%n) - self%f(:self%n))*self%inverse_weight)/h
+    end if
+    if (inside .and. curvature > 0) then
       self%h = min(sqrt(0.5_dp/curvature), 100*h, longest)
     else
       self%h = min(100*h, longest)
     end if
   end subroutine choose_first_step
 
+  !> The time at clock x.
+  pure real(dp) function time_at(self, x)
+    class(adams_t), intent(in) :: self
+    real(dp), intent(in) :: x
+    time_at = x
+    if (self%rooted) time_at = self%t_origin + x**2
+  end function time_at
+
+  !> How far the clock goes while the time goes by dt from the end of the last accepted step.
+  pure real(dp) function clock_step(self, dt)
+    class(adams_t), intent(in) :: self
+    real(dp), intent(in) :: dt
+    clock_step = dt
+    if (self%rooted) clock_step = dt/(sqrt(self%x**2 + dt) + self%x)
+  end function clock_step
+
   subroutine step(self, problem, status)
     class(adams_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
     integer, intent(out) :: status
     type(error_estimates_t) :: errors
-    real(dp) :: t_new, fraction
+    real(dp) :: x_new, t_new, fraction
     integer :: outcome, failures
 
     call weigh(self)
@@ -165,14 +198,15 @@ contains
         status = step_too_small
         return
       end if
-      t_new = self%t + self%h
+      x_new = self%x + self%h
+      t_new = time_at(self, x_new)
       call self%coefficients%update(self%h, self%h_old, self%k, self%k_old)
       call predict(self)
-      call attempt(self, problem, t_new, errors, outcome, fraction)
+      call attempt(self, problem, x_new, t_new, errors, outcome, fraction)
       if (outcome == try_accepted) exit
       call retreat(self, errors, outcome, fraction, failures)
     end do
-    call accept(self, t_new)
+    call accept(self, x_new, t_new)
     call choose_order_and_step(self, errors)
     status = step_done
   end subroutine step
@@ -180,7 +214,7 @@ contains
   !> The shortest step that the time can still resolve.
   pure real(dp) function shortest_step(self)
     class(adams_t), intent(in) :: self
-    shortest_step = 4*epsilon(1.0_dp)*max(abs(self%t), 1e-9_dp*self%settings%span)
+    shortest_step = clock_step(self, 4*epsilon(1.0_dp)*max(abs(self%t), 1e-9_dp*self%settings%span))
   end function shortest_step
 
   !> Predict y at the end of the step; phi becomes the differences that the prediction extrapolates.
@@ -210,10 +244,10 @@ contains
   end subroutine predict
 
   !> Evaluate, estimate the error, correct, let the problem judge, evaluate again.
-  subroutine attempt(self, problem, t_new, errors, outcome, fraction)
+  subroutine attempt(self, problem, x_new, t_new, errors, outcome, fraction)
     class(adams_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
-    real(dp), intent(in) :: t_new
+    real(dp), intent(in) :: x_new, t_new
     type(error_estimates_t), intent(out) :: errors
     integer, intent(out) :: outcome
     real(dp), intent(out) :: fraction   !! part of the step to try next, where the problem refused it
@@ -225,6 +259,7 @@ contains
     self%statistics%evaluations = self%statistics%evaluations + 1
     call problem%derivatives(t_new, self%predicted, self%f_predicted, inside)
     if (.not. inside) return
+    if (self%rooted) self%f_predicted(:self%n) = 2*x_new*self%f_predicted(:self%n)
     call estimate_errors(self, errors)
     if (.not. errors%step <= 1) then   ! a NaN is an error too
       outcome = try_error
@@ -240,6 +275,7 @@ contains
       fraction = 0.5_dp
       return
     end if
+    if (self%rooted) self%f_new(:self%n) = 2*x_new*self%f_new(:self%n)
     outcome = try_accepted
   end subroutine attempt
 
@@ -312,9 +348,9 @@ contains
   end subroutine retreat
 
   !> The step stands: update the differences with the second evaluation.
-  pure subroutine accept(self, t_new)
+  pure subroutine accept(self, x_new, t_new)
     class(adams_t), intent(inout) :: self
-    real(dp), intent(in) :: t_new
+    real(dp), intent(in) :: x_new, t_new
     real(dp) :: highest
     integer :: i, j, k
 
@@ -323,6 +359,8 @@ contains
     self%h_old = self%h
     self%t_old = self%t
     self%t = t_new
+    self%x_old = self%x
+    self%x = x_new
     do i = 1, self%n
       self%carry(i) = (self%y_new(i) - self%predicted(i)) - &
         (self%h*self%coefficients%g(k + 1)*(self%f_predicted(i) - self%phi(i, 1)) - self%carry_predicted(i))
@@ -336,17 +374,19 @@ contains
       end do
     end do
     self%f = self%f_new
+    if (self%rooted) self%f(:self%n) = self%f_new(:self%n)/(2*x_new)
     self%order = k
     self%closed = .false.
     associate (count => self%statistics)
       count%accepted = count%accepted + 1
       count%order_count(k) = count%order_count(k) + 1
-      count%smallest_step = min(count%smallest_step, self%h)
+      count%smallest_step = min(count%smallest_step, self%t - self%t_old)
     end associate
   end subroutine accept
 
   !> The order and size of the next step (Shampine & Gordon, ch. 7): order raised while opening; else where the
-  !> errors fall with the order; the step doubled, kept, or cut to what the tolerance allows.
+  !> errors fall with the order; the step doubled, raised by a quarter, kept, or cut to what the tolerance allows. Above order 4 it is raised by
+  !> a quarter only after k steps of one size, which a rise of the order needs too.
   pure subroutine choose_order_and_step(self, errors)
     class(adams_t), intent(inout) :: self
     type(error_estimates_t), intent(in) :: errors
@@ -379,6 +419,8 @@ contains
 
     if (0.5_dp >= error*2.0_dp**(self%k + 1)) then
       factor = 2
+    else if (0.5_dp >= error*1.25_dp**(self%k + 1) .and. self%coefficients%ns > merge(2, self%k, self%k <= 4)) then
+      factor = 1.25_dp
     else if (0.5_dp >= error) then
       factor = 1
     else
@@ -391,7 +433,7 @@ contains
   pure real(dp) function grown(self, factor)
     class(adams_t), intent(in) :: self
     real(dp), intent(in) :: factor
-    grown = min(factor*self%h, self%settings%max_step)
+    grown = min(factor*self%h, clock_step(self, self%settings%max_step))
   end function grown
 
   !> The polynomial of degree k+2 whose derivative takes the values f_n+1, f_n, ... f_n+1-k and that passes through
@@ -405,14 +447,15 @@ contains
 
     k = self%k_old
     s = t - self%t
+    if (self%rooted) s = sqrt(max(t - self%t_origin, 0.0_dp)) - self%x
     if (k == 0 .or. s >= 0) then
       y = self%y
       return
     end if
     if (.not. self%closed) then
-      call interpolation_weights(self%coefficients, k, self%t_old - self%t, weights)
+      call interpolation_weights(self%coefficients, k, self%x_old - self%x, weights)
       self%closing = self%y_old - self%y
-      self%closing = self%closing/(self%t_old - self%t)
+      self%closing = self%closing/(self%x_old - self%x)
       do j = 1, k + 1
         self%closing = self%closing - weights(j)*self%phi(:, j)
       end do

@@ -27,6 +27,7 @@ module ode_problem
     integer :: n = 0          !! number of equations
     integer :: n_outputs = 0  !! further values that `derivatives` puts behind the n derivatives
     integer :: n_events = 0   !! number of event functions in the present discrete state
+    logical :: smooth_in_root = .false. !! from the last (re)start on f is smooth in sqrt(t - t_start), not in t
   contains
     procedure(derivatives), deferred :: derivatives
     procedure :: events => no_events
