@@ -1,7 +1,9 @@
-!> The integrator measured on four scenes: evaluations, steps and error against tolerance. Run by scripts/compare_adams.sh.
+!> The integrator measured: evaluations, steps and error against tolerance on four scenes and on the standard battery of
+!> non-stiff problems. Run by scripts/compare_adams.sh.
 !>
 !>     integrator_battery reference       prints a reference for every scene; meant for a build in extended precision
 !>     integrator_battery scenes FILE     prints the table, errors against the references in FILE
+!>     integrator_battery standard_reference, integrator_battery standard FILE: the same for the standard battery
 program integrator_battery
   use kinds, only: dp
   use ode_method, only: ode_settings_t
@@ -12,10 +14,12 @@ program integrator_battery
   use errors, only: error_t
   use scene, only: scene_t
   use scene_builder, only: build_scene, settings_for
+  use standard_problems, only: standard_problem_t, new_standard_problem, n_standard_problems, names
+  use sampler, only: sampler_t
   use state_watcher, only: state_watcher_t, watched
   implicit none
 
-  integer, parameter :: n_scenes = 4, n_tolerances = 4
+  integer, parameter :: n_scenes = 4, n_tolerances = 4, n_samples = 20
   character(len=40), parameter :: files(n_scenes) = [character(len=40) :: 'cases/flores/lubricated_400cP.nml', &
     'cases/flores/dry_0500um.nml', 'cases/sim_I.nml', 'cases/sim_IV.nml']
   character(len=24), parameter :: spans(n_scenes) = [character(len=24) :: 'end_time=0.024', 'end_time=0.010', &
@@ -43,12 +47,14 @@ program integrator_battery
   select case (mode)
   case ('reference')
     call print_references()
-  case ('orders')
-    call print_orders(trim(file))
+  case ('standard_reference')
+    call print_standard_references()
+  case ('standard')
+    call print_standard(trim(file))
   case ('scenes')
     call print_scenes(trim(file))
   case default
-    error stop 'integrator_battery reference | scenes FILE'
+    error stop 'integrator_battery reference | scenes FILE | standard_reference | standard FILE'
   end select
 
 contains
@@ -130,25 +136,85 @@ contains
     close (unit)
   end subroutine print_scenes
 
-  subroutine print_orders(reference_file)
-    character(len=*), intent(in) :: reference_file
-    type(result_t) :: got
-    real(dp) :: final(watched), largest(watched), spread, tolerance
-    integer :: unit, i, j, number, order
-    open (newunit=unit, file=reference_file, status='old', action='read')
-    do i = 1, 2
-      read (unit, *) number, final, largest, spread
-      do j = 1, n_tolerances
-        tolerance = 10.0_dp**(-4 - 2*j)
-        do order = 4, 12
-          call run(i, tolerance, order, got)
-          print '(2i3,i7,i4,es10.2)', i, j, got%method%statistics%evaluations, order, &
-            maxval(abs(got%final(:6) - final(:6))/largest(:6))
-        end do
-      end do
+  !> One problem of the standard battery; samples are at 20 equal distances.
+  subroutine run_standard(number, tolerance, max_order, method, samples, status)
+    integer, intent(in) :: number, max_order
+    real(dp), intent(in) :: tolerance
+    type(adams_t), intent(out) :: method
+    real(dp), allocatable, intent(out) :: samples(:, :)
+    integer, intent(out) :: status
+    type(standard_problem_t) :: problem
+    type(sampler_t) :: sampler
+    real(dp), allocatable :: y(:)
+    real(dp) :: t
+
+    call new_standard_problem(number, problem, y)
+    allocate (method%settings%relative(problem%n), method%settings%absolute(problem%n))
+    method%settings%relative = tolerance
+    method%settings%absolute = tolerance
+    method%settings%span = problem%t_end
+    method%settings%max_step = problem%max_step
+    method%settings%max_order = max_order
+    sampler%interval = problem%t_end/n_samples
+    allocate (sampler%y(problem%n, n_samples))
+    t = 0
+    call integrate(problem, method, t, y, problem%t_end, 1000000, sampler, status)
+    call move_alloc(sampler%y, samples)
+  end subroutine run_standard
+
+  subroutine print_standard_references()
+    type(adams_t) :: method
+    real(dp), allocatable :: samples(:, :), other(:, :)
+    integer :: i, status
+    do i = 1, n_standard_problems
+      call run_standard(i, 1e-16_dp, 12, method, samples, status)
+      call run_standard(i, 4e-16_dp, 10, method, other, status)
+      print '(i0,1x,es10.2,*(1x,es28.20))', i, maxval(abs(samples - other)/(1 + abs(samples))), samples
     end do
+  end subroutine print_standard_references
+
+  !> Error: the largest |difference|/(1 + |y|) at 20 instants.
+  subroutine print_standard(reference_file)
+    character(len=*), intent(in) :: reference_file
+    type(adams_t) :: method
+    real(dp), allocatable :: samples(:, :), exact(:, :), y(:)
+    type(standard_problem_t) :: problem
+    real(dp) :: tolerance, spread, error(3:12)
+    integer :: unit, i, j, number, status, evaluations, all_evaluations(3:12)
+
+    all_evaluations = 0
+    open (newunit=unit, file=reference_file, status='old', action='read', recl=200000)
+    do i = 1, n_standard_problems
+      call new_standard_problem(i, problem, y)
+      if (allocated(exact)) deallocate (exact)
+      allocate (exact(problem%n, n_samples))
+      read (unit, *) number, spread, exact
+      print '(/,a,a,es8.1)', trim(names(i)), ': reference known to', spread
+      print '(a)', 'tolerance   error/tolerance evaluations accepted rejected restarts'
+      do j = 3, 12
+        tolerance = 10.0_dp**(-j)
+        call run_standard(i, tolerance, 12, method, samples, status)
+        error(j) = maxval(abs(samples - exact)/(1 + abs(exact)))
+        evaluations = method%statistics%evaluations
+        all_evaluations(j) = all_evaluations(j) + evaluations
+        print '(es9.0,f16.3,i12,3i9,a)', tolerance, error(j)/tolerance, evaluations, method%statistics%accepted, &
+          method%statistics%rejected_error, method%statistics%restarts, merge('   failed', '         ', status /= 0)
+      end do
+      print '(a,f6.3,a,f9.1)', 'slope of log error on log tolerance', slope(error), ', largest error/tolerance', &
+        maxval([(error(j)*10.0_dp**j, j=3, 12)])
+    end do
+    print '(/,a,10i8)', 'evaluations of the whole battery at 1e-3 ... 1e-12:', all_evaluations
     close (unit)
-  end subroutine print_orders
+  end subroutine print_standard
+
+  pure real(dp) function slope(error)
+    real(dp), intent(in) :: error(3:12)
+    real(dp) :: x(3:12), y(3:12)
+    integer :: j
+    x = [(-real(j, dp), j=3, 12)]
+    y = log10(max(error, 1e-17_dp))
+    slope = sum((x - sum(x)/10)*(y - sum(y)/10))/sum((x - sum(x)/10)**2)
+  end function slope
 
   pure real(dp) function mean_order(counts)
     integer, intent(in) :: counts(:)
