@@ -6,7 +6,7 @@
 !>     integrator_battery standard_reference, integrator_battery standard FILE: the same for the standard battery
 program integrator_battery
   use kinds, only: dp
-  use ode_method, only: ode_settings_t
+  use ode_method, only: step_statistics_t, limit_stability
   use adams, only: adams_t
   use solver, only: integrate, integration_done
   use case_definition, only: case_t
@@ -119,15 +119,16 @@ contains
       clearance = merge(500e-6_dp, 20e-6_dp, i <= 2)
       print '(/,2a,es8.1)', trim(titles(i)), '; reference known to', spread
       print '(a)', '  rtol   evaluations     error  error of e/c | published     error | ratio |' &
-        //' accepted rejected restarts stability-bound order time s'
+        //' accepted rejected restarts stability-bound mean h rho order time s'
       do j = 1, n_tolerances
         tolerance = 10.0_dp**(-4 - 2*j)
         call run(i, tolerance, 12, got)
         associate (s => got%method%statistics)
-          print '(es7.0,i12,es12.1,es12.1,a,i11,es11.1,a,f6.2,a,3i9,f12.2,f10.1,f7.2)', tolerance, s%evaluations, &
+          print '(es7.0,i12,es12.1,es12.1,a,i11,es11.1,a,f6.2,a,3i9,f12.3,f12.2,f10.1,f7.2)', tolerance, s%evaluations, &
             maxval(abs(got%final(:6) - final(:6))/largest(:6)), maxval(abs(got%final(7:) - final(7:)))/clearance, '   |', &
             published(j, i), published_error(j, i), ' |', real(s%evaluations)/published(j, i), ' |', s%accepted, &
-            s%rejected_error + s%rejected_domain + s%rejected_penetration, s%restarts, 0.0, mean_order(s%order_count), &
+            s%rejected_error + s%rejected_domain + s%rejected_penetration, s%restarts, &
+            fraction(s), s%stiffness/max(1, s%accepted), mean_order(s%order_count), &
             got%seconds
         end associate
         if (got%status /= integration_done) print '(a,i0)', '  status ', got%status
@@ -190,15 +191,17 @@ contains
       allocate (exact(problem%n, n_samples))
       read (unit, *) number, spread, exact
       print '(/,a,a,es8.1)', trim(names(i)), ': reference known to', spread
-      print '(a)', 'tolerance   error/tolerance evaluations accepted rejected restarts'
+      print '(a)', 'tolerance   error/tolerance evaluations accepted rejected restarts stability-bound mean h rho'
       do j = 3, 12
         tolerance = 10.0_dp**(-j)
         call run_standard(i, tolerance, 12, method, samples, status)
         error(j) = maxval(abs(samples - exact)/(1 + abs(exact)))
         evaluations = method%statistics%evaluations
         all_evaluations(j) = all_evaluations(j) + evaluations
-        print '(es9.0,f16.3,i12,3i9,a)', tolerance, error(j)/tolerance, evaluations, method%statistics%accepted, &
-          method%statistics%rejected_error, method%statistics%restarts, merge('   failed', '         ', status /= 0)
+        print '(es9.0,f16.3,i12,3i9,f13.3,f12.2,a)', tolerance, error(j)/tolerance, evaluations, method%statistics%accepted, &
+          method%statistics%rejected_error, method%statistics%restarts, &
+          fraction(method%statistics), method%statistics%stiffness/method%statistics%accepted, &
+          merge('   failed', '         ', status /= 0)
       end do
       print '(a,f6.3,a,f9.1)', 'slope of log error on log tolerance', slope(error), ', largest error/tolerance', &
         maxval([(error(j)*10.0_dp**j, j=3, 12)])
@@ -215,6 +218,12 @@ contains
     y = log10(max(error, 1e-17_dp))
     slope = sum((x - sum(x)/10)*(y - sum(y)/10))/sum((x - sum(x)/10)**2)
   end function slope
+
+  !> Part of the steps that stability limited.
+  pure real(dp) function fraction(statistics)
+    type(step_statistics_t), intent(in) :: statistics
+    fraction = real(statistics%limited_by(limit_stability), dp)/max(1, statistics%accepted)
+  end function fraction
 
   pure real(dp) function mean_order(counts)
     integer, intent(in) :: counts(:)

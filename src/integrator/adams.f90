@@ -16,8 +16,8 @@ module adams
   use kinds, only: dp
   use ode_problem, only: ode_problem_t, step_admitted, step_too_deep
   use ode_method, only: ode_method_t, highest_order, step_done, step_too_small, tolerance_too_small, start_outside, &
-    step_statistics_t
-  use adams_coefficients, only: adams_coefficients_t, moulton_constants, interpolation_weights
+    step_statistics_t, limit_error, limit_stability, limit_max_step, limit_start, limit_refusal
+  use adams_coefficients, only: adams_coefficients_t, moulton_constants, interpolation_weights, stability_limit
   implicit none
   private
   public :: adams_t
@@ -49,6 +49,8 @@ module adams
     real(dp) :: x_old = 0               !! at its beginning
     real(dp) :: h = 0                   !! size of the next step, by the clock
     real(dp) :: h_old = 0               !! size of the last accepted step
+    integer :: limit = limit_start      !! what made the next step no longer
+    real(dp) :: rounding = 0            !! weighted norm of the rounding of y
     logical :: opening = .true.         !! order and step are still being raised from the start
     real(dp), allocatable :: phi(:, :)  !! modified divided differences, (n, highest_order+2)
     real(dp), allocatable :: predicted(:), f_predicted(:), f_new(:), y_new(:)
@@ -59,7 +61,6 @@ module adams
     procedure :: start
     procedure :: step
     procedure :: interpolate
-    procedure, private :: grown
   end type adams_t
 
 contains
@@ -99,6 +100,7 @@ contains
     if (.not. self%rooted) self%phi(:, 1) = self%f(:self%n)
     call weigh(self)
     call choose_first_step(self, problem)
+    self%limit = limit_start
   end subroutine start
 
   !> Allocate everything, once for a whole integration.
@@ -116,6 +118,18 @@ contains
       self%f_new(n + problem%n_outputs), self%y_new(n), self%inverse_weight(n), self%carry(n), &
       self%carry_predicted(n), self%closing(n), self%y(n), self%y_old(n), self%f(n + problem%n_outputs))
   end subroutine prepare
+
+  !> The norm in which errors are measured: 1 is the tolerance.
+  pure real(dp) function weighted_norm(self, values)
+    class(adams_t), intent(in) :: self
+    real(dp), intent(in) :: values(:)
+    integer :: i
+    weighted_norm = 0
+    do i = 1, self%n
+      weighted_norm = weighted_norm + (values(i)*self%inverse_weight(i))**2
+    end do
+    weighted_norm = sqrt(weighted_norm)
+  end function weighted_norm
 
   !> Weights of the error norm at the present state.
   pure subroutine weigh(self)
@@ -139,7 +153,11 @@ contains
     integer :: tries
 
     longest = min(self%settings%max_step, self%settings%span)
-    slope = norm2(self%f(:self%n)*self%inverse_weight)
+    if (self%settings%fixed_step > 0) then
+      self%h = self%settings%fixed_step
+      return
+    end if
+    slope = weighted_norm(self, self%f)
     h = longest*1e-3_dp
     if (slope*h > 1) h = 1/slope
     do tries = 1, 60
@@ -152,9 +170,10 @@ contains
     if (self%rooted) then   ! by the clock, y'' is 2 f at the start
       longest = sqrt(longest)
       h = sqrt(h)
-      curvature = 2*norm2(self%f_predicted(:self%n)*self%inverse_weight)
+      curvature = 2*weighted_norm(self, self%f_predicted)
     else
-      curvature = norm2((self%f_predicted(:self%n) - self%f(:self%n))*self%inverse_weight)/h
+      self%f_predicted = self%f_predicted - self%f
+      curvature = weighted_norm(self, self%f_predicted)/h
     end if
     if (inside .and. curvature > 0) then
       self%h = min(sqrt(0.5_dp/curvature), 100*h, longest)
@@ -189,7 +208,8 @@ contains
 
     call weigh(self)
     failures = 0
-    if (0.5_dp < 2*epsilon(1.0_dp)*norm2(self%y*self%inverse_weight)) then
+    self%rounding = epsilon(1.0_dp)*weighted_norm(self, self%y)
+    if (0.5_dp < 2*self%rounding .and. .not. self%settings%fixed_step > 0) then
       status = tolerance_too_small
       return
     end if
@@ -261,7 +281,7 @@ contains
     if (.not. inside) return
     if (self%rooted) self%f_predicted(:self%n) = 2*x_new*self%f_predicted(:self%n)
     call estimate_errors(self, errors)
-    if (.not. errors%step <= 1) then   ! a NaN is an error too
+    if (.not. errors%step <= 1 .and. .not. self%settings%fixed_step > 0) then   ! a NaN is an error too
       outcome = try_error
       return
     end if
@@ -334,18 +354,58 @@ contains
     factor = fraction
     select case (outcome)
     case (try_error)
+      self%limit = limit_error
       self%statistics%rejected_error = self%statistics%rejected_error + 1
       failures = failures + 1
       factor = 0.5_dp
       if (failures > 3 .and. errors%same > 2) factor = sqrt(0.5_dp/errors%same)
       self%k = merge(1, errors%order, failures >= 3)
     case (try_too_deep)
+      self%limit = limit_refusal
       self%statistics%rejected_penetration = self%statistics%rejected_penetration + 1
     case default
+      self%limit = limit_refusal
       self%statistics%rejected_domain = self%statistics%rejected_domain + 1
     end select
     self%h = factor*self%h
   end subroutine retreat
+
+  !> Estimate the rate rho of the fastest mode from the two evaluations of the step, |f_new - f_predicted| over
+  !> |y_new - y_predicted| (what Hairer & Wanner 1996, IV.2, use), and count what limited the step. It was stability where
+  !> h rho is near the limit of the order while along the solution f changes at a much slower rate than rho: the mode
+  !> itself is not being followed any more.
+  pure subroutine count_limit(self, x_new)
+    class(adams_t), intent(inout) :: self
+    real(dp), intent(in) :: x_new
+    real(dp) :: f_jump, y_jump, f_path, y_path, old, reach, slow
+    integer :: i, limit
+    f_jump = 0
+    y_jump = 0
+    f_path = 0
+    y_path = 0
+    old = 1
+    if (self%rooted) old = 2*self%x
+    do i = 1, self%n
+      associate (w => self%inverse_weight(i))
+        f_jump = f_jump + ((self%f_new(i) - self%f_predicted(i))*w)**2
+        y_jump = y_jump + ((self%y_new(i) - self%predicted(i))*w)**2
+        f_path = f_path + ((self%f_new(i) - old*self%f(i))*w)**2
+        y_path = y_path + ((self%y_new(i) - self%y(i))*w)**2
+      end associate
+    end do
+    limit = self%limit
+    if (y_jump > (100*self%rounding)**2) then
+      reach = self%h*sqrt(f_jump/y_jump)
+      slow = self%h*sqrt(f_path/y_path)
+      self%statistics%stiffness = self%statistics%stiffness + reach
+      if (limit == limit_error .and. reach > 0.5_dp*stability_limit(self%k) .and. slow < 0.3_dp*reach) &
+        limit = limit_stability
+    end if
+    associate (count => self%statistics)
+      count%limited_by(limit) = count%limited_by(limit) + 1
+      count%time_limited_by(limit) = count%time_limited_by(limit) + (time_at(self, x_new) - self%t)
+    end associate
+  end subroutine count_limit
 
   !> The step stands: update the differences with the second evaluation.
   pure subroutine accept(self, x_new, t_new)
@@ -354,6 +414,7 @@ contains
     real(dp) :: highest
     integer :: i, j, k
 
+    call count_limit(self, x_new)
     k = self%k
     self%k_old = k
     self%h_old = self%h
@@ -395,17 +456,22 @@ contains
 
     k = self%k
     error = errors%same
+    if (self%settings%fixed_step > 0) then
+      self%k = min(k + 1, self%settings%max_order)
+      return
+    end if
     if (errors%order < k .or. k >= self%settings%max_order) self%opening = .false.
     if (self%opening) then
       self%k = k + 1
-      self%h = self%grown(2.0_dp)
+      self%limit = limit_start
+      call grow(self, 2.0_dp)
       return
     end if
     if (errors%order < k) then
       self%k = k - 1
       error = errors%lower
     else if (k + 1 <= self%coefficients%ns) then
-      higher = self%h*self%moulton(k + 1)*norm2(self%phi(:, k + 2)*self%inverse_weight)
+      higher = self%h*self%moulton(k + 1)*weighted_norm(self, self%phi(:, k + 2))
       if (k == 1) then
         if (higher < 0.5_dp*error .and. k < self%settings%max_order) self%k = 2
       else if (errors%lower <= min(error, higher)) then
@@ -426,15 +492,21 @@ contains
     else
       factor = max(0.5_dp, min(0.9_dp, (0.5_dp/error)**(1.0_dp/(self%k + 1))))
     end if
-    self%h = self%grown(factor)
+    self%limit = limit_error
+    call grow(self, factor)
   end subroutine choose_order_and_step
 
-  !> The step size times a factor, within what the user allows.
-  pure real(dp) function grown(self, factor)
-    class(adams_t), intent(in) :: self
+  !> Multiply the step size, within what the settings allow.
+  pure subroutine grow(self, factor)
+    class(adams_t), intent(inout) :: self
     real(dp), intent(in) :: factor
-    grown = min(factor*self%h, clock_step(self, self%settings%max_step))
-  end function grown
+    real(dp) :: longest
+    self%h = factor*self%h
+    longest = clock_step(self, self%settings%max_step)
+    if (self%h < longest) return
+    self%h = longest
+    self%limit = limit_max_step
+  end subroutine grow
 
   !> The polynomial of degree k+2 whose derivative takes the values f_n+1, f_n, ... f_n+1-k and that passes through
   !> y_n+1 and y_n: with its derivative it continues that of the step before (compare Watts & Shampine 1986).
