@@ -377,6 +377,7 @@ contains
     real(dp) :: contact(2)
 
     action = event_continue
+    self%smooth_in_root = .false.
     if (index > self%n_joint_events) then
       call self%pass_gas_bound(index - self%n_joint_events)
       return
@@ -385,6 +386,7 @@ contains
     case (begins)
       contact = penetration_and_rate(self, y)
       self%phase = phase_contact
+      self%smooth_in_root = .true.   ! penetration grows like t, the force like its power 1.5
       self%impact_speed = max(contact(2), 0.0_dp)
       call choose_sliding(self, t, y, .true.)
     case (ends)
