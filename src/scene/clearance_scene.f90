@@ -394,6 +394,7 @@ contains
     case (sliding_changes)
       call choose_sliding(self, t, y, .false.)
     end select
+    self%mode = self%phase
   end subroutine handle_event
 
   !> Set-valued friction: where the sliding speed is not zero it tells the direction. At zero (where it `may_slide` at the

@@ -85,6 +85,7 @@ contains
         if (allocated(error)) return
       end if
       scene%phase = merge(phase_film, phase_free, allocated(scene%film))
+      scene%mode = scene%phase
       scene%rejects_deep_entry = case%integrator%contact_entry == 'step_rejection' .and. allocated(scene%contact)
       scene%max_penetration = case%integrator%max_penetration
     end associate
