@@ -8,6 +8,7 @@ program gudgeon_tests
   use test_command_line, only: run_test_command_line
   use test_contact, only: run_test_contact
   use test_friction, only: run_test_friction
+  use test_oscillating_film, only: run_test_oscillating_film
   use test_mechanism, only: run_test_mechanism
   use test_pinkus_sternlicht, only: run_test_pinkus_sternlicht
   use test_reference, only: run_test_reference
@@ -22,6 +23,7 @@ program gudgeon_tests
   call run_test_command_line(check)
   call run_test_contact(check)
   call run_test_friction(check)
+  call run_test_oscillating_film(check)
   call run_test_mechanism(check)
   call run_test_pinkus_sternlicht(check)
   call run_test_reference(check)

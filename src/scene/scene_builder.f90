@@ -79,7 +79,7 @@ contains
       end if
       if (case%lubrication%is_present) then
         call new_film_law(case%lubrication, joint%bearing_radius, joint%bearing_length, joint%clearance, &
-          case%integrator%relative_tolerance, scene%film, error)
+          case%integrator%relative_tolerance, scene%film, error, case%mechanism%rod_length)
         if (allocated(error)) return
       end if
       scene%phase = merge(phase_film, phase_free, allocated(scene%film))

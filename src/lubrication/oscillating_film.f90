@@ -1,0 +1,168 @@
+!> The oscillating film (5.1-5.9, after Gandara 2006 and Bannwart et al. 2010): a long bearing, full film, wedge and fluid
+!> inertia, no squeeze. The pin's surface moves with the real part of a phasor U that turns at the crank's frequency w.
+!> It carries no load along the line of centres: only forces along the tangent, and the shear's moment.
+module oscillating_film
+  use kinds, only: dp
+  use constants, only: pi
+  use film_law, only: film_law_t, film_motion_t
+  use oscillating_response, only: oscillating_response_t, film_phasors_t, inertia_function, max_eccentricity_ratio
+  implicit none
+  private
+  public :: oscillating_film_t, new_oscillating_film
+
+  type, extends(film_law_t) :: oscillating_film_t
+    type(oscillating_response_t) :: response
+    real(dp) :: clearance = 0             !! c, radial [m]
+    real(dp) :: pin_radius = 0            !! R [m]
+    real(dp) :: viscosity = 0             !! mu [Pa s]
+    real(dp) :: kinematic_viscosity = 0   !! nu [m^2/s]
+    real(dp) :: inertia_scale = 0         !! c^2/(4 nu), Q over the frequency [s]
+    real(dp) :: force_scale = 0           !! mu w_b R/c [Pa s]
+    real(dp) :: arm_length = 0            !! L of (5.4), the rod's length [m], where its acceleration term is wanted; or 0
+  contains
+    procedure :: film_force
+    procedure :: phasors
+    procedure :: surface_speed
+    procedure :: pressure_gradient
+    procedure :: velocity
+  end type oscillating_film_t
+
+contains
+
+  pure subroutine new_oscillating_film(film, response, bearing_radius, bearing_length, clearance, viscosity, &
+    kinematic_viscosity)
+    type(oscillating_film_t), intent(out) :: film
+    type(oscillating_response_t), intent(in) :: response
+    real(dp), intent(in) :: bearing_radius, bearing_length   !! [m]
+    real(dp), intent(in) :: clearance                        !! radial [m], 0 < clearance < bearing_radius
+    real(dp), intent(in) :: viscosity                        !! mu [Pa s], > 0
+    real(dp), intent(in) :: kinematic_viscosity              !! nu [m^2/s], > 0
+    film%needs_ideal_motion = .true.
+    film%singular_at_wall = .false.
+    film%response = response
+    film%clearance = clearance
+    film%pin_radius = bearing_radius - clearance
+    film%viscosity = viscosity
+    film%kinematic_viscosity = kinematic_viscosity
+    film%inertia_scale = clearance**2/(4*kinematic_viscosity)
+    film%force_scale = viscosity*bearing_length*film%pin_radius/clearance
+  end subroutine new_oscillating_film
+
+  !> Surface speed of the pin as a phasor [m/s]: Re U = R omega, Re(i w U) = R omegadot, of the ideal joint. Without
+  !> oscillation it is R omega.
+  pure function surface_speed(self, motion) result(speed)
+    class(oscillating_film_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    complex(dp) :: speed
+    speed = cmplx(self%pin_radius*motion%ideal_pin_speed, 0.0_dp, dp)
+    if (motion%frequency > 0) &
+      speed = speed - cmplx(0.0_dp, self%pin_radius*(motion%ideal_pin_acceleration/motion%frequency), dp)
+  end function surface_speed
+
+  !> The film's response to unit surface speed.
+  pure function phasors(self, motion)
+    class(oscillating_film_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    type(film_phasors_t) :: phasors
+    real(dp) :: eccentricity
+    eccentricity = sqrt(motion%eccentricity(1)**2 + motion%eccentricity(2)**2)
+    phasors = self%response%phasors(eccentricity/self%clearance, self%inertia_scale*motion%frequency)
+  end function phasors
+
+  !> f_t = mu w_b R/c Re{U [Int t* cos th - (R/c) Int P* sin th]}, f_r = 0, moment mu w_b R^2/c Re{U Int t*}. Neither the
+  !> velocity of the pin's centre nor its actual rotation enters. With an arm, the first acceleration term of (5.4), a
+  !> pressure -rho w L U cos th, adds f_r = pi w_b R rho w L Re U.
+  pure subroutine film_force(self, motion, force, moment)
+    class(oscillating_film_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(out) :: force(2)
+    real(dp), intent(out) :: moment
+    real(dp), parameter :: centred = 1e-150_dp   !! an eccentricity below this [m] has no direction to take
+    type(film_phasors_t) :: response
+    complex(dp) :: speed
+    real(dp) :: eccentricity, tangential, radial, n(2)
+    eccentricity = sqrt(motion%eccentricity(1)**2 + motion%eccentricity(2)**2)
+    n = [1.0_dp, 0.0_dp]
+    if (eccentricity > centred) n = motion%eccentricity/eccentricity
+    response = self%response%phasors(eccentricity/self%clearance, self%inertia_scale*motion%frequency)
+    speed = self%surface_speed(motion)
+    tangential = self%force_scale*real(speed*(response%shear - self%pin_radius/self%clearance*response%pressure))
+    moment = self%force_scale*self%pin_radius*real(speed*response%moment)
+    radial = 0
+    if (self%arm_length > 0) radial = pi*self%force_scale*self%clearance/self%kinematic_viscosity &
+      *motion%frequency*self%arm_length*real(speed)
+    force(1) = radial*n(1) - tangential*n(2)
+    force(2) = radial*n(2) + tangential*n(1)
+  end subroutine film_force
+
+  !> dP/dth [Pa] as a phasor, at the angle theta [rad] from the thinnest place (the direction of the eccentricity), x
+  !> towards y. Its real part is the gradient now.
+  pure function pressure_gradient(self, motion, theta) result(gradient)
+    class(oscillating_film_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: theta
+    complex(dp) :: gradient
+    complex(dp) :: speed
+    speed = self%surface_speed(motion)
+    gradient = driving_gradient(self, motion, theta)
+    if (self%response%as_printed) gradient = gradient - self%viscosity/self%kinematic_viscosity &
+      *self%pin_radius*motion%frequency*(0.0_dp, 1.0_dp)*speed
+    gradient = gradient + self%viscosity/self%kinematic_viscosity*motion%frequency*self%arm_length*sin(theta)*speed
+  end function pressure_gradient
+
+  !> The part of dP/dth [Pa] that drives the flow.
+  pure function driving_gradient(self, motion, theta) result(gradient)
+    class(oscillating_film_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: theta
+    complex(dp) :: gradient
+    complex(dp) :: inertia
+    type(film_phasors_t) :: response
+    real(dp) :: eta, v
+    response = self%phasors(motion)
+    eta = gap(self, motion, theta)/self%clearance
+    v = self%inertia_scale*motion%frequency*eta**2
+    inertia = inertia_function(v)
+    gradient = 2*self%viscosity*self%pin_radius/self%clearance**2*self%surface_speed(motion) &
+      *(eta*inertia - response%flow*(inertia + cmplx(0.0_dp, v, dp)))/eta**3
+  end function driving_gradient
+
+  !> Velocity along the film [m/s] as a phasor (5.1), at theta as above and at the height y/h over the pin's surface, 0 at
+  !> the pin, 1 at the bearing: with h the gap there, lambda = sqrt(i w/nu), C(z) = sinh(z)/z,
+  !> V = U (1 - y/h) C(lambda(h-y))/C(lambda h) - P' y(h-y)/(2 mu R) C(lambda y/2) C(lambda(h-y)/2)/cosh(lambda h/2).
+  !> Limit: |lambda h| < 700.
+  pure function velocity(self, motion, theta, height)
+    class(oscillating_film_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: theta
+    real(dp), intent(in) :: height
+    complex(dp) :: velocity
+    complex(dp) :: wave
+    real(dp) :: h
+    h = gap(self, motion, theta)
+    wave = h*sqrt(motion%frequency/(2*self%kinematic_viscosity))*(1.0_dp, 1.0_dp)
+    velocity = self%surface_speed(motion)*(1 - height)*sinhc(wave*(1 - height))/sinhc(wave) &
+      - driving_gradient(self, motion, theta)*h**2*height*(1 - height)/(2*self%viscosity*self%pin_radius) &
+      *sinhc(wave*height/2)*sinhc(wave*(1 - height)/2)/cosh(wave/2)
+  end function velocity
+
+  !> Thickness of the film [m], with the eccentricity held as in the response.
+  pure function gap(self, motion, theta)
+    class(oscillating_film_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: theta
+    real(dp) :: gap
+    gap = self%clearance*(1 - min(norm2(motion%eccentricity)/self%clearance, max_eccentricity_ratio)*cos(theta))
+  end function gap
+
+  !> sinh(z)/z.
+  pure function sinhc(z)
+    complex(dp), intent(in) :: z
+    complex(dp) :: sinhc
+    if (abs(z) < 1e-2_dp) then
+      sinhc = 1 + z**2/6*(1 + z**2/20*(1 + z**2/42))
+    else
+      sinhc = sinh(z)/z
+    end if
+  end function sinhc
+end module oscillating_film

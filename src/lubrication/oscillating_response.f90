@@ -1,0 +1,197 @@
+!> The oscillating film (5.1-5.9) without dimensions: what pressure and wall shear a pin surface oscillating with unit
+!> speed meets, as complex numbers.
+!>
+!> Across the film, i w V = -(dP/dth)/(rho R) + nu V'', V = U at the pin and 0 at the bearing, and the same flow passes
+!> every section. With h = c eta, eta = 1 - eps cos th, Q = c^2 w/(4 nu), u^2 = i Q eta^2, t = tanh(u)/u and
+!> B = u^2 t/(1 - t), the solution is, without the cancellation of the printed h lambda - 2T,
+!>
+!>     P*' = 2 [eta B - K (B + u^2)]/eta^3,   K = <B/eta^2>/<(B + u^2)/eta^3>,   P* = P c^2/(mu U R)
+!>     t*  = -[1 + B + u^2/B]/eta + K B/eta^2,   t* = mu dV/dy c/(mu U) at the pin
+!>
+!> with <> the mean over th, which makes P periodic. Corrections to the print: (5.1) lacks i under its roots, (5.4) a
+!> factor R, (5.5) has nu for i and c/2 for h/2.
+!>
+!> B = 3 + u^2/5 - u^4/175 + ... is even in eta and smooth near the wall. The powers of 1/eta that it leaves have closed
+!> means; only a smooth remainder is summed over points, whose number does not depend on the eccentricity. P*' and t* are
+!> even in th: pressure and shear have no resultant along the line of centres, and half the circle is enough.
+module oscillating_response
+  use kinds, only: dp
+  use constants, only: pi, two_pi
+  implicit none
+  private
+  public :: oscillating_response_t, film_phasors_t, new_oscillating_response, inertia_function, max_eccentricity_ratio
+
+  !> The response grows like (1-eps)^-1/2. From this eccentricity ratio on, and beyond the wall, it is held, so that it
+  !> stays finite up to the contact.
+  real(dp), parameter :: max_eccentricity_ratio = 1 - 1e-6_dp
+
+  !> Points on half the circle of the smallest rule; each further rule has twice as many.
+  integer, parameter :: smallest_rule = 4
+  integer, parameter :: rules = 9
+
+  !> Series of (B - 3)/u^2 in u^2, and up to which |u^2| it serves.
+  real(dp), parameter :: b(0:8) = [1/5.0_dp, -1/175.0_dp, 2/7875.0_dp, -37/3031875.0_dp, 118/197071875.0_dp, &
+    -5506/186232921875.0_dp, 3308/2261399765625.0_dp, -8386459/115794974998828125.0_dp, 56067454/15632321624841796875.0_dp]
+  real(dp), parameter :: series_limit = 0.5_dp
+
+  !> One choice of points.
+  type :: rule_t
+    real(dp) :: limit = huge(1.0_dp)      !! serves up to this Q
+    real(dp), allocatable :: cosines(:)   !! of the points, th = pi (j - 1/2)/n
+  end type rule_t
+
+  !> The response in one position.
+  type :: film_phasors_t
+    complex(dp) :: pressure   !! Int P* sin th dth
+    complex(dp) :: shear      !! Int t* cos th dth
+    complex(dp) :: moment     !! Int t* dth
+    complex(dp) :: flow       !! K
+  end type film_phasors_t
+
+  type :: oscillating_response_t
+    logical :: as_printed = .false.       !! with the second acceleration term of (5.4), which takes 4iQ from P*'
+    type(rule_t), allocatable :: rule(:)  !! coarsest first
+  contains
+    procedure, non_overridable :: phasors
+  end type oscillating_response_t
+
+  !> What the closed means leave over.
+  type :: remainder_t
+    complex(dp) :: n1, c2   !! of <B/eta^2>: less 3 <1/eta^2>; the same with cos th
+    complex(dp) :: n2, c3   !! of <(B + u^2)/eta^3>: less 3 <1/eta^3>; the same with cos th
+    complex(dp) :: m1, mc   !! of <(1 + B + u^2/B)/eta>: less 4 <1/eta>; the same with cos th
+  end type remainder_t
+
+contains
+
+  !> `accuracy` is the relative error allowed to the quadrature, between 0 and 1; `points` > 0 fixes the number of points
+  !> on the whole circle instead.
+  pure subroutine new_oscillating_response(response, accuracy, points, as_printed)
+    type(oscillating_response_t), intent(out) :: response
+    real(dp), intent(in) :: accuracy
+    integer, intent(in) :: points
+    logical, intent(in) :: as_printed
+    integer :: i, n
+    response%as_printed = as_printed
+    allocate (response%rule(merge(1, rules, points > 0)))
+    do i = 1, size(response%rule)
+      n = merge((points + 1)/2, smallest_rule*2**(i - 1), points > 0)
+      response%rule(i)%cosines = midpoint_cosines(n)
+      if (i < size(response%rule)) response%rule(i)%limit = served_inertia(n, accuracy)
+    end do
+  end subroutine new_oscillating_response
+
+  pure function midpoint_cosines(n) result(cosines)
+    integer, intent(in) :: n
+    real(dp) :: cosines(n)
+    integer :: j
+    cosines = [(cos(pi*(2*j - 1)/(2*n)), j=1, n)]
+  end function midpoint_cosines
+
+  !> Largest Q at which the midpoint rule with n points on half the circle reaches the accuracy. Its error stays
+  !> below 10 r^(-2n), where r + 1/r is the sum of the distances of the integrand's nearest pole from the ends of the range of eta,
+  !> over half that range. The worst range is that of eps = 1, from 0 to 2; the nearest pole is where B = 0, u^2 = -pi^2,
+  !> eta = d sqrt(i) with d = pi/sqrt(Q). Hence r + 1/r = d + |2 - d sqrt(i)|, which is solved for d.
+  pure function served_inertia(n, accuracy) result(q)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: accuracy
+    real(dp) :: q
+    real(dp) :: r, total
+    r = (accuracy/10)**(-0.5_dp/n)
+    total = r + 1/r
+    q = (pi*(2*total - sqrt(8.0_dp))/((total - 2)*(total + 2)))**2
+  end function served_inertia
+
+  !> The response at an eccentricity ratio and Q = c^2 w/(4 nu). The closed means of 1/eta, 1/eta^2, 1/eta^3 and their
+  !> products with cos th are multiplied out with the remainders, so that nothing cancels as eps -> 1.
+  pure function phasors(self, eccentricity_ratio, q)
+    class(oscillating_response_t), intent(in) :: self
+    real(dp), intent(in) :: eccentricity_ratio   !! >= 0
+    real(dp), intent(in) :: q                    !! >= 0
+    type(film_phasors_t) :: phasors
+    type(remainder_t) :: rest
+    complex(dp) :: driven, scale
+    real(dp) :: eps, s
+    integer :: i
+    eps = min(eccentricity_ratio, max_eccentricity_ratio)
+    s = sqrt((1 - eps)*(1 + eps))
+    do i = 1, size(self%rule) - 1
+      if (q <= self%rule(i)%limit) exit
+    end do
+    rest = remainder_means(self%rule(i)%cosines, eps, s, q)
+
+    driven = rest%n1
+    if (self%as_printed) driven = driven - cmplx(0.0_dp, 2*q, dp)
+    scale = reciprocal(3 + 1.5_dp*eps**2 + s**5*rest%n2)
+    phasors%flow = s**2*(3 + s**3*driven)*scale
+    phasors%pressure = 2*two_pi*scale*(-4.5_dp*eps/s + 3*s**2*(eps*rest%n2 - rest%c3) + (3 + 1.5_dp*eps**2)*rest%c2 &
+      - 4.5_dp*eps*driven + s**5*(rest%c2*rest%n2 - driven*rest%c3))
+    phasors%shear = two_pi*(-4*eps/(s*(1 + s)) - rest%mc + phasors%flow*(3*eps/s**3 + rest%c2))
+    phasors%moment = two_pi*(-4/s - rest%m1 + phasors%flow*(3/s**3 + rest%n1))
+  end function phasors
+
+  pure function remainder_means(cosines, eps, s, q) result(rest)
+    real(dp), intent(in) :: cosines(:)
+    real(dp), intent(in) :: eps, s   !! s = sqrt(1 - eps^2)
+    real(dp), intent(in) :: q        !! Q
+    type(remainder_t) :: rest
+    complex(dp) :: first, second, shear, iq
+    real(dp) :: eta, v
+    integer :: j
+    rest = remainder_t((0, 0), (0, 0), (0, 0), (0, 0), (0, 0), (0, 0))
+    do j = 1, size(cosines)
+      eta = 1 - eps*cosines(j)
+      v = q*eta**2
+      second = second_remainder(v)
+      first = cmplx(b(0) - v*aimag(second), v*real(second), dp)
+      shear = eta*(first + reciprocal(cmplx(3 - v*aimag(first), v*real(first), dp)))
+      second = eta*second
+      rest%n1 = rest%n1 + first
+      rest%c2 = rest%c2 + cosines(j)*first
+      rest%n2 = rest%n2 + second
+      rest%c3 = rest%c3 + cosines(j)*second
+      rest%m1 = rest%m1 + shear
+      rest%mc = rest%mc + cosines(j)*shear
+    end do
+    iq = cmplx(0.0_dp, q/size(cosines), dp)
+    rest%n1 = iq*rest%n1
+    rest%c2 = iq*rest%c2
+    rest%m1 = iq*rest%m1
+    rest%mc = iq*rest%mc
+    rest%n2 = cmplx(0.0_dp, q*(1 + b(0))/s, dp) + cmplx(0.0_dp, q, dp)*iq*rest%n2
+    rest%c3 = cmplx(0.0_dp, q*(1 + b(0))*eps/(s*(1 + s)), dp) + cmplx(0.0_dp, q, dp)*iq*rest%c3
+  end function remainder_means
+
+  !> (B - 3 - u^2/5)/u^4 for u^2 = i v, v >= 0: by its series, or from T = tanh(u) for real and imaginary part of u equal.
+  pure function second_remainder(v) result(remainder)
+    real(dp), intent(in) :: v
+    complex(dp) :: remainder
+    complex(dp) :: u, tangent
+    real(dp) :: w, root, decay
+    if (v <= series_limit) then
+      w = -v**2
+      remainder = cmplx(b(1) + w*(b(3) + w*(b(5) + w*b(7))), v*(b(2) + w*(b(4) + w*(b(6) + w*b(8)))), dp)
+    else
+      root = sqrt(2*v)
+      decay = exp(-root)
+      u = cmplx(root/2, root/2, dp)
+      tangent = cmplx(1 - decay**2, 2*decay*sin(root), dp)/(1 + decay**2 + 2*decay*cos(root))
+      remainder = ((u**2*tangent/(u - tangent) - 3)/u**2 - b(0))/u**2
+    end if
+  end function second_remainder
+
+  !> B at u^2 = i v.
+  elemental function inertia_function(v)
+    real(dp), intent(in) :: v   !! Q eta^2, >= 0
+    complex(dp) :: inertia_function
+    complex(dp) :: u_squared
+    u_squared = cmplx(0.0_dp, v, dp)
+    inertia_function = 3 + u_squared*(b(0) + u_squared*second_remainder(v))
+  end function inertia_function
+
+  pure function reciprocal(z)
+    complex(dp), intent(in) :: z
+    complex(dp) :: reciprocal
+    reciprocal = conjg(z)/(real(z)**2 + aimag(z)**2)
+  end function reciprocal
+end module oscillating_response
