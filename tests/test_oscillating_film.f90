@@ -33,6 +33,7 @@ contains
     call test_force(check)
     call test_as_printed(check)
     call test_wall(check)
+    call test_held_flow(check)
     call test_extremes(check)
     call test_factory(check)
   end subroutine run_test_oscillating_film
@@ -369,6 +370,22 @@ contains
     call film%film_force(some_motion(1 - 4e-5_dp, 250.0_dp), other, moment)
     call check%relative(norm2(force)/norm2(other), 2.0_dp, 1e-3_dp, 'the force near the wall')
   end subroutine test_wall
+
+  !> Beyond the largest ratio the flow, too, is that of the film held there.
+  subroutine test_held_flow(check)
+    class(checks_t), intent(inout) :: check
+    type(oscillating_film_t) :: film
+    type(film_motion_t) :: inside, beyond
+    real(dp), parameter :: theta = 0.2_dp
+    call make(film, .false.)
+    film%largest_ratio = 0.9_dp
+    inside = some_motion(0.9_dp, 250.0_dp)
+    beyond = some_motion(0.95_dp, 250.0_dp)
+    call check%that(abs(film%pressure_gradient(beyond, theta)/film%pressure_gradient(inside, theta) - 1) <= 1e-12_dp, &
+      'the held film''s pressure')
+    call check%that(abs(film%velocity(beyond, theta, 0.3_dp)/film%velocity(inside, theta, 0.3_dp) - 1) <= 1e-12_dp, &
+      'the held film''s velocity')
+  end subroutine test_held_flow
 
   subroutine test_extremes(check)
     class(checks_t), intent(inout) :: check

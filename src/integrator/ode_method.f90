@@ -19,6 +19,7 @@ module ode_method
   !> What a user asks of a method. The error of a step in component i is measured against
   !> relative(i)*|y(i)| + absolute(i); a component with both zero does not take part in the error control.
   type :: ode_settings_t
+    real(dp) :: tolerance = 0             !! the relative tolerance that the others come from; 0: the largest of `relative`
     real(dp), allocatable :: relative(:)  !! relative tolerance of each component, (n)
     real(dp), allocatable :: absolute(:)  !! absolute tolerance of each component, in its own unit, (n)
     real(dp) :: max_step = huge(1.0_dp)   !! longest step
@@ -33,6 +34,9 @@ module ode_method
     integer :: rejected_error = 0        !! estimated error above the tolerance
     integer :: rejected_penetration = 0  !! contact entered too deep
     integer :: rejected_domain = 0       !! a trial state outside the model
+    integer :: rejected_convergence = 0  !! Newton's method did not converge (implicit methods)
+    integer :: jacobians = 0             !! Jacobians evaluated (implicit methods)
+    integer :: stage_count(3) = 0        !! accepted steps of the Radau formulas of 3, 5 and 7 stages
     integer :: evaluations = 0           !! calls of the right-hand side
     integer :: restarts = 0              !! starts after the first one
     real(dp) :: smallest_step = huge(1.0_dp)    !! shortest accepted step
@@ -50,6 +54,7 @@ module ode_method
     real(dp), allocatable :: y(:)         !! state at t, (n)
     real(dp), allocatable :: f(:)         !! right-hand side and outputs at (t, y), (n + n_outputs)
   contains
+    procedure :: nominal_tolerance
     procedure(start), deferred :: start
     procedure(step), deferred :: step
     procedure(interpolate), deferred :: interpolate
@@ -84,4 +89,13 @@ module ode_method
       real(dp), intent(out) :: y(:)
     end subroutine interpolate
   end interface
+
+contains
+
+  !> The tolerance that a user has in mind.
+  pure real(dp) function nominal_tolerance(self)
+    class(ode_method_t), intent(in) :: self
+    nominal_tolerance = self%settings%tolerance
+    if (.not. nominal_tolerance > 0) nominal_tolerance = maxval(self%settings%relative)
+  end function nominal_tolerance
 end module ode_method

@@ -26,9 +26,12 @@ module ode_problem
   type, abstract :: ode_problem_t
     integer :: n = 0          !! number of equations
     integer :: n_outputs = 0  !! further values that `derivatives` puts behind the n derivatives
+    integer :: n_positions = 0   !! the first components are positions, whose rates follow them in the same order
+    integer :: n_quadratures = 0 !! the last components are quadratures: nothing depends on them
     integer :: n_events = 0   !! number of event functions in the present discrete state
   contains
     procedure(derivatives), deferred :: derivatives
+    procedure :: jacobian => difference_jacobian
     procedure :: events => no_events
     procedure :: judge_step => admit_every_step
     procedure :: handle_event => stop_at_event
@@ -50,6 +53,38 @@ module ode_problem
   end interface
 
 contains
+
+  !> Derivatives of the accelerations: with m positions, k rates and y = (positions, rates, quadratures), dydt(m+1:m+k) by
+  !> the positions, a_p (k, m), and by the rates, a_v (k, k). The default is one-sided differences.
+  subroutine difference_jacobian(self, t, y, a_p, a_v)
+    class(ode_problem_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: a_p(:, :), a_v(:, :)
+    real(dp) :: f(self%n + self%n_outputs), moved(self%n + self%n_outputs), state(self%n), step
+    logical :: inside
+    integer :: i, m, k
+
+    m = size(a_p, 2)
+    k = size(a_v, 1)
+    call self%derivatives(t, y, f, inside)
+    do i = 1, m + k
+      step = sqrt(epsilon(1.0_dp))*max(abs(y(i)), 1e-5_dp)
+      state = y
+      state(i) = y(i) + step
+      call self%derivatives(t, state, moved, inside)
+      if (.not. inside) then
+        step = -step
+        state(i) = y(i) + step
+        call self%derivatives(t, state, moved, inside)
+      end if
+      moved(m + 1:m + k) = (moved(m + 1:m + k) - f(m + 1:m + k))/step
+      if (i <= m) then
+        a_p(:, i) = moved(m + 1:m + k)
+      else
+        a_v(:, i - m) = moved(m + 1:m + k)
+      end if
+    end do
+  end subroutine difference_jacobian
 
   !> Event functions and their rates along the motion, each signed so that the event is a passage from
   !> negative to positive. g and g_rate have n_events elements. The default is for problems without events.

@@ -102,6 +102,7 @@ contains
     call x%move('lubrication', 'viscosity', c%lubrication%viscosity)
     call x%move('lubrication', 'kinematic_viscosity', c%lubrication%kinematic_viscosity)
     call x%move('lubrication', 'quadrature_points', c%lubrication%quadrature_points)
+    call x%move('lubrication', 'least_film_ratio', c%lubrication%least_film_ratio)
     call x%move_presence('combustion', c%combustion%is_present)
     call x%move('combustion', 'bore', c%combustion%bore)
     call x%move('combustion', 'compression_ratio', c%combustion%compression_ratio)

@@ -37,6 +37,7 @@ contains
 
     !$omp critical (texts)
     line = ''
+    base = ''
     call prepare(path, options, case, list, ideal_list, base, error)
     if (.not. allocated(error) .and. options%check) line = path//': correct'
     !$omp end critical (texts)
@@ -58,7 +59,7 @@ contains
     type(command_line_t), intent(in) :: options
     type(case_t), intent(out) :: case
     type(column_list_t), intent(out) :: list, ideal_list
-    character(len=:), allocatable, intent(out) :: base
+    character(len=:), allocatable, intent(inout) :: base
     type(error_t), allocatable, intent(out) :: error
     class(scene_t), allocatable :: scene
     integer :: status

@@ -106,7 +106,9 @@ contains
                example='closed_form'), &
       real_key(l, 'viscosity', 'Pa s', '> 0', 'dynamic viscosity', example='0.0117'), &
       real_key(l, 'kinematic_viscosity', 'm^2/s', '> 0', 'needed by oscillating_film', default='0.0', example='1.38e-5'), &
-      integer_key(l, 'quadrature_points', '>= 4 and <= 1000000', '0: chosen from the tolerance', default='0')]
+      integer_key(l, 'quadrature_points', '>= 4 and <= 1000000', '0: chosen from the tolerance', default='0'), &
+      real_key(l, 'least_film_ratio', '', '>= 0.000001 and <= 0.5', &
+               'oscillating_film is taken no thinner than this part of the clearance', default='0.001')]
   end function model_keys
 
   pure function combustion_keys() result(keys)
@@ -130,7 +132,7 @@ contains
     type(key_t), allocatable :: keys(:)
     character(len=*), parameter :: i = 'integrator', o = 'output'
     keys = [ &
-      word_key(i, 'method', 'adams', 'adams', 'variable step, variable order'), &
+      word_key(i, 'method', 'adams', 'adams, radau', 'adams: Shampine and Gordon; radau: implicit, for films'), &
       real_key(i, 'revolutions', '', '> 0', '0: end_time is given', default='0.0', example='4.0'), &
       real_key(i, 'end_time', 's', '> 0', '0: revolutions is given', default='0.0'), &
       real_key(i, 'relative_tolerance', '', '> 0 and <= 0.1', 'local error', default='1.0e-6'), &

@@ -79,6 +79,7 @@ contains
       call new_oscillating_film(oscillating, response, bearing_radius, bearing_length, clearance, definition%viscosity, &
         definition%kinematic_viscosity)
       oscillating%arm_length = arm_length
+      oscillating%largest_ratio = 1 - definition%least_film_ratio
       call move_alloc(oscillating, film)
     end subroutine make_oscillating
 

@@ -17,6 +17,8 @@ module oscillating_film
     real(dp) :: viscosity = 0             !! mu [Pa s]
     real(dp) :: kinematic_viscosity = 0   !! nu [m^2/s]
     real(dp) :: inertia_scale = 0         !! c^2/(4 nu), Q over the frequency [s]
+    real(dp) :: largest_ratio = 1         !! eccentricity ratio beyond which the film does not change: the film of real surfaces is
+                                          !! no thinner than their roughness, where that of the theory pulls without bound
     real(dp) :: force_scale = 0           !! mu w_b R/c [Pa s]
     real(dp) :: arm_length = 0            !! L of (5.4), the rod's length [m], where its acceleration term is wanted; or 0
   contains
@@ -66,7 +68,8 @@ contains
     type(film_phasors_t) :: phasors
     real(dp) :: eccentricity
     eccentricity = sqrt(motion%eccentricity(1)**2 + motion%eccentricity(2)**2)
-    phasors = self%response%phasors(eccentricity/self%clearance, self%inertia_scale*motion%frequency)
+    phasors = self%response%phasors(min(eccentricity/self%clearance, self%largest_ratio), &
+      self%inertia_scale*motion%frequency)
   end function phasors
 
   !> f_t = mu w_b R/c Re{U [Int t* cos th - (R/c) Int P* sin th]}, f_r = 0, moment mu w_b R^2/c Re{U Int t*}. Neither the
@@ -84,7 +87,7 @@ contains
     eccentricity = sqrt(motion%eccentricity(1)**2 + motion%eccentricity(2)**2)
     n = [1.0_dp, 0.0_dp]
     if (eccentricity > centred) n = motion%eccentricity/eccentricity
-    response = self%response%phasors(eccentricity/self%clearance, self%inertia_scale*motion%frequency)
+    response = self%phasors(motion)
     speed = self%surface_speed(motion)
     tangential = self%force_scale*real(speed*(response%shear - self%pin_radius/self%clearance*response%pressure))
     moment = self%force_scale*self%pin_radius*real(speed*response%moment)
@@ -152,7 +155,9 @@ contains
     type(film_motion_t), intent(in) :: motion
     real(dp), intent(in) :: theta
     real(dp) :: gap
-    gap = self%clearance*(1 - min(norm2(motion%eccentricity)/self%clearance, max_eccentricity_ratio)*cos(theta))
+    real(dp) :: eps
+    eps = min(norm2(motion%eccentricity)/self%clearance, self%largest_ratio, max_eccentricity_ratio)
+    gap = self%clearance*(1 - eps*cos(theta))
   end function gap
 
   !> sinh(z)/z.

@@ -49,6 +49,7 @@ module case_definition
     character(len=word_length) :: law = 'pinkus_sternlicht', variant = ''
     real(dp) :: viscosity = 0, kinematic_viscosity = 0
     integer :: quadrature_points = 0
+    real(dp) :: least_film_ratio = 1e-3_dp   !! oscillating film: it is taken no thinner than this part of the clearance
   end type lubrication_case_t
 
   type :: combustion_case_t

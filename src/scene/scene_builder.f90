@@ -34,7 +34,7 @@ contains
 
     if (ideal_joint .or. case%joint%kind == 'ideal') then
       allocate (ideal)
-      ideal%n = merge(3, 1, case%drive%kind == 'free')
+      ideal%n_positions = merge(1, 0, case%drive%kind == 'free')
       call move_alloc(ideal, scene)
     else
       allocate (clearance)
@@ -42,6 +42,8 @@ contains
       if (allocated(error)) return
       call move_alloc(clearance, scene)
     end if
+    scene%n_quadratures = 1
+    scene%n = 2*scene%n_positions + scene%n_quadratures
     scene%n_outputs = 2
     associate (m => case%mechanism)
       scene%mechanism = mechanism_t(m%crank_length, m%crank_mass, m%crank_inertia, m%crank_com, m%rod_length, m%rod_mass, &
@@ -64,7 +66,7 @@ contains
     type(clearance_scene_t), intent(inout) :: scene
     type(error_t), allocatable, intent(out) :: error
 
-    scene%n = merge(7, 5, case%drive%kind == 'free')
+    scene%n_positions = merge(3, 2, case%drive%kind == 'free')
     associate (joint => case%joint)
       scene%joint = joint_geometry_t(joint%clearance, joint%bearing_radius, joint%bearing_radius - joint%clearance)
       if (case%contact%is_present) then
@@ -130,6 +132,7 @@ contains
     logical :: growing(scene%n)
 
     settings%span = simulated_time(case)
+    settings%tolerance = case%integrator%relative_tolerance
     call scene%natural_scales(settings%span, scales, growing)
     factor = case%integrator%absolute_tolerance
     if (.not. factor > 0) factor = case%integrator%relative_tolerance

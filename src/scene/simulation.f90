@@ -3,8 +3,8 @@ module simulation
   use kinds, only: dp
   use errors, only: error_t, fail, status_integration, status_internal
   use case_definition, only: case_t
-  use ode_method, only: step_statistics_t, step_too_small, tolerance_too_small, start_outside
-  use adams, only: adams_t
+  use ode_method, only: ode_method_t, step_statistics_t, step_too_small, tolerance_too_small, start_outside
+  use methods, only: new_method
   use solver, only: integrate, integration_done, step_limit_reached, integration_interrupted, chattering
   use scene, only: scene_t, evaluation_t, phase_free, phase_film, phase_contact
   use scene_builder, only: build_scene, simulated_time, sample_interval, settings_for
@@ -38,13 +38,14 @@ contains
     type(run_report_t), intent(out) :: report
     type(error_t), allocatable, intent(out) :: error
     class(scene_t), allocatable :: scene
-    type(adams_t) :: method
+    class(ode_method_t), allocatable :: method
     type(recorder_t) :: recorder
     real(dp), allocatable :: y(:)
     real(dp) :: t
     integer :: status
 
     call build_scene(case, ideal_joint, scene, error)
+    if (.not. allocated(error)) call new_method(trim(case%integrator%method), method, error)
     if (allocated(error)) return
     recorder%list = list
     recorder%interval = sample_interval(case)
