@@ -7,8 +7,19 @@ module ode_method
   public :: ode_method_t, ode_settings_t, step_statistics_t
   public :: step_done, step_too_small, tolerance_too_small, start_outside
   public :: highest_order
+  public :: limit_error, limit_stability, limit_max_step, limit_start, limit_refusal, n_limits, limit_names
 
   integer, parameter :: highest_order = 12   !! of the Adams formulas
+
+  !> What kept a step from being longer.
+  integer, parameter :: limit_error = 1       !! the error estimate
+  integer, parameter :: limit_stability = 2   !! the method's stability: the fastest mode has died out, but not its rate
+  integer, parameter :: limit_max_step = 3    !! the settings
+  integer, parameter :: limit_start = 4       !! order and step were still being raised after a start
+  integer, parameter :: limit_refusal = 5     !! the problem refused a longer one (penetration, domain)
+  integer, parameter :: n_limits = 5
+  character(len=9), parameter :: limit_names(n_limits) = [character(len=9) :: 'error', 'stability', 'max_step', 'start', &
+    'refusal']
 
   !> Status of a step.
   integer, parameter :: step_done = 0            !! a step was accepted
@@ -25,6 +36,8 @@ module ode_method
     real(dp) :: max_step = huge(1.0_dp)   !! longest step
     real(dp) :: span = 1                  !! length of the whole integration: the scale of the shortest step
     integer :: max_order = highest_order  !! highest order, 1..highest_order
+    real(dp) :: fixed_step = 0            !! > 0: every step has this size and no error is controlled, for tests of order
+    real(dp) :: chatter_time = 0          !! a hundred events in less than this are chatter; 0: 1e-9 of the span
   end type ode_settings_t
 
   !> Counts of what a method has done since the beginning of an integration. Only `rejected_*` and
@@ -41,6 +54,9 @@ module ode_method
     integer :: restarts = 0              !! starts after the first one
     real(dp) :: smallest_step = huge(1.0_dp)    !! shortest accepted step
     integer :: order_count(highest_order) = 0   !! accepted steps taken at each order
+    integer :: limited_by(n_limits) = 0         !! accepted steps by what limited them
+    real(dp) :: time_limited_by(n_limits) = 0   !! time that went by in them
+    real(dp) :: stiffness = 0     !! integral of rho dt, rho the estimated rate of the fastest mode; 0: not estimated
   end type step_statistics_t
 
   !> A method that advances a problem step by step and knows the solution anywhere inside its last step.

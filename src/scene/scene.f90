@@ -61,6 +61,7 @@ module scene
     procedure :: speed_scale
     procedure :: set_gas_part
     procedure :: add_gas
+    procedure :: gas_force_slope
     procedure :: gas_events
     procedure :: pass_gas_bound
   end type scene_t
@@ -142,6 +143,13 @@ contains
     now%loads%gas_force = self%gas%gas_force(now%cylinder_pressure)
     if (self%gives_volume) now%cylinder_volume = self%gas%cylinder%volume(now%motion%crank_angle)
   end subroutine add_gas
+
+  !> Derivative of the gas force by the crank angle [N/rad].
+  pure real(dp) function gas_force_slope(self, crank_angle)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: crank_angle
+    gas_force_slope = self%gas%cylinder%area*self%gas%pressure_slope(crank_angle, self%gas_part, self%gas_cycle_start)
+  end function gas_force_slope
 
   !> Event functions of the bounds of the present part of the gas cycle, over the crank angle.
   pure subroutine gas_events(self, crank_angle, crank_speed, g, g_rate)
