@@ -154,7 +154,9 @@ contains
     type(film_motion_t), intent(in) :: motion
     real(dp), intent(in) :: theta
     real(dp) :: gap
-    gap = self%clearance*(1 - min(norm2(motion%eccentricity)/self%clearance, max_eccentricity_ratio)*cos(theta))
+    real(dp) :: eps
+    eps = min(norm2(motion%eccentricity)/self%clearance, self%largest_ratio, max_eccentricity_ratio)
+    gap = self%clearance*(1 - eps*cos(theta))
   end function gap
 
   !> sinh(z)/z.
