@@ -12,6 +12,7 @@ program gudgeon_tests
   use test_mechanism, only: run_test_mechanism
   use test_oscillating_film, only: run_test_oscillating_film
   use test_pinkus_sternlicht, only: run_test_pinkus_sternlicht
+  use test_radau, only: run_test_radau
   use test_reference, only: run_test_reference
   use test_result_file, only: run_test_result_file
   use test_scenes, only: run_test_scenes
@@ -28,6 +29,7 @@ program gudgeon_tests
   call run_test_mechanism(check)
   call run_test_oscillating_film(check)
   call run_test_pinkus_sternlicht(check)
+  call run_test_radau(check)
   call run_test_reference(check)
   call run_test_result_file(check)
   call run_test_scenes(check)
