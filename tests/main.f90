@@ -7,10 +7,12 @@ program gudgeon_tests
   use test_combustion, only: run_test_combustion
   use test_command_line, only: run_test_command_line
   use test_contact, only: run_test_contact
+  use test_findings, only: run_test_findings
   use test_friction, only: run_test_friction
   use test_mechanism, only: run_test_mechanism
   use test_oscillating_film, only: run_test_oscillating_film
   use test_pinkus_sternlicht, only: run_test_pinkus_sternlicht
+  use test_radau, only: run_test_radau
   use test_reference, only: run_test_reference
   use test_result_file, only: run_test_result_file
   use test_scenes, only: run_test_scenes
@@ -22,10 +24,12 @@ program gudgeon_tests
   call run_test_combustion(check)
   call run_test_command_line(check)
   call run_test_contact(check)
+  call run_test_findings(check)
   call run_test_friction(check)
   call run_test_mechanism(check)
   call run_test_oscillating_film(check)
   call run_test_pinkus_sternlicht(check)
+  call run_test_radau(check)
   call run_test_reference(check)
   call run_test_result_file(check)
   call run_test_scenes(check)

@@ -162,7 +162,7 @@ contains
     call refused_with(check, 'joint.clearnce=1', &
                       'x.nml: --set joint.clearnce=1: &joint clearnce: unknown key; did you mean clearance?'//joint_keys)
     call refused(check, '&joint kind=''fixed'' /', 'x.nml:1: &joint kind = fixed: must be one of ideal, clearance')
-    call refused(check, '&integrator method=''euler'' /', 'x.nml:1: &integrator method = euler: must be one of adams, radau')
+    call refused(check, '&integrator method=''euler'' /', 'x.nml:1: &integrator method = euler: must be one of auto, adams, radau')
     call refused(check, '&case /', 'x.nml: &mechanism: this group is required')
     call refused(check, '&mechanism /', 'x.nml: &mechanism crank_length: required (m)')
     call refused(check, whole//'&friction /', 'x.nml: &friction coefficient: required')

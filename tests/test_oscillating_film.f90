@@ -33,6 +33,7 @@ contains
     call test_force(check)
     call test_as_printed(check)
     call test_wall(check)
+    call test_held_flow(check)
     call test_extremes(check)
     call test_factory(check)
   end subroutine run_test_oscillating_film
@@ -151,7 +152,7 @@ contains
       call check%relative(real(phasors%moment), -4*pi*(1 + 2*eps**2)/((2 + eps**2)*s), 1e-13_dp, 'Sommerfeld moment')
       call check%that(abs(aimag(phasors%pressure)) <= 0, 'in phase')
       slow = response%phasors(eps, 1e-9_dp)
-      call check%that(abs(slow%pressure - phasors%pressure) <= 1e-8_dp*abs(phasors%pressure), 'slow oscillation')
+      call check%that(abs(slow%pressure - phasors%pressure) <= 1e-8_dp*abs(phasors%moment), 'slow oscillation')
       call check%that(abs(slow%moment - phasors%moment) <= 1e-8_dp*abs(phasors%moment), 'slow oscillation, moment')
     end do
   end subroutine test_sommerfeld_limit
@@ -287,6 +288,9 @@ contains
     real(dp) :: force(2), moment, total(2), turning, p, tau, theta, angle, direction, d
     integer :: i, j, k
     call make(film, .false.)
+    motion = some_motion(0.7_dp, 250.0_dp)
+    call check%relative(real(film%surface_speed(motion)), 60*pin_radius, 1e-14_dp, 'the surface speed')
+    call check%relative(real(i_unit*250*film%surface_speed(motion)), 7000*pin_radius, 1e-14_dp, 'its rate')
     call check%that(film%needs_ideal_motion, 'the film asks for the ideal motion')
     d = 1e-4_dp
     do k = 0, 1
@@ -366,6 +370,22 @@ contains
     call film%film_force(some_motion(1 - 4e-5_dp, 250.0_dp), other, moment)
     call check%relative(norm2(force)/norm2(other), 2.0_dp, 1e-3_dp, 'the force near the wall')
   end subroutine test_wall
+
+  !> Beyond the largest ratio the flow, too, is that of the film held there.
+  subroutine test_held_flow(check)
+    class(checks_t), intent(inout) :: check
+    type(oscillating_film_t) :: film
+    type(film_motion_t) :: inside, beyond
+    real(dp), parameter :: theta = 0.2_dp
+    call make(film, .false.)
+    film%largest_ratio = 0.9_dp
+    inside = some_motion(0.9_dp, 250.0_dp)
+    beyond = some_motion(0.95_dp, 250.0_dp)
+    call check%that(abs(film%pressure_gradient(beyond, theta)/film%pressure_gradient(inside, theta) - 1) <= 1e-12_dp, &
+      'the held film''s pressure')
+    call check%that(abs(film%velocity(beyond, theta, 0.3_dp)/film%velocity(inside, theta, 0.3_dp) - 1) <= 1e-12_dp, &
+      'the held film''s velocity')
+  end subroutine test_held_flow
 
   subroutine test_extremes(check)
     class(checks_t), intent(inout) :: check

@@ -55,6 +55,8 @@ contains
         call check%close_to(error, 0.0_dp, allowed, name//' '//trim(states(i)))
       end associate
     end do
+    call check%close_to(got%report%figures%max_energy_residual/got%report%figures%max_energy, 0.0_dp, 1e-7_dp, &
+      name//' energy residual')
   end subroutine compare_states
 
   !> The first contact instants of the reference, at most `most` of them.

@@ -47,6 +47,7 @@ module gas_cycle
     real(dp) :: table_error = 0                   !! largest relative error found between the points of the tables
   contains
     procedure :: pressure
+    procedure :: pressure_slope
     procedure :: gas_force
     procedure :: part_at
   end type gas_cycle_t
@@ -293,6 +294,20 @@ contains
     if (part == part_combustion .and. self%grading > 1) xi = max(xi, 0.0_dp)**(1.0_dp/self%grading)
     pressure = self%table(part)%value(xi)
   end function pressure
+
+  !> Derivative of the pressure by the crank angle [Pa/rad], for implicit integration; 0 where the combustion table is graded,
+  !> which only slows Newton's method.
+  pure real(dp) function pressure_slope(self, q, part, cycle_start)
+    class(gas_cycle_t), intent(in) :: self
+    real(dp), intent(in) :: q
+    integer, intent(in) :: part
+    real(dp), intent(in) :: cycle_start
+    real(dp) :: reach
+    pressure_slope = 0
+    if (part == part_open .or. part == part_combustion .and. self%grading > 1) return
+    reach = self%bound(part) - self%bound(part - 1)
+    pressure_slope = self%table(part)%slope((q - cycle_start - self%bound(part - 1))/reach)/reach
+  end function pressure_slope
 
   !> F_gas = (p - p_crankcase) pi b^2/4 on the piston along -x [N].
   pure real(dp) function gas_force(self, pressure)

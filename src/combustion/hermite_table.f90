@@ -11,6 +11,7 @@ module hermite_table
     real(dp), allocatable :: coefficient(:, :) !! of (x - x_i) n, (0:5, n)
   contains
     procedure :: value
+    procedure :: slope
   end type hermite_table_t
 
 contains
@@ -48,4 +49,18 @@ contains
       value = c(0 + 1) + s*(c(1 + 1) + s*(c(2 + 1) + s*(c(3 + 1) + s*(c(4 + 1) + s*c(5 + 1)))))
     end associate
   end function value
+
+  !> Derivative of `value` by x.
+  pure real(dp) function slope(self, x)
+    class(hermite_table_t), intent(in) :: self
+    real(dp), intent(in) :: x
+    real(dp) :: s
+    integer :: i
+    s = min(max(x*self%n, -1.0_dp), self%n + 1.0_dp)
+    i = min(max(int(s), 0), self%n - 1)
+    s = s - i
+    associate (c => self%coefficient(:, i + 1))
+      slope = self%n*(c(1 + 1) + s*(2*c(2 + 1) + s*(3*c(3 + 1) + s*(4*c(4 + 1) + s*5*c(5 + 1)))))
+    end associate
+  end function slope
 end module hermite_table

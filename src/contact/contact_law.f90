@@ -9,6 +9,7 @@ module contact_law
   type, abstract :: contact_law_t
   contains
     procedure(normal_force), deferred :: normal_force
+    procedure(normal_force_slopes), deferred :: normal_force_slopes
   end type contact_law_t
 
   abstract interface
@@ -21,5 +22,14 @@ module contact_law
       real(dp), intent(in) :: impact_speed      !! penetration_rate at the instant contact began [m/s], >= 0
       real(dp) :: force
     end function normal_force
+
+    !> Derivatives of the force by the penetration [N/m] and by its rate [N s/m], for implicit integration. The arguments are
+    !> those of `normal_force`; where the force is 0 both are 0.
+    pure subroutine normal_force_slopes(self, penetration, penetration_rate, impact_speed, stiffness, damping)
+      import :: contact_law_t, dp
+      class(contact_law_t), intent(in) :: self
+      real(dp), intent(in) :: penetration, penetration_rate, impact_speed
+      real(dp), intent(out) :: stiffness, damping
+    end subroutine normal_force_slopes
   end interface
 end module contact_law

@@ -13,6 +13,7 @@ module hertz
     logical :: is_three_halves = .true. !! n is 3/2, which a square root answers; set by `set_elastic_part`
   contains
     procedure :: normal_force
+    procedure :: normal_force_slopes
     procedure, non_overridable :: elastic_force
     procedure, non_overridable :: set_elastic_part
   end type hertz_t
@@ -51,4 +52,15 @@ contains
     end associate
     force = self%elastic_force(penetration)
   end function normal_force
+
+  pure subroutine normal_force_slopes(self, penetration, penetration_rate, impact_speed, stiffness, damping)
+    class(hertz_t), intent(in) :: self
+    real(dp), intent(in) :: penetration, penetration_rate, impact_speed
+    real(dp), intent(out) :: stiffness, damping
+    associate (unused_rate => penetration_rate, unused_speed => impact_speed)
+    end associate
+    stiffness = 0
+    if (penetration > 0) stiffness = self%exponent*self%elastic_force(penetration)/penetration
+    damping = 0
+  end subroutine normal_force_slopes
 end module hertz

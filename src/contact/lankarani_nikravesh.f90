@@ -15,6 +15,7 @@ module lankarani_nikravesh
     real(dp) :: damping = 0   !! chi [-], 0 to 3/4
   contains
     procedure :: normal_force
+    procedure :: normal_force_slopes
     procedure :: set_restitution
   end type lankarani_nikravesh_t
 
@@ -46,4 +47,18 @@ contains
       force = force*max(0.0_dp, 1 + self%damping*(penetration_rate/impact_speed))
     end if
   end function normal_force
+
+  pure subroutine normal_force_slopes(self, penetration, penetration_rate, impact_speed, stiffness, damping)
+    class(lankarani_nikravesh_t), intent(in) :: self
+    real(dp), intent(in) :: penetration, penetration_rate, impact_speed
+    real(dp), intent(out) :: stiffness, damping
+    real(dp) :: force
+    stiffness = 0
+    damping = 0
+    force = self%normal_force(penetration, penetration_rate, impact_speed)
+    if (.not. force > 0) return
+    stiffness = self%exponent*force/penetration
+    if (penetration_rate <= ratio_limit*impact_speed .and. impact_speed > 0) &
+      damping = self%elastic_force(penetration)*self%damping/impact_speed
+  end subroutine normal_force_slopes
 end module lankarani_nikravesh

@@ -13,6 +13,7 @@ module ambrosio
     real(dp) :: v1 = 0            !! full friction from this sliding speed on [m/s], >= v0 and > 0
   contains
     procedure :: friction_ratio
+    procedure :: friction_ratio_slope
   end type ambrosio_t
 
 contains
@@ -45,4 +46,13 @@ contains
     end if
     ratio = -sign(ratio, sliding_speed)
   end function friction_ratio
+
+  pure function friction_ratio_slope(self, sliding_speed) result(slope)
+    class(ambrosio_t), intent(in) :: self
+    real(dp), intent(in) :: sliding_speed
+    real(dp) :: slope
+    slope = 0
+    if (abs(sliding_speed) > self%v0 .and. abs(sliding_speed) < self%v1) &
+      slope = -self%coefficient/(self%v1 - self%v0)
+  end function friction_ratio_slope
 end module ambrosio

@@ -10,6 +10,7 @@ module friction_law
     logical :: set_valued = .false.   !! the law jumps at zero sliding speed: the scene must resolve sticking
   contains
     procedure(friction_ratio), deferred :: friction_ratio
+    procedure :: friction_ratio_slope
   end type friction_law_t
 
   abstract interface
@@ -22,4 +23,17 @@ module friction_law
       real(dp) :: ratio
     end function friction_ratio
   end interface
+
+contains
+
+  !> Derivative of the ratio by the sliding speed [s/m], for implicit integration. The default is that of a law that does not
+  !> depend on the size of the speed: 0.
+  pure function friction_ratio_slope(self, sliding_speed) result(slope)
+    class(friction_law_t), intent(in) :: self
+    real(dp), intent(in) :: sliding_speed
+    real(dp) :: slope
+    associate (unused_self => self, unused_speed => sliding_speed)
+    end associate
+    slope = 0
+  end function friction_ratio_slope
 end module friction_law

@@ -4,6 +4,10 @@
 !>
 !> Differences from the published code, each deliberate:
 !> - the first step is chosen from the size of y'' by one more evaluation, not from |f| alone;
+!> - after a start where the problem says that f is smooth in sqrt(t - t_start) (a contact that begins: the force goes
+!>   with the power 1.5 of the penetration) the method steps in x = sqrt(t - t_start), y' = 2 x f: order and step rise
+!>   as from a smooth start;
+!> - a step may also grow by a quarter, not only double;
 !> - trial states outside the model and steps that a problem refuses are rejected like errors;
 !> - the interpolant also matches y at the beginning of the step, so it is continuous with its derivative;
 !> - y is summed with compensation at every tolerance.
@@ -12,8 +16,8 @@ module adams
   use kinds, only: dp
   use ode_problem, only: ode_problem_t, step_admitted, step_too_deep
   use ode_method, only: ode_method_t, highest_order, step_done, step_too_small, tolerance_too_small, start_outside, &
-    step_statistics_t
-  use adams_coefficients, only: adams_coefficients_t, moulton_constants, interpolation_weights
+    step_statistics_t, limit_error, limit_stability, limit_max_step, limit_start, limit_refusal
+  use adams_coefficients, only: adams_coefficients_t, moulton_constants, interpolation_weights, stability_limit
   implicit none
   private
   public :: adams_t
@@ -39,8 +43,14 @@ module adams
     integer :: k = 1                    !! order of the next step
     integer :: k_old = 0                !! order of the last accepted step, 0 at a start
     logical :: closed = .false.         !! `closing` belongs to the last accepted step
-    real(dp) :: h = 0                   !! size of the next step
+    logical :: rooted = .false.         !! the clock is x = sqrt(t - t_origin), else the time itself
+    real(dp) :: t_origin = 0            !! where a rooted clock began
+    real(dp) :: x = 0                   !! the clock at the end of the last accepted step
+    real(dp) :: x_old = 0               !! at its beginning
+    real(dp) :: h = 0                   !! size of the next step, by the clock
     real(dp) :: h_old = 0               !! size of the last accepted step
+    integer :: limit = limit_start      !! what made the next step no longer
+    real(dp) :: rounding = 0            !! weighted norm of the rounding of y
     logical :: opening = .true.         !! order and step are still being raised from the start
     real(dp), allocatable :: phi(:, :)  !! modified divided differences, (n, highest_order+2)
     real(dp), allocatable :: predicted(:), f_predicted(:), f_new(:), y_new(:)
@@ -51,7 +61,6 @@ module adams
     procedure :: start
     procedure :: step
     procedure :: interpolate
-    procedure, private :: grown
   end type adams_t
 
 contains
@@ -72,6 +81,10 @@ contains
     self%order = 0
     self%closed = .false.
     self%carry = 0
+    self%rooted = problem%smooth_in_root
+    self%t_origin = t
+    self%x = merge(0.0_dp, t, self%rooted)
+    self%x_old = self%x
     self%statistics%evaluations = self%statistics%evaluations + 1
     if (.not. first) self%statistics%restarts = self%statistics%restarts + 1
     call problem%derivatives(t, self%y, self%f, inside)
@@ -84,9 +97,10 @@ contains
     self%opening = .true.
     call self%coefficients%reset()
     self%phi = 0
-    self%phi(:, 1) = self%f(:self%n)
+    if (.not. self%rooted) self%phi(:, 1) = self%f(:self%n)
     call weigh(self)
     call choose_first_step(self, problem)
+    self%limit = limit_start
   end subroutine start
 
   !> Allocate everything, once for a whole integration.
@@ -104,6 +118,18 @@ contains
       self%f_new(n + problem%n_outputs), self%y_new(n), self%inverse_weight(n), self%carry(n), &
       self%carry_predicted(n), self%closing(n), self%y(n), self%y_old(n), self%f(n + problem%n_outputs))
   end subroutine prepare
+
+  !> The norm in which errors are measured: 1 is the tolerance.
+  pure real(dp) function weighted_norm(self, values)
+    class(adams_t), intent(in) :: self
+    real(dp), intent(in) :: values(:)
+    integer :: i
+    weighted_norm = 0
+    do i = 1, self%n
+      weighted_norm = weighted_norm + (values(i)*self%inverse_weight(i))**2
+    end do
+    weighted_norm = sqrt(weighted_norm)
+  end function weighted_norm
 
   !> Weights of the error norm at the present state.
   pure subroutine weigh(self)
@@ -127,7 +153,11 @@ contains
     integer :: tries
 
     longest = min(self%settings%max_step, self%settings%span)
-    slope = norm2(self%f(:self%n)*self%inverse_weight)
+    if (self%settings%fixed_step > 0) then
+      self%h = self%settings%fixed_step
+      return
+    end if
+    slope = weighted_norm(self, self%f)
     h = longest*1e-3_dp
     if (slope*h > 1) h = 1/slope
     do tries = 1, 60
@@ -137,26 +167,49 @@ contains
       if (inside) exit
       h = 0.1_dp*h
     end do
-    curvature = 0
-    if (inside) curvature = norm2((self%f_predicted(:self%n) - self%f(:self%n))*self%inverse_weight)/h
-    if (curvature > 0) then
+    if (self%rooted) then   ! by the clock, y'' is 2 f at the start
+      longest = sqrt(longest)
+      h = sqrt(h)
+      curvature = 2*weighted_norm(self, self%f_predicted)
+    else
+      self%f_predicted = self%f_predicted - self%f
+      curvature = weighted_norm(self, self%f_predicted)/h
+    end if
+    if (inside .and. curvature > 0) then
       self%h = min(sqrt(0.5_dp/curvature), 100*h, longest)
     else
       self%h = min(100*h, longest)
     end if
   end subroutine choose_first_step
 
+  !> The time at clock x.
+  pure real(dp) function time_at(self, x)
+    class(adams_t), intent(in) :: self
+    real(dp), intent(in) :: x
+    time_at = x
+    if (self%rooted) time_at = self%t_origin + x**2
+  end function time_at
+
+  !> How far the clock goes while the time goes by dt from the end of the last accepted step.
+  pure real(dp) function clock_step(self, dt)
+    class(adams_t), intent(in) :: self
+    real(dp), intent(in) :: dt
+    clock_step = dt
+    if (self%rooted) clock_step = dt/(sqrt(self%x**2 + dt) + self%x)
+  end function clock_step
+
   subroutine step(self, problem, status)
     class(adams_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
     integer, intent(out) :: status
     type(error_estimates_t) :: errors
-    real(dp) :: t_new, fraction
+    real(dp) :: x_new, t_new, fraction
     integer :: outcome, failures
 
     call weigh(self)
     failures = 0
-    if (0.5_dp < 2*epsilon(1.0_dp)*norm2(self%y*self%inverse_weight)) then
+    self%rounding = epsilon(1.0_dp)*weighted_norm(self, self%y)
+    if (0.5_dp < 2*self%rounding .and. .not. self%settings%fixed_step > 0) then
       status = tolerance_too_small
       return
     end if
@@ -165,14 +218,15 @@ contains
         status = step_too_small
         return
       end if
-      t_new = self%t + self%h
+      x_new = self%x + self%h
+      t_new = time_at(self, x_new)
       call self%coefficients%update(self%h, self%h_old, self%k, self%k_old)
       call predict(self)
-      call attempt(self, problem, t_new, errors, outcome, fraction)
+      call attempt(self, problem, x_new, t_new, errors, outcome, fraction)
       if (outcome == try_accepted) exit
       call retreat(self, errors, outcome, fraction, failures)
     end do
-    call accept(self, t_new)
+    call accept(self, x_new, t_new)
     call choose_order_and_step(self, errors)
     status = step_done
   end subroutine step
@@ -180,7 +234,7 @@ contains
   !> The shortest step that the time can still resolve.
   pure real(dp) function shortest_step(self)
     class(adams_t), intent(in) :: self
-    shortest_step = 4*epsilon(1.0_dp)*max(abs(self%t), 1e-9_dp*self%settings%span)
+    shortest_step = clock_step(self, 4*epsilon(1.0_dp)*max(abs(self%t), 1e-9_dp*self%settings%span))
   end function shortest_step
 
   !> Predict y at the end of the step; phi becomes the differences that the prediction extrapolates.
@@ -210,10 +264,10 @@ contains
   end subroutine predict
 
   !> Evaluate, estimate the error, correct, let the problem judge, evaluate again.
-  subroutine attempt(self, problem, t_new, errors, outcome, fraction)
+  subroutine attempt(self, problem, x_new, t_new, errors, outcome, fraction)
     class(adams_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
-    real(dp), intent(in) :: t_new
+    real(dp), intent(in) :: x_new, t_new
     type(error_estimates_t), intent(out) :: errors
     integer, intent(out) :: outcome
     real(dp), intent(out) :: fraction   !! part of the step to try next, where the problem refused it
@@ -225,8 +279,9 @@ contains
     self%statistics%evaluations = self%statistics%evaluations + 1
     call problem%derivatives(t_new, self%predicted, self%f_predicted, inside)
     if (.not. inside) return
+    if (self%rooted) self%f_predicted(:self%n) = 2*x_new*self%f_predicted(:self%n)
     call estimate_errors(self, errors)
-    if (.not. errors%step <= 1) then   ! a NaN is an error too
+    if (.not. errors%step <= 1 .and. .not. self%settings%fixed_step > 0) then   ! a NaN is an error too
       outcome = try_error
       return
     end if
@@ -240,6 +295,7 @@ contains
       fraction = 0.5_dp
       return
     end if
+    if (self%rooted) self%f_new(:self%n) = 2*x_new*self%f_new(:self%n)
     outcome = try_accepted
   end subroutine attempt
 
@@ -298,31 +354,74 @@ contains
     factor = fraction
     select case (outcome)
     case (try_error)
+      self%limit = limit_error
       self%statistics%rejected_error = self%statistics%rejected_error + 1
       failures = failures + 1
       factor = 0.5_dp
       if (failures > 3 .and. errors%same > 2) factor = sqrt(0.5_dp/errors%same)
       self%k = merge(1, errors%order, failures >= 3)
     case (try_too_deep)
+      self%limit = limit_refusal
       self%statistics%rejected_penetration = self%statistics%rejected_penetration + 1
     case default
+      self%limit = limit_refusal
       self%statistics%rejected_domain = self%statistics%rejected_domain + 1
     end select
     self%h = factor*self%h
   end subroutine retreat
 
-  !> The step stands: update the differences with the second evaluation.
-  pure subroutine accept(self, t_new)
+  !> Estimate the rate rho of the fastest mode from the two evaluations of the step, |f_new - f_predicted| over
+  !> |y_new - y_predicted| (what Hairer & Wanner 1996, IV.2, use), and count what limited the step. It was stability where
+  !> h rho is near the limit of the order while along the solution f changes at a much slower rate than rho: the mode
+  !> itself is not being followed any more.
+  pure subroutine count_limit(self, x_new)
     class(adams_t), intent(inout) :: self
-    real(dp), intent(in) :: t_new
+    real(dp), intent(in) :: x_new
+    real(dp) :: f_jump, y_jump, f_path, y_path, old, reach, slow
+    integer :: i, limit
+    f_jump = 0
+    y_jump = 0
+    f_path = 0
+    y_path = 0
+    old = 1
+    if (self%rooted) old = 2*self%x
+    do i = 1, self%n
+      associate (w => self%inverse_weight(i))
+        f_jump = f_jump + ((self%f_new(i) - self%f_predicted(i))*w)**2
+        y_jump = y_jump + ((self%y_new(i) - self%predicted(i))*w)**2
+        f_path = f_path + ((self%f_new(i) - old*self%f(i))*w)**2
+        y_path = y_path + ((self%y_new(i) - self%y(i))*w)**2
+      end associate
+    end do
+    limit = self%limit
+    if (y_jump > (100*self%rounding)**2) then
+      reach = self%h*sqrt(f_jump/y_jump)
+      slow = self%h*sqrt(f_path/y_path)
+      self%statistics%stiffness = self%statistics%stiffness + reach
+      if (limit == limit_error .and. reach > 0.5_dp*stability_limit(self%k) .and. slow < 0.3_dp*reach) &
+        limit = limit_stability
+    end if
+    associate (count => self%statistics)
+      count%limited_by(limit) = count%limited_by(limit) + 1
+      count%time_limited_by(limit) = count%time_limited_by(limit) + (time_at(self, x_new) - self%t)
+    end associate
+  end subroutine count_limit
+
+  !> The step stands: update the differences with the second evaluation.
+  pure subroutine accept(self, x_new, t_new)
+    class(adams_t), intent(inout) :: self
+    real(dp), intent(in) :: x_new, t_new
     real(dp) :: highest
     integer :: i, j, k
 
+    call count_limit(self, x_new)
     k = self%k
     self%k_old = k
     self%h_old = self%h
     self%t_old = self%t
     self%t = t_new
+    self%x_old = self%x
+    self%x = x_new
     do i = 1, self%n
       self%carry(i) = (self%y_new(i) - self%predicted(i)) - &
         (self%h*self%coefficients%g(k + 1)*(self%f_predicted(i) - self%phi(i, 1)) - self%carry_predicted(i))
@@ -336,17 +435,19 @@ contains
       end do
     end do
     self%f = self%f_new
+    if (self%rooted) self%f(:self%n) = self%f_new(:self%n)/(2*x_new)
     self%order = k
     self%closed = .false.
     associate (count => self%statistics)
       count%accepted = count%accepted + 1
       count%order_count(k) = count%order_count(k) + 1
-      count%smallest_step = min(count%smallest_step, self%h)
+      count%smallest_step = min(count%smallest_step, self%t - self%t_old)
     end associate
   end subroutine accept
 
   !> The order and size of the next step (Shampine & Gordon, ch. 7): order raised while opening; else where the
-  !> errors fall with the order; the step doubled, kept, or cut to what the tolerance allows.
+  !> errors fall with the order; the step doubled, raised by a quarter, kept, or cut to what the tolerance allows. Above order 4 it is raised by
+  !> a quarter only after k steps of one size, which a rise of the order needs too.
   pure subroutine choose_order_and_step(self, errors)
     class(adams_t), intent(inout) :: self
     type(error_estimates_t), intent(in) :: errors
@@ -355,17 +456,22 @@ contains
 
     k = self%k
     error = errors%same
+    if (self%settings%fixed_step > 0) then
+      self%k = min(k + 1, self%settings%max_order)
+      return
+    end if
     if (errors%order < k .or. k >= self%settings%max_order) self%opening = .false.
     if (self%opening) then
       self%k = k + 1
-      self%h = self%grown(2.0_dp)
+      self%limit = limit_start
+      call grow(self, 2.0_dp)
       return
     end if
     if (errors%order < k) then
       self%k = k - 1
       error = errors%lower
     else if (k + 1 <= self%coefficients%ns) then
-      higher = self%h*self%moulton(k + 1)*norm2(self%phi(:, k + 2)*self%inverse_weight)
+      higher = self%h*self%moulton(k + 1)*weighted_norm(self, self%phi(:, k + 2))
       if (k == 1) then
         if (higher < 0.5_dp*error .and. k < self%settings%max_order) self%k = 2
       else if (errors%lower <= min(error, higher)) then
@@ -379,20 +485,28 @@ contains
 
     if (0.5_dp >= error*2.0_dp**(self%k + 1)) then
       factor = 2
+    else if (0.5_dp >= error*1.25_dp**(self%k + 1) .and. self%coefficients%ns > merge(2, self%k, self%k <= 4)) then
+      factor = 1.25_dp
     else if (0.5_dp >= error) then
       factor = 1
     else
       factor = max(0.5_dp, min(0.9_dp, (0.5_dp/error)**(1.0_dp/(self%k + 1))))
     end if
-    self%h = self%grown(factor)
+    self%limit = limit_error
+    call grow(self, factor)
   end subroutine choose_order_and_step
 
-  !> The step size times a factor, within what the user allows.
-  pure real(dp) function grown(self, factor)
-    class(adams_t), intent(in) :: self
+  !> Multiply the step size, within what the settings allow.
+  pure subroutine grow(self, factor)
+    class(adams_t), intent(inout) :: self
     real(dp), intent(in) :: factor
-    grown = min(factor*self%h, self%settings%max_step)
-  end function grown
+    real(dp) :: longest
+    self%h = factor*self%h
+    longest = clock_step(self, self%settings%max_step)
+    if (self%h < longest) return
+    self%h = longest
+    self%limit = limit_max_step
+  end subroutine grow
 
   !> The polynomial of degree k+2 whose derivative takes the values f_n+1, f_n, ... f_n+1-k and that passes through
   !> y_n+1 and y_n: with its derivative it continues that of the step before (compare Watts & Shampine 1986).
@@ -405,14 +519,15 @@ contains
 
     k = self%k_old
     s = t - self%t
+    if (self%rooted) s = sqrt(max(t - self%t_origin, 0.0_dp)) - self%x
     if (k == 0 .or. s >= 0) then
       y = self%y
       return
     end if
     if (.not. self%closed) then
-      call interpolation_weights(self%coefficients, k, self%t_old - self%t, weights)
+      call interpolation_weights(self%coefficients, k, self%x_old - self%x, weights)
       self%closing = self%y_old - self%y
-      self%closing = self%closing/(self%t_old - self%t)
+      self%closing = self%closing/(self%x_old - self%x)
       do j = 1, k + 1
         self%closing = self%closing - weights(j)*self%phi(:, j)
       end do

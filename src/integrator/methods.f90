@@ -4,6 +4,7 @@ module methods
   use ode_method, only: ode_method_t
   use adams, only: adams_t
   use radau, only: radau_t
+  use auto_method, only: auto_t
   implicit none
   private
   public :: new_method
@@ -16,12 +17,14 @@ contains
     class(ode_method_t), allocatable, intent(out) :: method
     type(error_t), allocatable, intent(out) :: error
     select case (name)
+    case ('auto')
+      allocate (auto_t :: method)
     case ('adams')
       allocate (adams_t :: method)
     case ('radau')
       allocate (radau_t :: method)
     case default
-      call fail(error, "&integrator method = '"//name//"': must be 'adams' or 'radau'", status_case_file)
+      call fail(error, "&integrator method = '"//name//"': must be 'auto', 'adams' or 'radau'", status_case_file)
     end select
   end subroutine new_method
 end module methods

@@ -1,14 +1,28 @@
 !> What every integration method offers, its settings, its statistics and its status codes.
 module ode_method
   use kinds, only: dp
-  use ode_problem, only: ode_problem_t
+  use ode_problem, only: ode_problem_t, max_modes
   implicit none
   private
   public :: ode_method_t, ode_settings_t, step_statistics_t
   public :: step_done, step_too_small, tolerance_too_small, start_outside
-  public :: highest_order
+  public :: highest_order, with_adams, with_radau
+  public :: limit_error, limit_stability, limit_max_step, limit_start, limit_refusal, n_limits, limit_names
 
   integer, parameter :: highest_order = 12   !! of the Adams formulas
+
+  !> The methods between which `auto` chooses.
+  integer, parameter :: with_adams = 1, with_radau = 2
+
+  !> What kept a step from being longer.
+  integer, parameter :: limit_error = 1       !! the error estimate
+  integer, parameter :: limit_stability = 2   !! the method's stability: the fastest mode has died out, but not its rate
+  integer, parameter :: limit_max_step = 3    !! the settings
+  integer, parameter :: limit_start = 4       !! order and step were still being raised after a start
+  integer, parameter :: limit_refusal = 5     !! the problem refused a longer one (penetration, domain)
+  integer, parameter :: n_limits = 5
+  character(len=9), parameter :: limit_names(n_limits) = [character(len=9) :: 'error', 'stability', 'max_step', 'start', &
+    'refusal']
 
   !> Status of a step.
   integer, parameter :: step_done = 0            !! a step was accepted
@@ -25,6 +39,8 @@ module ode_method
     real(dp) :: max_step = huge(1.0_dp)   !! longest step
     real(dp) :: span = 1                  !! length of the whole integration: the scale of the shortest step
     integer :: max_order = highest_order  !! highest order, 1..highest_order
+    real(dp) :: fixed_step = 0            !! > 0: every step has this size and no error is controlled, for tests of order
+    real(dp) :: chatter_time = 0          !! a hundred events in less than this are chatter; 0: 1e-9 of the span
   end type ode_settings_t
 
   !> Counts of what a method has done since the beginning of an integration. Only `rejected_*` and
@@ -41,6 +57,11 @@ module ode_method
     integer :: restarts = 0              !! starts after the first one
     real(dp) :: smallest_step = huge(1.0_dp)    !! shortest accepted step
     integer :: order_count(highest_order) = 0   !! accepted steps taken at each order
+    integer :: limited_by(n_limits) = 0         !! accepted steps by what limited them
+    real(dp) :: time_limited_by(n_limits) = 0   !! time that went by in them
+    integer :: switches = 0                     !! changes between Adams and Radau
+    real(dp) :: time_with(2, 0:max_modes) = 0   !! method auto: time that went by with each method in each mode
+    real(dp) :: stiffness = 0     !! integral of rho dt, rho the estimated rate of the fastest mode; 0: not estimated
   end type step_statistics_t
 
   !> A method that advances a problem step by step and knows the solution anywhere inside its last step.
@@ -55,6 +76,7 @@ module ode_method
     real(dp), allocatable :: f(:)         !! right-hand side and outputs at (t, y), (n + n_outputs)
   contains
     procedure :: nominal_tolerance
+    procedure :: totals
     procedure(start), deferred :: start
     procedure(step), deferred :: step
     procedure(interpolate), deferred :: interpolate
@@ -98,4 +120,11 @@ contains
     nominal_tolerance = self%settings%tolerance
     if (.not. nominal_tolerance > 0) nominal_tolerance = maxval(self%settings%relative)
   end function nominal_tolerance
+
+  !> The counts of the whole integration so far.
+  pure function totals(self) result(statistics)
+    class(ode_method_t), intent(in) :: self
+    type(step_statistics_t) :: statistics
+    statistics = self%statistics
+  end function totals
 end module ode_method

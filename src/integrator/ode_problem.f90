@@ -7,10 +7,11 @@ module ode_problem
   use kinds, only: dp
   implicit none
   private
-  public :: ode_problem_t
+  public :: ode_problem_t, difference_jacobian
   public :: step_admitted, step_too_deep, step_outside
-  public :: event_continue, event_stop, max_events
+  public :: event_continue, event_stop, max_events, max_modes
 
+  integer, parameter :: max_modes = 3      !! highest mode
   integer, parameter :: max_events = 16   !! most event functions that a problem may have at one time
 
   !> Verdicts of `judge_step`.
@@ -28,7 +29,9 @@ module ode_problem
     integer :: n_outputs = 0  !! further values that `derivatives` puts behind the n derivatives
     integer :: n_positions = 0   !! the first components are positions, whose rates follow them in the same order
     integer :: n_quadratures = 0 !! the last components are quadratures: nothing depends on them
+    integer :: mode = 0          !! the present discrete state as far as the choice of a method cares, 0..max_modes
     integer :: n_events = 0   !! number of event functions in the present discrete state
+    logical :: smooth_in_root = .false. !! from the last (re)start on f is smooth in sqrt(t - t_start), not in t
   contains
     procedure(derivatives), deferred :: derivatives
     procedure :: jacobian => difference_jacobian

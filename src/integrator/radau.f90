@@ -60,6 +60,8 @@ module radau
     integer, allocatable :: pivot1(:), pivot2(:, :)
     real(dp), allocatable :: inverse_weight(:)                   !! (n)
   contains
+    procedure :: prepare
+    procedure :: spectral_bound
     procedure :: start
     procedure :: step
     procedure :: interpolate
@@ -126,6 +128,31 @@ contains
       self%inverse_weight(n), self%y(n), self%y_old(n), self%f(n + problem%n_outputs))
     self%z = 0
   end subroutine prepare
+
+  !> An upper bound of the rate of the fastest mode of the last Jacobian: the norm of a_v and the root of that of a_p, in the
+  !> weights of the error.
+  pure real(dp) function spectral_bound(self)
+    class(radau_t), intent(in) :: self
+    real(dp) :: row_v, row_p, most_v, most_p
+    integer :: i, j
+    most_v = 0
+    most_p = 0
+    do i = 1, self%k
+      row_v = 0
+      row_p = 0
+      associate (weight => self%inverse_weight(self%m + i))
+        do j = 1, self%k
+          row_v = row_v + abs(self%a_v(i, j))*weight/max(self%inverse_weight(self%m + j), tiny(weight))
+        end do
+        do j = 1, self%m   ! measured as a rate, since a_p is the square of one
+          row_p = row_p + abs(self%a_p(i, j))*weight/max(self%inverse_weight(self%m + j), tiny(weight))
+        end do
+      end associate
+      most_v = max(most_v, row_v)
+      most_p = max(most_p, row_p)
+    end do
+    spectral_bound = max(most_v, sqrt(most_p))
+  end function spectral_bound
 
   !> The formula to start with: the looser the tolerance the lower.
   pure integer function first_level(self)

@@ -17,7 +17,7 @@ module solver
   integer, parameter :: integration_interrupted = 12  !! the observer asked for the end
   integer, parameter :: chattering = 13               !! event after event without progress in time
 
-  integer, parameter :: most_events_in_place = 100    !! events within a 1e-9 part of the span: chatter
+  integer, parameter :: most_events_in_place = 100    !! events within the chatter time: chatter
 
   !> Somebody who looks at accepted steps and at events. While `step_taken` runs, the method interpolates.
   type, abstract :: observer_t
@@ -66,13 +66,15 @@ contains
     class(observer_t), intent(inout) :: observer
     integer, intent(out) :: status
     type(event_watch_t) :: watch
-    real(dp) :: t_event, t_place
+    real(dp) :: t_event, t_place, chatter_time
     integer :: event, action, in_place
 
     status = integration_done
     if (.not. t < t_end) return
     call method%start(problem, t, y, .true., status)
     call watch%begin(problem, t, y, 0)
+    chatter_time = method%settings%chatter_time
+    if (.not. chatter_time > 0) chatter_time = 1e-9_dp*method%settings%span
     t_place = t
     in_place = 0
     do while (status == step_done)
@@ -89,7 +91,7 @@ contains
           status = integration_stopped
           exit
         end if
-        if (t - t_place > 1e-9_dp*method%settings%span) in_place = 0
+        if (t - t_place > chatter_time) in_place = 0
         if (in_place == 0) t_place = t
         in_place = in_place + 1
         if (in_place > most_events_in_place) status = chattering

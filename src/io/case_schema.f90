@@ -132,7 +132,8 @@ contains
     type(key_t), allocatable :: keys(:)
     character(len=*), parameter :: i = 'integrator', o = 'output'
     keys = [ &
-      word_key(i, 'method', 'adams', 'adams, radau', 'adams: Shampine and Gordon; radau: implicit, for films'), &
+      word_key(i, 'method', 'auto', 'auto, adams, radau', &
+               'adams: Shampine and Gordon; radau: implicit; auto: as the phase needs'), &
       real_key(i, 'revolutions', '', '> 0', '0: end_time is given', default='0.0', example='4.0'), &
       real_key(i, 'end_time', 's', '> 0', '0: revolutions is given', default='0.0'), &
       real_key(i, 'relative_tolerance', '', '> 0 and <= 0.1', 'local error', default='1.0e-6'), &

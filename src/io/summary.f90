@@ -2,7 +2,7 @@
 module summary
   use, intrinsic :: iso_fortran_env, only: compiler_version, compiler_options
   use kinds, only: dp
-  use ode_method, only: highest_order
+  use ode_method, only: highest_order, n_limits, limit_names, limit_stability
   use simulation, only: run_report_t
   use case_definition, only: case_t
   use number_text, only: real_text, short_text
@@ -22,7 +22,7 @@ contains
     type(run_report_t), intent(in) :: report
     real(dp), intent(in) :: wall_time   !! [s]
     character(len=:), allocatable :: text
-    integer :: order
+    integer :: order, limit
 
     text = 'quantity,value,unit'//newline
     call add('status', quoted(report%status), '')
@@ -40,6 +40,14 @@ contains
       do order = 1, highest_order
         call add('steps_of_order_'//integer_text(order), integer_text(s%order_count(order)), '1')
       end do
+      if (s%accepted > 0) then
+        call add('step_limited_by', trim(limit_names(maxloc(s%limited_by, 1))), '')
+        call add('stability_bound_fraction', real_text(real(s%limited_by(limit_stability), dp)/s%accepted), '1')
+        do limit = 1, n_limits
+          call add('steps_limited_by_'//trim(limit_names(limit)), integer_text(s%limited_by(limit)), '1')
+        end do
+        call add('stiffness_integral', real_text(s%stiffness), '1')
+      end if
       call add('max_pin_force', real_text(f%max_pin_force), 'N')
       if (f%time > 0) call add('mean_crank_speed', real_text(f%crank_travel/f%time), 'rad/s')
       call add('max_energy_residual', real_text(f%max_energy_residual), 'J')

@@ -3,7 +3,7 @@ module film_law
   use kinds, only: dp
   implicit none
   private
-  public :: film_law_t, film_motion_t
+  public :: film_law_t, film_motion_t, difference_derivatives
 
   !> The motion of the pin in its bearing, as far as a film needs it.
   type :: film_motion_t
@@ -17,10 +17,12 @@ module film_law
 
   !> A film that carries the pin while it does not touch the bearing.
   type, abstract :: film_law_t
+    real(dp) :: clearance = 1                 !! c, radial [m]
     logical :: needs_ideal_motion = .false.   !! whether the ideal_* fields and the frequency are read
     logical :: singular_at_wall = .true.      !! the force is infinite at |e| = c: the state may not reach it
   contains
     procedure(film_force), deferred :: film_force
+    procedure :: force_derivatives => difference_derivatives
   end type film_law_t
 
   abstract interface
@@ -33,4 +35,44 @@ module film_law
       real(dp), intent(out) :: moment
     end subroutine film_force
   end interface
+
+contains
+
+  !> Derivatives of the force and the moment (rows F_x, F_y, moment) by e_x, e_y, e_x', e_y' and the pin speed (columns), for
+  !> implicit integration. The default is central differences; what else the law depends on is left out, since it
+  !> changes with the crank, not with the film.
+  pure subroutine difference_derivatives(self, motion, derivatives)
+    class(film_law_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(out) :: derivatives(3, 5)
+    real(dp) :: room, rate, step(5), above(3), below(3)
+    integer :: i
+
+    room = max(self%clearance - norm2(motion%eccentricity), 1e-6_dp*self%clearance)
+    rate = norm2(motion%eccentricity_rate) + self%clearance*abs(motion%pin_speed) + tiny(1.0_dp)**0.25_dp
+    step = 1e-5_dp*[room, room, rate*room/self%clearance, rate*room/self%clearance, rate/self%clearance]
+    do i = 1, 5
+      call moved(step(i), above)
+      call moved(-step(i), below)
+      derivatives(:, i) = (above - below)/(2*step(i))
+    end do
+
+  contains
+
+    pure subroutine moved(by, values)
+      real(dp), intent(in) :: by
+      real(dp), intent(out) :: values(3)
+      type(film_motion_t) :: other
+      other = motion
+      select case (i)
+      case (1, 2)
+        other%eccentricity(i) = other%eccentricity(i) + by
+      case (3, 4)
+        other%eccentricity_rate(i - 2) = other%eccentricity_rate(i - 2) + by
+      case default
+        other%pin_speed = other%pin_speed + by
+      end select
+      call self%film_force(other, values(1:2), values(3))
+    end subroutine moved
+  end subroutine difference_derivatives
 end module film_law

@@ -3,7 +3,7 @@
 module half_film
   use kinds, only: dp
   use constants, only: two_pi
-  use film_law, only: film_motion_t
+  use film_law, only: film_motion_t, difference_derivatives
   use pinkus_sternlicht, only: pinkus_sternlicht_t, reduced_motion_t
   implicit none
   private
@@ -13,6 +13,7 @@ module half_film
   type, extends(pinkus_sternlicht_t) :: half_film_t
   contains
     procedure :: film_force
+    procedure :: force_derivatives
   end type half_film_t
 
 contains
@@ -102,4 +103,12 @@ contains
     complex(dp) :: rotated
     rotated = z*cmplx(1.0_dp, tangent, dp)/sqrt(1 + tangent**2)
   end function rotated
+
+  !> By differences: not those of the closed form.
+  pure subroutine force_derivatives(self, motion, derivatives)
+    class(half_film_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(out) :: derivatives(3, 5)
+    call difference_derivatives(self, motion, derivatives)
+  end subroutine force_derivatives
 end module half_film

@@ -12,7 +12,6 @@ module oscillating_film
 
   type, extends(film_law_t) :: oscillating_film_t
     type(oscillating_response_t) :: response
-    real(dp) :: clearance = 0             !! c, radial [m]
     real(dp) :: pin_radius = 0            !! R [m]
     real(dp) :: viscosity = 0             !! mu [Pa s]
     real(dp) :: kinematic_viscosity = 0   !! nu [m^2/s]
@@ -155,7 +154,9 @@ contains
     type(film_motion_t), intent(in) :: motion
     real(dp), intent(in) :: theta
     real(dp) :: gap
-    gap = self%clearance*(1 - min(norm2(motion%eccentricity)/self%clearance, max_eccentricity_ratio)*cos(theta))
+    real(dp) :: eps
+    eps = min(norm2(motion%eccentricity)/self%clearance, self%largest_ratio, max_eccentricity_ratio)
+    gap = self%clearance*(1 - eps*cos(theta))
   end function gap
 
   !> sinh(z)/z.

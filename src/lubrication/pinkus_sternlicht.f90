@@ -2,7 +2,7 @@
 module pinkus_sternlicht
   use kinds, only: dp
   use constants, only: pi
-  use film_law, only: film_law_t, film_motion_t
+  use film_law, only: film_law_t, film_motion_t, difference_derivatives
   implicit none
   private
   public :: pinkus_sternlicht_t, reduced_motion_t, new_pinkus_sternlicht
@@ -21,12 +21,12 @@ module pinkus_sternlicht
 
   !> The closed form of the force (5.34-5.37).
   type, extends(film_law_t) :: pinkus_sternlicht_t
-    real(dp) :: clearance = 0        !! c, radial [m]
     real(dp) :: pressure_scale = 0   !! mu R^2/c^2 [Pa s], R of the pin
     real(dp) :: force_scale = 0      !! mu w R^3/c^2 [N s]
     real(dp) :: withdrawal_sign = 1  !! factor of the radial force for eps_dot < 0: 1 corrected, -1 as printed
   contains
     procedure :: film_force
+    procedure :: force_derivatives
     procedure :: pressure
     procedure, non_overridable :: reduced
   end type pinkus_sternlicht_t
@@ -100,6 +100,78 @@ contains
       force(2) = radial*n(2) + tangential*n(1)
     end associate
   end subroutine film_force
+
+  !> Derivatives of `film_force`, for implicit integration (see `difference_derivatives`): of the polar forms by (eps,
+  !> eps_dot, eps W), turned back to x and y. Close to the centre, where the directions turn fast, differences serve.
+  pure subroutine force_derivatives(self, motion, derivatives)
+    class(pinkus_sternlicht_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(out) :: derivatives(3, 5)
+    real(dp), parameter :: smallest_ratio = 1e-4_dp
+    type(reduced_motion_t) :: state
+    real(dp) :: radial(0:3), tangential(0:3), tangential_rate, changes(3, 5), normal_turn(5)
+    logical :: moves
+    integer :: i
+
+    state = self%reduced(motion)
+    call polar_forces(self, state, radial, tangential, moves)
+    if (state%ratio < smallest_ratio .or. .not. moves) then
+      call difference_derivatives(self, motion, derivatives)
+      return
+    end if
+    associate (n => state%normal, v => motion%eccentricity_rate, c => self%clearance)
+      tangential_rate = (n(1)*v(2) - n(2)*v(1))/c
+      ! changes of eps, eps_dot and eps W, and the angle by which n turns, with e_x, e_y, e_x', e_y', pin speed
+      normal_turn = [-n(2), n(1), 0.0_dp, 0.0_dp, 0.0_dp]/(state%ratio*c)
+      changes(1, :) = [n(1), n(2), 0.0_dp, 0.0_dp, 0.0_dp]/c
+      changes(2, :) = normal_turn*tangential_rate + [0.0_dp, 0.0_dp, n(1), n(2), 0.0_dp]/c
+      changes(3, :) = changes(1, :)*motion%pin_speed + 2*normal_turn*state%ratio_rate &
+        + [0.0_dp, 0.0_dp, 2*n(2)/c, -2*n(1)/c, state%ratio]
+      do i = 1, 5
+        associate (f_r => dot_product(radial(1:), changes(:, i)) - tangential(0)*normal_turn(i), &
+                   f_t => dot_product(tangential(1:), changes(:, i)) + radial(0)*normal_turn(i))
+          derivatives(:, i) = [f_r*n(1) - f_t*n(2), f_r*n(2) + f_t*n(1), 0.0_dp]
+        end associate
+      end do
+    end associate
+  end subroutine force_derivatives
+
+  !> Radial and tangential force with their derivatives by eps, eps_dot and eps W (elements 1 to 3). Where nothing
+  !> `moves` there are none.
+  pure subroutine polar_forces(self, state, radial, tangential, moves)
+    class(pinkus_sternlicht_t), intent(in) :: self
+    type(reduced_motion_t), intent(in) :: state
+    real(dp), intent(out) :: radial(0:3), tangential(0:3)
+    logical, intent(out) :: moves
+    real(dp) :: gap, s(0:3), squeeze(0:3), numerator(0:3), quotient(0:3), scale(0:1), bracket(0:3), two_plus, way
+
+    associate (eps => state%ratio, rate => state%ratio_rate, wedge => state%wedge)
+      gap = (1 - eps)*(1 + eps)
+      two_plus = 2 + eps**2
+      way = sign(1.0_dp, rate)
+      s(0) = sqrt(gap*(wedge**2 + 4*rate**2))
+      radial = 0
+      tangential = 0
+      moves = s(0) > 0
+      if (.not. moves) return
+      s(1:) = [-eps*s(0)/gap, 4*gap*rate/s(0), gap*wedge/s(0)]
+      squeeze = [3*eps*abs(rate), 3*abs(rate), 3*eps*way, 0.0_dp]
+      numerator = s + (1 + way)*squeeze
+      quotient(0) = numerator(0)/(s(0) + squeeze(0))
+      quotient(1:) = (numerator(1:) - quotient(0)*(s(1:) + squeeze(1:)))/(s(0) + squeeze(0))
+      scale(0) = 6*self%force_scale/(two_plus*gap*sqrt(gap))
+      scale(1) = scale(0)*(3*eps/gap - 2*eps/two_plus)
+      bracket = 2*eps*s + two_plus*pi*rate*quotient
+      bracket(1) = bracket(1) + 2*s(0) + 2*eps*pi*rate*quotient(0)
+      bracket(2) = bracket(2) + two_plus*pi*quotient(0)
+      radial = -scale(0)*bracket
+      radial(1) = radial(1) - scale(1)*bracket(0)
+      if (rate < 0) radial = self%withdrawal_sign*radial
+      tangential = scale(0)*gap*pi*wedge*quotient
+      tangential(1) = tangential(1) + pi*wedge*quotient(0)*(scale(1)*gap - 2*eps*scale(0))
+      tangential(3) = tangential(3) + scale(0)*gap*pi*quotient(0)
+    end associate
+  end subroutine polar_forces
 
   !> Pressure of the film [Pa] (5.20), 0 where it would be negative, at the angle theta [rad] from the thinnest place
   !> (the direction of the eccentricity), x towards y:

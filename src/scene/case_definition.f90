@@ -60,7 +60,7 @@ module case_definition
   end type combustion_case_t
 
   type :: integrator_case_t
-    character(len=word_length) :: method = 'adams', contact_entry = 'root'
+    character(len=word_length) :: method = 'auto', contact_entry = 'root'
     real(dp) :: revolutions = 0, end_time = 0   !! exactly one is given; the other is 0
     real(dp) :: relative_tolerance = 1e-6_dp, absolute_tolerance = 0, max_step = 0
     integer :: max_order = 12, max_steps = 0

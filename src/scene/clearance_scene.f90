@@ -1,11 +1,12 @@
 !> The scene with clearance in the pin joint: free flight or film while apart, contact while touching.
 module clearance_scene
   use kinds, only: dp
-  use ode_problem, only: step_admitted, step_too_deep, event_continue
+  use ode_problem, only: step_admitted, step_too_deep, event_continue, difference_jacobian
   use mechanism, only: motion_t, accelerations_t
   use dynamics, only: loads_t, accelerations_under
   use ideal_joint, only: ideal_motion, ideal_rod_acceleration
   use clearance_joint, only: joint_geometry_t, joint_motion_t, joint_motion, clearance_motion, eccentricity_acceleration
+  use linearisation, only: motion_change_t, motion_change, acceleration_change
   use contact_law, only: contact_law_t
   use friction_law, only: friction_law_t
   use film_law, only: film_law_t, film_motion_t
@@ -33,6 +34,7 @@ module clearance_scene
   contains
     procedure :: derivatives
     procedure :: evaluate
+    procedure :: jacobian
     procedure :: initial_state
     procedure :: natural_scales
     procedure :: reported_event
@@ -106,6 +108,81 @@ contains
         - loads%pin_moment*now%motion%rod_speed
     end associate
   end subroutine evaluate
+
+  !> Derivatives of the accelerations by positions and rates, in closed form but for films that have none, and for a pin
+  !> that sticks.
+  subroutine jacobian(self, t, y, a_p, a_v)
+    class(clearance_scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: a_p(:, :), a_v(:, :)
+    type(evaluation_t) :: now
+    type(motion_change_t) :: change
+    type(loads_t) :: load_change
+    real(dp) :: force(3, 5), direction(6), a(3)
+    logical :: inside
+    integer :: i, skip
+
+    call self%evaluate(t, y, now, inside)
+    if (self%phase == phase_contact .and. allocated(self%friction)) then
+      if (self%friction%set_valued .and. self%sliding == 0) inside = .false.
+    end if
+    if (.not. inside) then
+      call difference_jacobian(self, t, y, a_p, a_v)
+      return
+    end if
+    force = 0
+    if (self%phase == phase_contact) call contact_derivatives(self, now, force)
+    if (self%phase == phase_film) call self%film%force_derivatives(film_motion(self, now), force)
+    skip = merge(0, 1, self%drive%free_crank)   ! the held crank angle is no unknown
+    do i = 1 + skip, 6
+      if (i == 4 .and. skip == 1) cycle
+      direction = 0
+      direction(i) = 1   ! of q, e_x, e_y, q', e_x', e_y'
+      change = motion_change(self%mechanism, now%motion, direction(1), direction(4), direction(3), direction(6))
+      a = matmul(force(:, 1:2), direction(2:3)) + matmul(force(:, 3:4), direction(5:6)) - force(:, 5)*change%rod_speed
+      load_change%pin_force = a(1:2)
+      load_change%pin_moment = a(3)
+      load_change%gas_force = 0
+      if (allocated(self%gas) .and. i == 1) load_change%gas_force = self%gas_force_slope(now%motion%crank_angle)
+      a = acceleration_change(self%mechanism, self%drive, now%loads, now%motion, now%accelerations, change, load_change)
+      if (i <= 3) then
+        a_p(:, i - skip) = a(1 + skip:)
+      else
+        a_v(:, i - 3 - skip) = a(1 + skip:)
+      end if
+    end do
+  end subroutine jacobian
+
+  !> Derivatives of contact and friction forces and of their moment by e_x, e_y, e_x', e_y' and the pin speed (see
+  !> `difference_derivatives` of the films).
+  pure subroutine contact_derivatives(self, now, derivatives)
+    class(clearance_scene_t), intent(in) :: self
+    type(evaluation_t), intent(in) :: now
+    real(dp), intent(out) :: derivatives(3, 5)
+    real(dp) :: stiffness, damping, ratio, ratio_slope, turn(5), depth(5), rate(5), sliding(5), normal(5), friction(5)
+    integer :: i
+
+    associate (joint => now%joint, n => now%joint%normal)
+      call self%contact%normal_force_slopes(joint%penetration, joint%penetration_rate, self%impact_speed, stiffness, damping)
+      ratio = 0
+      ratio_slope = 0
+      if (allocated(self%friction)) then
+        ratio = self%friction%friction_ratio(joint%sliding_speed, self%sliding)
+        ratio_slope = self%friction%friction_ratio_slope(joint%sliding_speed)
+      end if
+      turn = [-n(2), n(1), 0.0_dp, 0.0_dp, 0.0_dp]/joint%distance
+      depth = [n(1), n(2), 0.0_dp, 0.0_dp, 0.0_dp]
+      rate = turn*joint%tangential_rate + [0.0_dp, 0.0_dp, n(1), n(2), 0.0_dp]
+      sliding = -turn*joint%penetration_rate + [0.0_dp, 0.0_dp, -n(2), n(1), self%joint%pin_radius]
+      normal = stiffness*depth + damping*rate
+      friction = ratio*normal + ratio_slope*now%normal_force*sliding
+      do i = 1, 5
+        associate (along => -normal(i) - now%friction_force*turn(i), across => friction(i) - now%normal_force*turn(i))
+          derivatives(:, i) = [along*n(1) - across*n(2), along*n(2) + across*n(1), self%joint%pin_radius*friction(i)]
+        end associate
+      end do
+    end associate
+  end subroutine contact_derivatives
 
   !> The motion as a film sees it.
   pure function film_motion(self, now) result(film)
@@ -300,6 +377,7 @@ contains
     real(dp) :: contact(2)
 
     action = event_continue
+    self%smooth_in_root = .false.
     if (index > self%n_joint_events) then
       call self%pass_gas_bound(index - self%n_joint_events)
       return
@@ -308,6 +386,7 @@ contains
     case (begins)
       contact = penetration_and_rate(self, y)
       self%phase = phase_contact
+      self%smooth_in_root = .true.   ! penetration grows like t, the force like its power 1.5
       self%impact_speed = max(contact(2), 0.0_dp)
       call choose_sliding(self, t, y, .true.)
     case (ends)
@@ -315,6 +394,7 @@ contains
     case (sliding_changes)
       call choose_sliding(self, t, y, .false.)
     end select
+    self%mode = self%phase
   end subroutine handle_event
 
   !> Set-valued friction: where the sliding speed is not zero it tells the direction. At zero (where it `may_slide` at the

@@ -59,6 +59,7 @@ module scene
     procedure :: speed_scale
     procedure :: set_gas_part
     procedure :: add_gas
+    procedure :: gas_force_slope
     procedure :: gas_events
     procedure :: pass_gas_bound
   end type scene_t
@@ -139,6 +140,13 @@ contains
     now%cylinder_pressure = self%gas%pressure(now%motion%crank_angle, self%gas_part, self%gas_cycle_start)
     now%loads%gas_force = self%gas%gas_force(now%cylinder_pressure)
   end subroutine add_gas
+
+  !> Derivative of the gas force by the crank angle [N/rad].
+  pure real(dp) function gas_force_slope(self, crank_angle)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: crank_angle
+    gas_force_slope = self%gas%cylinder%area*self%gas%pressure_slope(crank_angle, self%gas_part, self%gas_cycle_start)
+  end function gas_force_slope
 
   !> Event functions of the bounds of the present part of the gas cycle, over the crank angle.
   pure subroutine gas_events(self, crank_angle, crank_speed, g, g_rate)

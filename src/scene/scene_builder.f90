@@ -85,6 +85,7 @@ contains
         if (allocated(error)) return
       end if
       scene%phase = merge(phase_film, phase_free, allocated(scene%film))
+      scene%mode = scene%phase
       scene%rejects_deep_entry = case%integrator%contact_entry == 'step_rejection' .and. allocated(scene%contact)
       scene%max_penetration = case%integrator%max_penetration
     end associate
@@ -123,7 +124,8 @@ contains
   end function sample_interval
 
   !> Settings of the integrator for a scene of the case. Component i is held to relative_tolerance*|y_i| (unless it grows
-  !> without bound) + a*scale_i, a = absolute_tolerance or, where that is 0, relative_tolerance.
+  !> without bound) + a*scale_i, a = absolute_tolerance or, where that is 0, relative_tolerance. A hundred events within
+  !> 1e-6 of a revolution are chatter.
   pure function settings_for(case, scene) result(settings)
     type(case_t), intent(in) :: case
     class(scene_t), intent(in) :: scene
@@ -140,5 +142,6 @@ contains
     settings%absolute = factor*scales
     if (case%integrator%max_step > 0) settings%max_step = case%integrator%max_step
     settings%max_order = case%integrator%max_order
+    settings%chatter_time = 1e-6_dp*two_pi/scene%speed_scale(settings%span)
   end function settings_for
 end module scene_builder

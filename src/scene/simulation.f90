@@ -63,7 +63,7 @@ contains
     call integrate(scene, method, t, y, recorder%end_time, case%integrator%max_steps, recorder, status)
     call recorder%finish(scene, t, y)
     call move_alloc(recorder%sink, sink)
-    report%statistics = method%statistics
+    report%statistics = method%totals()
     report%figures = recorder%figures
     !$omp critical (texts)
     report%status = 'done'

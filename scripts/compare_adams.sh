@@ -1,0 +1,25 @@
+#!/bin/sh
+# scripts/compare_adams.sh [scenes | standard]
+# The Adams method side by side with what a published Shampine-Gordon code needed on the same scenes: evaluations
+# and errors at four tolerances; before that, the standard battery of non-stiff problems. The references are integrated first, by a copy that computes in 80 bits.
+cd "$(dirname "$0")/.." || exit 1
+. scripts/setup.sh || exit 1
+set -e
+copy=build/extended_precision
+mkdir -p "$copy"
+cp -rp fpm.toml src tests cases "$copy"
+sed -i 's/dp = real64 .*/dp = selected_real_kind(18)/' "$copy/src/base/kinds.f90"
+reference() {   # reference WHAT FILE
+  (cd "$copy" && fpm run --profile release --example integrator_battery -- "$1") | grep '^[0-9]* .*E' >"$2"
+}
+table() {   # table WHAT FILE
+  fpm run --profile release --example integrator_battery -- "$1" "$2" | grep -v '^\[\|^Project'
+}
+if [ "$1" != scenes ]; then
+  reference standard_reference build/standard_references.txt
+  table standard build/standard_references.txt
+fi
+if [ "$1" != standard ]; then
+  reference reference build/references.txt
+  table scenes build/references.txt
+fi

@@ -1,0 +1,62 @@
+!> An observer that keeps the states q, A, x, their rates and the eccentricity, and the largest sizes that they took.
+module state_watcher
+  use kinds, only: dp
+  use ode_problem, only: ode_problem_t
+  use ode_method, only: ode_method_t
+  use solver, only: observer_t
+  use scene, only: scene_t, evaluation_t
+  implicit none
+  private
+  public :: state_watcher_t, watched
+
+  integer, parameter :: watched = 8   !! q, A, x, q', A', x', e_x, e_y
+
+  type, extends(observer_t) :: state_watcher_t
+    real(dp) :: values(watched) = 0
+    real(dp) :: largest(watched) = 0
+    integer :: events = 0
+  contains
+    procedure :: step_taken
+    procedure :: event_taken
+    procedure :: look
+  end type state_watcher_t
+
+contains
+
+  subroutine step_taken(self, method, problem, t_to)
+    class(state_watcher_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    class(ode_problem_t), intent(in) :: problem
+    real(dp), intent(in) :: t_to
+    if (t_to < method%t) return
+    call self%look(problem, method%t, method%y)
+  end subroutine step_taken
+
+  !> Take the values at (t, y).
+  subroutine look(self, problem, t, y)
+    class(state_watcher_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    real(dp), intent(in) :: t, y(:)
+    type(evaluation_t) :: now
+    logical :: inside
+    select type (problem)
+    class is (scene_t)
+      call problem%evaluate(t, y, now, inside)
+      associate (m => now%motion)
+        self%values = [m%crank_angle, atan2(m%sin_rod, m%cos_rod), m%piston_position, m%crank_speed, m%rod_speed, &
+          m%piston_velocity, now%joint%eccentricity]
+      end associate
+      self%largest = max(self%largest, abs(self%values))
+    end select
+  end subroutine look
+
+  subroutine event_taken(self, problem, index, t, y)
+    class(state_watcher_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    integer, intent(in) :: index
+    real(dp), intent(in) :: t, y(:)
+    associate (unused_problem => problem, unused_index => index, unused_t => t, unused_y => y)
+    end associate
+    self%events = self%events + 1
+  end subroutine event_taken
+end module state_watcher

@@ -1,0 +1,350 @@
+!> The Radau method, its Jacobians and the automatic choice.
+module test_radau
+  use kinds, only: dp
+  use constants, only: pi
+  use checks, only: checks_t
+  use errors, only: error_t
+  use case_definition, only: case_t
+  use case_file, only: read_case
+  use ode_problem, only: ode_problem_t, difference_jacobian
+  use ode_method, only: ode_settings_t, step_done
+  use radau_coefficients, only: radau_formula_t, radau_formula
+  use radau, only: radau_t
+  use film_law, only: film_law_t, film_motion_t, difference_derivatives
+  use pinkus_sternlicht, only: pinkus_sternlicht_t, new_pinkus_sternlicht
+  use lankarani_nikravesh, only: lankarani_nikravesh_t
+  use scene, only: scene_t, phase_contact, phase_film
+  use clearance_scene, only: clearance_scene_t
+  use scene_builder, only: build_scene
+  use solver, only: integrate, silent_observer_t, integration_done
+  use test_problems, only: oscillator_t, bouncing_ball_t
+  use collecting_sink, only: trace_t, run_case, column
+  implicit none
+  private
+  public :: run_test_radau
+
+  integer, parameter :: long = 60
+
+  !> Van der Pol's oscillator, mu (y'' ) = (1 - y^2) y' - y with small mu: stiff, of second order.
+  type, extends(ode_problem_t) :: van_der_pol_t
+    real(dp) :: mu = 1e-6_dp
+  contains
+    procedure :: derivatives
+  end type van_der_pol_t
+
+contains
+
+  subroutine run_test_radau(check)
+    class(checks_t), intent(inout) :: check
+    call formulas_are_exact(check)
+    call order_of_the_formulas(check)
+    call van_der_pol_is_cheap(check)
+    call film_derivatives_by_complex_step(check)
+    call contact_slopes_by_complex_step(check)
+    call jacobians_of_scenes(check)
+    call radau_agrees_with_adams(check)
+    call loose_tolerances_survive(check)
+    call impacts_with_radau(check)
+    call auto_chooses(check)
+  end subroutine run_test_radau
+
+  pure subroutine derivatives(self, t, y, dydt, inside)
+    class(van_der_pol_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: dydt(:)
+    logical, intent(out) :: inside
+    associate (unused => t)
+    end associate
+    dydt(1) = y(2)
+    dydt(2) = ((1 - y(1)**2)*y(2) - y(1))/self%mu
+    inside = .true.
+  end subroutine derivatives
+
+  !> Collocation conditions, the decoupling, stiff accuracy.
+  subroutine formulas_are_exact(check)
+    class(checks_t), intent(inout) :: check
+    type(radau_formula_t) :: f
+    real(dp) :: worst
+    real(dp), allocatable :: lambda(:, :), unit(:, :)
+    integer :: level, i, q, s
+
+    do level = 1, 3
+      f = radau_formula(2*level + 1)
+      s = f%stages
+      worst = 0
+      do q = 1, s
+        worst = max(worst, maxval(abs(matmul(f%a, f%c**(q - 1)) - f%c**q/q)))
+      end do
+      call check%close_to(worst, 0.0_dp, 2e-15_dp, 'collocation conditions')
+      worst = 0
+      do q = 1, 2*s - 1
+        worst = max(worst, abs(dot_product(f%a(s, :), f%c**(q - 1)) - 1.0_dp/q))
+      end do
+      call check%close_to(worst, 0.0_dp, 2e-15_dp, 'quadrature of order 2s-1')
+      allocate (lambda(s, s), unit(s, s))
+      lambda = 0
+      unit = 0
+      lambda(1, 1) = f%gamma
+      do i = 1, s
+        unit(i, i) = 1
+      end do
+      do i = 1, s/2
+        lambda(2*i, 2*i:2*i + 1) = [f%alpha(i), f%beta(i)]
+        lambda(2*i + 1, 2*i:2*i + 1) = [-f%beta(i), f%alpha(i)]
+      end do
+      call check%close_to(maxval(abs(matmul(f%t, f%t_inverse) - unit)), 0.0_dp, 1e-12_dp, 'T and its inverse')
+      call check%close_to(maxval(abs(matmul(f%a, matmul(f%t, lambda)) - f%t)), 0.0_dp, 1e-13_dp, 'A T Lambda = T')
+      ! the estimate vanishes for polynomials of degree s: z = c^q, f_0 = 0 but for q = 1
+      worst = abs(1/f%gamma + dot_product(f%e, f%c))
+      do q = 2, s
+        worst = max(worst, abs(dot_product(f%e, f%c**q)))
+      end do
+      call check%close_to(worst, 0.0_dp, 1e-13_dp, 'error estimate of order s')
+      deallocate (lambda, unit)
+    end do
+  end subroutine formulas_are_exact
+
+  function settings(n, tolerance, span) result(s)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: tolerance, span
+    type(ode_settings_t) :: s
+    allocate (s%relative(n), s%absolute(n))
+    s%relative = tolerance
+    s%absolute = tolerance
+    s%span = span
+  end function settings
+
+  !> The oscillator over ten periods: error near the tolerance, far fewer steps as the order rises.
+  subroutine order_of_the_formulas(check)
+    class(checks_t), intent(inout) :: check
+    type(oscillator_t) :: problem
+    type(radau_t) :: method
+    type(silent_observer_t) :: observer
+    real(dp) :: y(2), t, error, tolerance
+    integer :: status, i
+
+    problem%n = 2
+    problem%n_positions = 1
+    do i = 2, 12, 2
+      tolerance = 10.0_dp**(-i)
+      method%settings = settings(2, tolerance, 20*pi)
+      t = 0
+      y = [0.0_dp, 1.0_dp]
+      call integrate(problem, method, t, y, 20*pi, 0, observer, status)
+      error = max(abs(y(1) - sin(20*pi)), abs(y(2) - cos(20*pi)))
+      call check%that(status == integration_done, 'the oscillator is integrated')
+      call check%close_to(error, 0.0_dp, 30*tolerance, 'ten periods of the oscillator')
+    end do
+    call check%that(method%statistics%accepted < 200, 'at 1e-12 in fewer than 200 steps')
+  end subroutine order_of_the_formulas
+
+  !> Hairer & Wanner's reference: y = 1.706167732170483, y' = -0.8928097010248 at t = 2.
+  subroutine van_der_pol_is_cheap(check)
+    class(checks_t), intent(inout) :: check
+    type(van_der_pol_t) :: problem
+    type(radau_t) :: method
+    type(silent_observer_t) :: observer
+    real(dp) :: y(2), t
+    integer :: status
+    problem%n = 2
+    problem%n_positions = 1
+    method%settings = settings(2, 1e-8_dp, 2.0_dp)
+    t = 0
+    y = [2.0_dp, -0.66_dp]
+    call integrate(problem, method, t, y, 2.0_dp, 0, observer, status)
+    call check%that(status == integration_done, 'van der Pol is integrated')
+    call check%close_to(y(1), 1.706167732170483_dp, 1e-6_dp, 'van der Pol, y(2)')
+    call check%close_to(y(2), -0.8928097010248_dp, 1e-5_dp, "van der Pol, y'(2)")
+    call check%that(method%statistics%evaluations < 10000, 'with few evaluations')
+  end subroutine van_der_pol_is_cheap
+
+  !> The film's closed form written once more for complex numbers: its imaginary part under an imaginary change of 1e-30
+  !> is the derivative to rounding.
+  subroutine film_derivatives_by_complex_step(check)
+    class(checks_t), intent(inout) :: check
+    type(pinkus_sternlicht_t) :: film
+    type(film_motion_t) :: motion
+    complex(dp) :: x(5), force(2)
+    real(dp) :: got(3, 5), angle, rate, worst, size_of
+    real(dp), parameter :: step = 1e-30_dp
+    integer :: i, j, sense
+
+    call new_pinkus_sternlicht(film, 0.01_dp, 0.015_dp, 2e-5_dp, 0.0117_dp, .false.)
+    worst = 0
+    do i = 1, 40
+      do sense = -1, 1, 2
+        angle = 0.7_dp*i
+        rate = sense*0.01_dp*i
+        motion%eccentricity = 2e-5_dp*(1 - 0.8_dp**i*0.99_dp)*[cos(angle), sin(angle)]
+        motion%eccentricity_rate = rate*[cos(angle + 0.5_dp*sin(3.0_dp*i)), sin(angle + 0.5_dp*sin(3.0_dp*i))]
+        motion%pin_speed = 60*cos(2.0_dp*i)
+        call film%force_derivatives(motion, got)
+        do j = 1, 5
+          x = cmplx([motion%eccentricity, motion%eccentricity_rate, motion%pin_speed], 0.0_dp, dp)
+          x(j) = x(j) + cmplx(0.0_dp, step, dp)
+          force = complex_film(x)
+          size_of = maxval(abs(got(1:2, j))) + tiny(1.0_dp)
+          worst = max(worst, maxval(abs(aimag(force)/step - got(1:2, j)))/size_of)
+        end do
+      end do
+    end do
+    call check%close_to(worst, 0.0_dp, 1e-9_dp, 'derivatives of the film against the complex step')
+
+  contains
+
+    function complex_film(x) result(force)
+      complex(dp), intent(in) :: x(5)
+      complex(dp) :: force(2), n(2), distance, eps, rate, wedge, s, squeeze, quotient, p, radial, tangential
+      real(dp), parameter :: c = 2e-5_dp, r = 0.01_dp - c
+      distance = sqrt(x(1)**2 + x(2)**2)
+      n = x(1:2)/distance
+      eps = distance/c
+      rate = (n(1)*x(3) + n(2)*x(4))/c
+      wedge = eps*x(5) - 2*(n(1)*x(4) - n(2)*x(3))/c
+      s = sqrt((1 - eps**2)*(wedge**2 + 4*rate**2))
+      squeeze = 3*eps*rate
+      if (real(rate) < 0) squeeze = -squeeze
+      p = 0.0117_dp*0.015_dp*r**3/c**2
+      quotient = s/(s + squeeze)
+      if (real(rate) >= 0) quotient = (s + 2*squeeze)/(s + squeeze)
+      radial = -6*p/((2 + eps**2)*(1 - eps**2)**1.5_dp)*(2*eps*s + (2 + eps**2)*pi*rate*quotient)
+      tangential = 6*p*pi*wedge*quotient/((2 + eps**2)*sqrt(1 - eps**2))
+      force = [radial*n(1) - tangential*n(2), radial*n(2) + tangential*n(1)]
+    end function complex_film
+  end subroutine film_derivatives_by_complex_step
+
+  subroutine contact_slopes_by_complex_step(check)
+    class(checks_t), intent(inout) :: check
+    type(lankarani_nikravesh_t) :: law
+    complex(dp) :: force
+    real(dp) :: stiffness, damping, depth, rate
+    real(dp), parameter :: step = 1e-30_dp, impact = 0.7_dp
+    integer :: i
+    call law%set_elastic_part(6.61e10_dp, 1.5_dp)
+    call law%set_restitution(0.6_dp)
+    do i = 1, 10
+      depth = 3e-6_dp*i
+      rate = 0.7_dp*cos(0.3_dp*i)
+      call law%normal_force_slopes(depth, rate, impact, stiffness, damping)
+      force = complex_contact(cmplx(depth, step, dp), cmplx(rate, 0.0_dp, dp))
+      call check%relative(stiffness, aimag(force)/step, 1e-12_dp, 'contact stiffness against the complex step')
+      force = complex_contact(cmplx(depth, 0.0_dp, dp), cmplx(rate, step, dp))
+      call check%relative(damping, aimag(force)/step, 1e-12_dp, 'contact damping against the complex step')
+    end do
+
+  contains
+
+    complex(dp) function complex_contact(delta, delta_dot)
+      complex(dp), intent(in) :: delta, delta_dot
+      complex_contact = 6.61e10_dp*delta**1.5_dp*(1 + 0.75_dp*(1 - 0.6_dp**2)*delta_dot/impact)
+    end function complex_contact
+  end subroutine contact_slopes_by_complex_step
+
+  !> The closed-form Jacobian of whole scenes against differences, in film and in contact, crank free and held.
+  subroutine jacobians_of_scenes(check)
+    class(checks_t), intent(inout) :: check
+    character(len=40), parameter :: files(5) = [character(len=40) :: 'cases/sim_I.nml', 'cases/sim_IV.nml', &
+      'cases/sim_IV.nml', 'cases/flores/friction_050.nml', 'cases/flores/lubricated_400cP.nml']
+    logical, parameter :: touches(5) = [.false., .false., .true., .true., .false.]
+    type(case_t) :: case
+    type(error_t), allocatable :: error
+    class(scene_t), allocatable :: scene
+    real(dp), allocatable :: y(:), a_p(:, :), a_v(:, :), b_p(:, :), b_v(:, :), scale(:, :)
+    real(dp) :: c
+    integer :: i, m, trial
+
+    do i = 1, size(files)
+      call read_case(trim(files(i)), [character(len=1) ::], case, error)
+      call build_scene(case, .false., scene, error)
+      m = scene%n_positions
+      c = case%joint%clearance
+      y = scene%initial_state()
+      allocate (a_p(m, m), a_v(m, m), b_p(m, m), b_v(m, m), scale(m, m))
+      select type (scene)
+      type is (clearance_scene_t)
+        if (touches(i)) scene%phase = phase_contact
+        scene%impact_speed = 0.8_dp
+      end select
+      do trial = 1, 6
+        y(m - 1:m) = 0.55_dp*c*[cos(1.0_dp*trial), sin(1.0_dp*trial)]
+        if (touches(i)) y(m - 1:m) = y(m - 1:m)*2
+        y(2*m - 1:2*m) = [0.03_dp*cos(2.3_dp*trial), 0.02_dp*sin(3.1_dp*trial)]
+        if (m == 3) y(1) = 6.4_dp + 0.02_dp*trial
+        call scene%jacobian(1e-3_dp*trial, y, a_p, a_v)
+        call difference_jacobian(scene, 1e-3_dp*trial, y, b_p, b_v)
+        scale = maxval(abs(b_p))*1e-4_dp + abs(b_p)
+        call check%close_to(maxval(abs(a_p - b_p)/scale), 0.0_dp, 2e-3_dp, 'Jacobian by positions, '//trim(files(i)))
+        scale = maxval(abs(b_v))*1e-4_dp + abs(b_v)
+        call check%close_to(maxval(abs(a_v - b_v)/scale), 0.0_dp, 2e-3_dp, 'Jacobian by rates, '//trim(files(i)))
+      end do
+      deallocate (a_p, a_v, b_p, b_v, scale)
+    end do
+  end subroutine jacobians_of_scenes
+
+  !> Two methods that share nothing but the scene.
+  subroutine radau_agrees_with_adams(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: one, other
+    character(len=40), parameter :: files(3) = [character(len=40) :: 'cases/sim_I.nml', 'cases/sim_VI.nml', &
+      'cases/flores/lubricated_400cP.nml']
+    integer :: i, j
+    do i = 1, 3
+      one = run_case(trim(files(i)), [character(len=long) :: 'integrator.method=adams', 'integrator.revolutions=2', &
+        'integrator.relative_tolerance=1e-10'])
+      other = run_case(trim(files(i)), [character(len=long) :: 'integrator.method=radau', 'integrator.revolutions=2', &
+        'integrator.relative_tolerance=1e-10'])
+      do j = 2, 7
+        call check%close_to(maxval(abs(one%values(j, :) - other%values(j, :)))/maxval(abs(one%values(j, :))), 0.0_dp, &
+          3e-9_dp, trim(files(i))//' '//one%names(j))
+      end do
+    end do
+    one = run_case('cases/sim_I.nml', [character(len=long) :: 'integrator.method=radau'])
+    call check%that(one%report%statistics%evaluations <= 6000, 'simulation I at 1e-6 in at most 6,000 evaluations')
+  end subroutine radau_agrees_with_adams
+
+  subroutine loose_tolerances_survive(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    character(len=40), parameter :: files(8) = [character(len=40) :: 'sim_I', 'sim_II', 'sim_III', 'sim_IV', 'sim_V', &
+      'sim_VI', 'flores/lubricated_400cP', 'sim_II_oscillating']
+    character(len=5), parameter :: methods(2) = ['radau', 'auto ']
+    integer :: i, k
+    do i = 1, size(files)
+      do k = 1, 2
+        trace = run_case('cases/'//trim(files(i))//'.nml', [character(len=long) :: 'integrator.method='//trim(methods(k)), &
+          'integrator.relative_tolerance=1e-2'])
+        call check%that(.not. allocated(trace%error), trim(files(i))//' at 1e-2 with '//methods(k))
+        if (i <= 7) call check%that(trace%report%figures%min_film_thickness > 0, 'and the pin stays in its film')
+      end do
+    end do
+  end subroutine loose_tolerances_survive
+
+  subroutine impacts_with_radau(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: one, other
+    integer :: n
+    one = run_case('cases/flores/friction_100.nml', [character(len=long) :: 'integrator.method=adams', &
+      'integrator.revolutions=1', 'integrator.relative_tolerance=1e-10'])
+    other = run_case('cases/flores/friction_100.nml', [character(len=long) :: 'integrator.method=radau', &
+      'integrator.revolutions=1', 'integrator.relative_tolerance=1e-10'])
+    n = min(size(one%event), size(other%event))
+    call check%that(n > 20 .and. size(one%event) == size(other%event), 'the same contacts with both methods')
+    call check%close_to(maxval(abs(one%event(:n)%time - other%event(:n)%time)), 0.0_dp, 1e-7_dp, 'at the same instants')
+  end subroutine impacts_with_radau
+
+  !> Films go to Radau, contact and free flight to Adams, at the cost of the better one.
+  subroutine auto_chooses(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: auto, radau, adams
+    auto = run_case('cases/sim_IV.nml', [character(len=long) :: 'integrator.method=auto'])
+    radau = run_case('cases/sim_IV.nml', [character(len=long) :: 'integrator.method=radau'])
+    call check%that(auto%report%statistics%evaluations < 1.1_dp*radau%report%statistics%evaluations + 200, &
+      'a film costs what Radau costs')
+    call check%that(sum(auto%report%statistics%time_with(2, :)) > 0.9_dp*auto%report%figures%time, 'and is given to it')
+    auto = run_case('cases/flores/friction_050.nml', [character(len=long) :: 'integrator.method=auto'])
+    adams = run_case('cases/flores/friction_050.nml', [character(len=long) :: 'integrator.method=adams'])
+    call check%that(auto%report%statistics%evaluations < 1.1_dp*adams%report%statistics%evaluations, &
+      'a dry joint costs what Adams costs')
+    call check%that(sum(auto%report%statistics%time_with(1, :)) > 0.9_dp*auto%report%figures%time, 'and is given to it')
+  end subroutine auto_chooses
+end module test_radau
