@@ -29,7 +29,8 @@ def main() -> int:
     given = Path(options.case)
     name = given.name.removesuffix(".nml").removesuffix(".csv")
     directory = options.results or (given.parent if given.suffix == ".csv" else TOP / "results")
-    results = Results(directory, run_missing=not options.no_run)
+    case = given if given.suffix == ".nml" and given.exists() else None
+    results = Results(directory, run_missing=not options.no_run, case=case)
     try:
         if not results.path(name).exists():
             results.make([name])

@@ -196,12 +196,8 @@ def page(run: Run, ideal: Run | None = None) -> str:
         used.append("film_peak")
     data = b"".join(columns[name][rows].astype("<f4").tobytes() for name in used)
     touched = contacts(run)
-    curve = run["film_thickness"] if run.clearance else run["crank_speed"]
-    bounds = [float(curve.min()), float(curve.max())]
-    if run.clearance:
-        bounds[0] = min(bounds[0], 0.0)
     scene = {
-        "rows": len(rows), "columns": used, "plots": drawn, "contacts": touched, "range": bounds,
+        "rows": len(rows), "columns": used, "plots": drawn, "contacts": touched, "line": time_line(columns),
         "angles": ANGLES if film else 0, "signed": bool(film and film[2]), "clearance": run.clearance,
         "crank": float(run.parameter("mechanism", "crank_length")), "rod": float(run.parameter("mechanism", "rod_length")),
         "bearing": drawn_bearing_radius(run), "speed": float(run.parameter("initial", "crank_speed")),
@@ -239,6 +235,16 @@ def page(run: Run, ideal: Run | None = None) -> str:
     text = (PAGE / "page.html").read_text(encoding="utf-8")
     head, *fields = text.split("{{")   # each field once, so that nothing is replaced inside what was put in
     return head + "".join(parts[name] + rest for name, rest in (field.split("}}", 1) for field in fields))
+
+
+def time_line(columns: dict[str, np.ndarray]) -> dict:
+    """What the page's time line shows: the film's thickness from 0 or below, or the size of the pin's force."""
+    if "film_thickness" in columns:
+        thickness = columns["film_thickness"]
+        return {"column": "film_thickness", "title": "film thickness", "unit": "µm", "factor": 1e6,
+                "range": [min(0.0, float(thickness.min())), float(thickness.max())]}
+    return {"column": "pin_force", "title": "pin reaction", "unit": "kN", "factor": 1e-3,
+            "range": [0.0, float(columns["pin_force"].max())]}
 
 
 def drawn_bearing_radius(run: Run) -> float:

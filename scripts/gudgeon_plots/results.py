@@ -1,6 +1,7 @@
 """Results of runs: traces, events, summaries and cases as run, by the name of the case."""
 
 import csv
+import os
 import re
 import subprocess
 import sys
@@ -54,14 +55,22 @@ class Run:
 
     @cached_property
     def contacts(self) -> pd.DataFrame:
-        """One row a contact that ended in the run: begin [s], end [s], penetration [m], force [N]."""
+        """One row a contact: begin [s], end [s], penetration [m], force [N]. One that lasts beyond the run ends with it,
+        its largest values those of the trace."""
         ends = self.events[self.events["event"] == "contact_ends"]
-        return pd.DataFrame({
+        found = pd.DataFrame({
             "begin": ends["time"] - ends["duration"],
             "end": ends["time"],
             "penetration": ends["max_penetration"],
             "force": ends["max_normal_force"],
-        }).reset_index(drop=True)
+        }).astype(float).reset_index(drop=True)
+        begins = self.events.loc[self.events["event"] == "contact_begins", "time"]
+        if len(begins) > len(found):
+            rest = self.trace[self.trace["time"] >= begins.iloc[-1]]
+            if not rest.empty:
+                found.loc[len(found)] = [begins.iloc[-1], rest["time"].iloc[-1], -rest["film_thickness"].min(),
+                                         rest["normal_force"].max()]
+        return found
 
 
 def read_table(path: Path) -> tuple[pd.DataFrame, dict[str, str]]:
@@ -134,8 +143,10 @@ def case_files() -> dict[str, Path]:
 class Results:
     """The runs in a directory, made by the release build where they are missing."""
 
-    def __init__(self, directory: Path, run_missing: bool = True, rerun: bool = False) -> None:
+    def __init__(self, directory: Path, run_missing: bool = True, rerun: bool = False, case: Path | None = None) -> None:
+        """`case` is a case file beside those of cases/."""
         self.directory = directory
+        self.files = case_files() | ({case.stem: case.resolve()} if case else {})
         self.run_missing = run_missing
         self.rerun = rerun
         self._runs: dict[str, Run] = {}
@@ -150,10 +161,9 @@ class Results:
             wanted = {name.removesuffix(".ideal") for name in names if not self.path(name).exists()}
         if not wanted:
             return
-        files = case_files()
-        if unknown := wanted - files.keys():
+        if unknown := wanted - self.files.keys():
             raise MissingResult(f"no such case: {' '.join(sorted(unknown))}")
-        paths = [str(files[name].relative_to(TOP)) for name in sorted(wanted)]
+        paths = [os.path.relpath(self.files[name], TOP) for name in sorted(wanted)]
         command = ["scripts/run_cases.sh", "-o", str(self.directory.resolve()), *paths]
         if not self.run_missing:
             raise MissingResult(f"no result in {self.directory}; run: {' '.join(command)}")

@@ -25,11 +25,16 @@
   const joint = scene.clearance > 0;
   document.body.classList.toggle("ideal", !joint);
   document.body.classList.toggle("contactless", scene.contacts.length === 0);
+  document.body.classList.toggle("filmless", !scene.angles);
   document.body.classList.toggle("unsigned", !scene.signed);
 
   // ---- the moment shown
   let now = begin, playing = false, before = null, row = 0, share = 0;
   const at = (name) => column[name][row] + share * (column[name][Math.min(row + 1, scene.rows - 1)] - column[name][row]);
+
+  // Forces jump: those of the nearest row, so that they belong together.
+  const nearest = () => (share > 0.5 ? Math.min(row + 1, scene.rows - 1) : row);
+  const near = (name) => column[name][nearest()];
 
   function seek(t) {
     now = Math.min(Math.max(t, begin), end);
@@ -131,7 +136,7 @@
     const ux = at("eccentricity_x") / scene.clearance, uy = at("eccentricity_y") / scene.clearance;
     const pinX = cx + gap * uy, pinY = cy - gap * ux;
     if (pressure) {
-      const first = row * scene.angles, direction = Math.atan2(uy, ux);
+      const first = nearest() * scene.angles, direction = Math.atan2(uy, ux);
       for (const sign of [1, -1]) {
         g.beginPath();
         for (let i = 0; i <= scene.angles; i++) {
@@ -146,17 +151,18 @@
     }
     circle(g, cx, cy, radius, "#fff", COLOUR.ink, 2);
     circle(g, pinX, pinY, radius - gap, COLOUR.steel, COLOUR.ink, 1.2);
+    circle(g, cx, cy, radius, null, COLOUR.ink, 2);
     const turn = -at("rod_angle"), mark = radius - gap;   // a line on the pin shows how it turns with the rod
     g.beginPath(); g.moveTo(pinX, pinY); g.lineTo(pinX - mark * Math.sin(turn), pinY + mark * Math.cos(turn));
     g.strokeStyle = COLOUR.grey; g.lineWidth = 1; g.stroke();
     circle(g, pinX, pinY, 2.5, COLOUR.ink);
-    const fx = at("pin_force_x"), fy = at("pin_force_y"), force = Math.hypot(fx, fy);
+    const fx = near("pin_force_x"), fy = near("pin_force_y"), force = Math.hypot(fx, fy);
     if (force > 0) {
       const length = rooted(force, scene.peak.pin_force, 0.55 * room);
       arrow(g, pinX, pinY, length * fy / force, -length * fx / force, COLOUR.blue);
     }
-    if (column.normal_force && column.normal_force[row] > 0) {
-      const e = Math.hypot(ux, uy) || 1, length = rooted(column.normal_force[row], scene.peak.normal_force, 0.5 * room);
+    if (column.normal_force && near("normal_force") > 0) {
+      const e = Math.hypot(ux, uy) || 1, length = rooted(near("normal_force"), scene.peak.normal_force, 0.36 * room);
       const wx = cx + radius * uy / e, wy = cy - radius * ux / e;
       circle(g, wx, wy, 5, COLOUR.purple);
       arrow(g, wx + length * uy / e, wy - length * ux / e, -length * uy / e, length * ux / e, COLOUR.purple);
@@ -179,16 +185,15 @@
     while (from > 0 && column.crank_angle[row] - column.crank_angle[from] < 2 * Math.PI) from--;
     line(from, row, COLOUR.blue, 1.4);
     circle(g, cx, cy, unit, null, COLOUR.ink, 1.5);
-    const inContact = column.phase[row] === 2;
+    const inContact = near("phase") === 2;
     circle(g, cx + unit * at("eccentricity_y") / scene.clearance, cy - unit * at("eccentricity_x") / scene.clearance, 5,
       inContact ? COLOUR.purple : COLOUR.vermilion, "#fff", 1);
   }
 
-  // ---- the time line: film thickness (or crank speed) over all the run, contacts below
-  const curve = joint ? "film_thickness" : "crank_speed";
+  // ---- the time line: film thickness, or the pin's force, over all the run; contacts below
   function drawTimeline() {
     const { g, width, height } = prepare("timeline");
-    const values = column[curve], strip = scene.contacts.length ? 26 : 0, low = scene.range[0], high = scene.range[1];
+    const curve = scene.line, values = column[curve.column], strip = scene.contacts.length ? 26 : 0, [low, high] = curve.range;
     const X = (t) => 8 + (width - 16) * (t - begin) / (end - begin);
     const Y = (v) => 8 + (height - strip - 16) * (high - v) / (high - low || 1);
     if (joint && low < 0) { g.fillStyle = "rgba(204,121,167,0.18)"; g.fillRect(8, Y(0), width - 16, Y(low) - Y(0)); }
@@ -206,9 +211,12 @@
       g.fillRect(X(contact.begin), height - 3 - tall, Math.max(1.5, X(contact.end) - X(contact.begin)), tall);
     }
     g.globalAlpha = 1;
-    g.fillStyle = "#555"; g.font = "11px system-ui, sans-serif";
-    g.fillText(joint ? `film thickness ${(1e6 * low).toFixed(1)} … ${(1e6 * high).toFixed(1)} µm`
-      : `crank speed ${low.toFixed(1)} … ${high.toFixed(1)} rad/s`, 12, 16);
+    g.font = "11px system-ui, sans-serif";
+    const text = `${curve.title} ${(curve.factor * low).toFixed(1)} … ${(curve.factor * high).toFixed(1)} ${curve.unit}`;
+    g.fillStyle = "rgba(243,245,247,0.85)";
+    g.fillRect(10, 5, g.measureText(text).width + 6, 15);
+    g.fillStyle = "#555";
+    g.fillText(text, 13, 16);
     if (strip) g.fillText("contacts", 12, height - strip + 6);
     g.beginPath(); g.moveTo(X(now), 2); g.lineTo(X(now), height - 2);
     g.strokeStyle = COLOUR.vermilion; g.lineWidth = 2; g.stroke();
@@ -217,15 +225,16 @@
   function drawState() {
     const degrees = at("crank_angle") * 180 / Math.PI;
     const parts = [`t = ${(1e3 * now).toFixed(3)} ms`, `crank ${degrees.toFixed(1)}° (${(degrees / 360).toFixed(2)} rev)`,
-      `${at("crank_speed").toFixed(1)} rad/s`, `pin force ${(Math.hypot(at("pin_force_x"), at("pin_force_y")) / 1e3).toFixed(2)} kN`];
+      `${at("crank_speed").toFixed(1)} rad/s`, `pin force ${(Math.hypot(near("pin_force_x"), near("pin_force_y")) / 1e3).toFixed(2)} kN`];
     if (joint) {
-      parts.push(`film ${(1e6 * at("film_thickness")).toFixed(2)} µm`, ["free", "film", "contact"][column.phase[row]] || "");
-      if (column.normal_force && column.normal_force[row] > 0) parts.push(`contact ${(column.normal_force[row] / 1e3).toFixed(2)} kN`);
-      if (pressure && column.phase[row] === 1) parts.push(`film pressure up to ${(column.film_peak[row] / 1e6).toPrecision(3)} MPa`);
+      const force = column.normal_force ? near("normal_force") : 0;
+      parts.push(`film ${(1e6 * at("film_thickness")).toFixed(2)} µm`, (["free", "film acts", "contact"][near("phase")] || "")
+        + (force > 0 ? `, ${(force / 1e3).toFixed(2)} kN` : ""));
+      if (pressure && near("phase") === 1) parts.push(`film pressure up to ${(near("film_peak") / 1e6).toPrecision(3)} MPa`);
     }
     const inside = scene.contacts.find((c) => now >= c.begin && now <= c.end);
     if (inside) {
-      parts.push(`contact of ${(1e3 * (inside.end - inside.begin)).toPrecision(3)} ms, up to ${(inside.force / 1e3).toPrecision(3)} kN,`
+      parts.push(`this contact: ${(1e3 * (inside.end - inside.begin)).toPrecision(3)} ms, up to ${(inside.force / 1e3).toPrecision(3)} kN,`
         + ` ${(1e6 * inside.penetration).toPrecision(3)} µm deep`);
     }
     byId("state").replaceChildren(...parts.map((text) => Object.assign(document.createElement("span"), { textContent: text })));
@@ -334,12 +343,13 @@
       connectgaps: false }));
     const shapes = plot.circle ? [{ type: "circle", x0: -1, x1: 1, y0: -1, y1: 1, line: { color: COLOUR.ink, width: 1 } }] : [];
     await Plotly.newPlot(div, data, {
-      title: { text: plot.title, font: { size: 14 } }, margin: { l: 70, r: 15, t: 36, b: 45 }, shapes,
+      title: { text: plot.title, font: { size: 14 }, x: 0, xref: "paper", xanchor: "left", y: 1, yref: "container",
+        yanchor: "top", pad: { t: 10 } }, margin: { l: 70, r: 15, t: data.length > 1 ? 54 : 40, b: 45 }, shapes,
       font: { size: 11 }, hovermode: plot.timed ? "x" : "closest", showlegend: data.length > 1,
-      legend: { orientation: "h", x: 0.5, xanchor: "center", y: 1.02, yanchor: "bottom" },
+      legend: { orientation: "h", x: 0, xanchor: "left", y: 1, yanchor: "bottom" },
       xaxis: { title: { text: plot.x }, zeroline: false },
       yaxis: { title: { text: plot.y }, zeroline: true, scaleanchor: plot.circle ? "x" : undefined },
-    }, { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d"] });
+    }, { responsive: true, displaylogo: false, displayModeBar: "hover", modeBarButtonsToRemove: ["select2d", "lasso2d"] });
     charts.push({ div, timed: plot.timed });
     if (plot.timed) {
       div.on("plotly_relayout", (change) => linkZoom(div, change));
