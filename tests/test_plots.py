@@ -18,10 +18,11 @@ from gudgeon_plots.environment import use_virtual_environment  # noqa: E402
 
 use_virtual_environment()
 
+import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 import pandas as pd  # noqa: E402
 
-from gudgeon_plots import compare, film_pressure, report_page  # noqa: E402
+from gudgeon_plots import compare, figures, film_pressure, report_page  # noqa: E402
 from gudgeon_plots.figure_map import read_figures  # noqa: E402
 from gudgeon_plots.quantities import QUANTITIES, once_a_cycle  # noqa: E402
 from gudgeon_plots.results import MissingResult, Results, Run, case_files, load_run, read_case  # noqa: E402
@@ -179,6 +180,97 @@ class FilmPressure(unittest.TestCase):
     def test_no_pressure_in_contact(self) -> None:
         made = self.made(1.1, self.case({"law": "pinkus_sternlicht"}, 0.2, 0.05), phase=2, rod_speed=50.0)
         self.assertFalse(film_pressure.pressure(made, self.ANGLES).any())
+
+
+class MadeResults:
+    """Runs made by hand for every name that figures ask for; those named in `missing` are not there."""
+
+    def __init__(self, missing: tuple[str, ...] = ()) -> None:
+        self.missing = missing
+
+    def __getitem__(self, name: str) -> Run:
+        if name in self.missing:
+            raise MissingResult(name)
+        angle = np.linspace(0, 16 * np.pi, 2001)
+        wave, beat = np.cos(angle), np.sin(37 * angle)
+        rough = 0 if name.endswith("ideal") else 2e4
+        flores = not name.startswith(("sim", "wiebe"))
+        columns = {"time": angle / 250, "crank_angle": angle, "crank_speed": 250 + 20 * wave, "rod_speed": wave,
+                   "piston_velocity": 10 * np.sin(angle + 1e-3 * beat) + 0.01, "crank_moment": 100 * wave + rough * beat}
+        columns |= {name: 3e3 * wave + rough * beat for name in
+                    ("crank_acceleration", "rod_acceleration", "piston_acceleration", "pin_force_x", "pin_force_y")}
+        if rough:
+            e = np.array([np.cos(3 * angle), np.sin(2 * angle)]) * 1e-5
+            columns |= {"eccentricity_x": e[0], "eccentricity_y": e[1], "eccentricity_ratio": np.hypot(*e) / 1e-5,
+                        "film_thickness": 1e-5 - np.hypot(*e)}
+        columns |= {"cylinder_volume": 2e-4 - 1e-4 * wave, "cylinder_pressure": 1e5 + 3e6 * wave**16, "gas_force": 1e4 * wave**16}
+        case = {"joint": {"clearance": 1e-5}, "combustion": {"start_deg": 340.0},
+                "drive": {"kind": "constant_speed" if flores else "free"}}
+        if "friction" in name:
+            case["friction"] = {"coefficient": 0.05}
+        if "lubricated" in name or name.startswith("sim"):
+            case["lubrication"] = {"law": "oscillating_film" if "oscillating" in name else "pinkus_sternlicht", "viscosity": 0.4}
+        made = run(columns, case)
+        return Run(name, made.trace, made.units, made.events, case=case)
+
+
+def written(drawing: plt.Figure) -> list:
+    """Every text that is drawn: numbers, names, titles, legends."""
+    found = [text for legend in drawing.legends for text in legend.get_texts()]
+    for axes in drawing.axes:
+        if axes.axison:
+            for axis in (axes.xaxis, axes.yaxis):
+                found += [tick.label1 for tick in axis._update_ticks()] + [axis.label, axis.offsetText]
+        found += [axes.title, *axes.texts]
+    return [text for text in [*found, drawing._suptitle] if text and text.get_visible() and text.get_text().strip()]
+
+
+def overlaps(drawing: plt.Figure) -> list[tuple[str, str]]:
+    """Texts that cover one another or leave the page."""
+    drawing.canvas.draw()
+    width, height = drawing.canvas.get_width_height()
+    boxes = [(text.get_text(), text.get_window_extent()) for text in written(drawing)]
+    found = [(name, "the margin") for name, box in boxes
+             if box.x0 < -1 or box.y0 < -1 or box.x1 > width + 1 or box.y1 > height + 1]
+    for i, (name, box) in enumerate(boxes):
+        found += [(name, other) for other, second in boxes[i + 1:]
+                  if min(box.x1, second.x1) - max(box.x0, second.x0) > 0.5
+                  and min(box.y1, second.y1) - max(box.y0, second.y0) > 0.5]
+    return found
+
+
+class Drawing(unittest.TestCase):
+    def test_figures_are_drawn_and_no_text_overlaps(self) -> None:
+        table = read_figures()
+        for number in ("6.1", "6.2", "6.5", "6.6", "6.7", "6.8", "6.33", "A.2", "B.3", "B.5", "B.6", "B.7", "B.9", "B.21"):
+            drawing = figures.draw(table[number], MadeResults())
+            self.assertEqual(overlaps(drawing), [], number)
+            self.assertTrue(all(axes.lines or axes.collections for axes in drawing.axes), number)
+            plt.close(drawing)
+
+    def test_overlaps_are_found(self) -> None:
+        drawing, axes = plt.subplots(figsize=(3, 2))
+        self.assertEqual(overlaps(drawing), [])
+        axes.text(0.5, 0.5, "one")
+        axes.text(0.5, 0.5, "two")
+        self.assertEqual(overlaps(drawing), [("one", "two")])
+        plt.close(drawing)
+
+    def test_a_missing_run_leaves_its_place(self) -> None:
+        figure = read_figures()["6.1"]
+        drawing = figures.draw(figure, MadeResults(("sim_I_oscillating",)))
+        self.assertIn("sim_I_oscillating", drawing.axes[1].texts[0].get_text())
+        plt.close(drawing)
+        with self.assertRaises(MissingResult):
+            figures.draw(figure, MadeResults(figure.runs))
+
+    def test_details_show_the_ideal_joint(self) -> None:
+        table, results = read_figures(), MadeResults()
+        self.assertEqual([len(row) for row in figures.arrange(table["6.1"], results)], [2])          # same range
+        rows = figures.arrange(table["6.4"], results)
+        self.assertEqual([[panel.detail for panel in row] for row in rows], [[False, False], [True, True]])
+        rows = figures.arrange(table["B.3"], results)
+        self.assertEqual([[panel.detail for panel in row] for row in rows], [[False, True]] * 3)
 
 
 class Reading(unittest.TestCase):
