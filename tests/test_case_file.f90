@@ -55,7 +55,7 @@ contains
     call check%that(c%contact%is_present .and. .not. c%friction%is_present, 'presence of models')
     call check%that(c%contact%law == 'lankarani_nikravesh', 'law by default')
     call check%that(c%output%samples_per_revolution == 720 .and. c%output%columns == 'standard', 'output by default')
-    call check%that(c%integrator%max_order == 12 .and. c%integrator%method == 'adams', 'integrator by default')
+    call check%that(c%integrator%max_order == 12 .and. c%integrator%method == 'auto', 'integrator by default')
     call parse_case(whole, 'x.nml', [character(len=40) :: 'friction.coefficient=.1', 'friction.law=coulomb', &
                                      'contact.youngs_modulus=1e11,2e11', 'case.title=A, b ''c''', &
                                      'friction.coefficient=0.2'], c, error)
