@@ -3,10 +3,12 @@ program gudgeon_tests
   use, intrinsic :: iso_fortran_env, only: output_unit
   use checks, only: checks_t
   use test_adams, only: run_test_adams
+  use test_adams_order, only: run_test_adams_order
   use test_case_file, only: run_test_case_file
   use test_combustion, only: run_test_combustion
   use test_command_line, only: run_test_command_line
   use test_contact, only: run_test_contact
+  use test_events, only: run_test_events
   use test_friction, only: run_test_friction
   use test_mechanism, only: run_test_mechanism
   use test_pinkus_sternlicht, only: run_test_pinkus_sternlicht
@@ -17,10 +19,12 @@ program gudgeon_tests
   type(checks_t) :: check
 
   call run_test_adams(check)
+  call run_test_adams_order(check)
   call run_test_case_file(check)
   call run_test_combustion(check)
   call run_test_command_line(check)
   call run_test_contact(check)
+  call run_test_events(check)
   call run_test_friction(check)
   call run_test_mechanism(check)
   call run_test_pinkus_sternlicht(check)

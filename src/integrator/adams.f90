@@ -61,6 +61,7 @@ module adams
     procedure :: start
     procedure :: step
     procedure :: interpolate
+    procedure :: start_with_history
   end type adams_t
 
 contains
@@ -102,6 +103,39 @@ contains
     call choose_first_step(self, problem)
     self%limit = limit_start
   end subroutine start
+
+  !> Begin at (x(m), y) with the right-hand sides f(:, 1..m) known at m <= 12 instants x(1) < x(2) < ... x(m): the first
+  !> step is of order m and size `h`.
+  subroutine start_with_history(self, problem, x, f, y, h, status)
+    class(adams_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    real(dp), intent(in) :: x(:), f(:, :), y(:), h
+    integer, intent(out) :: status
+    integer :: i, j, m
+
+    m = size(x)
+    call self%start(problem, x(m), y, .true., status)
+    if (status /= step_done) return
+    do i = 1, m
+      self%phi(:, i) = f(:, m + 1 - i)
+    end do
+    do j = 2, m   ! divided differences over the latest i points
+      do i = m, j, -1
+        self%phi(:, i) = (self%phi(:, i - 1) - self%phi(:, i))/(x(m + j - i) - x(m + 1 - i))
+      end do
+    end do
+    do i = 1, m - 1
+      self%coefficients%psi(i) = x(m) - x(m - i)
+      do j = i + 1, m
+        self%phi(:, j) = self%phi(:, j)*self%coefficients%psi(i)
+      end do
+    end do
+    self%k = m
+    self%k_old = m - 1
+    self%h_old = self%coefficients%psi(1)
+    self%h = h
+    self%opening = .false.
+  end subroutine start_with_history
 
   !> Allocate everything, once for a whole integration.
   subroutine prepare(self, problem)

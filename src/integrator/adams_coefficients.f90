@@ -8,7 +8,7 @@ module adams_coefficients
 
   !> Longest stable h |lambda| of the method at each order, for a real negative lambda and a constant step.
   real(dp), parameter :: stability_limit(highest_order) = [2.00_dp, 2.40_dp, 1.93_dp, 1.41_dp, 1.04_dp, 0.77_dp, 0.58_dp, &
-    0.44_dp, 0.33_dp, 0.26_dp, 0.20_dp, 0.15_dp]
+    0.44_dp, 0.34_dp, 0.26_dp, 0.21_dp, 0.17_dp]
 
   !> Coefficients of the step from t_n to t_n+1 = t_n + h at order k, in the notation of Shampine & Gordon.
   type :: adams_coefficients_t
