@@ -51,7 +51,7 @@ contains
     real(dp), parameter :: h(steps) = [0.1_dp, 0.2_dp, 0.4_dp, 0.4_dp, 0.3_dp, 0.15_dp, 0.15_dp, 0.15_dp, 0.2_dp, 0.25_dp, &
       0.25_dp]
     type(adams_coefficients_t) :: coefficients
-    real(dp) :: mesh(0:steps), psi(k), old(k), basis(0:k), beta, sigma, worst
+    real(dp) :: mesh(0:steps), psi(k), old(k), basis(0:k), beta, sigma, shift, worst
     integer :: i, j
     call coefficients%reset()
     mesh(0) = 0
@@ -67,16 +67,17 @@ contains
     basis(0) = 1   ! coefficients in s = (t - t_n)/h of the product over j < i of (t - t_(n+1-j))/psi_j(n+1)
     beta = 1
     sigma = 1
-    do i = 1, k + 1
-      worst = max(worst, abs(sum(basis/[(j + 1, j=0, k)])/coefficients%g(i) - 1))
-      if (i > k) exit
-      worst = max(worst, abs(sigma/coefficients%sigma(i) - 1))
+    shift = 0
+    do i = 1, k
+      worst = max(worst, abs(sum(basis/[(j + 1, j=0, k)])/coefficients%g(i) - 1), abs(sigma/coefficients%sigma(i) - 1))
       if (i > 1) worst = max(worst, abs(beta/coefficients%beta(i) - 1))
-      basis(1:k) = (basis(1:k)*merge(0.0_dp, old(max(1, i - 1)), i == 1) + basis(0:k - 1)*h(steps))/psi(i)
-      basis(0) = basis(0)*merge(0.0_dp, old(max(1, i - 1)), i == 1)/psi(i)
+      basis(1:k) = (basis(1:k)*shift + basis(0:k - 1)*h(steps))/psi(i)
+      basis(0) = basis(0)*shift/psi(i)
+      shift = old(i)
       beta = beta*psi(i)/old(i)
       sigma = sigma*i*h(steps)/psi(i)
     end do
+    worst = max(worst, abs(sum(basis/[(j + 1, j=0, k)])/coefficients%g(k + 1) - 1))
     call check%close_to(worst, 0.0_dp, 1e-12_dp, 'g, beta and sigma on an uneven mesh')
   end subroutine variable_step_coefficients
 
