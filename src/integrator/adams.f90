@@ -50,6 +50,8 @@ module adams
     real(dp) :: h = 0                   !! size of the next step, by the clock
     real(dp) :: h_old = 0               !! size of the last accepted step
     integer :: limit = limit_start      !! what made the next step no longer
+    logical :: bound = .false.          !! stability limited the last accepted step
+    logical :: higher_known = .false.   !! phi_k+2 tells the error at order k+1
     real(dp) :: rounding = 0            !! weighted norm of the rounding of y
     logical :: opening = .true.         !! order and step are still being raised from the start
     real(dp), allocatable :: phi(:, :)  !! modified divided differences, (n, highest_order+2)
@@ -281,7 +283,7 @@ contains
     do j = self%coefficients%ns + 1, k
       self%phi(:, j) = self%coefficients%beta(j)*self%phi(:, j)
     end do
-    self%phi(:, k + 2) = self%phi(:, k + 1)
+    self%phi(:, k + 2) = self%coefficients%beta_next*self%phi(:, k + 1)
     self%phi(:, k + 1) = 0
     self%predicted = 0
     do j = k, 1, -1
@@ -383,6 +385,7 @@ contains
     do i = 1, self%k
       self%phi(:, i) = (self%phi(:, i) - self%phi(:, i + 1))/self%coefficients%beta(i)
     end do
+    self%phi(:, self%k + 1) = self%phi(:, self%k + 2)/self%coefficients%beta_next
     call self%coefficients%take_back(self%h, self%k)
     self%opening = .false.
     factor = fraction
@@ -432,9 +435,10 @@ contains
       reach = self%h*sqrt(f_jump/y_jump)
       slow = self%h*sqrt(f_path/y_path)
       self%statistics%stiffness = self%statistics%stiffness + reach
-      if (limit == limit_error .and. reach > 0.5_dp*stability_limit(self%k) .and. slow < 0.3_dp*reach) &
+      if (limit == limit_error .and. reach > 0.3_dp*stability_limit(self%k) .and. slow < 0.6_dp*reach) &
         limit = limit_stability
     end if
+    self%bound = limit == limit_stability
     associate (count => self%statistics)
       count%limited_by(limit) = count%limited_by(limit) + 1
       count%time_limited_by(limit) = count%time_limited_by(limit) + (time_at(self, x_new) - self%t)
@@ -450,6 +454,7 @@ contains
 
     call count_limit(self, x_new)
     k = self%k
+    self%higher_known = k < self%coefficients%ns .or. self%k_old >= k .and. .not. self%bound
     self%k_old = k
     self%h_old = self%h
     self%t_old = self%t
@@ -504,8 +509,8 @@ contains
     if (errors%order < k) then
       self%k = k - 1
       error = errors%lower
-    else if (k + 1 <= self%coefficients%ns) then
-      higher = self%h*self%moulton(k + 1)*weighted_norm(self, self%phi(:, k + 2))
+    else if (self%higher_known) then
+      higher = self%h*self%coefficients%sigma_next*self%moulton(k + 1)*weighted_norm(self, self%phi(:, k + 2))
       if (k == 1) then
         if (higher < 0.5_dp*error .and. k < self%settings%max_order) self%k = 2
       else if (errors%lower <= min(error, higher)) then
@@ -519,7 +524,7 @@ contains
 
     if (0.5_dp >= error*2.0_dp**(self%k + 1)) then
       factor = 2
-    else if (0.5_dp >= error*1.25_dp**(self%k + 1) .and. self%coefficients%ns > merge(2, self%k, self%k <= 4)) then
+    else if (0.5_dp >= error*1.25_dp**(self%k + 1) .and. self%coefficients%ns > merge(self%k, 2, self%bound .and. self%k > 4)) then
       factor = 1.25_dp
     else if (0.5_dp >= error) then
       factor = 1
