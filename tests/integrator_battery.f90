@@ -128,7 +128,7 @@ contains
             maxval(abs(got%final(:6) - final(:6))/largest(:6)), maxval(abs(got%final(7:) - final(7:)))/clearance, '   |', &
             published(j, i), published_error(j, i), ' |', real(s%evaluations)/published(j, i), ' |', s%accepted, &
             s%rejected_error + s%rejected_domain + s%rejected_penetration, s%restarts, &
-            fraction(s), s%stiffness/max(1, s%accepted), mean_order(s%order_count), &
+            bound_fraction(s), s%stiffness/max(1, s%accepted), mean_order(s%order_count), &
             got%seconds
         end associate
         if (got%status /= integration_done) print '(a,i0)', '  status ', got%status
@@ -200,7 +200,7 @@ contains
         all_evaluations(j) = all_evaluations(j) + evaluations
         print '(es9.0,f16.3,i12,3i9,f13.3,f12.2,a)', tolerance, error(j)/tolerance, evaluations, method%statistics%accepted, &
           method%statistics%rejected_error, method%statistics%restarts, &
-          fraction(method%statistics), method%statistics%stiffness/method%statistics%accepted, &
+          bound_fraction(method%statistics), method%statistics%stiffness/method%statistics%accepted, &
           merge('   failed', '         ', status /= 0)
       end do
       print '(a,f6.3,a,f9.1)', 'slope of log error on log tolerance', slope(error), ', largest error/tolerance', &
@@ -220,10 +220,10 @@ contains
   end function slope
 
   !> Part of the steps that stability limited.
-  pure real(dp) function fraction(statistics)
+  pure real(dp) function bound_fraction(statistics)
     type(step_statistics_t), intent(in) :: statistics
-    fraction = real(statistics%limited_by(limit_stability), dp)/max(1, statistics%accepted)
-  end function fraction
+    bound_fraction = real(statistics%limited_by(limit_stability), dp)/max(1, statistics%accepted)
+  end function bound_fraction
 
   pure real(dp) function mean_order(counts)
     integer, intent(in) :: counts(:)
