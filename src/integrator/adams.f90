@@ -42,6 +42,7 @@ module adams
   !> The state of the method between two steps.
   type, extends(ode_method_t) :: adams_t
     private
+    logical, public :: goes_on = .false.   !! the next start goes on inside a phase, after another method
     type(adams_coefficients_t) :: coefficients
     real(dp) :: moulton(highest_order + 1) = 0    !! |gamma*_i|
     integer :: n = 0                    !! equations
@@ -89,7 +90,7 @@ contains
     self%order = 0
     self%closed = .false.
     self%carry = 0
-    self%rooted = problem%smooth_in_root
+    self%rooted = problem%smooth_in_root .and. .not. self%goes_on
     self%t_origin = t
     self%x = merge(0.0_dp, t, self%rooted)
     self%x_old = self%x

@@ -16,7 +16,9 @@ module auto_method
   public :: auto_t
 
   integer, parameter :: first_patience = 40    !! steps bound by stability, more than not, before Radau takes over
-  integer, parameter :: trial_steps = 30       !! of Radau, before its cost is judged
+  integer, parameter :: trial_steps = 30       !! of Radau, before its cost is judged,
+  integer, parameter :: bad_trial_steps = 8    !! or before it is judged
+  real(dp), parameter :: bad_trial = 2         !! by this factor
   integer, parameter :: most_patience = 400    !! each change that did not pay doubles the patience up to this
   real(dp), parameter :: step_overhead = 5     !! of a Radau step, Jacobian and algebra, in evaluations
 
@@ -152,10 +154,14 @@ contains
     end associate
   end subroutine keep_account
 
-  !> Whether Radau has cost more in the present mode than Adams would have; not asked before a number of steps.
+  !> Whether Radau has cost more in the present mode than Adams would have; not asked before a number of steps, a smaller
+  !> number where it is much more.
   pure logical function radau_is_dearer(self)
     class(auto_t), intent(in) :: self
-    radau_is_dearer = self%trial(self%mode) >= trial_steps .and. self%spent(self%mode) > self%saved(self%mode)
+    associate (mode => self%mode)
+      radau_is_dearer = self%trial(mode) >= trial_steps .and. self%spent(mode) > self%saved(mode) &
+        .or. self%trial(mode) >= bad_trial_steps .and. self%spent(mode) > bad_trial*self%saved(mode)
+    end associate
   end function radau_is_dearer
 
   !> Go on with the other method from where we are.
@@ -166,7 +172,9 @@ contains
     integer, intent(out) :: status
     type(step_statistics_t) :: so_far
     self%stiff_in(self%mode) = stiff
+    self%adams%goes_on = .true.
     call begin_with(self, problem, stiff, self%t, self%y, .false., status)
+    self%adams%goes_on = .false.
     so_far = self%totals()
     so_far%restarts = so_far%restarts - 1   ! not one that the problem asked for
     so_far%switches = so_far%switches + 1
