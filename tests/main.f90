@@ -16,6 +16,7 @@ program gudgeon_tests
   use test_reference, only: run_test_reference
   use test_result_file, only: run_test_result_file
   use test_scenes, only: run_test_scenes
+  use test_trace_files, only: run_test_trace_files
   implicit none
   type(checks_t) :: check
 
@@ -33,6 +34,7 @@ program gudgeon_tests
   call run_test_reference(check)
   call run_test_result_file(check)
   call run_test_scenes(check)
+  call run_test_trace_files(check)
 
   write (output_unit, '(i0,a,i0,a)') check%passed, ' passed, ', check%failed, ' failed'
   if (check%failed > 0 .or. check%passed == 0) error stop 1
