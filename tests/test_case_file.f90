@@ -313,6 +313,8 @@ contains
     call refused_on(check, bodies, [character(len=24) :: ends, 'output.start_time=1'], &
                     'x.nml: &output start_time = 1: must be < end_time (s)')
     call refused_with(check, 'output.interval=1e-20', 'x.nml: &output interval = 1e-20: asks for more than 1e9 rows (s)')
+    call refused_with(check, 'output.digits=8', 'x.nml: &output digits = 8: must be >= 9 and <= 17')
+    call refused_with(check, 'output.digits=18', 'x.nml: &output digits = 18: must be >= 9 and <= 17')
     call refused_with(check, 'output.columns=time[s]', 'x.nml: &output columns = time[s]: must be ''standard'' or names of '// &
                       'columns without their units')
     call refused_with(check, 'integrator.contact_entry=step_rejection', 'x.nml: &integrator max_penetration: must be > 0 '// &

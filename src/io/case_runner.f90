@@ -144,9 +144,9 @@ contains
 
     allocate (files)
     if (ideal_joint) then
-      call files%open(base//'.ideal', list, .false., error)
+      call files%open(base//'.ideal', list, case%output%digits, .false., error)
     else
-      call files%open(base, list, case%contact%is_present, error)
+      call files%open(base, list, case%output%digits, case%contact%is_present, error)
     end if
     if (allocated(error)) return
     files%end_time = simulated_time(case)
