@@ -443,8 +443,8 @@ contains
       reach = self%h*sqrt(f_jump/y_jump)
       self%statistics%stiffness = self%statistics%stiffness + reach
       near = reach/stability_limit(self%k)
-      slow = sqrt(f_path/y_path)*self%h/reach
-      if (y_path < 25) slow = 0
+      slow = 0
+      if (y_path >= 25 .and. reach > 0) slow = self%h*sqrt(f_path/y_path)/reach
       self%bound = near > 0.3_dp .and. slow < 0.6_dp
       if (limit == limit_error .and. near > 0.5_dp .and. slow < 0.3_dp) limit = limit_stability
     end if
