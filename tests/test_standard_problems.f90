@@ -4,7 +4,7 @@
 module test_standard_problems
   use kinds, only: dp
   use checks, only: checks_t
-  use ode_method, only: step_done
+  use ode_method, only: step_done, limit_stability
   use ode_problem, only: ode_problem_t, step_admitted, step_too_deep
   use adams, only: adams_t
   use solver, only: integrate, silent_observer_t, integration_done
@@ -107,6 +107,8 @@ contains
         call check%that(status == integration_done, chosen(i)//' is integrated at '//label)
         call check%that(ratio <= 100, chosen(i)//': error within 100 tolerances at '//label)
         log_error(j) = log10(max(ratio*tolerance, 1e-16_dp))
+        if (index('A3 B5 E1 E3 F2 F3', chosen(i)) > 0) call check%that(method%statistics%limited_by(limit_stability) <= &
+          0.07_dp*method%statistics%accepted, chosen(i)//' is not taken for stiff at '//label)
         evaluations = evaluations + method%statistics%evaluations
       end do
       mean = sum([((7.5_dp - j)*log_error(j), j=3, 12)])/sum([((7.5_dp - j)**2, j=3, 12)])
