@@ -3,6 +3,7 @@
 #
 #   . scripts/setup.sh         from the top of the checkout: also puts fpm on the PATH of the calling shell
 #   scripts/setup.sh           the same for scripts and for later shells
+#   scripts/setup.sh --python  also what scripts/plot.py and scripts/report.py need, in .venv
 #
 # Needs root or sudo only to install Debian packages. An fpm that is installed here lives in .venv, with a link in
 # /usr/local/bin or ~/.local/bin. POSIX sh; leaves no option of the calling shell changed.
@@ -29,6 +30,20 @@ gudgeon_link() {   # a link to .venv's fpm where later shells find it
   echo "setup: fpm is $PWD/.venv/bin/fpm; add $PWD/.venv/bin to PATH for later shells" >&2
 }
 
+gudgeon_venv() {   # .venv, a virtual environment of Python, made where it is missing
+  [ -x .venv/bin/python ] && .venv/bin/python -m pip --version >/dev/null 2>&1 && return 0
+  if ! { command -v python3 >/dev/null 2>&1 && python3 -c 'import venv, ensurepip' >/dev/null 2>&1; }; then
+    gudgeon_apt python3 python3-venv || return 1
+  fi
+  python3 -m venv .venv >&2
+}
+
+gudgeon_pip() { .venv/bin/python -m pip install --quiet --disable-pip-version-check "$@" >&2; }
+
+gudgeon_python() {   # the packages of the plots; pip looks only at what is missing
+  gudgeon_venv && gudgeon_pip -r scripts/requirements.txt
+}
+
 gudgeon_setup() {
   if [ ! -f fpm.toml ]; then
     echo "setup: run it from the top of the checkout" >&2
@@ -41,12 +56,8 @@ gudgeon_setup() {
   if command -v fpm >/dev/null 2>&1 && fpm --version >/dev/null 2>&1; then
     return 0
   fi
-  if ! { command -v python3 >/dev/null 2>&1 && python3 -c 'import venv, ensurepip' >/dev/null 2>&1; }; then
-    gudgeon_apt python3 python3-venv || return 1
-  fi
   if [ ! -x .venv/bin/fpm ]; then
-    python3 -m venv .venv >&2 && .venv/bin/python -m pip install --quiet --disable-pip-version-check 'fpm>=0.12,<0.14' >&2 ||
-      return 1
+    gudgeon_venv && gudgeon_pip 'fpm>=0.12,<0.14' || return 1
   fi
   PATH="$PWD/.venv/bin:$PATH"
   export PATH
@@ -57,7 +68,19 @@ gudgeon_setup() {
 
 gudgeon_setup
 gudgeon_status=$?
-unset -f gudgeon_apt gudgeon_link gudgeon_setup
+# sourced, the positional parameters are those of the caller
+case "${0##*/} $#" in
+  "setup.sh 0") ;;
+  setup.sh*)
+    if [ "$*" != --python ]; then
+      echo "setup: usage: scripts/setup.sh [--python]" >&2
+      gudgeon_status=2
+    elif [ "$gudgeon_status" = 0 ]; then
+      gudgeon_python || gudgeon_status=1
+    fi
+    ;;
+esac
+unset -f gudgeon_apt gudgeon_link gudgeon_venv gudgeon_pip gudgeon_python gudgeon_setup
 unset gudgeon_sudo gudgeon_dir
 # the status of the last command is that of the set-up, sourced or not
 [ "$gudgeon_status" = 0 ]

@@ -135,6 +135,11 @@ contains
     call check%that(trace%names(2) == 'crank_angle[rad]', 'in the order of the interface')
     trace = run_case('cases/flores/dry_0500um.nml', [character(len=long) :: 'output.columns=time, cylinder_pressure'])
     call check%that(allocated(trace%error), 'a column that the scene does not have is refused')
+    trace = run_case('cases/sim_IV.nml', [character(len=long) :: 'integrator.revolutions=0.02'])
+    associate (v => trace%values(column(trace, 'cylinder_volume[m3]'), :))
+      call check%that(abs(v(1)*8/(0.07_dp**2*atan(1.0_dp)*0.1016_dp) - 1) < 1e-12_dp .and. v(size(v)) > v(1), &
+        'the cylinder volume starts at the dead volume, V_d/8, and grows')
+    end associate
     trace = run_case('cases/sim_I.nml', [character(len=long) :: 'integrator.revolutions=0.02'])
     call check%that(column(trace, 'film_force_x[N]') > 0 .and. column(trace, 'cylinder_pressure[Pa]') == 0, &
       'a scene has the columns of its models')

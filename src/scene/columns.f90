@@ -116,12 +116,14 @@ contains
     real(dp), intent(in) :: work             !! [J]
     real(dp), intent(in) :: initial_energy   !! [J]
     real(dp), intent(out) :: values(:)       !! (size(list%id))
-    real(dp) :: all_values(n_columns), energy, in_film
+    real(dp) :: all_values(n_columns), energy, in_film, volume
     type(reactions_t) :: reaction
 
     energy = 0
     if (list%needs_reactions) reaction = reactions_of(scene%mechanism, now%loads, now%motion, now%accelerations)
     if (list%needs_energy) energy = scene%energy(now%motion)
+    volume = 0
+    if (allocated(scene%gas)) volume = scene%gas%cylinder%volume(now%motion%crank_angle)
     in_film = merge(1.0_dp, 0.0_dp, scene%phase == phase_film)
     associate (m => now%motion, a => now%accelerations, joint => now%joint)
       all_values = [t, m%crank_angle, atan2(m%sin_rod, m%cos_rod), m%piston_position, m%crank_speed, m%rod_speed, &
@@ -129,7 +131,7 @@ contains
         reaction%crank_bearing, reaction%guide, reaction%frame, energy, energy - initial_energy - work, &
         joint%eccentricity, joint%distance/list%clearance, -joint%penetration, real(scene%phase, dp), &
         now%normal_force, now%friction_force, joint%sliding_speed, in_film*now%loads%pin_force, &
-        now%cylinder_pressure, now%cylinder_volume, now%loads%gas_force]
+        now%cylinder_pressure, volume, now%loads%gas_force]
     end associate
     values = all_values(list%id)
   end subroutine row_values

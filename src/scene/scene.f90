@@ -35,7 +35,6 @@ module scene
     real(dp) :: normal_force = 0    !! of the contact, pressing [N]
     real(dp) :: friction_force = 0  !! on the pin along t [N]
     real(dp) :: cylinder_pressure = 0  !! [Pa]
-    real(dp) :: cylinder_volume = 0    !! [m^3]
     real(dp) :: power = 0           !! of all non-conservative forces and the drive [W]
   end type evaluation_t
 
@@ -50,7 +49,6 @@ module scene
     type(gas_cycle_t), allocatable :: gas
     integer :: gas_part = 0            !! part of the gas cycle that acts
     real(dp) :: gas_cycle_start = 0    !! crank angle at which its cycle began [rad]
-    logical :: gives_volume = .false.  !! whether an evaluation finds the cylinder volume (for the trace)
   contains
     procedure(evaluate), deferred :: evaluate
     procedure(initial_state), deferred :: initial_state
@@ -141,7 +139,6 @@ contains
     type(evaluation_t), intent(inout) :: now
     now%cylinder_pressure = self%gas%pressure(now%motion%crank_angle, self%gas_part, self%gas_cycle_start)
     now%loads%gas_force = self%gas%gas_force(now%cylinder_pressure)
-    if (self%gives_volume) now%cylinder_volume = self%gas%cylinder%volume(now%motion%crank_angle)
   end subroutine add_gas
 
   !> Derivative of the gas force by the crank angle [N/rad].

@@ -1,0 +1,1 @@
+"""Pictures from gudgeon's results: figures, comparisons, reports."""

@@ -1,0 +1,116 @@
+"""Pressure around the pin, from a trace: the films' pressures, which the program integrates but does not write.
+
+Angles are measured from the direction of the eccentricity, x towards y; arrays are (rows of the trace, angles).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .results import Run
+
+FILM_PHASE = 1
+
+
+@dataclass(frozen=True)
+class FilmMotion:
+    """What a film sees of the joint, one value a row of the trace."""
+
+    ratio: np.ndarray        # eps = |e|/c
+    direction: np.ndarray    # of the eccentricity, from x towards y [rad]
+    normal_rate: np.ndarray  # of |e| [m/s]
+    tangent_rate: np.ndarray # speed of the pin's centre along t [m/s]
+    pin_speed: np.ndarray    # the rod's angular velocity, x towards y [rad/s]
+
+
+def film_motion(run: Run) -> FilmMotion:
+    """Eccentricity and its rate, from the columns of a trace with clearance."""
+    crank, rod = (float(run.parameter("mechanism", key)) for key in ("crank_length", "rod_length"))
+    q, a = run["crank_angle"], run["rod_angle"]
+    q1, a1 = run["crank_speed"], run["rod_speed"]
+    rate_x = -crank * q1 * np.sin(q) - rod * a1 * np.sin(a) - run["piston_velocity"]
+    rate_y = crank * q1 * np.cos(q) - rod * a1 * np.cos(a)
+    direction = np.arctan2(run["eccentricity_y"], run["eccentricity_x"])
+    cosine, sine = np.cos(direction), np.sin(direction)
+    return FilmMotion(run["eccentricity_ratio"], direction, rate_x * cosine + rate_y * sine,
+                      rate_y * cosine - rate_x * sine, -a1)
+
+
+def pinkus_sternlicht(run: Run, angles: np.ndarray) -> np.ndarray:
+    """Pressure (5.20) [Pa], its positive part."""
+    clearance, pin_radius = run.clearance, float(run.parameter("joint", "bearing_radius")) - run.clearance
+    motion = film_motion(run)
+    eps = np.minimum(motion.ratio, 1 - 1e-12)[:, None]
+    wedge = eps * motion.pin_speed[:, None] - 2 * motion.tangent_rate[:, None] / clearance
+    squeeze = motion.normal_rate[:, None] / clearance
+    cosine, sine = -np.cos(angles), -np.sin(angles)
+    bracket = wedge * sine * (2 + eps * cosine) - squeeze * (4 * cosine + eps * (2 * cosine**2 - 1))
+    scale = 6 * float(run.parameter("lubrication", "viscosity")) * (pin_radius / clearance) ** 2
+    return np.maximum(0.0, scale * bracket / ((2 + eps**2) * (1 + eps * cosine) ** 2))
+
+
+def inertia_function(v: np.ndarray) -> np.ndarray:
+    """B = u^2 t/(1 - t), t = tanh(u)/u, at u^2 = i v: the resistance of the film with its inertia; 3 without."""
+    u = np.sqrt(1j * np.maximum(v, 1e-3))
+    t = np.tanh(u) / u
+    small = 3 + 1j * v / 5 + v**2 / 175
+    return np.where(v < 0.05, small, u**2 * t / (1 - t))
+
+
+def ideal_rod_motion(run: Run) -> tuple[np.ndarray, np.ndarray]:
+    """The rod's angular velocity [rad/s] and acceleration [rad/s2], x towards y, of the ideal joint at held speed."""
+    ratio = float(run.parameter("mechanism", "crank_length")) / float(run.parameter("mechanism", "rod_length"))
+    q, q1 = run["crank_angle"], run["crank_speed"]
+    sine = ratio * np.sin(q)
+    cosine = np.sqrt(1 - sine**2)
+    rate = ratio * np.cos(q) * q1 / cosine
+    return -rate, -(rate**2 * sine - ratio * np.sin(q) * q1**2) / cosine
+
+
+def oscillating(run: Run, angles: np.ndarray, points: int = 160) -> np.ndarray:
+    """Pressure of the oscillating film (5.1-5.9) [Pa] about its mean, both signs: dP/dth integrated over points that
+    crowd where the film is thin (Sommerfeld's substitution)."""
+    clearance, pin_radius = run.clearance, float(run.parameter("joint", "bearing_radius")) - run.clearance
+    least = float(run.parameter("lubrication", "least_film_ratio", 1e-3))
+    eps = np.minimum(film_motion(run).ratio, 1 - least)[:, None]
+    psi = np.linspace(-np.pi, np.pi, points + 1)[None, :]
+    eta = (1 - eps**2) / (1 + eps * np.cos(psi))
+    cosine = (1 - eta) / np.where(eps > 1e-9, eps, 1)
+    theta = np.where(eps > 1e-9, np.sign(psi) * np.arccos(np.clip(cosine, -1, 1)), psi)
+
+    frequency = np.abs(run["crank_speed"])[:, None]
+    speed, acceleration = (values[:, None] for values in ideal_rod_motion(run))
+    phasor = pin_radius * (speed - 1j * acceleration / frequency)
+    v = clearance**2 * frequency / (4 * float(run.parameter("lubrication", "kinematic_viscosity"))) * eta**2
+    resistance = inertia_function(v)
+    flow = _integral(resistance / eta**2, theta)[:, -1:] / _integral((resistance + 1j * v) / eta**3, theta)[:, -1:]
+    viscosity = float(run.parameter("lubrication", "viscosity"))
+    gradient = 2 * viscosity * pin_radius / clearance**2 * phasor \
+        * (eta * resistance - flow * (resistance + 1j * v)) / eta**3
+    pressure = _integral(gradient.real, theta)
+    pressure -= _integral(pressure, theta)[:, -1:] / (2 * np.pi)
+    wrapped = (np.asarray(angles) + np.pi) % (2 * np.pi) - np.pi
+    return np.stack([np.interp(wrapped, th, p) for th, p in zip(theta, pressure)])
+
+
+def _integral(values: np.ndarray, theta: np.ndarray) -> np.ndarray:
+    """Running integral along each row, 0 at the first point."""
+    steps = 0.5 * (values[:, 1:] + values[:, :-1]) * np.diff(theta, axis=1)
+    return np.concatenate([np.zeros((len(values), 1), dtype=steps.dtype), np.cumsum(steps, axis=1)], axis=1)
+
+
+def pressure(run: Run, angles: np.ndarray) -> np.ndarray | None:
+    """Pressure [Pa] at the angles from the eccentricity; 0 where no film acts. None for a run without film."""
+    law = run.parameter("lubrication", "law")
+    if law is None or "phase" not in run:
+        return None
+    found = oscillating(run, angles) if law == "oscillating_film" else pinkus_sternlicht(run, angles)
+    found[run["phase"] != FILM_PHASE] = 0
+    return found
+
+
+def resultant(run: Run, angles: np.ndarray, found: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Force on the pin [N] along and across the eccentricity, of pressures at evenly spaced angles."""
+    radius = float(run.parameter("joint", "bearing_radius")) - run.clearance
+    area = float(run.parameter("joint", "bearing_length")) * radius * (angles[1] - angles[0])
+    return -area * (found * np.cos(angles)).sum(axis=1), -area * (found * np.sin(angles)).sum(axis=1)

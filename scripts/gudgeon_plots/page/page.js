@@ -1,0 +1,379 @@
+"use strict";
+// Unpacks the trace, moves the mechanism, draws the plots. `gudgeon` is what a test holds on to.
+(async function () {
+  const COLOUR = { ink: "#1b1f23", grey: "#8a9096", blue: "#0072B2", vermilion: "#D55E00", purple: "#CC79A7",
+    green: "#009E73", sky: "#56B4E9", steel: "#c8cdd2", light: "#e4e8eb" };
+  const byId = (id) => document.getElementById(id);
+  const fail = (message) => { byId("failure").hidden = false; byId("failure").textContent = message; };
+  if (!("DecompressionStream" in window)) { fail("This browser cannot unpack the page's data: it is older than 2023."); return; }
+
+  async function unpack(id) {
+    const bytes = Uint8Array.from(atob(byId(id).textContent), (c) => c.charCodeAt(0));
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
+    return new Response(stream).arrayBuffer();
+  }
+
+  // ---- the trace: columns of float32, one after the other
+  const scene = JSON.parse(byId("scene").textContent);
+  const column = {};
+  {
+    const values = new Float32Array(await unpack("trace"));
+    scene.columns.forEach((name, i) => { column[name] = values.subarray(i * scene.rows, (i + 1) * scene.rows); });
+  }
+  const pressure = scene.angles ? new Int8Array(await unpack("pressure")) : null;
+  const time = column.time, begin = time[0], end = time[scene.rows - 1];
+  const joint = scene.clearance > 0;
+  document.body.classList.toggle("ideal", !joint);
+  document.body.classList.toggle("contactless", scene.contacts.length === 0);
+  document.body.classList.toggle("filmless", !scene.angles);
+  document.body.classList.toggle("unsigned", !scene.signed);
+
+  // ---- the moment shown
+  let now = begin, playing = false, before = null, row = 0, share = 0;
+  const at = (name) => column[name][row] + share * (column[name][Math.min(row + 1, scene.rows - 1)] - column[name][row]);
+
+  // Forces jump: those of the nearest row, so that they belong together.
+  const nearest = () => (share > 0.5 ? Math.min(row + 1, scene.rows - 1) : row);
+  const near = (name) => column[name][nearest()];
+
+  function seek(t) {
+    now = Math.min(Math.max(t, begin), end);
+    let low = 0, high = scene.rows - 1;
+    while (high - low > 1) { const middle = (low + high) >> 1; if (time[middle] <= now) low = middle; else high = middle; }
+    row = low;
+    share = time[high] > time[low] ? (now - time[low]) / (time[high] - time[low]) : 0;
+    draw();
+  }
+
+  // ---- canvases in CSS pixels
+  function prepare(id) {
+    const canvas = byId(id), ratio = window.devicePixelRatio || 1;
+    const width = canvas.clientWidth, height = canvas.clientHeight;
+    if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
+      canvas.width = Math.round(width * ratio);
+      canvas.height = Math.round(height * ratio);
+    }
+    const g = canvas.getContext("2d");
+    g.setTransform(ratio, 0, 0, ratio, 0, 0);
+    g.clearRect(0, 0, width, height);
+    g.lineJoin = "round";
+    return { g, width, height };
+  }
+
+  function circle(g, x, y, radius, fill, stroke, width) {
+    g.beginPath();
+    g.arc(x, y, Math.max(radius, 0), 0, 2 * Math.PI);
+    if (fill) { g.fillStyle = fill; g.fill(); }
+    if (stroke) { g.strokeStyle = stroke; g.lineWidth = width || 1; g.stroke(); }
+  }
+
+  function bar(g, x1, y1, x2, y2, half) {
+    const length = Math.hypot(x2 - x1, y2 - y1) || 1, nx = -half * (y2 - y1) / length, ny = half * (x2 - x1) / length;
+    g.beginPath();
+    g.moveTo(x1 + nx, y1 + ny); g.lineTo(x2 + 0.7 * nx, y2 + 0.7 * ny);
+    g.lineTo(x2 - 0.7 * nx, y2 - 0.7 * ny); g.lineTo(x1 - nx, y1 - ny);
+    g.closePath();
+    g.fillStyle = COLOUR.steel; g.fill();
+    g.strokeStyle = COLOUR.ink; g.lineWidth = 1; g.stroke();
+  }
+
+  function arrow(g, x, y, dx, dy, colour) {
+    const length = Math.hypot(dx, dy);
+    if (length < 2) return;
+    const ux = dx / length, uy = dy / length, head = Math.min(9, 0.6 * length);
+    g.strokeStyle = g.fillStyle = colour;
+    g.lineWidth = 2.5;
+    g.beginPath(); g.moveTo(x, y); g.lineTo(x + dx - ux * head, y + dy - uy * head); g.stroke();
+    g.beginPath(); g.moveTo(x + dx, y + dy);
+    g.lineTo(x + dx - head * ux + 0.5 * head * uy, y + dy - head * uy - 0.5 * head * ux);
+    g.lineTo(x + dx - head * ux - 0.5 * head * uy, y + dy - head * uy + 0.5 * head * ux);
+    g.closePath(); g.fill();
+  }
+
+  // ---- magnification: 1 ... where the clearance is drawn as 45 % of the bearing's radius
+  const largest = joint ? 0.45 * scene.bearing / scene.clearance : 1;
+  const magnification = () => Math.pow(largest, Number(byId("magnification").value));
+
+  // x is up, y to the right
+  function drawMechanism() {
+    const { g, width, height } = prepare("mechanism");
+    const { crank, rod, bearing } = scene, half = 2.4 * bearing;
+    const top = crank + rod + 4.2 * bearing, bottom = -1.35 * crank;
+    const scale = Math.min(height / (top - bottom), width / (2.9 * crank));
+    const X = (y) => width / 2 + scale * y, Y = (x) => height - scale * (x - bottom);
+    const q = at("crank_angle"), piston = at("piston_position"), m = magnification();
+    const px = crank * Math.cos(q), py = crank * Math.sin(q);
+    const ex = joint ? m * at("eccentricity_x") : 0, ey = joint ? m * at("eccentricity_y") : 0;
+    g.strokeStyle = COLOUR.ink; g.lineWidth = 2.5;
+    for (const side of [-1, 1]) {
+      g.beginPath();
+      g.moveTo(X(side * 1.05 * half), Y(Math.min(1.45 * crank, rod - crank))); g.lineTo(X(side * 1.05 * half), Y(top));
+      g.stroke();
+    }
+    if (column.cylinder_pressure) {
+      const share = Math.min(1, at("cylinder_pressure") / scene.peak.cylinder_pressure);
+      g.fillStyle = `rgba(213,94,0,${(0.75 * share).toFixed(3)})`;
+      g.fillRect(X(-half), Y(top), 2 * half * scale, Y(piston + 2.6 * bearing) - Y(top));
+    }
+    circle(g, X(0), Y(0), 1.25 * crank * scale, COLOUR.light, COLOUR.grey, 1);
+    bar(g, X(0), Y(0), X(py), Y(px), 0.9 * bearing * scale);
+    g.fillStyle = COLOUR.light; g.strokeStyle = COLOUR.ink; g.lineWidth = 1.5;
+    g.beginPath(); g.rect(X(-half), Y(piston + 2.6 * bearing), 2 * half * scale, 4.1 * bearing * scale); g.fill(); g.stroke();
+    circle(g, X(0), Y(piston), bearing * scale, "#fff", COLOUR.ink, 1.2);
+    bar(g, X(py), Y(px), X(ey), Y(piston + ex), 0.55 * bearing * scale);
+    circle(g, X(ey), Y(piston + ex), (bearing - m * scene.clearance) * scale * (joint ? 1 : 0.75), COLOUR.blue, COLOUR.ink, 1);
+    circle(g, X(0), Y(0), 0.45 * bearing * scale, "#fff", COLOUR.ink, 1);
+    circle(g, X(py), Y(px), 0.45 * bearing * scale, "#fff", COLOUR.ink, 1);
+  }
+
+  // Lengths of arrows and heights of the pressure go with the square root: small values stay visible.
+  const rooted = (value, peak, length) => (peak > 0 ? length * Math.sqrt(Math.min(1, Math.abs(value) / peak)) : 0);
+
+  function drawJoint() {
+    const { g, width, height } = prepare("joint");
+    const cx = width / 2, cy = height / 2, room = Math.min(width, height) / 2, radius = 0.62 * room, m = magnification();
+    const gap = m * scene.clearance / scene.bearing * radius;
+    const ux = at("eccentricity_x") / scene.clearance, uy = at("eccentricity_y") / scene.clearance;
+    const pinX = cx + gap * uy, pinY = cy - gap * ux;
+    if (pressure) {
+      const first = nearest() * scene.angles, direction = Math.atan2(uy, ux);
+      for (const sign of [1, -1]) {
+        g.beginPath();
+        for (let i = 0; i <= scene.angles; i++) {
+          const level = Math.max(0, sign * pressure[first + (i % scene.angles)]) / 127;
+          const angle = direction + 2 * Math.PI * i / scene.angles - Math.PI, r = radius + 3 + 0.34 * room * level;
+          g.lineTo(cx + r * Math.sin(angle), cy - r * Math.cos(angle));
+        }
+        g.arc(cx, cy, radius + 3, 0, 2 * Math.PI, true);
+        g.fillStyle = sign > 0 ? COLOUR.green : COLOUR.sky;
+        g.globalAlpha = 0.75; g.fill(); g.globalAlpha = 1;
+      }
+    }
+    circle(g, cx, cy, radius, "#fff", COLOUR.ink, 2);
+    circle(g, pinX, pinY, radius - gap, COLOUR.steel, COLOUR.ink, 1.2);
+    circle(g, cx, cy, radius, null, COLOUR.ink, 2);
+    const turn = -at("rod_angle"), mark = radius - gap;   // a line on the pin shows how it turns with the rod
+    g.beginPath(); g.moveTo(pinX, pinY); g.lineTo(pinX - mark * Math.sin(turn), pinY + mark * Math.cos(turn));
+    g.strokeStyle = COLOUR.grey; g.lineWidth = 1; g.stroke();
+    circle(g, pinX, pinY, 2.5, COLOUR.ink);
+    const fx = near("pin_force_x"), fy = near("pin_force_y"), force = Math.hypot(fx, fy);
+    if (force > 0) {
+      const length = rooted(force, scene.peak.pin_force, 0.55 * room);
+      arrow(g, pinX, pinY, length * fy / force, -length * fx / force, COLOUR.blue);
+    }
+    if (column.normal_force && near("normal_force") > 0) {
+      const e = Math.hypot(ux, uy) || 1, length = rooted(near("normal_force"), scene.peak.normal_force, 0.36 * room);
+      const wx = cx + radius * uy / e, wy = cy - radius * ux / e;
+      circle(g, wx, wy, 5, COLOUR.purple);
+      arrow(g, wx + length * uy / e, wy - length * ux / e, -length * uy / e, length * ux / e, COLOUR.purple);
+    }
+  }
+
+  function drawOrbit() {
+    const { g, width, height } = prepare("orbit");
+    const cx = width / 2, cy = height / 2, unit = 0.46 * Math.min(width, height) / Math.max(1, scene.peak.eccentricity_ratio);
+    const x = (i) => cx + unit * column.eccentricity_y[i] / scene.clearance;
+    const y = (i) => cy - unit * column.eccentricity_x[i] / scene.clearance;
+    const line = (from, to, colour, thick) => {
+      g.beginPath();
+      for (let i = from; i <= to; i++) g.lineTo(x(i), y(i));
+      g.strokeStyle = colour; g.lineWidth = thick; g.stroke();
+    };
+    circle(g, cx, cy, unit, "#fff", null);
+    line(0, row, "rgba(0,114,178,0.25)", 1);
+    let from = row;
+    while (from > 0 && column.crank_angle[row] - column.crank_angle[from] < 2 * Math.PI) from--;
+    line(from, row, COLOUR.blue, 1.4);
+    circle(g, cx, cy, unit, null, COLOUR.ink, 1.5);
+    const inContact = near("phase") === 2;
+    circle(g, cx + unit * at("eccentricity_y") / scene.clearance, cy - unit * at("eccentricity_x") / scene.clearance, 5,
+      inContact ? COLOUR.purple : COLOUR.vermilion, "#fff", 1);
+  }
+
+  // ---- the time line: film thickness, or the pin's force, over all the run; contacts below
+  function drawTimeline() {
+    const { g, width, height } = prepare("timeline");
+    const curve = scene.line, values = column[curve.column], strip = scene.contacts.length ? 26 : 0, [low, high] = curve.range;
+    const X = (t) => 8 + (width - 16) * (t - begin) / (end - begin);
+    const Y = (v) => 8 + (height - strip - 16) * (high - v) / (high - low || 1);
+    if (joint && low < 0) { g.fillStyle = "rgba(204,121,167,0.18)"; g.fillRect(8, Y(0), width - 16, Y(low) - Y(0)); }
+    if (joint) {
+      g.beginPath(); g.moveTo(8, Y(0)); g.lineTo(width - 8, Y(0));
+      g.strokeStyle = COLOUR.grey; g.lineWidth = 1; g.stroke();
+    }
+    g.beginPath();
+    for (let i = 0; i < scene.rows; i++) g.lineTo(X(time[i]), Y(values[i]));
+    g.strokeStyle = COLOUR.blue; g.lineWidth = 1; g.stroke();
+    for (const contact of scene.contacts) {
+      const tall = 4 + rooted(contact.force, scene.peak.normal_force, strip - 8);
+      g.fillStyle = COLOUR.purple;
+      g.globalAlpha = now >= contact.begin && now <= contact.end ? 1 : 0.55;
+      g.fillRect(X(contact.begin), height - 3 - tall, Math.max(1.5, X(contact.end) - X(contact.begin)), tall);
+    }
+    g.globalAlpha = 1;
+    g.font = "11px system-ui, sans-serif";
+    const text = `${curve.title} ${(curve.factor * low).toFixed(1)} … ${(curve.factor * high).toFixed(1)} ${curve.unit}`;
+    g.fillStyle = "rgba(243,245,247,0.85)";
+    g.fillRect(10, 5, g.measureText(text).width + 6, 15);
+    g.fillStyle = "#555";
+    g.fillText(text, 13, 16);
+    if (strip) g.fillText("contacts", 12, height - strip + 6);
+    g.beginPath(); g.moveTo(X(now), 2); g.lineTo(X(now), height - 2);
+    g.strokeStyle = COLOUR.vermilion; g.lineWidth = 2; g.stroke();
+  }
+
+  function drawState() {
+    const degrees = at("crank_angle") * 180 / Math.PI;
+    const parts = [`t = ${(1e3 * now).toFixed(3)} ms`, `crank ${degrees.toFixed(1)}° (${(degrees / 360).toFixed(2)} rev)`,
+      `${at("crank_speed").toFixed(1)} rad/s`, `pin force ${(Math.hypot(near("pin_force_x"), near("pin_force_y")) / 1e3).toFixed(2)} kN`];
+    if (joint) {
+      const force = column.normal_force ? near("normal_force") : 0;
+      parts.push(`film ${(1e6 * at("film_thickness")).toFixed(2)} µm`, (["free", "film acts", "contact"][near("phase")] || "")
+        + (force > 0 ? `, ${(force / 1e3).toFixed(2)} kN` : ""));
+      if (pressure && near("phase") === 1) parts.push(`film pressure up to ${(near("film_peak") / 1e6).toPrecision(3)} MPa`);
+    }
+    const inside = scene.contacts.find((c) => now >= c.begin && now <= c.end);
+    if (inside) {
+      parts.push(`this contact: ${(1e3 * (inside.end - inside.begin)).toPrecision(3)} ms, up to ${(inside.force / 1e3).toPrecision(3)} kN,`
+        + ` ${(1e6 * inside.penetration).toPrecision(3)} µm deep`);
+    }
+    byId("state").replaceChildren(...parts.map((text) => Object.assign(document.createElement("span"), { textContent: text })));
+  }
+
+  function draw() {
+    drawMechanism();
+    if (joint) { drawJoint(); drawOrbit(); }
+    drawTimeline();
+    drawState();
+    byId("scrub").value = (now - begin) / (end - begin);
+  }
+
+  // ---- controls
+  const turns = () => Math.pow(10, Number(byId("speed").value));   // revolutions a second
+  function labels() {
+    byId("speed-value").textContent = `${turns().toPrecision(2)} rev/s`;
+    byId("magnification-value").textContent = `× ${magnification().toPrecision(3)}`;
+  }
+
+  function frame(stamp) {
+    if (!playing) return;
+    if (before !== null) {
+      const speed = Math.abs(at("crank_speed")) || scene.speed;
+      const t = now + Math.min(0.1, (stamp - before) / 1e3) * turns() * 2 * Math.PI / speed;
+      seek(t >= end ? begin : t);
+    }
+    before = stamp;
+    requestAnimationFrame(frame);
+  }
+
+  function play(on) {
+    playing = on;
+    before = null;
+    byId("play").textContent = on ? "pause" : "play";
+    if (on) requestAnimationFrame(frame); else markPlots();
+  }
+
+  byId("play").addEventListener("click", () => play(!playing));
+  byId("scrub").addEventListener("input", (event) => { play(false); seek(begin + Number(event.target.value) * (end - begin)); });
+  byId("speed").addEventListener("input", labels);
+  byId("magnification").addEventListener("input", () => { labels(); draw(); });
+  byId("next").addEventListener("click", () => {
+    const found = scene.contacts.find((c) => c.begin > now + 1e-9);
+    if (found) { play(false); seek(found.begin + 1e-9); }
+  });
+  byId("previous").addEventListener("click", () => {
+    const found = scene.contacts.filter((c) => c.begin < now - 2e-9).pop();
+    if (found) { play(false); seek(found.begin + 1e-9); }
+  });
+  const line = byId("timeline");
+  const point = (event) => {
+    const box = line.getBoundingClientRect();
+    play(false);
+    seek(begin + (event.clientX - box.left - 8) / (box.width - 16) * (end - begin));
+  };
+  line.addEventListener("pointerdown", (event) => { line.setPointerCapture(event.pointerId); point(event); });
+  line.addEventListener("pointermove", (event) => { if (event.buttons) point(event); });
+  document.addEventListener("keydown", (event) => {
+    if (event.target.tagName === "INPUT" || event.target.tagName === "BUTTON") return;
+    if (event.key === " ") { event.preventDefault(); play(!playing); }
+    if (event.key === "ArrowRight" || event.key === "ArrowLeft") {
+      event.preventDefault();
+      play(false);
+      seek(time[Math.min(scene.rows - 1, Math.max(0, row + (event.key === "ArrowRight" ? 1 : share > 0 ? 0 : -1)))]);
+    }
+  });
+  window.addEventListener("resize", draw);
+
+  // ---- plots
+  const charts = [];
+  let linking = false, marked = null;
+
+  function markPlots() {   // the moment shown, on the time axes; not while playing, it would be too slow
+    clearTimeout(marked);
+    marked = setTimeout(() => {
+      for (const chart of charts.filter((c) => c.timed)) {
+        Plotly.relayout(chart.div, { shapes: [{ type: "line", x0: 1e3 * now, x1: 1e3 * now, yref: "paper", y0: 0, y1: 1,
+          line: { color: COLOUR.vermilion, width: 1 } }] });
+      }
+    }, 150);
+  }
+
+  async function linkZoom(source, change) {
+    if (linking) return;
+    let update = null;
+    if (change["xaxis.range[0]"] !== undefined) update = { "xaxis.range": [change["xaxis.range[0]"], change["xaxis.range[1]"]] };
+    if (change["xaxis.autorange"]) update = { "xaxis.autorange": true };
+    if (!update) return;
+    linking = true;
+    await Promise.all(charts.filter((c) => c.timed && c.div !== source).map((c) => Plotly.relayout(c.div, update)));
+    linking = false;
+  }
+
+  function values(curve, axis) {
+    const factor = curve[axis + "_factor"] || 1, source = column[curve[axis]];
+    return Array.from(source, (v) => v * factor);
+  }
+
+  async function drawPlot(plot) {
+    const div = document.createElement("div");
+    if (plot.square) div.className = "square";
+    byId("plots").append(div);
+    const data = plot.curves.map((curve) => ({ type: "scatter", mode: "lines", name: curve.name, x: values(curve, "x"),
+      y: values(curve, "y"), line: { color: curve.colour, width: curve.dash ? 1.2 : 1, dash: curve.dash || "solid" },
+      connectgaps: false }));
+    const shapes = plot.circle ? [{ type: "circle", x0: -1, x1: 1, y0: -1, y1: 1, line: { color: COLOUR.ink, width: 1 } }] : [];
+    await Plotly.newPlot(div, data, {
+      title: { text: plot.title, font: { size: 14 }, x: 0, xref: "paper", xanchor: "left", y: 1, yref: "container",
+        yanchor: "top", pad: { t: 10 } }, margin: { l: 70, r: 15, t: data.length > 1 ? 54 : 40, b: 45 }, shapes,
+      font: { size: 11 }, hovermode: plot.timed ? "x" : "closest", showlegend: data.length > 1,
+      legend: { orientation: "h", x: 0, xanchor: "left", y: 1, yanchor: "bottom" },
+      xaxis: { title: { text: plot.x }, zeroline: false },
+      yaxis: { title: { text: plot.y }, zeroline: true, scaleanchor: plot.circle ? "x" : undefined },
+    }, { responsive: true, displaylogo: false, displayModeBar: "hover", modeBarButtonsToRemove: ["select2d", "lasso2d"] });
+    charts.push({ div, timed: plot.timed });
+    if (plot.timed) {
+      div.on("plotly_relayout", (change) => linkZoom(div, change));
+      div.on("plotly_click", (event) => { play(false); seek(event.points[0].x / 1e3); });
+    }
+  }
+
+  labels();
+  seek(begin);
+  window.gudgeon = { ready: false, seek, play, charts, scene, get now() { return now; }, get playing() { return playing; } };
+  const library = document.createElement("script");
+  library.textContent = new TextDecoder().decode(await unpack("library"));
+  document.head.append(library);
+  for (const plot of scene.plots) {
+    await drawPlot(plot);
+    await new Promise((done) => setTimeout(done));   // let the page answer between two plots
+  }
+  const scrubbed = () => { if (!playing) markPlots(); };
+  byId("scrub").addEventListener("change", scrubbed);
+  line.addEventListener("pointerup", scrubbed);
+  window.gudgeon.ready = true;
+})().catch((error) => {
+  const box = document.getElementById("failure");
+  box.hidden = false;
+  box.textContent = `The page could not be drawn: ${error}`;
+  throw error;
+});

@@ -1,0 +1,180 @@
+"""Results of runs: traces, events, summaries and cases as run, by the name of the case."""
+
+import csv
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from .environment import TOP
+
+COLUMN = re.compile(r"^(?P<name>\w+)\[(?P<unit>.*)\]$")
+
+
+class MissingResult(Exception):
+    """A result that is not there and cannot be made."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run: its trace by column name without unit, and what the program wrote beside it."""
+
+    name: str
+    trace: pd.DataFrame
+    units: dict[str, str]
+    events: pd.DataFrame
+    summary: dict[str, tuple[str, str]] = field(default_factory=dict)
+    case: dict[str, dict[str, object]] = field(default_factory=dict)
+
+    def __getitem__(self, column: str) -> np.ndarray:
+        return self.trace[column].to_numpy()
+
+    def __contains__(self, column: str) -> bool:
+        return column in self.trace.columns
+
+    def parameter(self, group: str, key: str, default: object = None) -> object:
+        """A value of the case as run, or the default where the case has no such model."""
+        return self.case.get(group, {}).get(key, default)
+
+    @property
+    def clearance(self) -> float:
+        """Radial clearance [m]; 0 for an ideal joint."""
+        return float(self.parameter("joint", "clearance", 0.0)) if "film_thickness" in self else 0.0
+
+    @property
+    def cycle(self) -> float:
+        """Crank angle after which the loads repeat [rad]: two revolutions with gas, else one."""
+        return (4 if "gas_force" in self else 2) * np.pi
+
+    @cached_property
+    def contacts(self) -> pd.DataFrame:
+        """One row a contact: begin [s], end [s], penetration [m], force [N]. One that lasts beyond the run ends with it,
+        its largest values those of the trace."""
+        ends = self.events[self.events["event"] == "contact_ends"]
+        found = pd.DataFrame({
+            "begin": ends["time"] - ends["duration"],
+            "end": ends["time"],
+            "penetration": ends["max_penetration"],
+            "force": ends["max_normal_force"],
+        }).astype(float).reset_index(drop=True)
+        begins = self.events.loc[self.events["event"] == "contact_begins", "time"]
+        if len(begins) > len(found):
+            rest = self.trace[self.trace["time"] >= begins.iloc[-1]]
+            if not rest.empty:
+                found.loc[len(found)] = [begins.iloc[-1], rest["time"].iloc[-1], -rest["film_thickness"].min(),
+                                         rest["normal_force"].max()]
+        return found
+
+
+def read_table(path: Path) -> tuple[pd.DataFrame, dict[str, str]]:
+    """A CSV file of the program: its columns named without units, and their units."""
+    table = pd.read_csv(path)
+    units, names = {}, []
+    for heading in table.columns:
+        match = COLUMN.match(heading)
+        name = match["name"] if match else heading
+        names.append(name)
+        units[name] = match["unit"] if match else ""
+    table.columns = names
+    return table, units
+
+
+def read_summary(path: Path) -> dict[str, tuple[str, str]]:
+    """quantity -> (value, unit)."""
+    with path.open(newline="", encoding="utf-8") as file:
+        return {row["quantity"]: (row["value"], row["unit"]) for row in csv.DictReader(file)}
+
+
+def read_case(path: Path) -> dict[str, dict[str, object]]:
+    """A NAME.resolved.nml: group -> key -> number, list of numbers, truth or text. Reads what the program writes."""
+    case: dict[str, dict[str, object]] = {}
+    group: dict[str, object] = {}
+    for line in path.read_text(encoding="utf-8").splitlines():
+        if line.startswith("&"):
+            group = case.setdefault(line[1:].strip(), {})
+        elif match := re.match(r"\s*(\w+)\s*=\s*(.*)$", line):
+            group[match[1]] = _value(match[2])
+    return case
+
+
+def _value(text: str) -> object:
+    if quoted := re.match(r"'((?:[^']|'')*)'", text):
+        return quoted[1].replace("''", "'")
+    text = text.split("!")[0].strip()
+    if text in (".true.", ".false."):
+        return text == ".true."
+    numbers = [float(part) for part in text.replace(",", " ").split()]
+    return numbers[0] if len(numbers) == 1 else numbers
+
+
+def load_run(path: Path) -> Run:
+    """The run whose trace is `path`; events, summary and case are read where they lie beside it."""
+    name = path.name.removesuffix(".csv")
+    base = path.with_name(name.removesuffix(".ideal"))
+    trace, units = read_table(path)
+    if trace.empty:
+        raise MissingResult(f"{path}: holds no rows")
+    ideal = name.endswith(".ideal")
+
+    def beside(suffix: str) -> Path:
+        return base.with_name(base.name + suffix)
+
+    events = pd.DataFrame(columns=["time", "crank_angle", "event", "normal_speed", "duration", "max_penetration",
+                                   "max_normal_force"])
+    if beside(".events.csv").exists() and not ideal:
+        events = read_table(beside(".events.csv"))[0]
+    summary = read_summary(beside(".summary.csv")) if beside(".summary.csv").exists() and not ideal else {}
+    case = read_case(beside(".resolved.nml")) if beside(".resolved.nml").exists() else {}
+    return Run(name, trace, units, events, summary, case)
+
+
+def case_files() -> dict[str, Path]:
+    """Case file of each name under cases/."""
+    return {path.stem: path for path in sorted((TOP / "cases").rglob("*.nml"))}
+
+
+class Results:
+    """The runs in a directory, made by the release build where they are missing."""
+
+    def __init__(self, directory: Path, run_missing: bool = True, rerun: bool = False, case: Path | None = None) -> None:
+        """`case` is a case file beside those of cases/."""
+        self.directory = directory
+        self.files = case_files() | ({case.stem: case.resolve()} if case else {})
+        self.run_missing = run_missing
+        self.rerun = rerun
+        self._runs: dict[str, Run] = {}
+
+    def path(self, name: str) -> Path:
+        return self.directory / f"{name}.csv"
+
+    def make(self, names: Iterable[str]) -> None:
+        """Run the cases among `names` (a twin's name stands for its case) that have no result."""
+        wanted = {name.removesuffix(".ideal") for name in names}
+        if not self.rerun:
+            wanted = {name.removesuffix(".ideal") for name in names if not self.path(name).exists()}
+        if not wanted:
+            return
+        if unknown := wanted - self.files.keys():
+            raise MissingResult(f"no such case: {' '.join(sorted(unknown))}")
+        paths = [os.path.relpath(self.files[name], TOP) for name in sorted(wanted)]
+        command = ["scripts/run_cases.sh", "-o", str(self.directory.resolve()), *paths]
+        if not self.run_missing:
+            raise MissingResult(f"no result in {self.directory}; run: {' '.join(command)}")
+        print(f"running {' '.join(sorted(wanted))}", file=sys.stderr, flush=True)
+        outcome = subprocess.run(command, cwd=TOP, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
+        if outcome.returncode != 0:
+            print(outcome.stderr, file=sys.stderr, end="")
+
+    def __getitem__(self, name: str) -> Run:
+        if name not in self._runs:
+            if not self.path(name).exists():
+                raise MissingResult(f"no result {self.path(name)}")
+            self._runs[name] = load_run(self.path(name))
+        return self._runs[name]

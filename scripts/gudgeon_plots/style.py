@@ -1,0 +1,50 @@
+"""How the figures look: sizes for print, colours told apart by colour-blind readers (Okabe and Ito)."""
+
+import matplotlib as mpl
+
+mpl.use("Agg")
+
+BLACK = "#000000"
+ORANGE = "#E69F00"
+SKY = "#56B4E9"
+GREEN = "#009E73"
+YELLOW = "#F0E442"
+BLUE = "#0072B2"
+VERMILION = "#D55E00"
+PURPLE = "#CC79A7"
+GREY = "#7F7F7F"
+
+#: Colours of runs that share an axis, in turn.
+CYCLE = (BLUE, VERMILION, GREEN, ORANGE, SKY, PURPLE)
+
+#: Width of the text on A4 [inch].
+WIDTH = 6.3
+
+SETTINGS = {
+    "font.family": "DejaVu Sans",
+    "font.size": 8,
+    "axes.titlesize": 8,
+    "axes.labelsize": 8,
+    "xtick.labelsize": 7,
+    "ytick.labelsize": 7,
+    "legend.fontsize": 7,
+    "figure.titlesize": 9,
+    "axes.linewidth": 0.6,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "grid.linewidth": 0.4,
+    "grid.color": "#DDDDDD",
+    "lines.linewidth": 0.8,
+    "lines.solid_joinstyle": "round",
+    "legend.frameon": False,
+    "axes.formatter.useoffset": False,
+    "axes.formatter.limits": (-4, 5),
+    "axes.xmargin": 0.01,
+    "savefig.dpi": 200,
+    "svg.hashsalt": "gudgeon",
+    "figure.constrained_layout.use": True,
+}
+
+mpl.rcParams.update(SETTINGS)

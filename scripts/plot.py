@@ -1,0 +1,91 @@
+#!/usr/bin/env python3
+"""Draws the figures of the dissertation, and compares runs.
+
+    scripts/plot.py --all                       every figure, as PNG, in results/figures
+    scripts/plot.py --figure 6.7 --format pdf   one figure; both options can be repeated
+    scripts/plot.py --list                      the figures there are
+    scripts/plot.py --compare A.csv B.csv       two traces overlaid, their difference, how long they agree
+    scripts/plot.py --readme                    the picture of README.md, data/readme.png
+
+Runs the cases whose results are missing with the release build.
+"""
+
+import argparse
+import sys
+import time
+from pathlib import Path
+
+from gudgeon_plots.environment import TOP, use_virtual_environment
+
+use_virtual_environment()
+
+from gudgeon_plots import compare, figures, readme_picture  # noqa: E402
+from gudgeon_plots.figure_map import Figure, read_figures  # noqa: E402
+from gudgeon_plots.results import MissingResult, Results  # noqa: E402
+
+
+def arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    what = parser.add_mutually_exclusive_group(required=True)
+    what.add_argument("--figure", action="append", metavar="NUMBER", help="draw this figure; repeatable")
+    what.add_argument("--all", action="store_true", help="draw every figure")
+    what.add_argument("--list", action="store_true", help="list the figures")
+    what.add_argument("--compare", nargs=2, type=Path, metavar=("A.csv", "B.csv"), help="compare two traces")
+    what.add_argument("--readme", action="store_true", help="draw README.md's picture")
+    parser.add_argument("--results", type=Path, default=TOP / "results", metavar="DIR", help="traces (default: results)")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="pictures (default: figures in the directory of traces)")
+    parser.add_argument("--format", action="append", choices=("png", "svg", "pdf"), help="repeatable (default: png)")
+    parser.add_argument("--no-run", action="store_true", help="say what to run where a result is missing")
+    parser.add_argument("--rerun", action="store_true", help="run the cases even where there are results")
+    parser.add_argument("--columns", nargs="+", metavar="NAME", help="columns to compare, without units")
+    parser.add_argument("--agreement", type=float, default=compare.AGREEMENT, metavar="SHARE",
+                        help="runs agree while they differ by less than this share of the range (default: %(default)s)")
+    return parser.parse_args()
+
+
+def draw_figures(wanted: list[Figure], results: Results, out: Path, formats: list[str]) -> int:
+    """Draw figures one after the other; the number of those that could not be drawn."""
+    results.make({name for figure in wanted for name in figure.needs})
+    failed = 0
+    for figure in wanted:
+        try:
+            paths = figures.save(figures.draw(figure, results), out, figure.stem, formats)
+            print(*paths)
+        except MissingResult as problem:
+            print(f"plot.py: figure {figure.number}: {problem}", file=sys.stderr)
+            failed += 1
+    return failed
+
+
+def main() -> int:
+    options = arguments()
+    formats = options.format or ["png"]
+    out = options.out or options.results / "figures"
+    table = read_figures()
+    if options.list:
+        for figure in table.values():
+            print(f"{figure.number:5} {figure.title}  ({' '.join(figure.runs)})")
+        return 0
+    try:
+        if options.compare:
+            return compare.compare_files(*options.compare, options.columns, options.agreement, out, formats)
+        results = Results(options.results, run_missing=not options.no_run, rerun=options.rerun)
+        if options.readme:
+            print(*readme_picture.write(results, TOP / "data" / "readme.png"))
+            return 0
+        unknown = [number for number in options.figure or [] if number not in table]
+        if unknown:
+            print(f"plot.py: no such figure: {' '.join(unknown)}; --list tells which there are", file=sys.stderr)
+            return 2
+        started = time.monotonic()
+        wanted = [table[number] for number in options.figure or table]
+        failed = draw_figures(wanted, results, out, formats)
+        print(f"{len(wanted) - failed} of {len(wanted)} figures in {time.monotonic() - started:.0f} s, in {out}")
+        return 1 if failed else 0
+    except MissingResult as problem:
+        print(f"plot.py: {problem}", file=sys.stderr)
+        return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

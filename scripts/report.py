@@ -1,0 +1,52 @@
+#!/usr/bin/env python3
+"""Writes a page about one run: the mechanism in motion, interactive plots, the case, the summary, warnings.
+
+    scripts/report.py sim_V_oscillating             -> results/sim_V_oscillating.html
+    scripts/report.py cases/flores/dry_0500um.nml -o dry.html
+
+The page is one file that needs no network. Runs the case with the release build if its result is missing.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+from gudgeon_plots.environment import TOP, use_virtual_environment
+
+use_virtual_environment()
+
+from gudgeon_plots.report_page import page  # noqa: E402
+from gudgeon_plots.results import MissingResult, Results  # noqa: E402
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("case", metavar="CASE", help="a case's name, its file or its trace")
+    parser.add_argument("--results", type=Path, metavar="DIR", help="where traces are (default: results, or the trace's)")
+    parser.add_argument("-o", "--out", type=Path, metavar="FILE", help="the page (default: CASE.html beside the trace)")
+    parser.add_argument("--no-run", action="store_true", help="say what to run if the result is missing")
+    options = parser.parse_args()
+    given = Path(options.case)
+    name = given.name.removesuffix(".nml").removesuffix(".csv")
+    directory = options.results or (given.parent if given.suffix == ".csv" else TOP / "results")
+    case = given if given.suffix == ".nml" and given.exists() else None
+    results = Results(directory, run_missing=not options.no_run, case=case)
+    try:
+        if not results.path(name).exists():
+            results.make([name])
+        run = results[name]
+        if not run.case:
+            raise MissingResult(f"{name}.resolved.nml is missing beside the trace")
+        twin = results[f"{name}.ideal"] if results.path(f"{name}.ideal").exists() else None
+        text = page(run, twin)
+    except MissingResult as problem:
+        print(f"report.py: {problem}", file=sys.stderr)
+        return 1
+    out = options.out or directory / f"{name}.html"
+    out.write_text(text, encoding="utf-8")
+    print(f"{out}: {len(text.encode('utf-8')) / 1e6:.2f} MB")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,216 @@
+#!/usr/bin/env python3
+"""Opens pages of scripts/report.py in headless Chromium: they draw, play, scrub and zoom without an error in the console.
+
+    tests/test_report.py [PAGE.html...]     default: pages made for the test of one run of each kind
+
+--screenshots DIR keeps pictures of what the browser showed. Needs Debian's packages chromium and chromium-driver; says so
+and leaves with 0 where they are missing. Ends with the line "N passed, N failed".
+"""
+
+import argparse
+import base64
+import json
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import urllib.error
+import urllib.request
+from pathlib import Path
+
+TOP = Path(__file__).resolve().parents[1]
+
+#: A film that stays open, one with contacts and gas, dry contact, an ideal joint.
+CASES = ("sim_I", "sim_V_oscillating", "dry_0500um", "ideal")
+
+LARGEST_PAGE = 6_000_000  # bytes
+
+BROWSER_OPTIONS = ("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+                   "--disable-background-networking", "--disable-component-update", "--disable-sync",
+                   "--window-size=1280,1000")
+
+#: Whether anything is drawn on a canvas.
+PAINTED = """const c = document.getElementById(arguments[0]), blank = document.createElement('canvas');
+blank.width = c.width; blank.height = c.height; return c.toDataURL() !== blank.toDataURL();"""
+
+#: What is on a canvas.
+IMAGE = "return document.getElementById(arguments[0]).toDataURL()"
+
+#: Moves a range input as a hand would.
+MOVE = """const e = document.getElementById(arguments[0]); e.value = arguments[1];
+e.dispatchEvent(new Event('input', {bubbles: true})); e.dispatchEvent(new Event('change', {bubbles: true}));"""
+
+
+class Browser:
+    """A headless Chromium, spoken to by the WebDriver protocol."""
+
+    def __init__(self, chromium: str, driver: str, profile: str) -> None:
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            port = probe.getsockname()[1]
+        self.base = f"http://127.0.0.1:{port}"
+        self.process = subprocess.Popen([driver, f"--port={port}"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.session = ""
+        options = {"binary": chromium, "args": [*BROWSER_OPTIONS, f"--user-data-dir={profile}"]}
+        capabilities = {"alwaysMatch": {"browserName": "chrome", "goog:chromeOptions": options,
+                                        "goog:loggingPrefs": {"browser": "ALL"}}}
+        for _ in range(50):
+            try:
+                self.session = self.call("POST", "/session", {"capabilities": capabilities})["sessionId"]
+                return
+            except (urllib.error.URLError, ConnectionError):
+                time.sleep(0.2)
+        raise RuntimeError("chromedriver does not answer")
+
+    def call(self, method: str, path: str, body: dict | None = None) -> object:
+        """One command; its value. Raises urllib.error.HTTPError where the browser refuses."""
+        data = None if body is None else json.dumps(body).encode()
+        url = self.base + (f"/session/{self.session}" if self.session else "") + path
+        request = urllib.request.Request(url, data, {"Content-Type": "application/json"}, method=method)
+        with urllib.request.urlopen(request, timeout=120) as answer:
+            return json.load(answer)["value"]
+
+    def open(self, page: Path) -> None:
+        self.call("POST", "/url", {"url": page.resolve().as_uri()})
+
+    def run(self, script: str, *values: object) -> object:
+        return self.call("POST", "/execute/sync", {"script": script, "args": list(values)})
+
+    def wait(self, condition: str, seconds: float = 60) -> bool:
+        limit = time.monotonic() + seconds
+        while time.monotonic() < limit:
+            if self.run(f"return Boolean({condition})"):
+                return True
+            time.sleep(0.1)
+        return False
+
+    def messages(self) -> list[str]:
+        """The console's warnings and errors since last asked."""
+        entries = self.call("POST", "/se/log", {"type": "browser"})
+        return [entry["message"] for entry in entries if entry["level"] in ("SEVERE", "WARNING")]
+
+    def screenshot(self, path: Path) -> None:
+        path.write_bytes(base64.b64decode(self.call("GET", "/screenshot")))
+
+    def close(self) -> None:
+        try:
+            if self.session:
+                self.call("DELETE", "")
+        except (urllib.error.URLError, ConnectionError):
+            pass
+        self.process.terminate()
+        self.process.wait(10)
+
+
+class Checks:
+    """Counts what held and prints what did not."""
+
+    def __init__(self) -> None:
+        self.passed = self.failed = 0
+
+    def that(self, held: bool, what: str) -> None:
+        if held:
+            self.passed += 1
+        else:
+            self.failed += 1
+            print(f"FAILED: {what}")
+
+
+def check_page(browser: Browser, page: Path, checks: Checks, pictures: Path | None) -> None:
+    """One page as a reader meets it."""
+    name = page.stem
+    checks.that(page.stat().st_size < LARGEST_PAGE, f"{name}: {page.stat().st_size} bytes")
+    text = page.read_text(encoding="utf-8")
+    checks.that("src=\"http" not in text and "{{" not in text.split("<script", 1)[0], f"{name}: loads nothing, all filled in")
+    browser.open(page)
+    checks.that(browser.wait("window.gudgeon && window.gudgeon.ready"), f"{name}: gets ready")
+    checks.that(browser.run("return document.getElementById('failure').hidden"), f"{name}: tells no failure")
+    clearance = browser.run("return gudgeon.scene.clearance > 0")
+    canvases = ["mechanism", "timeline"] + (["joint", "orbit"] if clearance else [])
+    plots = browser.run("return gudgeon.scene.plots.length")
+    checks.that(plots >= 5 and browser.run("return document.querySelectorAll('#plots .main-svg').length") >= plots,
+                f"{name}: every plot is drawn")
+    empty = browser.run("return gudgeon.charts.filter(c => ![...c.div.querySelectorAll('.scatterlayer path.js-line')]"
+                        ".some(p => (p.getAttribute('d') || '').length > 20)).map(c => c.div.layout.title.text)")
+    checks.that(not empty, f"{name}: no curve in {empty}")
+
+    before = {canvas: browser.run(IMAGE, canvas) for canvas in canvases}
+    browser.run(MOVE, "scrub", 0.37)
+    checks.that(browser.run("return gudgeon.now") > 0, f"{name}: scrubs")
+    for canvas in canvases:
+        checks.that(browser.run(PAINTED, canvas), f"{name}: {canvas} is painted")
+        checks.that(browser.run(IMAGE, canvas) != before[canvas], f"{name}: {canvas} moves")
+    if clearance:
+        image = browser.run(IMAGE, "joint")
+        browser.run(MOVE, "magnification", 0.3)
+        checks.that(browser.run(IMAGE, "joint") != image, f"{name}: the clearance is magnified")
+        browser.run(MOVE, "magnification", 1)
+    if browser.run("return gudgeon.scene.contacts.length"):
+        browser.run("gudgeon.seek(0); document.getElementById('next').click()")
+        inside = browser.run("return gudgeon.scene.contacts.some(c => gudgeon.now >= c.begin && gudgeon.now <= c.end)")
+        checks.that(inside, f"{name}: the next contact is found")
+        if pictures:
+            browser.run("gudgeon.seek(0.3 * gudgeon.scene.contacts[0].begin + 0.7 * gudgeon.scene.contacts[0].end)")
+            browser.screenshot(pictures / f"{name}_contact.png")
+
+    browser.run("gudgeon.seek(0); document.getElementById('play').click()")
+    time.sleep(1.0)
+    checks.that(browser.run("return gudgeon.playing && gudgeon.now > 0"), f"{name}: plays")
+    browser.run("document.getElementById('play').click()")
+    stopped = browser.run("return gudgeon.now")
+    time.sleep(0.3)
+    checks.that(browser.run("return gudgeon.now") == stopped, f"{name}: pauses")
+
+    browser.run("const t = gudgeon.charts.filter(c => c.timed); Plotly.relayout(t[0].div,"
+                "{'xaxis.range[0]': 1, 'xaxis.range[1]': 2})")
+    linked = browser.wait("gudgeon.charts.filter(c => c.timed).every(c => Math.abs(c.div.layout.xaxis.range[1] - 2) < 1e-9)", 10)
+    checks.that(linked, f"{name}: time axes zoom together")
+    messages = browser.messages()
+    checks.that(not messages, f"{name}: console: {messages}")
+    if pictures:
+        browser.run("Plotly.relayout(gudgeon.charts.find(c => c.timed).div, {'xaxis.autorange': true})")
+        browser.run(MOVE, "scrub", 0.62)
+        time.sleep(1.0)
+        browser.screenshot(pictures / f"{name}_top.png")
+        browser.run("document.getElementById('plots').scrollIntoView()")
+        browser.screenshot(pictures / f"{name}_plots.png")
+        browser.run("document.querySelector('.tables').scrollIntoView()")
+        browser.screenshot(pictures / f"{name}_tables.png")
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("page", nargs="*", type=Path)
+    parser.add_argument("--screenshots", type=Path, metavar="DIR")
+    options = parser.parse_args()
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
+    driver = shutil.which("chromedriver")
+    if not chromium or not driver:
+        print("skipped: no Chromium here (apt-get install chromium chromium-driver)\n0 passed, 0 failed")
+        return 0
+    if options.screenshots:
+        options.screenshots.mkdir(parents=True, exist_ok=True)
+    checks = Checks()
+    with tempfile.TemporaryDirectory() as work:
+        pages = options.page
+        for case in CASES if not pages else ():
+            page = Path(work) / f"{case}.html"
+            made = subprocess.run([sys.executable, str(TOP / "scripts" / "report.py"), case, "--results", work, "-o", str(page)],
+                                  check=False)
+            checks.that(made.returncode == 0, f"{case}: the page is made")
+            if made.returncode == 0:
+                pages = [*pages, page]
+        browser = Browser(chromium, driver, str(Path(work) / "profile"))
+        try:
+            for page in pages:
+                check_page(browser, page, checks, options.screenshots)
+        finally:
+            browser.close()
+    print(f"{checks.passed} passed, {checks.failed} failed")
+    return 1 if checks.failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
