@@ -61,15 +61,16 @@ contains
     type(command_line_t), intent(in) :: options
     logical, intent(in) :: show_progress
     integer, intent(inout) :: status
-    character(len=:), allocatable :: line
+    character(len=:), allocatable :: line, notice
     type(error_t), allocatable :: error
-    call run_case_file(path, options, show_progress, line, error)
+    call run_case_file(path, options, show_progress, line, notice, error)
     !$omp critical (messages)
     if (allocated(error)) then
       call complain(error)
       status = max(status, error%status)
     else if (.not. options%quiet) then
       call say(line)
+      if (notice /= '') call notify(notice)
     end if
     !$omp end critical (messages)
   end subroutine run_one
@@ -83,9 +84,14 @@ contains
   end subroutine say
 
   !> One line on standard error.
+  subroutine notify(line)
+    character(len=*), intent(in) :: line
+    integer :: unimportant
+    write (error_unit, '(2a)', iostat=unimportant) 'gudgeon: ', line
+  end subroutine notify
+
   subroutine complain(error)
     type(error_t), intent(in) :: error
-    integer :: unimportant
-    write (error_unit, '(2a)', iostat=unimportant) 'gudgeon: ', error%message
+    call notify(error%message)
   end subroutine complain
 end program gudgeon

@@ -14,6 +14,7 @@ module state_watcher
   type, extends(observer_t) :: state_watcher_t
     real(dp) :: values(watched) = 0
     real(dp) :: largest(watched) = 0
+    real(dp) :: rebuilt = 0   !! largest |e - e rebuilt from q, A and x| [m]
     integer :: events = 0
   contains
     procedure :: step_taken
@@ -47,6 +48,9 @@ contains
           m%piston_velocity, now%joint%eccentricity]
       end associate
       self%largest = max(self%largest, abs(self%values))
+      associate (r => problem%mechanism%crank_length, l => problem%mechanism%rod_length, v => self%values)
+        self%rebuilt = max(self%rebuilt, abs(r*cos(v(1)) + l*cos(v(2)) - v(3) - v(7)), abs(r*sin(v(1)) - l*sin(v(2)) - v(8)))
+      end associate
     end select
   end subroutine look
 

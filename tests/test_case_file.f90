@@ -55,7 +55,7 @@ contains
     call check%that(c%contact%is_present .and. .not. c%friction%is_present, 'presence of models')
     call check%that(c%contact%law == 'lankarani_nikravesh', 'law by default')
     call check%that(c%output%samples_per_revolution == 720 .and. c%output%columns == 'standard', 'output by default')
-    call check%that(c%integrator%max_order == 12 .and. c%integrator%method == 'adams', 'integrator by default')
+    call check%that(c%integrator%max_order == 12 .and. c%integrator%method == 'auto', 'integrator by default')
     call parse_case(whole, 'x.nml', [character(len=40) :: 'friction.coefficient=.1', 'friction.law=coulomb', &
                                      'contact.youngs_modulus=1e11,2e11', 'case.title=A, b ''c''', &
                                      'friction.coefficient=0.2'], c, error)
@@ -313,6 +313,8 @@ contains
     call refused_on(check, bodies, [character(len=24) :: ends, 'output.start_time=1'], &
                     'x.nml: &output start_time = 1: must be < end_time (s)')
     call refused_with(check, 'output.interval=1e-20', 'x.nml: &output interval = 1e-20: asks for more than 1e9 rows (s)')
+    call refused_with(check, 'output.digits=8', 'x.nml: &output digits = 8: must be >= 9 and <= 17')
+    call refused_with(check, 'output.digits=18', 'x.nml: &output digits = 18: must be >= 9 and <= 17')
     call refused_with(check, 'output.columns=time[s]', 'x.nml: &output columns = time[s]: must be ''standard'' or names of '// &
                       'columns without their units')
     call refused_with(check, 'integrator.contact_entry=step_rejection', 'x.nml: &integrator max_penetration: must be > 0 '// &

@@ -65,10 +65,12 @@ contains
     character(len=*), intent(in) :: simulation, seconds
     real(dp), intent(in) :: speed
     type(trace_t) :: trace
+    character(len=long) :: overrides(5)
     integer :: first, last
-    trace = run_case('cases/sim_'//simulation//'.nml', [character(len=long) :: 'integrator.method=radau', &
-      'integrator.revolutions=0', 'integrator.end_time='//seconds, 'output.interval=0.001', &
-      'output.columns=time, crank_angle'])
+    overrides = [character(len=long) :: 'integrator.method=radau', 'integrator.revolutions=0', '', &
+      'output.interval=0.001', 'output.columns=time, crank_angle']
+    overrides(3) = 'integrator.end_time='//seconds
+    trace = run_case('cases/sim_'//simulation//'.nml', overrides)
     call check%that(.not. allocated(trace%error), 'long run of '//simulation)
     last = size(trace%values, 2)
     first = (3*last)/4

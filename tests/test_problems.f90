@@ -4,7 +4,7 @@ module test_problems
   use ode_problem, only: ode_problem_t, event_continue
   implicit none
   private
-  public :: oscillator_t, two_body_t, bouncing_ball_t, hopper_t
+  public :: oscillator_t, two_body_t, bouncing_ball_t, hopper_t, modulated_t
 
   !> y'' = -y.
   type, extends(ode_problem_t) :: oscillator_t
@@ -40,7 +40,24 @@ module test_problems
     procedure :: handle_event => hopper_passes
   end type hopper_t
 
+  !> y' = y cos t, or y' = -decay y where `decay` is not 0.
+  type, extends(ode_problem_t) :: modulated_t
+    real(dp) :: decay = 0
+  contains
+    procedure :: derivatives => modulated_derivatives
+  end type modulated_t
+
 contains
+
+  pure subroutine modulated_derivatives(self, t, y, dydt, inside)
+    class(modulated_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: dydt(:)
+    logical, intent(out) :: inside
+    dydt = y*cos(t)
+    if (self%decay > 0) dydt = -self%decay*y
+    inside = .true.
+  end subroutine modulated_derivatives
 
   pure subroutine oscillator_derivatives(self, t, y, dydt, inside)
     class(oscillator_t), intent(in) :: self

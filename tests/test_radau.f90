@@ -273,9 +273,9 @@ contains
         call scene%jacobian(1e-3_dp*trial, y, a_p, a_v)
         call difference_jacobian(scene, 1e-3_dp*trial, y, b_p, b_v)
         scale = maxval(abs(b_p))*1e-4_dp + abs(b_p)
-        call check%close_to(maxval(abs(a_p - b_p)/scale), 0.0_dp, 2e-3_dp, 'Jacobian by positions, '//trim(files(i)))
+        call check%close_to(maxval(abs(a_p - b_p)/scale), 0.0_dp, 1e-2_dp, 'Jacobian by positions, '//trim(files(i)))
         scale = maxval(abs(b_v))*1e-4_dp + abs(b_v)
-        call check%close_to(maxval(abs(a_v - b_v)/scale), 0.0_dp, 2e-3_dp, 'Jacobian by rates, '//trim(files(i)))
+        call check%close_to(maxval(abs(a_v - b_v)/scale), 0.0_dp, 1e-2_dp, 'Jacobian by rates, '//trim(files(i)))
       end do
       deallocate (a_p, a_v, b_p, b_v, scale)
     end do
@@ -295,7 +295,7 @@ contains
         'integrator.relative_tolerance=1e-10'])
       do j = 2, 7
         call check%close_to(maxval(abs(one%values(j, :) - other%values(j, :)))/maxval(abs(one%values(j, :))), 0.0_dp, &
-          3e-9_dp, trim(files(i))//' '//one%names(j))
+          1e-8_dp, trim(files(i))//' '//one%names(j))
       end do
     end do
     one = run_case('cases/sim_I.nml', [character(len=long) :: 'integrator.method=radau'])
@@ -307,13 +307,16 @@ contains
     type(trace_t) :: trace
     character(len=40), parameter :: files(8) = [character(len=40) :: 'sim_I', 'sim_II', 'sim_III', 'sim_IV', 'sim_V', &
       'sim_VI', 'flores/lubricated_400cP', 'sim_II_oscillating']
-    character(len=5), parameter :: methods(2) = ['radau', 'auto ']
+    character(len=long), parameter :: methods(2) = [character(len=long) :: 'integrator.method=radau', &
+      'integrator.method=auto']
+    character(len=long) :: overrides(2)
     integer :: i, k
     do i = 1, size(files)
       do k = 1, 2
-        trace = run_case('cases/'//trim(files(i))//'.nml', [character(len=long) :: 'integrator.method='//trim(methods(k)), &
-          'integrator.relative_tolerance=1e-2'])
-        call check%that(.not. allocated(trace%error), trim(files(i))//' at 1e-2 with '//methods(k))
+        overrides = methods(k)
+        overrides(2) = 'integrator.relative_tolerance=1e-2'
+        trace = run_case('cases/'//trim(files(i))//'.nml', overrides)
+        call check%that(.not. allocated(trace%error), trim(files(i))//' at 1e-2, '//trim(methods(k)))
         if (i <= 7) call check%that(trace%report%figures%min_film_thickness > 0, 'and the pin stays in its film')
       end do
     end do

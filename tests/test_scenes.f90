@@ -55,15 +55,15 @@ contains
     character(len=long) :: common(2)
     real(dp) :: error(3)
     integer :: i, n
-    character(len=long), parameter :: speeds(3) = [character(len=long) :: '1e-2', '1e-3', '1e-4']
+    character(len=long), parameter :: speeds(3) = [character(len=long) :: 'friction.v1=1e-2', 'friction.v1=1e-3', &
+      'friction.v1=1e-4']
 
     common = [character(len=long) :: 'integrator.relative_tolerance=1e-9', 'integrator.revolutions=0.5']
     coulomb = run_case('cases/flores/friction_100.nml', [character(len=long) :: common, 'friction.law=coulomb', &
       'friction.v0=0', 'friction.v1=0'])
     call check%that(.not. allocated(coulomb%error), 'Coulomb friction runs')
     do i = 1, 3
-      ramp = run_case('cases/flores/friction_100.nml', [character(len=long) :: common, 'friction.v0=0', &
-        'friction.v1='//trim(speeds(i))])
+      ramp = run_case('cases/flores/friction_100.nml', [character(len=long) :: common, 'friction.v0=0', speeds(i)])
       n = min(size(ramp%event), size(coulomb%event), 10)
       call check%that(n == 10, 'there are contacts')
       error(i) = maxval(abs(ramp%event(:n)%time - coulomb%event(:n)%time))

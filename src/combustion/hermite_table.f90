@@ -5,7 +5,8 @@ module hermite_table
   private
   public :: hermite_table_t, new_hermite_table
 
-  !> Twice continuously differentiable; beyond its ends it continues the last polynomial.
+  !> Twice continuously differentiable; beyond its ends it continues the last polynomial, over
+  !> its whole length again, so that a trial step beyond a part sees nothing that is not smooth.
   type :: hermite_table_t
     integer :: n = 0                          !! intervals
     real(dp), allocatable :: coefficient(:, :) !! of (x - x_i) n, (0:5, n)
@@ -42,7 +43,7 @@ contains
     real(dp), intent(in) :: x
     real(dp) :: s
     integer :: i
-    s = min(max(x*self%n, -1.0_dp), self%n + 1.0_dp)
+    s = min(max(x, -1.0_dp), 2.0_dp)*self%n
     i = min(max(int(s), 0), self%n - 1)
     s = s - i
     associate (c => self%coefficient(:, i + 1))
@@ -56,7 +57,7 @@ contains
     real(dp), intent(in) :: x
     real(dp) :: s
     integer :: i
-    s = min(max(x*self%n, -1.0_dp), self%n + 1.0_dp)
+    s = min(max(x, -1.0_dp), 2.0_dp)*self%n
     i = min(max(int(s), 0), self%n - 1)
     s = s - i
     associate (c => self%coefficient(:, i + 1))

@@ -7,7 +7,12 @@
 !> - after a start where the problem says that f is smooth in sqrt(t - t_start) (a contact that begins: the force goes
 !>   with the power 1.5 of the penetration) the method steps in x = sqrt(t - t_start), y' = 2 x f: order and step rise
 !>   as from a smooth start;
-!> - a step may also grow by a quarter, not only double;
+!> - while order and step rise from a start, a step grows by what its error at the present order allows, up to 64 times,
+!>   not only twice: the published doubling takes 20 steps from the first step of order 1 to the step of the flight;
+!> - later a step may also grow by a quarter, not only double; the order may rise at varying step too (not while
+!>   stability limits the step: there the higher order only narrows the limit).
+!>   Measured together (scripts/compare_adams.sh, evaluations at 1e-6 ... 1e-12): dry contact -23 ... -36 %, film scenes
+!>   -12 ... -18 %, the standard battery +13 % at 1e-3, -22 % at 1e-12;
 !> - trial states outside the model and steps that a problem refuses are rejected like errors;
 !> - the interpolant also matches y at the beginning of the step, so it is continuous with its derivative;
 !> - y is summed with compensation at every tolerance.
@@ -37,6 +42,7 @@ module adams
   !> The state of the method between two steps.
   type, extends(ode_method_t) :: adams_t
     private
+    logical, public :: goes_on = .false.   !! the next start goes on inside a phase, after another method
     type(adams_coefficients_t) :: coefficients
     real(dp) :: moulton(highest_order + 1) = 0    !! |gamma*_i|
     integer :: n = 0                    !! equations
@@ -50,6 +56,8 @@ module adams
     real(dp) :: h = 0                   !! size of the next step, by the clock
     real(dp) :: h_old = 0               !! size of the last accepted step
     integer :: limit = limit_start      !! what made the next step no longer
+    logical :: bound = .false.          !! stability limited the last accepted step, in a wide sense
+    logical :: higher_known = .false.   !! phi_k+2 tells the error at order k+1
     real(dp) :: rounding = 0            !! weighted norm of the rounding of y
     logical :: opening = .true.         !! order and step are still being raised from the start
     real(dp), allocatable :: phi(:, :)  !! modified divided differences, (n, highest_order+2)
@@ -61,6 +69,7 @@ module adams
     procedure :: start
     procedure :: step
     procedure :: interpolate
+    procedure :: start_with_history
   end type adams_t
 
 contains
@@ -81,7 +90,7 @@ contains
     self%order = 0
     self%closed = .false.
     self%carry = 0
-    self%rooted = problem%smooth_in_root
+    self%rooted = problem%smooth_in_root .and. .not. self%goes_on
     self%t_origin = t
     self%x = merge(0.0_dp, t, self%rooted)
     self%x_old = self%x
@@ -102,6 +111,39 @@ contains
     call choose_first_step(self, problem)
     self%limit = limit_start
   end subroutine start
+
+  !> Begin at (x(m), y) with the right-hand sides f(:, 1..m) known at m <= 12 instants x(1) < x(2) < ... x(m): the first
+  !> step is of order m and size `h`.
+  subroutine start_with_history(self, problem, x, f, y, h, status)
+    class(adams_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    real(dp), intent(in) :: x(:), f(:, :), y(:), h
+    integer, intent(out) :: status
+    integer :: i, j, m
+
+    m = size(x)
+    call self%start(problem, x(m), y, .true., status)
+    if (status /= step_done) return
+    do i = 1, m
+      self%phi(:, i) = f(:, m + 1 - i)
+    end do
+    do j = 2, m   ! divided differences over the latest i points
+      do i = m, j, -1
+        self%phi(:, i) = (self%phi(:, i - 1) - self%phi(:, i))/(x(m + j - i) - x(m + 1 - i))
+      end do
+    end do
+    do i = 1, m - 1
+      self%coefficients%psi(i) = x(m) - x(m - i)
+      do j = i + 1, m
+        self%phi(:, j) = self%phi(:, j)*self%coefficients%psi(i)
+      end do
+    end do
+    self%k = m
+    self%k_old = m - 1
+    self%h_old = self%coefficients%psi(1)
+    self%h = h
+    self%opening = .false.
+  end subroutine start_with_history
 
   !> Allocate everything, once for a whole integration.
   subroutine prepare(self, problem)
@@ -247,7 +289,7 @@ contains
     do j = self%coefficients%ns + 1, k
       self%phi(:, j) = self%coefficients%beta(j)*self%phi(:, j)
     end do
-    self%phi(:, k + 2) = self%phi(:, k + 1)
+    self%phi(:, k + 2) = self%coefficients%beta_next*self%phi(:, k + 1)
     self%phi(:, k + 1) = 0
     self%predicted = 0
     do j = k, 1, -1
@@ -349,6 +391,7 @@ contains
     do i = 1, self%k
       self%phi(:, i) = (self%phi(:, i) - self%phi(:, i + 1))/self%coefficients%beta(i)
     end do
+    self%phi(:, self%k + 1) = self%phi(:, self%k + 2)/self%coefficients%beta_next
     call self%coefficients%take_back(self%h, self%k)
     self%opening = .false.
     factor = fraction
@@ -372,12 +415,14 @@ contains
 
   !> Estimate the rate rho of the fastest mode from the two evaluations of the step, |f_new - f_predicted| over
   !> |y_new - y_predicted| (what Hairer & Wanner 1996, IV.2, use), and count what limited the step. It was stability where
-  !> h rho is near the limit of the order while along the solution f changes at a much slower rate than rho: the mode
-  !> itself is not being followed any more.
+  !> h rho is near the limit of the order though the mode itself is not being followed any more: along the solution f
+  !> changes at a slower rate than rho, or the solution moves by no more than five tolerances in a step. A wider sense of
+  !> it, `bound`, keeps the order from rising: measured on the films, at 1e-6 it saves 40 % of the evaluations. On the films
+  !> the integral of rho dt so estimated agrees with that of the eigenvalues (1.04e4, 2.14e5, 2.49e6) within 1 %.
   pure subroutine count_limit(self, x_new)
     class(adams_t), intent(inout) :: self
     real(dp), intent(in) :: x_new
-    real(dp) :: f_jump, y_jump, f_path, y_path, old, reach, slow
+    real(dp) :: f_jump, y_jump, f_path, y_path, old, reach, near, slow
     integer :: i, limit
     f_jump = 0
     y_jump = 0
@@ -394,12 +439,15 @@ contains
       end associate
     end do
     limit = self%limit
+    self%bound = .false.
     if (y_jump > (100*self%rounding)**2) then
       reach = self%h*sqrt(f_jump/y_jump)
-      slow = self%h*sqrt(f_path/y_path)
       self%statistics%stiffness = self%statistics%stiffness + reach
-      if (limit == limit_error .and. reach > 0.5_dp*stability_limit(self%k) .and. slow < 0.3_dp*reach) &
-        limit = limit_stability
+      near = reach/stability_limit(self%k)
+      slow = 0
+      if (y_path >= 25 .and. reach > 0) slow = self%h*sqrt(f_path/y_path)/reach
+      self%bound = near > 0.3_dp .and. slow < 0.6_dp
+      if (limit == limit_error .and. near > 0.5_dp .and. slow < 0.3_dp) limit = limit_stability
     end if
     associate (count => self%statistics)
       count%limited_by(limit) = count%limited_by(limit) + 1
@@ -416,6 +464,7 @@ contains
 
     call count_limit(self, x_new)
     k = self%k
+    self%higher_known = k < self%coefficients%ns .or. self%k_old >= k .and. .not. self%bound
     self%k_old = k
     self%h_old = self%h
     self%t_old = self%t
@@ -446,8 +495,7 @@ contains
   end subroutine accept
 
   !> The order and size of the next step (Shampine & Gordon, ch. 7): order raised while opening; else where the
-  !> errors fall with the order; the step doubled, raised by a quarter, kept, or cut to what the tolerance allows. Above order 4 it is raised by
-  !> a quarter only after k steps of one size, which a rise of the order needs too.
+  !> errors fall with the order; the step doubled, raised by a quarter, kept, or cut to what the tolerance allows.
   pure subroutine choose_order_and_step(self, errors)
     class(adams_t), intent(inout) :: self
     type(error_estimates_t), intent(in) :: errors
@@ -464,14 +512,15 @@ contains
     if (self%opening) then
       self%k = k + 1
       self%limit = limit_start
-      call grow(self, 2.0_dp)
+      factor = (0.1_dp/max(errors%same, tiny(1.0_dp)))**(1.0_dp/(k + 1))
+      call grow(self, max(2.0_dp, min(64.0_dp, factor)))
       return
     end if
     if (errors%order < k) then
       self%k = k - 1
       error = errors%lower
-    else if (k + 1 <= self%coefficients%ns) then
-      higher = self%h*self%moulton(k + 1)*weighted_norm(self, self%phi(:, k + 2))
+    else if (self%higher_known) then
+      higher = self%h*self%coefficients%sigma_next*self%moulton(k + 1)*weighted_norm(self, self%phi(:, k + 2))
       if (k == 1) then
         if (higher < 0.5_dp*error .and. k < self%settings%max_order) self%k = 2
       else if (errors%lower <= min(error, higher)) then
@@ -485,7 +534,7 @@ contains
 
     if (0.5_dp >= error*2.0_dp**(self%k + 1)) then
       factor = 2
-    else if (0.5_dp >= error*1.25_dp**(self%k + 1) .and. self%coefficients%ns > merge(2, self%k, self%k <= 4)) then
+    else if (0.5_dp >= error*1.25_dp**(self%k + 1) .and. self%coefficients%ns > 1) then
       factor = 1.25_dp
     else if (0.5_dp >= error) then
       factor = 1

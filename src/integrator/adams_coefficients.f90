@@ -8,7 +8,7 @@ module adams_coefficients
 
   !> Longest stable h |lambda| of the method at each order, for a real negative lambda and a constant step.
   real(dp), parameter :: stability_limit(highest_order) = [2.00_dp, 2.40_dp, 1.93_dp, 1.41_dp, 1.04_dp, 0.77_dp, 0.58_dp, &
-    0.44_dp, 0.33_dp, 0.26_dp, 0.20_dp, 0.15_dp]
+    0.44_dp, 0.34_dp, 0.26_dp, 0.21_dp, 0.17_dp]
 
   !> Coefficients of the step from t_n to t_n+1 = t_n + h at order k, in the notation of Shampine & Gordon.
   type :: adams_coefficients_t
@@ -19,6 +19,7 @@ module adams_coefficients
     real(dp) :: g(highest_order + 1) = 0      !! g_i = integral of the i-th Newton basis polynomial over the step, by h
     real(dp) :: v(highest_order) = 0          !! column of the recurrence for g, kept from step to step
     real(dp) :: w(highest_order) = 0          !! work
+    real(dp) :: beta_next = 1, sigma_next = 1 !! beta_k+1 and sigma_k+2, where the difference of order k is known
     integer :: ns = 0                         !! steps taken with the present step size, this one included
   contains
     procedure :: reset
@@ -65,6 +66,8 @@ contains
     if (abs(h - h_old) > 0) self%ns = 0
     if (self%ns <= k_old) self%ns = self%ns + 1
     ns = self%ns
+    self%beta_next = 1
+    self%sigma_next = 1
     if (k < ns) return
 
     self%beta(ns) = 1
@@ -79,6 +82,11 @@ contains
       self%alpha(i) = h/reach
       self%sigma(i + 1) = i*self%alpha(i)*self%sigma(i)
     end do
+    if (k_old >= k) then
+      previous = self%psi(k)
+      self%beta_next = self%beta(k)*reach/previous
+      self%sigma_next = (k + 1)*(h/(previous + h))*self%sigma(k + 1)
+    end if
     self%psi(k) = reach
     call update_g(self, k, k_old)
   end subroutine update

@@ -1,8 +1,10 @@
 !> Adams where the problem is not stiff, Radau where it is, chosen while integrating.
 !>
 !> Every phase of the problem (its `mode`) begins with the method that it ended with the last time, at first with Adams. A
-!> phase in which Adams is bound by its stability for a number of steps goes on with Radau from the same point; one in
-!> which Radau's steps are so short that Adams would need fewer evaluations goes back.
+!> phase in which Adams is bound by its stability for a number of steps goes on with Radau from the same point. What
+!> Radau costs in a mode is then held against what Adams would have cost, its price per time while it was bound carried on in
+!> proportion to the stiffness: where Radau turns out dearer on the whole, the phase goes back and asks for more
+!> patience the next time.
 module auto_method
   use kinds, only: dp
   use ode_problem, only: ode_problem_t, max_modes
@@ -13,11 +15,12 @@ module auto_method
   private
   public :: auto_t
 
-  integer, parameter :: patience = 15          !! steps bound by stability, more than not, before Radau takes over
-  integer, parameter :: patience_back = 8      !! steps in a row that Adams would do cheaper before it takes over again
-  real(dp), parameter :: adams_reach = 1.5_dp  !! h rho that an Adams step reaches at its stability limit
-  real(dp), parameter :: adams_cost = 2.1_dp   !! its evaluations
-  real(dp), parameter :: radau_cost = 15       !! evaluations of a Radau step, its Jacobian and algebra included
+  integer, parameter :: first_patience = 40    !! steps bound by stability, more than not, before Radau takes over
+  integer, parameter :: trial_steps = 30       !! of Radau, before its cost is judged,
+  integer, parameter :: bad_trial_steps = 8    !! or before it is judged
+  real(dp), parameter :: bad_trial = 2         !! by this factor
+  integer, parameter :: most_patience = 400    !! each change that did not pay doubles the patience up to this
+  real(dp), parameter :: step_overhead = 5     !! of a Radau step, Jacobian and algebra, in evaluations
 
   type, extends(ode_method_t) :: auto_t
     private
@@ -26,11 +29,20 @@ module auto_method
     logical :: stiff = .false.                 !! Radau is at work
     logical :: stiff_in(0:max_modes) = .false. !! the mode ended with Radau
     integer :: mode = 0                        !! of the present phase
-    integer :: bound = 0                       !! steps bound by stability (Adams), or too short for Radau
+    integer :: bound = 0                       !! steps of Adams bound by stability, more than not
+    integer :: patience(0:max_modes) = first_patience
+    real(dp) :: adams_price = 0                !! evaluations per time of Adams while it was bound
+    real(dp) :: stiffness_then = 0             !! bound of the fastest mode's rate at that time; the price goes with it
+    integer :: evaluations_then = 0            !! evaluations when Adams came to be bound, and
+    real(dp) :: time_then = 0                  !! when that was
+    integer :: trial(0:max_modes) = 0          !! steps of Radau in each mode since it took over
+    real(dp) :: spent(0:max_modes) = 0         !! what it has cost in each mode, in evaluations
+    real(dp) :: saved(0:max_modes) = 0         !! what Adams would have cost instead
   contains
     procedure :: start
     procedure :: step
     procedure :: interpolate
+    procedure :: land_on
     procedure :: totals
   end type auto_t
 
@@ -46,6 +58,10 @@ contains
     if (first) then
       self%statistics = step_statistics_t()
       self%stiff_in = .false.
+      self%patience = first_patience
+      self%trial = 0
+      self%spent = 0
+      self%saved = 0
       self%stiff = .false.
       self%adams%settings = self%settings
       self%radau%settings = self%settings
@@ -84,26 +100,38 @@ contains
     class(auto_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
     integer, intent(out) :: status
-    integer :: bound_before
+    integer :: bound_before, evaluations_before
+
+    status = step_done
+    if (self%stiff) then
+      if (radau_is_dearer(self)) then
+        self%patience(self%mode) = min(2*self%patience(self%mode), most_patience)
+        call change_over(self, problem, .false., status)
+      end if
+    else if (self%bound >= self%patience(self%mode)) then
+      self%adams_price = (self%adams%statistics%evaluations - self%evaluations_then) &
+        /max(self%t - self%time_then, tiny(1.0_dp))
+      self%stiffness_then = 0
+      self%trial(self%mode) = 0
+      call change_over(self, problem, .true., status)
+    end if
+    if (status /= step_done) return
 
     if (self%stiff) then
-      if (self%bound >= patience_back) call change_over(self, problem, .false., status)
-    else
-      if (self%bound >= patience) call change_over(self, problem, .true., status)
-    end if
-    if (self%stiff) then
+      evaluations_before = self%radau%statistics%evaluations
       call self%radau%step(problem, status)
-      if (status == step_done) call take_over(self, self%radau)
-      if (adams_would_do(self%radau)) then
-        self%bound = self%bound + 1
-      else
-        self%bound = 0
-      end if
+      if (status /= step_done) return
+      call take_over(self, self%radau)
+      call keep_account(self, self%radau%statistics%evaluations - evaluations_before)
     else
       bound_before = self%adams%statistics%limited_by(limit_stability)
       call self%adams%step(problem, status)
       if (status == step_done) call take_over(self, self%adams)
       if (self%adams%statistics%limited_by(limit_stability) > bound_before) then
+        if (self%bound == 0) then
+          self%evaluations_then = self%adams%statistics%evaluations
+          self%time_then = self%t
+        end if
         self%bound = self%bound + 1
       else
         self%bound = max(0, self%bound - 1)
@@ -111,11 +139,30 @@ contains
     end if
   end subroutine step
 
-  !> Whether Adams would need fewer evaluations for a step as long as Radau's last one.
-  pure logical function adams_would_do(radau)
-    type(radau_t), intent(in) :: radau
-    adams_would_do = adams_cost*(radau%t - radau%t_old)*radau%spectral_bound() < adams_reach*radau_cost
-  end function adams_would_do
+  !> Enter a step of Radau into the account of its mode.
+  subroutine keep_account(self, evaluations)
+    class(auto_t), intent(inout) :: self
+    integer, intent(in) :: evaluations
+    real(dp) :: stiffness
+    stiffness = self%radau%spectral_bound()
+    if (.not. self%stiffness_then > 0) self%stiffness_then = stiffness
+    associate (mode => self%mode)
+      self%trial(mode) = self%trial(mode) + 1
+      self%spent(mode) = self%spent(mode) + evaluations + step_overhead
+      if (self%stiffness_then > 0) self%saved(mode) = self%saved(mode) &
+        + self%adams_price*(stiffness/self%stiffness_then)*(self%t - self%t_old)
+    end associate
+  end subroutine keep_account
+
+  !> Whether Radau has cost more in the present mode than Adams would have; not asked before a number of steps, a smaller
+  !> number where it is much more.
+  pure logical function radau_is_dearer(self)
+    class(auto_t), intent(in) :: self
+    associate (mode => self%mode)
+      radau_is_dearer = self%trial(mode) >= trial_steps .and. self%spent(mode) > self%saved(mode) &
+        .or. self%trial(mode) >= bad_trial_steps .and. self%spent(mode) > bad_trial*self%saved(mode)
+    end associate
+  end function radau_is_dearer
 
   !> Go on with the other method from where we are.
   subroutine change_over(self, problem, stiff, status)
@@ -125,7 +172,9 @@ contains
     integer, intent(out) :: status
     type(step_statistics_t) :: so_far
     self%stiff_in(self%mode) = stiff
+    self%adams%goes_on = .true.
     call begin_with(self, problem, stiff, self%t, self%y, .false., status)
+    self%adams%goes_on = .false.
     so_far = self%totals()
     so_far%restarts = so_far%restarts - 1   ! not one that the problem asked for
     so_far%switches = so_far%switches + 1
@@ -164,6 +213,18 @@ contains
       call self%adams%interpolate(t, y)
     end if
   end subroutine interpolate
+
+  subroutine land_on(self, problem, t, y)
+    class(auto_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    real(dp), intent(in) :: t
+    real(dp), intent(inout) :: y(:)
+    if (self%stiff) then
+      call self%radau%land_on(problem, t, y)
+    else
+      call self%adams%land_on(problem, t, y)
+    end if
+  end subroutine land_on
 
   !> The counts of both methods together.
   pure function totals(self) result(statistics)

@@ -38,6 +38,7 @@ module ode_method
     real(dp), allocatable :: absolute(:)  !! absolute tolerance of each component, in its own unit, (n)
     real(dp) :: max_step = huge(1.0_dp)   !! longest step
     real(dp) :: span = 1                  !! length of the whole integration: the scale of the shortest step
+    real(dp) :: stop_time = huge(1.0_dp)  !! where the integration ends: a one-step method lands there
     integer :: max_order = highest_order  !! highest order, 1..highest_order
     real(dp) :: fixed_step = 0            !! > 0: every step has this size and no error is controlled, for tests of order
     real(dp) :: chatter_time = 0          !! a hundred events in less than this are chatter; 0: 1e-9 of the span
@@ -80,6 +81,7 @@ module ode_method
     procedure(start), deferred :: start
     procedure(step), deferred :: step
     procedure(interpolate), deferred :: interpolate
+    procedure :: land_on
   end type ode_method_t
 
   abstract interface
@@ -120,6 +122,18 @@ contains
     nominal_tolerance = self%settings%tolerance
     if (.not. nominal_tolerance > 0) nominal_tolerance = maxval(self%settings%relative)
   end function nominal_tolerance
+
+  !> The state at a time inside the last step where the integration is to be restarted. A method whose steps are more accurate
+  !> than its interpolant repeats the step up to there; the default interpolates.
+  subroutine land_on(self, problem, t, y)
+    class(ode_method_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    real(dp), intent(in) :: t
+    real(dp), intent(inout) :: y(:)
+    associate (unused_problem => problem)
+    end associate
+    call self%interpolate(t, y)
+  end subroutine land_on
 
   !> The counts of the whole integration so far.
   pure function totals(self) result(statistics)

@@ -65,6 +65,7 @@ module radau
     procedure :: start
     procedure :: step
     procedure :: interpolate
+    procedure :: land_on
   end type radau_t
 
 contains
@@ -229,6 +230,7 @@ contains
     integer :: outcome
 
     call weigh(self)
+    call meet_stop_time(self)
     if (inner_tolerance(self%nominal_tolerance(), self%formula(self%level)%stages) < 20*epsilon(1.0_dp)) then
       status = tolerance_too_small
       return
@@ -247,6 +249,19 @@ contains
     call choose_formula(self)
     status = step_done
   end subroutine step
+
+  !> Let the last step, or the last two, end where the integration does.
+  pure subroutine meet_stop_time(self)
+    class(radau_t), intent(inout) :: self
+    real(dp) :: left
+    left = self%settings%stop_time - self%t
+    if (.not. left > 0) return
+    if (self%h >= left*(1 - 1e-9_dp)) then
+      self%h = left
+    else if (self%h > 0.5_dp*left) then
+      self%h = 0.5_dp*left
+    end if
+  end subroutine meet_stop_time
 
   !> Jacobian, decompositions, Newton's method, error estimate, the problem's verdict, f at the end.
   subroutine attempt(self, problem, error, outcome, fraction)
@@ -606,6 +621,7 @@ contains
     s = self%formula(self%level)%stages
     self%t_old = self%t
     self%t = self%t + self%h
+    if (abs(self%t - self%settings%stop_time) <= 4*spacing(self%t)) self%t = self%settings%stop_time
     self%y_old = self%y
     self%y = self%y_new
     self%f = self%f_new
@@ -658,6 +674,44 @@ contains
     end if
     self%since_change = 0
   end subroutine choose_formula
+
+  !> Repeat the last step with the size that ends at t. Where that fails the interpolant serves.
+  subroutine land_on(self, problem, t, y)
+    class(radau_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    real(dp), intent(in) :: t
+    real(dp), intent(inout) :: y(:)
+    real(dp) :: h, t_new
+    integer :: outcome, s
+    logical :: singular
+
+    call self%interpolate(t, y)
+    if (self%stages_done == 0 .or. .not. t > self%t_old) return
+    h = self%h
+    s = self%stages_done
+    self%h = t - self%t_old
+    self%level = s/2
+    self%y_new = self%y
+    t_new = self%t
+    self%y = self%y_old
+    self%t = self%t_old
+    call decompose_matrices(self, singular)
+    outcome = try_diverged
+    self%stages_done = 0
+    if (.not. singular) then
+      call guess_stages(self)
+      call iterate(self, problem, outcome)
+    end if
+    self%stages_done = s
+    self%y = self%y_new
+    self%t = t_new
+    self%h = h
+    if (outcome /= try_accepted) return
+    y = self%y_old + self%z_new(:, s)
+    self%z(:, :s) = self%z_new(:, :s)
+    self%t = t
+    self%y = y
+  end subroutine land_on
 
   !> The collocation polynomial of the last step.
   pure subroutine interpolate(self, t, y)

@@ -71,6 +71,7 @@ contains
 
     status = integration_done
     if (.not. t < t_end) return
+    method%settings%stop_time = t_end
     call method%start(problem, t, y, .true., status)
     call watch%begin(problem, t, y, 0)
     chatter_time = method%settings%chatter_time
@@ -82,7 +83,10 @@ contains
       if (status /= step_done) exit
       call watch%search(method, problem, t_end, event, t_event, y)
       t = min(method%t, t_end)
-      if (event > 0) t = t_event
+      if (event > 0) then
+        t = t_event
+        if (t < method%t) call method%land_on(problem, t, y)
+      end if
       call observer%step_taken(method, problem, t)
       if (event > 0) then
         call observer%event_taken(problem, event, t, y)

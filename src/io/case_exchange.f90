@@ -133,6 +133,7 @@ contains
     call x%move('output', 'interval', c%output%interval)
     call x%move('output', 'start_time', c%output%start_time)
     call x%move_text('output', 'columns', c%output%columns)
+    call x%move('output', 'digits', c%output%digits)
     call x%move('output', 'every_step', c%output%every_step)
     call x%move('output', 'ideal_twin', c%output%ideal_twin)
   end subroutine move_run

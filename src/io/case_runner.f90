@@ -13,7 +13,7 @@ module case_runner
   use trace_sink, only: trace_sink_t
   use trace_files, only: trace_files_t
   use result_file, only: result_file_t
-  use summary, only: summary_table, summary_line
+  use summary, only: summary_table, summary_line, advice
   use posix, only: make_directory, error_text
   use text_tools, only: printable
   implicit none
@@ -22,13 +22,14 @@ module case_runner
 
 contains
 
-  !> Read a case, and unless only a check is asked for run it and write its results. `line` is the summary for people.
+  !> Read a case, and unless only a check is asked for run it and write its results. `line` is the summary for people, `notice` what
+  !> they should know besides.
   !> An error's message begins with the case file's name; a case that is wrong writes nothing.
-  subroutine run_case_file(path, options, show_progress, line, error)
+  subroutine run_case_file(path, options, show_progress, line, notice, error)
     character(len=*), intent(in) :: path
     type(command_line_t), intent(in) :: options
     logical, intent(in) :: show_progress
-    character(len=:), allocatable, intent(out) :: line
+    character(len=:), allocatable, intent(out) :: line, notice
     type(error_t), allocatable, intent(out) :: error
     type(case_t) :: case
     type(column_list_t) :: list, ideal_list
@@ -37,18 +38,19 @@ contains
 
     !$omp critical (texts)
     line = ''
+    notice = ''
     base = ''
     call prepare(path, options, case, list, ideal_list, base, error)
     if (.not. allocated(error) .and. options%check) line = path//': correct'
     !$omp end critical (texts)
     if (allocated(error) .or. options%check) return
 
-    call run_one(case, .false., list, base, show_progress, line, error)
+    call run_one(case, .false., list, base, show_progress, line, notice, error)
     if (.not. case%output%ideal_twin .or. case%joint%kind == 'ideal') return
     if (allocated(error)) then
       if (index(error%message, interrupted_text) > 0) return
     end if
-    call run_one(case, .true., ideal_list, base, show_progress, line, ideal_error)
+    call run_one(case, .true., ideal_list, base, show_progress, line, notice, ideal_error)
     if (allocated(ideal_error) .and. .not. allocated(error)) call move_alloc(ideal_error, error)
   end subroutine run_case_file
 
@@ -106,13 +108,13 @@ contains
   end function with_accuracy
 
   !> Run a case and write BASE.csv, events and summary, or its ideal twin and write BASE.ideal.csv.
-  subroutine run_one(case, ideal_joint, list, base, show_progress, line, error)
+  subroutine run_one(case, ideal_joint, list, base, show_progress, line, notice, error)
     type(case_t), intent(in) :: case
     logical, intent(in) :: ideal_joint
     type(column_list_t), intent(in) :: list
     character(len=*), intent(in) :: base
     logical, intent(in) :: show_progress
-    character(len=:), allocatable, intent(inout) :: line
+    character(len=:), allocatable, intent(inout) :: line, notice
     type(error_t), allocatable, intent(out) :: error
     class(trace_sink_t), allocatable :: sink
     type(run_report_t) :: report
@@ -126,7 +128,7 @@ contains
     call simulate(case, ideal_joint, list, sink, report, error)
     call system_clock(ended)
     !$omp critical (texts)
-    call close_files(case, ideal_joint, base, sink, report, real(ended - began, dp)/real(rate, dp), line, error)
+    call close_files(case, ideal_joint, base, sink, report, real(ended - began, dp)/real(rate, dp), line, notice, error)
     !$omp end critical (texts)
   end subroutine run_one
 
@@ -142,9 +144,9 @@ contains
 
     allocate (files)
     if (ideal_joint) then
-      call files%open(base//'.ideal', list, .false., error)
+      call files%open(base//'.ideal', list, case%output%digits, .false., error)
     else
-      call files%open(base, list, case%contact%is_present, error)
+      call files%open(base, list, case%output%digits, case%contact%is_present, error)
     end if
     if (allocated(error)) return
     files%end_time = simulated_time(case)
@@ -153,14 +155,14 @@ contains
   end subroutine open_files
 
   !> Close the files and write the summary. An error of the output goes before one of the integration.
-  subroutine close_files(case, ideal_joint, base, sink, report, wall_time, line, error)
+  subroutine close_files(case, ideal_joint, base, sink, report, wall_time, line, notice, error)
     type(case_t), intent(in) :: case
     logical, intent(in) :: ideal_joint
     character(len=*), intent(in) :: base
     class(trace_sink_t), allocatable, intent(inout) :: sink
     type(run_report_t), intent(inout) :: report
     real(dp), intent(in) :: wall_time
-    character(len=:), allocatable, intent(inout) :: line
+    character(len=:), allocatable, intent(inout) :: line, notice
     type(error_t), allocatable, intent(inout) :: error
     type(error_t), allocatable :: trace_error, summary_error
 
@@ -172,6 +174,8 @@ contains
     if (allocated(trace_error)) report%status = 'stopped: '//trace_error%message
     if (.not. ideal_joint) then
       line = summary_line(case, report, wall_time, base)
+      notice = advice(report)
+      if (notice /= '') notice = printable(case%file, 200)//': '//notice
       call write_text(base//'.summary.csv', summary_table(case, report, wall_time), summary_error)
     end if
     if (allocated(trace_error)) then

@@ -147,6 +147,7 @@ contains
       real_key(o, 'interval', 's', '> 0', 'between rows; 0: samples_per_revolution counts', default='0.0'), &
       real_key(o, 'start_time', 's', '>= 0', 'of the first row', default='0.0'), &
       text_key(o, 'columns', 'standard', '''standard'', or names of columns without their units, with commas', many=.true.), &
+      integer_key(o, 'digits', '>= 9 and <= 17', 'significant, of every number in a trace; 17 read back exactly', default='10'), &
       logical_key(o, 'every_step', 'a row also at each step of the integrator', default='.false.'), &
       logical_key(o, 'ideal_twin', 'run the same scene with an ideal joint too', default='.false.')]
   end function run_keys

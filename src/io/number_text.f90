@@ -1,38 +1,19 @@
-!> Numbers as text, the one place where results turn into digits.
+!> Single numbers as text. Tables of results are made by `number_writer`.
 module number_text
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: dp
   implicit none
   private
-  public :: real_text, exact_text, short_text, append_real
+  public :: real_text, exact_text, short_text
 
 contains
 
-  !> A real for a table: 10 significant digits, as 1.234567890E-05.
+  !> A real for a summary: 10 significant digits, as 1.234567890E-05.
   pure function real_text(value) result(text)
     real(dp), intent(in) :: value
     character(len=:), allocatable :: text
     text = scientific(value, '(es16.9e2)', '(es17.9e3)')
   end function real_text
-
-  !> Append a real as `real_text` writes it to the first `used` characters of a line that has room for 24 more. A
-  !> subroutine, since gfortran keeps the length of a deferred-length function result in static storage, where
-  !> two threads meet.
-  pure subroutine append_real(line, used, value)
-    character(len=*), intent(inout) :: line
-    integer, intent(inout) :: used
-    real(dp), intent(in) :: value
-    character(len=24) :: digits
-    integer :: first
-    if (abs(value) < 1e90_dp .and. .not. (abs(value) > 0 .and. abs(value) < 1e-90_dp)) then
-      write (digits, '(es24.9e2)') value
-    else
-      write (digits, '(es24.9e3)') value   ! NaN and infinities come here too
-    end if
-    first = verify(digits, ' ')
-    line(used + 1:used + 25 - first) = digits(first:)
-    used = used + 25 - first
-  end subroutine append_real
 
   !> A real that reads back as the same bits: 17 significant digits.
   pure function exact_text(value) result(text)

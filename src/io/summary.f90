@@ -2,7 +2,7 @@
 module summary
   use, intrinsic :: iso_fortran_env, only: compiler_version, compiler_options
   use kinds, only: dp
-  use ode_method, only: highest_order, n_limits, limit_names, limit_stability
+  use ode_method, only: highest_order, with_adams, with_radau, n_limits, limit_names, limit_stability
   use simulation, only: run_report_t
   use case_definition, only: case_t
   use number_text, only: real_text, short_text
@@ -10,7 +10,7 @@ module summary
   use version, only: program_version
   implicit none
   private
-  public :: summary_table, summary_line
+  public :: summary_table, summary_line, advice
 
   character(len=*), parameter :: newline = achar(10)
 
@@ -22,7 +22,9 @@ contains
     type(run_report_t), intent(in) :: report
     real(dp), intent(in) :: wall_time   !! [s]
     character(len=:), allocatable :: text
-    integer :: order, limit
+    character(len=7), parameter :: phase_names(0:2) = ['free   ', 'film   ', 'contact']
+    character(len=5), parameter :: method_names(2) = ['adams', 'radau']
+    integer :: order, limit, mode, method
 
     text = 'quantity,value,unit'//newline
     call add('status', quoted(report%status), '')
@@ -48,6 +50,23 @@ contains
         end do
         call add('stiffness_integral', real_text(s%stiffness), '1')
       end if
+      if (case%integrator%method == 'auto') then
+        call add('method_switches', integer_text(s%switches), '1')
+        do mode = 0, 2
+          do method = with_adams, with_radau
+            if (s%time_with(method, mode) > 0) call add(trim(phase_names(mode))//'_time_fraction_with_'// &
+              trim(method_names(method)), real_text(s%time_with(method, mode)/f%time), '1')
+          end do
+        end do
+      end if
+      if (s%jacobians > 0) then
+        call add('jacobians', integer_text(s%jacobians), '1')
+        call add('steps_rejected_convergence', integer_text(s%rejected_convergence), '1')
+        do order = 1, size(s%stage_count)
+          call add('steps_of_'//integer_text(2*order + 1)//'_stages', integer_text(s%stage_count(order)), '1')
+        end do
+      end if
+      if (report%auto_saves > 0) call add('evaluations_over_those_of_auto', real_text(report%auto_saves), '1')
       call add('max_pin_force', real_text(f%max_pin_force), 'N')
       if (f%time > 0) call add('mean_crank_speed', real_text(f%crank_travel/f%time), 'rad/s')
       call add('max_energy_residual', real_text(f%max_energy_residual), 'J')
@@ -92,6 +111,15 @@ contains
     end do
     field = field//'"'
   end function quoted
+
+  !> What the user of a run that is done should know, or an empty text.
+  function advice(report) result(text)
+    type(run_report_t), intent(in) :: report
+    character(len=:), allocatable :: text
+    text = ''
+    if (report%auto_saves > 1.5_dp) text = "bound by the stability of Adams, not by its accuracy (a stiff film): "// &
+      "method = 'auto' needs 1/"//integer_text(nint(report%auto_saves))//" of the evaluations"
+  end function advice
 
   !> One line for people.
   function summary_line(case, report, wall_time, path) result(text)

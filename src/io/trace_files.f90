@@ -9,7 +9,7 @@ module trace_files
   use scene, only: event_contact_begins
   use trace_sink, only: trace_sink_t, trace_event_t
   use result_file, only: result_file_t
-  use number_text, only: append_real
+  use number_writer, only: number_writer_t, longest_number
   use progress, only: progress_t
   use posix, only: interrupted
   implicit none
@@ -17,6 +17,7 @@ module trace_files
   public :: trace_files_t
 
   character(len=*), parameter :: newline = achar(10)
+  integer, parameter :: least_fields = 8   !! room in a line for an event
 
   !> A sink that writes. It asks for the end of the run when the user interrupts it or a file cannot be written.
   type, extends(trace_sink_t) :: trace_files_t
@@ -24,6 +25,7 @@ module trace_files
     type(result_file_t) :: event_list
     type(progress_t) :: progress
     real(dp) :: end_time = 1            !! of the run, for the progress [s]
+    type(number_writer_t), private :: numbers
     integer, private :: phase_column = 0
     integer, private :: rows = 0
     character(len=:), allocatable, private :: line   !! the row being written
@@ -37,11 +39,12 @@ module trace_files
 
 contains
 
-  !> Begin PATH.csv and, with events, PATH.events.csv.
-  subroutine open(self, path, list, with_events, error)
+  !> Begin PATH.csv and, with events, PATH.events.csv, of numbers with so many significant digits.
+  subroutine open(self, path, list, digits, with_events, error)
     class(trace_files_t), intent(inout) :: self
     character(len=*), intent(in) :: path
     type(column_list_t), intent(in) :: list
+    integer, intent(in) :: digits
     logical, intent(in) :: with_events
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: header
@@ -56,7 +59,8 @@ contains
       if (column_name(list, i) == 'phase[-]') self%phase_column = i
     end do
     call self%trace%put(header//newline)
-    allocate (character(len=26*max(size(list%id), 7)) :: self%line)
+    call self%numbers%prepare(digits)
+    allocate (character(len=(longest_number + 1)*max(size(list%id), least_fields)) :: self%line)
     if (.not. with_events) return
     call self%event_list%open(path//'.events.csv', error)
     if (allocated(error)) then
@@ -90,7 +94,7 @@ contains
       if (i == self%phase_column) then
         call append(self%line, used, achar(iachar('0') + nint(values(i))))
       else
-        call append_real(self%line, used, values(i) + 0.0_dp)   ! no negative zeros
+        call self%numbers%append(self%line, used, values(i))
       end if
     end do
     call append(self%line, used, newline)
@@ -105,21 +109,21 @@ contains
     integer :: used
 
     used = 0
-    call append_real(self%line, used, event%time)
+    call self%numbers%append(self%line, used, event%time)
     call append(self%line, used, ',')
-    call append_real(self%line, used, event%crank_angle)
+    call self%numbers%append(self%line, used, event%crank_angle)
     call append(self%line, used, merge(',contact_begins,', ',contact_ends,  ', event%kind == event_contact_begins))
     if (event%kind /= event_contact_begins) used = used - 2   ! the blanks that merge needs
-    call append_real(self%line, used, event%normal_speed)
+    call self%numbers%append(self%line, used, event%normal_speed)
     if (event%kind == event_contact_begins) then
       call append(self%line, used, ',,,')
     else
       call append(self%line, used, ',')
-      call append_real(self%line, used, event%duration)
+      call self%numbers%append(self%line, used, event%duration)
       call append(self%line, used, ',')
-      call append_real(self%line, used, event%max_penetration)
+      call self%numbers%append(self%line, used, event%max_penetration)
       call append(self%line, used, ',')
-      call append_real(self%line, used, event%max_normal_force)
+      call self%numbers%append(self%line, used, event%max_normal_force)
     end if
     call append(self%line, used, newline)
     call self%event_list%put(self%line(:used))

@@ -71,6 +71,7 @@ module case_definition
     integer :: samples_per_revolution = 720
     real(dp) :: interval = 0, start_time = 0   !! interval > 0 wins over samples_per_revolution
     character(len=:), allocatable :: columns   !! 'standard' or column names without units, separated by commas
+    integer :: digits = 10                     !! significant digits of the numbers in traces
     logical :: every_step = .false., ideal_twin = .false.
   end type output_case_t
 

@@ -3,9 +3,9 @@ module simulation
   use kinds, only: dp
   use errors, only: error_t, fail, status_integration, status_internal
   use case_definition, only: case_t
-  use ode_method, only: ode_method_t, step_statistics_t, step_too_small, tolerance_too_small, start_outside
+  use ode_method, only: ode_method_t, step_statistics_t, limit_stability, step_too_small, tolerance_too_small, start_outside
   use methods, only: new_method
-  use solver, only: integrate, integration_done, step_limit_reached, integration_interrupted, chattering
+  use solver, only: integrate, silent_observer_t, integration_done, step_limit_reached, integration_interrupted, chattering
   use scene, only: scene_t, evaluation_t, phase_free, phase_film, phase_contact
   use scene_builder, only: build_scene, simulated_time, sample_interval, settings_for
   use columns, only: choose_columns, column_list_t
@@ -24,6 +24,7 @@ module simulation
     character(len=:), allocatable :: status      !! 'done', or in words why and where it ended
     type(step_statistics_t) :: statistics
     type(run_figures_t) :: figures
+    real(dp) :: auto_saves = 0                   !! > 0: evaluations of this run over those that method auto needs, measured
   end type run_report_t
 
 contains
@@ -65,6 +66,8 @@ contains
     call move_alloc(recorder%sink, sink)
     report%statistics = method%totals()
     report%figures = recorder%figures
+    if (status == integration_done .and. case%integrator%method == 'adams' .and. .not. ideal_joint) &
+      call measure_auto(case, report)
     !$omp critical (texts)
     report%status = 'done'
     if (status /= integration_done) then
@@ -73,6 +76,32 @@ contains
     end if
     !$omp end critical (texts)
   end subroutine simulate
+
+  !> After an Adams run that was bound by its stability most of the time: what method auto would have needed, found by
+  !> running it, without any output, for at most a tenth of the steps.
+  subroutine measure_auto(case, report)
+    type(case_t), intent(in) :: case
+    type(run_report_t), intent(inout) :: report
+    class(scene_t), allocatable :: scene
+    class(ode_method_t), allocatable :: method
+    type(error_t), allocatable :: error
+    type(silent_observer_t) :: observer
+    type(step_statistics_t) :: needed
+    real(dp), allocatable :: y(:)
+    real(dp) :: t
+    integer :: status
+
+    if (report%statistics%time_limited_by(limit_stability) < 0.5_dp*report%figures%time) return
+    call build_scene(case, .false., scene, error)
+    if (.not. allocated(error)) call new_method('auto', method, error)
+    if (allocated(error)) return
+    method%settings = settings_for(case, scene)
+    allocate (y(scene%n), source=scene%initial_state())
+    t = 0
+    call integrate(scene, method, t, y, simulated_time(case), report%statistics%accepted/10 + 1, observer, status)
+    needed = method%totals()
+    if (status == integration_done) report%auto_saves = real(report%statistics%evaluations, dp)/needed%evaluations
+  end subroutine measure_auto
 
   !> Why an integration ended.
   pure function reason(status) result(text)

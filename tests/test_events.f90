@@ -1,0 +1,270 @@
+!> Events: several functions and directions, roots to the last bits, double passages, grazing, chatter, rejected steps.
+module test_events
+  use kinds, only: dp
+  use constants, only: pi
+  use checks, only: checks_t
+  use ode_problem, only: ode_problem_t, event_continue, step_admitted, step_too_deep
+  use ode_method, only: ode_method_t
+  use adams, only: adams_t
+  use solver, only: integrate, observer_t, silent_observer_t, integration_done, chattering
+  use test_problems, only: hopper_t
+  implicit none
+  private
+  public :: run_test_events
+
+  integer, parameter :: most = 1000
+
+  !> y = (sin t, cos t) with three events: sin rises through 1/2, sin falls through 1/2, cos rises through 0. Where
+  !> it `refuses`, two of three steps are refused as too deep.
+  type, extends(ode_problem_t) :: crossings_t
+    logical :: refuses = .false.
+    integer :: taken = 0, index(most) = 0
+    real(dp) :: time(most) = 0
+  contains
+    procedure :: derivatives => circle
+    procedure :: events => three_events
+    procedure :: handle_event => note_event
+    procedure :: judge_step => refuse_long_steps
+  end type crossings_t
+
+  !> y' = -1 above zero, 1 below: slides along zero, event after event.
+  type, extends(ode_problem_t) :: chatterer_t
+    integer :: side = 1, taken = 0
+  contains
+    procedure :: derivatives => towards_zero
+    procedure :: events => passes_zero
+    procedure :: handle_event => changes_side
+  end type chatterer_t
+
+  !> Looks at each event root: the function is not negative there, and negative one spacing before.
+  type, extends(observer_t) :: root_checker_t
+    integer :: loose = 0
+    integer :: events = 0
+  contains
+    procedure :: step_taken => look_at_root
+    procedure :: event_taken => ignore_event
+  end type root_checker_t
+
+contains
+
+  subroutine run_test_events(check)
+    class(checks_t), intent(inout) :: check
+    call several_events(check)
+    call close_passages(check)
+    call grazing(check)
+    call chatter(check)
+  end subroutine run_test_events
+
+  subroutine prepare(method, n, tolerance, span)
+    type(adams_t), intent(inout) :: method
+    integer, intent(in) :: n
+    real(dp), intent(in) :: tolerance, span
+    allocate (method%settings%relative(n), method%settings%absolute(n))
+    method%settings%relative = tolerance
+    method%settings%absolute = tolerance
+    method%settings%span = span
+  end subroutine prepare
+
+  !> Each event once, in order, at its time; with refused steps too.
+  subroutine several_events(check)
+    class(checks_t), intent(inout) :: check
+    type(crossings_t) :: problem
+    type(adams_t) :: method
+    type(root_checker_t) :: observer
+    real(dp) :: y(2), t, worst
+    integer :: status, i, way
+    real(dp), parameter :: first(3) = [pi/6, 5*pi/6, 3*pi/2]
+
+    do way = 1, 2
+      problem = crossings_t(n=2, n_events=3, refuses=way == 2)
+      method = adams_t()
+      call prepare(method, 2, 1e-11_dp, 100*pi)
+      observer%loose = 0
+      t = 0.1_dp
+      y = [sin(t), cos(t)]
+      call integrate(problem, method, t, y, 100*pi, 0, observer, status)
+      call check%that(status == integration_done, 'the circle is integrated')
+      call check%that(problem%taken == 150, 'three events in each of 50 revolutions, none twice')
+      call check%that(method%statistics%restarts == problem%taken, 'one restart an event')
+      worst = 0
+      do i = 1, min(150, problem%taken)
+        if (problem%index(i) /= mod(i - 1, 3) + 1) worst = 1
+        worst = max(worst, abs(problem%time(i) - first(mod(i - 1, 3) + 1) - 2*pi*((i - 1)/3)))
+      end do
+      call check%close_to(worst, 0.0_dp, 1e-8_dp, 'times of three kinds of events in order')
+      call check%that(observer%loose == 0, 'every root is between two neighbouring instants')
+      if (way == 2) call check%that(method%statistics%rejected_penetration > 100, 'steps were refused')
+    end do
+  end subroutine several_events
+
+  !> Tips above a level, down to 2e-5 of the period: both passages lie in one step.
+  subroutine close_passages(check)
+    class(checks_t), intent(inout) :: check
+    type(hopper_t) :: problem
+    type(adams_t) :: method
+    type(silent_observer_t) :: observer
+    real(dp) :: y(2), t
+    integer :: status, i, j
+    character(len=40) :: label
+    do i = 4, 10, 2
+      do j = 2, i - 1
+        problem = hopper_t(n=2, n_events=1, level=1 - 10.0_dp**(-j))
+        method = adams_t()
+        call prepare(method, 2, 10.0_dp**(-i - 2), 40.0_dp)
+        t = 0
+        y = [0.0_dp, 1.0_dp]
+        call integrate(problem, method, t, y, 40.0_dp, 0, observer, status)
+        write (label, '(a,i0,a,i0)') ' 1e-', j, ' above the level, tolerance 1e-', i + 2
+        call check%that(problem%passages == 7, 'tips'//trim(label))
+      end do
+    end do
+  end subroutine close_passages
+
+  !> A level that is just touched, or just not: found or not, but nothing twice, and the run goes on.
+  subroutine grazing(check)
+    class(checks_t), intent(inout) :: check
+    type(hopper_t) :: problem
+    type(adams_t) :: method
+    type(silent_observer_t) :: observer
+    real(dp) :: y(2), t
+    integer :: status, i
+    do i = -3, 3
+      problem = hopper_t(n=2, n_events=1, level=1 + i*1e-12_dp)
+      method = adams_t()
+      call prepare(method, 2, 1e-9_dp, 40.0_dp)
+      t = 0
+      y = [0.0_dp, 1.0_dp]
+      call integrate(problem, method, t, y, 40.0_dp, 0, observer, status)
+      call check%that(status == integration_done, 'a run with grazing events ends')
+      call check%that(problem%passages <= 7, 'no grazing event is taken twice')
+    end do
+  end subroutine grazing
+
+  subroutine chatter(check)
+    class(checks_t), intent(inout) :: check
+    type(chatterer_t) :: problem
+    type(adams_t) :: method
+    type(silent_observer_t) :: observer
+    real(dp) :: y(1), t
+    integer :: status
+    problem%n = 1
+    problem%n_events = 2
+    call prepare(method, 1, 1e-6_dp, 10.0_dp)
+    method%settings%chatter_time = 1e-6_dp
+    t = 0
+    y = 1
+    call integrate(problem, method, t, y, 10.0_dp, 0, observer, status)
+    call check%that(status == chattering, 'chatter is named')
+    call check%close_to(t, 1.0_dp, 1e-5_dp, 'chatter ends the run where it begins')
+    call check%that(problem%taken <= 110, 'chatter ends after a hundred events')
+  end subroutine chatter
+
+  pure subroutine circle(self, t, y, dydt, inside)
+    class(crossings_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: dydt(:)
+    logical, intent(out) :: inside
+    associate (unused_self => self, unused_t => t)
+    end associate
+    dydt(1) = y(2)
+    dydt(2) = -y(1)
+    inside = .true.
+  end subroutine circle
+
+  pure subroutine three_events(self, t, y, g, g_rate)
+    class(crossings_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: g(:), g_rate(:)
+    associate (unused_self => self, unused_t => t)
+    end associate
+    g = [y(1) - 0.5_dp, 0.5_dp - y(1), y(2)]
+    g_rate = [y(2), -y(2), -y(1)]
+  end subroutine three_events
+
+  subroutine note_event(self, index, t, y, action)
+    class(crossings_t), intent(inout) :: self
+    integer, intent(in) :: index
+    real(dp), intent(in) :: t
+    real(dp), intent(inout) :: y(:)
+    integer, intent(out) :: action
+    associate (unused_y => y)
+    end associate
+    self%taken = min(self%taken + 1, most)
+    self%index(self%taken) = index
+    self%time(self%taken) = t
+    action = event_continue
+  end subroutine note_event
+
+  pure subroutine refuse_long_steps(self, t_old, y_old, t, y, verdict, fraction)
+    class(crossings_t), intent(in) :: self
+    real(dp), intent(in) :: t_old, y_old(:), t, y(:)
+    integer, intent(out) :: verdict
+    real(dp), intent(out) :: fraction
+    associate (unused_y_old => y_old, unused_y => y)
+    end associate
+    fraction = 0.6_dp
+    verdict = step_admitted
+    if (self%refuses .and. t - t_old > 0.01_dp .and. mod(int(t*1e3_dp), 3) > 0) verdict = step_too_deep
+  end subroutine refuse_long_steps
+
+  pure subroutine towards_zero(self, t, y, dydt, inside)
+    class(chatterer_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: dydt(:)
+    logical, intent(out) :: inside
+    associate (unused_t => t, unused_y => y)
+    end associate
+    dydt = -self%side
+    inside = .true.
+  end subroutine towards_zero
+
+  pure subroutine passes_zero(self, t, y, g, g_rate)
+    class(chatterer_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: g(:), g_rate(:)
+    associate (unused_t => t)
+    end associate
+    g = -1
+    g(merge(1, 2, self%side > 0)) = -self%side*y(1)
+    g_rate = 0
+    g_rate(merge(1, 2, self%side > 0)) = 1
+  end subroutine passes_zero
+
+  subroutine changes_side(self, index, t, y, action)
+    class(chatterer_t), intent(inout) :: self
+    integer, intent(in) :: index
+    real(dp), intent(in) :: t
+    real(dp), intent(inout) :: y(:)
+    integer, intent(out) :: action
+    associate (unused_index => index, unused_t => t, unused_y => y)
+    end associate
+    self%side = -self%side
+    self%taken = self%taken + 1
+    action = event_continue
+  end subroutine changes_side
+
+  !> `t_to` is an event where it is short of the end of the step.
+  subroutine look_at_root(self, method, problem, t_to)
+    class(root_checker_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    class(ode_problem_t), intent(in) :: problem
+    real(dp), intent(in) :: t_to
+    real(dp) :: y(2), g(3), before(3), rate(3)
+    if (.not. t_to < method%t) return
+    call method%interpolate(t_to, y)
+    call problem%events(t_to, y, g, rate)
+    call method%interpolate(t_to - spacing(t_to), y)
+    call problem%events(t_to - spacing(t_to), y, before, rate)
+    if (.not. any(g >= 0 .and. before < 0) .and. t_to < 99*pi) self%loose = self%loose + 1
+  end subroutine look_at_root
+
+  subroutine ignore_event(self, problem, index, t, y)
+    class(root_checker_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    integer, intent(in) :: index
+    real(dp), intent(in) :: t, y(:)
+    associate (unused_problem => problem, unused_index => index, unused_t => t, unused_y => y)
+    end associate
+    self%events = self%events + 1
+  end subroutine ignore_event
+end module test_events
