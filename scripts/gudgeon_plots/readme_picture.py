@@ -11,7 +11,8 @@ from .quantities import ideal_line
 from .results import Results, Run
 from .style import BLACK, BLUE, GREY, VERMILION
 
-DRY, OILED, IDEAL = "dry_0500um", "lubricated_400cP", "ideal"
+#: A dry run that is not chaotic, so that the picture stays.
+DRY, OILED, IDEAL = "friction_100", "lubricated_400cP", "ideal"
 
 #: Of the clearance in the drawing: the pin is drawn that much smaller and farther from the centre.
 MAGNIFICATION = 8.0
@@ -77,7 +78,7 @@ def write(results: Results, path: Path) -> list[Path]:
     middle.set_aspect("equal")
     middle.set_axis_off()
     middle.set_title("pin centre in the clearance circle")
-    for run, colour, name in ((dry, VERMILION, "dry contact"), (oiled, BLUE, "oil film")):
+    for run, colour, name in ((dry, VERMILION, "dry, with friction"), (oiled, BLUE, "oil film")):
         right.plot(np.degrees(run["crank_angle"]), 1e-3 * run["piston_acceleration"], color=colour, label=name)
     ideal_line(right, np.degrees(ideal["crank_angle"]), 1e-3 * ideal["piston_acceleration"])
     right.set_xlim(0, 720)
