@@ -32,14 +32,23 @@ def arguments() -> argparse.Namespace:
     what.add_argument("--list", action="store_true", help="list the figures")
     what.add_argument("--compare", nargs=2, type=Path, metavar=("A.csv", "B.csv"), help="compare two traces")
     what.add_argument("--readme", action="store_true", help="draw README.md's picture")
-    parser.add_argument("--results", type=Path, default=TOP / "results", metavar="DIR", help="traces (default: results)")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="pictures (default: figures in the directory of traces)")
+    parser.add_argument(
+        "--results", type=Path, default=TOP / "results", metavar="DIR", help="traces (default: results)"
+    )
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", help="pictures (default: figures in the directory of traces)"
+    )
     parser.add_argument("--format", action="append", choices=("png", "svg", "pdf"), help="repeatable (default: png)")
     parser.add_argument("--no-run", action="store_true", help="say what to run where a result is missing")
     parser.add_argument("--rerun", action="store_true", help="run the cases even where there are results")
     parser.add_argument("--columns", nargs="+", metavar="NAME", help="columns to compare, without units")
-    parser.add_argument("--agreement", type=float, default=compare.AGREEMENT, metavar="SHARE",
-                        help="runs agree while they differ by less than this share of the range (default: %(default)s)")
+    parser.add_argument(
+        "--agreement",
+        type=float,
+        default=compare.AGREEMENT,
+        metavar="SHARE",
+        help="runs agree while they differ by less than this share of the range (default: %(default)s)",
+    )
     return parser.parse_args()
 
 

@@ -22,7 +22,9 @@ from gudgeon_plots.results import MissingResult, Results  # noqa: E402
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("case", metavar="CASE", help="a case's name, its file or its trace")
-    parser.add_argument("--results", type=Path, metavar="DIR", help="where traces are (default: results, or the trace's)")
+    parser.add_argument(
+        "--results", type=Path, metavar="DIR", help="where traces are (default: results, or the trace's)"
+    )
     parser.add_argument("-o", "--out", type=Path, metavar="FILE", help="the page (default: CASE.html beside the trace)")
     parser.add_argument("--no-run", action="store_true", help="say what to run if the result is missing")
     options = parser.parse_args()

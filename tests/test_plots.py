@@ -31,8 +31,13 @@ from gudgeon_plots.results import MissingResult, Results, Run, case_files, load_
 def run(columns: dict, case: dict | None = None, events: dict | None = None) -> Run:
     """A run made by hand."""
     names = ("time", "crank_angle", "event", "normal_speed", "duration", "max_penetration", "max_normal_force")
-    return Run("made", pd.DataFrame(columns), dict.fromkeys(columns, "-"), pd.DataFrame(events or {}, columns=names),
-               case=case or {})
+    return Run(
+        "made",
+        pd.DataFrame(columns),
+        dict.fromkeys(columns, "-"),
+        pd.DataFrame(events or {}, columns=names),
+        case=case or {},
+    )
 
 
 class FigureMap(unittest.TestCase):
@@ -87,7 +92,7 @@ class Comparison(unittest.TestCase):
         time = np.linspace(0, 1, 11)
         a = run({"time": time, "crank_speed": 100 + 10 * time})
         b = run({"time": time, "crank_speed": 100 + 10 * time + 2 * time**2})
-        found, = compare.agree(a, b, ["crank_speed"], 0.05)     # 2 t^2 <= 0.05 * 10 up to t = 0.5
+        (found,) = compare.agree(a, b, ["crank_speed"], 0.05)  # 2 t^2 <= 0.05 * 10 up to t = 0.5
         self.assertAlmostEqual(found.horizon, 0.5)
         self.assertFalse(found.whole)
         self.assertIn("horizon: 0.5 s", compare.report([found], 0.05))
@@ -95,7 +100,7 @@ class Comparison(unittest.TestCase):
     def test_times_of_a_are_taken_in_the_common_span(self) -> None:
         a = run({"time": np.linspace(0, 1, 11), "crank_speed": np.linspace(0, 1, 11)})
         b = run({"time": np.linspace(0.2, 2, 7), "crank_speed": np.linspace(0.2, 2, 7)})
-        found, = compare.agree(a, b, ["crank_speed"], 1e-9)
+        (found,) = compare.agree(a, b, ["crank_speed"], 1e-9)
         self.assertTrue(found.whole)
         self.assertAlmostEqual(found.time[0], 0.2)
         self.assertAlmostEqual(found.time[-1], 1.0)
@@ -124,7 +129,7 @@ class Poincare(unittest.TestCase):
         velocity, acceleration = once_a_cycle(run(columns), 0.0)
         np.testing.assert_allclose(velocity, [2 * np.pi, 4 * np.pi])
         np.testing.assert_allclose(acceleration, [4 * np.pi, 8 * np.pi])
-        velocity, _ = once_a_cycle(run(columns | {"gas_force": 0 * angle}), 0.0)   # four strokes: two turns
+        velocity, _ = once_a_cycle(run(columns | {"gas_force": 0 * angle}), 0.0)  # four strokes: two turns
         np.testing.assert_allclose(velocity, [4 * np.pi])
         velocity, _ = once_a_cycle(run(columns), 1.0)
         np.testing.assert_allclose(velocity, [1.0, 1 + 2 * np.pi])
@@ -137,13 +142,16 @@ class FilmPressure(unittest.TestCase):
     CLEARANCE, BEARING, WIDTH, VISCOSITY = 1e-4, 1e-2, 2e-2, 0.05
 
     def case(self, lubrication: dict, rod: float, crank: float) -> dict:
-        return {"mechanism": {"crank_length": crank, "rod_length": rod},
-                "joint": {"clearance": self.CLEARANCE, "bearing_radius": self.BEARING, "bearing_length": self.WIDTH},
-                "lubrication": {"viscosity": self.VISCOSITY, **lubrication}}
+        return {
+            "mechanism": {"crank_length": crank, "rod_length": rod},
+            "joint": {"clearance": self.CLEARANCE, "bearing_radius": self.BEARING, "bearing_length": self.WIDTH},
+            "lubrication": {"viscosity": self.VISCOSITY, **lubrication},
+        }
 
     def made(self, eps: float, case: dict, **columns: float) -> Run:
-        values = dict.fromkeys(("time", "crank_angle", "rod_angle", "crank_speed", "rod_speed", "piston_velocity",
-                                "eccentricity_y"), 0.0)
+        values = dict.fromkeys(
+            ("time", "crank_angle", "rod_angle", "crank_speed", "rod_speed", "piston_velocity", "eccentricity_y"), 0.0
+        )
         values |= {"eccentricity_x": eps * self.CLEARANCE, "eccentricity_ratio": eps, "film_thickness": 1.0, "phase": 1}
         return run({name: [value] for name, value in (values | columns).items()}, case)
 
@@ -155,26 +163,36 @@ class FilmPressure(unittest.TestCase):
         unit = self.VISCOSITY * self.WIDTH * radius**3 / self.CLEARANCE**2
         rod = 1e-6
         for eps, wedge, rate, radial, tangential in (
-                (0.5, 1, -0.001, -1.7488, 4.8261), (0.5, 1, 0.3, -14.7324, 6.6629), (0.5, 1, -0.3, 2.6801, 3.0107),
-                (0.9, 1, 0.3, -135.4481, 23.1470), (0.9, 1, -0.3, 1.1114, 4.5537), (0.99, 1, -0.3, 0.6850, 4.9871)):
-            pin_speed = wedge / (1 - 2 * rod / (eps * self.CLEARANCE))    # the pin's centre moves with the rod's end
-            made = self.made(eps, self.case({"law": "pinkus_sternlicht"}, rod, 1e-9), rod_speed=-pin_speed,
-                             piston_velocity=-rate * self.CLEARANCE)
+            (0.5, 1, -0.001, -1.7488, 4.8261),
+            (0.5, 1, 0.3, -14.7324, 6.6629),
+            (0.5, 1, -0.3, 2.6801, 3.0107),
+            (0.9, 1, 0.3, -135.4481, 23.1470),
+            (0.9, 1, -0.3, 1.1114, 4.5537),
+            (0.99, 1, -0.3, 0.6850, 4.9871),
+        ):
+            pin_speed = wedge / (1 - 2 * rod / (eps * self.CLEARANCE))  # the pin's centre moves with the rod's end
+            made = self.made(
+                eps,
+                self.case({"law": "pinkus_sternlicht"}, rod, 1e-9),
+                rod_speed=-pin_speed,
+                piston_velocity=-rate * self.CLEARANCE,
+            )
             np.testing.assert_allclose(self.resultant(made) / unit, [radial, tangential], rtol=2e-3, atol=2e-3)
 
     def test_oscillating_film(self) -> None:
         speed, rod, crank = 300.0, 0.2, 0.05
         radius = self.BEARING - self.CLEARANCE
         for number, in_phase, out_of_phase in ((0.17, -9.67356114, 0.02133481), (1.0, -9.63125302, 0.73596503)):
-            case = self.case({"law": "oscillating_film", "kinematic_viscosity": speed * (self.CLEARANCE / number) ** 2},
-                             rod, crank)
-            unit = self.VISCOSITY * radius**2 / self.CLEARANCE**2 * self.WIDTH   # of a force, over the surface speed
-            made = self.made(0.5, case, crank_speed=speed)                   # U = -R (r/l) w, real
+            case = self.case(
+                {"law": "oscillating_film", "kinematic_viscosity": speed * (self.CLEARANCE / number) ** 2}, rod, crank
+            )
+            unit = self.VISCOSITY * radius**2 / self.CLEARANCE**2 * self.WIDTH  # of a force, over the surface speed
+            made = self.made(0.5, case, crank_speed=speed)  # U = -R (r/l) w, real
             surface = -radius * crank / rod * speed
             np.testing.assert_allclose(self.resultant(made), [0, -unit * surface * in_phase], rtol=2e-3, atol=1e-6)
-            made = self.made(0.5, case, crank_speed=speed, crank_angle=np.pi / 2)   # U imaginary
+            made = self.made(0.5, case, crank_speed=speed, crank_angle=np.pi / 2)  # U imaginary
             rate = crank / rod * speed**2 / np.sqrt(1 - (crank / rod) ** 2)
-            surface = radius * rate / speed                                  # Re(-i s P*) = s Im P*
+            surface = radius * rate / speed  # Re(-i s P*) = s Im P*
             np.testing.assert_allclose(self.resultant(made), [0, -unit * surface * out_of_phase], rtol=2e-3, atol=1e-6)
 
     def test_no_pressure_in_contact(self) -> None:
@@ -195,21 +213,43 @@ class MadeResults:
         wave, beat = np.cos(angle), np.sin(37 * angle)
         rough = 0 if name.endswith("ideal") else 2e4
         flores = not name.startswith(("sim", "wiebe"))
-        columns = {"time": angle / 250, "crank_angle": angle, "crank_speed": 250 + 20 * wave, "rod_speed": wave,
-                   "piston_velocity": 10 * np.sin(angle + 1e-3 * beat) + 0.01, "crank_moment": 100 * wave + rough * beat}
-        columns |= {name: 3e3 * wave + rough * beat for name in
-                    ("crank_acceleration", "rod_acceleration", "piston_acceleration", "pin_force_x", "pin_force_y")}
+        columns = {
+            "time": angle / 250,
+            "crank_angle": angle,
+            "crank_speed": 250 + 20 * wave,
+            "rod_speed": wave,
+            "piston_velocity": 10 * np.sin(angle + 1e-3 * beat) + 0.01,
+            "crank_moment": 100 * wave + rough * beat,
+        }
+        columns |= {
+            name: 3e3 * wave + rough * beat
+            for name in ("crank_acceleration", "rod_acceleration", "piston_acceleration", "pin_force_x", "pin_force_y")
+        }
         if rough:
             e = np.array([np.cos(3 * angle), np.sin(2 * angle)]) * 1e-5
-            columns |= {"eccentricity_x": e[0], "eccentricity_y": e[1], "eccentricity_ratio": np.hypot(*e) / 1e-5,
-                        "film_thickness": 1e-5 - np.hypot(*e)}
-        columns |= {"cylinder_volume": 2e-4 - 1e-4 * wave, "cylinder_pressure": 1e5 + 3e6 * wave**16, "gas_force": 1e4 * wave**16}
-        case = {"joint": {"clearance": 1e-5}, "combustion": {"start_deg": 340.0},
-                "drive": {"kind": "constant_speed" if flores else "free"}}
+            columns |= {
+                "eccentricity_x": e[0],
+                "eccentricity_y": e[1],
+                "eccentricity_ratio": np.hypot(*e) / 1e-5,
+                "film_thickness": 1e-5 - np.hypot(*e),
+            }
+        columns |= {
+            "cylinder_volume": 2e-4 - 1e-4 * wave,
+            "cylinder_pressure": 1e5 + 3e6 * wave**16,
+            "gas_force": 1e4 * wave**16,
+        }
+        case = {
+            "joint": {"clearance": 1e-5},
+            "combustion": {"start_deg": 340.0},
+            "drive": {"kind": "constant_speed" if flores else "free"},
+        }
         if "friction" in name:
             case["friction"] = {"coefficient": 0.05}
         if "lubricated" in name or name.startswith("sim"):
-            case["lubrication"] = {"law": "oscillating_film" if "oscillating" in name else "pinkus_sternlicht", "viscosity": 0.4}
+            case["lubrication"] = {
+                "law": "oscillating_film" if "oscillating" in name else "pinkus_sternlicht",
+                "viscosity": 0.4,
+            }
         made = run(columns, case)
         return Run(name, made.trace, made.units, made.events, case=case)
 
@@ -230,19 +270,40 @@ def overlaps(drawing: plt.Figure) -> list[tuple[str, str]]:
     drawing.canvas.draw()
     width, height = drawing.canvas.get_width_height()
     boxes = [(text.get_text(), text.get_window_extent()) for text in written(drawing)]
-    found = [(name, "the margin") for name, box in boxes
-             if box.x0 < -1 or box.y0 < -1 or box.x1 > width + 1 or box.y1 > height + 1]
+    found = [
+        (name, "the margin")
+        for name, box in boxes
+        if box.x0 < -1 or box.y0 < -1 or box.x1 > width + 1 or box.y1 > height + 1
+    ]
     for i, (name, box) in enumerate(boxes):
-        found += [(name, other) for other, second in boxes[i + 1:]
-                  if min(box.x1, second.x1) - max(box.x0, second.x0) > 0.5
-                  and min(box.y1, second.y1) - max(box.y0, second.y0) > 0.5]
+        found += [
+            (name, other)
+            for other, second in boxes[i + 1 :]
+            if min(box.x1, second.x1) - max(box.x0, second.x0) > 0.5
+            and min(box.y1, second.y1) - max(box.y0, second.y0) > 0.5
+        ]
     return found
 
 
 class Drawing(unittest.TestCase):
     def test_figures_are_drawn_and_no_text_overlaps(self) -> None:
         table = read_figures()
-        for number in ("6.1", "6.2", "6.5", "6.6", "6.7", "6.8", "6.33", "A.2", "B.3", "B.5", "B.6", "B.7", "B.9", "B.21"):
+        for number in (
+            "6.1",
+            "6.2",
+            "6.5",
+            "6.6",
+            "6.7",
+            "6.8",
+            "6.33",
+            "A.2",
+            "B.3",
+            "B.5",
+            "B.6",
+            "B.7",
+            "B.9",
+            "B.21",
+        ):
             drawing = figures.draw(table[number], MadeResults())
             self.assertEqual(overlaps(drawing), [], number)
             self.assertTrue(all(axes.lines or axes.collections for axes in drawing.axes), number)
@@ -266,7 +327,7 @@ class Drawing(unittest.TestCase):
 
     def test_details_show_the_ideal_joint(self) -> None:
         table, results = read_figures(), MadeResults()
-        self.assertEqual([len(row) for row in figures.arrange(table["6.1"], results)], [2])          # same range
+        self.assertEqual([len(row) for row in figures.arrange(table["6.1"], results)], [2])  # same range
         rows = figures.arrange(table["6.4"], results)
         self.assertEqual([[panel.detail for panel in row] for row in rows], [[False, False], [True, True]])
         rows = figures.arrange(table["B.3"], results)
@@ -277,10 +338,20 @@ class Reading(unittest.TestCase):
     def test_a_case_as_run(self) -> None:
         with tempfile.TemporaryDirectory() as work:
             path = Path(work) / "x.resolved.nml"
-            path.write_text("&case\n  title = 'it''s'\n/\n&joint\n  clearance = 5.0E-04  ! m\n/\n&contact\n"
-                            "  density = 1.0, 2.0  ! kg/m^3\n/\n&output\n  every_step = .true.\n/\n", encoding="utf-8")
-            self.assertEqual(read_case(path), {"case": {"title": "it's"}, "joint": {"clearance": 5e-4},
-                                               "contact": {"density": [1.0, 2.0]}, "output": {"every_step": True}})
+            path.write_text(
+                "&case\n  title = 'it''s'\n/\n&joint\n  clearance = 5.0E-04  ! m\n/\n&contact\n"
+                "  density = 1.0, 2.0  ! kg/m^3\n/\n&output\n  every_step = .true.\n/\n",
+                encoding="utf-8",
+            )
+            self.assertEqual(
+                read_case(path),
+                {
+                    "case": {"title": "it's"},
+                    "joint": {"clearance": 5e-4},
+                    "contact": {"density": [1.0, 2.0]},
+                    "output": {"every_step": True},
+                },
+            )
 
     def test_columns_lose_their_units(self) -> None:
         trace = load_run(TOP / "data" / "sim_I.csv")
@@ -289,10 +360,18 @@ class Reading(unittest.TestCase):
 
     def test_a_contact_that_outlasts_the_run(self) -> None:
         time = np.linspace(0, 1, 11)
-        made = run({"time": time, "film_thickness": -time, "normal_force": 5 * time}, events={
-            "time": [0.1, 0.3, 0.75], "crank_angle": [0, 0, 0], "event": ["contact_begins", "contact_ends", "contact_begins"],
-            "normal_speed": [1, -1, 1], "duration": [np.nan, 0.2, np.nan], "max_penetration": [np.nan, 7, np.nan],
-            "max_normal_force": [np.nan, 8, np.nan]})
+        made = run(
+            {"time": time, "film_thickness": -time, "normal_force": 5 * time},
+            events={
+                "time": [0.1, 0.3, 0.75],
+                "crank_angle": [0, 0, 0],
+                "event": ["contact_begins", "contact_ends", "contact_begins"],
+                "normal_speed": [1, -1, 1],
+                "duration": [np.nan, 0.2, np.nan],
+                "max_penetration": [np.nan, 7, np.nan],
+                "max_normal_force": [np.nan, 8, np.nan],
+            },
+        )
         np.testing.assert_allclose(made.contacts.to_numpy(), [[0.1, 0.3, 7, 8], [0.75, 1, 1, 5]])
 
     def test_missing_results_say_what_to_run(self) -> None:

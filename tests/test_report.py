@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Opens pages of scripts/report.py in headless Chromium: they draw, play, scrub and zoom without an error in the console.
+"""Opens pages of scripts/report.py in headless Chromium: they draw, play, scrub, zoom, and the console stays empty.
 
     tests/test_report.py [PAGE.html...]     default: pages made for the test of one run of each kind
 
---screenshots DIR keeps pictures of what the browser showed. Needs Debian's packages chromium and chromium-driver; says so
-and leaves with 0 where they are missing. Ends with the line "N passed, N failed".
+--screenshots DIR keeps pictures of what the browser showed. Needs Debian's packages chromium and chromium-driver; says
+so and leaves with 0 where they are missing. Ends with the line "N passed, N failed".
 """
 
 import argparse
@@ -27,9 +27,17 @@ CASES = ("sim_I", "sim_V_oscillating", "dry_0500um", "ideal")
 
 LARGEST_PAGE = 6_000_000  # bytes
 
-BROWSER_OPTIONS = ("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
-                   "--disable-background-networking", "--disable-component-update", "--disable-sync",
-                   "--window-size=1280,1000")
+BROWSER_OPTIONS = (
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--window-size=1280,1000",
+)
 
 #: Whether anything is drawn on a canvas.
 PAINTED = """const c = document.getElementById(arguments[0]), blank = document.createElement('canvas');
@@ -51,11 +59,18 @@ class Browser:
             probe.bind(("127.0.0.1", 0))
             port = probe.getsockname()[1]
         self.base = f"http://127.0.0.1:{port}"
-        self.process = subprocess.Popen([driver, f"--port={port}"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.process = subprocess.Popen(
+            [driver, f"--port={port}"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
         self.session = ""
         options = {"binary": chromium, "args": [*BROWSER_OPTIONS, f"--user-data-dir={profile}"]}
-        capabilities = {"alwaysMatch": {"browserName": "chrome", "goog:chromeOptions": options,
-                                        "goog:loggingPrefs": {"browser": "ALL"}}}
+        capabilities = {
+            "alwaysMatch": {
+                "browserName": "chrome",
+                "goog:chromeOptions": options,
+                "goog:loggingPrefs": {"browser": "ALL"},
+            }
+        }
         for _ in range(50):
             try:
                 self.session = self.call("POST", "/session", {"capabilities": capabilities})["sessionId"]
@@ -123,17 +138,23 @@ def check_page(browser: Browser, page: Path, checks: Checks, pictures: Path | No
     name = page.stem
     checks.that(page.stat().st_size < LARGEST_PAGE, f"{name}: {page.stat().st_size} bytes")
     text = page.read_text(encoding="utf-8")
-    checks.that("src=\"http" not in text and "{{" not in text.split("<script", 1)[0], f"{name}: loads nothing, all filled in")
+    checks.that(
+        'src="http' not in text and "{{" not in text.split("<script", 1)[0], f"{name}: loads nothing, all filled in"
+    )
     browser.open(page)
     checks.that(browser.wait("window.gudgeon && window.gudgeon.ready"), f"{name}: gets ready")
     checks.that(browser.run("return document.getElementById('failure').hidden"), f"{name}: tells no failure")
     clearance = browser.run("return gudgeon.scene.clearance > 0")
     canvases = ["mechanism", "timeline"] + (["joint", "orbit"] if clearance else [])
     plots = browser.run("return gudgeon.scene.plots.length")
-    checks.that(plots >= 5 and browser.run("return document.querySelectorAll('#plots .main-svg').length") >= plots,
-                f"{name}: every plot is drawn")
-    empty = browser.run("return gudgeon.charts.filter(c => ![...c.div.querySelectorAll('.scatterlayer path.js-line')]"
-                        ".some(p => (p.getAttribute('d') || '').length > 20)).map(c => c.div.layout.title.text)")
+    checks.that(
+        plots >= 5 and browser.run("return document.querySelectorAll('#plots .main-svg').length") >= plots,
+        f"{name}: every plot is drawn",
+    )
+    empty = browser.run(
+        "return gudgeon.charts.filter(c => ![...c.div.querySelectorAll('.scatterlayer path.js-line')]"
+        ".some(p => (p.getAttribute('d') || '').length > 20)).map(c => c.div.layout.title.text)"
+    )
     checks.that(not empty, f"{name}: no curve in {empty}")
 
     before = {canvas: browser.run(IMAGE, canvas) for canvas in canvases}
@@ -163,9 +184,13 @@ def check_page(browser: Browser, page: Path, checks: Checks, pictures: Path | No
     time.sleep(0.3)
     checks.that(browser.run("return gudgeon.now") == stopped, f"{name}: pauses")
 
-    browser.run("const t = gudgeon.charts.filter(c => c.timed); Plotly.relayout(t[0].div,"
-                "{'xaxis.range[0]': 1, 'xaxis.range[1]': 2})")
-    linked = browser.wait("gudgeon.charts.filter(c => c.timed).every(c => Math.abs(c.div.layout.xaxis.range[1] - 2) < 1e-9)", 10)
+    browser.run(
+        "const t = gudgeon.charts.filter(c => c.timed); Plotly.relayout(t[0].div,"
+        "{'xaxis.range[0]': 1, 'xaxis.range[1]': 2})"
+    )
+    linked = browser.wait(
+        "gudgeon.charts.filter(c => c.timed).every(c => Math.abs(c.div.layout.xaxis.range[1] - 2) < 1e-9)", 10
+    )
     checks.that(linked, f"{name}: time axes zoom together")
     messages = browser.messages()
     checks.that(not messages, f"{name}: console: {messages}")
@@ -197,8 +222,10 @@ def main() -> int:
         pages = options.page
         for case in CASES if not pages else ():
             page = Path(work) / f"{case}.html"
-            made = subprocess.run([sys.executable, str(TOP / "scripts" / "report.py"), case, "--results", work, "-o", str(page)],
-                                  check=False)
+            made = subprocess.run(
+                [sys.executable, str(TOP / "scripts" / "report.py"), case, "--results", work, "-o", str(page)],
+                check=False,
+            )
             checks.that(made.returncode == 0, f"{case}: the page is made")
             if made.returncode == 0:
                 pages = [*pages, page]

@@ -1,9 +1,9 @@
 """Compares two traces: overlay, difference, and the horizon up to which they agree.
 
-Runs A and B agree in a column at a time if they differ there by no more than a share (the agreement) of the column's
-range in A over the time that both cover; a column that is constant in A is measured by its size. B is taken at the times
-of A by linear interpolation. A column's horizon is the last time up to which it has agreed without a break; the horizon
-of the runs is the earliest of their columns.
+Runs A and B agree in a column at a time if they differ there by no more than a share (the agreement) of the range that
+the column has in A over the time that both cover; a column that is constant in A is measured by its size. B is taken at
+the times of A by linear interpolation. A column's horizon is the last time up to which it has agreed without a break; the
+horizon of the runs is the earliest of their columns.
 """
 
 from collections.abc import Iterable
@@ -36,7 +36,7 @@ class Agreement:
     b: np.ndarray
     scale: float
     horizon: float
-    whole: bool   # whether the column agrees to the end
+    whole: bool  # whether the column agrees to the end
 
     @property
     def difference(self) -> np.ndarray:
@@ -81,15 +81,27 @@ def agree(a: Run, b: Run, columns: Iterable[str], agreement: float) -> list[Agre
 def draw(a: Run, b: Run, names: tuple[str, str], found: list[Agreement], agreement: float) -> Drawing:
     """Overlay and difference of each column, the horizon marked."""
     limit = min(item.horizon for item in found)
-    drawing, axes = plt.subplots(2 * len(found), 1, figsize=(WIDTH, 0.6 + 2.2 * len(found)), sharex=True, squeeze=False,
-                                 height_ratios=[3, 2] * len(found))
+    drawing, axes = plt.subplots(
+        2 * len(found),
+        1,
+        figsize=(WIDTH, 0.6 + 2.2 * len(found)),
+        sharex=True,
+        squeeze=False,
+        height_ratios=[3, 2] * len(found),
+    )
     for item, above, below in zip(found, axes[::2, 0], axes[1::2, 0]):
         above.plot(1e3 * item.time, item.a, color=BLUE, label=f"A: {names[0]}")
         above.plot(1e3 * item.time, item.b, color=VERMILION, linestyle=(0, (4, 1.5)), label=f"B: {names[1]}")
         above.set_ylabel(f"{item.column.replace('_', ' ')}\n[{a.units[item.column]}]")
         below.plot(1e3 * item.time, item.difference, color=BLACK, linewidth=0.6)
-        below.axhspan(-agreement * item.scale, agreement * item.scale, color=GREY, alpha=0.25, linewidth=0,
-                      label=f"agreement: ±{100 * agreement:g} % of the range")
+        below.axhspan(
+            -agreement * item.scale,
+            agreement * item.scale,
+            color=GREY,
+            alpha=0.25,
+            linewidth=0,
+            label=f"agreement: ±{100 * agreement:g} % of the range",
+        )
         below.set_ylabel("B − A")
         for axis in (above, below):
             axis.axvline(1e3 * limit, color=GREY, linewidth=1, linestyle=":", label=f"horizon: {1e3 * limit:.4g} ms")
@@ -102,8 +114,10 @@ def draw(a: Run, b: Run, names: tuple[str, str], found: list[Agreement], agreeme
 
 def report(found: list[Agreement], agreement: float) -> str:
     """What is printed: each column's largest difference and horizon, then the horizon of the runs."""
-    lines = [f"compared from {found[0].time[0]:.6g} s to {found[0].time[-1]:.6g} s; "
-             f"agreeing: within {agreement:g} of a column's range in A"]
+    lines = [
+        f"compared from {found[0].time[0]:.6g} s to {found[0].time[-1]:.6g} s; "
+        f"agreeing: within {agreement:g} of a column's range in A"
+    ]
     for item in found:
         largest = np.abs(item.difference).max() / item.scale if item.scale else np.abs(item.difference).max()
         until = "to the end" if item.whole else f"up to {item.horizon:.6g} s"
@@ -115,7 +129,9 @@ def report(found: list[Agreement], agreement: float) -> str:
 
 def shared_columns(a: Run, b: Run) -> list[str]:
     """Columns to compare unless told: those that both have and that move in one of them."""
-    return [column for column in COLUMNS if column in a and column in b and (np.ptp(a[column]) > 0 or np.ptp(b[column]) > 0)]
+    return [
+        column for column in COLUMNS if column in a and column in b and (np.ptp(a[column]) > 0 or np.ptp(b[column]) > 0)
+    ]
 
 
 def different_names(a: Path, b: Path) -> tuple[str, str]:

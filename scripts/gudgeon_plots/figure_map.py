@@ -10,7 +10,7 @@ TABLE = Path(__file__).resolve().parents[1] / "figures.csv"
 
 @dataclass(frozen=True)
 class Figure:
-    """A figure: every quantity (a name known to panels.QUANTITIES) of every run, with the ideal joint's run overlaid."""
+    """A figure: every quantity (a key of quantities.QUANTITIES) of every run, the ideal joint's run overlaid."""
 
     number: str
     quantities: tuple[str, ...]
@@ -39,6 +39,7 @@ def read_figures(path: Path = TABLE) -> dict[str, Figure]:
                 raise ValueError(f"{path}: {number!r} is no figure number")
             if number in figures:
                 raise ValueError(f"{path}: figure {number} is there twice")
-            figures[number] = Figure(number, tuple(row["quantities"].split()), tuple(row["runs"].split()), row["ideal"],
-                                     row["title"])
+            figures[number] = Figure(
+                number, tuple(row["quantities"].split()), tuple(row["runs"].split()), row["ideal"], row["title"]
+            )
     return figures

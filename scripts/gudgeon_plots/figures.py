@@ -13,7 +13,7 @@ from .quantities import QUANTITIES, Quantity
 from .results import MissingResult, Results, Run
 from .style import BLUE, GREY, VERMILION, WIDTH
 
-WIDE_HEIGHT = 1.75    # of an axis with a curve over time [inch]
+WIDE_HEIGHT = 1.75  # of an axis with a curve over time [inch]
 LEGEND_HEIGHT = 0.55  # of title and legend [inch]
 
 
@@ -109,19 +109,20 @@ def draw(figure: Figure, results: Results) -> Drawing:
     columns = max(len(row) for row in rows)
     plane_height = min(WIDTH / columns, 2.75)
     heights = [WIDE_HEIGHT if row[0].quantity.wide else plane_height for row in rows]
-    drawing, axes = plt.subplots(len(rows), columns, figsize=(WIDTH, sum(heights) + LEGEND_HEIGHT), squeeze=False,
-                                 height_ratios=heights)
+    drawing, axes = plt.subplots(
+        len(rows), columns, figsize=(WIDTH, sum(heights) + LEGEND_HEIGHT), squeeze=False, height_ratios=heights
+    )
     for row, row_axes in zip(rows, axes):
         for panel, axis in zip(row, row_axes):
             draw_panel(axis, panel, named=not all(p.quantity.draw_all for p in row))
-        for axis in row_axes[len(row):]:
+        for axis in row_axes[len(row) :]:
             axis.set_axis_off()
         previous = None
         for panel, axis in zip(row, row_axes):
             if panel.quantity is not previous:
                 axis.set_ylabel(panel.quantity.label)
             previous = panel.quantity
-    for column_axes in axes.T:   # curves over time: numbers below the lowest only
+    for column_axes in axes.T:  # curves over time: numbers below the lowest only
         for upper, lower in zip(column_axes, column_axes[1:]):
             if upper.get_xlabel() == lower.get_xlabel() and lower.get_xlabel().startswith(("time", "crank angle [")):
                 upper.set_xlabel("")

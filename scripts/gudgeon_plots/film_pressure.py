@@ -16,11 +16,11 @@ FILM_PHASE = 1
 class FilmMotion:
     """What a film sees of the joint, one value a row of the trace."""
 
-    ratio: np.ndarray        # eps = |e|/c
-    direction: np.ndarray    # of the eccentricity, from x towards y [rad]
+    ratio: np.ndarray  # eps = |e|/c
+    direction: np.ndarray  # of the eccentricity, from x towards y [rad]
     normal_rate: np.ndarray  # of |e| [m/s]
-    tangent_rate: np.ndarray # speed of the pin's centre along t [m/s]
-    pin_speed: np.ndarray    # the rod's angular velocity, x towards y [rad/s]
+    tangent_rate: np.ndarray  # speed of the pin's centre along t [m/s]
+    pin_speed: np.ndarray  # the rod's angular velocity, x towards y [rad/s]
 
 
 def film_motion(run: Run) -> FilmMotion:
@@ -32,8 +32,9 @@ def film_motion(run: Run) -> FilmMotion:
     rate_y = crank * q1 * np.cos(q) - rod * a1 * np.cos(a)
     direction = np.arctan2(run["eccentricity_y"], run["eccentricity_x"])
     cosine, sine = np.cos(direction), np.sin(direction)
-    return FilmMotion(run["eccentricity_ratio"], direction, rate_x * cosine + rate_y * sine,
-                      rate_y * cosine - rate_x * sine, -a1)
+    return FilmMotion(
+        run["eccentricity_ratio"], direction, rate_x * cosine + rate_y * sine, rate_y * cosine - rate_x * sine, -a1
+    )
 
 
 def pinkus_sternlicht(run: Run, angles: np.ndarray) -> np.ndarray:
@@ -68,9 +69,9 @@ def ideal_rod_motion(run: Run) -> tuple[np.ndarray, np.ndarray]:
 
 
 def oscillating(run: Run, angles: np.ndarray, points: int = 160) -> np.ndarray:
-    """Pressure of the oscillating film (5.1-5.9) in the bearing's frame [Pa] about its mean, both signs: dP/dth integrated
-    over points that crowd where the film is thin (Sommerfeld's substitution). The acceleration terms of the variant
-    'as_printed' are left out."""
+    """Pressure of the oscillating film (5.1-5.9) in the bearing's frame [Pa] about its mean, both signs: dP/dth
+    integrated over points that crowd where the film is thin (Sommerfeld's substitution). The acceleration terms of the
+    variant 'as_printed' are left out."""
     clearance, pin_radius = run.clearance, float(run.parameter("joint", "bearing_radius")) - run.clearance
     least = float(run.parameter("lubrication", "least_film_ratio", 1e-3))
     eps = np.minimum(film_motion(run).ratio, 1 - least)[:, None]
@@ -86,8 +87,9 @@ def oscillating(run: Run, angles: np.ndarray, points: int = 160) -> np.ndarray:
     resistance = inertia_function(v)
     flow = _integral(resistance / eta**2, theta)[:, -1:] / _integral((resistance + 1j * v) / eta**3, theta)[:, -1:]
     viscosity = float(run.parameter("lubrication", "viscosity"))
-    gradient = 2 * viscosity * pin_radius / clearance**2 * phasor \
-        * (eta * resistance - flow * (resistance + 1j * v)) / eta**3
+    gradient = (
+        2 * viscosity * pin_radius / clearance**2 * phasor * (eta * resistance - flow * (resistance + 1j * v)) / eta**3
+    )
     pressure = _integral(gradient.real, theta)
     pressure -= _integral(pressure, theta)[:, -1:] / (2 * np.pi)
     wrapped = (np.asarray(angles) + np.pi) % (2 * np.pi) - np.pi

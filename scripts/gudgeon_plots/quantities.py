@@ -31,7 +31,7 @@ class Quantity:
     draw: Callable[[Axes, Run, Run | None, str], None] | None = None
     draw_all: Callable[[Axes, list[Run]], None] | None = None
     wide: bool = True
-    note: Callable[[Run], str] | None = None   # beside the run's name
+    note: Callable[[Run], str] | None = None  # beside the run's name
 
     def needs_detail(self, run: Run, ideal: Run | None) -> bool:
         """Whether the ideal joint's curve would be flattened by the run's peaks."""
@@ -78,8 +78,9 @@ def ideal_line(axis: Axes, x: np.ndarray, y: np.ndarray) -> None:
     axis.plot(x, y, color=BLACK, linestyle=(0, (4, 2)), linewidth=0.7, label="ideal joint")
 
 
-def series(label: str, values: Callable[[Run], np.ndarray],
-           extra: Callable[[Axes, Run], None] | None = None) -> Quantity:
+def series(
+    label: str, values: Callable[[Run], np.ndarray], extra: Callable[[Axes, Run], None] | None = None
+) -> Quantity:
     """A curve over time or crank angle, the ideal joint overlaid."""
 
     def draw(axis: Axes, run: Run, ideal: Run | None, colour: str) -> None:
@@ -114,8 +115,14 @@ def contact_peaks(axis: Axes, run: Run) -> None:
         begin, end = speed * begin + np.degrees(run["crank_angle"][0]), speed * end + np.degrees(run["crank_angle"][0])
     force = 1e-3 * contacts["force"]
     axis.hlines(force, scale * begin, scale * end, color=PURPLE, linewidth=0.9)
-    axis.plot(0.5 * scale * (begin + end), force, ".", color=PURPLE, markersize=3,
-              label="largest normal force of each contact")
+    axis.plot(
+        0.5 * scale * (begin + end),
+        force,
+        ".",
+        color=PURPLE,
+        markersize=3,
+        label="largest normal force of each contact",
+    )
 
 
 def film_thickness(axis: Axes, run: Run, _ideal: Run | None, colour: str) -> None:
@@ -158,7 +165,7 @@ def pin_orbit(axis: Axes, run: Run, _ideal: Run | None, colour: str) -> None:
 def portrait(axis: Axes, run: Run, ideal: Run | None, colour: str) -> None:
     axis.plot(run["piston_velocity"], 1e-3 * run["piston_acceleration"], color=colour, linewidth=0.6)
     if ideal is not None:
-        last = ideal["crank_angle"] >= ideal["crank_angle"][-1] - ideal.cycle   # one turn, or the dashes fill up
+        last = ideal["crank_angle"] >= ideal["crank_angle"][-1] - ideal.cycle  # one turn, or the dashes fill up
         ideal_line(axis, ideal["piston_velocity"][last], 1e-3 * ideal["piston_acceleration"][last])
     axis.set_xlabel("piston velocity [m/s]")
     axis.margins(x=0.05)
@@ -179,8 +186,15 @@ def section(axis: Axes, run: Run, ideal: Run | None, colour: str) -> None:
     """Once a cycle, at the gas-exchange dead centre, q = 0: first point open, then a line from point to point."""
     if ideal is not None:
         velocity, acceleration = once_a_cycle(ideal, 0.0)
-        axis.plot(1e3 * velocity, 1e-3 * acceleration, "+", color=BLACK, markersize=7, markeredgewidth=0.8,
-                  label="ideal joint, once a cycle")
+        axis.plot(
+            1e3 * velocity,
+            1e-3 * acceleration,
+            "+",
+            color=BLACK,
+            markersize=7,
+            markeredgewidth=0.8,
+            label="ideal joint, once a cycle",
+        )
     velocity, acceleration = once_a_cycle(run, 0.0)
     axis.plot(1e3 * velocity, 1e-3 * acceleration, "-", color=colour, linewidth=0.4, alpha=0.6)
     axis.plot(1e3 * velocity, 1e-3 * acceleration, "o", color=colour, markersize=3.5)
@@ -223,13 +237,19 @@ def fold(angle: np.ndarray, values: np.ndarray, period: float) -> tuple[np.ndarr
 
 
 def _release(run: Run) -> str:
-    return f"heat from {float(run.parameter('combustion', 'start_deg')) - 360:+.0f}°".replace("-", "−").replace("+0", "0")
+    return f"heat from {float(run.parameter('combustion', 'start_deg')) - 360:+.0f}°".replace("-", "−").replace(
+        "+0", "0"
+    )
 
 
 def wiebe_pressure(axis: Axes, runs: list[Run]) -> None:
     for run, colour in zip(runs, CYCLE):
-        axis.plot(np.degrees(run["crank_angle"]) - 360, run["cylinder_pressure"] / run["cylinder_pressure"][0],
-                  color=colour, label=_release(run))
+        axis.plot(
+            np.degrees(run["crank_angle"]) - 360,
+            run["cylinder_pressure"] / run["cylinder_pressure"][0],
+            color=colour,
+            label=_release(run),
+        )
     axis.set_xlabel("crank angle from firing dead centre [deg]")
     axis.set_xlim(-180, 180)
     axis.xaxis.set_major_locator(MultipleLocator(60))
@@ -238,8 +258,12 @@ def wiebe_pressure(axis: Axes, runs: list[Run]) -> None:
 
 def wiebe_indicator(axis: Axes, runs: list[Run]) -> None:
     for run, colour in zip(runs, CYCLE):
-        axis.plot(run["cylinder_volume"] / run["cylinder_volume"].max(),
-                  run["cylinder_pressure"] / run["cylinder_pressure"][0], color=colour, label=_release(run))
+        axis.plot(
+            run["cylinder_volume"] / run["cylinder_volume"].max(),
+            run["cylinder_pressure"] / run["cylinder_pressure"][0],
+            color=colour,
+            label=_release(run),
+        )
     axis.set_xlabel(r"volume $V/V_1$")
     axis.set_xlim(left=0)
     axis.set_ylim(bottom=0)

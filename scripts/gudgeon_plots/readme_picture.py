@@ -28,8 +28,12 @@ def bar(start: np.ndarray, end: np.ndarray, half_width: float) -> Polygon:
     """A straight bar from start to end."""
     along = (end - start) / np.hypot(*(end - start))
     across = half_width * np.array([-along[1], along[0]])
-    return Polygon([start + across, end + 0.7 * across, end - 0.7 * across, start - across], facecolor=STEEL,
-                   edgecolor=BLACK, linewidth=0.7)
+    return Polygon(
+        [start + across, end + 0.7 * across, end - 0.7 * across, start - across],
+        facecolor=STEEL,
+        edgecolor=BLACK,
+        linewidth=0.7,
+    )
 
 
 def mechanism(axis: Axes, run: Run, degrees: float) -> None:
@@ -44,12 +48,22 @@ def mechanism(axis: Axes, run: Run, degrees: float) -> None:
     width, below, above = 2.4 * bearing, 1.5 * bearing, 2.6 * bearing
 
     for side in (-1, 1):
-        axis.plot([side * 1.04 * width] * 2, [1.45 * crank, piston[1] + 4.6 * bearing], color=BLACK, linewidth=1.5, zorder=0)
+        axis.plot(
+            [side * 1.04 * width] * 2, [1.45 * crank, piston[1] + 4.6 * bearing], color=BLACK, linewidth=1.5, zorder=0
+        )
     axis.add_patch(Circle((0, 0), crank * 1.25, facecolor=LIGHT, edgecolor=GREY, linewidth=0.6))
     axis.add_patch(bar(np.zeros(2), crankpin, 0.9 * bearing))
-    axis.add_patch(FancyBboxPatch((-width, piston[1] - below), 2 * width, below + above,
-                                  boxstyle=f"round,pad=0,rounding_size={0.3 * bearing}", facecolor=LIGHT, edgecolor=BLACK,
-                                  linewidth=0.9))
+    axis.add_patch(
+        FancyBboxPatch(
+            (-width, piston[1] - below),
+            2 * width,
+            below + above,
+            boxstyle=f"round,pad=0,rounding_size={0.3 * bearing}",
+            facecolor=LIGHT,
+            edgecolor=BLACK,
+            linewidth=0.9,
+        )
+    )
     axis.add_patch(Circle(piston, bearing, facecolor="white", edgecolor=BLACK, linewidth=0.9))
     axis.add_patch(bar(crankpin, pin, 0.55 * bearing))
     axis.add_patch(Circle(pin, bearing - MAGNIFICATION * run.clearance, facecolor=BLUE, edgecolor=BLACK, linewidth=0.7))

@@ -25,8 +25,21 @@ MOST_ROWS = 8000
 ANGLES = 72
 
 #: Columns that the animation needs, where the run has them.
-MOTION = ("time", "crank_angle", "rod_angle", "piston_position", "crank_speed", "pin_force_x", "pin_force_y",
-          "eccentricity_x", "eccentricity_y", "film_thickness", "phase", "normal_force", "cylinder_pressure")
+MOTION = (
+    "time",
+    "crank_angle",
+    "rod_angle",
+    "piston_position",
+    "crank_speed",
+    "pin_force_x",
+    "pin_force_y",
+    "eccentricity_x",
+    "eccentricity_y",
+    "film_thickness",
+    "phase",
+    "normal_force",
+    "cylinder_pressure",
+)
 
 #: Plots over time: column, title, unit shown, factor; the ideal joint's curve overlaid where there is a twin.
 OVER_TIME = (
@@ -83,22 +96,56 @@ def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
             continue
         curves = [{"name": "this run", "x": "time", "x_factor": 1e3, "y": name, "y_factor": factor, "colour": BLUE}]
         if f"ideal {name}" in columns:
-            curves.append({"name": "ideal joint", "x": "time", "x_factor": 1e3, "y": f"ideal {name}", "y_factor": factor,
-                           "colour": BLACK, "dash": "dash"})
+            curves.append(
+                {
+                    "name": "ideal joint",
+                    "x": "time",
+                    "x_factor": 1e3,
+                    "y": f"ideal {name}",
+                    "y_factor": factor,
+                    "colour": BLACK,
+                    "dash": "dash",
+                }
+            )
         found.append({"title": title, "x": "time [ms]", "y": unit, "timed": True, "curves": curves})
 
     def plane(title: str, x: str, y: str, names: tuple[str, str], factors: tuple[float, float], **more: object) -> dict:
-        curve = {"name": title, "x": names[0], "x_factor": factors[0], "y": names[1], "y_factor": factors[1], "colour": BLUE}
+        curve = {
+            "name": title,
+            "x": names[0],
+            "x_factor": factors[0],
+            "y": names[1],
+            "y_factor": factors[1],
+            "colour": BLUE,
+        }
         return {"title": title, "x": x, "y": y, "timed": False, "square": True, "curves": [curve], **more}
 
     if run.clearance:
-        found.append(plane("Pin orbit over c", "e_y / c", "e_x / c", ("eccentricity_y", "eccentricity_x"),
-                           (1 / run.clearance,) * 2, circle=True))
-    found.append(plane("Piston: velocity and acceleration", "velocity [m/s]", "acceleration [10³ m/s²]",
-                       ("piston_velocity", "piston_acceleration"), (1.0, 1e-3)))
+        found.append(
+            plane(
+                "Pin orbit over c",
+                "e_y / c",
+                "e_x / c",
+                ("eccentricity_y", "eccentricity_x"),
+                (1 / run.clearance,) * 2,
+                circle=True,
+            )
+        )
+    found.append(
+        plane(
+            "Piston: velocity and acceleration",
+            "velocity [m/s]",
+            "acceleration [10³ m/s²]",
+            ("piston_velocity", "piston_acceleration"),
+            (1.0, 1e-3),
+        )
+    )
     if "cylinder_volume" in columns:
-        found.append(plane("p–V diagram", "volume [cm³]", "pressure [bar]", ("cylinder_volume", "cylinder_pressure"),
-                           (1e6, 1e-5)))
+        found.append(
+            plane(
+                "p–V diagram", "volume [cm³]", "pressure [bar]", ("cylinder_volume", "cylinder_pressure"), (1e6, 1e-5)
+            )
+        )
     return found
 
 
@@ -117,24 +164,35 @@ def warnings(run: Run) -> list[str]:
     if status != "done":
         found.append(f"The run did not end as asked: {status}.")
     if (beyond := number("impacts_beyond_validity") or 0) > 0:
-        found.append(f"{beyond:.0f} of {number('contacts') or 0:.0f} impacts were faster than the contact law's limit of "
-                     "validity, 1e-5 √(E/ρ).")
+        found.append(
+            f"{beyond:.0f} of {number('contacts') or 0:.0f} impacts were faster than the contact law's limit of "
+            "validity, 1e-5 √(E/ρ)."
+        )
     if (residual := number("max_energy_residual_relative") or 0) > 1e-6:
         found.append(f"The energy balance is open by {residual:.1e} of the energy: tighten the tolerance.")
     if run.clearance and (deepest := number("max_penetration") or 0) > 0.1 * run.clearance:
-        found.append(f"The deepest penetration, {1e6 * deepest:.3g} µm, is {deepest / run.clearance:.2g} clearances: contact "
-                     "laws take it for small.")
+        found.append(
+            f"The deepest penetration, {1e6 * deepest:.3g} µm, is {deepest / run.clearance:.2g} clearances: contact "
+            "laws take it for small."
+        )
     if run.parameter("lubrication", "law") and run.clearance and 0 < (number("min_film_thickness") or 0) < 1e-6:
-        found.append(f"The film gets as thin as {1e6 * number('min_film_thickness'):.3g} µm, the order of surface roughness, "
-                     "which the film law does not know.")
-    if run.parameter("lubrication", "law") == "oscillating_film" and (share := number("contact_time_fraction") or 0) > 0.5:
+        found.append(
+            f"The film gets as thin as {1e6 * number('min_film_thickness'):.3g} µm, the order of surface roughness, "
+            "which the film law does not know."
+        )
+    if (
+        run.parameter("lubrication", "law") == "oscillating_film"
+        and (share := number("contact_time_fraction") or 0) > 0.5
+    ):
         found.append(f"The pin touches the bearing {100 * share:.0f} % of the time: this film carries no radial load.")
     if not run.contacts.empty:
         duration = float((run.contacts["end"] - run.contacts["begin"]).median())
         interval = float(np.median(np.diff(run["time"])))
         if duration < 5 * interval:
-            found.append(f"Half of the contacts are shorter than {duration / interval:.1f} samples of the trace: peaks in the "
-                         "plots are cut short; the time line and the summary have them whole.")
+            found.append(
+                f"Half of the contacts are shorter than {duration / interval:.1f} samples of the trace: peaks in the "
+                "plots are cut short; the time line and the summary have them whole."
+            )
     return found
 
 
@@ -197,10 +255,18 @@ def page(run: Run, ideal: Run | None = None) -> str:
     data = b"".join(columns[name][rows].astype("<f4").tobytes() for name in used)
     touched = contacts(run)
     scene = {
-        "rows": len(rows), "columns": used, "plots": drawn, "contacts": touched, "line": time_line(columns),
-        "angles": ANGLES if film else 0, "signed": bool(film and film[2]), "clearance": run.clearance,
-        "crank": float(run.parameter("mechanism", "crank_length")), "rod": float(run.parameter("mechanism", "rod_length")),
-        "bearing": drawn_bearing_radius(run), "speed": float(run.parameter("initial", "crank_speed")),
+        "rows": len(rows),
+        "columns": used,
+        "plots": drawn,
+        "contacts": touched,
+        "line": time_line(columns),
+        "angles": ANGLES if film else 0,
+        "signed": bool(film and film[2]),
+        "clearance": run.clearance,
+        "crank": float(run.parameter("mechanism", "crank_length")),
+        "rod": float(run.parameter("mechanism", "rod_length")),
+        "bearing": drawn_bearing_radius(run),
+        "speed": float(run.parameter("initial", "crank_speed")),
         "peak": {
             "pin_force": float(columns["pin_force"].max()),
             "normal_force": max([contact["force"] for contact in touched], default=0.0),
@@ -211,29 +277,37 @@ def page(run: Run, ideal: Run | None = None) -> str:
     if "normal_force" in columns:
         scene["peak"]["normal_force"] = max(scene["peak"]["normal_force"], float(columns["normal_force"].max()))
     said = warnings(run)
-    case = "".join(rows_html([(key, shown(value)) for key, value in keys.items()], f"&{group}")
-                   for group, keys in run.case.items())
-    summary = rows_html([(name, summary_number(value), "" if unit == "1" else unit)
-                         for name, (value, unit) in run.summary.items() if not name.startswith("steps_of_order")])
+    case = "".join(
+        rows_html([(key, shown(value)) for key, value in keys.items()], f"&{group}") for group, keys in run.case.items()
+    )
+    summary = rows_html(
+        [
+            (name, summary_number(value), "" if unit == "1" else unit)
+            for name, (value, unit) in run.summary.items()
+            if not name.startswith("steps_of_order")
+        ]
+    )
     parts = {
         "title": html.escape(str(run.parameter("case", "title", "")) or run.name),
         "subtitle": f"{html.escape(run.name)}: {len(run['time'])} samples over {run['time'][-1]:.6g} s"
-                    + (f", of which {len(rows)} are kept here, peaks among them" if len(rows) < len(run["time"]) else ""),
+        + (f", of which {len(rows)} are kept here, peaks among them" if len(rows) < len(run["time"]) else ""),
         "style": (PAGE / "page.css").read_text(encoding="utf-8"),
         "script": (PAGE / "page.js").read_text(encoding="utf-8"),
         "warnings": "".join(f'<p class="warning">{html.escape(text)}</p>' for text in said)
-                    or '<p class="fine">Nothing to warn of.</p>',
+        or '<p class="fine">Nothing to warn of.</p>',
         "summary": f"<table>{summary}</table>",
         "case": f"<table>{case}</table>",
-        "footer": html.escape(f"gudgeon {run.summary.get('version', ('', ''))[0]}. Film pressures are computed for this page "
-                              "from the motion in the trace. Plots by plotly.js, MIT licence."),
+        "footer": html.escape(
+            f"gudgeon {run.summary.get('version', ('', ''))[0]}. Film pressures are computed for this page "
+            "from the motion in the trace. Plots by plotly.js, MIT licence."
+        ),
         "scene": json.dumps(scene, ensure_ascii=False).replace("</", "<\\/"),
         "trace": packed(data),
         "pressure": packed(film[0].tobytes()) if film else "",
         "library": packed(get_plotlyjs().encode("utf-8")),
     }
     text = (PAGE / "page.html").read_text(encoding="utf-8")
-    head, *fields = text.split("{{")   # each field once, so that nothing is replaced inside what was put in
+    head, *fields = text.split("{{")  # each field once, so that nothing is replaced inside what was put in
     return head + "".join(parts[name] + rest for name, rest in (field.split("}}", 1) for field in fields))
 
 
@@ -241,12 +315,24 @@ def time_line(columns: dict[str, np.ndarray]) -> dict:
     """What the page's time line shows: the film's thickness from 0 or below, or the size of the pin's force."""
     if "film_thickness" in columns:
         thickness = columns["film_thickness"]
-        return {"column": "film_thickness", "title": "film thickness", "unit": "µm", "factor": 1e6,
-                "range": [min(0.0, float(thickness.min())), float(thickness.max())]}
-    return {"column": "pin_force", "title": "pin reaction", "unit": "kN", "factor": 1e-3,
-            "range": [0.0, float(columns["pin_force"].max())]}
+        return {
+            "column": "film_thickness",
+            "title": "film thickness",
+            "unit": "µm",
+            "factor": 1e6,
+            "range": [min(0.0, float(thickness.min())), float(thickness.max())],
+        }
+    return {
+        "column": "pin_force",
+        "title": "pin reaction",
+        "unit": "kN",
+        "factor": 1e-3,
+        "range": [0.0, float(columns["pin_force"].max())],
+    }
 
 
 def drawn_bearing_radius(run: Run) -> float:
     """The bearing's radius [m], or one that looks well where the case has none."""
-    return float(run.parameter("joint", "bearing_radius", 0) or 0) or 0.2 * float(run.parameter("mechanism", "crank_length"))
+    return float(run.parameter("joint", "bearing_radius", 0) or 0) or 0.2 * float(
+        run.parameter("mechanism", "crank_length")
+    )

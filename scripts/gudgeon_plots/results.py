@@ -55,21 +55,31 @@ class Run:
 
     @cached_property
     def contacts(self) -> pd.DataFrame:
-        """One row a contact: begin [s], end [s], penetration [m], force [N]. One that lasts beyond the run ends with it,
-        its largest values those of the trace."""
+        """One row a contact: begin [s], end [s], penetration [m], force [N]. One that lasts beyond the run ends with
+        it, its largest values those of the trace."""
         ends = self.events[self.events["event"] == "contact_ends"]
-        found = pd.DataFrame({
-            "begin": ends["time"] - ends["duration"],
-            "end": ends["time"],
-            "penetration": ends["max_penetration"],
-            "force": ends["max_normal_force"],
-        }).astype(float).reset_index(drop=True)
+        found = (
+            pd.DataFrame(
+                {
+                    "begin": ends["time"] - ends["duration"],
+                    "end": ends["time"],
+                    "penetration": ends["max_penetration"],
+                    "force": ends["max_normal_force"],
+                }
+            )
+            .astype(float)
+            .reset_index(drop=True)
+        )
         begins = self.events.loc[self.events["event"] == "contact_begins", "time"]
         if len(begins) > len(found):
             rest = self.trace[self.trace["time"] >= begins.iloc[-1]]
             if not rest.empty:
-                found.loc[len(found)] = [begins.iloc[-1], rest["time"].iloc[-1], -rest["film_thickness"].min(),
-                                         rest["normal_force"].max()]
+                found.loc[len(found)] = [
+                    begins.iloc[-1],
+                    rest["time"].iloc[-1],
+                    -rest["film_thickness"].min(),
+                    rest["normal_force"].max(),
+                ]
         return found
 
 
@@ -126,8 +136,9 @@ def load_run(path: Path) -> Run:
     def beside(suffix: str) -> Path:
         return base.with_name(base.name + suffix)
 
-    events = pd.DataFrame(columns=["time", "crank_angle", "event", "normal_speed", "duration", "max_penetration",
-                                   "max_normal_force"])
+    events = pd.DataFrame(
+        columns=["time", "crank_angle", "event", "normal_speed", "duration", "max_penetration", "max_normal_force"]
+    )
     if beside(".events.csv").exists() and not ideal:
         events = read_table(beside(".events.csv"))[0]
     summary = read_summary(beside(".summary.csv")) if beside(".summary.csv").exists() and not ideal else {}
@@ -143,7 +154,9 @@ def case_files() -> dict[str, Path]:
 class Results:
     """The runs in a directory, made by the release build where they are missing."""
 
-    def __init__(self, directory: Path, run_missing: bool = True, rerun: bool = False, case: Path | None = None) -> None:
+    def __init__(
+        self, directory: Path, run_missing: bool = True, rerun: bool = False, case: Path | None = None
+    ) -> None:
         """`case` is a case file beside those of cases/."""
         self.directory = directory
         self.files = case_files() | ({case.stem: case.resolve()} if case else {})
@@ -168,7 +181,9 @@ class Results:
         if not self.run_missing:
             raise MissingResult(f"no result in {self.directory}; run: {' '.join(command)}")
         print(f"running {' '.join(sorted(wanted))}", file=sys.stderr, flush=True)
-        outcome = subprocess.run(command, cwd=TOP, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
+        outcome = subprocess.run(
+            command, cwd=TOP, capture_output=True, text=True, check=False
+        )
         if outcome.returncode != 0:
             print(outcome.stderr, file=sys.stderr, end="")
 
