@@ -11,6 +11,7 @@ Runs the cases whose results are missing with the release build.
 """
 
 import argparse
+import signal
 import sys
 import time
 from pathlib import Path
@@ -67,6 +68,7 @@ def draw_figures(wanted: list[Figure], results: Results, out: Path, formats: lis
 
 
 def main() -> int:
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # --list | head
     options = arguments()
     formats = options.format or ["png"]
     out = options.out or options.results / "figures"
