@@ -342,7 +342,7 @@ contains
   pure subroutine guess_stages(self)
     class(radau_t), intent(inout) :: self
     real(dp) :: weights(0:most_stages)
-    integer :: i, j, s, m, k
+    integer :: i, j, l, s, m, k
 
     m = self%m
     k = self%k
@@ -351,20 +351,17 @@ contains
       self%w = 0
       return
     end if
-    self%rates = 0
     do i = 1, s
       call lagrange(self, self%stages_done, 1 + self%formula(self%level)%c(i)*self%h/self%h_done, weights)
-      do j = 1, self%stages_done
-        self%rates(:, i) = self%rates(:, i) + weights(j)*self%z(m + 1:m + k, j)
-      end do
-      self%rates(:, i) = self%rates(:, i) - self%z(m + 1:m + k, self%stages_done)
-    end do
-    do i = 1, s
-      self%w(:, i) = 0
-      do j = 1, s
-        self%w(:, i) = self%w(:, i) + self%formula(self%level)%t_inverse(i, j)*self%rates(:, j)
+      weights(self%stages_done) = weights(self%stages_done) - 1
+      do l = 1, k
+        self%rates(l, i) = 0
+        do j = 1, self%stages_done
+          self%rates(l, i) = self%rates(l, i) + weights(j)*self%z(m + l, j)
+        end do
       end do
     end do
+    call combine(k, s, 1.0_dp, self%formula(self%level)%t_inverse, self%rates, k, self%w, k)
   end subroutine guess_stages
 
   !> Lagrange polynomials at x over the nodes 0, c_1, ..., c_s of a formula.
@@ -419,7 +416,7 @@ contains
       end if
       last_change = change
       if (self%trust*change <= newton_goal(self)) then
-        call expand_stages(self)
+        call expand_stages(self, .true.)
         outcome = try_accepted
         return
       end if
@@ -457,22 +454,27 @@ contains
     m = self%m
     k = self%k
     associate (formula => self%formula(self%level), h => self%h, s => self%formula(self%level)%stages)
-      do i = 1, s
-        self%dw(:, i) = 0
-        do j = 1, s
-          self%dw(:, i) = self%dw(:, i) + formula%t_inverse(i, j)*self%f_stage(m + 1:m + k, j)
-        end do
+      call combine(k, s, 1.0_dp, formula%t_inverse, self%f_stage(m + 1, 1), size(self%f_stage, 1), self%dw, k)
+      do i = 1, k
+        self%dw(i, 1) = self%dw(i, 1) - (formula%gamma/h)*self%w(i, 1)
       end do
-      self%dw(:, 1) = self%dw(:, 1) - (formula%gamma/h)*self%w(:, 1)
       call solve(self%e1, self%pivot1, self%dw(:, 1))
       do j = 1, s/2
         shift = cmplx(formula%alpha(j), -formula%beta(j), dp)/h
-        self%right = cmplx(self%dw(:, 2*j), self%dw(:, 2*j + 1), dp) - shift*cmplx(self%w(:, 2*j), self%w(:, 2*j + 1), dp)
+        do i = 1, k
+          self%right(i) = cmplx(self%dw(i, 2*j), self%dw(i, 2*j + 1), dp) - shift*cmplx(self%w(i, 2*j), self%w(i, 2*j + 1), dp)
+        end do
         call solve(self%e2(:, :, j), self%pivot2(:, j), self%right)
-        self%dw(:, 2*j) = real(self%right, dp)
-        self%dw(:, 2*j + 1) = aimag(self%right)
+        do i = 1, k
+          self%dw(i, 2*j) = real(self%right(i), dp)
+          self%dw(i, 2*j + 1) = aimag(self%right(i))
+        end do
       end do
-      self%w(:, :s) = self%w(:, :s) + self%dw(:, :s)
+      do j = 1, s
+        do i = 1, k
+          self%w(i, j) = self%w(i, j) + self%dw(i, j)
+        end do
+      end do
     end associate
   end subroutine newton_step
 
@@ -493,40 +495,64 @@ contains
 
   !> Increments of all components at the stages: rates from w, positions by collocation, quadratures from the last
   !> evaluation.
-  pure subroutine expand_stages(self)
+  subroutine expand_stages(self, with_quadratures)
     class(radau_t), intent(inout) :: self
-    integer :: i, j, m, k
+    logical, intent(in) :: with_quadratures
+    integer :: i, j, n, m, k
 
+    n = self%n
     m = self%m
     k = self%k
     associate (formula => self%formula(self%level), h => self%h, s => self%formula(self%level)%stages, z => self%z_new)
+      call combine(k, s, 1.0_dp, formula%t, self%w, k, self%rates, k)
       do i = 1, s
-        z(m + 1:m + k, i) = 0
-        do j = 1, s
-          z(m + 1:m + k, i) = z(m + 1:m + k, i) + formula%t(i, j)*self%w(:, j)
+        do j = 1, k
+          z(m + j, i) = self%rates(j, i)
         end do
       end do
-      do i = 1, s
-        z(:m, i) = (h*formula%c(i))*self%y(m + 1:2*m)
-        z(m + k + 1:, i) = 0
-        do j = 1, s
-          z(:m, i) = z(:m, i) + (h*formula%a(i, j))*z(m + 1:2*m, j)
-          z(m + k + 1:, i) = z(m + k + 1:, i) + (h*formula%a(i, j))*self%f_stage(m + k + 1:self%n, j)
+      if (m > 0) then
+        call combine(m, s, h, formula%a, self%rates, k, z, n)
+        do i = 1, s
+          do j = 1, m
+            z(j, i) = z(j, i) + h*formula%c(i)*self%y(m + j)
+          end do
         end do
-      end do
+      end if
+      if (with_quadratures .and. n > m + k) &
+        call combine(n - m - k, s, h, formula%a, self%f_stage(m + k + 1, 1), size(self%f_stage, 1), z(m + k + 1, 1), n)
     end associate
   end subroutine expand_stages
+
+  !> y(:, i) = factor sum_j matrix(i, j) x(:, j) over the stages, for the first `rows` rows.
+  pure subroutine combine(rows, stages, factor, matrix, x, first_x, y, first_y)
+    integer, intent(in) :: rows, stages, first_x, first_y
+    real(dp), intent(in) :: factor, matrix(stages, stages), x(first_x, *)
+    real(dp), intent(inout) :: y(first_y, *)
+    real(dp) :: total
+    integer :: i, j, r
+    do i = 1, stages
+      do r = 1, rows
+        total = 0
+        do j = 1, stages
+          total = total + matrix(i, j)*x(r, j)
+        end do
+        y(r, i) = factor*total
+      end do
+    end do
+  end subroutine combine
 
   !> Right-hand sides at the stages of self%w.
   subroutine evaluate_stages(self, problem, inside)
     class(radau_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
     logical, intent(out) :: inside
-    integer :: i
-    call expand_stages(self)
+    integer :: i, j
+    call expand_stages(self, .false.)
     inside = .true.
     do i = 1, self%formula(self%level)%stages
-      self%y_stage = self%y + self%z_new(:, i)
+      do j = 1, self%n
+        self%y_stage(j) = self%y(j) + self%z_new(j, i)
+      end do
       self%statistics%evaluations = self%statistics%evaluations + 1
       call problem%derivatives(self%t + self%formula(self%level)%c(i)*self%h, self%y_stage, self%f_stage(:, i), inside)
       if (.not. inside) return
