@@ -281,28 +281,42 @@ contains
   !> Predict y at the end of the step; phi becomes the differences that the prediction extrapolates.
   pure subroutine predict(self)
     class(adams_t), intent(inout) :: self
-    real(dp) :: change
-    integer :: i, j, k
+    associate (c => self%coefficients)
+      call extrapolate(self%n, self%k, c%ns, self%h, c%g, c%beta, c%beta_next, self%y, self%carry, self%phi, self%predicted, &
+        self%carry_predicted)
+    end associate
+  end subroutine predict
 
-    k = self%k
-    do j = self%coefficients%ns + 1, k
-      self%phi(:, j) = self%coefficients%beta(j)*self%phi(:, j)
+  !> The work of `predict` on plain arrays, which the compiler knows to be apart.
+  pure subroutine extrapolate(n, k, ns, h, g, beta, beta_next, y, carry, phi, predicted, carry_predicted)
+    integer, intent(in) :: n, k, ns
+    real(dp), intent(in) :: h, g(k), beta(k), beta_next, y(n), carry(n)
+    real(dp), intent(inout) :: phi(n, k + 2)
+    real(dp), intent(out) :: predicted(n), carry_predicted(n)
+    real(dp) :: sum, next, change
+    integer :: i, j
+    do i = 1, n
+      phi(i, k + 2) = beta_next*phi(i, k + 1)
+      phi(i, k + 1) = 0
     end do
-    self%phi(:, k + 2) = self%coefficients%beta_next*self%phi(:, k + 1)
-    self%phi(:, k + 1) = 0
-    self%predicted = 0
-    do j = k, 1, -1
-      do i = 1, self%n
-        self%predicted(i) = self%predicted(i) + self%coefficients%g(j)*self%phi(i, j)
-        self%phi(i, j) = self%phi(i, j) + self%phi(i, j + 1)
+    do j = ns + 1, k
+      do i = 1, n
+        phi(i, j) = beta(j)*phi(i, j)
       end do
     end do
-    do i = 1, self%n
-      change = self%h*self%predicted(i) - self%carry(i)
-      self%predicted(i) = self%y(i) + change
-      self%carry_predicted(i) = (self%predicted(i) - self%y(i)) - change
+    do i = 1, n
+      sum = 0
+      next = 0
+      do j = k, 1, -1
+        sum = sum + g(j)*phi(i, j)
+        next = phi(i, j) + next
+        phi(i, j) = next
+      end do
+      change = h*sum - carry(i)
+      predicted(i) = y(i) + change
+      carry_predicted(i) = (predicted(i) - y(i)) - change
     end do
-  end subroutine predict
+  end subroutine extrapolate
 
   !> Evaluate, estimate the error, correct, let the problem judge, evaluate again.
   subroutine attempt(self, problem, x_new, t_new, errors, outcome, fraction)
@@ -458,8 +472,8 @@ contains
   pure subroutine accept(self, x_new, t_new)
     class(adams_t), intent(inout) :: self
     real(dp), intent(in) :: x_new, t_new
-    real(dp) :: highest
-    integer :: i, j, k
+    real(dp) :: factor
+    integer :: i, k
 
     call count_limit(self, x_new)
     k = self%k
@@ -470,18 +484,14 @@ contains
     self%t = t_new
     self%x_old = self%x
     self%x = x_new
+    factor = self%h*self%coefficients%g(k + 1)
     do i = 1, self%n
       self%carry(i) = (self%y_new(i) - self%predicted(i)) - &
-        (self%h*self%coefficients%g(k + 1)*(self%f_predicted(i) - self%phi(i, 1)) - self%carry_predicted(i))
+        (factor*(self%f_predicted(i) - self%phi(i, 1)) - self%carry_predicted(i))
       self%y_old(i) = self%y(i)
       self%y(i) = self%y_new(i)
-      highest = self%f_new(i) - self%phi(i, 1)
-      self%phi(i, k + 2) = highest - self%phi(i, k + 2)
-      self%phi(i, k + 1) = highest
-      do j = 1, k
-        self%phi(i, j) = self%phi(i, j) + highest
-      end do
     end do
+    call raise_differences(self%n, k, self%f_new, self%phi)
     self%f = self%f_new
     if (self%rooted) self%f(:self%n) = self%f_new(:self%n)/(2*x_new)
     self%order = k
@@ -492,6 +502,23 @@ contains
       count%smallest_step = min(count%smallest_step, self%t - self%t_old)
     end associate
   end subroutine accept
+
+  !> Differences at the end of the step, from the extrapolated ones and f there.
+  pure subroutine raise_differences(n, k, f, phi)
+    integer, intent(in) :: n, k
+    real(dp), intent(in) :: f(n)
+    real(dp), intent(inout) :: phi(n, k + 2)
+    real(dp) :: highest
+    integer :: i, j
+    do i = 1, n
+      highest = f(i) - phi(i, 1)
+      phi(i, k + 2) = highest - phi(i, k + 2)
+      phi(i, k + 1) = highest
+      do j = 1, k
+        phi(i, j) = phi(i, j) + highest
+      end do
+    end do
+  end subroutine raise_differences
 
   !> The order and size of the next step (Shampine & Gordon, ch. 7): order raised while opening; else where the
   !> errors fall with the order; the step doubled, raised by a quarter, kept, or cut to what the tolerance allows.
