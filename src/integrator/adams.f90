@@ -360,7 +360,6 @@ contains
     real(dp), intent(in) :: fraction
     integer, intent(inout) :: failures    !! failures by error so far in this step
     real(dp) :: factor
-    integer :: i
 
     call restore_differences(self%n, self%k, self%coefficients%beta, self%coefficients%beta_next, self%phi)
     call self%coefficients%take_back(self%h, self%k)
