@@ -264,10 +264,12 @@ contains
     status = step_done
   end subroutine step
 
-  !> The shortest step that the time can still resolve.
+  !> The shortest step that the clock can still resolve. (A rooted clock is finer than the time, which may stand still in
+  !> the first steps.)
   pure real(dp) function shortest_step(self)
     class(adams_t), intent(in) :: self
-    shortest_step = clock_step(self, 4*epsilon(1.0_dp)*max(abs(self%t), 1e-9_dp*self%settings%span))
+    shortest_step = 4*epsilon(1.0_dp)*max(abs(self%t), 1e-9_dp*self%settings%span)
+    if (self%rooted) shortest_step = 4*epsilon(1.0_dp)*max(self%x, 1e-9_dp*sqrt(self%settings%span))
   end function shortest_step
 
   !> Predict y at the end of the step; phi becomes the differences that the prediction extrapolates.
