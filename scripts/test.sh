@@ -31,6 +31,7 @@ count "every module compiles" sh -c 'fpm build --no-prune && echo "1 passed, 0 f
 count "tests, strict" fpm @strict
 count "tests, release" fpm test --profile release
 count "the program" sh -c 'fpm build --profile release && tests/test_program.sh'
+count "the plots" sh -c 'scripts/setup.sh --python && tests/test_plots.py'
 
 failed=$((failed + wrong))
 echo "$passed passed, $failed failed"

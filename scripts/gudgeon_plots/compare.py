@@ -21,8 +21,9 @@ from .style import BLACK, BLUE, GREY, VERMILION, WIDTH
 #: Share of the range by which runs that agree may differ.
 AGREEMENT = 0.01
 
-#: Columns that are compared where both runs have them.
-COLUMNS = ("crank_speed", "piston_velocity", "piston_acceleration", "film_thickness")
+#: Columns that are compared where both runs have them: states, since forces and accelerations jump, and a jump a sample
+#: later is no other motion.
+COLUMNS = ("crank_speed", "rod_speed", "piston_velocity", "film_thickness")
 
 
 @dataclass(frozen=True)
@@ -112,6 +113,11 @@ def report(found: list[Agreement], agreement: float) -> str:
     return "\n".join(lines)
 
 
+def shared_columns(a: Run, b: Run) -> list[str]:
+    """Columns to compare unless told: those that both have and that move in one of them."""
+    return [column for column in COLUMNS if column in a and column in b and (np.ptp(a[column]) > 0 or np.ptp(b[column]) > 0)]
+
+
 def different_names(a: Path, b: Path) -> tuple[str, str]:
     """File names, with as many folders before them as it takes to tell them apart."""
     left, right = a.resolve().parts, b.resolve().parts
@@ -127,7 +133,7 @@ def compare_files(a: Path, b: Path, columns: list[str] | None, agreement: float,
         if not path.is_file():
             raise MissingResult(f"{path}: no such file")
     left, right = load_run(a), load_run(b)
-    wanted = columns or [column for column in COLUMNS if column in left and column in right]
+    wanted = columns or shared_columns(left, right)
     found = agree(left, right, wanted, agreement)
     print(report(found, agreement))
     stem = f"compare_{left.name}_{right.name}"

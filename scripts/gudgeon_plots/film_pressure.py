@@ -68,8 +68,9 @@ def ideal_rod_motion(run: Run) -> tuple[np.ndarray, np.ndarray]:
 
 
 def oscillating(run: Run, angles: np.ndarray, points: int = 160) -> np.ndarray:
-    """Pressure of the oscillating film (5.1-5.9) [Pa] about its mean, both signs: dP/dth integrated over points that
-    crowd where the film is thin (Sommerfeld's substitution)."""
+    """Pressure of the oscillating film (5.1-5.9) in the bearing's frame [Pa] about its mean, both signs: dP/dth integrated
+    over points that crowd where the film is thin (Sommerfeld's substitution). The acceleration terms of the variant
+    'as_printed' are left out."""
     clearance, pin_radius = run.clearance, float(run.parameter("joint", "bearing_radius")) - run.clearance
     least = float(run.parameter("lubrication", "least_film_ratio", 1e-3))
     eps = np.minimum(film_motion(run).ratio, 1 - least)[:, None]

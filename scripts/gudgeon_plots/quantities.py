@@ -14,6 +14,9 @@ from .style import BLACK, CYCLE, PURPLE
 #: A run's range is called far larger than the ideal joint's from this factor on: the figure then adds a detail.
 FAR_LARGER = 3.0
 
+#: Points once a cycle are spread no farther than to this share of the run's range.
+LEAST_SHARE = 1e-5
+
 
 @dataclass(frozen=True)
 class Quantity:
@@ -59,6 +62,18 @@ def abscissa(run: Run) -> tuple[np.ndarray, str]:
     return 1e3 * run["time"], "time [ms]"
 
 
+def mark_abscissa(axis: Axes, run: Run) -> None:
+    """Name and range of time or crank angle; angles are numbered in quarter, half or whole turns."""
+    x, name = abscissa(run)
+    axis.set_xlabel(name)
+    axis.set_xlim(x[0], x[-1])
+    if held_speed(run):
+        step = 90.0
+        while np.ptp(x) > 6 * step:
+            step *= 2
+        axis.xaxis.set_major_locator(MultipleLocator(step))
+
+
 def ideal_line(axis: Axes, x: np.ndarray, y: np.ndarray) -> None:
     axis.plot(x, y, color=BLACK, linestyle=(0, (4, 2)), linewidth=0.7, label="ideal joint")
 
@@ -68,16 +83,12 @@ def series(label: str, values: Callable[[Run], np.ndarray],
     """A curve over time or crank angle, the ideal joint overlaid."""
 
     def draw(axis: Axes, run: Run, ideal: Run | None, colour: str) -> None:
-        x, name = abscissa(run)
-        axis.plot(x, values(run), color=colour)
+        axis.plot(abscissa(run)[0], values(run), color=colour)
         if ideal is not None:
             ideal_line(axis, abscissa(ideal)[0], values(ideal))
         if extra is not None:
             extra(axis, run)
-        axis.set_xlabel(name)
-        axis.set_xlim(x[0], x[-1])
-        if held_speed(run):
-            axis.xaxis.set_major_locator(MultipleLocator(90 if np.ptp(x) <= 450 else 180))
+        mark_abscissa(axis, run)
 
     return Quantity(label, values, draw)
 
@@ -108,7 +119,7 @@ def contact_peaks(axis: Axes, run: Run) -> None:
 
 
 def film_thickness(axis: Axes, run: Run, _ideal: Run | None, colour: str) -> None:
-    x, name = abscissa(run)
+    x, _ = abscissa(run)
     h = 1e6 * run["film_thickness"]
     axis.plot(x, h, color=colour)
     axis.axhline(0, color=BLACK, linewidth=0.7)
@@ -116,8 +127,7 @@ def film_thickness(axis: Axes, run: Run, _ideal: Run | None, colour: str) -> Non
         axis.fill_between(x, h, 0, where=h < 0, color=PURPLE, alpha=0.5, linewidth=0, label="penetration")
     else:
         axis.set_ylim(bottom=-0.03 * h.max())
-    axis.set_xlabel(name)
-    axis.set_xlim(x[0], x[-1])
+    mark_abscissa(axis, run)
 
 
 def least_film(run: Run) -> str:
@@ -177,8 +187,16 @@ def section(axis: Axes, run: Run, ideal: Run | None, colour: str) -> None:
     axis.plot(1e3 * velocity[:1], 1e-3 * acceleration[:1], "o", color=colour, markerfacecolor="white", markersize=3.5)
     axis.set_xlabel("piston velocity [mm/s]")
     axis.margins(0.12)
+    axis.set_xlim(widened(axis.get_xlim(), 1e3 * LEAST_SHARE * np.ptp(run["piston_velocity"])))
+    axis.set_ylim(widened(axis.get_ylim(), 1e-3 * LEAST_SHARE * np.ptp(run["piston_acceleration"])))
     axis.xaxis.set_major_locator(MaxNLocator(4))
     axis.yaxis.set_major_locator(MaxNLocator(5))
+
+
+def widened(bounds: tuple[float, float], least: float) -> tuple[float, float]:
+    """A range no narrower than `least`: points that agree to many digits are shown as one."""
+    middle, half = 0.5 * (bounds[0] + bounds[1]), 0.5 * max(least, bounds[1] - bounds[0])
+    return middle - half, middle + half
 
 
 def indicator(axis: Axes, run: Run, _ideal: Run | None, colour: str) -> None:

@@ -1,0 +1,323 @@
+#!/usr/bin/env python3
+"""Tests of the figures' table, comparisons and film pressures of scripts/gudgeon_plots.
+
+    .venv/bin/python tests/test_plots.py        (after scripts/setup.sh --python; needs no build)
+
+Ends with the line "N passed, N failed".
+"""
+
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+TOP = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(TOP / "scripts"))
+
+from gudgeon_plots.environment import use_virtual_environment  # noqa: E402
+
+use_virtual_environment()
+
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+import pandas as pd  # noqa: E402
+
+from gudgeon_plots import compare, figures, film_pressure, report_page  # noqa: E402
+from gudgeon_plots.figure_map import read_figures  # noqa: E402
+from gudgeon_plots.quantities import QUANTITIES, once_a_cycle  # noqa: E402
+from gudgeon_plots.results import MissingResult, Results, Run, case_files, load_run, read_case  # noqa: E402
+
+
+def run(columns: dict, case: dict | None = None, events: dict | None = None) -> Run:
+    """A run made by hand."""
+    names = ("time", "crank_angle", "event", "normal_speed", "duration", "max_penetration", "max_normal_force")
+    return Run("made", pd.DataFrame(columns), dict.fromkeys(columns, "-"), pd.DataFrame(events or {}, columns=names),
+               case=case or {})
+
+
+class FigureMap(unittest.TestCase):
+    def setUp(self) -> None:
+        self.figures = read_figures()
+
+    def test_every_figure_is_there(self) -> None:
+        wanted = [f"6.{n}" for n in range(1, 52)] + ["A.2"] + [f"B.{n}" for n in range(2, 22)]
+        self.assertEqual(list(self.figures), wanted)
+
+    def test_quantities_and_cases_exist(self) -> None:
+        cases = case_files()
+        for figure in self.figures.values():
+            self.assertTrue(figure.quantities and figure.runs and figure.title, figure)
+            for name in figure.quantities:
+                self.assertIn(name, QUANTITIES, figure)
+            for name in figure.needs:
+                self.assertIn(name.removesuffix(".ideal"), cases, figure)
+
+    def test_no_figure_is_drawn_twice(self) -> None:
+        contents = [(figure.quantities, figure.runs) for figure in self.figures.values()]
+        self.assertEqual(len(set(contents)), len(contents))
+
+    def test_every_simulation_and_every_quantity_is_drawn(self) -> None:
+        runs = {name for figure in self.figures.values() for name in figure.runs}
+        for number in ("I", "II", "III", "IV", "V", "VI"):
+            self.assertLessEqual({f"sim_{number}", f"sim_{number}_oscillating"}, runs)
+        self.assertEqual({name for figure in self.figures.values() for name in figure.quantities}, set(QUANTITIES))
+
+    def test_wrong_tables_are_refused(self) -> None:
+        head = "number,quantities,runs,ideal,title\n"
+        for rows in ("6.1,a,b,,c\n6.1,a,b,,d\n", "6.01,a,b,,c\n", "six,a,b,,c\n"):
+            with tempfile.TemporaryDirectory() as work, self.assertRaises(ValueError):
+                path = Path(work) / "figures.csv"
+                path.write_text(head + rows, encoding="utf-8")
+                read_figures(path)
+
+
+class Comparison(unittest.TestCase):
+    def test_horizon_is_the_last_agreeing_time(self) -> None:
+        time = np.arange(6.0)
+        difference = np.array([0, 0.1, -0.1, 0.3, 0, 0])
+        self.assertEqual(compare.horizon(time, difference, 0.2), (2.0, False))
+        self.assertEqual(compare.horizon(time, difference, 0.3), (5.0, True))
+        self.assertEqual(compare.horizon(time, -difference, 0.2), (2.0, False))
+        self.assertEqual(compare.horizon(time, difference + 1, 0.2), (0.0, False))
+
+    def test_not_a_number_is_no_agreement(self) -> None:
+        self.assertEqual(compare.horizon(np.arange(3.0), np.array([0, np.nan, 0]), 1.0), (0.0, False))
+
+    def test_agreement_is_a_share_of_the_range(self) -> None:
+        time = np.linspace(0, 1, 11)
+        a = run({"time": time, "crank_speed": 100 + 10 * time})
+        b = run({"time": time, "crank_speed": 100 + 10 * time + 2 * time**2})
+        found, = compare.agree(a, b, ["crank_speed"], 0.05)     # 2 t^2 <= 0.05 * 10 up to t = 0.5
+        self.assertAlmostEqual(found.horizon, 0.5)
+        self.assertFalse(found.whole)
+        self.assertIn("horizon: 0.5 s", compare.report([found], 0.05))
+
+    def test_times_of_a_are_taken_in_the_common_span(self) -> None:
+        a = run({"time": np.linspace(0, 1, 11), "crank_speed": np.linspace(0, 1, 11)})
+        b = run({"time": np.linspace(0.2, 2, 7), "crank_speed": np.linspace(0.2, 2, 7)})
+        found, = compare.agree(a, b, ["crank_speed"], 1e-9)
+        self.assertTrue(found.whole)
+        self.assertAlmostEqual(found.time[0], 0.2)
+        self.assertAlmostEqual(found.time[-1], 1.0)
+
+    def test_constant_columns_are_measured_by_their_size(self) -> None:
+        self.assertEqual(compare.scale_of(np.full(5, -3.0)), 3.0)
+        self.assertEqual(compare.scale_of(np.array([1.0, 4.0])), 3.0)
+
+    def test_what_cannot_be_compared_is_refused(self) -> None:
+        a = run({"time": np.array([0.0, 1.0]), "crank_speed": np.zeros(2)})
+        b = run({"time": np.array([2.0, 3.0]), "crank_speed": np.zeros(2)})
+        with self.assertRaises(MissingResult):
+            compare.agree(a, b, ["crank_speed"], 0.01)
+        with self.assertRaises(MissingResult):
+            compare.agree(a, a, ["rod_speed"], 0.01)
+
+    def test_names_tell_equal_files_apart(self) -> None:
+        self.assertEqual(compare.different_names(Path("/x/a.csv"), Path("/y/a.csv")), ("x/a.csv", "y/a.csv"))
+        self.assertEqual(compare.different_names(Path("/x/a.csv"), Path("/x/b.csv")), ("a.csv", "b.csv"))
+
+
+class Poincare(unittest.TestCase):
+    def test_once_a_cycle(self) -> None:
+        angle = np.linspace(0, 13, 2601)
+        columns = {"time": angle, "crank_angle": angle, "piston_velocity": angle, "piston_acceleration": 2 * angle}
+        velocity, acceleration = once_a_cycle(run(columns), 0.0)
+        np.testing.assert_allclose(velocity, [2 * np.pi, 4 * np.pi])
+        np.testing.assert_allclose(acceleration, [4 * np.pi, 8 * np.pi])
+        velocity, _ = once_a_cycle(run(columns | {"gas_force": 0 * angle}), 0.0)   # four strokes: two turns
+        np.testing.assert_allclose(velocity, [4 * np.pi])
+        velocity, _ = once_a_cycle(run(columns), 1.0)
+        np.testing.assert_allclose(velocity, [1.0, 1 + 2 * np.pi])
+
+
+class FilmPressure(unittest.TestCase):
+    """Resultants against quadratures of another program."""
+
+    ANGLES = np.linspace(-np.pi, np.pi, 3600, endpoint=False)
+    CLEARANCE, BEARING, WIDTH, VISCOSITY = 1e-4, 1e-2, 2e-2, 0.05
+
+    def case(self, lubrication: dict, rod: float, crank: float) -> dict:
+        return {"mechanism": {"crank_length": crank, "rod_length": rod},
+                "joint": {"clearance": self.CLEARANCE, "bearing_radius": self.BEARING, "bearing_length": self.WIDTH},
+                "lubrication": {"viscosity": self.VISCOSITY, **lubrication}}
+
+    def made(self, eps: float, case: dict, **columns: float) -> Run:
+        values = dict.fromkeys(("time", "crank_angle", "rod_angle", "crank_speed", "rod_speed", "piston_velocity",
+                                "eccentricity_y"), 0.0)
+        values |= {"eccentricity_x": eps * self.CLEARANCE, "eccentricity_ratio": eps, "film_thickness": 1.0, "phase": 1}
+        return run({name: [value] for name, value in (values | columns).items()}, case)
+
+    def resultant(self, made: Run) -> np.ndarray:
+        return np.array(film_pressure.resultant(made, self.ANGLES, film_pressure.pressure(made, self.ANGLES)))[:, 0]
+
+    def test_pinkus_sternlicht(self) -> None:
+        radius = self.BEARING - self.CLEARANCE
+        unit = self.VISCOSITY * self.WIDTH * radius**3 / self.CLEARANCE**2
+        rod = 1e-6
+        for eps, wedge, rate, radial, tangential in (
+                (0.5, 1, -0.001, -1.7488, 4.8261), (0.5, 1, 0.3, -14.7324, 6.6629), (0.5, 1, -0.3, 2.6801, 3.0107),
+                (0.9, 1, 0.3, -135.4481, 23.1470), (0.9, 1, -0.3, 1.1114, 4.5537), (0.99, 1, -0.3, 0.6850, 4.9871)):
+            pin_speed = wedge / (1 - 2 * rod / (eps * self.CLEARANCE))    # the pin's centre moves with the rod's end
+            made = self.made(eps, self.case({"law": "pinkus_sternlicht"}, rod, 1e-9), rod_speed=-pin_speed,
+                             piston_velocity=-rate * self.CLEARANCE)
+            np.testing.assert_allclose(self.resultant(made) / unit, [radial, tangential], rtol=2e-3, atol=2e-3)
+
+    def test_oscillating_film(self) -> None:
+        speed, rod, crank = 300.0, 0.2, 0.05
+        radius = self.BEARING - self.CLEARANCE
+        for number, in_phase, out_of_phase in ((0.17, -9.67356114, 0.02133481), (1.0, -9.63125302, 0.73596503)):
+            case = self.case({"law": "oscillating_film", "kinematic_viscosity": speed * (self.CLEARANCE / number) ** 2},
+                             rod, crank)
+            unit = self.VISCOSITY * radius**2 / self.CLEARANCE**2 * self.WIDTH   # of a force, over the surface speed
+            made = self.made(0.5, case, crank_speed=speed)                   # U = -R (r/l) w, real
+            surface = -radius * crank / rod * speed
+            np.testing.assert_allclose(self.resultant(made), [0, -unit * surface * in_phase], rtol=2e-3, atol=1e-6)
+            made = self.made(0.5, case, crank_speed=speed, crank_angle=np.pi / 2)   # U imaginary
+            rate = crank / rod * speed**2 / np.sqrt(1 - (crank / rod) ** 2)
+            surface = radius * rate / speed                                  # Re(-i s P*) = s Im P*
+            np.testing.assert_allclose(self.resultant(made), [0, -unit * surface * out_of_phase], rtol=2e-3, atol=1e-6)
+
+    def test_no_pressure_in_contact(self) -> None:
+        made = self.made(1.1, self.case({"law": "pinkus_sternlicht"}, 0.2, 0.05), phase=2, rod_speed=50.0)
+        self.assertFalse(film_pressure.pressure(made, self.ANGLES).any())
+
+
+class MadeResults:
+    """Runs made by hand for every name that figures ask for; those named in `missing` are not there."""
+
+    def __init__(self, missing: tuple[str, ...] = ()) -> None:
+        self.missing = missing
+
+    def __getitem__(self, name: str) -> Run:
+        if name in self.missing:
+            raise MissingResult(name)
+        angle = np.linspace(0, 16 * np.pi, 2001)
+        wave, beat = np.cos(angle), np.sin(37 * angle)
+        rough = 0 if name.endswith("ideal") else 2e4
+        flores = not name.startswith(("sim", "wiebe"))
+        columns = {"time": angle / 250, "crank_angle": angle, "crank_speed": 250 + 20 * wave, "rod_speed": wave,
+                   "piston_velocity": 10 * np.sin(angle + 1e-3 * beat) + 0.01, "crank_moment": 100 * wave + rough * beat}
+        columns |= {name: 3e3 * wave + rough * beat for name in
+                    ("crank_acceleration", "rod_acceleration", "piston_acceleration", "pin_force_x", "pin_force_y")}
+        if rough:
+            e = np.array([np.cos(3 * angle), np.sin(2 * angle)]) * 1e-5
+            columns |= {"eccentricity_x": e[0], "eccentricity_y": e[1], "eccentricity_ratio": np.hypot(*e) / 1e-5,
+                        "film_thickness": 1e-5 - np.hypot(*e)}
+        columns |= {"cylinder_volume": 2e-4 - 1e-4 * wave, "cylinder_pressure": 1e5 + 3e6 * wave**16, "gas_force": 1e4 * wave**16}
+        case = {"joint": {"clearance": 1e-5}, "combustion": {"start_deg": 340.0},
+                "drive": {"kind": "constant_speed" if flores else "free"}}
+        if "friction" in name:
+            case["friction"] = {"coefficient": 0.05}
+        if "lubricated" in name or name.startswith("sim"):
+            case["lubrication"] = {"law": "oscillating_film" if "oscillating" in name else "pinkus_sternlicht", "viscosity": 0.4}
+        made = run(columns, case)
+        return Run(name, made.trace, made.units, made.events, case=case)
+
+
+def written(drawing: plt.Figure) -> list:
+    """Every text that is drawn: numbers, names, titles, legends."""
+    found = [text for legend in drawing.legends for text in legend.get_texts()]
+    for axes in drawing.axes:
+        if axes.axison:
+            for axis in (axes.xaxis, axes.yaxis):
+                found += [tick.label1 for tick in axis._update_ticks()] + [axis.label, axis.offsetText]
+        found += [axes.title, *axes.texts]
+    return [text for text in [*found, drawing._suptitle] if text and text.get_visible() and text.get_text().strip()]
+
+
+def overlaps(drawing: plt.Figure) -> list[tuple[str, str]]:
+    """Texts that cover one another or leave the page."""
+    drawing.canvas.draw()
+    width, height = drawing.canvas.get_width_height()
+    boxes = [(text.get_text(), text.get_window_extent()) for text in written(drawing)]
+    found = [(name, "the margin") for name, box in boxes
+             if box.x0 < -1 or box.y0 < -1 or box.x1 > width + 1 or box.y1 > height + 1]
+    for i, (name, box) in enumerate(boxes):
+        found += [(name, other) for other, second in boxes[i + 1:]
+                  if min(box.x1, second.x1) - max(box.x0, second.x0) > 0.5
+                  and min(box.y1, second.y1) - max(box.y0, second.y0) > 0.5]
+    return found
+
+
+class Drawing(unittest.TestCase):
+    def test_figures_are_drawn_and_no_text_overlaps(self) -> None:
+        table = read_figures()
+        for number in ("6.1", "6.2", "6.5", "6.6", "6.7", "6.8", "6.33", "A.2", "B.3", "B.5", "B.6", "B.7", "B.9", "B.21"):
+            drawing = figures.draw(table[number], MadeResults())
+            self.assertEqual(overlaps(drawing), [], number)
+            self.assertTrue(all(axes.lines or axes.collections for axes in drawing.axes), number)
+            plt.close(drawing)
+
+    def test_overlaps_are_found(self) -> None:
+        drawing, axes = plt.subplots(figsize=(3, 2))
+        self.assertEqual(overlaps(drawing), [])
+        axes.text(0.5, 0.5, "one")
+        axes.text(0.5, 0.5, "two")
+        self.assertEqual(overlaps(drawing), [("one", "two")])
+        plt.close(drawing)
+
+    def test_a_missing_run_leaves_its_place(self) -> None:
+        figure = read_figures()["6.1"]
+        drawing = figures.draw(figure, MadeResults(("sim_I_oscillating",)))
+        self.assertIn("sim_I_oscillating", drawing.axes[1].texts[0].get_text())
+        plt.close(drawing)
+        with self.assertRaises(MissingResult):
+            figures.draw(figure, MadeResults(figure.runs))
+
+    def test_details_show_the_ideal_joint(self) -> None:
+        table, results = read_figures(), MadeResults()
+        self.assertEqual([len(row) for row in figures.arrange(table["6.1"], results)], [2])          # same range
+        rows = figures.arrange(table["6.4"], results)
+        self.assertEqual([[panel.detail for panel in row] for row in rows], [[False, False], [True, True]])
+        rows = figures.arrange(table["B.3"], results)
+        self.assertEqual([[panel.detail for panel in row] for row in rows], [[False, True]] * 3)
+
+
+class Reading(unittest.TestCase):
+    def test_a_case_as_run(self) -> None:
+        with tempfile.TemporaryDirectory() as work:
+            path = Path(work) / "x.resolved.nml"
+            path.write_text("&case\n  title = 'it''s'\n/\n&joint\n  clearance = 5.0E-04  ! m\n/\n&contact\n"
+                            "  density = 1.0, 2.0  ! kg/m^3\n/\n&output\n  every_step = .true.\n/\n", encoding="utf-8")
+            self.assertEqual(read_case(path), {"case": {"title": "it's"}, "joint": {"clearance": 5e-4},
+                                               "contact": {"density": [1.0, 2.0]}, "output": {"every_step": True}})
+
+    def test_columns_lose_their_units(self) -> None:
+        trace = load_run(TOP / "data" / "sim_I.csv")
+        self.assertIn("crank_speed", trace)
+        self.assertEqual(trace.units["crank_speed"], "rad/s")
+
+    def test_a_contact_that_outlasts_the_run(self) -> None:
+        time = np.linspace(0, 1, 11)
+        made = run({"time": time, "film_thickness": -time, "normal_force": 5 * time}, events={
+            "time": [0.1, 0.3, 0.75], "crank_angle": [0, 0, 0], "event": ["contact_begins", "contact_ends", "contact_begins"],
+            "normal_speed": [1, -1, 1], "duration": [np.nan, 0.2, np.nan], "max_penetration": [np.nan, 7, np.nan],
+            "max_normal_force": [np.nan, 8, np.nan]})
+        np.testing.assert_allclose(made.contacts.to_numpy(), [[0.1, 0.3, 7, 8], [0.75, 1, 1, 5]])
+
+    def test_missing_results_say_what_to_run(self) -> None:
+        with tempfile.TemporaryDirectory() as work:
+            with self.assertRaisesRegex(MissingResult, "run: scripts/run_cases.sh .*cases/sim_I.nml"):
+                Results(Path(work), run_missing=False).make(["sim_I", "sim_I.ideal"])
+            with self.assertRaisesRegex(MissingResult, "no such case: nonsense"):
+                Results(Path(work)).make(["nonsense"])
+
+
+class Page(unittest.TestCase):
+    def test_thinning_keeps_peaks(self) -> None:
+        values = np.sin(np.arange(100000) / 700)
+        values[54321], values[777] = 9, -9
+        rows = report_page.chosen_rows([np.arange(100000.0), values], 2000)
+        self.assertLessEqual(len(rows), 2002)
+        self.assertTrue({0, 777, 54321, 99999} <= set(rows.tolist()))
+        self.assertEqual(len(report_page.chosen_rows([values[:2000]], 2000)), 2000)
+
+    def test_packing_depends_on_the_data_only(self) -> None:
+        self.assertEqual(report_page.packed(b"abc"), report_page.packed(b"abc"))
+
+
+if __name__ == "__main__":
+    outcome = unittest.main(exit=False).result
+    wrong = len(outcome.failures) + len(outcome.errors)
+    print(f"{outcome.testsRun - wrong} passed, {wrong} failed")
+    sys.exit(1 if wrong else 0)
