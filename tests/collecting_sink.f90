@@ -49,7 +49,6 @@ contains
     call read_case(file, overrides, case, error)
     if (.not. allocated(error)) call choose_columns(case, ideal, list, error)
     if (allocated(error)) then
-      print '(a)', error%message
       call move_alloc(error, trace%error)
       return
     end if

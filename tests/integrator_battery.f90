@@ -104,6 +104,7 @@ contains
     do i = 1, n_scenes
       call run(i, max(1e-16_dp, 8*epsilon(1.0_dp)), 12, best)
       call run(i, max(4e-16_dp, 32*epsilon(1.0_dp)), 9, other)
+      if (best%status /= integration_done .or. other%status /= integration_done) error stop 'a reference did not reach its end'
       print '(i0,*(1x,es28.20))', i, best%final, best%largest, &
         maxval(abs(best%final(:6) - other%final(:6))/best%largest(:6))
     end do
@@ -173,6 +174,7 @@ contains
     integer :: i, status
     do i = 1, n_standard_problems
       call run_standard(i, 1e-16_dp, 12, method, samples, status)
+      if (status /= integration_done) error stop 'a reference did not reach its end'
       call run_standard(i, 4e-16_dp, 10, method, other, status)
       print '(i0,1x,es10.2,*(1x,es28.20))', i, maxval(abs(samples - other)/(1 + abs(samples))), samples
     end do

@@ -7,7 +7,7 @@ module test_adams
   use adams_coefficients, only: moulton_constants
   use adams, only: adams_t
   use solver, only: integrate, silent_observer_t, integration_done
-  use test_problems, only: oscillator_t, two_body_t, bouncing_ball_t, hopper_t
+  use test_problems, only: oscillator_t, two_body_t, bouncing_ball_t, hopper_t, root_t
   implicit none
   private
   public :: run_test_adams
@@ -19,6 +19,7 @@ contains
     call constants_are_exact(check)
     call tolerance_is_kept(check)
     call interpolant_is_smooth(check)
+    call root_at_start(check)
     call ball_impacts(check)
     call double_passages_are_found(check)
   end subroutine run_test_adams
@@ -107,6 +108,43 @@ contains
     call check%close_to(slope_jump, 0.0_dp, 1e-7_dp, 'the interpolant has the slope f there')
     call check%that(worst <= 1.5_dp*step_error + 1e-9_dp, 'the interpolant is as accurate as the steps')
   end subroutine interpolant_is_smooth
+
+  !> A start where f is smooth in the square root of the time, as at the beginning of a contact: told so, the method needs
+  !> a fraction of the evaluations, keeps the tolerance inside its steps too, and keeps to the longest step in time.
+  subroutine root_at_start(check)
+    class(checks_t), intent(inout) :: check
+    type(root_t) :: problem
+    type(adams_t) :: method
+    real(dp) :: y(1), t, worst, longest
+    integer :: status, i, j, evaluations(2)
+
+    problem%n = 1
+    do i = 1, 2
+      problem%smooth_in_root = i == 2
+      method = adams_t()
+      method%settings = settings(1, 1e-10_dp, 1.0_dp)
+      method%settings%max_step = 0.1_dp
+      call method%start(problem, 1.0_dp, [1.0_dp], .true., status)
+      worst = 0
+      longest = 0
+      do
+        call method%step(problem, status)
+        if (status /= step_done) exit
+        longest = max(longest, method%t - method%t_old)
+        do j = 0, 8
+          t = method%t_old + (method%t - method%t_old)*j/8.0_dp
+          call method%interpolate(t, y)
+          worst = max(worst, abs(y(1) - exp((t - 1)**1.5_dp)))
+        end do
+        if (method%t >= 2) exit
+      end do
+      call check%that(status == step_done, 'a root at the start is integrated')
+      call check%close_to(worst, 0.0_dp, 1e-8_dp, 'a root at the start keeps the tolerance')
+      call check%that(longest <= 0.1_dp*(1 + 1e-12_dp), 'the longest step is one of time')
+      evaluations(i) = method%statistics%evaluations
+    end do
+    call check%that(3*evaluations(2) < evaluations(1), 'the clock of square roots saves two evaluations of three')
+  end subroutine root_at_start
 
   subroutine ball_impacts(check)
     class(checks_t), intent(inout) :: check

@@ -1,9 +1,10 @@
-!> Numbers of a table: known texts, and the same digits as a formatted write.
+!> Numbers of a table: known texts, and the same digits as a formatted write; the powers of ten under them.
 module test_number_writer
   use, intrinsic :: iso_fortran_env, only: int64
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_positive_inf, ieee_negative_inf
   use kinds, only: dp
   use number_writer, only: number_writer_t, append_formatted, longest_number, fewest_digits, most_digits
+  use powers_of_ten, only: power_of_ten_t, make_powers, first_power, last_power
   use checks, only: checks_t
   implicit none
   private
@@ -16,6 +17,7 @@ contains
     type(number_writer_t) :: writer
     integer(int64) :: random
     integer :: digits
+    call test_powers(check)
     call test_known(check)
     call test_near_ties(check)
     random = 88172645463325252_int64
@@ -27,6 +29,29 @@ contains
       call test_bounds(check, writer, digits)
     end do
   end subroutine run_test_number_writer
+
+  !> The table of powers: 10**0 is 1, and every power ten times the one before but for what is cut off.
+  subroutine test_powers(check)
+    class(checks_t), intent(inout) :: check
+    type(power_of_ten_t) :: powers(first_power:last_power)
+    integer(int64) :: factor, difference
+    integer :: k, wrong
+    call make_powers(powers)
+    wrong = 0
+    do k = first_power, last_power - 1
+      associate (a => powers(k), b => powers(k + 1))
+        factor = 2_int64**(b%exponent - a%exponent)
+        difference = ((factor*b%high - 10*a%high)*2_int64**30 + factor*b%middle - 10*a%middle)
+        if (abs(difference) > 1000) wrong = wrong + 1
+        difference = difference*2_int64**30 + factor*b%low - 10*a%low
+        if (difference < -factor .or. difference > 10) wrong = wrong + 1
+        if (a%high < 2_int64**29 .or. a%high >= 2_int64**30) wrong = wrong + 1
+      end associate
+    end do
+    call check%that(wrong == 0, 'powers of ten follow each other')
+    call check%that(powers(0)%high == 2_int64**29 .and. powers(0)%middle == 0 .and. powers(0)%low == 0 .and. &
+                    powers(0)%exponent == -89, 'the power of ten that is 1')
+  end subroutine test_powers
 
   subroutine test_known(check)
     class(checks_t), intent(inout) :: check
@@ -57,8 +82,8 @@ contains
     call expect(check, 12, ieee_value(zero, ieee_negative_inf), '-Infinity')
   end subroutine test_known
 
-  !> Numbers that fall short of a tie by 1e-11 of the last digit and less, far more than chance brings about. Where the
-  !> table of powers cannot tell, a formatted write does.
+  !> Numbers that fall short of a tie by 1e-11 of the last digit and less, or pass it by as little, which chance hardly
+  !> brings about. Where the table of powers cannot tell, a formatted write does.
   subroutine test_near_ties(check)
     class(checks_t), intent(inout) :: check
     type(number_writer_t) :: writer
@@ -66,6 +91,8 @@ contains
     call expect(check, 17, 4.478429846747103e-286_dp, '4.4784298467471030E-286')
     call expect(check, 17, 3.955139782659578e+286_dp, '3.9551397826595780E+286')
     call expect(check, 17, 9.722603240137014e+105_dp, '9.7226032401370143E+105')
+    call expect(check, 17, 5.466121909314921e-30_dp, '5.4661219093149210E-30')
+    call expect(check, 17, 1.5445039215960358e+166_dp, '1.5445039215960358E+166')
     call expect(check, 10, 6.9597507115e-286_dp, '6.959750711E-286')
     call expect(check, 10, 5.8027745535e+286_dp, '5.802774553E+286')
     call expect(check, 10, 4.1410816915e-12_dp, '4.141081691E-12')
@@ -73,6 +100,8 @@ contains
     call writer%prepare(17)
     call check%that(.not. writer%decides(3.3973074513043686e-45_dp), 'a tie that the table cannot tell')
     call check%that(writer%decides(3.3973074513043690e-45_dp), 'its neighbour')
+    call writer%prepare(10)
+    call check%that(writer%decides(12345678905.0_dp), 'a tie of a large number')
   end subroutine test_near_ties
 
   subroutine expect(check, digits, value, text)
@@ -160,17 +189,19 @@ contains
     type(number_writer_t), intent(in) :: writer
     integer, intent(in) :: digits
     integer(int64), intent(inout) :: random
-    integer(int64) :: odd, lowest, significand
+    integer(int64) :: odd, lowest, highest, significand
     integer :: p, i, n, wrong
 
     wrong = 0
     n = 0
-    do p = 1, digits
-      lowest = 10_int64**digits/5_int64**p
+    do p = 1, 25
+      lowest = 10_int64**digits/5_int64**p + 1
+      highest = 10_int64**(digits + 1)/5_int64**p
+      if (highest < lowest) exit
       do i = 1, 50
         call draw(random)
-        odd = ior(lowest + modulo(random, 9*lowest), 1_int64)
-        if (odd >= 2_int64**53) cycle
+        odd = ior(lowest + modulo(random, highest - lowest + 1), 1_int64)
+        if (odd > min(highest, 2_int64**53)) cycle
         n = n + 1
         call count_around(real(odd, dp)*2.0_dp**(-p))
       end do

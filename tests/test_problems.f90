@@ -4,7 +4,7 @@ module test_problems
   use ode_problem, only: ode_problem_t, event_continue
   implicit none
   private
-  public :: oscillator_t, two_body_t, bouncing_ball_t, hopper_t, modulated_t
+  public :: oscillator_t, two_body_t, bouncing_ball_t, hopper_t, modulated_t, root_t
 
   !> y'' = -y.
   type, extends(ode_problem_t) :: oscillator_t
@@ -47,7 +47,25 @@ module test_problems
     procedure :: derivatives => modulated_derivatives
   end type modulated_t
 
+  !> y' = 1.5 sqrt(t - 1) y, y(1) = 1: y = exp((t - 1)^1.5).
+  type, extends(ode_problem_t) :: root_t
+  contains
+    procedure :: derivatives => root_derivatives
+  end type root_t
+
 contains
+
+  pure subroutine root_derivatives(self, t, y, dydt, inside)
+    class(root_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: dydt(:)
+    logical, intent(out) :: inside
+    associate (unused_self => self)
+    end associate
+    inside = t >= 1
+    dydt = 0
+    if (inside) dydt = 1.5_dp*sqrt(t - 1)*y
+  end subroutine root_derivatives
 
   pure subroutine modulated_derivatives(self, t, y, dydt, inside)
     class(modulated_t), intent(in) :: self

@@ -77,7 +77,7 @@ run --check -o "$work/refused" cases/*.nml cases/flores/*.nml
 check "all cases are correct" [ "$status" = 0 -a ! -e "$work/refused" ]
 
 # results
-run -o "$work/r" -s integrator.revolutions=0.1 cases/sim_I.nml cases/flores/dry_0500um.nml cases/flores/ideal.nml
+run -o "$work/r" -s integrator.revolutions=0.1 -s integrator.method=auto cases/sim_I.nml cases/flores/dry_0500um.nml cases/flores/ideal.nml
 check "three cases side by side" [ "$status" = 0 -a "$(wc -l <"$work/out")" = 3 -a ! -s "$work/err" ]
 for file in sim_I.csv sim_I.events.csv sim_I.summary.csv sim_I.resolved.nml sim_I.ideal.csv dry_0500um.csv ideal.csv; do
   check "$file is there" [ -s "$work/r/$file" ]
@@ -98,6 +98,9 @@ for file in sim_I sim_II sim_III dry_0500um dry_0100um friction_100 sim_I.ideal 
 done
 run -q -o "$work/r" -s integrator.revolutions=0.1 cases/flores/ideal.nml
 check "quiet" [ "$status" = 0 -a ! -s "$work/out" -a ! -s "$work/err" ]
+
+run -o "$work/r" -s integrator.revolutions=1 cases/sim_I.nml
+check "a stability-bound run says what auto would save" grep -q "method = 'auto' needs 1/[0-9]* of the evaluations" "$work/err"
 
 # failures keep what there is
 run -o "$work/f" -s integrator.max_steps=2000 cases/sim_I.nml

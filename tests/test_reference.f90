@@ -24,6 +24,7 @@ contains
     call compare_states(check, 'cases/sim_VI.nml', 'sim_VI', '1e-9', 1e-5_dp)
     call compare_states(check, 'cases/flores/lubricated_400cP.nml', 'flores_lubricated_400cP', '1e-9', 1e-5_dp)
     call compare_events(check, 'cases/flores/dry_0500um.nml', 'flores_dry_0500um', '1e-10', 20, 1e-8_dp)
+    call compare_events(check, 'cases/flores/dry_0500um.nml', 'flores_dry_0500um', '1e-13', 20, 1e-8_dp)
     call compare_events(check, 'cases/flores/dry_0100um.nml', 'flores_dry_0100um', '1e-10', 100, 1e-6_dp)
     call compare_events(check, 'cases/flores/dry_0010um.nml', 'flores_dry_0010um', '1e-10', 100, 1e-6_dp)
     call compare_events(check, 'cases/flores/friction_010.nml', 'flores_friction_010', '1e-10', 100, 1e-6_dp)

@@ -20,22 +20,29 @@ contains
     real(dp), intent(inout) :: a(:, :)
     integer, intent(out) :: pivot(:)
     logical, intent(out) :: singular
-    real(dp) :: row(size(a, 1))
-    integer :: i, j, n
+    real(dp) :: swap
+    integer :: i, j, l, n
     n = size(a, 1)
     singular = .false.
     do j = 1, n
-      pivot(j) = j - 1 + maxloc(abs(a(j:, j)), 1)
+      pivot(j) = j
+      do i = j + 1, n
+        if (abs(a(i, j)) > abs(a(pivot(j), j))) pivot(j) = i
+      end do
       if (.not. abs(a(pivot(j), j)) > 0) then
         singular = .true.
         return
       end if
-      row = a(j, :)
-      a(j, :) = a(pivot(j), :)
-      a(pivot(j), :) = row
+      do l = 1, n
+        swap = a(j, l)
+        a(j, l) = a(pivot(j), l)
+        a(pivot(j), l) = swap
+      end do
       do i = j + 1, n
         a(i, j) = a(i, j)/a(j, j)
-        a(i, j + 1:) = a(i, j + 1:) - a(i, j)*a(j, j + 1:)
+        do l = j + 1, n
+          a(i, l) = a(i, l) - a(i, j)*a(j, l)
+        end do
       end do
     end do
   end subroutine decompose_real
@@ -46,16 +53,21 @@ contains
     integer, intent(in) :: pivot(:)
     real(dp), intent(inout) :: b(:)
     real(dp) :: swap
-    integer :: i, n
+    integer :: i, j, n
     n = size(b)
     do i = 1, n
       swap = b(i)
       b(i) = b(pivot(i))
       b(pivot(i)) = swap
-      b(i + 1:) = b(i + 1:) - a(i + 1:, i)*b(i)
+      do j = i + 1, n
+        b(j) = b(j) - a(j, i)*b(i)
+      end do
     end do
     do i = n, 1, -1
-      b(i) = (b(i) - dot_product(a(i, i + 1:), b(i + 1:)))/a(i, i)
+      do j = i + 1, n
+        b(i) = b(i) - a(i, j)*b(j)
+      end do
+      b(i) = b(i)/a(i, i)
     end do
   end subroutine solve_real
 
@@ -64,22 +76,29 @@ contains
     complex(dp), intent(inout) :: a(:, :)
     integer, intent(out) :: pivot(:)
     logical, intent(out) :: singular
-    complex(dp) :: row(size(a, 1))
-    integer :: i, j, n
+    complex(dp) :: swap
+    integer :: i, j, l, n
     n = size(a, 1)
     singular = .false.
     do j = 1, n
-      pivot(j) = j - 1 + maxloc(abs(real(a(j:, j))) + abs(aimag(a(j:, j))), 1)
+      pivot(j) = j
+      do i = j + 1, n
+        if (size_of(a(i, j)) > size_of(a(pivot(j), j))) pivot(j) = i
+      end do
       if (.not. abs(a(pivot(j), j)) > 0) then
         singular = .true.
         return
       end if
-      row = a(j, :)
-      a(j, :) = a(pivot(j), :)
-      a(pivot(j), :) = row
+      do l = 1, n
+        swap = a(j, l)
+        a(j, l) = a(pivot(j), l)
+        a(pivot(j), l) = swap
+      end do
       do i = j + 1, n
         a(i, j) = a(i, j)/a(j, j)
-        a(i, j + 1:) = a(i, j + 1:) - a(i, j)*a(j, j + 1:)
+        do l = j + 1, n
+          a(i, l) = a(i, l) - a(i, j)*a(j, l)
+        end do
       end do
     end do
   end subroutine decompose_complex
@@ -89,16 +108,27 @@ contains
     integer, intent(in) :: pivot(:)
     complex(dp), intent(inout) :: b(:)
     complex(dp) :: swap
-    integer :: i, n
+    integer :: i, j, n
     n = size(b)
     do i = 1, n
       swap = b(i)
       b(i) = b(pivot(i))
       b(pivot(i)) = swap
-      b(i + 1:) = b(i + 1:) - a(i + 1:, i)*b(i)
+      do j = i + 1, n
+        b(j) = b(j) - a(j, i)*b(i)
+      end do
     end do
     do i = n, 1, -1
-      b(i) = (b(i) - sum(a(i, i + 1:)*b(i + 1:)))/a(i, i)
+      do j = i + 1, n
+        b(i) = b(i) - a(i, j)*b(j)
+      end do
+      b(i) = b(i)/a(i, i)
     end do
   end subroutine solve_complex
+
+  !> A cheap size of a complex number.
+  pure real(dp) function size_of(z)
+    complex(dp), intent(in) :: z
+    size_of = abs(real(z)) + abs(aimag(z))
+  end function size_of
 end module small_lu

@@ -27,7 +27,6 @@ module number_writer
     procedure :: prepare
     procedure :: append
     procedure :: decides
-    procedure, private :: round
   end type number_writer_t
 
 contains
@@ -56,7 +55,7 @@ contains
     call take_apart(value, significand, exponent)
     if (significand /= 0) then
       is_decided = exponent /= not_finite
-      if (is_decided) call self%round(significand, exponent, whole, decade, is_decided)
+      if (is_decided) call round(self, significand, exponent, whole, decade, is_decided)
       if (.not. is_decided) then
         call append_formatted(line, used, value, self%digits)
         return
@@ -79,7 +78,7 @@ contains
     integer :: exponent, decade
     call take_apart(value, significand, exponent)
     decides = .true.
-    if (significand /= 0) call self%round(significand, exponent, whole, decade, decides)
+    if (significand /= 0) call round(self, significand, exponent, whole, decade, decides)
   end function decides
 
   !> value = +-significand 2**exponent, with 2**52 <= significand < 2**53, or 0.
@@ -109,8 +108,8 @@ contains
   !> 2**53 + 2**30. Where this leaves open whether it passes the half it may be the half itself: if 5**(-k) divides the
   !> significand it is a multiple of 2**(-27), too coarse to be anything else near there. Otherwise, less than once in
   !> 10**9 numbers, `is_decided` is false.
-  pure subroutine round(self, significand, exponent, whole, decade, is_decided)
-    class(number_writer_t), intent(in) :: self
+  pure subroutine round(writer, significand, exponent, whole, decade, is_decided)
+    type(number_writer_t), intent(in) :: writer
     integer(int64), intent(in) :: significand
     integer, intent(in) :: exponent
     integer(int64), intent(out) :: whole
@@ -123,11 +122,11 @@ contains
 
     decade = shifta((exponent + 52)*78913, 18)   ! floor(log10(2**(exponent + 52))): right or one too small
     do
-      k = self%digits - 1 - decade
-      call multiply(significand, self%powers(k), high, low, rest)
-      shift = -81 - exponent - int(self%powers(k)%exponent)
+      k = writer%digits - 1 - decade
+      call multiply(significand, writer%powers(k), high, low, rest)
+      shift = -81 - exponent - int(writer%powers(k)%exponent)
       whole = shiftr(high, shift)
-      if (whole < self%too_large) exit
+      if (whole < writer%too_large) exit
       decade = decade + 1
     end do
     part = high - shiftl(whole, shift)
@@ -144,7 +143,7 @@ contains
     end if
     if (is_tie .and. .not. btest(whole, 0)) return
     whole = whole + 1
-    if (whole < self%too_large) return
+    if (whole < writer%too_large) return
     whole = whole/10
     decade = decade + 1
   end subroutine round

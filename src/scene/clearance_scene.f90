@@ -438,7 +438,9 @@ contains
     end if
   end function initial_state
 
-  !> The eccentricity is measured by the clearance, its rate by the clearance in the time of one radian.
+  !> The eccentricity is measured by the clearance, its rate by the clearance in the time of one radian. Measured
+  !> (scripts/compare_adams.sh, simulation IV, c = 20 um): at the relative tolerance 1e-4 the pin is off by 4e-5 c at the
+  !> end, at 1e-6 by 4e-9 c, at 1e-12 by 1e-14 c; in (q, A, x) rounding alone makes 4e-12 c.
   pure subroutine natural_scales(self, span, scales, growing)
     class(clearance_scene_t), intent(in) :: self
     real(dp), intent(in) :: span

@@ -31,6 +31,7 @@ module columns
   type :: column_list_t
     integer, allocatable :: id(:)       !! positions in `names`
     real(dp) :: clearance = 1           !! of the joint [m], for the eccentricity ratio
+    logical :: needs_rod_angle = .false.
     logical :: needs_reactions = .false.
     logical :: needs_energy = .false.
   end type column_list_t
@@ -61,6 +62,7 @@ contains
       if (allocated(error)) return
     end if
     list%id = pack([(i, i=1, n_columns)], has .and. wanted)
+    list%needs_rod_angle = any(list%id == 3)
     list%needs_reactions = any(list%id >= 14 .and. list%id <= 20)
     list%needs_energy = any(list%id == 21 .or. list%id == 22)
   end subroutine choose_columns
@@ -108,6 +110,7 @@ contains
   end function column_name
 
   !> The values of a row from one evaluation of the scene at time t, with the work of the non-conservative forces so far.
+  !> What takes work and is not in the list is left out.
   pure subroutine row_values(list, scene, t, now, work, initial_energy, values)
     type(column_list_t), intent(in) :: list
     class(scene_t), intent(in) :: scene
@@ -116,23 +119,30 @@ contains
     real(dp), intent(in) :: work             !! [J]
     real(dp), intent(in) :: initial_energy   !! [J]
     real(dp), intent(out) :: values(:)       !! (size(list%id))
-    real(dp) :: all_values(n_columns), energy, in_film, volume
+    real(dp) :: all_values(n_columns), in_film, volume
     type(reactions_t) :: reaction
+    integer :: i
 
-    energy = 0
-    if (list%needs_reactions) reaction = reactions_of(scene%mechanism, now%loads, now%motion, now%accelerations)
-    if (list%needs_energy) energy = scene%energy(now%motion)
-    volume = 0
-    if (allocated(scene%gas)) volume = scene%gas%cylinder%volume(now%motion%crank_angle)
     in_film = merge(1.0_dp, 0.0_dp, scene%phase == phase_film)
     associate (m => now%motion, a => now%accelerations, joint => now%joint)
-      all_values = [t, m%crank_angle, atan2(m%sin_rod, m%cos_rod), m%piston_position, m%crank_speed, m%rod_speed, &
-        m%piston_velocity, a%crank, a%rod, a%piston, now%crank_moment, now%loads%pin_force, reaction%crankpin, &
-        reaction%crank_bearing, reaction%guide, reaction%frame, energy, energy - initial_energy - work, &
-        joint%eccentricity, joint%distance/list%clearance, -joint%penetration, real(scene%phase, dp), &
-        now%normal_force, now%friction_force, joint%sliding_speed, in_film*now%loads%pin_force, &
-        now%cylinder_pressure, volume, now%loads%gas_force]
+      all_values(1:2) = [t, m%crank_angle]
+      all_values(3) = 0
+      if (list%needs_rod_angle) all_values(3) = atan2(m%sin_rod, m%cos_rod)
+      all_values(4:13) = [m%piston_position, m%crank_speed, m%rod_speed, m%piston_velocity, a%crank, a%rod, a%piston, &
+        now%crank_moment, now%loads%pin_force]
+      if (list%needs_reactions) reaction = reactions_of(scene%mechanism, now%loads, m, a)
+      all_values(14:20) = [reaction%crankpin, reaction%crank_bearing, reaction%guide, reaction%frame]
+      all_values(21) = 0
+      if (list%needs_energy) all_values(21) = scene%energy(m)
+      all_values(22) = all_values(21) - initial_energy - work
+      all_values(23:32) = [joint%eccentricity, joint%distance/list%clearance, -joint%penetration, real(scene%phase, dp), &
+        now%normal_force, now%friction_force, joint%sliding_speed, in_film*now%loads%pin_force]
+      volume = 0
+      if (allocated(scene%gas)) volume = scene%gas%cylinder%volume(m%crank_angle)
+      all_values(33:35) = [now%cylinder_pressure, volume, now%loads%gas_force]
     end associate
-    values = all_values(list%id)
+    do i = 1, size(values)   ! all_values(list%id) would allocate a copy of the subscripts
+      values(i) = all_values(list%id(i))
+    end do
   end subroutine row_values
 end module columns

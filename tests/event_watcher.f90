@@ -1,0 +1,47 @@
+!> An observer that keeps the instants of contact events.
+module event_watcher
+  use kinds, only: dp
+  use ode_problem, only: ode_problem_t
+  use ode_method, only: ode_method_t
+  use solver, only: observer_t
+  use scene, only: scene_t, event_none
+  implicit none
+  private
+  public :: event_watcher_t, most_instants
+
+  integer, parameter :: most_instants = 1000
+
+  type, extends(observer_t) :: event_watcher_t
+    real(dp) :: instant(most_instants) = 0   !! [s]
+    integer :: n = 0
+  contains
+    procedure :: step_taken
+    procedure :: event_taken
+  end type event_watcher_t
+
+contains
+
+  subroutine step_taken(self, method, problem, t_to)
+    class(event_watcher_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    class(ode_problem_t), intent(in) :: problem
+    real(dp), intent(in) :: t_to
+    associate (unused_self => self, unused_method => method, unused_problem => problem, unused_t => t_to)
+    end associate
+  end subroutine step_taken
+
+  subroutine event_taken(self, problem, index, t, y)
+    class(event_watcher_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    integer, intent(in) :: index
+    real(dp), intent(in) :: t, y(:)
+    associate (unused_y => y)
+    end associate
+    select type (problem)
+    class is (scene_t)
+      if (problem%reported_event(index) == event_none .or. self%n >= most_instants) return
+      self%n = self%n + 1
+      self%instant(self%n) = t
+    end select
+  end subroutine event_taken
+end module event_watcher
