@@ -3,7 +3,7 @@
 !>     integrator_comparison          prints a CSV table, a row for each scene, method and tolerance
 !>
 !> Smooth scenes: error = largest |difference| of q, A, x or their rates at the end, over the largest |value| that it takes,
-!> against Adams at 1e-13. Scenes with impacts: the contact instants that match those of the reference one by one,
+!> against Adams at 1e-13; the same of the eccentricity apart. Scenes with impacts: the contact instants that match those of the reference one by one,
 !> and the largest time error among the first `compared` of them over the time of one radian.
 program integrator_comparison
   use, intrinsic :: iso_fortran_env, only: int64
@@ -44,7 +44,7 @@ program integrator_comparison
   type(outcome_t) :: reference, got
   integer :: scene_number, method_number, tolerance
 
-  print '(a)', 'scene,method,tolerance,evaluations,jacobians,steps,seconds,error,matched_instants,status'
+  print '(a)', 'scene,method,tolerance,evaluations,jacobians,steps,seconds,error,eccentricity_error,matched_instants,status'
   do scene_number = 1, n_scenes
     call run(scene_number, 'adams', 1e-13_dp, 1, reference)
     do method_number = 1, n_methods
@@ -134,9 +134,10 @@ contains
     integer, intent(in) :: scene_number, tolerance
     character(len=*), intent(in) :: name
     type(outcome_t), intent(in) :: got, reference
-    real(dp) :: error
+    real(dp) :: error, off(watched)
     integer :: matched
     matched = 0
+    off = 0
     if (compared(scene_number) > 0) then
       do while (matched < min(got%instants, reference%instants))
         if (abs(got%instant(matched + 1) - reference%instant(matched + 1)) > 1e-3_dp*reference%radian) exit
@@ -147,11 +148,12 @@ contains
         if (matched >= n) error = maxval(abs(got%instant(:n) - reference%instant(:n)))/reference%radian
       end associate
     else
-      error = maxval(abs(got%final - reference%final)/max(reference%largest, tiny(1.0_dp)))
+      off = abs(got%final - reference%final)/max(reference%largest, tiny(1.0_dp))
+      error = maxval(off(:6))   ! q, A, x and their rates
     end if
-    print '(a,",",a,",1e-",i0,",",i0,",",i0,",",i0,",",es10.3,",",es9.2,",",i0,",",i0)', trim(files(scene_number)), &
+    print '(a,",",a,",1e-",i0,",",i0,",",i0,",",i0,",",es10.3,",",es9.2,",",es9.2,",",i0,",",i0)', trim(files(scene_number)), &
       trim(name), tolerance, got%statistics%evaluations, got%statistics%jacobians, got%statistics%accepted, got%seconds, &
-      error, matched, got%status
+      error, maxval(off(7:)), matched, got%status
   end subroutine print_row
 
   pure subroutine sort(values)

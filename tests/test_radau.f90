@@ -304,7 +304,7 @@ contains
 
   subroutine loose_tolerances_survive(check)
     class(checks_t), intent(inout) :: check
-    type(trace_t) :: trace
+    type(trace_t) :: trace, tighter
     character(len=40), parameter :: files(8) = [character(len=40) :: 'sim_I', 'sim_II', 'sim_III', 'sim_IV', 'sim_V', &
       'sim_VI', 'flores/lubricated_400cP', 'sim_II_oscillating']
     character(len=long), parameter :: methods(2) = [character(len=long) :: 'integrator.method=radau', &
@@ -317,7 +317,12 @@ contains
         overrides(2) = 'integrator.relative_tolerance=1e-2'
         trace = run_case('cases/'//trim(files(i))//'.nml', overrides)
         call check%that(.not. allocated(trace%error), trim(files(i))//' at 1e-2, '//trim(methods(k)))
-        if (i <= 7) call check%that(trace%report%figures%min_film_thickness > 0, 'and the pin stays in its film')
+        if (i > 7) cycle   ! chaotic: costs differ with the path
+        call check%that(trace%report%figures%min_film_thickness > 0, 'and the pin stays in its film')
+        overrides(2) = 'integrator.relative_tolerance=1e-4'
+        tighter = run_case('cases/'//trim(files(i))//'.nml', overrides)
+        call check%that(trace%report%statistics%evaluations <= tighter%report%statistics%evaluations, &
+          trim(files(i))//': 1e-2 costs no more than 1e-4, '//trim(methods(k)))
       end do
     end do
   end subroutine loose_tolerances_survive

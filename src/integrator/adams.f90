@@ -68,6 +68,7 @@ module adams
     real(dp), allocatable :: carry(:), carry_predicted(:)  !! what the rounding of y left out
     real(dp), allocatable :: closing(:) !! coefficient of the last polynomial of the interpolant
   contains
+    procedure :: prepare
     procedure :: start
     procedure :: step
     procedure :: interpolate
@@ -84,7 +85,7 @@ contains
     integer, intent(out) :: status
     logical :: inside
 
-    if (first) call prepare(self, problem)
+    if (first .or. .not. allocated(self%phi)) call prepare(self, problem)
     self%t = t
     self%t_old = t
     self%y = y

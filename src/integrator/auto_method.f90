@@ -1,6 +1,7 @@
 !> Adams where the problem is not stiff, Radau where it is, chosen while integrating.
 !>
-!> Every phase of the problem (its `mode`) begins with the method that it ended with the last time, at first with Adams. A
+!> Every phase of the problem (its `mode`) begins with the method that it ended with the last time, at first with Adams
+!> unless the damping in the Jacobian promises that it would be bound by its stability. A
 !> phase in which Adams is bound by its stability for a number of steps goes on with Radau from the same point. What
 !> Radau costs in a mode is then held against what Adams would have cost, its price per time while it was bound carried on in
 !> proportion to the stiffness: where Radau turns out dearer on the whole, the phase goes back and asks for more
@@ -20,6 +21,8 @@ module auto_method
   integer, parameter :: bad_trial_steps = 8    !! or before it is judged
   real(dp), parameter :: bad_trial = 2         !! by this factor
   integer, parameter :: most_patience = 400    !! each change that did not pay doubles the patience up to this
+  real(dp), parameter :: stiff_start = 250.0_dp  !! damping rate times the span from which Radau begins at once, and
+  real(dp), parameter :: start_price = 0.7_dp  !! what Adams is then taken to cost, in evaluations per 1/damping rate
   real(dp), parameter :: step_overhead = 5     !! of a Radau step, Jacobian and algebra, in evaluations
 
   type, extends(ode_method_t) :: auto_t
@@ -28,6 +31,7 @@ module auto_method
     type(radau_t) :: radau
     logical :: stiff = .false.                 !! Radau is at work
     logical :: stiff_in(0:max_modes) = .false. !! the mode ended with Radau
+    logical :: known(0:max_modes) = .false.    !! the mode has begun before
     integer :: mode = 0                        !! of the present phase
     integer :: bound = 0                       !! steps of Adams bound by stability, more than not
     integer :: patience(0:max_modes) = first_patience
@@ -58,6 +62,7 @@ contains
     if (first) then
       self%statistics = step_statistics_t()
       self%stiff_in = .false.
+      self%known = .false.
       self%patience = first_patience
       self%trial = 0
       self%spent = 0
@@ -66,10 +71,26 @@ contains
       self%adams%settings = self%settings
       self%radau%settings = self%settings
       call self%radau%prepare(problem)
+      call self%adams%prepare(problem)
     end if
     self%mode = problem%mode
+    if (.not. self%known(self%mode)) call look_ahead(self, problem, t, y)
     call begin_with(self, problem, self%stiff_in(self%mode), t, y, first, status)
   end subroutine start
+
+  !> A mode that begins for the first time: whether it is stiff beyond doubt.
+  subroutine look_ahead(self, problem, t, y)
+    class(auto_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    real(dp), intent(in) :: t, y(:)
+    real(dp) :: rate
+    self%known(self%mode) = .true.
+    if (problem%n_positions == 0) return
+    call self%radau%damping_rate(problem, t, y, rate)
+    self%stiff_in(self%mode) = rate*self%settings%span > stiff_start
+    self%adams_price = start_price*rate
+    self%stiffness_then = rate
+  end subroutine look_ahead
 
   !> Start a method at (t, y); the statistics go with it.
   subroutine begin_with(self, problem, stiff, t, y, first, status)

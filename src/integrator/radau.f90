@@ -65,6 +65,7 @@ module radau
   contains
     procedure :: prepare
     procedure :: spectral_bound
+    procedure :: damping_rate
     procedure :: start
     procedure :: step
     procedure :: interpolate
@@ -138,7 +139,30 @@ contains
   !> weights of the error.
   pure real(dp) function spectral_bound(self)
     class(radau_t), intent(in) :: self
-    real(dp) :: row_v, row_p, most_v, most_p
+    real(dp) :: most_v, most_p
+    call jacobian_norms(self, most_v, most_p)
+    spectral_bound = max(most_v, sqrt(most_p))
+  end function spectral_bound
+
+  !> The same of the damping alone, a_v, at (t, y): how stiff a phase is that begins there. Takes one Jacobian.
+  subroutine damping_rate(self, problem, t, y, rate)
+    class(radau_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: rate
+    real(dp) :: unused
+    self%y = y
+    call weigh(self)
+    self%statistics%jacobians = self%statistics%jacobians + 1
+    call problem%jacobian(t, y, self%a_p, self%a_v)
+    call jacobian_norms(self, rate, unused)
+  end subroutine damping_rate
+
+  !> Row-sum norms of a_v and a_p in the weights of the error of the rates.
+  pure subroutine jacobian_norms(self, most_v, most_p)
+    class(radau_t), intent(in) :: self
+    real(dp), intent(out) :: most_v, most_p
+    real(dp) :: row_v, row_p
     integer :: i, j
     most_v = 0
     most_p = 0
@@ -156,8 +180,7 @@ contains
       most_v = max(most_v, row_v)
       most_p = max(most_p, row_p)
     end do
-    spectral_bound = max(most_v, sqrt(most_p))
-  end function spectral_bound
+  end subroutine jacobian_norms
 
   !> The formula to start with: the looser the tolerance the lower.
   pure integer function first_level(self)
