@@ -45,7 +45,13 @@ def main() -> int:
         print(f"report.py: {problem}", file=sys.stderr)
         return 1
     out = options.out or directory / f"{name}.html"
-    out.write_text(text, encoding="utf-8")
+    if out.is_dir():
+        out = out / f"{name}.html"
+    try:
+        out.write_text(text, encoding="utf-8")
+    except OSError as problem:
+        print(f"report.py: {out}: {problem.strerror}", file=sys.stderr)
+        return 5
     print(f"{out}: {len(text.encode('utf-8')) / 1e6:.2f} MB")
     return 0
 

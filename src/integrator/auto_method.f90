@@ -17,12 +17,13 @@ module auto_method
   public :: auto_t
 
   integer, parameter :: first_patience = 40    !! steps bound by stability, more than not, before Radau takes over
-  integer, parameter :: trial_steps = 30       !! of Radau, before its cost is judged,
-  integer, parameter :: bad_trial_steps = 8    !! or before it is judged
-  real(dp), parameter :: bad_trial = 2         !! by this factor
+  integer, parameter :: trial_steps = 30       !! of Radau, before its cost is judged
+  real(dp), parameter :: fair_trial = 1.5_dp   !! it is too dear above this factor: what Adams would cost is an estimate
+  integer, parameter :: bad_trial_steps = 12   !! after so many steps it is judged too,
+  real(dp), parameter :: bad_trial = 3         !! by this factor
   integer, parameter :: most_patience = 400    !! each change that did not pay doubles the patience up to this
   real(dp), parameter :: stiff_start = 250.0_dp  !! damping rate times the span from which Radau begins at once, and
-  real(dp), parameter :: start_price = 0.7_dp  !! what Adams is then taken to cost, in evaluations per 1/damping rate
+  real(dp), parameter :: start_price = 1.3_dp  !! what Adams is then taken to cost, in evaluations per 1/damping rate
   real(dp), parameter :: step_overhead = 5     !! of a Radau step, Jacobian and algebra, in evaluations
 
   type, extends(ode_method_t) :: auto_t
@@ -180,7 +181,7 @@ contains
   pure logical function radau_is_dearer(self)
     class(auto_t), intent(in) :: self
     associate (mode => self%mode)
-      radau_is_dearer = self%trial(mode) >= trial_steps .and. self%spent(mode) > self%saved(mode) &
+      radau_is_dearer = self%trial(mode) >= trial_steps .and. self%spent(mode) > fair_trial*self%saved(mode) &
         .or. self%trial(mode) >= bad_trial_steps .and. self%spent(mode) > bad_trial*self%saved(mode)
     end associate
   end function radau_is_dearer
