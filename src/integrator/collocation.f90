@@ -1,0 +1,429 @@
+!> One step of a Radau IIA formula: the collocation stages, Newton's method for them, the filtered error estimate, and the
+!> polynomial through the stages of the last step.
+!>
+!> The system has the structure p' = v, v' = a(t, p, v), w' = P(t, p, v): positions are eliminated from Newton's
+!> equations, and quadratures w take no part in them. The unknowns are the stage increments of v; in the basis that
+!> diagonalises A^-1 each real eigenvalue g needs (g/h - a_v - (h/g) a_p) and each complex pair one such complex matrix,
+!> all of the size of v (Hairer & Wanner 1996, IV.8).
+!>
+!> Where a trial state leaves the model, Newton's step is halved until it stays inside.
+module collocation
+  use kinds, only: dp
+  use ode_problem, only: ode_problem_t
+  use radau_coefficients, only: radau_formula_t, radau_formula, most_stages
+  use small_lu, only: decompose, solve
+  implicit none
+  private
+  public :: collocation_t, most_iterations, n_formulas
+  public :: newton_converged, newton_diverged, newton_outside
+
+  !> How Newton's method ended.
+  integer, parameter :: newton_converged = 0   !! the stages are known
+  integer, parameter :: newton_diverged = 1    !! it did not contract, or a matrix is singular
+  integer, parameter :: newton_outside = 2     !! a trial state is outside the model
+
+  integer, parameter :: most_pairs = 3         !! of complex eigenvalues
+  integer, parameter :: n_formulas = 3         !! of 3, 5 and 7 stages
+  integer, parameter :: most_iterations = 10   !! of Newton's method in a step
+  integer, parameter :: most_halvings = 8      !! of one Newton step that leaves the model
+  real(dp), parameter :: least_contraction = 1e-3_dp   !! where one iteration was enough to tell none
+
+  type :: collocation_t
+    type(radau_formula_t) :: formula(n_formulas)
+    integer :: level = 1                   !! formula in use
+    integer :: n = 0                       !! equations
+    integer :: m = 0                       !! positions: y(1:m)
+    integer :: k = 0                       !! rates: y(m+1:m+k); the first m are those of the positions
+    real(dp) :: t = 0                      !! beginning of the step
+    real(dp) :: h = 0                      !! its size
+    real(dp) :: goal = 0                   !! how small the rest of Newton's iteration must be, in the weights
+    real(dp), allocatable :: base(:)       !! y at the beginning of the step, (n)
+    real(dp), allocatable :: inverse_weight(:)   !! of the error norm, (n)
+    integer :: evaluations = 0             !! of the right-hand side, to be collected by the owner
+    real(dp) :: contraction = 0            !! of Newton's method in the last try
+    real(dp) :: trust = 1                  !! contraction/(1 - contraction): what is left of a Newton step
+    integer :: iterations = 0              !! in the last try
+    integer :: stages_done = 0             !! stages of the last accepted step, 0 after a start
+    real(dp) :: h_done = 0                 !! its size
+    real(dp), allocatable :: z(:, :)       !! increments of y at its stages, (n, most_stages)
+    real(dp), allocatable :: z_new(:, :)   !! the same of the try
+    real(dp), allocatable :: a_p(:, :), a_v(:, :)   !! Jacobian, (k, m) and (k, k)
+    real(dp), allocatable, private :: w(:, :), dw(:, :), rates(:, :)   !! (k, most_stages)
+    real(dp), allocatable, private :: f_stage(:, :) !! right-hand side at the stages, (n + n_outputs, most_stages)
+    real(dp), allocatable, private :: y_stage(:)    !! (n)
+    real(dp), allocatable, private :: e1(:, :)      !! real matrix, (k, k)
+    complex(dp), allocatable, private :: e2(:, :, :)   !! complex matrices, (k, k, pairs)
+    complex(dp), allocatable, private :: right(:)      !! (k)
+    integer, allocatable, private :: pivot1(:), pivot2(:, :)
+  contains
+    procedure :: prepare
+    procedure :: stages
+    procedure :: solve_stages
+    procedure :: keep
+    procedure :: filtered_error
+    procedure :: polynomial
+    procedure :: jacobian_norms
+  end type collocation_t
+
+contains
+
+  !> Allocate everything, once for a whole integration.
+  subroutine prepare(self, problem)
+    class(collocation_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    integer :: n, m, k, i
+
+    n = problem%n
+    m = problem%n_positions
+    k = n - m - problem%n_quadratures
+    self%n = n
+    self%m = m
+    self%k = k
+    do i = 1, n_formulas
+      self%formula(i) = radau_formula(2*i + 1)
+    end do
+    if (allocated(self%z)) deallocate (self%z, self%z_new, self%w, self%dw, self%rates, self%f_stage, self%y_stage, &
+      self%base, self%a_p, self%a_v, self%e1, self%e2, self%right, self%pivot1, self%pivot2, self%inverse_weight)
+    allocate (self%z(n, most_stages), self%z_new(n, most_stages), self%w(k, most_stages), self%dw(k, most_stages), &
+      self%rates(k, most_stages), self%f_stage(n + problem%n_outputs, most_stages), self%y_stage(n), self%base(n), &
+      self%a_p(k, m), self%a_v(k, k), self%e1(k, k), self%e2(k, k, most_pairs), self%right(k), self%pivot1(k), &
+      self%pivot2(k, most_pairs), self%inverse_weight(n))
+    self%z = 0
+  end subroutine prepare
+
+  !> Stages of the formula in use.
+  pure integer function stages(self)
+    class(collocation_t), intent(in) :: self
+    stages = self%formula(self%level)%stages
+  end function stages
+
+  !> Solve for the stages of the step of size h from (t, base), with the Jacobian in a_p and a_v: from the last step's
+  !> polynomial continued where `extrapolates`, else from no change at all.
+  subroutine solve_stages(self, problem, extrapolates, outcome)
+    class(collocation_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    logical, intent(in) :: extrapolates
+    integer, intent(out) :: outcome
+    logical :: singular
+
+    outcome = newton_diverged
+    call decompose_matrices(self, singular)
+    if (singular) return
+    if (extrapolates .and. self%stages_done > 0) then
+      call guess_stages(self)
+      call iterate(self, problem, outcome)
+      if (outcome /= newton_outside) return   ! else the guess may be what is outside
+    end if
+    self%w = 0
+    call iterate(self, problem, outcome)
+  end subroutine solve_stages
+
+  !> The try stands: its stages are those of the last step.
+  pure subroutine keep(self)
+    class(collocation_t), intent(inout) :: self
+    integer :: s
+    s = self%stages()
+    self%z(:, :s) = self%z_new(:, :s)
+    self%stages_done = s
+    self%h_done = self%h
+  end subroutine keep
+
+  !> Increment of y along the last step at its fraction x: the collocation polynomial.
+  pure subroutine polynomial(self, x, change)
+    class(collocation_t), intent(in) :: self
+    real(dp), intent(in) :: x
+    real(dp), intent(out) :: change(:)   !! (n)
+    real(dp) :: weights(0:most_stages)
+    integer :: j
+    call lagrange(self, self%stages_done, x, weights)
+    change = 0
+    do j = 1, self%stages_done
+      change = change + weights(j)*self%z(:, j)
+    end do
+  end subroutine polynomial
+
+  !> Row-sum norms of a_v and a_p in the weights of the error of the rates.
+  pure subroutine jacobian_norms(self, most_v, most_p)
+    class(collocation_t), intent(in) :: self
+    real(dp), intent(out) :: most_v, most_p
+    real(dp) :: row_v, row_p
+    integer :: i, j
+    most_v = 0
+    most_p = 0
+    do i = 1, self%k
+      row_v = 0
+      row_p = 0
+      associate (weight => self%inverse_weight(self%m + i))
+        do j = 1, self%k
+          row_v = row_v + abs(self%a_v(i, j))*weight/max(self%inverse_weight(self%m + j), tiny(weight))
+        end do
+        do j = 1, self%m   ! measured as a rate, since a_p is the square of one
+          row_p = row_p + abs(self%a_p(i, j))*weight/max(self%inverse_weight(self%m + j), tiny(weight))
+        end do
+      end associate
+      most_v = max(most_v, row_v)
+      most_p = max(most_p, row_p)
+    end do
+  end subroutine jacobian_norms
+
+  !> The matrices of Newton's equations for the present step size.
+  pure subroutine decompose_matrices(self, singular)
+    class(collocation_t), intent(inout) :: self
+    logical, intent(out) :: singular
+    complex(dp) :: shift
+    integer :: i, j, m
+
+    m = self%m
+    associate (formula => self%formula(self%level), h => self%h)
+      self%e1 = -self%a_v
+      self%e1(:, :m) = self%e1(:, :m) - (h/formula%gamma)*self%a_p
+      do i = 1, self%k
+        self%e1(i, i) = self%e1(i, i) + formula%gamma/h
+      end do
+      call decompose(self%e1, self%pivot1, singular)
+      if (singular) return
+      do j = 1, formula%stages/2
+        shift = cmplx(formula%alpha(j), -formula%beta(j), dp)/h
+        self%e2(:, :, j) = -self%a_v
+        self%e2(:, :m, j) = self%e2(:, :m, j) - self%a_p/shift
+        do i = 1, self%k
+          self%e2(i, i, j) = self%e2(i, i, j) + shift
+        end do
+        call decompose(self%e2(:, :, j), self%pivot2(:, j), singular)
+        if (singular) return
+      end do
+    end associate
+  end subroutine decompose_matrices
+
+  !> Increments of the rates at the stages, from the last step's polynomial continued.
+  pure subroutine guess_stages(self)
+    class(collocation_t), intent(inout) :: self
+    real(dp) :: weights(0:most_stages)
+    integer :: i, j, l, s, m, k
+
+    m = self%m
+    k = self%k
+    s = self%formula(self%level)%stages
+    do i = 1, s
+      call lagrange(self, self%stages_done, 1 + self%formula(self%level)%c(i)*self%h/self%h_done, weights)
+      weights(self%stages_done) = weights(self%stages_done) - 1
+      do l = 1, k
+        self%rates(l, i) = 0
+        do j = 1, self%stages_done
+          self%rates(l, i) = self%rates(l, i) + weights(j)*self%z(m + l, j)
+        end do
+      end do
+    end do
+    call combine(k, s, 1.0_dp, self%formula(self%level)%t_inverse, self%rates, k, self%w, k)
+  end subroutine guess_stages
+
+  !> Lagrange polynomials at x over the nodes 0, c_1, ..., c_s of a formula.
+  pure subroutine lagrange(self, stages, x, weights)
+    class(collocation_t), intent(in) :: self
+    integer, intent(in) :: stages
+    real(dp), intent(in) :: x
+    real(dp), intent(out) :: weights(0:)
+    real(dp) :: node(0:most_stages)
+    integer :: i, j
+    node(0) = 0
+    node(1:stages) = self%formula(stages/2)%c
+    do i = 0, stages
+      weights(i) = 1
+      do j = 0, stages
+        if (j /= i) weights(i) = weights(i)*(x - node(j))/(node(i) - node(j))
+      end do
+    end do
+  end subroutine lagrange
+
+  !> Simplified Newton iteration for the stage increments. The contraction that it shows is trusted for the first
+  !> iteration of the next step too.
+  subroutine iterate(self, problem, outcome)
+    class(collocation_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    integer, intent(out) :: outcome
+    real(dp) :: change, last_change, ratio, last_ratio
+    integer :: iteration, halvings
+    logical :: inside
+
+    last_change = 0
+    last_ratio = 0
+    self%trust = max(self%trust, epsilon(1.0_dp))**0.8_dp
+    self%contraction = least_contraction
+    outcome = newton_outside
+    call evaluate_stages(self, problem, inside)
+    if (.not. inside) return
+    do iteration = 1, most_iterations
+      self%iterations = iteration
+      call newton_step(self)
+      change = change_norm(self)
+      outcome = newton_diverged
+      if (.not. change < huge(change)) return
+      if (last_change > 0) then
+        ratio = change/last_change
+        self%contraction = ratio
+        if (last_ratio > 0) self%contraction = sqrt(ratio*last_ratio)
+        last_ratio = ratio
+        if (self%contraction >= 0.99_dp) return
+        self%trust = self%contraction/(1 - self%contraction)
+        if (self%trust*change*self%contraction**(most_iterations - 1 - iteration) > self%goal) return
+      end if
+      last_change = change
+      if (self%trust*change <= self%goal) then
+        call expand_stages(self, .true.)
+        outcome = newton_converged
+        return
+      end if
+      call evaluate_stages(self, problem, inside)
+      do halvings = 1, most_halvings
+        if (inside) exit
+        self%dw = 0.5_dp*self%dw   ! half of the step just made is taken back
+        self%w = self%w - self%dw
+        last_change = 0
+        last_ratio = 0
+        self%trust = 1
+        call evaluate_stages(self, problem, inside)
+      end do
+      outcome = newton_outside
+      if (.not. inside) return
+    end do
+    outcome = newton_diverged
+  end subroutine iterate
+
+  !> One Newton step: self%dw, added to self%w. The right-hand sides at the stages are those of self%w.
+  subroutine newton_step(self)
+    class(collocation_t), intent(inout) :: self
+    complex(dp) :: shift
+    integer :: i, j, m, k
+
+    m = self%m
+    k = self%k
+    associate (formula => self%formula(self%level), h => self%h, s => self%formula(self%level)%stages)
+      call combine(k, s, 1.0_dp, formula%t_inverse, self%f_stage(m + 1, 1), size(self%f_stage, 1), self%dw, k)
+      do i = 1, k
+        self%dw(i, 1) = self%dw(i, 1) - (formula%gamma/h)*self%w(i, 1)
+      end do
+      call solve(self%e1, self%pivot1, self%dw(:, 1))
+      do j = 1, s/2
+        shift = cmplx(formula%alpha(j), -formula%beta(j), dp)/h
+        do i = 1, k
+          self%right(i) = cmplx(self%dw(i, 2*j), self%dw(i, 2*j + 1), dp) - shift*cmplx(self%w(i, 2*j), self%w(i, 2*j + 1), dp)
+        end do
+        call solve(self%e2(:, :, j), self%pivot2(:, j), self%right)
+        do i = 1, k
+          self%dw(i, 2*j) = real(self%right(i), dp)
+          self%dw(i, 2*j + 1) = aimag(self%right(i))
+        end do
+      end do
+      do j = 1, s
+        do i = 1, k
+          self%w(i, j) = self%w(i, j) + self%dw(i, j)
+        end do
+      end do
+    end associate
+  end subroutine newton_step
+
+  !> Size of a Newton step relative to the inner tolerance, with what it moves the positions.
+  pure real(dp) function change_norm(self)
+    class(collocation_t), intent(in) :: self
+    real(dp) :: total, weight
+    integer :: i, s
+    s = self%formula(self%level)%stages
+    total = 0
+    do i = 1, self%k
+      weight = self%inverse_weight(self%m + i)
+      if (i <= self%m) weight = max(weight, self%h*self%inverse_weight(i))
+      total = total + sum((self%dw(i, :s)*weight)**2)
+    end do
+    change_norm = sqrt(total/(s*max(self%k, 1)))
+  end function change_norm
+
+  !> Increments of all components at the stages: rates from w, positions by collocation, quadratures from the last
+  !> evaluation.
+  subroutine expand_stages(self, with_quadratures)
+    class(collocation_t), intent(inout) :: self
+    logical, intent(in) :: with_quadratures
+    integer :: i, j, n, m, k
+
+    n = self%n
+    m = self%m
+    k = self%k
+    associate (formula => self%formula(self%level), h => self%h, s => self%formula(self%level)%stages, z => self%z_new)
+      call combine(k, s, 1.0_dp, formula%t, self%w, k, self%rates, k)
+      do i = 1, s
+        do j = 1, k
+          z(m + j, i) = self%rates(j, i)
+        end do
+      end do
+      if (m > 0) then
+        call combine(m, s, h, formula%a, self%rates, k, z, n)
+        do i = 1, s
+          do j = 1, m
+            z(j, i) = z(j, i) + h*formula%c(i)*self%base(m + j)
+          end do
+        end do
+      end if
+      if (with_quadratures .and. n > m + k) &
+        call combine(n - m - k, s, h, formula%a, self%f_stage(m + k + 1, 1), size(self%f_stage, 1), z(m + k + 1, 1), n)
+    end associate
+  end subroutine expand_stages
+
+  !> y(:, i) = factor sum_j matrix(i, j) x(:, j) over the stages, for the first `rows` rows.
+  pure subroutine combine(rows, stages, factor, matrix, x, first_x, y, first_y)
+    integer, intent(in) :: rows, stages, first_x, first_y
+    real(dp), intent(in) :: factor, matrix(stages, stages), x(first_x, *)
+    real(dp), intent(inout) :: y(first_y, *)
+    real(dp) :: total
+    integer :: i, j, r
+    do i = 1, stages
+      do r = 1, rows
+        total = 0
+        do j = 1, stages
+          total = total + matrix(i, j)*x(r, j)
+        end do
+        y(r, i) = factor*total
+      end do
+    end do
+  end subroutine combine
+
+  !> Right-hand sides at the stages of self%w.
+  subroutine evaluate_stages(self, problem, inside)
+    class(collocation_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    logical, intent(out) :: inside
+    integer :: i, j
+    call expand_stages(self, .false.)
+    inside = .true.
+    do i = 1, self%formula(self%level)%stages
+      do j = 1, self%n
+        self%y_stage(j) = self%base(j) + self%z_new(j, i)
+      end do
+      self%evaluations = self%evaluations + 1
+      call problem%derivatives(self%t + self%formula(self%level)%c(i)*self%h, self%y_stage, self%f_stage(:, i), inside)
+      if (.not. inside) return
+    end do
+  end subroutine evaluate_stages
+
+  !> (I - h/gamma J)^-1 (h/gamma f_0 + sum e_i z_i): the difference to an embedded formula of order s, filtered.
+  pure subroutine filtered_error(self, f_0, error)
+    class(collocation_t), intent(in) :: self
+    real(dp), intent(in) :: f_0(:)
+    real(dp), intent(out) :: error(:)   !! (n)
+    real(dp) :: rate(self%k)
+    integer :: i, m, k
+    m = self%m
+    k = self%k
+    associate (formula => self%formula(self%level))
+      error = (self%h/formula%gamma)*f_0(:self%n)
+      do i = 1, formula%stages
+        error = error + formula%e(i)*self%z_new(:, i)
+      end do
+      rate = (formula%gamma/self%h)*error(m + 1:m + k)
+      do i = 1, m
+        rate = rate + self%a_p(:, i)*error(i)
+      end do
+      call solve(self%e1, self%pivot1, rate)
+      error(m + 1:m + k) = rate
+      error(:m) = error(:m) + (self%h/formula%gamma)*rate(:m)
+    end associate
+  end subroutine filtered_error
+end module collocation
