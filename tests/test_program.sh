@@ -124,5 +124,16 @@ check "and says so" grep -q "interrupted at t = " "$work/err"
 check "and keeps whole rows" [ "$(awk -F, '{print NF}' "$work/i/sim_I.csv" | sort -u | wc -l)" = 1 -a \
   "$(wc -l <"$work/i/sim_I.csv")" -gt 100 ]
 
+# a full disk: whole rows, the right status
+if (ulimit -f 400) 2>/dev/null; then
+  (ulimit -f 400; exec "$gudgeon" -o "$work/d" -s integrator.method=auto -s output.ideal_twin=F cases/sim_I.nml) \
+    >"$work/out" 2>"$work/err"
+  status=$?
+  check "no room for the trace: exit status 5, got $status" [ "$status" = 5 ]
+  check "one line says which file and why: $(cat "$work/err")" grep -q "sim_I.csv: File too large" "$work/err"
+  check "whole rows" [ "$(awk -F, '{print NF}' "$work/d/sim_I.csv" | sort -u | wc -l)" = 1 ]
+  check "and the summary says so" grep -q '^status,"stopped: ' "$work/d/sim_I.summary.csv"
+fi
+
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]

@@ -79,8 +79,8 @@ contains
     failed = self%status /= 0
   end function has_failed
 
-  !> Write out the rest and give the file its final name. After a failed write it holds the whole rows that fitted,
-  !> and `error` names the file and the cause.
+  !> Write out the rest and give the file its final name. After a failed write it holds the whole rows that fitted (there
+  !> is no file if none did), and `error` names the file and the cause.
   subroutine close_result(self, error)
     class(result_file_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
@@ -90,8 +90,12 @@ contains
     call close_file(self%descriptor, status)
     self%descriptor = -1
     if (self%status == 0 .and. status /= error_interrupted) self%status = status
-    call rename_file(self%path//'.part', self%path, status)
-    if (self%status == 0) self%status = status
+    if (self%status /= 0 .and. self%written == 0) then
+      call remove_file(self%path//'.part', status)   ! not even a first row: no file
+    else
+      call rename_file(self%path//'.part', self%path, status)
+      if (self%status == 0) self%status = status
+    end if
     if (self%status /= 0) call report(self, self%status, error)
   end subroutine close_result
 
