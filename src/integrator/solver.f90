@@ -2,7 +2,7 @@
 !> take the event, restart.
 module solver
   use kinds, only: dp
-  use ode_problem, only: ode_problem_t, event_stop
+  use ode_problem, only: ode_problem_t, event_stop, max_events
   use ode_method, only: ode_method_t, step_done
   use events, only: event_watch_t
   implicit none
@@ -85,7 +85,7 @@ contains
       t = min(method%t, t_end)
       if (event > 0) then
         t = t_event
-        if (t < method%t) call method%land_on(problem, t, y)
+        if (t < method%t) call land(problem, method, event, t, y)
       end if
       call observer%step_taken(method, problem, t)
       if (event > 0) then
@@ -116,6 +116,28 @@ contains
       y = method%y
     end if
   end subroutine integrate
+
+  !> Land on an event inside the last step. Where the landing is more accurate than the interpolant on which the event was
+  !> found, the instant is corrected by Newton's method.
+  subroutine land(problem, method, event, t, y)
+    class(ode_problem_t), intent(in) :: problem
+    class(ode_method_t), intent(inout) :: method
+    integer, intent(in) :: event
+    real(dp), intent(inout) :: t, y(:)
+    real(dp) :: g(max_events), rate(max_events), longest, correction
+    integer :: i
+    longest = 0.01_dp*(method%t - method%t_old)
+    call method%land_on(problem, t, y)
+    do i = 1, 3
+      call problem%events(t, y, g(:problem%n_events), rate(:problem%n_events))
+      if (.not. abs(rate(event)) > 0) return
+      correction = -g(event)/rate(event)
+      if (abs(correction) <= 1e-8_dp*longest .or. .not. abs(correction) < longest) return
+      if (.not. t + correction > method%t_old) return
+      t = t + correction
+      call method%land_on(problem, t, y)
+    end do
+  end subroutine land
 
   subroutine ignore_step(self, method, problem, t_to)
     class(silent_observer_t), intent(inout) :: self
