@@ -13,6 +13,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import pandas as pd
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 COLOURS = {"adams": "#0072B2", "radau": "#D55E00", "auto": "#000000"}   # Okabe-Ito
 MARKERS = {"adams": "o", "radau": "s", "auto": "x"}
@@ -59,6 +60,11 @@ def draw(data: pd.DataFrame, path: Path) -> None:
                 done = of_method[(of_method["status"] == 0) & (of_method["error"] < 0.5)]
                 axis.loglog(done[quantity], done["error"].clip(lower=1e-14), color=COLOURS[method], marker=MARKERS[method],
                             markersize=4, linewidth=1, label=method)
+            low, high = axis.get_xlim()
+            axis.xaxis.set_minor_formatter(NullFormatter())
+            if high < 30 * low:   # hardly a decade: name what lies between
+                axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+                axis.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
             axis.set_xlabel(label)
             axis.set_ylabel("error")
             axis.grid(True, which="major", linewidth=0.4, alpha=0.5)
