@@ -2,6 +2,12 @@
 module test_scenes
   use kinds, only: dp
   use checks, only: checks_t
+  use errors, only: error_t
+  use case_definition, only: case_t
+  use case_file, only: read_case
+  use scene, only: scene_t, evaluation_t, phase_contact
+  use clearance_scene, only: clearance_scene_t
+  use scene_builder, only: build_scene
   use collecting_sink, only: trace_t, run_case, column
   implicit none
   private
@@ -15,6 +21,7 @@ contains
     class(checks_t), intent(inout) :: check
     call step_rejection_limits_entry(check)
     call sticking_is_the_limit_of_ramps(check)
+    call sticking_keeps_the_sliding_speed(check)
     call energy_is_accounted_for(check)
     call contact_events_are_consistent(check)
     call columns_are_those_asked_for(check)
@@ -72,6 +79,50 @@ contains
     call check%close_to(coulomb%report%figures%max_energy_residual/coulomb%report%figures%max_energy, 0.0_dp, 1e-7_dp, &
       'energy with Coulomb friction')
   end subroutine sticking_is_the_limit_of_ramps
+
+  !> With the friction force of a pin that sticks, the sliding speed does not change along the motion: central differences
+  !> of it along the right-hand side, crank held and free.
+  subroutine sticking_keeps_the_sliding_speed(check)
+    class(checks_t), intent(inout) :: check
+    type(case_t) :: case
+    type(error_t), allocatable :: error
+    class(scene_t), allocatable :: scene
+    type(evaluation_t) :: now, ahead, behind
+    real(dp), allocatable :: y(:), f(:)
+    real(dp) :: t, dt
+    logical :: inside
+    integer :: i, m
+    character(len=long) :: overrides(4)
+
+    dt = 1e-9_dp
+    do i = 1, 6
+      overrides = [character(len=long) :: 'friction.law=coulomb', 'friction.v0=0', 'friction.v1=0', &
+        'drive.kind=constant_speed']
+      if (i > 3) overrides(4) = 'drive.kind=free'
+      call read_case('cases/flores/friction_100.nml', overrides, case, error)
+      call build_scene(case, .false., scene, error)
+      m = scene%n_positions
+      allocate (y(scene%n), f(scene%n + scene%n_outputs))
+      y = scene%initial_state()
+      y(m - 1:m) = 1.02_dp*case%joint%clearance*[cos(1.3_dp*i), sin(1.3_dp*i)]
+      y(2*m - 1:2*m) = [0.4_dp*cos(2.1_dp*i), 0.3_dp*sin(1.7_dp*i)]
+      select type (scene)
+      type is (clearance_scene_t)
+        scene%phase = phase_contact
+        scene%impact_speed = 1
+        scene%sliding = 0
+      end select
+      t = 1e-3_dp*i
+      call scene%derivatives(t, y, f, inside)
+      call scene%evaluate(t, y, now, inside)
+      call scene%evaluate(t + dt, y + dt*f(:scene%n), ahead, inside)
+      call scene%evaluate(t - dt, y - dt*f(:scene%n), behind, inside)
+      call check%that(abs(now%friction_force) > 1, 'it takes a force to stick')
+      call check%close_to((ahead%joint%sliding_speed - behind%joint%sliding_speed)/(2*dt), 0.0_dp, 1e-2_dp, &
+        'the sliding speed of a pin that sticks does not change [m/s2]')
+      deallocate (y, f)
+    end do
+  end subroutine sticking_keeps_the_sliding_speed
 
   !> Energy residual relative to the peak energy.
   subroutine energy_is_accounted_for(check)
