@@ -5,7 +5,8 @@ module simulation
   use case_definition, only: case_t
   use ode_method, only: ode_method_t, step_statistics_t, limit_stability, step_too_small, tolerance_too_small, start_outside
   use methods, only: new_method
-  use solver, only: integrate, silent_observer_t, integration_done, step_limit_reached, integration_interrupted, chattering
+  use solver, only: integrate, silent_observer_t, integration_done, step_limit_reached, integration_interrupted, chattering, &
+    evaluation_limit_reached
   use scene, only: scene_t, evaluation_t, phase_free, phase_film, phase_contact
   use scene_builder, only: build_scene, simulated_time, sample_interval, settings_for
   use columns, only: choose_columns, column_list_t
@@ -116,6 +117,8 @@ contains
       text = 'state outside the model'
     case (step_limit_reached)
       text = 'too many steps (&integrator max_steps)'
+    case (evaluation_limit_reached)
+      text = 'too much work (&integrator max_evaluations)'
     case (integration_interrupted)
       text = interrupted_text
     case (chattering)
