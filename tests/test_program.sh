@@ -108,6 +108,17 @@ check "a run that cannot go on has exit status 4, got $status" [ "$status" = 4 ]
 check "and says why and where" grep -q "max_steps.*t = .*crank angle.*phase film" "$work/err"
 check "and keeps its rows" [ "$(wc -l <"$work/f/sim_I.csv")" -gt 2 ]
 check "and its summary" grep -q '^status,"too many steps' "$work/f/sim_I.summary.csv"
+for method in adams radau auto; do
+  run -o "$work/f" -s integrator.max_evaluations=2000 -s integrator.method=$method cases/sim_I.nml
+  check "$method: too much work is a named reason, status $status" [ "$status" = 4 ]
+  check "$method: with its place" grep -q 'too much work.*max_evaluations.*t = .*crank angle' "$work/err"
+  check "$method: and ends soon after" awk -F, '$1 == "rhs_evaluations" { exit $2 < 2000 || $2 > 2200 }' "$work/f/sim_I.summary.csv"
+done
+run -o "$work/f" -s integrator.revolutions=1 -s contact.youngs_modulus=2.28e9,2.63e11 -s contact.restitution=1 \
+  -s mechanism.rod_mass=1e4 cases/flores/dry_0100um.nml
+check "a run that does not keep its energy is not done, status $status" [ "$status" = 4 -a "$(wc -l <"$work/err")" = 1 ]
+check "and says so" grep -q 'energy not kept.*t = .*crank angle' "$work/err"
+check "also in its summary" grep -q '^status,"energy not kept' "$work/f/dry_0100um.summary.csv"
 run -o "$work/m" -s integrator.revolutions=0.1 "$work/none.nml" cases/flores/ideal.nml
 check "one wrong case of two: the other runs" [ "$status" = 3 -a -s "$work/m/ideal.csv" ]
 : >"$work/file"

@@ -223,6 +223,7 @@ contains
     self%y_old = method%y_old
     self%f = method%f
     self%statistics%accepted = method%statistics%accepted
+    self%statistics%evaluations = method%statistics%evaluations
   end subroutine take_over
 
   pure subroutine interpolate(self, t, y)

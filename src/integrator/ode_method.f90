@@ -40,6 +40,7 @@ module ode_method
     real(dp) :: span = 1                  !! length of the whole integration: the scale of the shortest step
     real(dp) :: stop_time = huge(1.0_dp)  !! where the integration ends: a one-step method lands there
     integer :: max_order = highest_order  !! highest order, 1..highest_order
+    integer :: max_evaluations = 0        !! of the right-hand side in an integration; 0: no limit
     real(dp) :: fixed_step = 0            !! > 0: every step has this size and no error is controlled, for tests of order
     real(dp) :: chatter_time = 0          !! a hundred events in less than this are chatter; 0: 1e-9 of the span
   end type ode_settings_t

@@ -8,7 +8,8 @@ module solver
   implicit none
   private
   public :: integrate, observer_t, silent_observer_t
-  public :: integration_done, integration_stopped, step_limit_reached, integration_interrupted, chattering
+  public :: integration_done, integration_stopped, step_limit_reached, integration_interrupted, chattering, &
+    evaluation_limit_reached
 
   !> How an integration ended, besides the failures of a step (status codes of `ode_method`).
   integer, parameter :: integration_done = 0          !! the end time was reached
@@ -16,6 +17,7 @@ module solver
   integer, parameter :: step_limit_reached = 11       !! more steps than allowed
   integer, parameter :: integration_interrupted = 12  !! the observer asked for the end
   integer, parameter :: chattering = 13               !! event after event without progress in time
+  integer, parameter :: evaluation_limit_reached = 14 !! more evaluations of the right-hand side than the settings allow
 
   integer, parameter :: most_events_in_place = 100    !! events within the chatter time: chatter
 
@@ -108,6 +110,8 @@ contains
       if (observer%wants_to_stop) status = integration_interrupted
       if (max_steps > 0 .and. method%statistics%accepted >= max_steps .and. status == step_done) &
         status = step_limit_reached
+      if (method%settings%max_evaluations > 0 .and. method%statistics%evaluations >= method%settings%max_evaluations &
+          .and. status == step_done) status = evaluation_limit_reached
     end do
     if (status == step_done) then
       if (event == 0) call method%interpolate(t, y)

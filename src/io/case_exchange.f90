@@ -129,6 +129,7 @@ contains
     call x%move('integrator', 'contact_entry', c%integrator%contact_entry)
     call x%move('integrator', 'max_penetration', c%integrator%max_penetration)
     call x%move('integrator', 'max_steps', c%integrator%max_steps)
+    call x%move('integrator', 'max_evaluations', c%integrator%max_evaluations)
     call x%move('output', 'samples_per_revolution', c%output%samples_per_revolution)
     call x%move('output', 'interval', c%output%interval)
     call x%move('output', 'start_time', c%output%start_time)

@@ -143,6 +143,8 @@ contains
       word_key(i, 'contact_entry', 'root', 'root, step_rejection', 'how the start of a contact is found'), &
       real_key(i, 'max_penetration', 'm', '> 0', 'limit at contact entry, needed by step_rejection', default='0.0'), &
       integer_key(i, 'max_steps', '> 0', '0: no limit', default='0'), &
+      integer_key(i, 'max_evaluations', '> 0 and <= 2000000000', &
+                  'of the right-hand side: a run that needs more ends there, exit status 4', default='1000000000'), &
       integer_key(o, 'samples_per_revolution', '>= 1 and <= 1000000', 'rows in a revolution', default='720'), &
       real_key(o, 'interval', 's', '> 0', 'between rows; 0: samples_per_revolution counts', default='0.0'), &
       real_key(o, 'start_time', 's', '>= 0', 'of the first row', default='0.0'), &

@@ -63,7 +63,7 @@ module case_definition
     character(len=word_length) :: method = 'auto', contact_entry = 'root'
     real(dp) :: revolutions = 0, end_time = 0   !! exactly one is given; the other is 0
     real(dp) :: relative_tolerance = 1e-6_dp, absolute_tolerance = 0, max_step = 0
-    integer :: max_order = 12, max_steps = 0
+    integer :: max_order = 12, max_steps = 0, max_evaluations = 1000000000
     real(dp) :: max_penetration = 0
   end type integrator_case_t
 

@@ -142,6 +142,7 @@ contains
     settings%absolute = factor*scales
     if (case%integrator%max_step > 0) settings%max_step = case%integrator%max_step
     settings%max_order = case%integrator%max_order
+    settings%max_evaluations = case%integrator%max_evaluations
     settings%chatter_time = 1e-6_dp*two_pi/scene%speed_scale(settings%span)
   end function settings_for
 end module scene_builder

@@ -5,7 +5,8 @@ module simulation
   use case_definition, only: case_t
   use ode_method, only: ode_method_t, step_statistics_t, limit_stability, step_too_small, tolerance_too_small, start_outside
   use methods, only: new_method
-  use solver, only: integrate, silent_observer_t, integration_done, step_limit_reached, integration_interrupted, chattering
+  use solver, only: integrate, silent_observer_t, integration_done, step_limit_reached, integration_interrupted, chattering, &
+    evaluation_limit_reached
   use scene, only: scene_t, evaluation_t, phase_free, phase_film, phase_contact
   use scene_builder, only: build_scene, simulated_time, sample_interval, settings_for
   use columns, only: choose_columns, column_list_t
@@ -73,9 +74,19 @@ contains
     if (status /= integration_done) then
       report%status = reason(status)//' at '//place(scene, t, y)
       call fail(error, report%status, status_integration)
+    else if (.not. report%figures%max_energy_residual <= energy_limit(case)*report%figures%max_energy) then
+      report%status = 'energy not kept: the residual is beyond its limit, so the results are wrong; run to '//place(scene, t, y)
+      call fail(error, report%status, status_integration)
     end if
     !$omp end critical (texts)
   end subroutine simulate
+
+  !> Largest energy residual of a run that is done, relative to the largest energy. Local errors add up over thousands of
+  !> steps; a residual of a tenth is no result at any tolerance, one of 1e-9 may be rounding.
+  pure real(dp) function energy_limit(case)
+    type(case_t), intent(in) :: case
+    energy_limit = min(0.1_dp, max(1e-9_dp, 1e4_dp*case%integrator%relative_tolerance))
+  end function energy_limit
 
   !> After an Adams run that was bound by its stability most of the time: what method auto would have needed, found by
   !> running it, without any output, for at most a tenth of the steps.
@@ -116,6 +127,8 @@ contains
       text = 'state outside the model'
     case (step_limit_reached)
       text = 'too many steps (&integrator max_steps)'
+    case (evaluation_limit_reached)
+      text = 'too much work (&integrator max_evaluations)'
     case (integration_interrupted)
       text = interrupted_text
     case (chattering)
