@@ -212,12 +212,17 @@ def report(study: Study, reference: Reference, table: pd.DataFrame) -> None:
 
 def main() -> int:
     options = arguments()
+    rows: list[str] = []
     try:
         program = release_program()
         for case, variant in product(options.cases, options.variants):
             study = Study(case, variant, program, options)
             reference = study.reference()
-            report(study, reference, study.measure(reference))
+            table = study.measure(reference)
+            report(study, reference, table)
+            rows += tradeoff.markdown(study.name, table, reference, options.digits)
+        print("\n| case | reference known to | digits | use | time [ms] | evaluations | state error |\n|---|---|---|---|---|---|---|")
+        print(*rows, sep="\n")
     except (MissingResult, OSError) as problem:
         print(f"measure_tradeoff.py: {problem}", file=sys.stderr)
         return 1

@@ -11,6 +11,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure as Drawing
+from matplotlib.ticker import NullFormatter
 
 from . import compare
 from .results import Run
@@ -240,6 +241,20 @@ def recommendation(table: pd.DataFrame, reference: Reference, digits: Sequence[i
     return lines
 
 
+def markdown(name: str, table: pd.DataFrame, reference: Reference, digits: Sequence[int]) -> list[str]:
+    """Rows of the table in cases/README.md."""
+    end = float(reference.run["time"][-1])
+    known = f"{reference.error:.0e} up to {1e3 * reference.horizon:.3g} of {1e3 * end:.3g} ms"
+    rows = []
+    for count in digits:
+        best = cheapest(table, count) if reference.error <= 10.0**-count else None
+        answer = "none | | |"
+        if best is not None:
+            answer = f"{settings_of(best)} | {1e3 * best['seconds']:.2g} | {best['evaluations']:.0f} | {best['state_error']:.0e}"
+        rows.append(f"| `{name}` | {known} | {count} | {answer} |")
+    return rows
+
+
 def draw(table: pd.DataFrame, reference: Reference, title: str) -> Drawing:
     """Error against wall time and against evaluations, the Pareto fronts marked."""
     done = table[(table["status"] == "done") & np.isfinite(table["state_error"])].reset_index(drop=True)
@@ -264,6 +279,7 @@ def draw(table: pd.DataFrame, reference: Reference, title: str) -> Drawing:
         axis.plot(front[cost], front["state_error"].clip(lower=1e-16), color=BLACK, drawstyle="steps-post", label="Pareto front")
         axis.axhline(max(reference.error, 1e-16), color=GREY, linestyle=":", label="the reference's own error")
         axis.set(xscale="log", yscale="log", xlabel=label)
+        axis.xaxis.set_minor_formatter(NullFormatter())
         axis.margins(0.05)
     axes[0].set_ylabel("largest state error / its range")
     until = "to the end" if reference.whole else f"up to {1e3 * reference.horizon:.4g} ms"
