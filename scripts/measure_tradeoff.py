@@ -42,10 +42,14 @@ COLUMNS = (
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("cases", nargs="+", type=Path, metavar="CASE.nml")
-    parser.add_argument("--out", type=Path, default=TOP / "results" / "tradeoff", metavar="DIR", help="(default: results/tradeoff)")
+    parser.add_argument(
+        "--out", type=Path, default=TOP / "results" / "tradeoff", metavar="DIR", help="(default: results/tradeoff)"
+    )
     parser.add_argument("--tolerances", nargs="+", type=float, default=[10.0**-n for n in range(3, 12)], metavar="TOL")
     parser.add_argument("--methods", nargs="+", default=["adams", "radau", "auto"], choices=("adams", "radau", "auto"))
-    parser.add_argument("--orders", nargs="+", type=int, default=[5, 9, 12], metavar="N", help="max_order (default: 5 9 12)")
+    parser.add_argument(
+        "--orders", nargs="+", type=int, default=[5, 9, 12], metavar="N", help="max_order (default: 5 9 12)"
+    )
     parser.add_argument(
         "--penetrations",
         nargs="*",
@@ -55,14 +59,33 @@ def arguments() -> argparse.Namespace:
         help="max_penetration of step_rejection, in clearances, for scenes that touch (default: 1e-3 1e-5 1e-7)",
     )
     parser.add_argument(
-        "--variants", nargs="+", default=[""], metavar="NAME", help="of the film, each with its own reference (default: the case's own)"
+        "--variants",
+        nargs="+",
+        default=[""],
+        metavar="NAME",
+        help="of the film, each with its own reference (default: the case's own)",
     )
-    parser.add_argument("--reference", nargs=2, type=float, default=[1e-13, 1e-12], metavar="TOL", help="tightest and next tightest")
+    parser.add_argument(
+        "--reference",
+        nargs=2,
+        type=float,
+        default=[1e-13, 1e-12],
+        metavar="TOL",
+        help="tightest and next tightest tolerance (default: 1e-13 1e-12)",
+    )
     parser.add_argument("--horizon", type=float, metavar="S", help="time up to which errors are taken (default: found)")
-    parser.add_argument("--digits", nargs="+", type=int, default=[3, 6], metavar="N", help="to recommend for (default: 3 6)")
-    parser.add_argument("--repeat", type=int, default=5, metavar="N", help="wall time is the median of N runs (default: 5)")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, metavar="N", help="side by side (default: the cores)")
-    parser.add_argument("--timeout", type=float, default=120.0, metavar="S", help="give a run up after this (default: 120)")
+    parser.add_argument(
+        "--digits", nargs="+", type=int, default=[3, 6], metavar="N", help="to recommend for (default: 3 6)"
+    )
+    parser.add_argument(
+        "--repeat", type=int, default=5, metavar="N", help="wall time is the median of N runs (default: 5)"
+    )
+    parser.add_argument(
+        "--jobs", type=int, default=os.cpu_count() or 1, metavar="N", help="side by side (default: the cores)"
+    )
+    parser.add_argument(
+        "--timeout", type=float, default=120.0, metavar="S", help="give a run up after this (default: 120)"
+    )
     return parser.parse_args()
 
 
@@ -89,7 +112,8 @@ class Study:
     def run(self, settings: Settings, out: str, *more: str) -> str:
         """Run the case once into a directory; the status."""
         values = [*settings.overrides(), "output.ideal_twin=.false.", *more]
-        command = [str(self.program), "-q", "-o", out, *(part for value in values for part in ("-s", value)), str(self.case)]
+        overrides = [part for value in values for part in ("-s", value)]
+        command = [str(self.program), "-q", "-o", out, *overrides, str(self.case)]
         try:
             outcome = subprocess.run(command, capture_output=True, text=True, check=False, timeout=self.options.timeout)
         except subprocess.TimeoutExpired:
@@ -153,7 +177,9 @@ class Study:
             found = pd.DataFrame(columns=columns)
         else:
             found = pd.read_csv(self.table, keep_default_na=False, na_values=["nan"], dtype={"made_of": str})
-            found = found[found["made_of"] == self.made_of] if list(found.columns) == columns else pd.DataFrame(columns=columns)
+            if list(found.columns) != columns:
+                return pd.DataFrame(columns=columns)
+            found = found[found["made_of"] == self.made_of].copy()
             numbers = columns[columns.index("seconds") : -1]
             found[numbers] = found[numbers].apply(pd.to_numeric, errors="coerce")
         return found
@@ -221,8 +247,8 @@ def main() -> int:
             table = study.measure(reference)
             report(study, reference, table)
             rows += tradeoff.markdown(study.name, table, reference, options.digits)
-        print("\n| case | reference known to | digits | use | time [ms] | evaluations | state error |\n|---|---|---|---|---|---|---|")
-        print(*rows, sep="\n")
+        print("\n| case | reference known to | digits | use | time [ms] | evaluations | state error |")
+        print("|---|---|---|---|---|---|---|", *rows, sep="\n")
     except (MissingResult, OSError) as problem:
         print(f"measure_tradeoff.py: {problem}", file=sys.stderr)
         return 1

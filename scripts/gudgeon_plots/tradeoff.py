@@ -259,7 +259,11 @@ def draw(table: pd.DataFrame, reference: Reference, title: str) -> Drawing:
     """Error against wall time and against evaluations, the Pareto fronts marked."""
     done = table[(table["status"] == "done") & np.isfinite(table["state_error"])].reset_index(drop=True)
     drawing, axes = plt.subplots(1, 2, figsize=(WIDTH, 3.6), sharey=True)
-    for axis, cost, label in zip(axes, ("seconds", "evaluations"), ("wall time [s]", "evaluations of the right-hand side")):
+    lowest = max(min(done["state_error"].min(), reference.error), 1e-16)
+    highest = max(done["state_error"].max(), 1e-6)
+    costs = {"seconds": "wall time [s]", "evaluations": "evaluations of the right-hand side"}
+    for axis, (cost, label) in zip(axes, costs.items()):
+        axis.set(xscale="log", yscale="log", ylim=(lowest / 3, 3 * highest))
         for method, colour in COLOURS.items():
             for entry, filled in (("root", True), ("step_rejection", False)):
                 rows = done[(done["method"] == method) & (done["contact_entry"] == entry)]
@@ -276,9 +280,10 @@ def draw(table: pd.DataFrame, reference: Reference, title: str) -> Drawing:
                         label=method if filled else f"{method}, step rejection",
                     )
         front = done.loc[pareto_front(done[cost], done["state_error"])]
-        axis.plot(front[cost], front["state_error"].clip(lower=1e-16), color=BLACK, drawstyle="steps-post", label="Pareto front")
+        height = front["state_error"].clip(lower=1e-16)
+        axis.plot(front[cost], height, color=BLACK, drawstyle="steps-post", label="Pareto front")
         axis.axhline(max(reference.error, 1e-16), color=GREY, linestyle=":", label="the reference's own error")
-        axis.set(xscale="log", yscale="log", xlabel=label)
+        axis.set_xlabel(label)
         axis.xaxis.set_minor_formatter(NullFormatter())
         axis.margins(0.05)
     axes[0].set_ylabel("largest state error / its range")
