@@ -141,7 +141,7 @@ class Study:
             for tolerance in self.options.reference
         )
         if not tight or len(tight) + len(loose) < 2:
-            raise MissingResult(f"{self.name}: too few of the reference runs come to an end; try --reference 1e-12 1e-11")
+            raise MissingResult(f"{self.name}: too few reference runs come to an end; try --reference 1e-12 1e-11")
         return tradeoff.choose_reference(tight, loose, self.options.horizon)
 
     def settings(self, touches: bool, clearance: float) -> list[Settings]:

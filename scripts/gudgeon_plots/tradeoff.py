@@ -191,8 +191,8 @@ def measure(reference: Reference, run: Run) -> dict[str, float]:
 
 
 def pareto_front(cost: Sequence[float], error: Sequence[float]) -> list[int]:
-    """Indices, by rising cost, of the points that no other beats: none is at most as dear and at most as wrong. Of equal
-    points the first is kept; points that are not finite are left out."""
+    """Indices, by rising cost, of the points that no other beats: none is at most as dear and at most as wrong. Of
+    equal points the first is kept; points that are not finite are left out."""
     cost, error = np.asarray(cost, dtype=float), np.asarray(error, dtype=float)
     front: list[int] = []
     for i in np.lexsort((error, cost)):
@@ -234,7 +234,8 @@ def recommendation(table: pd.DataFrame, reference: Reference, digits: Sequence[i
             lines.append(f"for {count} digits: none of these settings")
         else:
             lines.append(
-                f"for {count} digits use {settings_of(best)}: {best['seconds']:.2g} s, {best['evaluations']:.0f} evaluations"
+                f"for {count} digits use {settings_of(best)}: {best['seconds']:.2g} s,"
+                f" {best['evaluations']:.0f} evaluations"
                 f" (state {best['state_error']:.0e}, impact times {best['impact_time_error']:.0e} s,"
                 f" peak force {best['peak_force_error']:.0e}, least film {best['least_film_error']:.0e})"
             )
@@ -250,7 +251,8 @@ def markdown(name: str, table: pd.DataFrame, reference: Reference, digits: Seque
         best = cheapest(table, count) if reference.error <= 10.0**-count else None
         answer = "none | | |"
         if best is not None:
-            answer = f"{settings_of(best)} | {1e3 * best['seconds']:.2g} | {best['evaluations']:.0f} | {best['state_error']:.0e}"
+            cost = f"{1e3 * best['seconds']:.2g} | {best['evaluations']:.0f}"
+            answer = f"{settings_of(best)} | {cost} | {best['state_error']:.0e}"
         rows.append(f"| `{name}` | {known} | {count} | {answer} |")
     return rows
 
