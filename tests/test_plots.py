@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests of the figures' table, comparisons and film pressures of scripts/gudgeon_plots.
+"""Tests of the figures' table, comparisons, film pressures and trade-off of scripts/gudgeon_plots.
 
     .venv/bin/python tests/test_plots.py        (after scripts/setup.sh --python; needs no build)
 
@@ -22,7 +22,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 import pandas as pd  # noqa: E402
 
-from gudgeon_plots import compare, figures, film_pressure, report_page  # noqa: E402
+from gudgeon_plots import compare, figures, film_pressure, report_page, tradeoff  # noqa: E402
 from gudgeon_plots.figure_map import read_figures  # noqa: E402
 from gudgeon_plots.quantities import QUANTITIES, once_a_cycle  # noqa: E402
 from gudgeon_plots.results import MissingResult, Results, Run, case_files, load_run, read_case  # noqa: E402
@@ -393,6 +393,67 @@ class Page(unittest.TestCase):
 
     def test_packing_depends_on_the_data_only(self) -> None:
         self.assertEqual(report_page.packed(b"abc"), report_page.packed(b"abc"))
+
+
+class Tradeoff(unittest.TestCase):
+    def test_pareto_front_by_rising_cost(self) -> None:
+        cost = [3, 1, 2, 2, 4, 5]
+        error = [1e-3, 1e-1, 1e-2, 5e-3, 1e-3, 1e-6]
+        self.assertEqual(tradeoff.pareto_front(cost, error), [1, 3, 0, 5])
+
+    def test_pareto_front_keeps_one_of_equals_and_no_failures(self) -> None:
+        self.assertEqual(tradeoff.pareto_front([1, 1, 0, np.nan], [2, 2, np.inf, 1]), [0])
+        self.assertEqual(tradeoff.pareto_front([], []), [])
+
+    def test_impacts_match_one_to_one(self) -> None:
+        self.assertEqual(tradeoff.match_times([1, 2, 3], [1.1, 2.05, 2.9]), [(0, 0), (1, 1), (2, 2)])
+        self.assertEqual(tradeoff.match_times([1, 2, 3], [1.0, 3.0]), [(0, 0), (2, 1)])  # one missed
+        self.assertEqual(tradeoff.match_times([1, 2], [1.0, 1.1, 2.0]), [(0, 0), (1, 2)])  # one too many
+        self.assertEqual(tradeoff.match_times([1, 2], [2.9]), [])  # too far from any
+        self.assertEqual(tradeoff.match_times([], [1.0]), [])
+
+    def test_impacts_beyond_the_horizon_are_left_out(self) -> None:
+        self.assertEqual(tradeoff.match_times([1, 2, 3], [1, 2, 3], until=2.5), [(0, 0), (1, 1)])
+
+    def test_state_error_is_in_shares_of_the_range_up_to_the_horizon(self) -> None:
+        time = np.linspace(0, 1, 11)
+        a = run({"time": time, "rod_angle": 4 * time, "crank_speed": np.ones(11)})
+        b = run({"time": time, "rod_angle": 4 * time + 0.4 * time, "crank_speed": np.zeros(11)})
+        self.assertAlmostEqual(tradeoff.state_error(a, b, 0.5), 0.05)
+        self.assertAlmostEqual(tradeoff.state_error(a, b, 1.0), 0.1)
+        short = run({"time": time[:5], "rod_angle": 4 * time[:5]})
+        self.assertEqual(tradeoff.state_error(a, short, 1.0), np.inf)
+
+    def test_reference_is_the_steadier_method(self) -> None:
+        time = np.linspace(0, 1, 11)
+
+        def off(by: float) -> Run:
+            return run({"time": time, "rod_angle": time * (1 + by)})
+
+        chosen = tradeoff.choose_reference(
+            {"adams": off(0), "radau": off(3e-9)}, {"adams": off(1e-9), "radau": off(9e-9)}
+        )
+        self.assertEqual((chosen.horizon, chosen.whole), (1.0, True))
+        self.assertAlmostEqual(chosen.error, 3e-9, delta=1e-15)
+
+    def test_recommended_runs_miss_no_impact(self) -> None:
+        table = pd.DataFrame(
+            {
+                "status": ["done", "done", "failed"],
+                "state_error": [1e-4, 1e-4, 0.0],
+                "impacts": [3, 3, 3],
+                "impacts_matched": [2, 3, 3],
+                "impacts_extra": [0, 0, 0],
+                "seconds": [1.0, 2.0, 0.1],
+            }
+        )
+        self.assertEqual(tradeoff.cheapest(table, 3)["seconds"], 2.0)
+        self.assertIsNone(tradeoff.cheapest(table, 6))
+
+    def test_settings_are_known_again(self) -> None:
+        settings = tradeoff.Settings("", "adams", 12, "step_rejection", 5e-7, 10.0**-9)
+        row = pd.Series(vars(settings) | {"tolerance": 1e-9})
+        self.assertEqual(tradeoff.settings_of(row).key, settings.key)
 
 
 if __name__ == "__main__":

@@ -20,7 +20,7 @@
 module adams
   use kinds, only: dp
   use ode_problem, only: ode_problem_t, step_admitted, step_too_deep
-  use ode_method, only: ode_method_t, highest_order, step_done, step_too_small, tolerance_too_small, start_outside, &
+  use ode_method, only: ode_method_t, highest_order, step_done, step_too_small, tolerance_too_small, start_outside, left_domain, &
     step_statistics_t, limit_error, limit_stability, limit_max_step, limit_start, limit_refusal
   use adams_coefficients, only: adams_coefficients_t, moulton_constants, interpolation_weights, stability_limit
   use adams_differences, only: extrapolate, restore_differences, raise_differences, differences_of
@@ -243,6 +243,7 @@ contains
 
     call weigh(self)
     failures = 0
+    outcome = try_accepted
     self%rounding = epsilon(1.0_dp)*weighted_norm(self, self%y)
     if (0.5_dp < 2*self%rounding .and. .not. self%settings%fixed_step > 0) then
       status = tolerance_too_small
@@ -250,7 +251,7 @@ contains
     end if
     do
       if (self%h < shortest_step(self)) then
-        status = step_too_small
+        status = merge(left_domain, step_too_small, outcome == try_outside)
         return
       end if
       x_new = self%x + self%h

@@ -5,7 +5,7 @@ module ode_method
   implicit none
   private
   public :: ode_method_t, ode_settings_t, step_statistics_t
-  public :: step_done, step_too_small, tolerance_too_small, start_outside
+  public :: step_done, step_too_small, tolerance_too_small, start_outside, left_domain
   public :: highest_order, with_adams, with_radau
   public :: limit_error, limit_stability, limit_max_step, limit_start, limit_refusal, n_limits, limit_names
 
@@ -29,6 +29,7 @@ module ode_method
   integer, parameter :: step_too_small = 1       !! the step fell to the rounding of the time
   integer, parameter :: tolerance_too_small = 2  !! the tolerance is below the rounding of the state
   integer, parameter :: start_outside = 3        !! the starting state is outside the model
+  integer, parameter :: left_domain = 4          !! the state goes out of the model, however short the step
 
   !> What a user asks of a method. The error of a step in component i is measured against
   !> relative(i)*|y(i)| + absolute(i); a component with both zero does not take part in the error control.

@@ -5,7 +5,8 @@
 module radau
   use kinds, only: dp
   use ode_problem, only: ode_problem_t, step_admitted, step_too_deep
-  use ode_method, only: ode_method_t, step_done, step_too_small, tolerance_too_small, start_outside, step_statistics_t
+  use ode_method, only: ode_method_t, step_done, step_too_small, tolerance_too_small, start_outside, left_domain, &
+    step_statistics_t
   use collocation, only: collocation_t, most_iterations, n_formulas, newton_converged, newton_diverged, newton_outside
   implicit none
   private
@@ -204,6 +205,7 @@ contains
     real(dp) :: error, fraction
     integer :: outcome
 
+    outcome = try_accepted
     call weigh(self)
     call meet_stop_time(self)
     if (inner_tolerance(working_tolerance(self), self%stages%stages()) < 20*epsilon(1.0_dp)) then
@@ -212,7 +214,7 @@ contains
     end if
     do
       if (self%h < 4*epsilon(1.0_dp)*max(abs(self%t), 1e-9_dp*self%settings%span)) then
-        status = step_too_small
+        status = merge(left_domain, step_too_small, outcome == try_outside)
         return
       end if
       call attempt(self, problem, error, outcome, fraction)

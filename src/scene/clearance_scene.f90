@@ -82,7 +82,9 @@ contains
       call clearance_motion(self%mechanism, self%start_angle + self%start_speed*t, self%start_speed, y(1:2), y(3:4), &
         motion, reachable)
     end if
-    if (reachable) joint = joint_motion(self%joint, y(n/2 - 1:n/2), y(n - 2:n - 1), -motion%rod_speed)
+    if (.not. reachable) return
+    joint = joint_motion(self%joint, y(n/2 - 1:n/2), y(n - 2:n - 1), -motion%rod_speed)
+    reachable = joint%penetration < self%joint%pin_radius   ! deeper the pin would be through its bearing
   end subroutine unpack
 
   pure subroutine evaluate(self, t, y, evaluation, inside)

@@ -3,7 +3,8 @@ module simulation
   use kinds, only: dp
   use errors, only: error_t, fail, status_integration, status_internal
   use case_definition, only: case_t
-  use ode_method, only: ode_method_t, step_statistics_t, limit_stability, step_too_small, tolerance_too_small, start_outside
+  use ode_method, only: ode_method_t, step_statistics_t, limit_stability, step_too_small, tolerance_too_small, start_outside, &
+    left_domain
   use methods, only: new_method
   use solver, only: integrate, silent_observer_t, integration_done, step_limit_reached, integration_interrupted, chattering, &
     evaluation_limit_reached
@@ -123,6 +124,8 @@ contains
       text = 'step too small'
     case (tolerance_too_small)
       text = 'tolerance below the rounding of the state'
+    case (left_domain)
+      text = 'the state leaves the model (the pin its bearing or its film)'
     case (start_outside)
       text = 'state outside the model'
     case (step_limit_reached)

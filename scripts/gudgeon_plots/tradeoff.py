@@ -1,0 +1,294 @@
+"""Speed against accuracy: what settings of the integrator cost in a scene, and how far they are from a reference run.
+
+Errors are taken up to the horizon: the time up to which the reference and its checks (the next tightest tolerance, the
+other method) agree within REFERENCE_AGREEMENT of each state's range. Beyond it nobody knows the motion.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure as Drawing
+from matplotlib.ticker import NullFormatter
+
+from . import compare
+from .results import Run
+from .style import BLACK, BLUE, GREEN, GREY, VERMILION, WIDTH
+
+#: Share of a state's range within which the reference's checks agree with it up to the horizon.
+REFERENCE_AGREEMENT = 1e-7
+
+#: What a scene's state shows in a trace; of these, the ones that it has and that move are compared.
+STATES = (
+    "crank_angle",
+    "rod_angle",
+    "piston_position",
+    "crank_speed",
+    "rod_speed",
+    "piston_velocity",
+    "eccentricity_x",
+    "eccentricity_y",
+)
+
+COLOURS = {"adams": BLUE, "radau": VERMILION, "auto": GREEN}
+MARKERS = {"adams": "o", "radau": "s", "auto": "^"}
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What is varied. `max_penetration` [m] is 0 for contact entry root; `variant` is empty for the case's own film."""
+
+    variant: str
+    method: str
+    max_order: int
+    contact_entry: str
+    max_penetration: float
+    tolerance: float
+
+    @property
+    def key(self) -> tuple:
+        """Equal for equal settings, also once they have been written and read."""
+        return (
+            self.variant,
+            self.method,
+            self.max_order,
+            self.contact_entry,
+            f"{self.max_penetration:.6e}",
+            f"{self.tolerance:.6e}",
+        )
+
+    def overrides(self) -> list[str]:
+        """Values for gudgeon's --set."""
+        found = [
+            f"integrator.method={self.method}",
+            f"integrator.max_order={self.max_order}",
+            f"integrator.relative_tolerance={self.tolerance:g}",
+            f"integrator.contact_entry={self.contact_entry}",
+        ]
+        if self.max_penetration > 0:
+            found.append(f"integrator.max_penetration={self.max_penetration:.6e}")
+        if self.variant:
+            found.append(f"lubrication.variant={self.variant}")
+        return found
+
+    def __str__(self) -> str:
+        text = f"{self.method}, tolerance {self.tolerance:g}, max_order {self.max_order}"
+        if self.contact_entry != "root":
+            text += f", {self.contact_entry} {self.max_penetration:.1e} m"
+        return text
+
+
+@dataclass(frozen=True)
+class Reference:
+    """The run that others are measured against, and how well it is known itself."""
+
+    run: Run
+    horizon: float  # s
+    whole: bool  # whether the horizon is the end of the run
+    error: float  # largest difference to its checks up to the horizon, in shares of the range
+
+
+def moving_states(run: Run) -> list[str]:
+    return [column for column in STATES if column in run and np.ptp(run[column]) > 0]
+
+
+def state_error(reference: Run, run: Run, until: float) -> float:
+    """Largest difference of any state up to a time, in shares of the state's range; infinite if the run ends before."""
+    if run["time"][-1] < until * (1 - 1e-9):
+        return np.inf
+    found = compare.agree(reference, run, moving_states(reference), compare.AGREEMENT)
+    return max(float(np.abs(item.difference[item.time <= until]).max()) / item.scale for item in found)
+
+
+def known_until(reference: Run, checks: Sequence[Run], agreement: float) -> tuple[float, bool]:
+    """Time up to which all checks agree with the reference in every state, and whether that is the end."""
+    found = [item for check in checks for item in compare.agree(reference, check, moving_states(reference), agreement)]
+    end = min(item.horizon for item in found)
+    return end, all(item.whole for item in found) and end >= reference["time"][-1]
+
+
+def choose_reference(tight: dict[str, Run], next_tight: dict[str, Run], horizon: float | None = None) -> Reference:
+    """Of the methods' tightest runs, the one that differs least from its own next tightest; checked by that and by the
+    other methods' tightest. `horizon` is a time [s] that is asked for; it is cut where runs end."""
+
+    def steadiness(method: str) -> tuple[float, float]:
+        if method not in next_tight:
+            return (0.0, 0.0)
+        until, _ = known_until(tight[method], [next_tight[method]], REFERENCE_AGREEMENT)
+        return until, -state_error(tight[method], next_tight[method], until)
+
+    method = max(tight, key=steadiness)
+    run = tight[method]
+    checks = [other for name, other in tight.items() if name != method]
+    checks += [next_tight[method]] if method in next_tight else []
+    until, whole = known_until(run, checks, REFERENCE_AGREEMENT)
+    if horizon is not None:
+        end = min(other["time"][-1] for other in [run, *checks])
+        until, whole = min(horizon, end), horizon >= run["time"][-1]
+    return Reference(run, until, whole, max(state_error(run, check, until) for check in checks))
+
+
+def match_times(reference: Sequence[float], found: Sequence[float], until: float = np.inf) -> list[tuple[int, int]]:
+    """Pairs (index in reference, index in found) of times that are each other's nearest, and no further apart than half
+    the way from the reference's to its nearest neighbour. Reference times beyond `until` are left out."""
+    a, b = np.asarray(reference, dtype=float), np.asarray(found, dtype=float)
+    if a.size == 0 or b.size == 0:
+        return []
+    pairs = []
+    for i in np.flatnonzero(a <= until):
+        j = int(np.abs(b - a[i]).argmin())
+        if int(np.abs(a - b[j]).argmin()) != i:
+            continue
+        others = np.delete(a, i)
+        room = np.abs(others - a[i]).min() / 2 if others.size else np.inf
+        if abs(b[j] - a[i]) <= room:
+            pairs.append((int(i), j))
+    return pairs
+
+
+def impact_times(run: Run) -> np.ndarray:
+    return run.events.loc[run.events["event"] == "contact_begins", "time"].to_numpy(dtype=float)
+
+
+def peak_force(run: Run, until: float) -> float:
+    """Largest pin force up to a time [N]: of the trace, and of the contacts that have ended, which are followed between
+    rows too."""
+    inside = run["time"] <= until
+    peaks = [np.hypot(run["pin_force_x"][inside], run["pin_force_y"][inside]).max()]
+    ended = run.events[(run.events["event"] == "contact_ends") & (run.events["time"].astype(float) <= until)]
+    return float(np.nanmax([*peaks, *ended["max_normal_force"].astype(float)]))
+
+
+def least_film(run: Run, until: float) -> float:
+    """Smallest film thickness up to a time [m], negative in contact; not a number with an ideal joint."""
+    if "film_thickness" not in run:
+        return np.nan
+    ended = run.events[(run.events["event"] == "contact_ends") & (run.events["time"].astype(float) <= until)]
+    return float(np.nanmin([*run["film_thickness"][run["time"] <= until], *-ended["max_penetration"].astype(float)]))
+
+
+def measure(reference: Reference, run: Run) -> dict[str, float]:
+    """The errors of a run, by the columns of the table."""
+    until = reference.horizon
+    expected, found = impact_times(reference.run), impact_times(run)
+    pairs = match_times(expected, found, until)
+    late = [abs(found[j] - expected[i]) for i, j in pairs]
+    force, film = peak_force(reference.run, until), least_film(reference.run, until)
+    return {
+        "state_error": state_error(reference.run, run, until),
+        "agrees_until": known_until(reference.run, [run], compare.AGREEMENT)[0],
+        "impacts": int((expected <= until).sum()),
+        "impacts_matched": len(pairs),
+        "impacts_extra": int((found <= until).sum()) - sum(1 for _, j in pairs if found[j] <= until),
+        "impact_time_error": max(late, default=0.0),
+        "peak_force_error": abs(peak_force(run, until) - force) / force if force else 0.0,
+        "least_film_error": abs(least_film(run, until) - film) / abs(film) if film else np.nan,
+        "energy_residual": float(run.summary["max_energy_residual_relative"][0]),
+        "evaluations": int(run.summary["rhs_evaluations"][0]),
+    }
+
+
+def pareto_front(cost: Sequence[float], error: Sequence[float]) -> list[int]:
+    """Indices, by rising cost, of the points that no other beats: none is at most as dear and at most as wrong. Of
+    equal points the first is kept; points that are not finite are left out."""
+    cost, error = np.asarray(cost, dtype=float), np.asarray(error, dtype=float)
+    front: list[int] = []
+    for i in np.lexsort((error, cost)):
+        if np.isfinite(cost[i]) and np.isfinite(error[i]) and (not front or error[i] < error[front[-1]]):
+            front.append(int(i))
+    return front
+
+
+def cheapest(table: pd.DataFrame, digits: int) -> pd.Series | None:
+    """The fastest run that has so many digits of the state right, and every impact, no more and no fewer."""
+    good = table[
+        (table["status"] == "done")
+        & (table["state_error"] <= 10.0**-digits)
+        & (table["impacts_matched"] == table["impacts"])
+        & (table["impacts_extra"] == 0)
+    ]
+    return None if good.empty else good.loc[good["seconds"].idxmin()]
+
+
+def settings_of(row: pd.Series) -> Settings:
+    return Settings(
+        str(row["variant"]),
+        row["method"],
+        int(row["max_order"]),
+        row["contact_entry"],
+        float(row["max_penetration"]),
+        float(row["tolerance"]),
+    )
+
+
+def recommendation(table: pd.DataFrame, reference: Reference, digits: Sequence[int]) -> list[str]:
+    """For each number of digits: what to use and what it costs."""
+    lines = []
+    for count in digits:
+        best = cheapest(table, count)
+        if reference.error > 10.0**-count:
+            lines.append(f"for {count} digits: cannot be told, the reference itself is known to {reference.error:.1e}")
+        elif best is None:
+            lines.append(f"for {count} digits: none of these settings")
+        else:
+            lines.append(
+                f"for {count} digits use {settings_of(best)}: {best['seconds']:.2g} s,"
+                f" {best['evaluations']:.0f} evaluations"
+                f" (state {best['state_error']:.0e}, impact times {best['impact_time_error']:.0e} s,"
+                f" peak force {best['peak_force_error']:.0e}, least film {best['least_film_error']:.0e})"
+            )
+    return lines
+
+
+def markdown(name: str, table: pd.DataFrame, reference: Reference, digits: Sequence[int]) -> list[str]:
+    """Rows of the table in cases/README.md."""
+    end = float(reference.run["time"][-1])
+    known = f"{reference.error:.0e} up to {1e3 * reference.horizon:.3g} of {1e3 * end:.3g} ms"
+    rows = []
+    for count in digits:
+        best = cheapest(table, count) if reference.error <= 10.0**-count else None
+        answer = "none | | |"
+        if best is not None:
+            cost = f"{1e3 * best['seconds']:.2g} | {best['evaluations']:.0f}"
+            answer = f"{settings_of(best)} | {cost} | {best['state_error']:.0e}"
+        rows.append(f"| `{name}` | {known} | {count} | {answer} |")
+    return rows
+
+
+def draw(table: pd.DataFrame, reference: Reference, title: str) -> Drawing:
+    """Error against wall time and against evaluations, the Pareto fronts marked."""
+    done = table[(table["status"] == "done") & np.isfinite(table["state_error"])].reset_index(drop=True)
+    drawing, axes = plt.subplots(1, 2, figsize=(WIDTH, 3.6), sharey=True)
+    lowest = max(min(done["state_error"].min(), reference.error), 1e-16)
+    highest = max(done["state_error"].max(), 1e-6)
+    costs = {"seconds": "wall time [s]", "evaluations": "evaluations of the right-hand side"}
+    for axis, (cost, label) in zip(axes, costs.items()):
+        axis.set(xscale="log", yscale="log", ylim=(lowest / 3, 3 * highest))
+        for method, colour in COLOURS.items():
+            for entry, filled in (("root", True), ("step_rejection", False)):
+                rows = done[(done["method"] == method) & (done["contact_entry"] == entry)]
+                if not rows.empty:
+                    axis.scatter(
+                        rows[cost],
+                        rows["state_error"].clip(lower=1e-16),
+                        s=6 + 1.2 * rows["max_order"],
+                        marker=MARKERS[method],
+                        facecolors=colour if filled else "none",
+                        edgecolors=colour,
+                        linewidths=0.6,
+                        alpha=0.75,
+                        label=method if filled else f"{method}, step rejection",
+                    )
+        front = done.loc[pareto_front(done[cost], done["state_error"])]
+        height = front["state_error"].clip(lower=1e-16)
+        axis.plot(front[cost], height, color=BLACK, drawstyle="steps-post", label="Pareto front")
+        axis.axhline(max(reference.error, 1e-16), color=GREY, linestyle=":", label="the reference's own error")
+        axis.set_xlabel(label)
+        axis.xaxis.set_minor_formatter(NullFormatter())
+        axis.margins(0.05)
+    axes[0].set_ylabel("largest state error / its range")
+    until = "to the end" if reference.whole else f"up to {1e3 * reference.horizon:.4g} ms"
+    drawing.suptitle(f"{title}: error {until} against cost; larger markers: higher max_order")
+    return drawing

@@ -1,0 +1,262 @@
+#!/usr/bin/env python3
+"""Measures what accuracy costs in a scene, and says which settings of the integrator to use.
+
+    scripts/measure_tradeoff.py cases/sim_I.nml               table, picture and recommendation, in results/tradeoff
+    scripts/measure_tradeoff.py cases/flores/*.nml --repeat 9 several cases, wall times the median of nine
+
+Runs a case over tolerance x method x max_order x contact entry with the release build, side by side on the cores there
+are, and compares each run with a reference at the tightest setting, whose own error it estimates from the next
+tightest tolerance and the other method. Goes on where it was interrupted: rows in the table are not run again, unless
+the case or the program has changed. Wall times are measured while the other cores work; evaluations are exact.
+"""
+
+import argparse
+import csv
+import hashlib
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from itertools import product
+from pathlib import Path
+
+from gudgeon_plots.environment import TOP, use_virtual_environment
+
+use_virtual_environment()
+
+import pandas as pd  # noqa: E402
+
+from gudgeon_plots import figures, tradeoff  # noqa: E402
+from gudgeon_plots.results import MissingResult, Run, load_run, read_summary  # noqa: E402
+from gudgeon_plots.tradeoff import Reference, Settings  # noqa: E402
+
+COLUMNS = (
+    *("variant", "method", "max_order", "contact_entry", "max_penetration", "tolerance", "status", "seconds"),
+    *("evaluations", "state_error", "agrees_until", "impacts", "impacts_matched", "impacts_extra"),
+    *("impact_time_error", "peak_force_error", "least_film_error", "energy_residual", "made_of"),
+)
+
+
+def arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("cases", nargs="+", type=Path, metavar="CASE.nml")
+    parser.add_argument(
+        "--out", type=Path, default=TOP / "results" / "tradeoff", metavar="DIR", help="(default: results/tradeoff)"
+    )
+    parser.add_argument("--tolerances", nargs="+", type=float, default=[10.0**-n for n in range(3, 12)], metavar="TOL")
+    parser.add_argument("--methods", nargs="+", default=["adams", "radau", "auto"], choices=("adams", "radau", "auto"))
+    parser.add_argument(
+        "--orders", nargs="+", type=int, default=[5, 9, 12], metavar="N", help="max_order (default: 5 9 12)"
+    )
+    parser.add_argument(
+        "--penetrations",
+        nargs="*",
+        type=float,
+        default=[1e-3, 1e-5, 1e-7],
+        metavar="SHARE",
+        help="max_penetration of step_rejection, in clearances, for scenes that touch (default: 1e-3 1e-5 1e-7)",
+    )
+    parser.add_argument(
+        "--variants",
+        nargs="+",
+        default=[""],
+        metavar="NAME",
+        help="of the film, each with its own reference (default: the case's own)",
+    )
+    parser.add_argument(
+        "--reference",
+        nargs=2,
+        type=float,
+        default=[1e-13, 1e-12],
+        metavar="TOL",
+        help="tightest and next tightest tolerance (default: 1e-13 1e-12)",
+    )
+    parser.add_argument("--horizon", type=float, metavar="S", help="time up to which errors are taken (default: found)")
+    parser.add_argument(
+        "--digits", nargs="+", type=int, default=[3, 6], metavar="N", help="to recommend for (default: 3 6)"
+    )
+    parser.add_argument(
+        "--repeat", type=int, default=5, metavar="N", help="wall time is the median of N runs (default: 5)"
+    )
+    parser.add_argument(
+        "--jobs", type=int, default=os.cpu_count() or 1, metavar="N", help="side by side (default: the cores)"
+    )
+    parser.add_argument(
+        "--timeout", type=float, default=120.0, metavar="S", help="give a run up after this (default: 120)"
+    )
+    return parser.parse_args()
+
+
+def release_program() -> Path:
+    """The release build of gudgeon, brought up to date."""
+    command = ". scripts/setup.sh && fpm build --profile release >&2 && fpm run --profile release --runner echo"
+    outcome = subprocess.run(["sh", "-c", command], cwd=TOP, capture_output=True, text=True, check=False)
+    found = [word for word in outcome.stdout.split() if word.endswith("/app/gudgeon")]
+    if outcome.returncode != 0 or not found:
+        raise MissingResult(f"cannot build gudgeon:\n{outcome.stderr}")
+    return TOP / found[-1]
+
+
+class Study:
+    """One case and film variant: its runs, reference and table."""
+
+    def __init__(self, case: Path, variant: str, program: Path, options: argparse.Namespace) -> None:
+        self.case, self.variant, self.program, self.options = case.resolve(), variant, program, options
+        self.name = case.stem + (f"_{variant}" if variant else "")
+        self.table = options.out / f"{self.name}.csv"
+        made_of = [program.read_bytes(), self.case.read_bytes(), repr((options.horizon, options.reference)).encode()]
+        self.made_of = hashlib.sha1(b"".join(made_of)).hexdigest()[:10]
+
+    def run(self, settings: Settings, out: str, *more: str) -> str:
+        """Run the case once into a directory; the status."""
+        values = [*settings.overrides(), "output.ideal_twin=.false.", *more]
+        overrides = [part for value in values for part in ("-s", value)]
+        command = [str(self.program), "-q", "-o", out, *overrides, str(self.case)]
+        try:
+            outcome = subprocess.run(command, capture_output=True, text=True, check=False, timeout=self.options.timeout)
+        except subprocess.TimeoutExpired:
+            return "timeout"
+        if outcome.returncode in (2, 3):  # the settings or the case are wrong: no other run would do better
+            raise MissingResult(outcome.stderr.strip())
+        return "done" if outcome.returncode == 0 else "failed"
+
+    def load(self, out: str) -> Run:
+        return load_run(Path(out) / f"{self.case.stem}.csv")
+
+    def reference(self) -> Reference:
+        """The tightest runs of both methods, and the next tightest, made side by side."""
+        wanted = list(product(("adams", "radau"), self.options.reference))
+
+        def make(method: str, tolerance: float) -> Run | None:
+            with tempfile.TemporaryDirectory() as out:
+                settings = Settings(self.variant, method, 12, "root", 0.0, tolerance)
+                return self.load(out) if self.run(settings, out, "output.digits=17") == "done" else None
+
+        with ThreadPoolExecutor(self.options.jobs) as pool:
+            runs = dict(zip(wanted, pool.map(lambda item: make(*item), wanted)))
+        tight, loose = (
+            {method: run for (method, value), run in runs.items() if value == tolerance and run is not None}
+            for tolerance in self.options.reference
+        )
+        if not tight or len(tight) + len(loose) < 2:
+            raise MissingResult(f"{self.name}: too few reference runs come to an end; try --reference 1e-12 1e-11")
+        return tradeoff.choose_reference(tight, loose, self.options.horizon)
+
+    def settings(self, touches: bool, clearance: float) -> list[Settings]:
+        entries = [("root", 0.0)]
+        if touches:
+            entries += [("step_rejection", share * clearance) for share in self.options.penetrations]
+        return [
+            Settings(self.variant, method, order, *entry, tolerance)
+            for method, order, entry, tolerance in product(
+                self.options.methods, self.options.orders, entries, self.options.tolerances
+            )
+        ]
+
+    def row(self, settings: Settings, reference: Reference) -> dict[str, object]:
+        """Run once for the errors, in full digits, and as the case asks for the wall time."""
+        with tempfile.TemporaryDirectory() as out:
+            row: dict[str, object] = vars(settings) | {"made_of": self.made_of}
+            row["status"] = self.run(settings, out, "output.digits=17")
+            if row["status"] != "done":
+                return row
+            row |= tradeoff.measure(reference, self.load(out))
+            times = []
+            for _ in range(self.options.repeat):
+                self.run(settings, out)
+                times.append(float(read_summary(Path(out) / f"{self.case.stem}.summary.csv")["wall_time"][0]))
+            return row | {"seconds": statistics.median(times)}
+
+    def rows(self) -> pd.DataFrame:
+        """The rows in the table that are still true; it is written anew with them."""
+        columns = list(COLUMNS)
+        if not self.table.exists():
+            self.table.parent.mkdir(parents=True, exist_ok=True)
+            found = pd.DataFrame(columns=columns)
+        else:
+            found = pd.read_csv(self.table, keep_default_na=False, na_values=["nan"], dtype={"made_of": str})
+            if list(found.columns) != columns:
+                return pd.DataFrame(columns=columns)
+            found = found[found["made_of"] == self.made_of].copy()
+            numbers = columns[columns.index("seconds") : -1]
+            found[numbers] = found[numbers].apply(pd.to_numeric, errors="coerce")
+        return found
+
+    def measure(self, reference: Reference) -> pd.DataFrame:
+        """Run what the table lacks, a row at a time as they end; all rows asked for."""
+        clearance = reference.run.clearance
+        wanted = self.settings(len(tradeoff.impact_times(reference.run)) > 0, clearance)
+        old = self.rows()
+        old.to_csv(self.table, index=False, na_rep="nan")
+        have = {tradeoff.settings_of(row).key for _, row in old.iterrows()}
+        missing = [settings for settings in wanted if settings.key not in have]
+        with self.table.open("a", newline="", encoding="utf-8") as file, ThreadPoolExecutor(self.options.jobs) as pool:
+            writer = csv.DictWriter(file, COLUMNS, restval="nan", lineterminator="\n")
+            try:
+                waiting = [pool.submit(self.row, settings, reference) for settings in missing]
+                for count, done in enumerate(as_completed(waiting), len(wanted) - len(missing) + 1):
+                    writer.writerow(done.result())
+                    file.flush()
+                    progress(f"{self.name}: {count} of {len(wanted)}", last=count == len(wanted))
+            except BaseException:
+                pool.shutdown(wait=False, cancel_futures=True)
+                raise
+        keys = {settings.key for settings in wanted}
+        table = self.rows()
+        return table[[tradeoff.settings_of(row).key in keys for _, row in table.iterrows()]].reset_index(drop=True)
+
+
+def progress(text: str, last: bool) -> None:
+    """On standard error: one line that is overwritten on a terminal, else the last only."""
+    if sys.stderr.isatty():
+        print(f"\r{text}", end="\n" if last else "", file=sys.stderr, flush=True)
+    elif last:
+        print(text, file=sys.stderr, flush=True)
+
+
+def report(study: Study, reference: Reference, table: pd.DataFrame) -> None:
+    """Print the reference, the Pareto front and the recommendation; draw."""
+    run, done = reference.run, table[table["status"] == "done"].reset_index(drop=True)
+    print(f"\n== {study.name}")
+    print(
+        f"reference: {run.parameter('integrator', 'method')}, tolerance {study.options.reference[0]:g};"
+        f" known to {reference.error:.1e} of the states' ranges"
+        + (" to the end" if reference.whole else f" up to {reference.horizon:.4g} s of {run['time'][-1]:.4g} s")
+        + f", {(tradeoff.impact_times(run) <= reference.horizon).sum()} impacts"
+    )
+    print(f"{len(done)} of {len(table)} runs came to an end; Pareto front of wall time and state error:")
+    front = done.loc[tradeoff.pareto_front(done["seconds"], done["state_error"])]
+    shown = front[list(COLUMNS[1:-1])].drop(columns="status")
+    print(shown.to_string(index=False, float_format=lambda value: f"{value:.2g}"))
+    print(*tradeoff.recommendation(table, reference, study.options.digits), sep="\n")
+    drawing = tradeoff.draw(table, reference, study.name)
+    figures.add_legend(drawing, drawing.axes)
+    print(study.table, *figures.save(drawing, study.options.out, study.name, ["png", "svg"]))
+
+
+def main() -> int:
+    options = arguments()
+    rows: list[str] = []
+    try:
+        program = release_program()
+        for case, variant in product(options.cases, options.variants):
+            study = Study(case, variant, program, options)
+            reference = study.reference()
+            table = study.measure(reference)
+            report(study, reference, table)
+            rows += tradeoff.markdown(study.name, table, reference, options.digits)
+        print("\n| case | reference known to | digits | use | time [ms] | evaluations | state error |")
+        print("|---|---|---|---|---|---|---|", *rows, sep="\n")
+    except (MissingResult, OSError) as problem:
+        print(f"measure_tradeoff.py: {problem}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print("\nmeasure_tradeoff.py: interrupted; the same command goes on from here", file=sys.stderr)
+        return 130
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
