@@ -205,6 +205,11 @@ contains
     call check%that(index(trace%error%message, 'max_steps') > 0 .and. index(trace%error%message, 'crank angle') > 0 &
       .and. index(trace%error%message, 'phase film') > 0, 'with the reason and the place')
     call check%that(size(trace%values, 2) > 1 .and. trace%report%statistics%accepted == 1000, 'and keep their rows')
+    trace = run_case('cases/flores/dry_0100um.nml', [character(len=long) :: 'contact.youngs_modulus=1e6, 1e6'])
+    call check%that(allocated(trace%error), 'a pin that goes through its bearing ends a run')
+    if (.not. allocated(trace%error)) return
+    call check%that(index(trace%error%message, 'leaves the model') > 0 .and. index(trace%error%message, 'contact') > 0, &
+      'and says that it left the model')
     trace = run_case('cases/sim_I.nml', [character(len=long) :: 'integrator.relative_tolerance=1e-16'])
     call check%that(allocated(trace%error), 'a tolerance below rounding is refused')
   end subroutine failures_name_their_place
