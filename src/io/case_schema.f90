@@ -136,7 +136,8 @@ contains
                'adams: Shampine and Gordon; radau: implicit; auto: as the phase needs'), &
       real_key(i, 'revolutions', '', '> 0', '0: end_time is given', default='0.0', example='4.0'), &
       real_key(i, 'end_time', 's', '> 0', '0: revolutions is given', default='0.0'), &
-      real_key(i, 'relative_tolerance', '', '> 0 and <= 0.1', 'local error', default='1.0e-6'), &
+      real_key(i, 'relative_tolerance', '', '> 0 and <= 0.1', 'of each step; above 1e-3 it counts as 1e-3', &
+               default='1.0e-6'), &
       real_key(i, 'absolute_tolerance', '', '> 0 and <= 0.1', '0: relative_tolerance by the natural scales', default='0.0'), &
       real_key(i, 'max_step', 's', '> 0', '0: no limit', default='0.0'), &
       integer_key(i, 'max_order', '>= 1 and <= 12', 'of the method', default='12'), &

@@ -20,6 +20,10 @@ module scene_builder
   private
   public :: build_scene, simulated_time, sample_interval, settings_for
 
+  !> A looser tolerance is taken as this one: it would save next to nothing, and the errors of its steps add up to more than
+  !> a result may miss (the ideal twin of simulation IV loses 18 % of its energy at 1e-2, 2 % at 1e-3).
+  real(dp), parameter :: loosest_tolerance = 1e-3_dp
+
 contains
 
   !> Build the scene of a case; with `ideal_joint` its twin without clearance. The case has been validated by its
@@ -130,15 +134,16 @@ contains
     type(case_t), intent(in) :: case
     class(scene_t), intent(in) :: scene
     type(ode_settings_t) :: settings
-    real(dp) :: scales(scene%n), factor
+    real(dp) :: scales(scene%n), factor, tolerance
     logical :: growing(scene%n)
 
     settings%span = simulated_time(case)
-    settings%tolerance = case%integrator%relative_tolerance
+    tolerance = min(case%integrator%relative_tolerance, loosest_tolerance)
+    settings%tolerance = tolerance
     call scene%natural_scales(settings%span, scales, growing)
     factor = case%integrator%absolute_tolerance
-    if (.not. factor > 0) factor = case%integrator%relative_tolerance
-    settings%relative = merge(0.0_dp, case%integrator%relative_tolerance, growing)
+    if (.not. factor > 0) factor = tolerance
+    settings%relative = merge(0.0_dp, tolerance, growing)
     settings%absolute = factor*scales
     if (case%integrator%max_step > 0) settings%max_step = case%integrator%max_step
     settings%max_order = case%integrator%max_order
