@@ -3,10 +3,15 @@ module ideal_scene
   use kinds, only: dp
   use ode_problem, only: event_continue
   use ideal_joint, only: ideal_motion, ideal_accelerations
+  use clearance_joint, only: joint_motion_t
   use scene, only: scene_t, evaluation_t, event_none
   implicit none
   private
   public :: ideal_scene_t
+
+  !> The pin of an ideal joint, in the terms of one with clearance.
+  type(joint_motion_t), parameter :: centred_pin = joint_motion_t([0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp], 0.0_dp, &
+    [1.0_dp, 0.0_dp], 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp)
 
   !> y = (q, q', work), or (work) where the crank speed is held.
   type, extends(scene_t) :: ideal_scene_t
@@ -47,8 +52,7 @@ contains
     end if
     associate (now => evaluation)
       if (allocated(self%gas)) call self%add_gas(now)
-      now%joint%eccentricity = 0
-      now%joint%distance = 0
+      now%joint = centred_pin
       call ideal_accelerations(self%mechanism, self%drive, now%motion, now%loads, now%accelerations, now%crank_moment)
       now%power = (now%crank_moment - self%drive%damping*now%motion%crank_speed)*now%motion%crank_speed &
         - now%loads%gas_force*now%motion%piston_velocity
