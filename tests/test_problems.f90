@@ -30,12 +30,11 @@ module test_problems
   end type bouncing_ball_t
 
   !> A sine of which only the tips exceed a level: two passages close together inside one step.
-  type, extends(ode_problem_t) :: hopper_t
+  type, extends(oscillator_t) :: hopper_t
     real(dp) :: level = 0.9999_dp
     integer :: passages = 0
     real(dp) :: times(100) = 0
   contains
-    procedure :: derivatives => hopper_derivatives
     procedure :: events => hopper_events
     procedure :: handle_event => hopper_passes
   end type hopper_t
@@ -137,18 +136,6 @@ contains
     y(2) = -self%restitution*y(2)
     action = event_continue
   end subroutine ball_rebounds
-
-  pure subroutine hopper_derivatives(self, t, y, dydt, inside)
-    class(hopper_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    real(dp), intent(out) :: dydt(:)
-    logical, intent(out) :: inside
-    associate (unused_self => self, unused_t => t)
-    end associate
-    dydt(1) = y(2)
-    dydt(2) = -y(1)
-    inside = .true.
-  end subroutine hopper_derivatives
 
   pure subroutine hopper_events(self, t, y, g, g_rate)
     class(hopper_t), intent(in) :: self

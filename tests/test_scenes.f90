@@ -102,7 +102,7 @@ contains
       call read_case('cases/flores/friction_100.nml', overrides, case, error)
       call build_scene(case, .false., scene, error)
       m = scene%n_positions
-      allocate (y(scene%n), f(scene%n + scene%n_outputs))
+      allocate (y(scene%n), f(scene%n))
       y = scene%initial_state()
       y(m - 1:m) = 1.02_dp*case%joint%clearance*[cos(1.3_dp*i), sin(1.3_dp*i)]
       y(2*m - 1:2*m) = [0.4_dp*cos(2.1_dp*i), 0.3_dp*sin(1.7_dp*i)]

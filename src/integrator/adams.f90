@@ -146,9 +146,9 @@ contains
     self%statistics = step_statistics_t()
     if (allocated(self%phi)) deallocate (self%phi, self%predicted, self%f_predicted, self%f_new, self%y_new, &
       self%inverse_weight, self%carry, self%carry_predicted, self%closing, self%y, self%y_old, self%f)
-    allocate (self%phi(n, highest_order + 2), self%predicted(n), self%f_predicted(n + problem%n_outputs), &
-      self%f_new(n + problem%n_outputs), self%y_new(n), self%inverse_weight(n), self%carry(n), &
-      self%carry_predicted(n), self%closing(n), self%y(n), self%y_old(n), self%f(n + problem%n_outputs))
+    allocate (self%phi(n, highest_order + 2), self%predicted(n), self%f_predicted(n), &
+      self%f_new(n), self%y_new(n), self%inverse_weight(n), self%carry(n), &
+      self%carry_predicted(n), self%closing(n), self%y(n), self%y_old(n), self%f(n))
   end subroutine prepare
 
   !> The norm in which errors are measured: 1 is the tolerance.

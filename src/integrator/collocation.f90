@@ -49,7 +49,7 @@ module collocation
     real(dp), allocatable :: z_new(:, :)   !! the same of the try
     real(dp), allocatable :: a_p(:, :), a_v(:, :)   !! Jacobian, (k, m) and (k, k)
     real(dp), allocatable, private :: w(:, :), dw(:, :), rates(:, :)   !! (k, most_stages)
-    real(dp), allocatable, private :: f_stage(:, :) !! right-hand side at the stages, (n + n_outputs, most_stages)
+    real(dp), allocatable, private :: f_stage(:, :) !! right-hand side at the stages, (n, most_stages)
     real(dp), allocatable, private :: y_stage(:)    !! (n)
     real(dp), allocatable, private :: e1(:, :)      !! real matrix, (k, k)
     complex(dp), allocatable, private :: e2(:, :, :)   !! complex matrices, (k, k, pairs)
@@ -85,7 +85,7 @@ contains
     if (allocated(self%z)) deallocate (self%z, self%z_new, self%w, self%dw, self%rates, self%f_stage, self%y_stage, &
       self%base, self%a_p, self%a_v, self%e1, self%e2, self%right, self%pivot1, self%pivot2, self%inverse_weight)
     allocate (self%z(n, most_stages), self%z_new(n, most_stages), self%w(k, most_stages), self%dw(k, most_stages), &
-      self%rates(k, most_stages), self%f_stage(n + problem%n_outputs, most_stages), self%y_stage(n), self%base(n), &
+      self%rates(k, most_stages), self%f_stage(n, most_stages), self%y_stage(n), self%base(n), &
       self%a_p(k, m), self%a_v(k, k), self%e1(k, k), self%e2(k, k, most_pairs), self%right(k), self%pivot1(k), &
       self%pivot2(k, most_pairs), self%inverse_weight(n))
     self%z = 0

@@ -76,7 +76,7 @@ module ode_method
     integer :: order = 0                  !! order of the last accepted step
     real(dp), allocatable :: y_old(:)     !! state at t_old, (n)
     real(dp), allocatable :: y(:)         !! state at t, (n)
-    real(dp), allocatable :: f(:)         !! right-hand side and outputs at (t, y), (n + n_outputs)
+    real(dp), allocatable :: f(:)         !! right-hand side at (t, y), (n)
   contains
     procedure :: nominal_tolerance
     procedure :: totals

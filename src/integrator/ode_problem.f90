@@ -26,7 +26,6 @@ module ode_problem
   !> A system of ordinary differential equations.
   type, abstract :: ode_problem_t
     integer :: n = 0          !! number of equations
-    integer :: n_outputs = 0  !! further values that `derivatives` puts behind the n derivatives
     integer :: n_positions = 0   !! the first components are positions, whose rates follow them in the same order
     integer :: n_quadratures = 0 !! the last components are quadratures: nothing depends on them
     integer :: mode = 0          !! the present discrete state as far as the choice of a method cares, 0..max_modes
@@ -42,9 +41,7 @@ module ode_problem
   end type ode_problem_t
 
   abstract interface
-    !> Right-hand side f(t, y). `dydt` has n + n_outputs elements: the derivatives, then quantities of the same
-    !> evaluation that are worth keeping at accepted points. `inside` is false where the model is not defined
-    !> at y; dydt is then not to be used.
+    !> Right-hand side f(t, y), (n). `inside` is false where the model is not defined at y; dydt is then not to be used.
     pure subroutine derivatives(self, t, y, dydt, inside)
       import :: ode_problem_t, dp
       class(ode_problem_t), intent(in) :: self
@@ -63,7 +60,7 @@ contains
     class(ode_problem_t), intent(in) :: self
     real(dp), intent(in) :: t, y(:)
     real(dp), intent(out) :: a_p(:, :), a_v(:, :)
-    real(dp) :: f(self%n + self%n_outputs), moved(self%n + self%n_outputs), state(self%n), step
+    real(dp) :: f(self%n), moved(self%n), state(self%n), step
     logical :: inside
     integer :: i, m, k
 

@@ -84,16 +84,15 @@ contains
   subroutine prepare(self, problem)
     class(radau_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
-    integer :: n, n_f
+    integer :: n
 
     call self%stages%prepare(problem)
     n = problem%n
-    n_f = n + problem%n_outputs
     self%highest = 1
     if (self%settings%max_order >= 9) self%highest = 2
     if (self%settings%max_order >= 12) self%highest = 3
     if (allocated(self%error)) deallocate (self%y_try, self%y_new, self%f_new, self%error, self%y, self%y_old, self%f)
-    allocate (self%y_try(n), self%y_new(n), self%f_new(n_f), self%error(n), self%y(n), self%y_old(n), self%f(n_f))
+    allocate (self%y_try(n), self%y_new(n), self%f_new(n), self%error(n), self%y(n), self%y_old(n), self%f(n))
   end subroutine prepare
 
   !> An upper bound of the rate of the fastest mode of the last Jacobian: the norm of a_v and the root of that of a_p, in the

@@ -64,7 +64,6 @@ contains
     dydt(n/2 - 1:n/2) = now%joint%eccentricity_rate
     dydt(n - 2:n - 1) = eccentricity_acceleration(self%mechanism, now%motion, now%accelerations)
     dydt(n) = now%power
-    dydt(n + 1:n + 2) = now%loads%pin_force
   end subroutine derivatives
 
   !> The state by its parts: bodies and pin.

@@ -36,7 +36,6 @@ contains
     call self%evaluate(t, y, now, inside)
     if (self%drive%free_crank) dydt(1:2) = [now%motion%crank_speed, now%accelerations%crank]
     dydt(self%n) = now%power
-    dydt(self%n + 1:self%n + 2) = now%loads%pin_force
   end subroutine derivatives
 
   pure subroutine evaluate(self, t, y, evaluation, inside)

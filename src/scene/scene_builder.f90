@@ -48,7 +48,6 @@ contains
     end if
     scene%n_quadratures = 1
     scene%n = 2*scene%n_positions + scene%n_quadratures
-    scene%n_outputs = 2
     associate (m => case%mechanism)
       scene%mechanism = mechanism_t(m%crank_length, m%crank_mass, m%crank_inertia, m%crank_com, m%rod_length, m%rod_mass, &
         m%rod_inertia, m%rod_com, m%piston_mass, m%gravity)
