@@ -29,6 +29,7 @@ count() {   # count NAME COMMAND...: run the command and add up its counts
 
 count "every module compiles" sh -c 'fpm build --no-prune && echo "1 passed, 0 failed"'
 count "tests, strict" fpm @strict
+count "case files, fuzzed" tests/test_fuzz.py
 count "tests, release" fpm test --profile release
 count "the program" sh -c 'fpm build --profile release && tests/test_program.sh'
 count "the plots" sh -c 'scripts/setup.sh --python && tests/test_plots.py'

@@ -217,13 +217,16 @@ contains
     call refused_with(check, 'integrator.max_order=0', 'x.nml: &integrator max_order = 0: must be >= 1 and <= 12')
     call refused_with(check, 'integrator.max_steps=-1', 'x.nml: &integrator max_steps = -1: must be > 0')
     call accepted(check, whole//fire, 'combustion')
-    call refused_with(check, 'combustion.bore=0', 'x.nml: &combustion bore = 0: must be > 0 (m)', fire)
-    call refused_with(check, 'combustion.compression_ratio=1', 'x.nml: &combustion compression_ratio = 1: must be > 1', fire)
+    call refused_with(check, 'combustion.bore=0', 'x.nml: &combustion bore = 0: must be >= 1e-6 and <= 1e3 (m)', fire)
+    call refused_with(check, 'combustion.compression_ratio=1', &
+                      'x.nml: &combustion compression_ratio = 1: must be > 1 and <= 1000', fire)
     call refused_with(check, 'combustion.heat_capacity_ratio=1', &
-                      'x.nml: &combustion heat_capacity_ratio = 1: must be > 1', fire)
-    call refused_with(check, 'combustion.heat=-1', 'x.nml: &combustion heat = -1: must be >= 0 (J)', fire)
-    call refused_with(check, 'combustion.wiebe_form=0', 'x.nml: &combustion wiebe_form = 0: must be > 0', fire)
-    call refused_with(check, 'combustion.wiebe_efficiency=0', 'x.nml: &combustion wiebe_efficiency = 0: must be > 0', fire)
+                      'x.nml: &combustion heat_capacity_ratio = 1: must be > 1 and <= 10', fire)
+    call refused_with(check, 'combustion.heat=-1', 'x.nml: &combustion heat = -1: must be >= 0 and <= 1e12 (J)', fire)
+    call refused_with(check, 'combustion.wiebe_form=0', &
+                      'x.nml: &combustion wiebe_form = 0: must be >= 0.05 and <= 100', fire)
+    call refused_with(check, 'combustion.wiebe_efficiency=0', &
+                      'x.nml: &combustion wiebe_efficiency = 0: must be > 0 and <= 1000', fire)
     call refused_with(check, 'combustion.start_deg=179', &
                       'x.nml: &combustion start_deg = 179: must be >= 180 and < 540 (degrees)', fire)
     call refused_with(check, 'combustion.duration_deg=0', 'x.nml: &combustion duration_deg = 0: must be > 0 (degrees)', fire)
@@ -386,6 +389,9 @@ contains
     if (.not. allocated(error)) return
     call check%that(len(error%message) < 500, 'messages are short')
     call check%that(scan(error%message, n//achar(27)) == 0, 'no control characters in messages')
+    call refused(check, whole//char(239)//char(187)//char(191)//'&', 'x.nml:8: text outside a group: \xEF\xBB\xBF&')
+    call refused(check, 'a'//char(194)//char(160)//char(226)//char(128)//char(174)//char(195)//char(169), &
+                 'x.nml:1: text outside a group: a\xC2\xA0\xE2\x80\xAE'//char(195)//char(169))
   end subroutine test_safe_messages
 
   !> A case is refused with exactly this message.

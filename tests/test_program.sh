@@ -5,7 +5,7 @@ passed=0
 failed=0
 work=$(mktemp -d)
 trap 'chmod -R u+w "$work" 2>/dev/null; rm -rf "$work"' EXIT
-gudgeon=$(find build -path '*/app/gudgeon' -o -path '*/gudgeon' -type f -perm -u+x | xargs ls -t | head -n 1)
+gudgeon=$(fpm run gudgeon --profile release --runner echo 2>/dev/null | tail -n 1)
 [ -x "$gudgeon" ] || { echo "0 passed, 1 failed"; exit 1; }
 
 check() {   # check NAME CONDITION...: a test command

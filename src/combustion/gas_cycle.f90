@@ -8,7 +8,7 @@
 module gas_cycle
   use kinds, only: dp
   use constants, only: pi, two_pi, degree
-  use errors, only: error_t, fail, status_integration
+  use errors, only: error_t, fail, status_case_file
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t
   use adams, only: adams_t
@@ -157,7 +157,7 @@ contains
     y = p
     call integrate(problem, method, xi, y, 1.0_dp, 100000, keeper, status)
     if (status /= integration_done) then
-      call fail(error, '&combustion: the heat release cannot be integrated', status_integration)
+      call fail(error, '&combustion: the heat release cannot be integrated with these values', status_case_file)
       return
     end if
     keeper%value(n) = y(1)

@@ -115,12 +115,12 @@ contains
     type(key_t), allocatable :: keys(:)
     character(len=*), parameter :: c = 'combustion'
     keys = [ &
-      real_key(c, 'bore', 'm', '> 0', 'cylinder diameter', example='0.070'), &
-      real_key(c, 'compression_ratio', '', '> 1', 'largest over smallest volume', example='9.0'), &
-      real_key(c, 'heat_capacity_ratio', '', '> 1', 'of the gas', example='1.4'), &
-      real_key(c, 'heat', 'J', '>= 0', 'released in a cycle', example='165.0'), &
-      real_key(c, 'wiebe_efficiency', '', '> 0', 'a of the Wiebe function', example='5.0'), &
-      real_key(c, 'wiebe_form', '', '> 0', 'n of the Wiebe function', example='3.0'), &
+      real_key(c, 'bore', 'm', '>= 1e-6 and <= 1e3', 'cylinder diameter', example='0.070'), &
+      real_key(c, 'compression_ratio', '', '> 1 and <= 1000', 'largest over smallest volume', example='9.0'), &
+      real_key(c, 'heat_capacity_ratio', '', '> 1 and <= 10', 'of the gas', example='1.4'), &
+      real_key(c, 'heat', 'J', '>= 0 and <= 1e12', 'released in a cycle', example='165.0'), &
+      real_key(c, 'wiebe_efficiency', '', '> 0 and <= 1000', 'a of the Wiebe function', example='5.0'), &
+      real_key(c, 'wiebe_form', '', '>= 0.05 and <= 100', 'n of the Wiebe function', example='3.0'), &
       real_key(c, 'start_deg', 'degrees', '>= 180 and < 540', 'start of combustion; firing dead centre is 360', &
                example='340.0'), &
       real_key(c, 'duration_deg', 'degrees', '> 0', 'of combustion, which ends by 540', example='40.0'), &

@@ -25,8 +25,8 @@ contains
     text = trim(digits)
   end function integer_text
 
-  !> The text as one safe line: control characters and bytes that are not UTF-8 appear as \xHH, and what would be
-  !> longer than `limit` bytes ends in '...'.
+  !> The text as one safe line: control characters, characters that cannot be seen or turn the direction of writing, and bytes
+  !> that are not UTF-8 appear as \xHH, and what would be longer than `limit` bytes ends in '...'.
   pure function printable(text, limit) result(shown)
     character(len=*), intent(in) :: text
     integer, intent(in) :: limit
@@ -37,6 +37,7 @@ contains
     i = 1
     do while (i <= len(text))
       bytes = clean_length(text, i)
+      if (bytes > 1) bytes = merge(0, bytes, is_invisible(text(i:i + bytes - 1)))
       if (len(shown) + max(bytes, 4) > limit .and. len(shown) + len(text) - i + 1 > limit) then
         shown = shown//'...'
         return
@@ -50,6 +51,29 @@ contains
       i = i + max(bytes, 1)
     end do
   end function printable
+
+  !> Whether a character of UTF-8 beyond ASCII is a blank, has no width or turns the direction of writing: U+00A0, U+00AD,
+  !> U+2000-200F, U+2028-202F, U+205F-206F, U+3000, U+FEFF.
+  pure function is_invisible(character) result(answer)
+    character(len=*), intent(in) :: character
+    logical :: answer
+    integer :: last
+    last = ichar(character(len(character):))
+    select case (character(:len(character) - 1))
+    case (char(194))
+      answer = last == 160 .or. last == 173
+    case (char(226)//char(128))
+      answer = last <= 143 .or. last >= 168 .and. last <= 175
+    case (char(226)//char(129))
+      answer = last >= 159 .and. last <= 175
+    case (char(227)//char(128))
+      answer = last == 128
+    case (char(239)//char(187))
+      answer = last == 191
+    case default
+      answer = .false.
+    end select
+  end function is_invisible
 
   !> Whether the text is UTF-8 without control characters.
   pure function is_clean(text) result(clean)
