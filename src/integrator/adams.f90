@@ -25,6 +25,7 @@ module adams
   use adams_coefficients, only: adams_coefficients_t, moulton_constants, interpolation_weights, stability_limit
   use adams_differences, only: extrapolate, restore_differences, raise_differences, differences_of
   use step_rates, only: fastest_mode
+  use archive, only: archive_t
   implicit none
   private
   public :: adams_t
@@ -73,6 +74,7 @@ module adams
     procedure :: step
     procedure :: interpolate
     procedure :: start_with_history
+    procedure :: exchange
   end type adams_t
 
 contains
@@ -150,6 +152,34 @@ contains
       self%f_new(n), self%y_new(n), self%inverse_weight(n), self%carry(n), &
       self%carry_predicted(n), self%closing(n), self%y(n), self%y_old(n), self%f(n))
   end subroutine prepare
+
+  !> All components but those that `prepare` sets and those in which a step works.
+  subroutine exchange(self, problem, archive)
+    class(adams_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    type(archive_t), intent(inout) :: archive
+    if (archive%is_reading) call prepare(self, problem)
+    call self%exchange_solution(problem, archive)
+    call self%coefficients%exchange(archive)
+    call archive%exchange(self%k)
+    call archive%exchange(self%k_old)
+    call archive%exchange(self%closed)
+    call archive%exchange(self%rooted)
+    call archive%exchange(self%t_origin)
+    call archive%exchange(self%x)
+    call archive%exchange(self%x_old)
+    call archive%exchange(self%h)
+    call archive%exchange(self%h_old)
+    call archive%exchange(self%limit)
+    call archive%exchange(self%bound)
+    call archive%exchange(self%higher_known)
+    call archive%exchange(self%rounding)
+    call archive%exchange(self%opening)
+    call archive%exchange(self%phi)
+    call archive%exchange(self%inverse_weight)
+    call archive%exchange(self%carry)
+    call archive%exchange(self%closing)
+  end subroutine exchange
 
   !> The norm in which errors are measured: 1 is the tolerance.
   pure real(dp) function weighted_norm(self, values)

@@ -2,6 +2,7 @@
 module adams_coefficients
   use kinds, only: dp
   use ode_method, only: highest_order
+  use archive, only: archive_t
   implicit none
   private
   public :: adams_coefficients_t, moulton_constants, interpolation_weights, stability_limit
@@ -25,6 +26,7 @@ module adams_coefficients
     procedure :: reset
     procedure :: update
     procedure :: take_back
+    procedure :: exchange
   end type adams_coefficients_t
 
 contains
@@ -136,6 +138,22 @@ contains
     end do
     self%ns = 0
   end subroutine take_back
+
+  !> To or from an archive.
+  subroutine exchange(self, archive)
+    class(adams_coefficients_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    call archive%exchange(self%psi)
+    call archive%exchange(self%alpha)
+    call archive%exchange(self%beta)
+    call archive%exchange(self%sigma)
+    call archive%exchange(self%g)
+    call archive%exchange(self%v)
+    call archive%exchange(self%w)
+    call archive%exchange(self%beta_next)
+    call archive%exchange(self%sigma_next)
+    call archive%exchange(self%ns)
+  end subroutine exchange
 
   !> Weights of the Newton basis integrated from t_n+1 to t_n+1 + s (-h <= s <= 0) and divided by s: with them
   !> y(t_n+1 + s) = y_n+1 + s sum_i weights(i) phi_i, i = 1..k+2. The last basis polynomial vanishes at all k+1

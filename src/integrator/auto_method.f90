@@ -12,6 +12,7 @@ module auto_method
   use ode_method, only: ode_method_t, step_statistics_t, step_done, limit_stability, with_adams, with_radau
   use adams, only: adams_t
   use radau, only: radau_t
+  use archive, only: archive_t
   implicit none
   private
   public :: auto_t
@@ -49,6 +50,7 @@ module auto_method
     procedure :: interpolate
     procedure :: land_on
     procedure :: totals
+    procedure :: exchange
   end type auto_t
 
 contains
@@ -78,6 +80,31 @@ contains
     if (.not. self%known(self%mode)) call look_ahead(self, problem, t, y)
     call begin_with(self, problem, self%stiff_in(self%mode), t, y, first, status)
   end subroutine start
+
+  !> Both methods and the account that is kept of them.
+  subroutine exchange(self, problem, archive)
+    class(auto_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    type(archive_t), intent(inout) :: archive
+    self%adams%settings = self%settings
+    self%radau%settings = self%settings
+    call self%exchange_solution(problem, archive)
+    call self%adams%exchange(problem, archive)
+    call self%radau%exchange(problem, archive)
+    call archive%exchange(self%stiff)
+    call archive%exchange(self%stiff_in)
+    call archive%exchange(self%known)
+    call archive%exchange(self%mode)
+    call archive%exchange(self%bound)
+    call archive%exchange(self%patience)
+    call archive%exchange(self%adams_price)
+    call archive%exchange(self%stiffness_then)
+    call archive%exchange(self%evaluations_then)
+    call archive%exchange(self%time_then)
+    call archive%exchange(self%trial)
+    call archive%exchange(self%spent)
+    call archive%exchange(self%saved)
+  end subroutine exchange
 
   !> A mode that begins for the first time: whether it is stiff beyond doubt.
   subroutine look_ahead(self, problem, t, y)

@@ -12,6 +12,7 @@ module collocation
   use ode_problem, only: ode_problem_t
   use radau_coefficients, only: radau_formula_t, radau_formula, most_stages
   use small_lu, only: decompose, solve
+  use archive, only: archive_t
   implicit none
   private
   public :: collocation_t, most_iterations, n_formulas
@@ -63,6 +64,7 @@ module collocation
     procedure :: filtered_error
     procedure :: polynomial
     procedure :: jacobian_norms
+    procedure :: exchange
   end type collocation_t
 
 contains
@@ -90,6 +92,27 @@ contains
       self%pivot2(k, most_pairs), self%inverse_weight(n))
     self%z = 0
   end subroutine prepare
+
+  !> What is remembered between two steps, to or from an archive, after `prepare`.
+  subroutine exchange(self, archive)
+    class(collocation_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    call archive%exchange(self%level)
+    call archive%exchange(self%t)
+    call archive%exchange(self%h)
+    call archive%exchange(self%goal)
+    call archive%exchange(self%base)
+    call archive%exchange(self%inverse_weight)
+    call archive%exchange(self%evaluations)
+    call archive%exchange(self%contraction)
+    call archive%exchange(self%trust)
+    call archive%exchange(self%iterations)
+    call archive%exchange(self%stages_done)
+    call archive%exchange(self%h_done)
+    call archive%exchange(self%z)
+    call archive%exchange(self%a_p)
+    call archive%exchange(self%a_v)
+  end subroutine exchange
 
   !> Stages of the formula in use.
   pure integer function stages(self)

@@ -7,6 +7,7 @@ module events
   use kinds, only: dp
   use ode_problem, only: ode_problem_t, max_events
   use ode_method, only: ode_method_t
+  use archive, only: archive_t
   use roots, only: bracket_t, next_abscissa, narrow
   implicit none
   private
@@ -29,6 +30,7 @@ module events
   contains
     procedure :: begin
     procedure :: search
+    procedure :: exchange
   end type event_watch_t
 
 contains
@@ -53,6 +55,24 @@ contains
       self%low(i) = g(i) < 0
     end do
   end subroutine begin
+
+  !> To or from an archive, for states of n components.
+  subroutine exchange(self, n, archive)
+    class(event_watch_t), intent(inout) :: self
+    integer, intent(in) :: n
+    type(archive_t), intent(inout) :: archive
+    integer :: i
+    if (.not. allocated(self%y)) allocate (self%y(n))
+    call archive%exchange(self%n)
+    do i = 1, max_events
+      call archive%exchange(self%last(i)%t)
+      call archive%exchange(self%last(i)%g)
+      call archive%exchange(self%last(i)%rate)
+    end do
+    call archive%exchange(self%low)
+    call archive%exchange(self%just_taken)
+    call archive%exchange(self%fresh)
+  end subroutine exchange
 
   !> Search the last step of the method up to t_last. `index` is the first event, 0 if there is none; then (t_event,
   !> y_event) is where it happened, on the not negative side.

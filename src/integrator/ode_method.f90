@@ -2,6 +2,7 @@
 module ode_method
   use kinds, only: dp
   use ode_problem, only: ode_problem_t, max_modes
+  use archive, only: archive_t
   implicit none
   private
   public :: ode_method_t, ode_settings_t, step_statistics_t
@@ -65,6 +66,8 @@ module ode_method
     integer :: switches = 0                     !! changes between Adams and Radau
     real(dp) :: time_with(2, 0:max_modes) = 0   !! method auto: time that went by with each method in each mode
     real(dp) :: stiffness = 0     !! integral of rho dt, rho the estimated rate of the fastest mode; 0: not estimated
+  contains
+    procedure :: exchange => exchange_statistics
   end type step_statistics_t
 
   !> A method that advances a problem step by step and knows the solution anywhere inside its last step.
@@ -84,6 +87,8 @@ module ode_method
     procedure(step), deferred :: step
     procedure(interpolate), deferred :: interpolate
     procedure :: land_on
+    procedure, non_overridable :: exchange_solution
+    procedure(exchange), deferred :: exchange
   end type ode_method_t
 
   abstract interface
@@ -114,6 +119,15 @@ module ode_method
       real(dp), intent(in) :: t
       real(dp), intent(out) :: y(:)
     end subroutine interpolate
+
+    !> Everything that the method remembers between two steps, to or from an archive; not the settings. A method that
+    !> reads needs no start before.
+    subroutine exchange(self, problem, archive)
+      import :: ode_method_t, ode_problem_t, archive_t
+      class(ode_method_t), intent(inout) :: self
+      class(ode_problem_t), intent(in) :: problem
+      type(archive_t), intent(inout) :: archive
+    end subroutine exchange
   end interface
 
 contains
@@ -136,6 +150,45 @@ contains
     end associate
     call self%interpolate(t, y)
   end subroutine land_on
+
+  !> The part of `exchange` that all methods have.
+  subroutine exchange_solution(self, problem, archive)
+    class(ode_method_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    type(archive_t), intent(inout) :: archive
+    if (.not. allocated(self%y)) allocate (self%y(problem%n))
+    if (.not. allocated(self%y_old)) allocate (self%y_old(problem%n))
+    if (.not. allocated(self%f)) allocate (self%f(problem%n))
+    call archive%exchange(self%t_old)
+    call archive%exchange(self%t)
+    call archive%exchange(self%order)
+    call archive%exchange(self%y_old)
+    call archive%exchange(self%y)
+    call archive%exchange(self%f)
+    call self%statistics%exchange(archive)
+  end subroutine exchange_solution
+
+  !> The counts to or from an archive.
+  subroutine exchange_statistics(self, archive)
+    class(step_statistics_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    call archive%exchange(self%accepted)
+    call archive%exchange(self%rejected_error)
+    call archive%exchange(self%rejected_penetration)
+    call archive%exchange(self%rejected_domain)
+    call archive%exchange(self%rejected_convergence)
+    call archive%exchange(self%jacobians)
+    call archive%exchange(self%stage_count)
+    call archive%exchange(self%evaluations)
+    call archive%exchange(self%restarts)
+    call archive%exchange(self%smallest_step)
+    call archive%exchange(self%order_count)
+    call archive%exchange(self%limited_by)
+    call archive%exchange(self%time_limited_by)
+    call archive%exchange(self%switches)
+    call archive%exchange(self%time_with)
+    call archive%exchange(self%stiffness)
+  end subroutine exchange_statistics
 
   !> The counts of the whole integration so far.
   pure function totals(self) result(statistics)

@@ -5,6 +5,7 @@
 !> a rejected step leaves no trace in the problem.
 module ode_problem
   use kinds, only: dp
+  use archive, only: archive_t
   implicit none
   private
   public :: ode_problem_t, difference_jacobian
@@ -38,6 +39,8 @@ module ode_problem
     procedure :: judge_step => admit_every_step
     procedure :: handle_event => stop_at_event
     procedure :: lands_on_step_end => never_on_step_end
+    procedure, non_overridable :: exchange_mode
+    procedure :: exchange => exchange_mode
   end type ode_problem_t
 
   abstract interface
@@ -85,6 +88,16 @@ contains
       end if
     end do
   end subroutine difference_jacobian
+
+  !> The discrete state that every problem has, to or from an archive. A problem with more of it overrides `exchange`, and
+  !> calls this from there.
+  subroutine exchange_mode(self, archive)
+    class(ode_problem_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    call archive%exchange(self%mode)
+    call archive%exchange(self%n_events)
+    call archive%exchange(self%smooth_in_root)
+  end subroutine exchange_mode
 
   !> Event functions and their rates along the motion, each signed so that the event is a passage from
   !> negative to positive. g and g_rate have n_events elements. The default is for problems without events.

@@ -7,6 +7,7 @@ module radau
   use ode_problem, only: ode_problem_t, step_admitted, step_too_deep
   use ode_method, only: ode_method_t, step_done, step_too_small, tolerance_too_small, start_outside, left_domain, &
     step_statistics_t
+  use archive, only: archive_t
   use collocation, only: collocation_t, most_iterations, n_formulas, newton_converged, newton_diverged, newton_outside
   implicit none
   private
@@ -44,6 +45,7 @@ module radau
     procedure :: step
     procedure :: interpolate
     procedure :: land_on
+    procedure :: exchange
   end type radau_t
 
 contains
@@ -94,6 +96,24 @@ contains
     if (allocated(self%error)) deallocate (self%y_try, self%y_new, self%f_new, self%error, self%y, self%y_old, self%f)
     allocate (self%y_try(n), self%y_new(n), self%f_new(n), self%error(n), self%y(n), self%y_old(n), self%f(n))
   end subroutine prepare
+
+  !> All components but those that `prepare` sets and those in which a step works.
+  subroutine exchange(self, problem, archive)
+    class(radau_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    type(archive_t), intent(inout) :: archive
+    if (archive%is_reading) call prepare(self, problem)
+    call self%exchange_solution(problem, archive)
+    call self%stages%exchange(archive)
+    call archive%exchange(self%h)
+    call archive%exchange(self%h_last)
+    call archive%exchange(self%error_done)
+    call archive%exchange(self%since_change)
+    call archive%exchange(self%fresh_jacobian)
+    call archive%exchange(self%failed)
+    call archive%exchange(self%cautious)
+    call archive%exchange(self%first)
+  end subroutine exchange
 
   !> An upper bound of the rate of the fastest mode of the last Jacobian: the norm of a_v and the root of that of a_p, in the
   !> weights of the error.

@@ -5,11 +5,12 @@ module solver
   use ode_problem, only: ode_problem_t, event_stop, max_events
   use ode_method, only: ode_method_t, step_done
   use events, only: event_watch_t
+  use archive, only: archive_t
   implicit none
   private
   public :: integrate, observer_t, silent_observer_t
   public :: integration_done, integration_stopped, step_limit_reached, integration_interrupted, chattering, &
-    evaluation_limit_reached
+    evaluation_limit_reached, unreadable_archive
 
   !> How an integration ended, besides the failures of a step (status codes of `ode_method`).
   integer, parameter :: integration_done = 0          !! the end time was reached
@@ -19,15 +20,31 @@ module solver
   integer, parameter :: chattering = 13               !! event after event without progress in time
   integer, parameter :: evaluation_limit_reached = 14 !! more evaluations of the right-hand side than the settings allow
 
+  integer, parameter :: unreadable_archive = 15       !! the archive to go on from does not fit the problem and the method
+
   integer, parameter :: most_events_in_place = 100    !! events within the chatter time: chatter
 
   !> Somebody who looks at accepted steps and at events. While `step_taken` runs, the method interpolates.
   type, abstract :: observer_t
     logical :: wants_to_stop = .false.
+    logical :: wants_archive = .false.    !! the state is to be handed over now
+    logical :: keeps_archives = .false.   !! and whenever the integration ends so that it could go on
   contains
+    procedure :: take_archive => ignore_archive
+    procedure :: exchange => exchange_nothing
     procedure(step_taken), deferred :: step_taken
     procedure(event_taken), deferred :: event_taken
   end type observer_t
+
+  !> Where an integration is, besides problem, method and observer.
+  type :: position_t
+    real(dp) :: t = 0
+    real(dp), allocatable :: y(:)      !! at t; only an event sets it
+    integer :: event = 0               !! at t, 0: none
+    type(event_watch_t) :: watch
+    real(dp) :: t_place = 0            !! where the last events in one place began
+    integer :: in_place = 0            !! their number
+  end type position_t
 
   !> Looks at nothing.
   type, extends(observer_t) :: silent_observer_t
@@ -58,8 +75,9 @@ module solver
 
 contains
 
-  !> Integrate from (t, y) to t_end. At return (t, y) is where it ended. max_steps = 0: no limit.
-  subroutine integrate(problem, method, t, y, t_end, max_steps, observer, status)
+  !> Integrate from (t, y) to t_end, or from where `archive` was filled: with the same settings, problem and observer it then
+  !> goes on as if it had never stopped. At return (t, y) is where it ended. max_steps = 0: no limit.
+  subroutine integrate(problem, method, t, y, t_end, max_steps, observer, status, archive)
     class(ode_problem_t), intent(inout) :: problem
     class(ode_method_t), intent(inout) :: method
     real(dp), intent(inout) :: t, y(:)
@@ -67,59 +85,131 @@ contains
     integer, intent(in) :: max_steps
     class(observer_t), intent(inout) :: observer
     integer, intent(out) :: status
-    type(event_watch_t) :: watch
-    real(dp) :: t_event, t_place, chatter_time
-    integer :: event, action, in_place
+    type(archive_t), intent(inout), optional :: archive
+    type(position_t) :: at
 
     status = integration_done
     if (.not. t < t_end) return
     method%settings%stop_time = t_end
-    call method%start(problem, t, y, .true., status)
-    call watch%begin(problem, t, y, 0)
-    chatter_time = method%settings%chatter_time
-    if (.not. chatter_time > 0) chatter_time = 1e-9_dp*method%settings%span
-    t_place = t
-    in_place = 0
+    at%t = t
+    at%y = y
+    if (present(archive)) then
+      call exchange_all(problem, method, observer, at, archive)
+      if (archive%failed) status = unreadable_archive
+      if (archive%failed) return
+      call look_around(method, max_steps, observer, status)
+    else
+      call method%start(problem, at%t, at%y, .true., status)
+      call at%watch%begin(problem, at%t, at%y, 0)
+      at%t_place = t
+    end if
     do while (status == step_done)
       call method%step(problem, status)
       if (status /= step_done) exit
-      call watch%search(method, problem, t_end, event, t_event, y)
-      t = min(method%t, t_end)
-      if (event > 0) then
-        t = t_event
-        if (t < method%t) call land(problem, method, event, t, y)
-      end if
-      call observer%step_taken(method, problem, t)
-      if (event > 0) then
-        call observer%event_taken(problem, event, t, y)
-        call problem%handle_event(event, t, y, action)
-        if (action == event_stop) then
-          status = integration_stopped
-          exit
-        end if
-        if (t - t_place > chatter_time) in_place = 0
-        if (in_place == 0) t_place = t
-        in_place = in_place + 1
-        if (in_place > most_events_in_place) status = chattering
-        if (.not. t < t_end) exit
-        if (status == step_done) call method%start(problem, t, y, .false., status)
-        call watch%begin(problem, t, y, event)
-      else if (method%t >= t_end) then
-        exit
-      end if
-      if (observer%wants_to_stop) status = integration_interrupted
-      if (max_steps > 0 .and. method%statistics%accepted >= max_steps .and. status == step_done) &
-        status = step_limit_reached
-      if (method%settings%max_evaluations > 0 .and. method%statistics%evaluations >= method%settings%max_evaluations &
-          .and. status == step_done) status = evaluation_limit_reached
+      call take_step(problem, method, observer, t_end, at, status)
+      if (status == integration_stopped) exit
+      if (at%event > 0 .and. .not. at%t < t_end .or. at%event == 0 .and. method%t >= t_end) exit
+      call look_around(method, max_steps, observer, status)
+      if (observer%keeps_archives) call hand_over(problem, method, observer, at, status)
     end do
     if (status == step_done) then
-      if (event == 0) call method%interpolate(t, y)
-    else if (status /= integration_stopped .and. event == 0) then
-      t = method%t
-      y = method%y
+      if (at%event == 0) call method%interpolate(at%t, at%y)
+    else if (status /= integration_stopped .and. at%event == 0) then
+      at%t = method%t
+      at%y = method%y
     end if
+    t = at%t
+    y = at%y
   end subroutine integrate
+
+  !> What becomes of an accepted step: the first event in it, what the observer makes of it, the restart after the event.
+  subroutine take_step(problem, method, observer, t_end, at, status)
+    class(ode_problem_t), intent(inout) :: problem
+    class(ode_method_t), intent(inout) :: method
+    class(observer_t), intent(inout) :: observer
+    real(dp), intent(in) :: t_end
+    type(position_t), intent(inout) :: at
+    integer, intent(inout) :: status
+    real(dp) :: t_event, chatter_time
+    integer :: action
+
+    call at%watch%search(method, problem, t_end, at%event, t_event, at%y)
+    at%t = min(method%t, t_end)
+    if (at%event > 0) then
+      at%t = t_event
+      if (at%t < method%t) call land(problem, method, at%event, at%t, at%y)
+    end if
+    call observer%step_taken(method, problem, at%t)
+    if (at%event == 0) return
+    call observer%event_taken(problem, at%event, at%t, at%y)
+    call problem%handle_event(at%event, at%t, at%y, action)
+    if (action == event_stop) then
+      status = integration_stopped
+      return
+    end if
+    chatter_time = method%settings%chatter_time
+    if (.not. chatter_time > 0) chatter_time = 1e-9_dp*method%settings%span
+    if (at%t - at%t_place > chatter_time) at%in_place = 0
+    if (at%in_place == 0) at%t_place = at%t
+    at%in_place = at%in_place + 1
+    if (at%in_place > most_events_in_place) status = chattering
+    if (.not. at%t < t_end) return
+    if (status == step_done) call method%start(problem, at%t, at%y, .false., status)
+    call at%watch%begin(problem, at%t, at%y, at%event)
+  end subroutine take_step
+
+  !> Whether there is a reason to end between two steps.
+  subroutine look_around(method, max_steps, observer, status)
+    class(ode_method_t), intent(in) :: method
+    integer, intent(in) :: max_steps
+    class(observer_t), intent(in) :: observer
+    integer, intent(inout) :: status
+    if (observer%wants_to_stop) status = integration_interrupted
+    if (max_steps > 0 .and. method%statistics%accepted >= max_steps .and. status == step_done) &
+      status = step_limit_reached
+    if (method%settings%max_evaluations > 0 .and. method%statistics%evaluations >= method%settings%max_evaluations &
+        .and. status == step_done) status = evaluation_limit_reached
+  end subroutine look_around
+
+  !> Hand the state over, where the observer asks for it or the integration ends here though it could go on.
+  subroutine hand_over(problem, method, observer, at, status)
+    class(ode_problem_t), intent(inout) :: problem
+    class(ode_method_t), intent(inout) :: method
+    class(observer_t), intent(inout) :: observer
+    type(position_t), intent(inout) :: at
+    integer, intent(in) :: status
+    type(archive_t) :: archive
+    select case (status)
+    case (step_done)
+      if (.not. observer%wants_archive) return
+    case (integration_interrupted, step_limit_reached, evaluation_limit_reached)
+    case default
+      return
+    end select
+    call archive%begin_writing()
+    call exchange_all(problem, method, observer, at, archive)
+    call observer%take_archive(archive)
+    observer%wants_archive = .false.
+  end subroutine hand_over
+
+  !> The whole state between two steps, to or from an archive.
+  subroutine exchange_all(problem, method, observer, at, archive)
+    class(ode_problem_t), intent(inout) :: problem
+    class(ode_method_t), intent(inout) :: method
+    class(observer_t), intent(inout) :: observer
+    type(position_t), intent(inout) :: at
+    type(archive_t), intent(inout) :: archive
+    call problem%exchange(archive)
+    call method%exchange(problem, archive)
+    call at%watch%exchange(problem%n, archive)
+    call archive%exchange(at%t)
+    call archive%exchange(at%y)
+    call archive%exchange(at%event)
+    call archive%exchange(at%t_place)
+    call archive%exchange(at%in_place)
+    call observer%exchange(archive)
+    if (archive%is_reading .and. .not. archive%is_at_end()) archive%failed = .true.
+  end subroutine exchange_all
 
   !> Land on an event inside the last step. Where the landing is more accurate than the interpolant on which the event was
   !> found, the instant is corrected by Newton's method.
@@ -151,6 +241,21 @@ contains
     associate (unused_self => self, unused_method => method, unused_problem => problem, unused_t => t_to)
     end associate
   end subroutine ignore_step
+
+  subroutine ignore_archive(self, archive)
+    class(observer_t), intent(inout) :: self
+    type(archive_t), intent(in) :: archive
+    associate (unused_self => self, unused_archive => archive)
+    end associate
+  end subroutine ignore_archive
+
+  !> An observer that remembers nothing.
+  subroutine exchange_nothing(self, archive)
+    class(observer_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    associate (unused_self => self, unused_archive => archive)
+    end associate
+  end subroutine exchange_nothing
 
   subroutine ignore_event(self, problem, index, t, y)
     class(silent_observer_t), intent(inout) :: self

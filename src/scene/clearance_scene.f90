@@ -9,6 +9,7 @@ module clearance_scene
   use linearisation, only: motion_change_t, motion_change, acceleration_change
   use contact_law, only: contact_law_t
   use friction_law, only: friction_law_t
+  use archive, only: archive_t
   use film_law, only: film_law_t, film_motion_t
   use scene, only: scene_t, evaluation_t, phase_free, phase_film, phase_contact, event_none, event_contact_begins, &
     event_contact_ends, n_gas_events
@@ -42,6 +43,7 @@ module clearance_scene
     procedure :: judge_step
     procedure :: handle_event
     procedure :: lands_on_step_end
+    procedure :: exchange
     procedure, private :: unpack
   end type clearance_scene_t
 
@@ -397,6 +399,15 @@ contains
     end select
     self%mode = self%phase
   end subroutine handle_event
+
+  !> The discrete state, to or from an archive.
+  subroutine exchange(self, archive)
+    class(clearance_scene_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    call self%exchange_phase(archive)
+    call archive%exchange(self%impact_speed)
+    call archive%exchange(self%sliding)
+  end subroutine exchange
 
   !> Set-valued friction: where the sliding speed is not zero it tells the direction. At zero (where it `may_slide` at the
   !> beginning of a contact it is taken as it is) the pin sticks if friction can hold it and slides against it if not.

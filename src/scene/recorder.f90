@@ -8,6 +8,7 @@ module recorder
   use scene, only: scene_t, evaluation_t, phase_contact, event_none, event_contact_begins, event_contact_ends
   use columns, only: column_list_t, row_values
   use trace_sink, only: trace_sink_t, trace_event_t
+  use archive, only: archive_t
   implicit none
   private
   public :: recorder_t, run_figures_t
@@ -25,6 +26,8 @@ module recorder
     real(dp) :: max_energy_residual = 0       !! largest |energy residual| [J]
     real(dp) :: crank_travel = 0              !! crank angle turned through, signed [rad]
     real(dp) :: time = 0                      !! simulated [s]
+  contains
+    procedure :: exchange => exchange_figures
   end type run_figures_t
 
   type, extends(observer_t) :: recorder_t
@@ -42,15 +45,26 @@ module recorder
     logical, private :: has_joint = .false.
     real(dp), allocatable, private :: y(:), values(:)
   contains
+    procedure :: prepare
     procedure :: begin
     procedure :: step_taken
     procedure :: event_taken
     procedure :: finish
+    procedure :: exchange => exchange_recorder
+    procedure :: take_archive
     procedure, private :: take_point
     procedure, private :: write_row
   end type recorder_t
 
 contains
+
+  !> Before anything else, for states of n components.
+  subroutine prepare(self, n)
+    class(recorder_t), intent(inout) :: self
+    integer, intent(in) :: n
+    allocate (self%y(n), self%values(size(self%list%id)))
+    self%keeps_archives = self%sink%keeps_archives
+  end subroutine prepare
 
   !> Look at the initial state, and write the first row if it is due.
   subroutine begin(self, scene, y)
@@ -60,7 +74,6 @@ contains
     type(evaluation_t) :: now
     logical :: inside
 
-    allocate (self%y(size(y)), self%values(size(self%list%id)))
     call scene%evaluate(0.0_dp, y, now, inside)
     self%initial_energy = scene%energy(now%motion)
     self%start_angle = now%motion%crank_angle
@@ -105,6 +118,7 @@ contains
     self%steps = self%steps + 1
     if (mod(self%steps, steps_between_reports) == 0) call self%sink%take_progress(t_to)
     self%wants_to_stop = self%sink%wants_to_stop
+    self%wants_archive = self%sink%wants_archive
   end subroutine step_taken
 
   !> The figures of one accepted point.
@@ -180,6 +194,42 @@ contains
     if (abs(due - t) <= 1e-9_dp*self%interval) call self%write_row(scene, t, y)
     call self%sink%take_progress(t)
   end subroutine finish
+
+  !> What has been found so far, to or from an archive; not what is set from outside.
+  subroutine exchange_recorder(self, archive)
+    class(recorder_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    call self%figures%exchange(archive)
+    call self%contact%exchange(archive)
+    call archive%exchange(self%initial_energy)
+    call archive%exchange(self%start_angle)
+    call archive%exchange(self%next_row)
+    call archive%exchange(self%steps)
+  end subroutine exchange_recorder
+
+  !> The figures to or from an archive.
+  subroutine exchange_figures(self, archive)
+    class(run_figures_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    call archive%exchange(self%contacts)
+    call archive%exchange(self%impacts_beyond_validity)
+    call archive%exchange(self%contact_time)
+    call archive%exchange(self%max_penetration)
+    call archive%exchange(self%max_entry_penetration)
+    call archive%exchange(self%max_pin_force)
+    call archive%exchange(self%min_film_thickness)
+    call archive%exchange(self%max_energy)
+    call archive%exchange(self%max_energy_residual)
+    call archive%exchange(self%crank_travel)
+    call archive%exchange(self%time)
+  end subroutine exchange_figures
+
+  !> The sink keeps the state of the run.
+  subroutine take_archive(self, archive)
+    class(recorder_t), intent(inout) :: self
+    type(archive_t), intent(in) :: archive
+    call self%sink%take_archive(archive)
+  end subroutine take_archive
 
   subroutine write_row(self, scene, t, y)
     class(recorder_t), intent(inout) :: self

@@ -8,6 +8,7 @@ module scene
   use mechanism, only: mechanism_t, motion_t, accelerations_t
   use dynamics, only: drive_t, loads_t
   use clearance_joint, only: joint_motion_t
+  use archive, only: archive_t
   use gas_cycle, only: gas_cycle_t, cycle_angle, n_parts
   implicit none
   private
@@ -62,6 +63,8 @@ module scene
     procedure :: gas_force_slope
     procedure :: gas_events
     procedure :: pass_gas_bound
+    procedure, non_overridable :: exchange_phase
+    procedure :: exchange => exchange_phase
   end type scene_t
 
   abstract interface
@@ -100,6 +103,16 @@ module scene
   end interface
 
 contains
+
+  !> The discrete state that every scene has, to or from an archive.
+  subroutine exchange_phase(self, archive)
+    class(scene_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    call self%exchange_mode(archive)
+    call archive%exchange(self%phase)
+    call archive%exchange(self%gas_part)
+    call archive%exchange(self%gas_cycle_start)
+  end subroutine exchange_phase
 
   !> Kinetic and potential energy of the bodies [J].
   pure real(dp) function energy(self, motion)

@@ -7,7 +7,7 @@ module simulation
     left_domain
   use methods, only: new_method
   use solver, only: integrate, silent_observer_t, integration_done, step_limit_reached, integration_interrupted, chattering, &
-    evaluation_limit_reached
+    evaluation_limit_reached, unreadable_archive
   use scene, only: scene_t, evaluation_t, phase_free, phase_film, phase_contact
   use scene_builder, only: build_scene, simulated_time, sample_interval, settings_for
   use columns, only: choose_columns, column_list_t
@@ -15,6 +15,7 @@ module simulation
   use recorder, only: recorder_t, run_figures_t
   use trace_sink, only: trace_sink_t
   use constants, only: degree
+  use archive, only: archive_t
   implicit none
   private
   public :: simulate, run_report_t, interrupted_text
@@ -33,13 +34,15 @@ contains
 
   !> Run a case, or its ideal twin. The sink is lent to the run and given back. Errors: the scene cannot be built
   !> (status_case_file); the integration could not go on (status_integration, `report` and the sink hold what there is).
-  subroutine simulate(case, ideal_joint, list, sink, report, error)
+  !> With an `archive` that the sink was given by an earlier run of the same case, that run goes on.
+  subroutine simulate(case, ideal_joint, list, sink, report, error, archive)
     type(case_t), intent(in) :: case
     logical, intent(in) :: ideal_joint
     type(column_list_t), intent(in) :: list
     class(trace_sink_t), allocatable, intent(inout) :: sink
     type(run_report_t), intent(out) :: report
     type(error_t), allocatable, intent(out) :: error
+    type(archive_t), intent(inout), optional :: archive
     class(scene_t), allocatable :: scene
     class(ode_method_t), allocatable :: method
     type(recorder_t) :: recorder
@@ -62,9 +65,10 @@ contains
     method%settings = settings_for(case, scene)
     y = scene%initial_state()
     t = 0
-    call recorder%begin(scene, y)
-    call integrate(scene, method, t, y, recorder%end_time, case%integrator%max_steps, recorder, status)
-    call recorder%finish(scene, t, y)
+    call recorder%prepare(scene%n)
+    if (.not. present(archive)) call recorder%begin(scene, y)
+    call integrate(scene, method, t, y, recorder%end_time, case%integrator%max_steps, recorder, status, archive)
+    if (status /= unreadable_archive) call recorder%finish(scene, t, y)
     call move_alloc(recorder%sink, sink)
     report%statistics = method%totals()
     report%figures = recorder%figures
@@ -134,6 +138,8 @@ contains
       text = 'too much work (&integrator max_evaluations)'
     case (integration_interrupted)
       text = interrupted_text
+    case (unreadable_archive)
+      text = 'the state to go on from does not fit the case'
     case (chattering)
       text = 'contact events without progress in time (chatter)'
     case default

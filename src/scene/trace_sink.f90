@@ -1,6 +1,7 @@
 !> Where a run puts what it finds: implemented by whoever writes files, or by tests.
 module trace_sink
   use kinds, only: dp
+  use archive, only: archive_t
   implicit none
   private
   public :: trace_sink_t, trace_event_t
@@ -14,12 +15,17 @@ module trace_sink
     real(dp) :: duration = 0               !! of the contact that ends [s]
     real(dp) :: max_penetration = 0        !! in it [m]
     real(dp) :: max_normal_force = 0       !! in it [N]
+  contains
+    procedure :: exchange
   end type trace_event_t
 
   !> Takes rows and events as they come.
   type, abstract :: trace_sink_t
     logical :: wants_to_stop = .false.   !! set where the run should end (interrupted, cannot write)
+    logical :: wants_archive = .false.   !! set where the state of the run is to be handed over
+    logical :: keeps_archives = .false.  !! the state is wanted too where the run stops before its end
   contains
+    procedure :: take_archive => ignore_archive
     procedure(take_row), deferred :: take_row
     procedure(take_event), deferred :: take_event
     procedure(take_progress), deferred :: take_progress
@@ -46,4 +52,28 @@ module trace_sink
       real(dp), intent(in) :: time
     end subroutine take_progress
   end interface
+
+contains
+
+  !> To or from an archive.
+  subroutine exchange(self, archive)
+    class(trace_event_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    call archive%exchange(self%kind)
+    call archive%exchange(self%time)
+    call archive%exchange(self%crank_angle)
+    call archive%exchange(self%normal_speed)
+    call archive%exchange(self%duration)
+    call archive%exchange(self%max_penetration)
+    call archive%exchange(self%max_normal_force)
+  end subroutine exchange
+
+  !> The state of the run after the rows and events taken so far. The default is for sinks that keep none.
+  subroutine ignore_archive(self, archive)
+    class(trace_sink_t), intent(inout) :: self
+    type(archive_t), intent(in) :: archive
+    associate (unused => archive)
+    end associate
+    self%wants_archive = .false.
+  end subroutine ignore_archive
 end module trace_sink

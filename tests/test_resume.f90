@@ -1,0 +1,238 @@
+!> A run put away and taken up again, between any two steps, ends bit for bit as one that was not.
+module test_resume
+  use, intrinsic :: iso_fortran_env, only: int64
+  use kinds, only: dp
+  use errors, only: error_t
+  use archive, only: archive_t
+  use case_definition, only: case_t
+  use case_file, only: read_case
+  use columns, only: column_list_t, choose_columns
+  use simulation, only: simulate, run_report_t
+  use trace_sink, only: trace_sink_t
+  use collecting_sink, only: collecting_sink_t
+  use checks, only: checks_t
+  implicit none
+  private
+  public :: run_test_resume
+
+  integer, parameter :: long = 60
+
+  !> Keeps the last state that it was given, and how much it had taken by then.
+  type, extends(collecting_sink_t) :: keeping_sink_t
+    character(len=:), allocatable :: state
+    integer :: rows_then = 0, events_then = 0
+  contains
+    procedure :: take_archive => keep
+  end type keeping_sink_t
+
+contains
+
+  subroutine run_test_resume(check)
+    class(checks_t), intent(inout) :: check
+    call archives_give_back_what_they_took(check)
+    call archives_refuse_what_does_not_fit(check)
+    call split(check, 'cases/flores/friction_100.nml', 'revolutions=0.2', 'adams', 'drive.kind=constant_speed')
+    call split(check, 'cases/flores/friction_100.nml', 'revolutions=0.2', 'auto', 'drive.kind=free')
+    call split(check, 'cases/flores/friction_100.nml', 'revolutions=0.2', 'adams', 'friction.law=coulomb')
+    call split(check, 'cases/flores/dry_0100um.nml', 'revolutions=0.1', 'adams', 'integrator.contact_entry=step_rejection')
+    call split(check, 'cases/flores/dry_0500um.nml', 'revolutions=0.2', 'radau', 'output.every_step=T')
+    call split(check, 'cases/flores/lubricated_400cP.nml', 'revolutions=0.2', 'adams', 'integrator.max_step=1e-4')
+    call split(check, 'cases/sim_I.nml', 'revolutions=0.1', 'radau', 'output.digits=17')
+    call split(check, 'cases/sim_II.nml', 'revolutions=0.4', 'auto', 'output.digits=17')
+    call split(check, 'cases/sim_V_oscillating.nml', 'revolutions=0.1', 'auto', 'output.start_time=1e-3')
+    call split(check, 'cases/sim_IV.nml', 'revolutions=0.2', 'auto', 'initial.crank_angle_deg=330')
+    call split(check, 'cases/sim_IV.nml', 'revolutions=2', 'adams', 'initial.crank_angle_deg=10', .true.)
+    call split(check, 'cases/flores/ideal.nml', 'revolutions=1', 'auto', 'drive.kind=constant_speed', .true.)
+  end subroutine run_test_resume
+
+  !> One scene: whole, stopped and taken up after every step, and after every few.
+  subroutine split(check, file, revolutions, method, change, ideal_joint)
+    class(checks_t), intent(inout) :: check
+    character(len=*), intent(in) :: file, revolutions, method, change
+    logical, intent(in), optional :: ideal_joint
+    type(case_t) :: case
+    type(column_list_t) :: list
+    type(error_t), allocatable :: error
+    type(keeping_sink_t) :: whole, parts
+    type(run_report_t) :: report, other
+    character(len=long) :: overrides(4)
+    character(len=:), allocatable :: what
+    integer :: stride, pieces
+    logical :: ideal
+
+    ideal = present(ideal_joint)
+    overrides(1) = 'integrator.'//revolutions
+    overrides(2) = 'integrator.method='//method
+    overrides(3) = change
+    overrides(4) = 'integrator.max_penetration=1e-8'
+    call read_case(file, overrides, case, error)
+    if (.not. allocated(error)) call choose_columns(case, ideal, list, error)
+    what = file//', '//method//', '//change//': '
+    call check%that(.not. allocated(error), what//'a correct case')
+    if (allocated(error)) return
+    call run_in_parts(case, ideal, list, 0, whole, report, pieces)
+    call check%that(report%status == 'done' .and. pieces == 1, what//report%status)
+    do stride = 1, 23, 11
+      call run_in_parts(case, ideal, list, stride, parts, other, pieces)
+      call check%that(pieces >= report%statistics%accepted/stride, what//'as many parts as steps')
+      call check%that(same_rows(whole, parts) .and. same_events(whole, parts) .and. text_of(report) == text_of(other), &
+        what//'a run in parts is not the whole run, bit for bit: some component that outlives a step is missing in the '// &
+        '`exchange` of its type (ode_problem_t, ode_method_t, event_watch_t, observer_t and what extends or is part of them)')
+    end do
+  end subroutine split
+
+  !> Run a case, stopping after every `stride` steps (0: never) to go on with everything made anew but the sink.
+  subroutine run_in_parts(case, ideal, list, stride, kept, report, pieces)
+    type(case_t), intent(in) :: case
+    logical, intent(in) :: ideal
+    type(column_list_t), intent(in) :: list
+    integer, intent(in) :: stride
+    type(keeping_sink_t), intent(out) :: kept
+    type(run_report_t), intent(out) :: report
+    integer, intent(out) :: pieces
+    class(trace_sink_t), allocatable :: sink
+    type(keeping_sink_t), allocatable :: empty
+    type(error_t), allocatable :: error
+    type(archive_t) :: archive
+    type(case_t) :: limited
+
+    limited = case
+    allocate (empty)
+    call move_alloc(empty, sink)
+    sink%keeps_archives = stride > 0
+    sink%wants_to_stop = stride == 1   ! after one step
+    if (stride > 1) limited%integrator%max_steps = stride
+    call simulate(limited, ideal, list, sink, report, error)
+    pieces = 1
+    do while (report%status /= 'done' .and. pieces < 100000)
+      select type (sink)
+      type is (keeping_sink_t)
+        if (.not. allocated(sink%state)) exit
+        sink%rows = sink%rows_then
+        sink%events = sink%events_then
+        call archive%begin_reading(sink%state)
+      end select
+      if (stride > 1) limited%integrator%max_steps = limited%integrator%max_steps + stride
+      call simulate(limited, ideal, list, sink, report, error, archive)
+      pieces = pieces + 1
+    end do
+    select type (sink)
+    type is (keeping_sink_t)
+      kept = sink
+    end select
+  end subroutine run_in_parts
+
+  subroutine keep(self, archive)
+    class(keeping_sink_t), intent(inout) :: self
+    type(archive_t), intent(in) :: archive
+    call archive%contents(self%state)
+    self%rows_then = self%rows
+    self%events_then = self%events
+  end subroutine keep
+
+  pure logical function same_rows(a, b)
+    type(keeping_sink_t), intent(in) :: a, b
+    same_rows = a%rows == b%rows
+    if (same_rows .and. a%rows > 0) same_rows = all(transfer(a%values(:, :a%rows), [0_int64]) == &
+                                                    transfer(b%values(:, :b%rows), [0_int64]))
+  end function same_rows
+
+  logical function same_events(a, b)
+    type(keeping_sink_t), intent(in) :: a, b
+    character(len=1000) :: one, other
+    integer :: i
+    same_events = a%events == b%events
+    do i = 1, merge(a%events, 0, same_events)
+      write (one, *) a%event(i)
+      write (other, *) b%event(i)
+      same_events = same_events .and. one == other
+    end do
+  end function same_events
+
+  !> Statistics and figures, every component to its last digit.
+  function text_of(report) result(text)
+    type(run_report_t), intent(in) :: report
+    character(len=4000) :: text
+    write (text, *) report%statistics, report%figures
+  end function text_of
+
+  subroutine archives_give_back_what_they_took(check)
+    class(checks_t), intent(inout) :: check
+    type(archive_t) :: archive
+    character(len=:), allocatable :: bytes, text
+    real(dp) :: number, numbers(3), matrix(2, 2)
+    integer(int64) :: long_number
+    integer :: whole, wholes(2)
+    logical :: truth, truths(2)
+
+    number = 0.1_dp
+    numbers = [-0.0_dp, tiny(1.0_dp)/8, huge(1.0_dp)]
+    matrix = reshape([1.0_dp, 2.0_dp, 3.0_dp, 4.0_dp], [2, 2])
+    whole = -7
+    wholes = [huge(1), -huge(1)]
+    long_number = 2_int64**40
+    truth = .true.
+    truths = [.false., .true.]
+    text = ''
+    call archive%begin_writing()
+    call exchange_everything()
+    call archive%contents(bytes)
+    number = 0
+    numbers = 0
+    matrix = 0
+    whole = 0
+    wholes = 0
+    long_number = 0
+    truth = .false.
+    truths = .false.
+    text = 'else'
+    call archive%begin_reading(bytes)
+    call exchange_everything()
+    call check%that(archive%is_at_end() .and. .not. archive%failed, 'an archive is read to its end')
+    call check%that(.not. abs(number - 0.1_dp) > 0 .and. all(wholes == [huge(1), -huge(1)]) .and. whole == -7 .and. truth &
+      .and. long_number == 2_int64**40 .and. all(truths .eqv. [.false., .true.]) .and. text == '', 'and gives back its values')
+    call check%that(all(transfer(numbers, [0_int64]) == transfer([-0.0_dp, tiny(1.0_dp)/8, huge(1.0_dp)], [0_int64])) &
+      .and. .not. abs(matrix(2, 1) - 2) > 0, 'to the last bit')
+
+  contains
+
+    subroutine exchange_everything()
+      call archive%exchange(number)
+      call archive%exchange(numbers)
+      call archive%exchange(matrix)
+      call archive%exchange(whole)
+      call archive%exchange(wholes)
+      call archive%exchange(long_number)
+      call archive%exchange(truth)
+      call archive%exchange(truths)
+      call archive%exchange_text(text)
+    end subroutine exchange_everything
+  end subroutine archives_give_back_what_they_took
+
+  subroutine archives_refuse_what_does_not_fit(check)
+    class(checks_t), intent(inout) :: check
+    type(archive_t) :: archive
+    character(len=:), allocatable :: bytes, text
+    real(dp) :: numbers(3)
+    integer :: whole
+    numbers = 1
+    call archive%begin_writing()
+    call archive%exchange(numbers)
+    call archive%contents(bytes)
+    call archive%begin_reading(bytes)
+    whole = 5
+    call archive%exchange(whole)
+    call check%that(archive%failed .and. whole == 5, 'a number of another kind is refused')
+    call archive%begin_reading(bytes)
+    call archive%exchange(numbers(:2))
+    call check%that(archive%failed, 'and another number of them')
+    call archive%begin_reading(bytes(:len(bytes) - 1))
+    call archive%exchange(numbers)
+    call check%that(archive%failed, 'and an end too early')
+    call archive%begin_reading(bytes)
+    call archive%exchange_text(text)
+    call check%that(archive%failed, 'and numbers for a text')
+    call archive%begin_reading(bytes)
+    call check%that(.not. archive%is_at_end(), 'and what is left over is seen')
+  end subroutine archives_refuse_what_does_not_fit
+end module test_resume
