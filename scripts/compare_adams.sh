@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.." || exit 1
 set -e
 copy=build/extended_precision
 mkdir -p "$copy"
-cp -rp fpm.toml src tests cases "$copy"
+cp -rp fpm.toml src tests cases scripts "$copy"
 sed -i 's/dp = real64 .*/dp = selected_real_kind(18)/' "$copy/src/base/kinds.f90"
 reference() {   # reference WHAT FILE
   (cd "$copy" && fpm run --profile release --example integrator_battery -- "$1") | grep '^[0-9]* .*E' >"$2"
