@@ -8,13 +8,15 @@ program integrator_battery
   use kinds, only: dp
   use ode_method, only: step_statistics_t, limit_stability
   use adams, only: adams_t
-  use solver, only: integrate, integration_done
+  use solver, only: integrate, integration_done, observer_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use errors, only: error_t
   use scene, only: scene_t
   use scene_builder, only: build_scene, settings_for
-  use standard_problems, only: standard_problem_t, new_standard_problem, n_standard_problems, names
+  use standard_problems, only: standard_problem_t, new_standard_problem, standard_settings, n_standard_problems, names
+  use conditioning, only: condition_of
+  use local_errors, only: local_error_watcher_t
   use sampler, only: sampler_t
   use state_watcher, only: state_watcher_t, watched
   implicit none
@@ -142,8 +144,26 @@ contains
     close (unit)
   end subroutine print_scenes
 
-  !> One problem of the standard battery; samples are at 20 equal distances.
-  subroutine run_standard(number, tolerance, max_order, method, samples, status)
+  !> One problem of the standard battery before an observer.
+  subroutine run_standard(number, tolerance, max_order, method, observer, status)
+    integer, intent(in) :: number, max_order
+    real(dp), intent(in) :: tolerance
+    type(adams_t), intent(out) :: method
+    class(observer_t), intent(inout) :: observer
+    integer, intent(out) :: status
+    type(standard_problem_t) :: problem
+    real(dp), allocatable :: y(:)
+    real(dp) :: t
+
+    call new_standard_problem(number, problem, y)
+    method%settings = standard_settings(problem, tolerance)
+    method%settings%max_order = max_order
+    t = 0
+    call integrate(problem, method, t, y, problem%t_end, 1000000, observer, status)
+  end subroutine run_standard
+
+  !> The same, sampled at 20 equal distances.
+  subroutine sample_standard(number, tolerance, max_order, method, samples, status)
     integer, intent(in) :: number, max_order
     real(dp), intent(in) :: tolerance
     type(adams_t), intent(out) :: method
@@ -152,41 +172,36 @@ contains
     type(standard_problem_t) :: problem
     type(sampler_t) :: sampler
     real(dp), allocatable :: y(:)
-    real(dp) :: t
-
     call new_standard_problem(number, problem, y)
-    allocate (method%settings%relative(problem%n), method%settings%absolute(problem%n))
-    method%settings%relative = tolerance
-    method%settings%absolute = tolerance
-    method%settings%span = problem%t_end
-    method%settings%max_step = problem%max_step
-    method%settings%max_order = max_order
     sampler%interval = problem%t_end/n_samples
     allocate (sampler%y(problem%n, n_samples))
-    t = 0
-    call integrate(problem, method, t, y, problem%t_end, 1000000, sampler, status)
+    call run_standard(number, tolerance, max_order, method, sampler, status)
     call move_alloc(sampler%y, samples)
-  end subroutine run_standard
+  end subroutine sample_standard
 
   subroutine print_standard_references()
     type(adams_t) :: method
     real(dp), allocatable :: samples(:, :), other(:, :)
     integer :: i, status
     do i = 1, n_standard_problems
-      call run_standard(i, 1e-16_dp, 12, method, samples, status)
+      call sample_standard(i, 1e-16_dp, 12, method, samples, status)
       if (status /= integration_done) error stop 'a reference did not reach its end'
-      call run_standard(i, 4e-16_dp, 10, method, other, status)
+      call sample_standard(i, 4e-16_dp, 10, method, other, status)
       print '(i0,1x,es10.2,*(1x,es28.20))', i, maxval(abs(samples - other)/(1 + abs(samples))), samples
     end do
   end subroutine print_standard_references
 
-  !> Error: the largest |difference|/(1 + |y|) at 20 instants.
+  !> Error: the largest |difference|/(1 + |y|) at 20 instants, over the tolerance, and that over the problem's condition (how
+  !> far it carries a change of its state). Local errors: of each step by itself, in the weights and the norm of the control,
+  !> over the tolerance; the largest of a step, the largest over the length of its step, and the part of the steps in
+  !> which it is above 1.
   subroutine print_standard(reference_file)
     character(len=*), intent(in) :: reference_file
     type(adams_t) :: method
     real(dp), allocatable :: samples(:, :), exact(:, :), y(:)
     type(standard_problem_t) :: problem
-    real(dp) :: tolerance, spread, error(3:12)
+    type(local_error_watcher_t) :: local
+    real(dp) :: tolerance, spread, condition, largest, error(3:12)
     integer :: unit, i, j, number, status, evaluations, all_evaluations(3:12)
 
     all_evaluations = 0
@@ -196,21 +211,28 @@ contains
       if (allocated(exact)) deallocate (exact)
       allocate (exact(problem%n, n_samples))
       read (unit, *) number, spread, exact
-      print '(/,a,a,es8.1)', trim(names(i)), ': reference known to', spread
-      print '(a)', 'tolerance   error/tolerance evaluations accepted rejected restarts stability-bound mean h rho'
+      condition = condition_of(i)
+      print '(/,2a,es8.1,a,es8.1)', trim(names(i)), ': reference known to', spread, ', condition', condition
+      print '(2a)', 'tolerance   error/tol   by condition | local: step per unit time deceived |', &
+        ' evaluations accepted rejected restarts stability-bound mean h rho'
       do j = 3, 12
         tolerance = 10.0_dp**(-j)
-        call run_standard(i, tolerance, 12, method, samples, status)
+        local = local_error_watcher_t()
+        call run_standard(i, tolerance, 12, method, local, status)
+        call sample_standard(i, tolerance, 12, method, samples, status)
         error(j) = maxval(abs(samples - exact)/(1 + abs(exact)))
         evaluations = method%statistics%evaluations
         all_evaluations(j) = all_evaluations(j) + evaluations
-        print '(es9.0,f16.3,i12,3i9,f13.3,f12.2,a)', tolerance, error(j)/tolerance, evaluations, method%statistics%accepted, &
+        print '(es9.0,f12.3,f15.5,a,f12.3,es14.1,f9.3,a,i12,3i9,f13.3,f12.2,a)', tolerance, error(j)/tolerance, &
+          error(j)/tolerance/condition, ' |', local%largest, local%largest_per_unit, &
+          real(local%deceived, dp)/max(1, local%steps), ' |', evaluations, method%statistics%accepted, &
           method%statistics%rejected_error, method%statistics%restarts, &
           bound_fraction(method%statistics), method%statistics%stiffness/method%statistics%accepted, &
           merge('   failed', '         ', status /= 0)
       end do
-      print '(a,f6.3,a,f9.1)', 'slope of log error on log tolerance', slope(error), ', largest error/tolerance', &
-        maxval([(error(j)*10.0_dp**j, j=3, 12)])
+      largest = maxval([(error(j)*10.0_dp**j, j=3, 12)])
+      print '(a,f6.3,a,f9.1,a,f9.3)', 'slope of log error on log tolerance', slope(error), ', largest error/tolerance', largest, &
+        ', by condition', largest/condition
     end do
     print '(/,a,10i8)', 'evaluations of the whole battery at 1e-3 ... 1e-12:', all_evaluations
     close (unit)

@@ -7,9 +7,10 @@ module standard_problems
   use kinds, only: dp
   use constants, only: pi
   use ode_problem, only: ode_problem_t, event_continue
+  use ode_method, only: ode_settings_t
   implicit none
   private
-  public :: standard_problem_t, new_standard_problem, n_standard_problems, names
+  public :: standard_problem_t, new_standard_problem, standard_settings, number_of, n_standard_problems, names
 
   integer, parameter :: n_standard_problems = 32
   character(len=9), parameter :: names(n_standard_problems) = [character(len=9) :: 'A1', 'A2', 'A3', 'A4', 'A5', 'B1', &
@@ -68,6 +69,26 @@ contains
     end if
     problem%n = size(y)
   end subroutine new_standard_problem
+
+  integer pure function number_of(name)
+    character(len=*), intent(in) :: name
+    integer :: i
+    number_of = 0
+    do i = 1, n_standard_problems
+      if (names(i) == name) number_of = i
+    end do
+  end function number_of
+
+  !> Settings with one tolerance for all components, relative and absolute.
+  pure function standard_settings(problem, tolerance) result(settings)
+    class(standard_problem_t), intent(in) :: problem
+    real(dp), intent(in) :: tolerance
+    type(ode_settings_t) :: settings
+    allocate (settings%relative(problem%n), source=tolerance)
+    allocate (settings%absolute(problem%n), source=tolerance)
+    settings%span = problem%t_end
+    settings%max_step = problem%max_step
+  end function standard_settings
 
   function small_start(name) result(y)
     character(len=*), intent(in) :: name

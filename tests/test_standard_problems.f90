@@ -8,7 +8,7 @@ module test_standard_problems
   use ode_problem, only: ode_problem_t, step_admitted, step_too_deep
   use adams, only: adams_t
   use solver, only: integrate, silent_observer_t, integration_done
-  use standard_problems, only: standard_problem_t, new_standard_problem, names, n_standard_problems
+  use standard_problems, only: standard_problem_t, new_standard_problem, standard_settings, number_of
   implicit none
   private
   public :: run_test_standard_problems
@@ -59,15 +59,6 @@ contains
     end select
   end function end_of
 
-  integer pure function number_of(name)
-    character(len=*), intent(in) :: name
-    integer :: i
-    number_of = 0
-    do i = 1, n_standard_problems
-      if (names(i) == name) number_of = i
-    end do
-  end function number_of
-
   subroutine run(problem, y, tolerance, max_order, method, status)
     class(standard_problem_t), intent(inout) :: problem
     real(dp), intent(inout) :: y(:)
@@ -77,11 +68,7 @@ contains
     integer, intent(out) :: status
     type(silent_observer_t) :: observer
     real(dp) :: t
-    allocate (method%settings%relative(problem%n), method%settings%absolute(problem%n))
-    method%settings%relative = tolerance
-    method%settings%absolute = tolerance
-    method%settings%span = problem%t_end
-    method%settings%max_step = problem%max_step
+    method%settings = standard_settings(problem, tolerance)
     method%settings%max_order = max_order
     t = 0
     call integrate(problem, method, t, y, problem%t_end, 0, observer, status)
