@@ -8,6 +8,7 @@ program gudgeon_tests
   use test_combustion, only: run_test_combustion
   use test_command_line, only: run_test_command_line
   use test_contact, only: run_test_contact
+  use test_cycle_watch, only: run_test_cycle_watch
   use test_error_growth, only: run_test_error_growth
   use test_events, only: run_test_events
   use test_findings, only: run_test_findings
@@ -32,6 +33,7 @@ program gudgeon_tests
   call run_test_combustion(check)
   call run_test_command_line(check)
   call run_test_contact(check)
+  call run_test_cycle_watch(check)
   call run_test_error_growth(check)
   call run_test_events(check)
   call run_test_findings(check)

@@ -28,6 +28,7 @@ module radau
     private
     type(collocation_t) :: stages
     integer :: highest = n_formulas        !! highest formula allowed
+    integer :: weighted = 1                !! components that take part in the error control
     real(dp) :: h = 0                      !! size of the next step
     real(dp) :: h_last = 0                 !! size of the last accepted step
     real(dp) :: error_done = 0             !! its error
@@ -180,13 +181,14 @@ contains
       self%stages%inverse_weight(i) = 0
       if (weight > 0) self%stages%inverse_weight(i) = 1/weight
     end do
+    self%weighted = max(1, count(self%stages%inverse_weight > 0))
   end subroutine weigh
 
-  !> Root mean square over the components.
+  !> Root mean square over the components that take part in the error control.
   pure real(dp) function scaled_norm(self, x)
     class(radau_t), intent(in) :: self
     real(dp), intent(in) :: x(:)
-    scaled_norm = sqrt(sum((x*self%stages%inverse_weight)**2)/size(x))
+    scaled_norm = sqrt(sum((x*self%stages%inverse_weight)**2)/self%weighted)
   end function scaled_norm
 
   !> First step from the sizes of y, y' and y'' (Hairer, Norsett & Wanner 1993, II.4).

@@ -20,8 +20,8 @@ module clearance_scene
   !> Event functions of the integrator.
   integer, parameter :: begins = 1, ends = 2, sliding_changes = 3
 
-  !> y = (q, e_x, e_y, q', e_x', e_y', work), or (e_x, e_y, e_x', e_y', work) where the crank speed is held. A law that
-  !> the case does not ask for is not allocated.
+  !> y = (q, e_x, e_y, q', e_x', e_y', quadratures), or (e_x, e_y, e_x', e_y', quadratures) where the crank speed is held.
+  !> A law that the case does not ask for is not allocated.
   type, extends(scene_t) :: clearance_scene_t
     type(joint_geometry_t) :: joint
     class(contact_law_t), allocatable :: contact
@@ -44,6 +44,7 @@ module clearance_scene
     procedure :: handle_event
     procedure :: lands_on_step_end
     procedure :: exchange
+    procedure :: measure_joint
     procedure, private :: unpack
   end type clearance_scene_t
 
@@ -55,18 +56,31 @@ contains
     real(dp), intent(out) :: dydt(:)
     logical, intent(out) :: inside
     type(evaluation_t) :: now
-    integer :: n
+    integer :: m
     call self%evaluate(t, y, now, inside)
     if (.not. inside) return
-    n = self%n
+    m = self%n_positions
     if (self%drive%free_crank) then
       dydt(1) = now%motion%crank_speed
       dydt(4) = now%accelerations%crank
     end if
-    dydt(n/2 - 1:n/2) = now%joint%eccentricity_rate
-    dydt(n - 2:n - 1) = eccentricity_acceleration(self%mechanism, now%motion, now%accelerations)
-    dydt(n) = now%power
+    dydt(m - 1:m) = now%joint%eccentricity_rate
+    dydt(2*m - 1:2*m) = eccentricity_acceleration(self%mechanism, now%motion, now%accelerations)
+    dydt(2*m + 1) = now%power
+    if (self%n_measures > 0) dydt(2*m + 2:2*m + 3) = [norm2(now%loads%pin_force), -joint_power(now)]
   end subroutine derivatives
+
+  !> Power of the joint on the bodies [W]: of its force along the eccentricity and of its moment along the turning pin.
+  pure real(dp) function joint_power(now)
+    type(evaluation_t), intent(in) :: now
+    joint_power = dot_product(now%loads%pin_force, now%joint%eccentricity_rate) - now%loads%pin_moment*now%motion%rod_speed
+  end function joint_power
+
+  !> Two measures: the integral of the force's size [N s], and what the joint takes from the bodies [J].
+  subroutine measure_joint(self)
+    class(clearance_scene_t), intent(inout) :: self
+    call self%add_measures(2)
+  end subroutine measure_joint
 
   !> The state by its parts: bodies and pin.
   pure subroutine unpack(self, t, y, motion, joint, reachable)
@@ -75,8 +89,8 @@ contains
     type(motion_t), intent(out) :: motion
     type(joint_motion_t), intent(out) :: joint
     logical, intent(out) :: reachable
-    integer :: n
-    n = self%n
+    integer :: m
+    m = self%n_positions
     if (self%drive%free_crank) then
       call clearance_motion(self%mechanism, y(1), y(4), y(2:3), y(5:6), motion, reachable)
     else
@@ -84,7 +98,7 @@ contains
         motion, reachable)
     end if
     if (.not. reachable) return
-    joint = joint_motion(self%joint, y(n/2 - 1:n/2), y(n - 2:n - 1), -motion%rod_speed)
+    joint = joint_motion(self%joint, y(m - 1:m), y(2*m - 1:2*m), -motion%rod_speed)
     reachable = joint%penetration < self%joint%pin_radius   ! deeper the pin would be through its bearing
   end subroutine unpack
 
@@ -107,8 +121,7 @@ contains
       end if
       call accelerations_under(self%mechanism, self%drive, loads, now%motion, now%accelerations, now%crank_moment)
       now%power = (now%crank_moment - self%drive%damping*now%motion%crank_speed)*now%motion%crank_speed &
-        - loads%gas_force*now%motion%piston_velocity + dot_product(loads%pin_force, now%joint%eccentricity_rate) &
-        - loads%pin_moment*now%motion%rod_speed
+        - loads%gas_force*now%motion%piston_velocity + joint_power(now)
     end associate
   end subroutine evaluate
 
@@ -275,14 +288,14 @@ contains
     type(evaluation_t) :: now
     logical :: inside
     real(dp) :: x, vx, distance, rate
-    integer :: n
+    integer :: m
 
-    n = self%n
-    x = y(n/2 - 1)
-    vx = y(n - 2)
-    distance = sqrt(x**2 + y(n/2)**2)
+    m = self%n_positions
+    x = y(m - 1)
+    vx = y(2*m - 1)
+    distance = sqrt(x**2 + y(m)**2)
     rate = 0
-    if (distance > 0) rate = (x*vx + y(n/2)*y(n - 1))/distance
+    if (distance > 0) rate = (x*vx + y(m)*y(2*m))/distance
     g = -1
     g_rate = 0
     if (self%phase == phase_contact) then
@@ -352,11 +365,11 @@ contains
     class(clearance_scene_t), intent(in) :: self
     real(dp), intent(in) :: y(:)
     real(dp) :: values(2), distance
-    integer :: n
-    n = self%n
-    distance = norm2(y(n/2 - 1:n/2))
+    integer :: m
+    m = self%n_positions
+    distance = norm2(y(m - 1:m))
     values = [distance - self%joint%clearance, 0.0_dp]
-    if (distance > 0) values(2) = dot_product(y(n/2 - 1:n/2), y(n - 2:n - 1))/distance
+    if (distance > 0) values(2) = dot_product(y(m - 1:m), y(2*m - 1:2*m))/distance
   end function penetration_and_rate
 
   !> The cubic on [0, 1] with given values and slopes at the ends.
@@ -458,13 +471,14 @@ contains
     real(dp), intent(in) :: span
     real(dp), intent(out) :: scales(:)
     logical, intent(out) :: growing(:)
-    integer :: n
-    n = self%n
+    integer :: m
+    m = self%n_positions
     growing = .false.
-    scales(n/2 - 1:n/2) = self%joint%clearance
-    scales(n - 2:n - 1) = self%joint%clearance*self%speed_scale(span)
-    scales(n) = self%energy_scale(span)
-    growing(n) = .true.
+    scales(m - 1:m) = self%joint%clearance
+    scales(2*m - 1:2*m) = self%joint%clearance*self%speed_scale(span)
+    scales(2*m + 1) = self%energy_scale(span)
+    scales(2*m + 2:) = 0   ! measures take no part in the error control
+    growing(2*m + 1:) = .true.
     if (self%drive%free_crank) then
       scales(1) = 1
       growing(1) = .true.

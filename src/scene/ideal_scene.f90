@@ -13,7 +13,7 @@ module ideal_scene
   type(joint_motion_t), parameter :: centred_pin = joint_motion_t([0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp], 0.0_dp, &
     [1.0_dp, 0.0_dp], 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp)
 
-  !> y = (q, q', work), or (work) where the crank speed is held.
+  !> y = (q, q', quadratures), or (quadratures) where the crank speed is held.
   type, extends(scene_t) :: ideal_scene_t
   contains
     procedure :: derivatives
@@ -35,7 +35,8 @@ contains
     type(evaluation_t) :: now
     call self%evaluate(t, y, now, inside)
     if (self%drive%free_crank) dydt(1:2) = [now%motion%crank_speed, now%accelerations%crank]
-    dydt(self%n) = now%power
+    dydt(2*self%n_positions + 1) = now%power
+    if (self%n_measures > 0) dydt(2*self%n_positions + 2) = norm2(now%loads%pin_force)
   end subroutine derivatives
 
   pure subroutine evaluate(self, t, y, evaluation, inside)
@@ -71,7 +72,8 @@ contains
     real(dp), intent(out) :: scales(:)
     logical, intent(out) :: growing(:)
     growing = .true.
-    scales(self%n) = self%energy_scale(span)
+    scales = 0   ! measures take no part in the error control
+    scales(2*self%n_positions + 1) = self%energy_scale(span)
     if (self%drive%free_crank) then
       scales(1:2) = [1.0_dp, self%speed_scale(span)]
       growing(2) = .false.

@@ -1,5 +1,5 @@
-!> The observer of a run: samples on a fixed grid of time, events of contact, and the figures of the summary. Peaks are
-!> taken at accepted points and events only.
+!> The observer of a run: samples on a fixed grid of time, events of contact, the figures of the summary and, where they are
+!> asked for, those of each revolution. Peaks are taken at accepted points and events only.
 module recorder
   use kinds, only: dp
   use ode_problem, only: ode_problem_t
@@ -7,6 +7,7 @@ module recorder
   use solver, only: observer_t
   use scene, only: scene_t, evaluation_t, phase_contact, event_none, event_contact_begins, event_contact_ends
   use columns, only: column_list_t, row_values
+  use cycle_watch, only: cycle_watch_t
   use trace_sink, only: trace_sink_t, trace_event_t
   use archive, only: archive_t
   implicit none
@@ -31,9 +32,10 @@ module recorder
   end type run_figures_t
 
   type, extends(observer_t) :: recorder_t
-    type(column_list_t) :: list
+    type(column_list_t) :: list       !! of a row; empty: no rows
     type(run_figures_t) :: figures
     class(trace_sink_t), allocatable :: sink
+    type(cycle_watch_t), allocatable :: cycles   !! revolution by revolution
     real(dp) :: first_sample = 0      !! time of the first row [s]
     real(dp) :: interval = 0          !! from row to row [s]
     real(dp) :: end_time = 0          !! [s]
@@ -77,6 +79,7 @@ contains
     call scene%evaluate(0.0_dp, y, now, inside)
     self%initial_energy = scene%energy(now%motion)
     self%start_angle = now%motion%crank_angle
+    if (allocated(self%cycles)) call self%cycles%begin(scene, y, self%initial_energy)
     call self%take_point(scene, 0.0_dp, y)
     if (self%first_sample <= 0) then
       call self%write_row(scene, 0.0_dp, y)
@@ -99,7 +102,7 @@ contains
           call method%interpolate(t_to, self%y)
           call self%write_row(problem, t_to, self%y)
         end if
-      else
+      else if (size(self%values) > 0) then
         do
           t = self%first_sample + self%next_row*self%interval
           if (t > t_to .or. t > self%end_time*(1 + 4*epsilon(t))) exit
@@ -110,8 +113,10 @@ contains
       end if
       if (t_to < method%t) then
         call method%interpolate(t_to, self%y)
+        if (allocated(self%cycles)) call self%cycles%take_step(method, problem, t_to, self%y)
         call self%take_point(problem, t_to, self%y)
       else
+        if (allocated(self%cycles)) call self%cycles%take_step(method, problem, method%t, method%y)
         call self%take_point(problem, method%t, method%y)
       end if
     end select
@@ -136,7 +141,7 @@ contains
     associate (f => self%figures)
       f%max_pin_force = max(f%max_pin_force, norm2(now%loads%pin_force))
       f%max_energy = max(f%max_energy, abs(energy))
-      f%max_energy_residual = max(f%max_energy_residual, abs(energy - self%initial_energy - y(scene%n)))
+      f%max_energy_residual = max(f%max_energy_residual, abs(energy - self%initial_energy - scene%work(y)))
       f%min_film_thickness = min(f%min_film_thickness, -now%joint%penetration)
       f%crank_travel = now%motion%crank_angle - self%start_angle
       if (scene%phase == phase_contact) then
@@ -147,6 +152,7 @@ contains
       end if
       f%time = t
     end associate
+    if (allocated(self%cycles)) call self%cycles%take_point(scene, t, now)
   end subroutine take_point
 
   subroutine event_taken(self, problem, index, t, y)
@@ -165,6 +171,7 @@ contains
         contact%kind = problem%reported_event(index)
         if (contact%kind == event_contact_begins) then
           figures%contacts = figures%contacts + 1
+          if (allocated(self%cycles)) call self%cycles%take_impact()
           figures%max_entry_penetration = max(figures%max_entry_penetration, now%joint%penetration)
           if (now%joint%penetration_rate > self%validity_limit) &
             figures%impacts_beyond_validity = figures%impacts_beyond_validity + 1
@@ -189,6 +196,7 @@ contains
     class(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     real(dp) :: due
+    if (allocated(self%cycles)) call self%cycles%finish(scene, t, y)
     if (self%every_step) return
     due = self%first_sample + self%next_row*self%interval
     if (abs(due - t) <= 1e-9_dp*self%interval) call self%write_row(scene, t, y)
@@ -237,9 +245,10 @@ contains
     real(dp), intent(in) :: t, y(:)
     type(evaluation_t) :: now
     logical :: inside
+    if (size(self%values) == 0) return
     call scene%evaluate(t, y, now, inside)
     if (.not. inside) return
-    call row_values(self%list, scene, t, now, y(scene%n), self%initial_energy, self%values)
+    call row_values(self%list, scene, t, now, scene%work(y), self%initial_energy, self%values)
     call self%sink%take_row(self%values)
   end subroutine write_row
 end module recorder

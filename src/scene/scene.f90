@@ -39,14 +39,17 @@ module scene
     real(dp) :: power = 0           !! of all non-conservative forces and the drive [W]
   end type evaluation_t
 
-  !> A scene as an ode_problem: y holds positions, then their rates, then the work of all non-conservative
-  !> forces and the drive [J]. With a held crank speed the crank angle is no unknown.
+  !> A scene as an ode_problem: y holds positions, then their rates, then quadratures: the work of all non-conservative
+  !> forces and the drive [J] and, where somebody asks for them, the measures of the joint: the integral of the size of its
+  !> force [N s] and, with clearance, what it takes from the bodies [J]. With a held crank speed the crank angle is no
+  !> unknown.
   type, abstract, extends(ode_problem_t) :: scene_t
     type(mechanism_t) :: mechanism
     type(drive_t) :: drive
     real(dp) :: start_angle = 0     !! crank angle at t = 0 [rad]
     real(dp) :: start_speed = 0     !! crank speed at t = 0, and always if it is held [rad/s]
     integer :: phase = phase_free
+    integer :: n_measures = 0       !! quadratures of the joint
     type(gas_cycle_t), allocatable :: gas
     integer :: gas_part = 0            !! part of the gas cycle that acts
     real(dp) :: gas_cycle_start = 0    !! crank angle at which its cycle began [rad]
@@ -55,6 +58,10 @@ module scene
     procedure(initial_state), deferred :: initial_state
     procedure(natural_scales), deferred :: natural_scales
     procedure(reported_event), deferred :: reported_event
+    procedure :: crank_angle
+    procedure :: work
+    procedure :: measure_joint
+    procedure :: add_measures
     procedure :: energy
     procedure :: energy_scale
     procedure :: speed_scale
@@ -113,6 +120,40 @@ contains
     call archive%exchange(self%gas_part)
     call archive%exchange(self%gas_cycle_start)
   end subroutine exchange_phase
+
+  !> Crank angle at (t, y) [rad].
+  pure real(dp) function crank_angle(self, t, y)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    if (self%drive%free_crank) then
+      crank_angle = y(1)
+    else
+      crank_angle = self%start_angle + self%start_speed*t
+    end if
+  end function crank_angle
+
+  !> Work of all non-conservative forces and the drive so far [J].
+  pure real(dp) function work(self, y)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: y(:)
+    work = y(2*self%n_positions + 1)
+  end function work
+
+  !> Integrate the measures of the joint too; before the run. They do not change its steps. A joint without clearance has
+  !> one, the integral of the force's size.
+  subroutine measure_joint(self)
+    class(scene_t), intent(inout) :: self
+    call self%add_measures(1)
+  end subroutine measure_joint
+
+  !> Room for so many measures.
+  subroutine add_measures(self, n_measures)
+    class(scene_t), intent(inout) :: self
+    integer, intent(in) :: n_measures
+    self%n_measures = n_measures
+    self%n_quadratures = self%n_quadratures + n_measures
+    self%n = self%n + n_measures
+  end subroutine add_measures
 
   !> Kinetic and potential energy of the bodies [J].
   pure real(dp) function energy(self, motion)

@@ -12,6 +12,7 @@ module simulation
   use scene_builder, only: build_scene, simulated_time, sample_interval, settings_for
   use columns, only: choose_columns, column_list_t
   use contact_stiffness, only: valid_impact_speed
+  use cycle_watch, only: cycle_watch_t
   use recorder, only: recorder_t, run_figures_t
   use trace_sink, only: trace_sink_t
   use constants, only: degree
@@ -32,10 +33,11 @@ module simulation
 
 contains
 
-  !> Run a case, or its ideal twin. The sink is lent to the run and given back. Errors: the scene cannot be built
+  !> Run a case, or its ideal twin. The sink is lent to the run and given back, and so is the watch over the revolutions of
+  !> the crank, which also has the measures of the joint integrated. Errors: the scene cannot be built
   !> (status_case_file); the integration could not go on (status_integration, `report` and the sink hold what there is).
   !> With an `archive` that the sink was given by an earlier run of the same case, that run goes on.
-  subroutine simulate(case, ideal_joint, list, sink, report, error, archive)
+  subroutine simulate(case, ideal_joint, list, sink, report, error, archive, cycles)
     type(case_t), intent(in) :: case
     logical, intent(in) :: ideal_joint
     type(column_list_t), intent(in) :: list
@@ -43,6 +45,7 @@ contains
     type(run_report_t), intent(out) :: report
     type(error_t), allocatable, intent(out) :: error
     type(archive_t), intent(inout), optional :: archive
+    type(cycle_watch_t), allocatable, intent(inout), optional :: cycles
     class(scene_t), allocatable :: scene
     class(ode_method_t), allocatable :: method
     type(recorder_t) :: recorder
@@ -61,6 +64,10 @@ contains
     if (case%contact%is_present) &
       recorder%validity_limit = valid_impact_speed(case%contact%youngs_modulus, case%contact%density)
     call move_alloc(sink, recorder%sink)
+    if (present(cycles)) then
+      call scene%measure_joint()
+      call move_alloc(cycles, recorder%cycles)
+    end if
 
     method%settings = settings_for(case, scene)
     y = scene%initial_state()
@@ -70,9 +77,10 @@ contains
     call integrate(scene, method, t, y, recorder%end_time, case%integrator%max_steps, recorder, status, archive)
     if (status /= unreadable_archive) call recorder%finish(scene, t, y)
     call move_alloc(recorder%sink, sink)
+    if (present(cycles)) call move_alloc(recorder%cycles, cycles)
     report%statistics = method%totals()
     report%figures = recorder%figures
-    if (status == integration_done .and. case%integrator%method == 'adams' .and. .not. ideal_joint) &
+    if (status == integration_done .and. case%integrator%method == 'adams' .and. .not. (ideal_joint .or. present(cycles))) &
       call measure_auto(case, report)
     !$omp critical (texts)
     report%status = 'done'

@@ -1,0 +1,247 @@
+!> Follows the crank through its revolutions: tells accepted points apart by revolution, and finds the instants at which the
+!> crank passes an angle on the interpolant of the method.
+!>
+!> Revolution k ends when the crank has turned k times 2 pi away from its start in the sense of its start speed (from rest, of
+!> its torque). A crank that swings back is still in the revolution that it has reached.
+module cycle_watch
+  use kinds, only: dp
+  use constants, only: two_pi
+  use ode_method, only: ode_method_t
+  use scene, only: scene_t, evaluation_t, phase_contact
+  use roots, only: bracket_t, next_abscissa, narrow
+  use columns, only: column_list_t, row_values
+  use cycle_statistics, only: cycle_t, cycle_statistics_t
+  implicit none
+  private
+  public :: cycle_watch_t
+
+  real(dp), parameter :: rounding = 1e-9_dp   !! of the crank angle at the end of a run [rad]
+
+  !> A watch over one run. It can be used for the next one, and keeps its memory.
+  type :: cycle_watch_t
+    integer :: settle = 0                          !! revolutions at the start that are not counted
+    logical :: keeps_cycles = .false.              !! keep the figures of every revolution counted
+    type(cycle_statistics_t) :: statistics         !! of the revolutions counted
+    type(cycle_t), allocatable :: cycles(:)        !! them, statistics%cycles of them, where they are kept
+    type(column_list_t) :: strobe_list             !! columns to be taken at one angle
+    real(dp) :: strobe_angle = 0                   !! that crank angle [rad]
+    integer :: most_strobes = 0                    !! how many times, from the first revolution counted on; 0: to the end
+    integer :: strobes = 0                         !! times taken; strobe i is in revolution settle + i
+    real(dp), allocatable :: strobe_values(:, :)   !! (columns, strobes)
+    type(cycle_t), private :: present
+    integer, private :: ended = 0                  !! revolutions
+    integer, private :: passed = 0                 !! times that the crank has passed the strobe angle
+    real(dp), private :: direction = 1, start_angle = 0, strobe_offset = 0, initial_energy = 0
+    real(dp), private :: t = 0                     !! of the last point [s]
+    real(dp), private :: cycle_start = 0           !! [s]
+    real(dp), private :: measures(2) = 0           !! at the start of the revolution
+    logical, private :: has_points = .false.       !! in the present revolution
+    logical, private :: has_strobe = .false.
+    real(dp), allocatable, private :: y(:)
+  contains
+    procedure :: begin
+    procedure :: take_step
+    procedure :: take_point
+    procedure :: take_impact
+    procedure :: finish
+  end type cycle_watch_t
+
+contains
+
+  !> Begin a run.
+  subroutine begin(self, scene, y, initial_energy)
+    class(cycle_watch_t), intent(inout) :: self
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: y(:)
+    real(dp), intent(in) :: initial_energy   !! [J]
+    self%statistics = cycle_statistics_t()
+    self%present = cycle_t()
+    self%ended = 0
+    self%passed = 0
+    self%strobes = 0
+    self%t = 0
+    self%cycle_start = 0
+    self%measures = 0
+    self%direction = sign(1.0_dp, scene%drive%torque)
+    if (abs(scene%start_speed) > 0) self%direction = sign(1.0_dp, scene%start_speed)
+    self%start_angle = scene%start_angle
+    self%initial_energy = initial_energy
+    self%strobe_offset = two_pi - modulo(-self%direction*(self%strobe_angle - self%start_angle), two_pi)
+    self%has_points = .false.
+    self%has_strobe = .false.
+    if (allocated(self%strobe_list%id)) self%has_strobe = size(self%strobe_list%id) > 0
+    if (.not. allocated(self%cycles)) allocate (self%cycles(16))
+    if (self%has_strobe .and. .not. allocated(self%strobe_values)) &
+      allocate (self%strobe_values(size(self%strobe_list%id), 16))
+    if (allocated(self%y)) then
+      if (size(self%y) /= size(y)) deallocate (self%y)
+    end if
+    if (.not. allocated(self%y)) allocate (self%y(size(y)))
+  end subroutine begin
+
+  !> The solution is final up to (t_to, y_to), inside the last step of the method: end what ends before. Call it before that
+  !> point is taken.
+  subroutine take_step(self, method, scene, t_to, y_to)
+    class(cycle_watch_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t_to, y_to(:)
+    real(dp) :: travel, t
+    travel = travel_at(self, scene, t_to, y_to)
+    do while (travel >= next_end(self))   ! a step may pass several angles
+      t = passage(self, method, scene, next_end(self), t_to, travel)
+      call end_cycle(self, scene, t, self%y)
+    end do
+    if (.not. self%has_strobe) return
+    do while (travel >= next_strobe(self))
+      t = passage(self, method, scene, next_strobe(self), t_to, travel)
+      call strobe(self, scene, t, self%y)
+    end do
+  end subroutine take_step
+
+  !> Peaks at the accepted point (t, evaluation), which is in the present revolution.
+  pure subroutine take_point(self, scene, t, now)
+    class(cycle_watch_t), intent(inout) :: self
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t
+    type(evaluation_t), intent(in) :: now
+    associate (c => self%present)
+      c%max_pin_force = max(c%max_pin_force, norm2(now%loads%pin_force))
+      c%min_film_thickness = min(c%min_film_thickness, -now%joint%penetration)
+      if (scene%phase == phase_contact) then
+        c%contact_time = c%contact_time + (t - self%t)
+        c%max_penetration = max(c%max_penetration, now%joint%penetration)
+      end if
+    end associate
+    self%t = t
+    self%has_points = .true.
+  end subroutine take_point
+
+  !> A contact begins.
+  pure subroutine take_impact(self)
+    class(cycle_watch_t), intent(inout) :: self
+    self%present%impacts = self%present%impacts + 1
+  end subroutine take_impact
+
+  !> The run ended at (t, y): a revolution that rounding left open is whole.
+  subroutine finish(self, scene, t, y)
+    class(cycle_watch_t), intent(inout) :: self
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(:)
+    real(dp) :: travel
+    travel = travel_at(self, scene, t, y)
+    if (abs(travel - next_end(self)) <= rounding*(1 + self%ended)) call end_cycle(self, scene, t, y)
+    if (.not. self%has_strobe) return
+    if (abs(travel - next_strobe(self)) <= rounding*(1 + self%passed)) call strobe(self, scene, t, y)
+  end subroutine finish
+
+  !> Angle turned through since the start, in the sense of the revolutions [rad].
+  pure real(dp) function travel_at(self, scene, t, y)
+    class(cycle_watch_t), intent(in) :: self
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(:)
+    travel_at = self%direction*(scene%crank_angle(t, y) - self%start_angle)
+  end function travel_at
+
+  !> Where the present revolution ends [rad].
+  pure real(dp) function next_end(self)
+    class(cycle_watch_t), intent(in) :: self
+    next_end = two_pi*(self%ended + 1)
+  end function next_end
+
+  !> Where the crank passes the strobe angle next [rad].
+  pure real(dp) function next_strobe(self)
+    class(cycle_watch_t), intent(in) :: self
+    next_strobe = self%strobe_offset + two_pi*self%passed
+  end function next_strobe
+
+  !> The first time in the last step, up to t_to where the travel is past it, at which the travel reaches `target`; where it
+  !> was there before the step, its beginning. The state there is left in y: a copy of the method lands on it, since the
+  !> interpolant between two long steps of Radau misses the quadratures by 50 times the error of the steps (simulation I).
+  real(dp) function passage(self, method, scene, target, t_to, travel)
+    class(cycle_watch_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: target, t_to, travel
+    class(ode_method_t), allocatable :: copy
+    type(bracket_t) :: bracket
+    real(dp) :: t
+    bracket = bracket_t(method%t_old, t_to, travel_at(self, scene, method%t_old, method%y_old) - target, travel - target, 0, &
+      abs(t_to - method%t_old))
+    passage = method%t_old
+    if (bracket%fa < 0) then
+      do
+        t = next_abscissa(bracket)
+        if (.not. (t > bracket%a .and. t < bracket%b)) exit
+        call method%interpolate(t, self%y)
+        call narrow(bracket, t, travel_at(self, scene, t, self%y) - target)
+      end do
+      passage = bracket%b
+    end if
+    allocate (copy, source=method)
+    call copy%land_on(scene, passage, self%y)
+  end function passage
+
+  !> The present revolution ends at (t, y).
+  subroutine end_cycle(self, scene, t, y)
+    class(cycle_watch_t), intent(inout) :: self
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(:)
+    type(cycle_t), allocatable :: more(:)
+    real(dp) :: measures(2)
+    type(evaluation_t) :: now
+    logical :: inside
+    integer :: first
+    if (.not. self%has_points) then   ! a step longer than a revolution
+      call scene%evaluate(t, y, now, inside)
+      if (inside) call self%take_point(scene, t, now)
+    end if
+    measures = 0
+    first = 2*scene%n_positions + 2
+    measures(:scene%n_measures) = y(first:first + scene%n_measures - 1)
+    if (scene%phase == phase_contact) self%present%contact_time = self%present%contact_time + (t - self%t)
+    self%present%duration = t - self%cycle_start
+    self%present%pin_force_integral = measures(1) - self%measures(1)
+    self%present%dissipated_energy = measures(2) - self%measures(2)
+    self%ended = self%ended + 1
+    if (self%ended > self%settle) then
+      call self%statistics%add(self%present)
+      if (self%keeps_cycles) then
+        associate (n => self%statistics%cycles)
+          if (n > size(self%cycles)) then
+            allocate (more(2*n))
+            more(:n - 1) = self%cycles
+            call move_alloc(more, self%cycles)
+          end if
+          self%cycles(n) = self%present
+        end associate
+      end if
+    end if
+    self%present = cycle_t()
+    self%has_points = .false.
+    self%cycle_start = t
+    self%measures = measures
+    self%t = t
+  end subroutine end_cycle
+
+  !> The crank passes the strobe angle at (t, y).
+  subroutine strobe(self, scene, t, y)
+    class(cycle_watch_t), intent(inout) :: self
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(:)
+    real(dp), allocatable :: more(:, :)
+    type(evaluation_t) :: now
+    logical :: inside
+    self%passed = self%passed + 1
+    if (self%passed <= self%settle) return
+    if (self%most_strobes > 0 .and. self%strobes >= self%most_strobes) return
+    self%strobes = self%strobes + 1
+    if (self%strobes > size(self%strobe_values, 2)) then
+      allocate (more(size(self%strobe_values, 1), 2*self%strobes))
+      more(:, :self%strobes - 1) = self%strobe_values
+      call move_alloc(more, self%strobe_values)
+    end if
+    call scene%evaluate(t, y, now, inside)
+    call row_values(self%strobe_list, scene, t, now, scene%work(y), self%initial_energy, self%strobe_values(:, self%strobes))
+  end subroutine strobe
+end module cycle_watch
