@@ -1,33 +1,35 @@
 !> gudgeon: the slider-crank mechanism with clearance in its piston-pin joint. Reads the command line and runs the cases.
 program gudgeon
-  use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
+  use, intrinsic :: iso_fortran_env, only: error_unit
   use omp_lib, only: omp_get_num_procs
-  use errors, only: error_t, status_ok
+  use errors, only: error_t, fail, status_ok, status_integration, status_output
   use command_line, only: command_line_t, parse_command_line, program_arguments, help_text
   use case_file, only: template
   use case_runner, only: run_case_file
   use progress, only: progress_wanted
-  use posix, only: hold_interrupts, ignore_write_signals, quit
+  use text_tools, only: printable
+  use posix, only: fill_standard_descriptors, hold_interrupts, interrupted, ignore_write_signals, write_bytes, error_text, &
+    error_interrupted, error_broken_pipe, quit
   use version, only: program_version
   implicit none
   type(command_line_t) :: options
   type(error_t), allocatable :: error
+  integer, parameter :: standard_output = 1   !! file descriptor
   integer :: status
 
+  status = status_ok
+  call fill_standard_descriptors()
   call ignore_write_signals()
   call parse_command_line(program_arguments(), options, error)
   if (allocated(error)) then
     call complain(error)
     status = error%status
   else if (options%help) then
-    call say(help_text())
-    status = status_ok
+    call say(help_text(), status)
   else if (options%version) then
-    call say('gudgeon '//program_version)
-    status = status_ok
+    call say('gudgeon '//program_version, status)
   else if (options%template) then
-    call say(template())
-    status = status_ok
+    call say(template(), status)
   else
     call run_all(options, status)
   end if
@@ -63,24 +65,41 @@ contains
     integer, intent(inout) :: status
     character(len=:), allocatable :: line, notice
     type(error_t), allocatable :: error
-    call run_case_file(path, options, show_progress, line, notice, error)
+    if (interrupted()) then
+      !$omp critical (texts)
+      call fail(error, printable(path, 200)//': interrupted before it began', status_integration)
+      !$omp end critical (texts)
+    else
+      call run_case_file(path, options, show_progress, line, notice, error)
+    end if
     !$omp critical (messages)
     if (allocated(error)) then
       call complain(error)
       status = max(status, error%status)
     else if (.not. options%quiet) then
-      call say(line)
+      call say(line, status)
       if (notice /= '') call notify(notice)
     end if
     !$omp end critical (messages)
   end subroutine run_one
 
-  !> One line on standard output.
-  subroutine say(line)
+  !> One line on standard output. Where it cannot be written `status` rises, unless the reader has gone: he has seen enough.
+  subroutine say(line, status)
     character(len=*), intent(in) :: line
-    integer :: unimportant
-    write (output_unit, '(a)', iostat=unimportant) line
-    flush (output_unit, iostat=unimportant)
+    integer, intent(inout) :: status
+    character(len=:), allocatable :: text
+    integer :: at, done, problem
+    text = line//achar(10)
+    at = 0
+    do while (at < len(text))
+      call write_bytes(standard_output, text(at + 1:), done, problem)
+      if (problem == error_interrupted) cycle
+      if (problem /= 0) exit
+      at = at + done
+    end do
+    if (at == len(text) .or. problem == error_broken_pipe) return
+    call notify('standard output: '//error_text(problem))
+    status = max(status, status_output)
   end subroutine say
 
   !> One line on standard error.

@@ -13,6 +13,7 @@ module case_runner
   use trace_sink, only: trace_sink_t
   use trace_files, only: trace_files_t
   use result_file, only: result_file_t
+  use case_lock, only: case_lock_t
   use summary, only: summary_table, summary_line, advice
   use posix, only: make_directory, error_text
   use text_tools, only: printable
@@ -33,17 +34,30 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(case_t) :: case
     type(column_list_t) :: list, ideal_list
-    type(error_t), allocatable :: ideal_error
+    type(case_lock_t) :: lock
     character(len=:), allocatable :: base
 
     !$omp critical (texts)
     line = ''
     notice = ''
     base = ''
-    call prepare(path, options, case, list, ideal_list, base, error)
+    call prepare(path, options, case, list, ideal_list, lock, base, error)
     if (.not. allocated(error) .and. options%check) line = path//': correct'
     !$omp end critical (texts)
-    if (allocated(error) .or. options%check) return
+    if (.not. allocated(error) .and. .not. options%check) call run_with_twin(case, list, ideal_list, base, show_progress, line, &
+      notice, error)
+    call lock%release()
+  end subroutine run_case_file
+
+  !> Run a case, and its ideal twin where it asks for one.
+  subroutine run_with_twin(case, list, ideal_list, base, show_progress, line, notice, error)
+    type(case_t), intent(in) :: case
+    type(column_list_t), intent(in) :: list, ideal_list
+    character(len=*), intent(in) :: base
+    logical, intent(in) :: show_progress
+    character(len=:), allocatable, intent(inout) :: line, notice
+    type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: ideal_error
 
     call run_one(case, .false., list, base, show_progress, line, notice, error)
     if (.not. case%output%ideal_twin .or. case%joint%kind == 'ideal') return
@@ -52,15 +66,16 @@ contains
     end if
     call run_one(case, .true., ideal_list, base, show_progress, line, notice, ideal_error)
     if (allocated(ideal_error) .and. .not. allocated(error)) call move_alloc(ideal_error, error)
-  end subroutine run_case_file
+  end subroutine run_with_twin
 
-  !> Read and check a case; unless only that is asked for, make the folder for its results and write the resolved case.
-  !> `base` is the path of the results without their endings.
-  subroutine prepare(path, options, case, list, ideal_list, base, error)
+  !> Read and check a case; unless only that is asked for, make the folder for its results, lock them and write the resolved
+  !> case. `base` is the path of the results without their endings.
+  subroutine prepare(path, options, case, list, ideal_list, lock, base, error)
     character(len=*), intent(in) :: path
     type(command_line_t), intent(in) :: options
     type(case_t), intent(out) :: case
     type(column_list_t), intent(out) :: list, ideal_list
+    type(case_lock_t), intent(inout) :: lock
     character(len=:), allocatable, intent(inout) :: base
     type(error_t), allocatable, intent(out) :: error
     class(scene_t), allocatable :: scene
@@ -78,7 +93,8 @@ contains
     if (status /= 0) then
       call fail(error, printable(options%out, 200)//': '//error_text(status), status_output)
     else
-      call write_text(base//'.resolved.nml', write_resolved(case), error)
+      call lock%take(base, error)
+      if (.not. allocated(error)) call write_text(base//'.resolved.nml', write_resolved(case), error)
     end if
   end subroutine prepare
 
@@ -193,7 +209,7 @@ contains
     call file%open(path, error)
     if (allocated(error)) return
     call file%put(text)
-    call file%close(error)
+    call file%close_whole(error)
   end subroutine write_text
 
   !> Put the case file's name before an error that does not have it.

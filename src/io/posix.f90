@@ -5,16 +5,18 @@ module posix
     c_size_t, c_loc, c_f_pointer
   implicit none
   private
-  public :: open_for_reading, open_for_writing, read_bytes, write_bytes, truncate_file, close_file, rename_file, &
-    remove_file, remove_directory, make_directory, is_terminal, error_text, hold_interrupts, interrupted, &
-    ignore_write_signals, quit
-  public :: error_no_entry, error_interrupted, error_exists, error_is_directory, error_no_space
+  public :: open_for_reading, open_for_writing, open_to_lock, lock_file, is_file, read_bytes, write_bytes, truncate_file, &
+    close_file, rename_file, remove_file, remove_directory, make_directory, is_terminal, error_text, hold_interrupts, interrupted, &
+    fill_standard_descriptors, ignore_write_signals, quit
+  public :: error_no_entry, error_interrupted, error_locked, error_exists, error_is_directory, error_no_space, &
+    error_broken_pipe
 
   !> Error numbers of Linux.
-  integer, parameter :: error_no_entry = 2, error_interrupted = 4, error_exists = 17, error_not_directory = 20, &
-    error_is_directory = 21, error_no_space = 28
+  integer, parameter :: error_no_entry = 2, error_interrupted = 4, error_locked = 11, error_exists = 17, &
+    error_not_directory = 20, error_is_directory = 21, error_no_space = 28, error_broken_pipe = 32
 
   integer(c_int), parameter :: o_cloexec = 524288, read_only = 0, write_only = 1, o_creat = 64, o_trunc = 512
+  integer(c_int), parameter :: lock_exclusive = 2, lock_without_waiting = 4
   integer(c_int), parameter :: file_mode = 438, folder_mode = 511   !! rw-rw-rw-, rwxrwxrwx, before the umask
   integer(c_int), parameter :: signal_hangup = 1, signal_interrupt = 2, signal_pipe = 13, signal_terminate = 15, &
     signal_file_size = 25
@@ -26,6 +28,11 @@ module posix
   type, bind(c) :: signal_set_t
     integer(c_long) :: words(16) = 0
   end type signal_set_t
+
+  !> Room for a struct stat of Linux, which begins with the device and the number of the file on it.
+  type, bind(c) :: file_status_t
+    integer(c_long) :: device = 0, number = 0, rest(30) = 0
+  end type file_status_t
 
   interface
     function c_open(path, flags, mode) bind(c, name='open') result(descriptor)
@@ -54,6 +61,23 @@ module posix
       integer(c_long), value :: length
       integer(c_int) :: status
     end function c_ftruncate
+    function c_flock(descriptor, operation) bind(c, name='flock') result(status)
+      import :: c_int
+      integer(c_int), value :: descriptor, operation
+      integer(c_int) :: status
+    end function c_flock
+    function c_fstat(descriptor, file) bind(c, name='fstat') result(status)
+      import :: c_int, file_status_t
+      integer(c_int), value :: descriptor
+      type(file_status_t), intent(inout) :: file
+      integer(c_int) :: status
+    end function c_fstat
+    function c_stat(path, file) bind(c, name='stat') result(status)
+      import :: c_char, c_int, file_status_t
+      character(kind=c_char), intent(in) :: path(*)
+      type(file_status_t), intent(inout) :: file
+      integer(c_int) :: status
+    end function c_stat
     function c_close(descriptor) bind(c, name='close') result(status)
       import :: c_int
       integer(c_int), value :: descriptor
@@ -149,6 +173,33 @@ contains
     descriptor = c_open(path//c_null_char, ior(ior(write_only, o_cloexec), ior(o_creat, o_trunc)), file_mode)
     status = outcome(descriptor)
   end subroutine open_for_writing
+
+  !> Open a file that is only there to be locked, creating it where it is missing; `status` is 0 or the error number.
+  subroutine open_to_lock(path, descriptor, status)
+    character(len=*), intent(in) :: path
+    integer, intent(out) :: descriptor, status
+    descriptor = c_open(path//c_null_char, ior(ior(write_only, o_cloexec), o_creat), file_mode)
+    status = outcome(descriptor)
+  end subroutine open_to_lock
+
+  !> Lock an open file for this opening of it alone, until it is closed or the program ends in any way. `status` is
+  !> `error_locked` where another opening holds it.
+  subroutine lock_file(descriptor, status)
+    integer, intent(in) :: descriptor
+    integer, intent(out) :: status
+    status = outcome(int(c_flock(int(descriptor, c_int), ior(lock_exclusive, lock_without_waiting))))
+  end subroutine lock_file
+
+  !> Whether `path` is the name of this open file.
+  function is_file(path, descriptor) result(answer)
+    character(len=*), intent(in) :: path
+    integer, intent(in) :: descriptor
+    logical :: answer
+    type(file_status_t) :: named, opened
+    answer = .false.
+    if (c_stat(path//c_null_char, named) /= 0 .or. c_fstat(int(descriptor, c_int), opened) /= 0) return
+    answer = named%device == opened%device .and. named%number == opened%number
+  end function is_file
 
   !> One read: `done` bytes of `buffer` are filled, 0 at the end of the file.
   subroutine read_bytes(descriptor, buffer, done, status)
@@ -266,6 +317,19 @@ contains
       if (c_sigismember(pending, held(i)) == 1) answer = .true.
     end do
   end function interrupted
+
+  !> Where the program was started without standard input, output or error, nothing takes their places: else the first
+  !> result file would, and what goes to standard output would go into it.
+  subroutine fill_standard_descriptors()
+    integer :: descriptor
+    integer(c_int), parameter :: read_and_write = 2, last_standard = 2
+    integer(c_int) :: unused
+    do
+      descriptor = c_open('/dev/null'//c_null_char, read_and_write, 0_c_int)
+      if (descriptor < 0 .or. descriptor > last_standard) exit
+    end do
+    if (descriptor > last_standard) unused = c_close(int(descriptor, c_int))
+  end subroutine fill_standard_descriptors
 
   !> Writing to a reader that has gone, or past the largest file allowed, then gives an error number instead of ending
   !> the program.

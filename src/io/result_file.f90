@@ -1,5 +1,6 @@
 !> A result file that never stands half-written under its final name: rows gather in a buffer, go out to NAME.part in
-!> calls that end between rows, and the file gets its final name when it is closed.
+!> calls that end between rows, and the file gets its final name when it is closed. (A kill -9 in the middle of such a call cuts
+!> the last row of NAME.part.)
 module result_file
   use, intrinsic :: iso_c_binding, only: c_long
   use errors, only: error_t, fail, status_output
@@ -28,6 +29,7 @@ module result_file
     procedure :: flush => flush_rows
     procedure :: has_failed
     procedure :: close => close_result
+    procedure :: close_whole
     procedure :: abandon
   end type result_file_t
 
@@ -98,6 +100,21 @@ contains
     end if
     if (self%status /= 0) call report(self, self%status, error)
   end subroutine close_result
+
+  !> The same for a file that is of no use in part: after a failed write there is none.
+  subroutine close_whole(self, error)
+    class(result_file_t), intent(inout) :: self
+    type(error_t), allocatable, intent(out) :: error
+    integer :: ignored
+    call self%flush()
+    if (self%status == 0) then
+      call self%close(error)
+      if (allocated(error)) call remove_file(self%path//'.part', ignored)
+    else
+      call report(self, self%status, error)
+      call self%abandon()
+    end if
+  end subroutine close_whole
 
   !> Give the file up: nothing of it stays.
   subroutine abandon(self)

@@ -1,0 +1,62 @@
+!> One run at a time for the results of a name: two programs that wrote into the same files would mix their rows.
+module case_lock
+  use errors, only: error_t, fail, status_output
+  use text_tools, only: printable
+  use posix, only: open_to_lock, lock_file, is_file, close_file, remove_file, error_text, error_interrupted, error_locked
+  implicit none
+  private
+  public :: case_lock_t
+
+  !> The lock on BASE.lock, a file that is there while the run is. A run that is killed leaves the file but no lock.
+  type :: case_lock_t
+    private
+    character(len=:), allocatable :: path
+    integer :: descriptor = -1
+  contains
+    procedure :: take
+    procedure :: release
+  end type case_lock_t
+
+contains
+
+  !> Take the lock for the results BASE.csv and so on. Errors: another run holds it; the file cannot be made. On a file
+  !> system that has no locks none is taken.
+  subroutine take(self, base, error)
+    class(case_lock_t), intent(inout) :: self
+    character(len=*), intent(in) :: base   !! path of the results without their endings
+    type(error_t), allocatable, intent(out) :: error
+    integer, parameter :: most_tries = 1000
+    integer :: status, ignored, try
+
+    self%path = base//'.lock'
+    do try = 1, most_tries
+      call open_to_lock(self%path, self%descriptor, status)
+      if (status == error_interrupted) cycle
+      if (status /= 0) then
+        self%descriptor = -1
+        call fail(error, printable(self%path, 200)//': '//error_text(status), status_output)
+        return
+      end if
+      call lock_file(self%descriptor, status)
+      if (status == error_locked) then
+        call close_file(self%descriptor, ignored)
+        self%descriptor = -1
+        call fail(error, printable(base, 200)//'.csv: another run is writing it; wait for it or choose another folder with --out', &
+                  status_output)
+        return
+      end if
+      if (is_file(self%path, self%descriptor) .or. try == most_tries) return
+      call close_file(self%descriptor, ignored)   ! the run that had it has just ended and removed it
+    end do
+  end subroutine take
+
+  !> Give the lock back, if it was taken.
+  subroutine release(self)
+    class(case_lock_t), intent(inout) :: self
+    integer :: ignored
+    if (self%descriptor < 0) return
+    call remove_file(self%path, ignored)   ! before the lock goes: who waits finds a file without a name
+    call close_file(self%descriptor, ignored)
+    self%descriptor = -1
+  end subroutine release
+end module case_lock

@@ -1,0 +1,296 @@
+#!/usr/bin/env python3
+"""What the machine does to a run: kills, signals, full disks, folders that cannot be written, two runs in one place.
+
+    tests/test_faults.py [--kills N] [--seed N] [--program PATH]
+
+Whatever happens, every file holds whole rows (but for the last row of a trace still under its temporary name, which a kill -9
+may cut), a summary or a resolved case is whole or not there, finished cases of a batch stay, and the exit status tells. Needs a release build (or makes one). What needs root is left out without it, and said.
+Ends with the line "N passed, N failed".
+"""
+from __future__ import annotations
+
+import argparse
+import contextlib
+import os
+import random
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+FLORES = ROOT / "cases" / "flores"
+LONG = ("--set", "integrator.revolutions=400")          # many seconds
+SHORT = ("--set", "integrator.revolutions=0.2", "--set", "output.ideal_twin=F", "--set", "integrator.method=auto")
+PATIENCE = 60                                           # seconds for anything: a hang otherwise
+counts = {"passed": 0, "failed": 0}
+
+
+def check(condition: object, what: str) -> None:
+    counts["passed" if condition else "failed"] += 1
+    if not condition:
+        print(f"FAILED: {what}", flush=True)
+
+
+class Gudgeon:
+    """The program, started in ways that people and machines start it."""
+
+    def __init__(self, program: Path):
+        self.program = program
+
+    def start(self, *words: object, **how) -> subprocess.Popen:
+        settings = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "stdin": subprocess.DEVNULL, **how}
+        return subprocess.Popen([str(self.program), *map(str, words)], **settings)
+
+    def run(self, *words: object, **how) -> tuple[int, str, str]:
+        process = self.start(*words, **how)
+        out, err = process.communicate(timeout=PATIENCE)
+        return process.returncode, (out or b"").decode(), (err or b"").decode()
+
+
+def program_built() -> Path:
+    run = subprocess.run(["fpm", "run", "gudgeon", "--profile", "release", "--runner", "echo"], cwd=ROOT, capture_output=True,
+                         text=True, check=False)
+    if run.returncode:
+        sys.exit(f"{run.stdout}{run.stderr}\n0 passed, 1 failed")
+    return ROOT / run.stdout.split()[-1]
+
+
+def torn(path: Path) -> str:
+    """What is not whole in a result file; empty if nothing is."""
+    text = path.read_bytes()
+    name = path.name.removesuffix(".part")
+    if name != path.name:
+        text = text[:text.rfind(b"\n") + 1]
+    if text and not text.endswith(b"\n"):
+        return f"{path.name} ends within a row: {text[-60:]!r}"
+    rows = text.decode().splitlines()
+    if name.endswith(".summary.csv"):
+        return "" if rows and rows[-1].startswith("compiler_options,") else f"{path.name} is not whole"
+    if name.endswith(".resolved.nml"):
+        return "" if rows and rows[-1] == "/" and rows[-2].strip().startswith("ideal_twin") else f"{path.name} is not whole"
+    columns = rows[0].count(",") if rows else 0
+    for row in rows[1:]:
+        if row.count(",") != columns:
+            return f"{path.name}: {row.count(',') + 1} fields of {columns + 1}: {row[:80]}"
+    return ""
+
+
+def whole(folder: Path, what: str, parts: bool = False) -> None:
+    """Every file in a folder is whole; files under temporary names only where `parts` may be left."""
+    files = [path for path in folder.iterdir() if path.is_file()] if folder.is_dir() else []
+    faults = [torn(path) for path in files if not (path.name.endswith(".part") and path.name.count(".resolved.") + path.name.count(
+        ".summary.")) and not path.name.endswith(".lock")]
+    check(not any(faults), f"{what}: whole rows: {[fault for fault in faults if fault][:2]}")
+    if not parts:
+        left = [path.name for path in files if path.name.endswith((".part", ".lock"))]
+        check(not left, f"{what}: nothing under a temporary name, not {left}")
+
+
+def test_kills(gudgeon: Gudgeon, work: Path, kills: int, rng: random.Random) -> None:
+    """kill -9 at random instants, now and then with an earlier run's results in place; the next run finds nothing in its way."""
+    cases = [FLORES / "dry_0500um.nml", FLORES / "friction_050.nml", ROOT / "cases" / "sim_IV.nml"]
+    left = 0
+    for i in range(kills):
+        folder = work / "killed"
+        if i % 5 == 0:
+            shutil.rmtree(folder, ignore_errors=True)
+        process = gudgeon.start("-o", folder, "-j", "2", "--set", f"integrator.revolutions={rng.choice((1, 4, 40))}", "--set",
+                                "output.samples_per_revolution=5000", "--set", "integrator.method=auto", *cases)
+        time.sleep(rng.choice((rng.uniform(0, 0.02), rng.uniform(0, 0.5))))
+        process.kill()
+        process.communicate(timeout=PATIENCE)
+        if folder.is_dir():
+            left += any(folder.glob("*.part"))
+            whole(folder, f"kill {i}", parts=True)
+    check(left > 0, "some runs are killed in the middle")
+    status, _, err = gudgeon.run("-o", work / "killed", *SHORT, *cases)
+    check(status == 0 and not err, f"after the kills a run goes through: {status} {err}")
+    whole(work / "killed", "after the kills")
+
+
+def test_signals(gudgeon: Gudgeon, work: Path) -> None:
+    """Ctrl-C and its like end all cases of a batch, those that have not begun too."""
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        folder = work / number.name
+        process = gudgeon.start("-o", folder, "-j", "1", *LONG, ROOT / "cases" / "sim_I.nml", FLORES / "dry_0100um.nml")
+        while not (folder / "sim_I.csv.part").exists():
+            time.sleep(0.01)
+        time.sleep(0.2)
+        process.send_signal(number)
+        _, err = process.communicate(timeout=PATIENCE)
+        lines = err.decode().splitlines()
+        check(process.returncode == 4, f"{number.name}: exit status 4, not {process.returncode}")
+        check(len(lines) == 2 and "interrupted at t =" in lines[0] and "dry_0100um.nml: interrupted before" in lines[1],
+              f"{number.name}: one line a case: {lines}")
+        summary = (folder / "sim_I.summary.csv").read_text()
+        check('status,"interrupted at t' in summary, f"{number.name}: the summary says so")
+        whole(folder, number.name)
+    folder = work / "nohup"
+    process = gudgeon.start("-o", folder, *SHORT, FLORES / "dry_0100um.nml",
+                            preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+    process.send_signal(signal.SIGHUP)
+    process.communicate(timeout=PATIENCE)
+    check(process.returncode == 0, "a signal that is ignored from the start stays ignored")
+
+
+@contextlib.contextmanager
+def disk(folder: Path, options: str):
+    """A file system in memory; yields False where this user may not have one."""
+    folder.mkdir()
+    done = os.geteuid() == 0 and shutil.which("mount") and subprocess.run(
+        ["mount", "-t", "tmpfs", "-o", options, "tmpfs", str(folder)], capture_output=True, check=False).returncode == 0
+    try:
+        yield done
+    finally:
+        if done:
+            subprocess.run(["umount", str(folder)], check=True)
+
+
+def full(gudgeon: Gudgeon, folder: Path, what: str, **how) -> None:
+    status, out, err = gudgeon.run("-o", folder, "--set", "integrator.method=auto", FLORES / "dry_0500um.nml", **how)
+    check(status == 5 and not out, f"{what}: exit status 5, not {status}")
+    check(err.count("\n") == 1 and ("No space left" in err or "too large" in err), f"{what}: one line: {err}")
+    whole(folder, what)
+
+
+def test_full_disk(gudgeon: Gudgeon, work: Path) -> None:
+    """No room for the trace, the summary, the resolved case, or for nothing at all."""
+    for size in (4, 8, 16, 64, 300):
+        with disk(work / f"disk{size}", f"size={size}k") as mounted:
+            if not mounted:
+                print("skipped: a full disk (needs root and tmpfs); files that may not grow stand in for it")
+                break
+            full(gudgeon, work / f"disk{size}", f"a disk of {size} kB")
+    for size in (0, 100, 3000, 100_000, 300_000):
+        full(gudgeon, work / f"limit{size}", f"files of {size} bytes at most",
+             preexec_fn=lambda size=size: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)))
+
+
+def test_folders(gudgeon: Gudgeon, work: Path) -> None:
+    """Where results cannot go: one line and exit status 5, and what was written before stays."""
+    case = FLORES / "dry_0500um.nml"
+    with disk(work / "read_only", "ro") as mounted:
+        if not mounted and os.geteuid() != 0:
+            (work / "read_only").chmod(0o555)
+            mounted = True
+        if mounted:
+            for folder in (work / "read_only", work / "read_only" / "sub"):
+                status, _, err = gudgeon.run("-o", folder, *SHORT, case)
+                check(status == 5 and err.count("\n") == 1, f"a folder that is read-only: {status} {err}")
+        else:
+            print("skipped: a folder that is read-only (needs tmpfs)")
+    (work / "file").write_text("kept")
+    for folder in (work / "file", work / "file" / "sub"):
+        status, _, err = gudgeon.run("-o", folder, *SHORT, case)
+        check(status == 5 and err.count("\n") == 1 and "ot a directory" in err, f"a folder that is a file: {status} {err}")
+    check((work / "file").read_text() == "kept", "the file stays")
+    for ending in ("csv", "events.csv", "summary.csv", "resolved.nml"):
+        folder = work / ending
+        (folder / f"dry_0500um.{ending}").mkdir(parents=True)
+        status, _, err = gudgeon.run("-o", folder, *SHORT, case)
+        check(status == 5 and err.count("\n") == 1 and f"dry_0500um.{ending}: Is a directory" in err,
+              f"a folder where {ending} should be: {status} {err}")
+        whole(folder, f"a folder in place of {ending}", parts=ending.endswith("csv"))
+    check((work / "summary.csv" / "dry_0500um.csv").is_file(), "a summary that cannot be written leaves the trace")
+
+
+def test_standard_output(gudgeon: Gudgeon, work: Path) -> None:
+    """A reader that goes away is no failure, a full device is; a closed descriptor takes nothing of the results."""
+    case = FLORES / "dry_0500um.nml"
+    for words in (("-o", work / "pipe", *SHORT, case), ("--template",)):
+        process = gudgeon.start(*words)
+        process.stdout.close()
+        err = process.stderr.read().decode()
+        check(process.wait(timeout=PATIENCE) == 0 and not err, f"closed standard output, {words[0]}: {process.returncode} {err}")
+        with open("/dev/full", "wb") as device:
+            status, _, err = gudgeon.run(*words, stdout=device)
+        check(status == 5 and err.count("\n") == 1, f"standard output without room, {words[0]}: {status} {err}")
+    whole(work / "pipe", "closed standard output")
+    reference = (work / "pipe" / "dry_0500um.csv").read_bytes()
+    for i, descriptors in enumerate(("1", "2", "1 2", "0 1 2")):
+        shell = " ".join(f"{one}{'<' if one == '0' else '>'}&-" for one in descriptors.split())
+        words = " ".join([str(gudgeon.program), "-o", str(work / f"none{i}"), *SHORT, str(case), str(FLORES / "friction_050.nml")])
+        status = subprocess.run(f"{words} {shell}", shell=True, capture_output=True, check=False, timeout=PATIENCE).returncode
+        check(status == 0, f"without descriptors {descriptors}: {status}")
+        whole(work / f"none{i}", f"without descriptors {descriptors}")
+        check((work / f"none{i}" / "dry_0500um.csv").read_bytes() == reference, f"without descriptors {descriptors}: the same trace")
+
+
+def test_two_runs(gudgeon: Gudgeon, work: Path) -> None:
+    """Two runs of one name in one folder do not mix: the second is refused while the first is at work."""
+    folder = work / "two"
+    case = FLORES / "dry_0500um.nml"
+    first = gudgeon.start("-o", folder, *LONG, case)
+    while not (folder / "dry_0500um.csv.part").exists():
+        time.sleep(0.01)
+    status, _, err = gudgeon.run("-o", folder, *SHORT, case)
+    check(status == 5 and err.count("\n") == 1 and "another run is writing it" in err, f"the second run is refused: {status} {err}")
+    status, _, err = gudgeon.run("-o", folder, *SHORT, FLORES / "ideal.nml")
+    check(status == 0, f"another case may run there: {status} {err}")
+    first.send_signal(signal.SIGTERM)
+    first.communicate(timeout=PATIENCE)
+    check(first.returncode == 4, "the first run goes on until it is ended")
+    whole(folder, "two runs")
+    resolved = (folder / "dry_0500um.resolved.nml").read_text()
+    check("revolutions = 4.0" in resolved, "and its resolved case is its own")
+    status, _, err = gudgeon.run("-o", folder, *SHORT, case)
+    check(status == 0, f"then the way is free: {status} {err}")
+    reference = (folder / "dry_0500um.csv").read_bytes()
+    for i in range(5):   # all at the same moment
+        together = [gudgeon.start("-o", folder, *SHORT, case) for _ in range(8)]
+        errors = [process.communicate(timeout=PATIENCE)[1].decode() for process in together]
+        ended = [process.returncode for process in together]
+        check(0 in ended and set(ended) <= {0, 5}, f"eight at once: {ended}")
+        check(all((not error) if status == 0 else "another run" in error for status, error in zip(ended, errors)), f"{errors}")
+        check((folder / "dry_0500um.csv").read_bytes() == reference, f"eight at once, {i}: the trace of one")
+        whole(folder, "eight at once")
+
+
+def test_batch(gudgeon: Gudgeon, work: Path) -> None:
+    """One case of a batch fails, in each way: the others are finished, and the highest status wins."""
+    folder = work / "batch"
+    stops = work / "stops.nml"
+    stops.write_text((ROOT / "cases" / "sim_I.nml").read_text().replace("&integrator", "&integrator\n  max_steps = 5"))
+    wrong = work / "wrong.nml"
+    wrong.write_text("&joint kind = 'loose' /\n")
+    blocked = work / "blocked.nml"
+    shutil.copy(FLORES / "ideal.nml", blocked)
+    (folder / "blocked.csv").mkdir(parents=True)
+    good = [FLORES / "dry_0500um.nml", FLORES / "friction_050.nml", FLORES / "ideal.nml"]
+    for bad, want in ((wrong, 3), (stops, 4), (blocked, 5), (work / "none.nml", 3)):
+        status, out, err = gudgeon.run("-o", folder, *SHORT, good[0], bad, *good[1:])
+        check(status == want and err.count("\n") == 1 and str(bad) in err.replace(str(folder / "blocked"), str(bad)),
+              f"{bad.name}: {status} {err}")
+        check(out.count("\n") == 3, f"{bad.name}: the others are finished: {out}")
+        for case in good:
+            check('status,"done"' in (folder / f"{case.stem}.summary.csv").read_text(), f"{bad.name}: {case.stem} is done")
+            (folder / f"{case.stem}.summary.csv").unlink()
+    status, out, err = gudgeon.run("-o", folder, *SHORT, wrong, good[0], stops, blocked)
+    check(status == 5 and out.count("\n") == 1 and err.count("\n") == 3, f"three of four: {status} {out} {err}")
+    whole(folder, "a batch", parts=True)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--kills", type=int, default=20)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--program", type=Path)
+    options = parser.parse_args()
+    gudgeon = Gudgeon(options.program or program_built())
+    with tempfile.TemporaryDirectory(prefix="faults") as work:
+        for test in (test_signals, test_full_disk, test_folders, test_standard_output, test_two_runs, test_batch):
+            folder = Path(work) / test.__name__
+            folder.mkdir()
+            test(gudgeon, folder)
+        test_kills(gudgeon, Path(work), options.kills, random.Random(options.seed))
+    print(f"{counts['passed']} passed, {counts['failed']} failed")
+    return 1 if counts["failed"] else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
