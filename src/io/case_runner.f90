@@ -209,7 +209,7 @@ contains
     call file%open(path, error)
     if (allocated(error)) return
     call file%put(text)
-    call file%close_whole(error)
+    call file%close(error, whole_only=.true.)
   end subroutine write_text
 
   !> Put the case file's name before an error that does not have it.

@@ -196,9 +196,11 @@ contains
     integer, intent(in) :: descriptor
     logical :: answer
     type(file_status_t) :: named, opened
+    integer(c_int) :: status
     answer = .false.
-    if (c_stat(path//c_null_char, named) /= 0 .or. c_fstat(int(descriptor, c_int), opened) /= 0) return
-    answer = named%device == opened%device .and. named%number == opened%number
+    status = c_stat(path//c_null_char, named)
+    if (status == 0) status = c_fstat(int(descriptor, c_int), opened)
+    if (status == 0) answer = named%device == opened%device .and. named%number == opened%number
   end function is_file
 
   !> One read: `done` bytes of `buffer` are filled, 0 at the end of the file.

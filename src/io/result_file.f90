@@ -29,7 +29,6 @@ module result_file
     procedure :: flush => flush_rows
     procedure :: has_failed
     procedure :: close => close_result
-    procedure :: close_whole
     procedure :: abandon
   end type result_file_t
 
@@ -82,39 +81,29 @@ contains
   end function has_failed
 
   !> Write out the rest and give the file its final name. After a failed write it holds the whole rows that fitted (there
-  !> is no file if none did), and `error` names the file and the cause.
-  subroutine close_result(self, error)
+  !> is no file if none did, or if it is of no use in part: `whole_only`), and `error` names the file and the cause.
+  subroutine close_result(self, error, whole_only)
     class(result_file_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
-    integer :: status
+    logical, intent(in), optional :: whole_only
+    integer :: status, ignored
+    logical :: needs_all
+    needs_all = .false.
+    if (present(whole_only)) needs_all = whole_only
     if (self%descriptor < 0) return
     call self%flush()
     call close_file(self%descriptor, status)
     self%descriptor = -1
     if (self%status == 0 .and. status /= error_interrupted) self%status = status
-    if (self%status /= 0 .and. self%written == 0) then
-      call remove_file(self%path//'.part', status)   ! not even a first row: no file
-    else
+    if (self%status == 0 .or. self%written > 0 .and. .not. needs_all) then
       call rename_file(self%path//'.part', self%path, status)
       if (self%status == 0) self%status = status
+      if (status /= 0 .and. needs_all) call remove_file(self%path//'.part', ignored)
+    else
+      call remove_file(self%path//'.part', ignored)
     end if
     if (self%status /= 0) call report(self, self%status, error)
   end subroutine close_result
-
-  !> The same for a file that is of no use in part: after a failed write there is none.
-  subroutine close_whole(self, error)
-    class(result_file_t), intent(inout) :: self
-    type(error_t), allocatable, intent(out) :: error
-    integer :: ignored
-    call self%flush()
-    if (self%status == 0) then
-      call self%close(error)
-      if (allocated(error)) call remove_file(self%path//'.part', ignored)
-    else
-      call report(self, self%status, error)
-      call self%abandon()
-    end if
-  end subroutine close_whole
 
   !> Give the file up: nothing of it stays.
   subroutine abandon(self)
