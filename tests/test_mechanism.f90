@@ -57,6 +57,7 @@ contains
       type(accelerations_t) :: a
       type(loads_t) :: loads
       real(dp) :: moment
+      loads%gas_force = 0
       call ideal_accelerations(flores(), drive_t(.false.), ideal_motion(flores(), angle*degree, speed), loads, a, moment)
       acceleration_at = a%piston
     end function acceleration_at
@@ -65,6 +66,7 @@ contains
       real(dp), intent(in) :: angle
       type(accelerations_t) :: a
       type(loads_t) :: loads
+      loads%gas_force = 0
       call ideal_accelerations(flores(), drive_t(.false.), ideal_motion(flores(), angle*degree, speed), loads, a, moment_at)
     end function moment_at
   end subroutine published_values
@@ -97,13 +99,14 @@ contains
     type(accelerations_t) :: a
     type(loads_t) :: loads
     type(drive_t) :: drive
-    real(dp) :: q, rod, qd, rodd, xd, moment, power, slope, dt
+    real(dp) :: q, rod, qd, rodd, xd, moment, power, slope, dt, bend(2)
     integer :: i
 
     m = crooked()
     drive = drive_t(.true., 4.0_dp, 0.02_dp)
     loads = loads_t([800.0_dp, -350.0_dp], 2.5_dp, 900.0_dp)
     dt = 1e-6_dp
+    a = accelerations_t(0.0_dp, 0.0_dp, 0.0_dp, [0.0_dp, 0.0_dp])
     do i = 1, 12
       q = 0.55_dp*i
       rod = 0.2_dp*sin(1.3_dp*i)
@@ -119,6 +122,8 @@ contains
           + (drive%torque - drive%damping*qd)*qd
       end associate
       call check%close_to(slope, power, 1e-6_dp*max(1e4_dp, abs(power)), 'energy balance of the equations of motion')
+      bend = (eccentricity_after(dt) - 2*eccentricity_after(0.0_dp) + eccentricity_after(-dt))/dt**2
+      call check%close_to(norm2(a%eccentricity - bend), 0.0_dp, 1e-2_dp, 'acceleration of the eccentricity [m/s2]')
     end do
 
   contains
@@ -136,6 +141,16 @@ contains
       real(dp), intent(in) :: t
       energy_after = m%kinetic_energy(state_of(t)) + m%potential_energy(state_of(t))
     end function energy_after
+
+    !> Pin on the rod - piston.
+    function eccentricity_after(t) result(e)
+      real(dp), intent(in) :: t
+      real(dp) :: e(2)
+      type(motion_t) :: there
+      there = state_of(t)
+      e = [m%crank_length*there%cos_crank + m%rod_length*there%cos_rod - there%piston_position, &
+        m%crank_length*there%sin_crank - m%rod_length*there%sin_rod]
+    end function eccentricity_after
   end subroutine lagrange_is_energy_consistent
 
   !> F5 = -F_x and F6 = -F_y to rounding, and the crank equation balances with F3, F4 at the crank pin.

@@ -17,9 +17,9 @@ module contact_law
     pure function normal_force(self, penetration, penetration_rate, impact_speed) result(force)
       import :: contact_law_t, dp
       class(contact_law_t), intent(in) :: self
-      real(dp), intent(in) :: penetration       !! |e| - c [m]; the force is 0 where it is not positive
-      real(dp), intent(in) :: penetration_rate  !! its rate [m/s], positive while the pin goes deeper
-      real(dp), intent(in) :: impact_speed      !! penetration_rate at the instant contact began [m/s], >= 0
+      real(dp), value, intent(in) :: penetration       !! |e| - c [m]; the force is 0 where it is not positive
+      real(dp), value, intent(in) :: penetration_rate  !! its rate [m/s], positive while the pin goes deeper
+      real(dp), value, intent(in) :: impact_speed      !! penetration_rate at the instant contact began [m/s], >= 0
       real(dp) :: force
     end function normal_force
 

@@ -46,7 +46,7 @@ contains
   !> (4.1). Neither speed matters.
   pure function normal_force(self, penetration, penetration_rate, impact_speed) result(force)
     class(hertz_t), intent(in) :: self
-    real(dp), intent(in) :: penetration, penetration_rate, impact_speed
+    real(dp), value, intent(in) :: penetration, penetration_rate, impact_speed
     real(dp) :: force
     associate (unused_rate => penetration_rate, unused_speed => impact_speed)
     end associate

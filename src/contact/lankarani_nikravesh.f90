@@ -35,7 +35,7 @@ contains
   !> case. The force is continuous in the penetration always, and in its rate except where the impact speed is 0.
   pure function normal_force(self, penetration, penetration_rate, impact_speed) result(force)
     class(lankarani_nikravesh_t), intent(in) :: self
-    real(dp), intent(in) :: penetration, penetration_rate, impact_speed
+    real(dp), value, intent(in) :: penetration, penetration_rate, impact_speed
     real(dp) :: force
     force = 0
     if (penetration <= 0) return

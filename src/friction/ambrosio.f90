@@ -30,8 +30,8 @@ contains
   !> (4.9) with (4.10). Continuous for v0 < v1; v0 = v1 is a jump of c_f at v1. `direction` is not asked.
   pure function friction_ratio(self, sliding_speed, direction) result(ratio)
     class(ambrosio_t), intent(in) :: self
-    real(dp), intent(in) :: sliding_speed
-    integer, intent(in) :: direction
+    real(dp), value, intent(in) :: sliding_speed
+    integer, value, intent(in) :: direction
     real(dp) :: ratio
     real(dp) :: speed
     associate (unused => direction)

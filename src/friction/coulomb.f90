@@ -26,8 +26,8 @@ contains
   !> speed itself is not asked, so that the force is smooth within a step.
   pure function friction_ratio(self, sliding_speed, direction) result(ratio)
     class(coulomb_t), intent(in) :: self
-    real(dp), intent(in) :: sliding_speed
-    integer, intent(in) :: direction
+    real(dp), value, intent(in) :: sliding_speed
+    integer, value, intent(in) :: direction
     real(dp) :: ratio
     associate (unused => sliding_speed)
     end associate

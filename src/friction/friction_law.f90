@@ -18,8 +18,8 @@ module friction_law
     pure function friction_ratio(self, sliding_speed, direction) result(ratio)
       import :: friction_law_t, dp
       class(friction_law_t), intent(in) :: self
-      real(dp), intent(in) :: sliding_speed   !! material sliding speed of the pin surface along t [m/s]
-      integer, intent(in) :: direction        !! sign of sliding of the current motion: -1 or +1 (used by set-valued laws only)
+      real(dp), value, intent(in) :: sliding_speed   !! material sliding speed of the pin surface along t [m/s]
+      integer, value, intent(in) :: direction        !! sign of sliding of the current motion: -1 or +1 (used by set-valued laws only)
       real(dp) :: ratio
     end function friction_ratio
   end interface

@@ -33,29 +33,25 @@ contains
     real(dp), intent(out) :: force(2)
     real(dp), intent(out) :: moment
     type(reduced_motion_t) :: state
-    complex(dp) :: direction, sommerfeld
-    complex(dp) :: ends(2)
-    real(dp) :: strength, gap, root, u(2), arc, radial, tangential, scale, wedge
+    complex(dp) :: sommerfeld
+    real(dp) :: strength, gap, root, c(2), s(2), per_u(2), arc, radial, tangential, scale, wedge
     force = 0
     moment = 0
     state = self%reduced(motion)
     wedge = state%wedge/2
     strength = sqrt(wedge**2 + state%ratio_rate**2)
     if (.not. strength > 0) return
-    direction = cmplx(wedge, state%ratio_rate, dp)/strength
     associate (eps => state%ratio, eps_dot => state%ratio_rate, n => state%normal)
       gap = (1 - eps)*(1 + eps)
       root = sqrt(gap)
-      ends = [pressure_zero(direction, eps), pressure_zero(-direction, eps)]
-      u = thickness(ends, eps)
-      associate (c => real(ends), s => aimag(ends))
-        sommerfeld = cmplx(c(2) + eps, root*s(2), dp)*cmplx(c(1) + eps, -root*s(1), dp)
-        arc = atan2(aimag(sommerfeld), real(sommerfeld))
-        if (arc < 0) arc = arc + two_pi
-        radial = -2*wedge*difference(c**2/u) &
-          + eps_dot*(difference(s*(3*eps - 2*gap*c)/u) - (2 + eps**2)*arc/root)/gap
-        tangential = 2*wedge*(arc/root - difference(s*c/u)) + eps_dot*difference(c*(2*c - eps)/u)
-      end associate
+      call pressure_zeros(wedge/strength, eps_dot/strength, eps, c, s)
+      per_u = 1/thickness(c, s, eps)
+      sommerfeld = cmplx(c(2) + eps, root*s(2), dp)*cmplx(c(1) + eps, -root*s(1), dp)
+      arc = atan2(aimag(sommerfeld), real(sommerfeld))
+      if (arc < 0) arc = arc + two_pi
+      radial = -2*wedge*difference(c**2*per_u) &
+        + eps_dot*(difference(s*(3*eps - 2*gap*c)*per_u) - (2 + eps**2)*arc/root)/gap
+      tangential = 2*wedge*(arc/root - difference(s*c*per_u)) + eps_dot*difference(c*(2*c - eps)*per_u)
       scale = 6*self%force_scale/(2 + eps**2)
       force = scale*(radial*n + tangential*[-n(2), n(1)])
     end associate
@@ -67,42 +63,49 @@ contains
     difference = values(2) - values(1)
   end function difference
 
-  !> u = 1 + eps Re z, without cancellation where z -> -1 and eps -> 1.
-  elemental function thickness(z, eps) result(u)
-    complex(dp), intent(in) :: z   !! on the unit circle
+  !> u = 1 + eps c, without cancellation where c -> -1 and eps -> 1.
+  elemental function thickness(c, s, eps) result(u)
+    real(dp), intent(in) :: c, s   !! cosine and sine
     real(dp), intent(in) :: eps
     real(dp) :: u
-    u = 1 + eps*real(z)
-    if (real(z) < 0) u = 1 - eps + eps*aimag(z)**2/(1 - real(z))
+    u = merge(1 + eps*c, 1 - eps + eps*s**2/(1 + abs(c)), c >= 0)
   end function thickness
 
-  !> The zero on the unit circle of Im[conj(d)(4z + eps z^2)] that is nearest to the unit vector d: the angle a of z solves
+  !> The zeros on the unit circle of Im[conj(d)(4z + eps z^2)], z = c + i s, nearest to d and to -d: the angle a of z solves
   !> an equation of Kepler's kind, a + arg(4 + eps z) = arg d. It lies within 0.26 rad of d; from the linear guess two
-  !> Newton steps come closer than 1e-6, and the force feels the square of that, since the pressure is 0 there.
-  pure function pressure_zero(d, eps) result(z)
-    complex(dp), intent(in) :: d   !! on the unit circle
+  !> Newton steps come closer than 1e-6, and the force feels the square of that, since the pressure is 0 there. Both zeros
+  !> go side by side.
+  pure subroutine pressure_zeros(d_real, d_imaginary, eps, c, s)
+    real(dp), intent(in) :: d_real, d_imaginary   !! of d, on the unit circle
     real(dp), intent(in) :: eps
-    complex(dp) :: z
+    real(dp), intent(out) :: c(2), s(2)
     integer, parameter :: newton_steps = 2
-    complex(dp) :: linear, quadratic
-    real(dp) :: turn
+    real(dp) :: dx(2), dy(2), linear(2), slope(2), double_c(2), double_s(2)
     integer :: i
-    z = rotated(d, -eps*aimag(d)/(4 + 2*eps*real(d)))
+    dx = [d_real, -d_real]
+    dy = [d_imaginary, -d_imaginary]
+    c = dx
+    s = dy
+    call rotate(-eps*dy/(4 + 2*eps*dx), c, s)
     do i = 1, newton_steps
-      linear = conjg(d)*4*z
-      quadratic = conjg(d)*eps*z**2
-      turn = -(aimag(linear) + aimag(quadratic))/(real(linear) + 2*real(quadratic))
-      z = rotated(z, turn)
+      double_c = (c - s)*(c + s)
+      double_s = 2*c*s
+      linear = 4*(dx*s - dy*c) + eps*(dx*double_s - dy*double_c)
+      slope = 4*(dx*c + dy*s) + 2*eps*(dx*double_c + dy*double_s)
+      call rotate(-linear/slope, c, s)
     end do
-  end function pressure_zero
+  end subroutine pressure_zeros
 
-  !> z turned by atan(tangent).
-  pure function rotated(z, tangent)
-    complex(dp), intent(in) :: z
-    real(dp), intent(in) :: tangent
-    complex(dp) :: rotated
-    rotated = z*cmplx(1.0_dp, tangent, dp)/sqrt(1 + tangent**2)
-  end function rotated
+  !> (c, s) turned by atan(tangent).
+  pure subroutine rotate(tangent, c, s)
+    real(dp), intent(in) :: tangent(2)
+    real(dp), intent(inout) :: c(2), s(2)
+    real(dp) :: shrink(2), turned(2)
+    shrink = 1/sqrt(1 + tangent**2)
+    turned = (c - tangent*s)*shrink
+    s = (s + tangent*c)*shrink
+    c = turned
+  end subroutine rotate
 
   !> By differences: not those of the closed form.
   pure subroutine force_derivatives(self, motion, derivatives)

@@ -25,9 +25,8 @@ module oscillating_response
   !> stays finite up to the contact.
   real(dp), parameter :: max_eccentricity_ratio = 1 - 1e-6_dp
 
-  !> Points on half the circle of the smallest rule; each further rule has twice as many.
-  integer, parameter :: smallest_rule = 4
-  integer, parameter :: rules = 9
+  !> Points on half the circle of the rules.
+  integer, parameter :: rule_points(*) = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 256, 512, 1024]
 
   !> Series of (B - 3)/u^2 in u^2, and up to which |u^2| it serves.
   real(dp), parameter :: b(0:8) = [1/5.0_dp, -1/175.0_dp, 2/7875.0_dp, -37/3031875.0_dp, 118/197071875.0_dp, &
@@ -73,9 +72,10 @@ contains
     logical, intent(in) :: as_printed
     integer :: i, n
     response%as_printed = as_printed
-    allocate (response%rule(merge(1, rules, points > 0)))
+    allocate (response%rule(merge(1, size(rule_points), points > 0)))
     do i = 1, size(response%rule)
-      n = merge((points + 1)/2, smallest_rule*2**(i - 1), points > 0)
+      n = rule_points(i)
+      if (points > 0) n = (points + 1)/2
       response%rule(i)%cosines = midpoint_cosines(n)
       if (i < size(response%rule)) response%rule(i)%limit = served_inertia(n, accuracy)
     end do

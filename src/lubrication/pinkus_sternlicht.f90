@@ -52,25 +52,32 @@ contains
     class(pinkus_sternlicht_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
     type(reduced_motion_t) :: state
+    call reduce(self%clearance, motion, state)
+  end function reduced
+
+  pure subroutine reduce(clearance, motion, state)
+    real(dp), intent(in) :: clearance
+    type(film_motion_t), intent(in) :: motion
+    type(reduced_motion_t), intent(out) :: state
     real(dp), parameter :: centred = 1e-200_dp   !! below this square the components' squares lose digits
-    real(dp) :: square, eccentricity, per_clearance
-    associate (e => motion%eccentricity, v => motion%eccentricity_rate)
+    real(dp) :: square, eccentricity, per_eccentricity, per_clearance
+    associate (e => motion%eccentricity, v => motion%eccentricity_rate, n => state%normal)
       square = e(1)**2 + e(2)**2
-      per_clearance = 1/self%clearance
+      per_clearance = 1/clearance
+      n(1) = 1
+      n(2) = 0
+      state%ratio = 0
       if (square > centred) then
         eccentricity = sqrt(square)
-        state%normal = e/eccentricity
+        per_eccentricity = 1/eccentricity
+        n(1) = e(1)*per_eccentricity
+        n(2) = e(2)*per_eccentricity
         state%ratio = min(eccentricity*per_clearance, max_eccentricity_ratio)
-      else
-        state%normal = [1.0_dp, 0.0_dp]
-        state%ratio = 0
       end if
-      associate (n => state%normal)
-        state%ratio_rate = (n(1)*v(1) + n(2)*v(2))*per_clearance
-        state%wedge = state%ratio*motion%pin_speed - 2*(n(1)*v(2) - n(2)*v(1))*per_clearance
-      end associate
+      state%ratio_rate = (n(1)*v(1) + n(2)*v(2))*per_clearance
+      state%wedge = state%ratio*motion%pin_speed - 2*(n(1)*v(2) - n(2)*v(1))*per_clearance
     end associate
-  end function reduced
+  end subroutine reduce
 
   !> (5.34-5.37), (5.36) with its sign corrected unless `as_printed`. With S = sqrt((1-eps^2)((eps W)^2 + 4 eps_dot^2)),
   !> |eps_dot| k eps = S/2 and both quotients of k are (S + 6 eps max(eps_dot, 0))/(S + 3 eps |eps_dot|), so that nothing
@@ -82,7 +89,7 @@ contains
     real(dp), intent(out) :: moment
     type(reduced_motion_t) :: state
     real(dp) :: gap, root, s, squeeze, denominator, quotient, scale, radial, tangential
-    state = self%reduced(motion)
+    call reduce(self%clearance, motion, state)
     moment = 0
     associate (eps => state%ratio, eps_dot => state%ratio_rate, n => state%normal)
       gap = (1 - eps)*(1 + eps)

@@ -22,9 +22,9 @@ module dynamics
 
   !> What acts on the bodies besides gravity and the drive.
   type :: loads_t
-    real(dp) :: pin_force(2) = 0  !! force of the joint on the pin, (F_x, F_y) [N]; the piston receives the opposite
-    real(dp) :: pin_moment = 0    !! moment of the joint on the rod about the pin centre, from x to y [N m]
-    real(dp) :: gas_force = 0     !! on the piston along -x [N]
+    real(dp) :: pin_force(2)  !! force of the joint on the pin, (F_x, F_y) [N]; the piston receives the opposite
+    real(dp) :: pin_moment    !! moment of the joint on the rod about the pin centre, from x to y [N m]
+    real(dp) :: gas_force     !! on the piston along -x [N]
   end type loads_t
 
 contains
@@ -38,26 +38,34 @@ contains
     type(motion_t), intent(in) :: motion
     type(accelerations_t), intent(out) :: accelerations
     real(dp), intent(out) :: crank_moment
-    real(dp) :: m11, m12, m22, slope, on_crank, on_rod
+    real(dp) :: sin_s, cos_s, m12, slope, on_crank, on_rod, per_determinant
 
-    call mechanism%coupling(motion, m12, slope)
-    call mechanism%gravity_moments(motion, on_crank, on_rod)
-    m22 = mechanism%rod_term()
-    on_crank = on_crank - slope*motion%rod_speed**2 - drive%damping*motion%crank_speed &
-      + mechanism%crank_length*(loads%pin_force(2)*motion%cos_crank - loads%pin_force(1)*motion%sin_crank)
-    on_rod = on_rod - slope*motion%crank_speed**2 - loads%pin_moment &
-      - mechanism%rod_length*(loads%pin_force(1)*motion%sin_rod + loads%pin_force(2)*motion%cos_rod)
-    if (drive%free_crank) then
-      crank_moment = drive%torque
-      on_crank = on_crank + crank_moment
-      m11 = mechanism%crank_term()
-      accelerations%crank = (on_crank*m22 - on_rod*m12)/(m11*m22 - m12**2)
-      accelerations%rod = (on_rod - m12*accelerations%crank)/m22
-    else
-      accelerations%crank = 0
-      accelerations%rod = on_rod/m22
-      crank_moment = m12*accelerations%rod - on_crank
-    end if
-    accelerations%piston = -(loads%gas_force + loads%pin_force(1))/mechanism%piston_mass - mechanism%gravity
+    associate (m => mechanism, sin_q => motion%sin_crank, cos_q => motion%cos_crank, sin_a => motion%sin_rod, &
+               cos_a => motion%cos_rod, crank_speed => motion%crank_speed, f => loads%pin_force)
+      sin_s = sin_q*cos_a + cos_q*sin_a
+      cos_s = cos_q*cos_a - sin_q*sin_a
+      m12 = -(m%static_moment(1)*cos_s + m%static_moment(2)*sin_s)
+      slope = m%static_moment(1)*sin_s - m%static_moment(2)*cos_s
+      on_crank = m%crank_weight(1)*sin_q + m%crank_weight(2)*cos_q - slope*motion%rod_speed**2 &
+        - drive%damping*crank_speed + m%crank_length*(f(2)*cos_q - f(1)*sin_q)
+      on_rod = m%rod_weight(1)*sin_a - m%rod_weight(2)*cos_a - slope*crank_speed**2 - loads%pin_moment &
+        - m%rod_length*(f(1)*sin_a + f(2)*cos_a)
+      if (drive%free_crank) then
+        crank_moment = drive%torque
+        on_crank = on_crank + crank_moment
+        per_determinant = 1/(m%crank_term*m%rod_term - m12**2)
+        accelerations%crank = (on_crank*m%rod_term - on_rod*m12)*per_determinant
+        accelerations%rod = (on_rod*m%crank_term - on_crank*m12)*per_determinant
+      else
+        accelerations%crank = 0
+        accelerations%rod = on_rod/m%rod_term
+        crank_moment = m12*accelerations%rod - on_crank
+      end if
+      accelerations%piston = -(loads%gas_force + f(1))*m%per_piston_mass - m%gravity
+      accelerations%eccentricity(1) = -m%crank_length*(sin_q*accelerations%crank + cos_q*crank_speed**2) &
+        - m%rod_length*(sin_a*accelerations%rod + cos_a*motion%rod_speed**2) - accelerations%piston
+      accelerations%eccentricity(2) = m%crank_length*(cos_q*accelerations%crank - sin_q*crank_speed**2) &
+        - m%rod_length*(cos_a*accelerations%rod - sin_a*motion%rod_speed**2)
+    end associate
   end subroutine accelerations_under
 end module dynamics

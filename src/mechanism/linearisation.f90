@@ -43,11 +43,10 @@ contains
     real(dp) :: m11, m12, m22, slope, sum_angle, on_crank, on_rod, crank, rod, weight_c, weight_r(2)
 
     call mechanism%coupling(motion, m12, slope)
-    m11 = mechanism%crank_term()
-    m22 = mechanism%rod_term()
-    weight_c = mechanism%gravity*(mechanism%crank_mass*(mechanism%crank_com(1)*motion%cos_crank &
-      - mechanism%crank_com(2)*motion%sin_crank) + mechanism%rod_mass*mechanism%crank_length*motion%cos_crank)
-    weight_r = mechanism%gravity*mechanism%rod_mass*mechanism%rod_com
+    m11 = mechanism%crank_term
+    m22 = mechanism%rod_term
+    weight_c = mechanism%crank_weight(1)*motion%cos_crank - mechanism%crank_weight(2)*motion%sin_crank
+    weight_r = mechanism%rod_weight
     sum_angle = change%crank_angle + change%rod_angle
     associate (f => loads%pin_force, df => load_change%pin_force, r => mechanism%crank_length, l => mechanism%rod_length, &
                sq => motion%sin_crank, cq => motion%cos_crank, sa => motion%sin_rod, ca => motion%cos_rod, &

@@ -10,7 +10,8 @@ module mechanism
   public :: mechanism_t, motion_t, accelerations_t
 
   !> Constants of the bodies. Centres of mass are given in each body's own frame: the crank's from the crank
-  !> bearing, the first axis towards the crank pin; the rod's from the crank pin, the first axis towards the pin.
+  !> bearing, the first axis towards the crank pin; the rod's from the crank pin, the first axis towards the pin. The
+  !> second part follows from the first, once: `mechanism_t(...)` with the first ten values fills it.
   type :: mechanism_t
     real(dp) :: crank_length = 0    !! R [m]
     real(dp) :: crank_mass = 0      !! [kg]
@@ -22,17 +23,24 @@ module mechanism
     real(dp) :: rod_com(2) = 0      !! (U_r, V_r) [m]
     real(dp) :: piston_mass = 0     !! [kg]
     real(dp) :: gravity = 0         !! along -x [m/s^2]
+    real(dp) :: crank_term = 0      !! m11 = I_crank + m_crank (U_c^2 + V_c^2) + m_rod R^2 [kg m^2]
+    real(dp) :: rod_term = 0        !! m22 = I_rod + m_rod (U_r^2 + V_r^2) [kg m^2]
+    real(dp) :: static_moment(2) = 0 !! m_rod R (U_r, V_r) [kg m^2]
+    real(dp) :: crank_weight(2) = 0 !! gravity's moment on q is (1) sin q + (2) cos q [N m]
+    real(dp) :: rod_weight(2) = 0   !! and on A (1) sin A - (2) cos A [N m]
+    real(dp) :: per_rod_length = 0  !! 1/L [1/m]
+    real(dp) :: per_piston_mass = 0 !! [1/kg]
   contains
-    procedure :: crank_term     !! m11
-    procedure :: rod_term       !! m22
     procedure :: coupling       !! m12 and its derivative
-    procedure :: gravity_moments
     procedure :: kinetic_energy
     procedure :: potential_energy
-    procedure :: pin_acceleration
     procedure :: crank_com_acceleration
     procedure :: rod_com_acceleration
   end type mechanism_t
+
+  interface mechanism_t
+    module procedure new_mechanism
+  end interface mechanism_t
 
   !> Positions and speeds of the three bodies at one instant.
   type :: motion_t
@@ -47,47 +55,50 @@ module mechanism
 
   !> Accelerations of the three bodies.
   type :: accelerations_t
-    real(dp) :: crank = 0    !! d2q/dt2 [rad/s^2]
-    real(dp) :: rod = 0      !! d2A/dt2 [rad/s^2]
-    real(dp) :: piston = 0   !! [m/s^2]
+    real(dp) :: crank    !! d2q/dt2 [rad/s^2]
+    real(dp) :: rod      !! d2A/dt2 [rad/s^2]
+    real(dp) :: piston   !! [m/s^2]
+    real(dp) :: eccentricity(2)   !! e'' = that of the pin on the rod - that of the piston [m/s^2]
   end type accelerations_t
 
 contains
 
-  !> m11 = I_crank + m_crank (U_c^2 + V_c^2) + m_rod R^2 [kg m^2].
-  pure real(dp) function crank_term(self)
-    class(mechanism_t), intent(in) :: self
-    crank_term = self%crank_inertia + self%crank_mass*sum(self%crank_com**2) + self%rod_mass*self%crank_length**2
-  end function crank_term
-
-  !> m22 = I_rod + m_rod (U_r^2 + V_r^2) [kg m^2].
-  pure real(dp) function rod_term(self)
-    class(mechanism_t), intent(in) :: self
-    rod_term = self%rod_inertia + self%rod_mass*sum(self%rod_com**2)
-  end function rod_term
+  !> The bodies with what follows from their constants. Limits: rod_length > 0, piston_mass > 0.
+  pure function new_mechanism(crank_length, crank_mass, crank_inertia, crank_com, rod_length, rod_mass, rod_inertia, &
+    rod_com, piston_mass, gravity) result(m)
+    real(dp), intent(in) :: crank_length, crank_mass, crank_inertia, crank_com(2), rod_length, rod_mass, rod_inertia, &
+      rod_com(2), piston_mass, gravity
+    type(mechanism_t) :: m
+    m%crank_length = crank_length
+    m%crank_mass = crank_mass
+    m%crank_inertia = crank_inertia
+    m%crank_com = crank_com
+    m%rod_length = rod_length
+    m%rod_mass = rod_mass
+    m%rod_inertia = rod_inertia
+    m%rod_com = rod_com
+    m%piston_mass = piston_mass
+    m%gravity = gravity
+    m%crank_term = crank_inertia + crank_mass*sum(crank_com**2) + rod_mass*crank_length**2
+    m%rod_term = rod_inertia + rod_mass*sum(rod_com**2)
+    m%static_moment = rod_mass*crank_length*rod_com
+    m%crank_weight = gravity*[crank_mass*crank_com(1) + rod_mass*crank_length, crank_mass*crank_com(2)]
+    m%rod_weight = gravity*rod_mass*rod_com
+    m%per_rod_length = 1/rod_length
+    m%per_piston_mass = 1/piston_mass
+  end function new_mechanism
 
   !> m12 = -m_rod R (U_r cos s + V_r sin s) and c = dm12/ds, s = q + A [kg m^2].
   pure subroutine coupling(self, motion, m12, slope)
     class(mechanism_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
     real(dp), intent(out) :: m12, slope
-    real(dp) :: sin_s, cos_s, static_moment
+    real(dp) :: sin_s, cos_s
     sin_s = motion%sin_crank*motion%cos_rod + motion%cos_crank*motion%sin_rod
     cos_s = motion%cos_crank*motion%cos_rod - motion%sin_crank*motion%sin_rod
-    static_moment = self%rod_mass*self%crank_length
-    m12 = -static_moment*(self%rod_com(1)*cos_s + self%rod_com(2)*sin_s)
-    slope = static_moment*(self%rod_com(1)*sin_s - self%rod_com(2)*cos_s)
+    m12 = -(self%static_moment(1)*cos_s + self%static_moment(2)*sin_s)
+    slope = self%static_moment(1)*sin_s - self%static_moment(2)*cos_s
   end subroutine coupling
-
-  !> Generalised forces of gravity on q and A [N m].
-  pure subroutine gravity_moments(self, motion, on_crank, on_rod)
-    class(mechanism_t), intent(in) :: self
-    type(motion_t), intent(in) :: motion
-    real(dp), intent(out) :: on_crank, on_rod
-    on_crank = self%gravity*(self%crank_mass*(self%crank_com(1)*motion%sin_crank + self%crank_com(2)*motion%cos_crank) &
-      + self%rod_mass*self%crank_length*motion%sin_crank)
-    on_rod = self%gravity*self%rod_mass*(self%rod_com(1)*motion%sin_rod - self%rod_com(2)*motion%cos_rod)
-  end subroutine gravity_moments
 
   !> Kinetic energy of the three bodies [J].
   pure real(dp) function kinetic_energy(self, motion)
@@ -95,7 +106,7 @@ contains
     type(motion_t), intent(in) :: motion
     real(dp) :: m12, slope
     call self%coupling(motion, m12, slope)
-    kinetic_energy = 0.5_dp*(self%crank_term()*motion%crank_speed**2 + self%rod_term()*motion%rod_speed**2 &
+    kinetic_energy = 0.5_dp*(self%crank_term*motion%crank_speed**2 + self%rod_term*motion%rod_speed**2 &
       + self%piston_mass*motion%piston_velocity**2) + m12*motion%crank_speed*motion%rod_speed
   end function kinetic_energy
 
@@ -109,15 +120,6 @@ contains
     potential_energy = self%gravity*(self%crank_mass*crank_height + self%rod_mass*rod_height &
       + self%piston_mass*motion%piston_position)
   end function potential_energy
-
-  !> Acceleration (x, y) of the pin centre on the rod [m/s^2].
-  pure function pin_acceleration(self, motion, accelerations) result(a)
-    class(mechanism_t), intent(in) :: self
-    type(motion_t), intent(in) :: motion
-    type(accelerations_t), intent(in) :: accelerations
-    real(dp) :: a(2)
-    a = rod_point_acceleration(self, [self%rod_length, 0.0_dp], motion, accelerations)
-  end function pin_acceleration
 
   !> Acceleration (x, y) of the rod's centre of mass [m/s^2].
   pure function rod_com_acceleration(self, motion, accelerations) result(a)

@@ -4,8 +4,8 @@ module clearance_scene
   use ode_problem, only: step_admitted, step_too_deep, event_continue, difference_jacobian
   use mechanism, only: motion_t, accelerations_t
   use dynamics, only: loads_t, accelerations_under
-  use ideal_joint, only: ideal_motion, ideal_rod_acceleration
-  use clearance_joint, only: joint_geometry_t, joint_motion_t, joint_motion, clearance_motion, eccentricity_acceleration
+  use ideal_joint, only: follow_crank, ideal_rod_acceleration
+  use clearance_joint, only: joint_geometry_t, find_joint_motion, sliding_speed, clearance_motion
   use linearisation, only: motion_change_t, motion_change, acceleration_change
   use contact_law, only: contact_law_t
   use friction_law, only: friction_law_t
@@ -45,7 +45,6 @@ module clearance_scene
     procedure :: lands_on_step_end
     procedure :: exchange
     procedure :: measure_joint
-    procedure, private :: unpack
   end type clearance_scene_t
 
 contains
@@ -57,15 +56,17 @@ contains
     logical, intent(out) :: inside
     type(evaluation_t) :: now
     integer :: m
-    call self%evaluate(t, y, now, inside)
+    call find_accelerations(self, t, self%n, y, now, inside)
     if (.not. inside) return
     m = self%n_positions
     if (self%drive%free_crank) then
       dydt(1) = now%motion%crank_speed
       dydt(4) = now%accelerations%crank
     end if
-    dydt(m - 1:m) = now%joint%eccentricity_rate
-    dydt(2*m - 1:2*m) = eccentricity_acceleration(self%mechanism, now%motion, now%accelerations)
+    dydt(m - 1) = now%joint%eccentricity_rate(1)
+    dydt(m) = now%joint%eccentricity_rate(2)
+    dydt(2*m - 1) = now%accelerations%eccentricity(1)
+    dydt(2*m) = now%accelerations%eccentricity(2)
     dydt(2*m + 1) = now%power
     if (self%n_measures > 0) dydt(2*m + 2:2*m + 3) = [norm2(now%loads%pin_force), -joint_power(now)]
   end subroutine derivatives
@@ -73,7 +74,9 @@ contains
   !> Power of the joint on the bodies [W]: of its force along the eccentricity and of its moment along the turning pin.
   pure real(dp) function joint_power(now)
     type(evaluation_t), intent(in) :: now
-    joint_power = dot_product(now%loads%pin_force, now%joint%eccentricity_rate) - now%loads%pin_moment*now%motion%rod_speed
+    associate (force => now%loads%pin_force, rate => now%joint%eccentricity_rate)
+      joint_power = (force(1)*rate(1) + force(2)*rate(2)) - now%loads%pin_moment*now%motion%rod_speed
+    end associate
   end function joint_power
 
   !> Two measures: the integral of the force's size [N s], and what the joint takes from the bodies [J].
@@ -82,48 +85,70 @@ contains
     call self%add_measures(2)
   end subroutine measure_joint
 
-  !> The state by its parts: bodies and pin.
-  pure subroutine unpack(self, t, y, motion, joint, reachable)
-    class(clearance_scene_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    type(motion_t), intent(out) :: motion
-    type(joint_motion_t), intent(out) :: joint
-    logical, intent(out) :: reachable
-    integer :: m
-    m = self%n_positions
-    if (self%drive%free_crank) then
-      call clearance_motion(self%mechanism, y(1), y(4), y(2:3), y(5:6), motion, reachable)
-    else
-      call clearance_motion(self%mechanism, self%start_angle + self%start_speed*t, self%start_speed, y(1:2), y(3:4), &
-        motion, reachable)
-    end if
-    if (.not. reachable) return
-    joint = joint_motion(self%joint, y(m - 1:m), y(2*m - 1:2*m), -motion%rod_speed)
-    reachable = joint%penetration < self%joint%pin_radius   ! deeper the pin would be through its bearing
-  end subroutine unpack
-
   pure subroutine evaluate(self, t, y, evaluation, inside)
     class(clearance_scene_t), intent(in) :: self
     real(dp), intent(in) :: t, y(:)
     type(evaluation_t), intent(out) :: evaluation
     logical, intent(out) :: inside
-
-    call self%unpack(t, y, evaluation%motion, evaluation%joint, inside)
+    evaluation%cylinder_pressure = 0
+    call find_accelerations(self, t, self%n, y, evaluation, inside)
     if (.not. inside) return
-    associate (now => evaluation, loads => evaluation%loads)
+    if (self%phase /= phase_contact) call find_joint_motion(self%joint, evaluation%joint)
+    evaluation%joint%sliding_speed = sliding_speed(self%joint, evaluation%joint%tangential_rate, -evaluation%motion%rod_speed)
+    if (self%phase == phase_contact) return
+    evaluation%normal_force = 0
+    evaluation%friction_force = 0
+  end subroutine evaluate
+
+  !> Motion, loads, accelerations and power, as far as the present phase needs them: the right-hand side, and what
+  !> `evaluate` completes. `inside` is false where the pin cannot be.
+  pure subroutine find_accelerations(self, t, n, y, now, inside)
+    class(clearance_scene_t), intent(in) :: self
+    integer, intent(in) :: n
+    real(dp), intent(in) :: t, y(n)
+    type(evaluation_t), intent(inout) :: now
+    logical, intent(out) :: inside
+    real(dp) :: angle, speed, distance_squared
+
+    associate (e => now%joint%eccentricity, rate => now%joint%eccentricity_rate, loads => now%loads)
+      if (self%drive%free_crank) then
+        angle = y(1)
+        speed = y(4)
+        e(1) = y(2)
+        e(2) = y(3)
+        rate(1) = y(5)
+        rate(2) = y(6)
+      else
+        angle = self%start_angle + self%start_speed*t
+        speed = self%start_speed
+        e(1) = y(1)
+        e(2) = y(2)
+        rate(1) = y(3)
+        rate(2) = y(4)
+      end if
+      if (self%phase == phase_contact) call press(self, now)   ! first, beside the sine and cosine that it does not need
+      call clearance_motion(self%mechanism, angle, speed, e, rate, now%motion, inside)
+      distance_squared = e(1)**2 + e(2)**2
+      inside = inside .and. distance_squared < self%joint%bearing_radius**2   ! beyond, the pin is through its bearing
+      if (.not. inside) return
+      now%loads%gas_force = 0
       if (allocated(self%gas)) call self%add_gas(now)
-      if (self%phase == phase_contact) then
+      select case (self%phase)
+      case (phase_contact)
         call add_contact(self, now)
-      else if (self%phase == phase_film) then
-        inside = now%joint%distance < self%joint%clearance .or. .not. self%film%singular_at_wall
+      case (phase_film)
+        inside = distance_squared < self%joint%clearance**2 .or. .not. self%film%singular_at_wall
         if (.not. inside) return
         call self%film%film_force(film_motion(self, now), loads%pin_force, loads%pin_moment)
-      end if
+      case default
+        loads%pin_force = 0
+        loads%pin_moment = 0
+      end select
       call accelerations_under(self%mechanism, self%drive, loads, now%motion, now%accelerations, now%crank_moment)
-      now%power = (now%crank_moment - self%drive%damping*now%motion%crank_speed)*now%motion%crank_speed &
-        - loads%gas_force*now%motion%piston_velocity + joint_power(now)
+      now%power = (now%crank_moment - self%drive%damping*speed)*speed - loads%gas_force*now%motion%piston_velocity &
+        + joint_power(now)
     end associate
-  end subroutine evaluate
+  end subroutine find_accelerations
 
   !> Derivatives of the accelerations by positions and rates, in closed form but for films that have none, and for a pin
   !> that sticks.
@@ -206,32 +231,46 @@ contains
     type(evaluation_t), intent(in) :: now
     type(film_motion_t) :: film
     type(motion_t) :: ideal
-    film = film_motion_t(now%joint%eccentricity, now%joint%eccentricity_rate, -now%motion%rod_speed)
+    film%eccentricity = now%joint%eccentricity
+    film%eccentricity_rate = now%joint%eccentricity_rate
+    film%pin_speed = -now%motion%rod_speed
     if (self%film%needs_ideal_motion) then
-      ideal = ideal_motion(self%mechanism, now%motion%crank_angle, now%motion%crank_speed)
+      ideal%sin_crank = now%motion%sin_crank
+      ideal%cos_crank = now%motion%cos_crank
+      ideal%crank_speed = now%motion%crank_speed
+      call follow_crank(self%mechanism, ideal)
       film%ideal_pin_speed = -ideal%rod_speed
       film%ideal_pin_acceleration = -ideal_rod_acceleration(self%mechanism, ideal)
       film%frequency = abs(now%motion%crank_speed)
     end if
   end function film_motion
 
-  !> Contact and friction: force -F_N n + F_T t on the pin, moment F_T R_pin.
+  !> The joint in polar terms and the normal force, from the eccentricity and its rate alone.
+  pure subroutine press(self, now)
+    class(clearance_scene_t), intent(in) :: self
+    type(evaluation_t), intent(inout) :: now
+    call find_joint_motion(self%joint, now%joint)
+    now%normal_force = self%contact%normal_force(now%joint%penetration, now%joint%penetration_rate, self%impact_speed)
+  end subroutine press
+
+  !> Friction, then the joint's loads: force -F_N n + F_T t on the pin, moment F_T R_pin.
   pure subroutine add_contact(self, now)
     class(clearance_scene_t), intent(in) :: self
     type(evaluation_t), intent(inout) :: now
-    associate (joint => now%joint)
-      now%normal_force = self%contact%normal_force(joint%penetration, joint%penetration_rate, self%impact_speed)
-      now%friction_force = 0
-      now%loads%pin_force = -now%normal_force*joint%normal
-      now%loads%pin_moment = 0
-      if (.not. allocated(self%friction)) return
+    real(dp) :: friction
+    friction = 0
+    if (allocated(self%friction)) then
+      now%joint%sliding_speed = sliding_speed(self%joint, now%joint%tangential_rate, -now%motion%rod_speed)
       if (self%friction%set_valued .and. self%sliding == 0) then
-        now%friction_force = sticking_force(self, now)
+        friction = sticking_force(self, now)
       else
-        now%friction_force = now%normal_force*self%friction%friction_ratio(joint%sliding_speed, self%sliding)
+        friction = now%normal_force*self%friction%friction_ratio(now%joint%sliding_speed, self%sliding)
       end if
-      now%loads%pin_force = now%loads%pin_force + now%friction_force*[-joint%normal(2), joint%normal(1)]
-      now%loads%pin_moment = now%friction_force*self%joint%pin_radius
+    end if
+    now%friction_force = friction
+    now%loads%pin_moment = friction*self%joint%pin_radius
+    associate (n => now%joint%normal, pressing => now%normal_force)
+      now%loads%pin_force = [-pressing*n(1) - friction*n(2), friction*n(1) - pressing*n(2)]
     end associate
   end subroutine add_contact
 
@@ -259,7 +298,7 @@ contains
     loads%pin_force = -now%normal_force*now%joint%normal + friction_force*tangent
     loads%pin_moment = friction_force*self%joint%pin_radius
     call accelerations_under(self%mechanism, self%drive, loads, now%motion, accelerations, moment)
-    sliding_acceleration = dot_product(tangent, eccentricity_acceleration(self%mechanism, now%motion, accelerations)) &
+    sliding_acceleration = dot_product(tangent, accelerations%eccentricity) &
       - now%joint%tangential_rate*now%joint%penetration_rate/now%joint%distance &
       - accelerations%rod*self%joint%pin_radius
   end function sliding_acceleration

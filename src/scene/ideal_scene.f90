@@ -2,7 +2,7 @@
 module ideal_scene
   use kinds, only: dp
   use ode_problem, only: event_continue
-  use ideal_joint, only: ideal_motion, ideal_accelerations
+  use ideal_joint, only: find_ideal_motion, ideal_accelerations
   use clearance_joint, only: joint_motion_t
   use scene, only: scene_t, evaluation_t, event_none
   implicit none
@@ -10,8 +10,8 @@ module ideal_scene
   public :: ideal_scene_t
 
   !> The pin of an ideal joint, in the terms of one with clearance.
-  type(joint_motion_t), parameter :: centred_pin = joint_motion_t([0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp], 0.0_dp, &
-    [1.0_dp, 0.0_dp], 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp)
+  type(joint_motion_t), parameter :: centred_pin = joint_motion_t([0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp], &
+    [1.0_dp, 0.0_dp], 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp)
 
   !> y = (q, q', quadratures), or (quadratures) where the crank speed is held.
   type, extends(scene_t) :: ideal_scene_t
@@ -33,8 +33,12 @@ contains
     real(dp), intent(out) :: dydt(:)
     logical, intent(out) :: inside
     type(evaluation_t) :: now
-    call self%evaluate(t, y, now, inside)
-    if (self%drive%free_crank) dydt(1:2) = [now%motion%crank_speed, now%accelerations%crank]
+    inside = .true.
+    call find_accelerations(self, t, y, now)
+    if (self%drive%free_crank) then
+      dydt(1) = now%motion%crank_speed
+      dydt(2) = now%accelerations%crank
+    end if
     dydt(2*self%n_positions + 1) = now%power
     if (self%n_measures > 0) dydt(2*self%n_positions + 2) = norm2(now%loads%pin_force)
   end subroutine derivatives
@@ -45,19 +49,29 @@ contains
     type(evaluation_t), intent(out) :: evaluation
     logical, intent(out) :: inside
     inside = .true.
-    if (self%drive%free_crank) then
-      evaluation%motion = ideal_motion(self%mechanism, y(1), y(2))
-    else
-      evaluation%motion = ideal_motion(self%mechanism, self%start_angle + self%start_speed*t, self%start_speed)
-    end if
-    associate (now => evaluation)
-      if (allocated(self%gas)) call self%add_gas(now)
-      now%joint = centred_pin
-      call ideal_accelerations(self%mechanism, self%drive, now%motion, now%loads, now%accelerations, now%crank_moment)
-      now%power = (now%crank_moment - self%drive%damping*now%motion%crank_speed)*now%motion%crank_speed &
-        - now%loads%gas_force*now%motion%piston_velocity
-    end associate
+    evaluation%cylinder_pressure = 0
+    call find_accelerations(self, t, y, evaluation)
+    evaluation%joint = centred_pin
+    evaluation%normal_force = 0
+    evaluation%friction_force = 0
   end subroutine evaluate
+
+  !> Motion, loads, accelerations and power: the right-hand side, and all of an evaluation but the joint.
+  pure subroutine find_accelerations(self, t, y, now)
+    class(ideal_scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    type(evaluation_t), intent(inout) :: now
+    if (self%drive%free_crank) then
+      call find_ideal_motion(self%mechanism, y(1), y(2), now%motion)
+    else
+      call find_ideal_motion(self%mechanism, self%start_angle + self%start_speed*t, self%start_speed, now%motion)
+    end if
+    now%loads%gas_force = 0
+    if (allocated(self%gas)) call self%add_gas(now)
+    call ideal_accelerations(self%mechanism, self%drive, now%motion, now%loads, now%accelerations, now%crank_moment)
+    now%power = (now%crank_moment - self%drive%damping*now%motion%crank_speed)*now%motion%crank_speed &
+      - now%loads%gas_force*now%motion%piston_velocity
+  end subroutine find_accelerations
 
   pure function initial_state(self) result(y)
     class(ideal_scene_t), intent(in) :: self

@@ -26,17 +26,18 @@ module scene
   !> the last event functions of a scene.
   integer, parameter :: n_gas_events = 2
 
-  !> Everything that one evaluation of a scene finds. Fields of models that the scene does not have stay 0.
+  !> Everything that one evaluation of a scene finds. Fields of models that the scene does not have are 0 in what `evaluate`
+  !> gives; a right-hand side does not set what it does not need.
   type :: evaluation_t
     type(motion_t) :: motion
     type(accelerations_t) :: accelerations
     type(loads_t) :: loads
     type(joint_motion_t) :: joint
-    real(dp) :: crank_moment = 0    !! moment of the drive on the crank [N m]
-    real(dp) :: normal_force = 0    !! of the contact, pressing [N]
-    real(dp) :: friction_force = 0  !! on the pin along t [N]
-    real(dp) :: cylinder_pressure = 0  !! [Pa]
-    real(dp) :: power = 0           !! of all non-conservative forces and the drive [W]
+    real(dp) :: crank_moment        !! moment of the drive on the crank [N m]
+    real(dp) :: normal_force        !! of the contact, pressing [N]
+    real(dp) :: friction_force      !! on the pin along t [N]
+    real(dp) :: cylinder_pressure   !! [Pa]
+    real(dp) :: power               !! of all non-conservative forces and the drive [W]
   end type evaluation_t
 
   !> A scene as an ode_problem: y holds positions, then their rates, then quadratures: the work of all non-conservative
@@ -66,7 +67,7 @@ module scene
     procedure :: energy_scale
     procedure :: speed_scale
     procedure :: set_gas_part
-    procedure :: add_gas
+    procedure, non_overridable :: add_gas
     procedure :: gas_force_slope
     procedure :: gas_events
     procedure :: pass_gas_bound
@@ -175,7 +176,7 @@ contains
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: span
     associate (m => self%mechanism)
-      energy_scale = 0.5_dp*(m%crank_term() + m%piston_mass*m%crank_length**2)*self%speed_scale(span)**2 &
+      energy_scale = 0.5_dp*(m%crank_term + m%piston_mass*m%crank_length**2)*self%speed_scale(span)**2 &
         + (m%crank_mass + m%rod_mass + m%piston_mass)*m%gravity*m%crank_length
     end associate
   end function energy_scale
@@ -187,7 +188,7 @@ contains
     call self%gas%part_at(crank_angle, crank_speed < 0, self%gas_part, self%gas_cycle_start)
   end subroutine set_gas_part
 
-  !> Pressure and force of the gas at the crank angle of `now`.
+  !> Pressure and force of the gas at the crank angle of `now`, in a scene with gas.
   pure subroutine add_gas(self, now)
     class(scene_t), intent(in) :: self
     type(evaluation_t), intent(inout) :: now
