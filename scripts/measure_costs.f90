@@ -1,8 +1,8 @@
-!> What a scene costs: nanoseconds a right-hand side, an accepted step and a row of the trace, for scenes that grow by one
-!> model at a time. Run by scripts/measure_costs.
+!> What a scene costs: a right-hand side, an accepted step of Adams without and with the figures of the summary, a row of the
+!> trace, for scenes that grow by one model at a time. Run by scripts/measure_costs.
 !>
-!>     measure_costs                       a CSV table of all, each against a sine and cosine of the same angles
-!>     measure_costs NAME WHAT COUNT       does WHAT (rhs, step, row, pair) COUNT times: for counting instructions
+!>     measure_costs                       a CSV table of nanoseconds: the best of many blocks, beside a pair of sine and cosine
+!>     measure_costs SCENE QUANTITY COUNT  does it COUNT times, and prints what was done: for counting instructions
 program measure_costs
   use, intrinsic :: iso_fortran_env, only: int64
   use kinds, only: dp
@@ -11,93 +11,95 @@ program measure_costs
   use case_definition, only: case_t
   use case_file, only: read_case
   use adams, only: adams_t
-  use ode_method, only: step_statistics_t
-  use solver, only: integrate, silent_observer_t
+  use solver, only: integrate, observer_t, silent_observer_t, integration_done, step_limit_reached
   use scene, only: scene_t, evaluation_t, phase_contact
   use clearance_scene, only: clearance_scene_t
   use scene_builder, only: build_scene, settings_for
+  use columns, only: column_list_t, choose_columns, row_values
+  use recorder, only: recorder_t
+  use trace_sink, only: trace_sink_t
+  use silent_sink, only: silent_sink_t
   implicit none
 
-  integer, parameter :: n_states = 64, blocks = 41, calls = 20000
-  integer, parameter :: n_scenes = 14
-  character(len=24), parameter :: names(n_scenes) = [character(len=24) :: 'ideal', 'ideal+gas', 'free', 'free+gas', &
-    'hertz', 'contact', 'contact+ambrosio', 'contact+coulomb', 'closed_form', 'closed_form+gas', 'as_printed', 'half_film', &
-    'oscillating', 'oscillating_as_printed']
-  character(len=24) :: name, what, count_text
-  integer :: i, count
+  integer, parameter :: n_states = 64, blocks = 31, calls = 6400, steps_in_block = 2000
+  integer, parameter :: name_length = 28, n_scenes = 14, n_quantities = 6
+  character(len=name_length), parameter :: scenes(n_scenes) = [character(len=name_length) :: 'ideal', 'ideal+gas', 'free', &
+    'free+gas', 'contact_hertz', 'contact', 'contact+ambrosio', 'contact+coulomb', 'closed_form', 'closed_form+gas', &
+    'as_printed', 'half_film', 'oscillating', 'oscillating_as_printed']
+  character(len=name_length), parameter :: quantities(n_quantities) = [character(len=name_length) :: 'rhs', 'step', &
+    'step+figures', 'row', 'row_no_reactions', 'row_time_and_angle']
+  character(len=name_length) :: scene_name, quantity, text
+  integer :: i, j, count
 
   if (command_argument_count() == 3) then
-    call get_command_argument(1, name)
-    call get_command_argument(2, what)
-    call get_command_argument(3, count_text)
-    read (count_text, *) count
-    call do_once(trim(name), trim(what), count)
+    call get_command_argument(1, scene_name)
+    call get_command_argument(2, quantity)
+    call get_command_argument(3, text)
+    read (text, *) count
+    call do_once(trim(scene_name), trim(quantity), count)
   else
-    print '(a)', 'scene,quantity,ns,pairs'
+    print '(a)', 'scene,quantity,ns,pairs,evaluations'
     do i = 1, n_scenes
-      call measure(trim(names(i)))
+      do j = 1, n_quantities
+        call measure(trim(scenes(i)), trim(quantities(j)))
+      end do
     end do
   end if
 
 contains
 
-  !> The scene of a name, from simulation I with what it needs and nothing else.
-  subroutine make(name, case, scene)
-    character(len=*), intent(in) :: name
+  !> The scene of a name: simulation IV with what it needs and nothing else. Steps of the dry scenes are those of Flores's
+  !> benchmark with 0.5 mm, contacts and flights.
+  subroutine make(name, quantity, case, scene)
+    character(len=*), intent(in) :: name, quantity
     type(case_t), intent(out) :: case
     class(scene_t), allocatable, intent(out) :: scene
     type(error_t), allocatable :: error
     character(len=1) :: nothing(0)
+    logical :: dry
 
-    call read_case('cases/sim_IV.nml', nothing, case, error)
-    if (allocated(error)) error stop 'cases/sim_IV.nml cannot be read'
-    case%integrator%relative_tolerance = 1e-6_dp
+    dry = index(name, 'contact') == 1
+    if (dry .and. index(quantity, 'step') == 1) then
+      call read_case('cases/flores/friction_050.nml', nothing, case, error)
+    else
+      call read_case('cases/sim_IV.nml', nothing, case, error)
+    end if
+    if (allocated(error)) error stop 'measure_costs: run it from the top of the checkout'
     case%combustion%is_present = index(name, '+gas') > 0
     case%contact%is_present = .not. (index(name, 'ideal') == 1 .or. index(name, 'free') == 1)
-    case%lubrication%is_present = .false.
-    case%friction%is_present = .false.
-    case%joint%kind = 'clearance'
-    select case (name)
-    case ('ideal', 'ideal+gas')
-      case%joint%kind = 'ideal'
-    case ('free', 'free+gas')
-    case ('hertz')
-      case%contact%law = 'hertz'
-    case ('contact')
-    case ('contact+ambrosio', 'contact+coulomb')
-      case%friction%is_present = .true.
-      case%friction%law = name(9:)
-    case default
-      case%lubrication%is_present = .true.
-      case%lubrication%variant = name
-      if (index(name, '+') > 0) case%lubrication%variant = name(:index(name, '+') - 1)
-      if (index(name, 'oscillating') == 1) then
-        case%lubrication%law = 'oscillating_film'
-        case%lubrication%variant = 'bearing_frame'
-        case%lubrication%kinematic_viscosity = 1.38e-5_dp
-        if (index(name, 'as_printed') > 0) case%lubrication%variant = 'as_printed'
-      end if
-    end select
+    if (index(name, 'hertz') > 0) case%contact%law = 'hertz'
+    case%friction%is_present = index(name, 'ambrosio') > 0 .or. index(name, 'coulomb') > 0
+    if (case%friction%is_present) case%friction%law = name(9:)
+    if (index(name, 'ideal') == 1) case%joint%kind = 'ideal'
+    case%lubrication%is_present = case%contact%is_present .and. .not. dry
+    case%lubrication%variant = name
+    if (index(name, '+') > 0) case%lubrication%variant = name(:index(name, '+') - 1)
+    if (index(name, 'oscillating') == 1) then
+      case%lubrication%law = 'oscillating_film'
+      case%lubrication%kinematic_viscosity = 1.38e-5_dp
+      case%lubrication%variant = merge('as_printed   ', 'bearing_frame', index(name, 'as_printed') > 0)
+    end if
     call build_scene(case, .false., scene, error)
-    if (allocated(error)) error stop 'a scene cannot be built'
+    if (allocated(error)) error stop 'measure_costs: no such scene'
+  end subroutine make
+
+  !> States along one compression stroke, the pin in the film, or touching where the scene does.
+  subroutine make_states(name, scene, y)
+    character(len=*), intent(in) :: name
+    class(scene_t), intent(inout) :: scene
+    real(dp), allocatable, intent(out) :: y(:, :)
+    real(dp) :: part, turn, reach
+    integer :: i, n
+
     if (allocated(scene%gas)) call scene%set_gas_part(1.5_dp*pi, 250.0_dp)
     select type (scene)
     class is (clearance_scene_t)
-      if (index(name, 'contact') == 1 .or. name == 'hertz') then
+      if (index(name, 'contact') == 1) then
         scene%phase = phase_contact
         scene%impact_speed = 0.1_dp
         scene%sliding = 1
       end if
     end select
-  end subroutine make
-
-  !> States along one compression stroke, the pin in the film, or touching where the scene does.
-  subroutine make_states(scene, y)
-    class(scene_t), intent(in) :: scene
-    real(dp), allocatable, intent(out) :: y(:, :)
-    real(dp) :: part, turn, reach
-    integer :: i, n
-
     n = scene%n
     allocate (y(n, n_states), source=0.0_dp)
     do i = 1, n_states
@@ -113,46 +115,48 @@ contains
     end do
   end subroutine make_states
 
-  !> All that is measured of one scene: medians over blocks that alternate with blocks of the pair.
-  subroutine measure(name)
-    character(len=*), intent(in) :: name
+  !> The best of many blocks, beside as many blocks of the pair.
+  subroutine measure(name, quantity)
+    character(len=*), intent(in) :: name, quantity
     type(case_t) :: case
     class(scene_t), allocatable :: scene
     real(dp), allocatable :: y(:, :)
-    real(dp) :: rhs(blocks), pair(blocks), step(blocks), a_pair
-    integer :: i, evaluations, steps
+    real(dp) :: ns(blocks), pair(blocks), evaluations
+    integer :: i
 
-    call make(name, case, scene)
-    call make_states(scene, y)
+    if (name(:4) == 'free' .and. index(quantity, 'step') == 1) return   ! nothing would hold the pin
+    call make(name, quantity, case, scene)
+    if (index(quantity, 'step') /= 1) call make_states(name, scene, y)
+    evaluations = 1
     do i = 1, blocks
-      pair(i) = time_of_pairs(y(1, :), calls)
-      rhs(i) = time_of_evaluations(scene, y, calls)
+      pair(i) = time_of_pairs(calls)
+      select case (quantity)
+      case ('rhs')
+        ns(i) = time_of_evaluations(scene, y, calls)
+      case ('step', 'step+figures')
+        call run_steps(case, scene, quantity == 'step+figures', steps_in_block, ns(i), evaluations)
+      case default
+        ns(i) = time_of_rows(case, scene, y, quantity, calls)
+      end select
     end do
-    a_pair = minval(pair)
-    print '(a,2(",",a,",",f0.1,",",f0.2))', name, 'rhs', minval(rhs), minval(rhs)/a_pair
-    if (scene%phase == phase_contact) return
-    do i = 1, blocks
-      step(i) = time_of_steps(case, scene, 300, evaluations, steps)
-    end do
-    print '(a,(",",a,",",f0.1,",",f0.2),2(a,f0.2))', name, 'step', minval(step), minval(step)/a_pair, ',evals/step', &
-      real(evaluations, dp)/steps, ',overhead/rhs', (minval(step) - minval(rhs)*evaluations/steps)/minval(rhs)
+    print '(3a,",",f0.1,2(",",f0.2))', name, ',', quantity, minval(ns), minval(ns)/minval(pair), evaluations
   end subroutine measure
 
-  real(dp) function time_of_pairs(angles, count) result(ns)
-    real(dp), intent(in) :: angles(:)
+  real(dp) function time_of_pairs(count) result(ns)
     integer, intent(in) :: count
     integer(int64) :: before, after, rate
-    real(dp) :: total
+    real(dp) :: total, angle(n_states)
     integer :: i, j
-    call system_clock(before, rate)
+    angle = [(pi*(1.05_dp + 0.8_dp*j/n_states), j=1, n_states)]
     total = 0
+    call system_clock(before, rate)
     do i = 1, count/n_states
       do j = 1, n_states
-        total = total + sine_and_cosine(angles(j))
+        total = total + sine_and_cosine(angle(j))
       end do
     end do
     call system_clock(after)
-    ns = 1e9_dp*real(after - before, dp)/rate/(count/n_states*n_states)
+    ns = 1e9_dp*real(after - before, dp)/real(rate, dp)/(count/n_states*n_states)
     if (total > huge(total)) print *, total
   end function time_of_pairs
 
@@ -169,80 +173,126 @@ contains
     real(dp) :: f(size(y, 1)), total
     logical :: inside
     integer :: i, j
-    call system_clock(before, rate)
     total = 0
+    call system_clock(before, rate)
     do i = 1, count/n_states
       do j = 1, n_states
         call scene%derivatives(0.0_dp, y(:, j), f, inside)
+        if (.not. inside) error stop 'measure_costs: a state outside the model'
         total = total + f(2)
       end do
     end do
     call system_clock(after)
-    ns = 1e9_dp*real(after - before, dp)/rate/(count/n_states*n_states)
-    if (total > huge(total) .or. .not. inside) print *, total, inside
+    ns = 1e9_dp*real(after - before, dp)/real(rate, dp)/(count/n_states*n_states)
+    if (total > huge(total)) print *, total
   end function time_of_evaluations
 
-  real(dp) function time_of_steps(case, template, count, evaluations, steps) result(ns)
+  !> An evaluation for the trace and the values of its row, without their conversion to text.
+  real(dp) function time_of_rows(case, scene, y, quantity, count) result(ns)
+    type(case_t), intent(in) :: case
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: y(:, :)
+    character(len=*), intent(in) :: quantity
+    integer, intent(in) :: count
+    type(case_t) :: asked
+    type(column_list_t) :: list
+    type(error_t), allocatable :: error
+    type(evaluation_t) :: now
+    integer(int64) :: before, after, rate
+    real(dp), allocatable :: values(:)
+    real(dp) :: total
+    logical :: inside
+    integer :: i, j
+
+    asked = case
+    asked%output%columns = 'standard'
+    if (quantity == 'row_no_reactions') asked%output%columns = 'time,crank_angle,rod_angle,piston_position,crank_speed,'// &
+      'rod_speed,piston_velocity,crank_acceleration,rod_acceleration,piston_acceleration,energy,energy_residual'
+    if (quantity == 'row_time_and_angle') asked%output%columns = 'time,crank_angle'
+    call choose_columns(asked, .false., list, error)
+    if (allocated(error)) error stop 'measure_costs: no such columns'
+    allocate (values(size(list%id)))
+    total = 0
+    call system_clock(before, rate)
+    do i = 1, count/n_states
+      do j = 1, n_states
+        call scene%evaluate(0.0_dp, y(:, j), now, inside)
+        call row_values(list, scene, 0.0_dp, now, 1.0_dp, 1.0_dp, values)
+        total = total + values(2)
+      end do
+    end do
+    call system_clock(after)
+    ns = 1e9_dp*real(after - before, dp)/real(rate, dp)/(count/n_states*n_states)
+    if (total > huge(total)) print *, total
+  end function time_of_rows
+
+  !> Accepted steps of Adams from the start of the case on, and evaluations of each, starts and events included.
+  subroutine run_steps(case, template, with_figures, count, ns, evaluations)
     type(case_t), intent(in) :: case
     class(scene_t), intent(in) :: template
+    logical, intent(in) :: with_figures
     integer, intent(in) :: count
-    integer, intent(out) :: evaluations, steps
+    real(dp), intent(out) :: ns, evaluations
     class(scene_t), allocatable :: scene
     type(adams_t) :: method
     type(silent_observer_t) :: nobody
+    type(recorder_t) :: recorder
     integer(int64) :: before, after, rate
     real(dp), allocatable :: y(:)
     real(dp) :: t
     integer :: status
+
     allocate (scene, source=template)
-    if (allocated(scene%gas)) call scene%set_gas_part(scene%start_angle, scene%start_speed)
     method%settings = settings_for(case, scene)
     allocate (y(scene%n), source=scene%initial_state())
     t = 0
+    call prepare_recorder(case, recorder)
+    if (with_figures) call recorder%begin(scene, y)
     call system_clock(before, rate)
-    call integrate(scene, method, t, y, 10.0_dp, count, nobody, status)
+    if (with_figures) then
+      call integrate(scene, method, t, y, 1e3_dp, count, recorder, status)
+    else
+      call integrate(scene, method, t, y, 1e3_dp, count, nobody, status)
+    end if
     call system_clock(after)
-    steps = method%statistics%accepted
-    evaluations = method%statistics%evaluations
-    ns = 1e9_dp*real(after - before, dp)/rate/steps
-  end function time_of_steps
+    if (status /= step_limit_reached .and. status /= integration_done) error stop 'measure_costs: a run failed'
+    evaluations = real(method%statistics%evaluations, dp)/method%statistics%accepted
+    ns = 1e9_dp*real(after - before, dp)/real(rate, dp)/method%statistics%accepted
+  end subroutine run_steps
 
-  subroutine do_once(name, what, count)
-    character(len=*), intent(in) :: name, what
+  !> A recorder whose rows are never due.
+  subroutine prepare_recorder(case, recorder)
+    type(case_t), intent(in) :: case
+    type(recorder_t), intent(inout) :: recorder
+    type(error_t), allocatable :: error
+    call choose_columns(case, .false., recorder%list, error)
+    recorder%first_sample = 1e9_dp
+    recorder%interval = 1
+    recorder%end_time = 1e10_dp
+    allocate (silent_sink_t :: recorder%sink)
+  end subroutine prepare_recorder
+
+  subroutine do_once(name, quantity, count)
+    character(len=*), intent(in) :: name, quantity
     integer, intent(in) :: count
     type(case_t) :: case
     class(scene_t), allocatable :: scene
     real(dp), allocatable :: y(:, :)
-    real(dp) :: ns
-    integer :: evaluations, steps
-    call make(name, case, scene)
-    call make_states(scene, y)
-    select case (what)
-    case ('pair')
-      ns = time_of_pairs(y(1, :), count)
+    real(dp) :: ns, evaluations
+
+    if (quantity == 'pair') then
+      ns = time_of_pairs(count)
+      return
+    end if
+    call make(name, quantity, case, scene)
+    if (index(quantity, 'step') /= 1) call make_states(name, scene, y)
+    select case (quantity)
     case ('rhs')
       ns = time_of_evaluations(scene, y, count)
-    case ('step')
-      ns = time_of_steps(case, scene, count, evaluations, steps)
-      print '(i0,1x,i0)', steps, evaluations
+    case ('step', 'step+figures')
+      call run_steps(case, scene, quantity == 'step+figures', count, ns, evaluations)
+    case default
+      ns = time_of_rows(case, scene, y, quantity, count)
     end select
   end subroutine do_once
-
-  real(dp) function median(values)
-    real(dp), intent(in) :: values(:)
-    real(dp) :: sorted(size(values)), held
-    integer :: i, j
-    sorted = values
-    do i = 2, size(sorted)
-      held = sorted(i)
-      j = i - 1
-      do while (j >= 1)
-        if (sorted(j) <= held) exit
-        sorted(j + 1) = sorted(j)
-        j = j - 1
-      end do
-      sorted(j + 1) = held
-    end do
-    median = sorted((size(sorted) + 1)/2)
-  end function median
 end program measure_costs

@@ -31,6 +31,7 @@ module collocation
 
   type :: collocation_t
     type(radau_formula_t) :: formula(n_formulas)
+    real(dp) :: per_node(0:most_stages, n_formulas) = 0   !! of the Lagrange polynomials over its nodes
     integer :: level = 1                   !! formula in use
     integer :: n = 0                       !! equations
     integer :: m = 0                       !! positions: y(1:m)
@@ -83,6 +84,7 @@ contains
     self%k = k
     do i = 1, n_formulas
       self%formula(i) = radau_formula(2*i + 1)
+      self%per_node(:, i) = inverse_node_products(self%formula(i))
     end do
     if (allocated(self%z)) deallocate (self%z, self%z_new, self%w, self%dw, self%rates, self%f_stage, self%y_stage, &
       self%base, self%a_p, self%a_v, self%e1, self%e2, self%right, self%pivot1, self%pivot2, self%inverse_weight)
@@ -240,23 +242,47 @@ contains
     call combine(k, s, 1.0_dp, self%formula(self%level)%t_inverse, self%rates, k, self%w, k)
   end subroutine guess_stages
 
-  !> Lagrange polynomials at x over the nodes 0, c_1, ..., c_s of a formula.
+  !> Lagrange polynomials at x over the nodes 0, c_1, ..., c_s of a formula: products of the distances before and after
+  !> each node, over those at the node itself, which `prepare` has found.
   pure subroutine lagrange(self, stages, x, weights)
     class(collocation_t), intent(in) :: self
     integer, intent(in) :: stages
     real(dp), intent(in) :: x
     real(dp), intent(out) :: weights(0:)
-    real(dp) :: node(0:most_stages)
+    real(dp) :: distance(0:most_stages), product
+    integer :: i
+    associate (formula => self%formula(stages/2))
+      distance(0) = x
+      do i = 1, stages
+        distance(i) = x - formula%c(i)
+      end do
+      product = 1
+      do i = 0, stages
+        weights(i) = product*self%per_node(i, stages/2)
+        product = product*distance(i)
+      end do
+      product = 1
+      do i = stages, 0, -1
+        weights(i) = weights(i)*product
+        product = product*distance(i)
+      end do
+    end associate
+  end subroutine lagrange
+
+  !> One over the product of the distances of each node 0, c_1, ..., c_s from the others.
+  pure function inverse_node_products(formula) result(per_node)
+    type(radau_formula_t), intent(in) :: formula
+    real(dp) :: per_node(0:most_stages), node(0:most_stages)
     integer :: i, j
     node(0) = 0
-    node(1:stages) = self%formula(stages/2)%c
-    do i = 0, stages
-      weights(i) = 1
-      do j = 0, stages
-        if (j /= i) weights(i) = weights(i)*(x - node(j))/(node(i) - node(j))
+    node(1:formula%stages) = formula%c
+    per_node = 1
+    do i = 0, formula%stages
+      do j = 0, formula%stages
+        if (j /= i) per_node(i) = per_node(i)/(node(i) - node(j))
       end do
     end do
-  end subroutine lagrange
+  end function inverse_node_products
 
   !> Simplified Newton iteration for the stage increments. The contraction that it shows is trusted for the first
   !> iteration of the next step too.
