@@ -247,7 +247,10 @@ contains
     allocate (y(scene%n), source=scene%initial_state())
     t = 0
     call prepare_recorder(case, recorder)
-    if (with_figures) call recorder%begin(scene, y)
+    if (with_figures) then
+      call recorder%prepare(scene%n)
+      call recorder%begin(scene, y)
+    end if
     call system_clock(before, rate)
     if (with_figures) then
       call integrate(scene, method, t, y, 1e3_dp, count, recorder, status)
