@@ -28,6 +28,7 @@ module standard_problems
     procedure :: derivatives
     procedure :: events => discontinuities
     procedure :: handle_event => pass_discontinuity
+    procedure :: is_rough_at => at_infinite_slope
   end type standard_problem_t
 
   !> Mass of the sun and the inner planets together, and of the outer planets; gravitational constant (C5).
@@ -323,6 +324,13 @@ contains
     if (self%part >= 19) g = -1
     g_rate = 1
   end subroutine discontinuities
+
+  !> F5 goes with the cubic root of the time to its discontinuities.
+  pure logical function at_infinite_slope(self, index)
+    class(standard_problem_t), intent(in) :: self
+    integer, intent(in) :: index
+    at_infinite_slope = index > 0 .and. self%name == 'F5'
+  end function at_infinite_slope
 
   subroutine pass_discontinuity(self, index, t, y, action)
     class(standard_problem_t), intent(inout) :: self

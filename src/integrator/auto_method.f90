@@ -174,6 +174,7 @@ contains
       call keep_account(self, self%radau%statistics%evaluations - evaluations_before)
     else
       bound_before = self%adams%statistics%limited_by(limit_stability)
+      self%adams%rough_time = self%rough_time
       call self%adams%step(problem, status)
       if (status == step_done) call take_over(self, self%adams)
       if (self%adams%statistics%limited_by(limit_stability) > bound_before) then

@@ -30,6 +30,7 @@ module events
   contains
     procedure :: begin
     procedure :: search
+    procedure :: rough_time
     procedure :: exchange
   end type event_watch_t
 
@@ -73,6 +74,20 @@ contains
     call archive%exchange(self%just_taken)
     call archive%exchange(self%fresh)
   end subroutine exchange
+
+  !> When the first event at which f is not smooth is to be expected, by the tangents of the event functions.
+  pure real(dp) function rough_time(self, problem)
+    class(event_watch_t), intent(in) :: self
+    class(ode_problem_t), intent(in) :: problem
+    integer :: i
+    rough_time = huge(rough_time)
+    do i = 1, self%n
+      associate (last => self%last(i))
+        if (.not. (last%g < 0 .and. last%rate > 0)) cycle
+        if (problem%is_rough_at(i)) rough_time = min(rough_time, last%t - last%g/last%rate)
+      end associate
+    end do
+  end function rough_time
 
   !> Search the last step of the method up to t_last. `index` is the first event, 0 if there is none; then (t_event,
   !> y_event) is where it happened, on the not negative side.

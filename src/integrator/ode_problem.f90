@@ -39,6 +39,7 @@ module ode_problem
     procedure :: judge_step => admit_every_step
     procedure :: handle_event => stop_at_event
     procedure :: lands_on_step_end => never_on_step_end
+    procedure :: is_rough_at => never_rough
     procedure, non_overridable :: exchange_mode
     procedure :: exchange => exchange_mode
   end type ode_problem_t
@@ -144,4 +145,14 @@ contains
     end associate
     never_on_step_end = .false.
   end function never_on_step_end
+
+  !> Whether f is not smooth at the root of event function `index` as that is approached from its negative side, like a broken
+  !> power of the distance: steps are then shortened on the way there. The default is no.
+  pure logical function never_rough(self, index)
+    class(ode_problem_t), intent(in) :: self
+    integer, intent(in) :: index
+    associate (unused_self => self, unused_index => index)
+    end associate
+    never_rough = .false.
+  end function never_rough
 end module ode_problem

@@ -104,6 +104,7 @@ contains
       at%t_place = t
     end if
     do while (status == step_done)
+      method%rough_time = at%watch%rough_time(problem)
       call method%step(problem, status)
       if (status /= step_done) exit
       call take_step(problem, method, observer, t_end, at, status)

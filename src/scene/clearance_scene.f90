@@ -43,6 +43,7 @@ module clearance_scene
     procedure :: judge_step
     procedure :: handle_event
     procedure :: lands_on_step_end
+    procedure :: is_rough_at
     procedure :: exchange
     procedure :: measure_joint
   end type clearance_scene_t
@@ -422,6 +423,13 @@ contains
     integer, intent(in) :: index
     lands_on_step_end = self%rejects_deep_entry .and. index == begins .and. index <= self%n_joint_events
   end function lands_on_step_end
+
+  !> The contact force ends with the power 1.5 of the penetration.
+  pure logical function is_rough_at(self, index)
+    class(clearance_scene_t), intent(in) :: self
+    integer, intent(in) :: index
+    is_rough_at = index == ends .and. index <= self%n_joint_events
+  end function is_rough_at
 
   subroutine handle_event(self, index, t, y, action)
     class(clearance_scene_t), intent(inout) :: self
