@@ -22,6 +22,7 @@ program gudgeon_tests
   use test_result_file, only: run_test_result_file
   use test_resume, only: run_test_resume
   use test_scenes, only: run_test_scenes
+  use test_slow_contact, only: run_test_slow_contact
   use test_standard_problems, only: run_test_standard_problems
   use test_trace_files, only: run_test_trace_files
   implicit none
@@ -47,6 +48,7 @@ program gudgeon_tests
   call run_test_result_file(check)
   call run_test_resume(check)
   call run_test_scenes(check)
+  call run_test_slow_contact(check)
   call run_test_standard_problems(check)
   call run_test_trace_files(check)
 

@@ -208,6 +208,12 @@ contains
     call refused_with(check, 'contact.youngs_modulus=1,0', 'x.nml: &contact youngs_modulus(2) = 0: must be > 0 (Pa)')
     call refused_with(check, 'contact.poissons_ratio=.6,0', &
                       'x.nml: &contact poissons_ratio(1) = .6: must be >= 0 and <= 0.5')
+    call refused_with(check, 'contact.least_impact_speed=0', &
+                      'x.nml: &contact least_impact_speed = 0: must be >= 1e-9 and <= 1 (m/s)')
+    call refused_with(check, 'initial.eccentricity=1,0', 'x.nml: &initial eccentricity(1) = 1: must be shorter than '// &
+                      'bearing_radius: the pin would be through its bearing (m)')
+    call refused_with(check, 'integrator.max_evaluations_per_revolution=-1', &
+                      'x.nml: &integrator max_evaluations_per_revolution = -1: must be > 0 and <= 2000000000')
     call refused_with(check, 'contact.stiffness=-1', 'x.nml: &contact stiffness = -1: must be > 0 (N/m^exponent)')
     call refused_with(check, 'integrator.relative_tolerance=0', &
                       'x.nml: &integrator relative_tolerance = 0: must be > 0 and <= 0.1')

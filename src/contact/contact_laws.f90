@@ -38,6 +38,7 @@ contains
       allocate (dissipative)
       call dissipative%set_elastic_part(stiffness, definition%exponent)
       call dissipative%set_restitution(definition%restitution)
+      dissipative%least_impact_speed = definition%least_impact_speed
       call move_alloc(dissipative, law)
     case default
       call fail(error, "&contact law = '"//trim(definition%law)//"': must be 'lankarani_nikravesh' or 'hertz'", &

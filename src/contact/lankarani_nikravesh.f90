@@ -12,7 +12,8 @@ module lankarani_nikravesh
 
   !> F = K delta^n [1 + chi delta_dot/delta_dot_minus], chi = (3/4)(1 - e^2).
   type, extends(hertz_t) :: lankarani_nikravesh_t
-    real(dp) :: damping = 0   !! chi [-], 0 to 3/4
+    real(dp) :: damping = 0                !! chi [-], 0 to 3/4
+    real(dp) :: least_impact_speed = 1e-5_dp   !! slower impacts are damped as one of this speed [m/s], > 0
   contains
     procedure :: normal_force
     procedure :: normal_force_slopes
@@ -30,22 +31,21 @@ contains
   end subroutine set_restitution
 
   !> (4.7), bounded on both sides: the force never pulls (it is 0 where the bracket is negative), and the ratio of the
-  !> rates counts as `ratio_limit` where it is above. At an impact speed of 0 the ratio is therefore `ratio_limit`
-  !> while the pin goes deeper, 0 at rest, and the force is 0 while the pin withdraws; the law dissipates in every
-  !> case. The force is continuous in the penetration always, and in its rate except where the impact speed is 0.
+  !> rates counts as `ratio_limit` where it is above. An impact slower than `least_impact_speed` counts as that fast in the
+  !> ratio: without that the law becomes a switch as the impact speed vanishes, stiffer than any time scale of the contact.
+  !> Such an impact loses less: the free impact of speed v comes back as from chi v/least_impact_speed, ever more
+  !> elastic, as metals do. A pin that starts pressed into its bearing has the impact speed 0 and the
+  !> damping of this speed, and comes to rest where the elastic force carries its load. The force beyond the elastic one has
+  !> the sign of the rate: the law dissipates in every case. It is continuous in both arguments.
   pure function normal_force(self, penetration, penetration_rate, impact_speed) result(force)
     class(lankarani_nikravesh_t), intent(in) :: self
     real(dp), value, intent(in) :: penetration, penetration_rate, impact_speed
     real(dp) :: force
-    force = 0
-    if (penetration <= 0) return
-    if (self%damping*penetration_rate < -impact_speed) return
-    force = self%elastic_force(penetration)
-    if (penetration_rate > ratio_limit*impact_speed) then
-      force = force*(1 + self%damping*ratio_limit)
-    else if (impact_speed > 0) then
-      force = force*max(0.0_dp, 1 + self%damping*(penetration_rate/impact_speed))
-    end if
+    associate (speed => max(impact_speed, self%least_impact_speed))
+      force = 0
+      if (penetration > 0) force = self%elastic_force(penetration)* &
+        max(0.0_dp, 1 + self%damping*min(penetration_rate/speed, ratio_limit))
+    end associate
   end function normal_force
 
   pure subroutine normal_force_slopes(self, penetration, penetration_rate, impact_speed, stiffness, damping)
@@ -58,7 +58,8 @@ contains
     force = self%normal_force(penetration, penetration_rate, impact_speed)
     if (.not. force > 0) return
     stiffness = self%exponent*force/penetration
-    if (penetration_rate <= ratio_limit*impact_speed .and. impact_speed > 0) &
-      damping = self%elastic_force(penetration)*self%damping/impact_speed
+    associate (speed => max(impact_speed, self%least_impact_speed))
+      if (penetration_rate <= ratio_limit*speed) damping = self%elastic_force(penetration)*self%damping/speed
+    end associate
   end subroutine normal_force_slopes
 end module lankarani_nikravesh

@@ -69,6 +69,8 @@ contains
     call x%move('drive', 'damping', c%drive%damping)
     call x%move('initial', 'crank_angle_deg', c%initial%crank_angle_deg)
     call x%move('initial', 'crank_speed', c%initial%crank_speed)
+    call x%move('initial', 'eccentricity', c%initial%eccentricity)
+    call x%move('initial', 'eccentricity_rate', c%initial%eccentricity_rate)
   end subroutine move_bodies
 
   subroutine move_joint(x, c)
@@ -86,6 +88,7 @@ contains
     call x%move('contact', 'poissons_ratio', c%contact%poissons_ratio)
     call x%move('contact', 'density', c%contact%density)
     call x%move('contact', 'stiffness', c%contact%stiffness)
+    call x%move('contact', 'least_impact_speed', c%contact%least_impact_speed)
     call x%move_presence('friction', c%friction%is_present)
     call x%move('friction', 'law', c%friction%law)
     call x%move('friction', 'coefficient', c%friction%coefficient)
@@ -130,6 +133,7 @@ contains
     call x%move('integrator', 'max_penetration', c%integrator%max_penetration)
     call x%move('integrator', 'max_steps', c%integrator%max_steps)
     call x%move('integrator', 'max_evaluations', c%integrator%max_evaluations)
+    call x%move('integrator', 'max_evaluations_per_revolution', c%integrator%max_evaluations_per_revolution)
     call x%move('output', 'samples_per_revolution', c%output%samples_per_revolution)
     call x%move('output', 'interval', c%output%interval)
     call x%move('output', 'start_time', c%output%start_time)

@@ -22,6 +22,8 @@ contains
     if (allocated(error)) return
     call check_joint(c, values, error)
     if (allocated(error)) return
+    call check_start(c, values, error)
+    if (allocated(error)) return
     call check_models(c, values, error)
     if (allocated(error)) return
     call check_combustion(c, values, error)
@@ -91,6 +93,29 @@ contains
       call values%refuse('joint', 'kind', 'needs contact or lubrication: nothing would hold the pin', error)
     end if
   end subroutine check_joint
+
+  !> The pin starts where it can be: in its bearing, or where there is contact pressed into it, but not through.
+  subroutine check_start(c, values, error)
+    type(case_t), intent(in) :: c
+    type(case_values_t), intent(in) :: values
+    type(error_t), allocatable, intent(out) :: error
+    real(dp) :: distance
+    distance = norm2(c%initial%eccentricity)
+    if (c%joint%kind == 'ideal') then
+      if (distance > 0) then
+        call values%refuse('initial', 'eccentricity', 'must be 0 in an ideal joint', error)
+      else if (norm2(c%initial%eccentricity_rate) > 0) then
+        call values%refuse('initial', 'eccentricity_rate', 'must be 0 in an ideal joint', error)
+      end if
+    else if (.not. c%contact%is_present .and. distance >= c%joint%clearance) then
+      call values%refuse('initial', 'eccentricity', 'must be shorter than the clearance where there is no contact', error)
+    else if (distance >= c%joint%bearing_radius) then
+      call values%refuse('initial', 'eccentricity', 'must be shorter than bearing_radius: the pin would be through its bearing', &
+                         error)
+    else if (distance >= c%mechanism%rod_length - c%mechanism%crank_length) then
+      call values%refuse('initial', 'eccentricity', 'must be shorter than rod_length - crank_length', error)
+    end if
+  end subroutine check_start
 
   !> What to say of a length of the joint that is missing, or given as 0.
   function needed(name, values, why) result(wanted)

@@ -19,7 +19,7 @@ module case_schema
   !> A key.
   type :: key_t
     character(len=12) :: group = ''
-    character(len=24) :: name = ''
+    character(len=32) :: name = ''
     integer :: kind = real_kind
     integer :: count = 1                  !! values
     logical :: required = .false.         !! wherever its group is present
@@ -39,7 +39,7 @@ contains
       group_definition_t('case', .false., 'SI units; angles in degrees only where the key ends in _deg'), &
       group_definition_t('mechanism', .false., 'bodies; centres of mass along and across each body, from its inner pin'), &
       group_definition_t('drive', .false., 'what turns the crank'), &
-      group_definition_t('initial', .false., 'start: the pin centred, velocities as with an ideal joint'), &
+      group_definition_t('initial', .false., 'start: velocities as with an ideal joint, but for those of the pin in its bearing'), &
       group_definition_t('joint', .false., 'piston-pin joint'), &
       group_definition_t('contact', .true., 'pin against bearing: leave the group out for no contact'), &
       group_definition_t('friction', .true., 'dry friction of the contact: leave the group out for none'), &
@@ -74,7 +74,10 @@ contains
       real_key('drive', 'torque', 'N m', '', 'on the crank, in the sense of its angle', default='0.0'), &
       real_key('drive', 'damping', 'N m s/rad', '>= 0', 'moment against the crank speed', default='0.0'), &
       real_key('initial', 'crank_angle_deg', 'degrees', '', 'from the cylinder axis', default='0.0'), &
-      real_key('initial', 'crank_speed', 'rad/s', '', 'held there by drive kind constant_speed', example='250.0')]
+      real_key('initial', 'crank_speed', 'rad/s', '', 'held there by drive kind constant_speed', example='250.0'), &
+      real_key('initial', 'eccentricity', 'm', '', 'pin centre from bearing centre; from the clearance on it touches', &
+               default='0.0', count=2), &
+      real_key('initial', 'eccentricity_rate', 'm/s', '', 'its rate', default='0.0', count=2)]
   end function body_keys
 
   pure function joint_keys() result(keys)
@@ -97,6 +100,8 @@ contains
       real_key(c, 'poissons_ratio', '', '>= 0 and <= 0.5', 'of pin and bearing', default='0.3', count=2), &
       real_key(c, 'density', 'kg/m^3', '> 0', 'of pin and bearing, for the limit of validity', default='7850.0', count=2), &
       real_key(c, 'stiffness', 'N/m^exponent', '> 0', '0: from the materials', default='0.0'), &
+      real_key(c, 'least_impact_speed', 'm/s', '>= 1e-9 and <= 1', &
+               'lankarani_nikravesh: slower impacts are damped as one of this speed', default='1.0e-5'), &
       word_key('friction', 'law', 'ambrosio', 'ambrosio, coulomb', 'ambrosio: grows from 0 at v0 to full at v1'), &
       real_key('friction', 'coefficient', '', '>= 0', 'of sliding friction', example='0.03'), &
       real_key('friction', 'v0', 'm/s', '>= 0', 'needed by ambrosio', default='0.0', example='0.001'), &
@@ -146,6 +151,8 @@ contains
       integer_key(i, 'max_steps', '> 0', '0: no limit', default='0'), &
       integer_key(i, 'max_evaluations', '> 0 and <= 2000000000', &
                   'of the right-hand side: a run that needs more ends there, exit status 4', default='1000000000'), &
+      integer_key(i, 'max_evaluations_per_revolution', '> 0 and <= 2000000000', 'the same within a revolution; 0: no limit', &
+                  default='100000000'), &
       integer_key(o, 'samples_per_revolution', '>= 1 and <= 1000000', 'rows in a revolution', default='720'), &
       real_key(o, 'interval', 's', '> 0', 'between rows; 0: samples_per_revolution counts', default='0.0'), &
       real_key(o, 'start_time', 's', '>= 0', 'of the first row', default='0.0'), &

@@ -72,7 +72,7 @@ contains
     character(len=*), intent(in) :: group, key, at
     integer, intent(out) :: place
     type(error_t), allocatable, intent(out) :: error
-    character(len=24), allocatable :: allowed(:)
+    character(len=32), allocatable :: allowed(:)
     character(len=:), allocatable :: text
     integer :: i, shown
     place = find_key(self%keys, group, key)

@@ -23,6 +23,7 @@ module case_definition
 
   type :: initial_case_t
     real(dp) :: crank_angle_deg = 0, crank_speed = 0
+    real(dp) :: eccentricity(2) = 0, eccentricity_rate(2) = 0   !! of the pin in its bearing
   end type initial_case_t
 
   type :: joint_case_t
@@ -36,6 +37,7 @@ module case_definition
     real(dp) :: restitution = 0.9_dp, exponent = 1.5_dp
     real(dp) :: youngs_modulus(2) = 207e9_dp, poissons_ratio(2) = 0.3_dp, density(2) = 7850
     real(dp) :: stiffness = 0
+    real(dp) :: least_impact_speed = 1e-5_dp   !! Lankarani-Nikravesh: slower impacts are damped as one of this speed
   end type contact_case_t
 
   type :: friction_case_t
@@ -63,7 +65,8 @@ module case_definition
     character(len=word_length) :: method = 'auto', contact_entry = 'root'
     real(dp) :: revolutions = 0, end_time = 0   !! exactly one is given; the other is 0
     real(dp) :: relative_tolerance = 1e-6_dp, absolute_tolerance = 0, max_step = 0
-    integer :: max_order = 12, max_steps = 0, max_evaluations = 1000000000
+    integer :: max_order = 12, max_steps = 0, max_evaluations = 1000000000, &
+      max_evaluations_per_revolution = 100000000
     real(dp) :: max_penetration = 0
   end type integrator_case_t
 

@@ -29,6 +29,7 @@ module clearance_scene
     class(film_law_t), allocatable :: film
     logical :: rejects_deep_entry = .false. !! contact_entry = 'step_rejection': contact begins at the end of a step
     real(dp) :: max_penetration = 0         !! deepest entry then [m]
+    real(dp) :: start_eccentricity(2) = 0, start_eccentricity_rate(2) = 0   !! at t = 0 [m], [m/s]
     real(dp) :: impact_speed = 0            !! penetration rate at which the present contact began [m/s]
     integer :: n_joint_events = 0           !! event functions of contact and friction
     integer :: sliding = 0                  !! set-valued friction: sign of sliding, 0 sticking
@@ -37,6 +38,7 @@ module clearance_scene
     procedure :: evaluate
     procedure :: jacobian
     procedure :: initial_state
+    procedure :: prepare_start
     procedure :: natural_scales
     procedure :: reported_event
     procedure :: events => all_events
@@ -503,12 +505,49 @@ contains
   pure function initial_state(self) result(y)
     class(clearance_scene_t), intent(in) :: self
     real(dp) :: y(self%n)
+    integer :: m
+    m = self%n_positions
     y = 0
     if (self%drive%free_crank) then
       y(1) = self%start_angle
       y(4) = self%start_speed
     end if
+    y(m - 1:m) = self%start_eccentricity
+    y(2*m - 1:2*m) = self%start_eccentricity_rate
   end function initial_state
+
+  !> Whether the pin touches: beyond the clearance it does. Exactly there it does if it goes on outwards, or, at rest,
+  !> is pressed outwards.
+  subroutine prepare_start(self)
+    class(clearance_scene_t), intent(inout) :: self
+    real(dp) :: y(self%n), contact(2), onwards
+    type(evaluation_t) :: now
+    logical :: inside
+
+    if (.not. allocated(self%contact)) return
+    y = self%initial_state()
+    contact = penetration_and_rate(self, y)
+    if (contact(1) < 0) return
+    self%phase = phase_contact
+    self%impact_speed = max(contact(2), 0.0_dp)
+    if (.not. contact(1) > 0) then
+      onwards = contact(2)
+      call self%evaluate(0.0_dp, y, now, inside)
+      if (inside .and. .not. abs(onwards) > 0) onwards = outward_acceleration(self, now)
+      if (onwards < 0) self%phase = merge(phase_film, phase_free, allocated(self%film))
+      self%smooth_in_root = contact(2) > 0
+    end if
+    self%mode = self%phase
+    if (self%phase == phase_contact) call choose_sliding(self, 0.0_dp, y, .true.)
+  end subroutine prepare_start
+
+  !> d2|e|/dt2 [m/s^2].
+  pure real(dp) function outward_acceleration(self, now)
+    class(clearance_scene_t), intent(in) :: self
+    type(evaluation_t), intent(in) :: now
+    outward_acceleration = dot_product(now%joint%normal, eccentricity_acceleration(self%mechanism, now%motion, &
+      now%accelerations)) + now%joint%tangential_rate**2/now%joint%distance
+  end function outward_acceleration
 
   !> The eccentricity is measured by the clearance, its rate by the clearance in the time of one radian. Measured
   !> (scripts/compare_adams.sh, simulation IV, c = 20 um): at the relative tolerance 1e-4 the pin is off by 4e-5 c at the

@@ -2,6 +2,7 @@
 !> asked for, those of each revolution. Peaks are taken at accepted points and events only.
 module recorder
   use kinds, only: dp
+  use constants, only: two_pi
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t
   use solver, only: observer_t
@@ -40,9 +41,14 @@ module recorder
     real(dp) :: interval = 0          !! from row to row [s]
     real(dp) :: end_time = 0          !! [s]
     logical :: every_step = .false.   !! a row at every accepted step instead
+    integer :: max_evaluations_per_revolution = 0   !! budget for one revolution, or the time it takes at first; 0: none
+    real(dp) :: revolution_time = huge(1.0_dp)      !! that time [s]
+    logical :: over_budget = .false.                !! the run is to stop for it
     real(dp) :: validity_limit = huge(1.0_dp)  !! largest impact speed that the contact law is meant for [m/s]
     real(dp), private :: initial_energy = 0, start_angle = 0
     integer, private :: next_row = 0, steps = 0
+    integer, private :: evaluations_then = 0        !! when the present revolution was begun, and then
+    real(dp), private :: time_then = 0, angle_then = 0   !! [s], [rad]
     type(trace_event_t), private :: contact   !! the present contact
     logical, private :: has_joint = .false.
     real(dp), allocatable, private :: y(:), values(:)
@@ -77,9 +83,12 @@ contains
     logical :: inside
 
     call scene%evaluate(0.0_dp, y, now, inside)
-    self%initial_energy = scene%energy(now%motion)
-    self%start_angle = now%motion%crank_angle
+    if (inside) then
+      self%initial_energy = scene%energy(now%motion)
+      self%start_angle = now%motion%crank_angle
+    end if
     if (allocated(self%cycles)) call self%cycles%begin(scene, y, self%initial_energy)
+    if (inside .and. scene%phase == phase_contact) call take_contact(self, event_contact_begins, 0.0_dp, now)
     call self%take_point(scene, 0.0_dp, y)
     if (self%first_sample <= 0) then
       call self%write_row(scene, 0.0_dp, y)
@@ -122,9 +131,26 @@ contains
     end select
     self%steps = self%steps + 1
     if (mod(self%steps, steps_between_reports) == 0) call self%sink%take_progress(t_to)
-    self%wants_to_stop = self%sink%wants_to_stop
+    call keep_budget(self, method%statistics%evaluations)
+    self%wants_to_stop = self%sink%wants_to_stop .or. self%over_budget
     self%wants_archive = self%sink%wants_archive
   end subroutine step_taken
+
+  !> Whether the present revolution costs more than it may. One that takes longer than the first would have ends there: a crank
+  !> at rest must not spend for ever.
+  subroutine keep_budget(self, evaluations)
+    class(recorder_t), intent(inout) :: self
+    integer, intent(in) :: evaluations   !! so far
+    if (self%max_evaluations_per_revolution <= 0) return
+    associate (f => self%figures)
+      if (abs(f%crank_travel - self%angle_then) >= two_pi .or. f%time - self%time_then >= self%revolution_time) then
+        self%angle_then = f%crank_travel
+        self%time_then = f%time
+        self%evaluations_then = evaluations
+      end if
+    end associate
+    self%over_budget = evaluations - self%evaluations_then >= self%max_evaluations_per_revolution
+  end subroutine keep_budget
 
   !> The figures of one accepted point.
   subroutine take_point(self, scene, t, y)
@@ -167,28 +193,38 @@ contains
     class is (scene_t)
       if (problem%reported_event(index) == event_none) return
       call problem%evaluate(t, y, now, inside)
-      associate (contact => self%contact, figures => self%figures)
-        contact%kind = problem%reported_event(index)
-        if (contact%kind == event_contact_begins) then
-          figures%contacts = figures%contacts + 1
-          if (allocated(self%cycles)) call self%cycles%take_impact()
-          figures%max_entry_penetration = max(figures%max_entry_penetration, now%joint%penetration)
-          if (now%joint%penetration_rate > self%validity_limit) &
-            figures%impacts_beyond_validity = figures%impacts_beyond_validity + 1
-          contact%duration = 0
-          contact%max_penetration = 0
-          contact%max_normal_force = 0
-          contact%time = t
-        else
-          contact%duration = t - contact%time
-          contact%time = t
-        end if
-        contact%crank_angle = now%motion%crank_angle
-        contact%normal_speed = now%joint%penetration_rate
-        call self%sink%take_event(contact)
-      end associate
+      call take_contact(self, problem%reported_event(index), t, now)
     end select
   end subroutine event_taken
+
+  !> A contact begins or ends at time t; `now` is evaluated before that.
+  subroutine take_contact(self, kind, t, now)
+    class(recorder_t), intent(inout) :: self
+    integer, intent(in) :: kind
+    real(dp), intent(in) :: t
+    type(evaluation_t), intent(in) :: now
+
+    associate (contact => self%contact, figures => self%figures)
+      contact%kind = kind
+      if (contact%kind == event_contact_begins) then
+        figures%contacts = figures%contacts + 1
+        if (allocated(self%cycles)) call self%cycles%take_impact()
+        figures%max_entry_penetration = max(figures%max_entry_penetration, now%joint%penetration)
+        if (now%joint%penetration_rate > self%validity_limit) &
+          figures%impacts_beyond_validity = figures%impacts_beyond_validity + 1
+        contact%duration = 0
+        contact%max_penetration = 0
+        contact%max_normal_force = 0
+        contact%time = t
+      else
+        contact%duration = t - contact%time
+        contact%time = t
+      end if
+      contact%crank_angle = now%motion%crank_angle
+      contact%normal_speed = now%joint%penetration_rate
+      call self%sink%take_event(contact)
+    end associate
+  end subroutine take_contact
 
   !> The run ended at (t, y): with a row at every step, and for the last of a grid that rounding left out.
   subroutine finish(self, scene, t, y)
@@ -213,6 +249,9 @@ contains
     call archive%exchange(self%start_angle)
     call archive%exchange(self%next_row)
     call archive%exchange(self%steps)
+    call archive%exchange(self%evaluations_then)
+    call archive%exchange(self%time_then)
+    call archive%exchange(self%angle_then)
   end subroutine exchange_recorder
 
   !> The figures to or from an archive.

@@ -59,6 +59,7 @@ module scene
     procedure(initial_state), deferred :: initial_state
     procedure(natural_scales), deferred :: natural_scales
     procedure(reported_event), deferred :: reported_event
+    procedure :: prepare_start
     procedure :: crank_angle
     procedure :: work
     procedure :: measure_joint
@@ -85,7 +86,7 @@ module scene
       logical, intent(out) :: inside
     end subroutine evaluate
 
-    !> State at t = 0: the pin centred, speeds of the ideal joint.
+    !> State at t = 0.
     pure function initial_state(self) result(y)
       import :: scene_t, dp
       class(scene_t), intent(in) :: self
@@ -111,6 +112,13 @@ module scene
   end interface
 
 contains
+
+  !> Find the discrete state at t = 0 when all else is set. The default has nothing to find.
+  subroutine prepare_start(self)
+    class(scene_t), intent(inout) :: self
+    associate (unused_self => self)
+    end associate
+  end subroutine prepare_start
 
   !> The discrete state that every scene has, to or from an archive.
   subroutine exchange_phase(self, archive)

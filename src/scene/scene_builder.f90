@@ -61,6 +61,7 @@ contains
       call scene%set_gas_part(scene%start_angle, scene%start_speed)
       scene%n_events = scene%n_events + n_gas_events
     end if
+    call scene%prepare_start()
   end subroutine build_scene
 
   !> The joint's laws, only those that the case asks for.
@@ -70,6 +71,8 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     scene%n_positions = merge(3, 2, case%drive%kind == 'free')
+    scene%start_eccentricity = case%initial%eccentricity
+    scene%start_eccentricity_rate = case%initial%eccentricity_rate
     associate (joint => case%joint)
       scene%joint = joint_geometry_t(joint%clearance, joint%bearing_radius, joint%bearing_radius - joint%clearance)
       if (case%contact%is_present) then

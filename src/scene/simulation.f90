@@ -15,13 +15,14 @@ module simulation
   use cycle_watch, only: cycle_watch_t
   use recorder, only: recorder_t, run_figures_t
   use trace_sink, only: trace_sink_t
-  use constants, only: degree
+  use constants, only: two_pi, degree
   use archive, only: archive_t
   implicit none
   private
   public :: simulate, run_report_t, interrupted_text
 
   character(len=*), parameter :: interrupted_text = 'interrupted'
+  integer, parameter :: revolution_budget_spent = 21   !! besides the status codes of `solver` and `ode_method`
 
   !> What is known of a run when it has ended.
   type :: run_report_t
@@ -61,6 +62,8 @@ contains
     recorder%first_sample = case%output%start_time
     recorder%end_time = simulated_time(case)
     recorder%every_step = case%output%every_step
+    recorder%max_evaluations_per_revolution = case%integrator%max_evaluations_per_revolution
+    recorder%revolution_time = two_pi/scene%speed_scale(recorder%end_time)
     if (case%contact%is_present) &
       recorder%validity_limit = valid_impact_speed(case%contact%youngs_modulus, case%contact%density)
     call move_alloc(sink, recorder%sink)
@@ -75,6 +78,7 @@ contains
     call recorder%prepare(scene%n)
     if (.not. present(archive)) call recorder%begin(scene, y)
     call integrate(scene, method, t, y, recorder%end_time, case%integrator%max_steps, recorder, status, archive)
+    if (status == integration_interrupted .and. recorder%over_budget) status = revolution_budget_spent
     if (status /= unreadable_archive) call recorder%finish(scene, t, y)
     call move_alloc(recorder%sink, sink)
     if (present(cycles)) call move_alloc(recorder%cycles, cycles)
@@ -144,6 +148,8 @@ contains
       text = 'too many steps (&integrator max_steps)'
     case (evaluation_limit_reached)
       text = 'too much work (&integrator max_evaluations)'
+    case (revolution_budget_spent)
+      text = 'too much work in one revolution (&integrator max_evaluations_per_revolution)'
     case (integration_interrupted)
       text = interrupted_text
     case (unreadable_archive)
