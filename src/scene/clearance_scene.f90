@@ -533,7 +533,7 @@ contains
     if (.not. contact(1) > 0) then
       onwards = contact(2)
       call self%evaluate(0.0_dp, y, now, inside)
-      if (inside .and. .not. abs(onwards) > 0) onwards = outward_acceleration(self, now)
+      if (inside .and. .not. abs(onwards) > 0) onwards = outward_acceleration(now)
       if (onwards < 0) self%phase = merge(phase_film, phase_free, allocated(self%film))
       self%smooth_in_root = contact(2) > 0
     end if
@@ -542,11 +542,10 @@ contains
   end subroutine prepare_start
 
   !> d2|e|/dt2 [m/s^2].
-  pure real(dp) function outward_acceleration(self, now)
-    class(clearance_scene_t), intent(in) :: self
+  pure real(dp) function outward_acceleration(now)
     type(evaluation_t), intent(in) :: now
-    outward_acceleration = dot_product(now%joint%normal, eccentricity_acceleration(self%mechanism, now%motion, &
-      now%accelerations)) + now%joint%tangential_rate**2/now%joint%distance
+    outward_acceleration = dot_product(now%joint%normal, now%accelerations%eccentricity) &
+      + now%joint%tangential_rate**2/now%joint%distance
   end function outward_acceleration
 
   !> The eccentricity is measured by the clearance, its rate by the clearance in the time of one radian. Measured
