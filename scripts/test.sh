@@ -32,6 +32,7 @@ count "tests, strict" fpm @strict
 count "case files, fuzzed" tests/test_fuzz.py
 count "tests, release" fpm test --profile release
 count "the program" sh -c 'fpm build --profile release && tests/test_program.sh'
+count "studies" tests/test_sweep.sh
 count "faults" tests/test_faults.py --kills 10
 count "the plots" sh -c 'scripts/setup.sh --python && tests/test_plots.py'
 

@@ -6,6 +6,8 @@ program gudgeon
   use command_line, only: command_line_t, parse_command_line, program_arguments, help_text
   use case_file, only: template
   use case_runner, only: run_case_file
+  use study_runner, only: run_study_file
+  use study_file, only: study_template
   use progress, only: progress_wanted
   use text_tools, only: printable
   use posix, only: fill_standard_descriptors, hold_interrupts, interrupted, ignore_write_signals, write_bytes, error_text, &
@@ -29,7 +31,10 @@ program gudgeon
   else if (options%version) then
     call say('gudgeon '//program_version, status)
   else if (options%template) then
-    call say(template(), status)
+    if (options%sweep) call say(study_template(), status)
+    if (.not. options%sweep) call say(template(), status)
+  else if (options%sweep) then
+    call run_studies(options, status)
   else
     call run_all(options, status)
   end if
@@ -56,6 +61,26 @@ contains
     end do
     !$omp end parallel do
   end subroutine run_all
+
+  !> Run every study, one after the other; the highest exit status wins.
+  subroutine run_studies(options, status)
+    type(command_line_t), intent(in) :: options
+    integer, intent(out) :: status
+    character(len=:), allocatable :: line
+    type(error_t), allocatable :: error
+    logical :: show_progress
+    integer :: i
+    call hold_interrupts()
+    status = status_ok
+    show_progress = progress_wanted(options%progress) .and. .not. options%quiet
+    do i = 1, size(options%cases)
+      call run_study_file(trim(options%cases(i)), options, show_progress, line, error)
+      if (line /= '' .and. .not. options%quiet) call say(line, status)
+      if (.not. allocated(error)) cycle
+      call complain(error)
+      status = max(status, error%status)
+    end do
+  end subroutine run_studies
 
   !> Run one case and say how it went; `status` rises to that of an error.
   subroutine run_one(path, options, show_progress, status)

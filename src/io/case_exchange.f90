@@ -2,15 +2,16 @@
 module case_exchange
   use kinds, only: dp
   use case_definition, only: case_t
-  use case_schema, only: find_key, find_group
+  use case_schema, only: key_t, find_key, find_group
   use case_values, only: case_values_t
   implicit none
   private
-  public :: values_to_case, case_to_values
+  public :: values_to_case, value_to_case, case_to_values
 
   !> A move of values, to the case or from it.
   type :: exchange_t
-    type(case_values_t) :: values
+    type(case_values_t), pointer :: values => null()
+    type(key_t) :: only              !! the one key to move; without a name, all
     logical :: to_case = .true.
   contains
     procedure, private :: move_real, move_reals, move_integer, move_logical, move_word
@@ -22,23 +23,33 @@ module case_exchange
 contains
 
   subroutine values_to_case(values, into)
-    type(case_values_t), intent(in) :: values
+    type(case_values_t), intent(in), target :: values
     type(case_t), intent(inout) :: into
     type(exchange_t) :: exchange
-    exchange%values = values
+    exchange%values => values
     call move_all(exchange, into)
   end subroutine values_to_case
 
+  !> The value of the key at `place` alone, and that its group is present.
+  subroutine value_to_case(values, place, into)
+    type(case_values_t), intent(in), target :: values
+    integer, intent(in) :: place
+    type(case_t), intent(inout) :: into
+    type(exchange_t) :: exchange
+    exchange%values => values
+    exchange%only = values%keys(place)
+    call move_all(exchange, into)
+  end subroutine value_to_case
+
   subroutine case_to_values(from, values)
     type(case_t), intent(in) :: from
-    type(case_values_t), intent(inout) :: values
+    type(case_values_t), intent(inout), target :: values
     type(exchange_t) :: exchange
     type(case_t) :: copy
-    exchange%values = values
+    exchange%values => values
     exchange%to_case = .false.
     copy = from
     call move_all(exchange, copy)
-    values = exchange%values
   end subroutine case_to_values
 
   subroutine move_all(exchange, c)
@@ -143,10 +154,19 @@ contains
     call x%move('output', 'ideal_twin', c%output%ideal_twin)
   end subroutine move_run
 
+  !> Whether a key is not to be moved.
+  pure logical function is_left_out(self, group, name)
+    class(exchange_t), intent(in) :: self
+    character(len=*), intent(in) :: group, name
+    is_left_out = .false.
+    if (self%only%name /= '') is_left_out = name /= self%only%name .or. group /= self%only%group
+  end function is_left_out
+
   subroutine move_real(self, group, name, component)
     class(exchange_t), intent(inout) :: self
     character(len=*), intent(in) :: group, name
     real(dp), intent(inout) :: component
+    if (is_left_out(self, group, name)) return
     associate (value => self%values%values(find_key(self%values%keys, group, name)))
       if (self%to_case) component = value%reals(1)
       if (.not. self%to_case) value%reals(1) = component
@@ -157,6 +177,7 @@ contains
     class(exchange_t), intent(inout) :: self
     character(len=*), intent(in) :: group, name
     real(dp), intent(inout) :: component(:)
+    if (is_left_out(self, group, name)) return
     associate (value => self%values%values(find_key(self%values%keys, group, name)))
       if (self%to_case) component = value%reals(:size(component))
       if (.not. self%to_case) value%reals(:size(component)) = component
@@ -167,6 +188,7 @@ contains
     class(exchange_t), intent(inout) :: self
     character(len=*), intent(in) :: group, name
     integer, intent(inout) :: component
+    if (is_left_out(self, group, name)) return
     associate (value => self%values%values(find_key(self%values%keys, group, name)))
       if (self%to_case) component = value%whole
       if (.not. self%to_case) value%whole = component
@@ -177,6 +199,7 @@ contains
     class(exchange_t), intent(inout) :: self
     character(len=*), intent(in) :: group, name
     logical, intent(inout) :: component
+    if (is_left_out(self, group, name)) return
     associate (value => self%values%values(find_key(self%values%keys, group, name)))
       if (self%to_case) component = value%switch
       if (.not. self%to_case) value%switch = component
@@ -187,6 +210,7 @@ contains
     class(exchange_t), intent(inout) :: self
     character(len=*), intent(in) :: group, name
     character(len=*), intent(inout) :: component
+    if (is_left_out(self, group, name)) return
     associate (value => self%values%values(find_key(self%values%keys, group, name)))
       if (self%to_case) component = value%text
       if (.not. self%to_case) value%text = trim(component)
@@ -198,6 +222,7 @@ contains
     class(exchange_t), intent(inout) :: self
     character(len=*), intent(in) :: group, name
     character(len=:), allocatable, intent(inout) :: component
+    if (is_left_out(self, group, name)) return
     associate (value => self%values%values(find_key(self%values%keys, group, name)))
       if (self%to_case) component = value%text
       if (.not. self%to_case .and. allocated(component)) value%text = component
@@ -210,6 +235,7 @@ contains
     character(len=*), intent(in) :: group
     logical, intent(inout) :: component
     integer :: place
+    if (self%only%name /= '' .and. group /= self%only%group) return
     place = find_group(self%values%groups, group)
     if (self%to_case) component = self%values%is_present(place)
     if (.not. self%to_case) self%values%is_present(place) = component

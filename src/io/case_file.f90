@@ -3,9 +3,9 @@
 module case_file
   use errors, only: error_t, fail, status_case_file
   use text_tools, only: lowercase, printable, integer_text, case_name
-  use posix, only: open_for_reading, read_bytes, close_file, error_text, error_interrupted
+  use text_file, only: read_text_file
   use case_definition, only: case_t
-  use case_schema, only: find_group
+  use case_schema, only: find_group, schema_groups, schema_keys
   use case_values, only: case_values_t
   use case_exchange, only: values_to_case, case_to_values
   use case_rules, only: check_rules
@@ -13,9 +13,9 @@ module case_file
   use namelist_reader, only: namelist_t, token_t, read_namelist, read_values
   implicit none
   private
-  public :: read_case, parse_case, write_resolved, template
+  public :: read_case, parse_case, read_case_values, complete_case, choose_variant, write_resolved, template
 
-  integer, parameter :: largest_file = 1000000   !! bytes; a case file has a few thousand
+  integer, parameter :: largest_file = 1   !! MB; a case file has a few thousand bytes
 
 contains
 
@@ -25,7 +25,7 @@ contains
     type(case_t), intent(out) :: this
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: text
-    call read_file(path, text, error)
+    call read_text_file(path, largest_file, 'case file', text, error)
     if (allocated(error)) return
     call parse_case(text, path, overrides, this, error)
   end subroutine read_case
@@ -36,6 +36,24 @@ contains
     type(case_t), intent(out) :: this
     type(error_t), allocatable, intent(out) :: error
     type(case_values_t) :: values
+    call parse_values(text, path, overrides, values, error)
+    if (.not. allocated(error)) call complete_case(values, path, this, error)
+  end subroutine parse_case
+
+  !> The values that a case file and overrides give, not yet checked against each other.
+  subroutine read_case_values(path, overrides, values, error)
+    character(len=*), intent(in) :: path, overrides(:)
+    type(case_values_t), intent(out) :: values
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: text
+    call read_text_file(path, largest_file, 'case file', text, error)
+    if (.not. allocated(error)) call parse_values(text, path, overrides, values, error)
+  end subroutine read_case_values
+
+  subroutine parse_values(text, path, overrides, values, error)
+    character(len=*), intent(in) :: text, path, overrides(:)
+    type(case_values_t), intent(out) :: values
+    type(error_t), allocatable, intent(out) :: error
     integer :: i
     call values%set_defaults(path)
     call take_file(values, text, error)
@@ -44,18 +62,31 @@ contains
       call take_override(values, trim(overrides(i)), error)
       if (allocated(error)) return
     end do
+  end subroutine parse_values
+
+  !> A checked case of values; `path` names it.
+  subroutine complete_case(values, path, this, error)
+    type(case_values_t), intent(in) :: values
+    character(len=*), intent(in) :: path
+    type(case_t), intent(out) :: this
+    type(error_t), allocatable, intent(out) :: error
     call values%check(error)
     if (allocated(error)) return
     call values_to_case(values, this)
     this%file = path
     this%name = case_name(path)
     if (this%name == '') this%name = 'case'
-    if (this%lubrication%is_present .and. this%lubrication%variant == '') then
-      this%lubrication%variant = 'closed_form'
-      if (this%lubrication%law == 'oscillating_film') this%lubrication%variant = 'bearing_frame'
-    end if
+    call choose_variant(this)
     call check_rules(this, values, error)
-  end subroutine parse_case
+  end subroutine complete_case
+
+  !> The variant of a film's law where none is given.
+  pure subroutine choose_variant(this)
+    type(case_t), intent(inout) :: this
+    if (.not. this%lubrication%is_present .or. this%lubrication%variant /= '') return
+    this%lubrication%variant = 'closed_form'
+    if (this%lubrication%law == 'oscillating_film') this%lubrication%variant = 'bearing_frame'
+  end subroutine choose_variant
 
   !> The case with every default filled in; reading it gives the same case, bit for bit.
   function write_resolved(this) result(text)
@@ -70,7 +101,8 @@ contains
   !> A complete, commented case file that reads back.
   function template() result(text)
     character(len=:), allocatable :: text
-    text = template_text()
+    text = template_text('A case of gudgeon with every key there is. Keys marked required have no default.', &
+      schema_groups(), schema_keys())
   end function template
 
   !> Groups and keys of the file's text into the values.
@@ -154,30 +186,4 @@ contains
     character(len=:), allocatable :: at
     at = values%file//':'//integer_text(line)//': '
   end function at_line
-
-  !> All bytes of a file.
-  subroutine read_file(path, text, error)
-    character(len=*), intent(in) :: path
-    character(len=:), allocatable, intent(out) :: text
-    type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: buffer
-    integer :: descriptor, status, ignored, done
-    text = ''
-    allocate (character(len=65536) :: buffer)
-    call open_for_reading(path, descriptor, status)
-    if (status == 0) then
-      do while (len(text) <= largest_file)
-        call read_bytes(descriptor, buffer, done, status)
-        if (status == error_interrupted) cycle
-        if (status /= 0 .or. done == 0) exit
-        text = text//buffer(:done)
-      end do
-      call close_file(descriptor, ignored)
-    end if
-    if (status /= 0) then
-      call fail(error, printable(path, 200)//': '//error_text(status), status_case_file)
-    else if (len(text) > largest_file) then
-      call fail(error, printable(path, 200)//': larger than 1 MB: not a case file', status_case_file)
-    end if
-  end subroutine read_file
 end module case_file

@@ -19,7 +19,7 @@ module case_runner
   use text_tools, only: printable
   implicit none
   private
-  public :: run_case_file
+  public :: run_case_file, with_accuracy, write_text
 
 contains
 

@@ -2,7 +2,7 @@
 module case_text
   use text_tools, only: integer_text
   use number_text, only: exact_text
-  use case_schema, only: key_t, group_definition_t, schema_groups, schema_keys, real_kind, integer_kind, logical_kind
+  use case_schema, only: key_t, group_definition_t, real_kind, integer_kind, logical_kind
   use case_values, only: case_values_t, value_t
   implicit none
   private
@@ -12,15 +12,14 @@ module case_text
 
 contains
 
-  !> A complete case file: every group and key, with unit, range, allowed words and default as comments.
-  function template_text() result(text)
+  !> A complete file of a schema: every group and key, with unit, range, allowed words and default as comments.
+  function template_text(first_line, groups, keys) result(text)
+    character(len=*), intent(in) :: first_line   !! without the !
+    type(group_definition_t), intent(in) :: groups(:)
+    type(key_t), intent(in) :: keys(:)
     character(len=:), allocatable :: text
-    type(group_definition_t), allocatable :: groups(:)
-    type(key_t), allocatable :: keys(:)
     integer :: group, i
-    allocate (groups, source=schema_groups())
-    allocate (keys, source=schema_keys())
-    text = '! A case of gudgeon with every key there is. Keys marked required have no default.'//newline
+    text = '! '//first_line//newline
     do group = 1, size(groups)
       text = text//newline//'! '//trim(groups(group)%description)//newline//'&'//trim(groups(group)%name)//newline
       do i = 1, size(keys)

@@ -34,9 +34,13 @@ module case_values
     type(value_t), allocatable :: values(:)        !! by key
   contains
     procedure :: set_defaults
+    procedure :: set_schema
     procedure :: find         !! the place of a key
     procedure :: assign       !! values as written, to a key
     procedure :: check        !! required keys and ranges
+    procedure :: check_required
+    procedure :: check_range  !! the range of one key
+    procedure :: is_in_range
     procedure :: refuse       !! the error for a value
     procedure :: is_given
     procedure :: takes_bare_text
@@ -44,16 +48,25 @@ module case_values
 
 contains
 
-  !> Every key at its default, every group absent.
+  !> Every key of a case at its default, every group absent.
   subroutine set_defaults(self, file)
     class(case_values_t), intent(inout) :: self
     character(len=*), intent(in) :: file
+    call self%set_schema(file, schema_groups(), schema_keys())
+  end subroutine set_defaults
+
+  !> Every key of a schema at its default, every group absent.
+  subroutine set_schema(self, file, groups, keys)
+    class(case_values_t), intent(inout) :: self
+    character(len=*), intent(in) :: file
+    type(group_definition_t), intent(in) :: groups(:)
+    type(key_t), intent(in) :: keys(:)
     character(len=:), allocatable :: wanted
     type(token_t) :: token
     integer :: i, element
     self%file = printable(file, 200)
-    self%groups = schema_groups()
-    self%keys = schema_keys()
+    allocate (self%groups, source=groups)
+    allocate (self%keys, source=keys)
     allocate (self%is_present(size(self%groups)), source=.false.)
     allocate (self%values(size(self%keys)))
     do i = 1, size(self%keys)
@@ -64,7 +77,7 @@ contains
         call convert(self%keys(i), token, self%values(i), element, wanted)
       end do
     end do
-  end subroutine set_defaults
+  end subroutine set_schema
 
   !> The place of a key, or an error that says what is there instead. `at` names file and line.
   subroutine find(self, group, key, at, place, error)
@@ -205,31 +218,72 @@ contains
   subroutine check(self, error)
     class(case_values_t), intent(in) :: self
     type(error_t), allocatable, intent(out) :: error
-    integer :: i, element, group
+    integer :: i, group
     do i = 1, size(self%keys)
-      associate (key => self%keys(i), value => self%values(i))
-        group = find_group(self%groups, trim(key%group))
-        if (self%groups(group)%is_model .and. .not. self%is_present(group)) cycle
-        if (key%required .and. .not. value%given(1)) then
-          if (self%is_present(group)) then
-            call fail(error, self%file//': &'//trim(key%group)//' '//trim(key%name)//': required'//unit_of(key), &
-                      status_case_file)
-          else
-            call fail(error, self%file//': &'//trim(key%group)//': this group is required', status_case_file)
-          end if
-          return
-        end if
-        if (key%kind > integer_kind .or. key%range == '') cycle
-        do element = 1, key%count
-          if (key%kind == real_kind .and. is_within(value%reals(element), key%range)) cycle
-          if (key%kind == integer_kind .and. is_within(real(value%whole, dp), key%range)) cycle
-          if (is_default(key, value, element)) cycle
-          call self%refuse(trim(key%group), trim(key%name), 'must be '//trim(key%range), error, element)
-          return
-        end do
-      end associate
+      group = find_group(self%groups, trim(self%keys(i)%group))
+      if (self%groups(group)%is_model .and. .not. self%is_present(group)) cycle
+      call self%check_required(i, error)
+      if (.not. allocated(error)) call self%check_range(i, error)
+      if (allocated(error)) return
     end do
   end subroutine check
+
+  !> The key at `place` is given, if it is required where its group is present.
+  subroutine check_required(self, place, error)
+    class(case_values_t), intent(in) :: self
+    integer, intent(in) :: place
+    type(error_t), allocatable, intent(out) :: error
+    integer :: group
+    associate (key => self%keys(place))
+      if (.not. key%required .or. self%values(place)%given(1)) return
+      group = find_group(self%groups, trim(key%group))
+      if (self%is_present(group)) then
+        call fail(error, self%file//': &'//trim(key%group)//' '//trim(key%name)//': required'//unit_of(key), status_case_file)
+      else if (.not. self%groups(group)%is_model) then
+        call fail(error, self%file//': &'//trim(key%group)//': this group is required', status_case_file)
+      end if
+    end associate
+  end subroutine check_required
+
+  !> The numbers of the key at `place` are in its range, or its default.
+  subroutine check_range(self, place, error)
+    class(case_values_t), intent(in) :: self
+    integer, intent(in) :: place
+    type(error_t), allocatable, intent(out) :: error
+    integer :: element
+    if (self%is_in_range(place)) return
+    associate (key => self%keys(place), value => self%values(place))
+      do element = 1, key%count
+        if (element_is_within(key, value, element)) cycle
+        if (is_default(key, value, element)) cycle
+        call self%refuse(trim(key%group), trim(key%name), 'must be '//trim(key%range), error, element)
+        return
+      end do
+    end associate
+  end subroutine check_range
+
+  !> Whether all numbers of the key at `place` are in its range; what is no number is.
+  pure logical function is_in_range(self, place)
+    class(case_values_t), intent(in) :: self
+    integer, intent(in) :: place
+    integer :: element
+    is_in_range = .true.
+    if (self%keys(place)%kind > integer_kind) return
+    do element = 1, self%keys(place)%count
+      is_in_range = is_in_range .and. element_is_within(self%keys(place), self%values(place), element)
+    end do
+  end function is_in_range
+
+  pure logical function element_is_within(key, value, element) result(within)
+    type(key_t), intent(in) :: key
+    type(value_t), intent(in) :: value
+    integer, intent(in) :: element
+    if (key%kind == real_kind) then
+      within = is_within(value%reals(element), key%range)
+    else
+      within = is_within(real(value%whole, dp), key%range)
+    end if
+  end function element_is_within
 
   !> Whether a number equals the default of its key, however it is written.
   function is_default(key, value, element) result(same)

@@ -15,7 +15,10 @@ module command_line
     integer :: jobs = 0                           !! cases side by side; 0: as many as there are cores
     logical :: check = .false., template = .false., quiet = .false., help = .false., version = .false.
     character(len=:), allocatable :: progress     !! auto, always, never
-    character(len=:), allocatable :: cases(:)     !! paths of case files, blanks behind
+    character(len=:), allocatable :: cases(:)     !! paths of case files, or of study files, blanks behind
+    logical :: sweep = .false.                    !! the files are studies
+    logical :: fresh = .false.                    !! a sweep begins anew
+    integer :: first_row = 1, last_row = 0        !! runs of a sweep; last_row 0: all
   end type command_line_t
 
   !> An option: its names, and whether a value follows.
@@ -25,11 +28,11 @@ module command_line
     logical :: takes_value = .false.
   end type option_t
 
-  type(option_t), parameter :: options(10) = [ &
+  type(option_t), parameter :: options(12) = [ &
     option_t('out', 'o', .true.), option_t('set', 's', .true.), option_t('accuracy', 'a', .true.), &
     option_t('jobs', 'j', .true.), option_t('progress', '', .true.), option_t('check', '', .false.), &
     option_t('template', '', .false.), option_t('quiet', 'q', .false.), option_t('help', 'h', .false.), &
-    option_t('version', 'V', .false.)]
+    option_t('version', 'V', .false.), option_t('fresh', '', .false.), option_t('rows', '', .true.)]
 
   character(len=*), parameter :: hint = '; gudgeon --help lists the options'
   integer, parameter :: most_jobs = 1024
@@ -50,6 +53,8 @@ contains
     allocate (character(len=len(arguments)) :: line%overrides(size(arguments)), line%cases(size(arguments)))
     only_cases = .false.
     i = 1
+    if (size(arguments) > 0) line%sweep = arguments(1) == 'sweep'
+    if (line%sweep) i = 2
     do while (i <= size(arguments))
       text = trim(arguments(i))
       if (only_cases .or. index(text, '-') /= 1) then
@@ -70,7 +75,11 @@ contains
     call shorten(line%cases, line%case_count)
     if (line%help .or. line%version .or. line%template) return
     if (size(line%cases) == 0) then
-      call fail(error, 'no case file given'//hint, status_command_line)
+      if (line%sweep) call fail(error, 'no study file given'//hint, status_command_line)
+      if (.not. line%sweep) call fail(error, 'no case file given'//hint, status_command_line)
+      return
+    else if (.not. line%sweep .and. (line%fresh .or. line%last_row > 0)) then
+      call fail(error, '--fresh and --rows are for gudgeon sweep'//hint, status_command_line)
       return
     end if
     call check_names(line%cases, error)
@@ -190,6 +199,11 @@ contains
       line%template = .true.
     case ('quiet')
       line%quiet = .true.
+    case ('fresh')
+      line%fresh = .true.
+    case ('rows')
+      call read_rows(value, line%first_row, line%last_row)
+      if (line%last_row == 0) wanted = 'must have the form A:B, 1 <= A <= B'
     case ('help')
       line%help = .true.
     case default
@@ -198,6 +212,21 @@ contains
     if (allocated(wanted)) call fail(error, '--'//trim(name)//' '//printable(value, 60)//': '//wanted//hint, &
                                      status_command_line)
   end subroutine take
+
+  !> A:B into two whole numbers; `last` is 0 where they are none.
+  pure subroutine read_rows(value, first, last)
+    character(len=*), intent(in) :: value
+    integer, intent(out) :: first, last
+    integer :: colon
+    first = 1
+    last = 0
+    colon = index(value, ':')
+    if (verify(value, '0123456789:') > 0 .or. colon < 2 .or. colon > 9 .or. len(value) - colon < 1 .or. &
+        len(value) - colon > 8 .or. index(value, ':', back=.true.) /= colon) return
+    read (value(:colon - 1), *) first
+    read (value(colon + 1:), *) last
+    if (first < 1 .or. first > last) last = 0
+  end subroutine read_rows
 
   !> No two cases may write files of the same name: a/x.nml and b/x.nml, or x.nml and x.ideal.nml.
   subroutine check_names(cases, error)
@@ -252,6 +281,7 @@ contains
     character(len=:), allocatable :: text
     character(len=*), parameter :: n = achar(10)
     text = 'gudgeon [options] CASE.nml [CASE.nml ...]'//n// &
+      'gudgeon sweep [options] STUDY.nml [STUDY.nml ...]'//n// &
       'Dynamics of the slider-crank mechanism with clearance in its piston-pin joint.'//n//n// &
       '  -o, --out DIR             where results go (default: results)'//n// &
       '  -s, --set GROUP.KEY=VALUE override one case value; repeatable'//n// &
@@ -259,13 +289,16 @@ contains
       '                            models'' own accuracy'//n// &
       '  -j, --jobs N              run several cases side by side (default: the cores there are)'//n// &
       '      --check               read and validate the cases, run nothing'//n// &
-      '      --template            print a complete, commented case file holding every key and its default'//n// &
+      '      --template            print a complete, commented case (sweep: study) file with every key and default'//n// &
       '      --progress WHEN       auto, always or never: progress on standard error (auto: a terminal)'//n// &
       '  -q, --quiet               errors only'//n// &
+      '      --fresh               sweep: forget the rows of an earlier sweep (default: go on from there)'//n// &
+      '      --rows A:B            sweep: only runs A to B, into STUDY.A-B.runs.csv'//n// &
       '  -h, --help                print this'//n// &
       '  -V, --version             print the version'//n//n// &
-      'Results for CASE.nml: CASE.csv, CASE.events.csv, CASE.summary.csv, CASE.resolved.nml.'//n// &
+      'Results for CASE.nml: CASE.csv, CASE.events.csv, CASE.summary.csv, CASE.resolved.nml;'//n// &
+      'for STUDY.nml: STUDY.runs.csv, a row for each run, and STUDY.study.nml.'//n// &
       'Exit status: 0 done; 1 internal error; 2 command line; 3 a case file; 4 the integration could not go'//n// &
-      'on; 5 a result could not be written.'//n
+      'on, of one run of a sweep at least; 5 a result could not be written.'//n
   end function help_text
 end module command_line

@@ -25,6 +25,7 @@ module namelist_reader
   !> One `key = values` of a group.
   type :: entry_t
     character(len=:), allocatable :: group, key
+    integer :: group_number = 0              !! of all groups of the file
     integer :: index = 0                     !! n of key(n); 0 without one
     integer :: line = 0
     type(token_t), allocatable :: tokens(:)
@@ -114,6 +115,7 @@ contains
         return
       end select
       entry%group = group%name
+      entry%group_number = size(list%groups)
       call read_entry(scan, entry)
       if (size(list%entries) == most) scan%message = 'too many keys'
       if (allocated(scan%message)) return

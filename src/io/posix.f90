@@ -2,12 +2,12 @@
 !> returned, never kept: two threads do not meet here.
 module posix
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_intptr_t, c_long, c_null_char, c_ptr, &
-    c_size_t, c_loc, c_f_pointer
+    c_size_t, c_loc, c_f_pointer, c_associated
   implicit none
   private
-  public :: open_for_reading, open_for_writing, open_to_lock, lock_file, is_file, read_bytes, write_bytes, truncate_file, &
-    close_file, rename_file, remove_file, remove_directory, make_directory, is_terminal, error_text, hold_interrupts, interrupted, &
-    fill_standard_descriptors, ignore_write_signals, quit
+  public :: open_for_reading, open_for_writing, open_for_appending, open_to_lock, lock_file, is_file, absolute_path, read_at, &
+    read_bytes, write_bytes, truncate_file, close_file, rename_file, remove_file, remove_directory, make_directory, &
+    is_terminal, error_text, hold_interrupts, interrupted, fill_standard_descriptors, ignore_write_signals, quit
   public :: error_no_entry, error_interrupted, error_locked, error_exists, error_is_directory, error_no_space, &
     error_broken_pipe
 
@@ -15,7 +15,8 @@ module posix
   integer, parameter :: error_no_entry = 2, error_interrupted = 4, error_locked = 11, error_exists = 17, &
     error_not_directory = 20, error_is_directory = 21, error_no_space = 28, error_broken_pipe = 32
 
-  integer(c_int), parameter :: o_cloexec = 524288, read_only = 0, write_only = 1, o_creat = 64, o_trunc = 512
+  integer(c_int), parameter :: o_cloexec = 524288, read_only = 0, write_only = 1, o_creat = 64, o_trunc = 512, &
+    o_append = 1024
   integer(c_int), parameter :: lock_exclusive = 2, lock_without_waiting = 4
   integer(c_int), parameter :: file_mode = 438, folder_mode = 511   !! rw-rw-rw-, rwxrwxrwx, before the umask
   integer(c_int), parameter :: signal_hangup = 1, signal_interrupt = 2, signal_pipe = 13, signal_terminate = 15, &
@@ -48,6 +49,20 @@ module posix
       integer(c_size_t), value :: count
       integer(c_long) :: done
     end function c_read
+    function c_pread(descriptor, buffer, count, offset) bind(c, name='pread') result(done)
+      import :: c_int, c_ptr, c_size_t, c_long
+      integer(c_int), value :: descriptor
+      type(c_ptr), value :: buffer
+      integer(c_size_t), value :: count
+      integer(c_long), value :: offset
+      integer(c_long) :: done
+    end function c_pread
+    function c_realpath(path, resolved) bind(c, name='realpath') result(answer)
+      import :: c_char, c_ptr
+      character(kind=c_char), intent(in) :: path(*)
+      character(kind=c_char), intent(out) :: resolved(*)
+      type(c_ptr) :: answer
+    end function c_realpath
     function c_write(descriptor, buffer, count) bind(c, name='write') result(done)
       import :: c_int, c_ptr, c_size_t, c_long
       integer(c_int), value :: descriptor
@@ -203,6 +218,14 @@ contains
     if (status == 0) answer = named%device == opened%device .and. named%number == opened%number
   end function is_file
 
+  !> Open a file to write behind what it holds; `status` is 0 or the error number.
+  subroutine open_for_appending(path, descriptor, status)
+    character(len=*), intent(in) :: path
+    integer, intent(out) :: descriptor, status
+    descriptor = c_open(path//c_null_char, ior(ior(write_only, o_cloexec), ior(o_creat, o_append)), file_mode)
+    status = outcome(descriptor)
+  end subroutine open_for_appending
+
   !> One read: `done` bytes of `buffer` are filled, 0 at the end of the file.
   subroutine read_bytes(descriptor, buffer, done, status)
     integer, intent(in) :: descriptor
@@ -211,6 +234,31 @@ contains
     done = int(c_read(int(descriptor, c_int), c_loc(buffer), len(buffer, c_size_t)))
     status = outcome(done)
   end subroutine read_bytes
+
+  !> One read from a place in the file, counted from 0.
+  subroutine read_at(descriptor, offset, buffer, done, status)
+    integer, intent(in) :: descriptor
+    integer(c_long), intent(in) :: offset
+    character(len=*), intent(out), target :: buffer
+    integer, intent(out) :: done, status
+    done = int(c_pread(int(descriptor, c_int), c_loc(buffer), len(buffer, c_size_t), offset))
+    status = outcome(done)
+  end subroutine read_at
+
+  !> The path of a file that exists, from the root; the path itself where it has none.
+  function absolute_path(path) result(whole)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: whole
+    character(kind=c_char, len=1) :: buffer(4097)   ! PATH_MAX and the end
+    integer :: i
+    whole = path
+    if (.not. c_associated(c_realpath(path//c_null_char, buffer))) return
+    whole = ''
+    do i = 1, size(buffer)
+      if (buffer(i) == c_null_char) exit
+      whole = whole//buffer(i)
+    end do
+  end function absolute_path
 
   !> One write: `done` bytes of `text` went out, possibly fewer than there are.
   subroutine write_bytes(descriptor, text, done, status)

@@ -8,7 +8,7 @@ module progress
   use posix, only: is_terminal, write_bytes
   implicit none
   private
-  public :: progress_t, progress_wanted
+  public :: progress_t, progress_wanted, rate_text, duration_text
 
   integer, parameter :: standard_error = 2
   real(dp), parameter :: least_interval = 0.2_dp   !! between two lines [s]
@@ -24,6 +24,7 @@ module progress
   contains
     procedure :: start
     procedure :: update
+    procedure :: update_runs
     procedure :: finish
   end type progress_t
 
@@ -68,6 +69,25 @@ contains
     self%has_shown = .true.
   end subroutine update
 
+  !> `done` of `total` runs have ended, `began` of them before this program did. Called as often as one likes.
+  subroutine update_runs(self, done, total, began)
+    class(progress_t), intent(inout) :: self
+    integer, intent(in) :: done, total, began
+    integer(int64) :: now, rate
+    real(dp) :: elapsed, speed
+    character(len=:), allocatable :: line
+    if (.not. self%is_on) return
+    call system_clock(now, rate)
+    if (real(now - self%shown, dp) < least_interval*real(rate, dp)) return
+    self%shown = now
+    elapsed = real(now - self%began, dp)/real(rate, dp)
+    speed = (done - began)/elapsed
+    line = self%name//': '//integer_text(done)//' of '//integer_text(total)//' runs'
+    if (done > began) line = line//', '//rate_text(speed)//', '//duration_text((total - done)/speed)//' left'
+    call show(self%rewrites, line)
+    self%has_shown = .true.
+  end subroutine update_runs
+
   !> Clear the line, if there is one.
   subroutine finish(self)
     class(progress_t), intent(inout) :: self
@@ -87,6 +107,17 @@ contains
       call write_bytes(standard_error, line//achar(10), done, ignored)
     end if
   end subroutine show
+
+  !> Runs in a time, for people: 640 runs/s, 12 runs/min.
+  function rate_text(per_second) result(text)
+    real(dp), intent(in) :: per_second
+    character(len=:), allocatable :: text
+    if (per_second >= 10) then
+      text = integer_text(nint(per_second))//' runs/s'
+    else
+      text = short_text(nint(600*per_second)/10.0_dp)//' runs/min'
+    end if
+  end function rate_text
 
   !> A time span for people: 42 s, 3 min 5 s, 2 h 7 min.
   pure function duration_text(seconds) result(text)

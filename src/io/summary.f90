@@ -10,7 +10,7 @@ module summary
   use version, only: program_version
   implicit none
   private
-  public :: summary_table, summary_line, advice
+  public :: summary_table, summary_line, advice, relative_residual
 
   character(len=*), parameter :: newline = achar(10)
 

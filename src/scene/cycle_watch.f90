@@ -28,10 +28,11 @@ module cycle_watch
     integer :: most_strobes = 0                    !! how many times, from the first revolution counted on; 0: to the end
     integer :: strobes = 0                         !! times taken; strobe i is in revolution settle + i
     real(dp), allocatable :: strobe_values(:, :)   !! (columns, strobes)
+    real(dp) :: direction = 1                      !! sense in which the crank turns
     type(cycle_t), private :: present
     integer, private :: ended = 0                  !! revolutions
     integer, private :: passed = 0                 !! times that the crank has passed the strobe angle
-    real(dp), private :: direction = 1, start_angle = 0, strobe_offset = 0, initial_energy = 0
+    real(dp), private :: start_angle = 0, strobe_offset = 0, initial_energy = 0
     real(dp), private :: t = 0                     !! of the last point [s]
     real(dp), private :: cycle_start = 0           !! [s]
     real(dp), private :: measures(2) = 0           !! at the start of the revolution
@@ -165,9 +166,11 @@ contains
     real(dp), intent(in) :: target, t_to, travel
     class(ode_method_t), allocatable :: copy
     type(bracket_t) :: bracket
-    real(dp) :: t
+    real(dp) :: t, miss, first_miss
+    integer :: i
     bracket = bracket_t(method%t_old, t_to, travel_at(self, scene, method%t_old, method%y_old) - target, travel - target, 0, &
       abs(t_to - method%t_old))
+    first_miss = bracket%fa
     passage = method%t_old
     if (bracket%fa < 0) then
       do
@@ -180,6 +183,14 @@ contains
     end if
     allocate (copy, source=method)
     call copy%land_on(scene, passage, self%y)
+    do i = 1, 2   ! what lands may differ from the interpolant in the crank too
+      miss = travel_at(self, scene, passage, self%y) - target
+      if (.not. first_miss < 0 .or. abs(miss) < 1e-12_dp*target) exit
+      t = passage - miss*(t_to - method%t_old)/(travel - target - first_miss)
+      if (.not. (t > method%t_old .and. t <= t_to)) exit
+      passage = t
+      call copy%land_on(scene, passage, self%y)
+    end do
   end function passage
 
   !> The present revolution ends at (t, y).

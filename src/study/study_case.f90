@@ -1,0 +1,156 @@
+!> The base case of a study with the values of one run put in. Everything is read and checked once; a run costs a few
+!> conversions.
+module study_case
+  use errors, only: error_t, fail, status_case_file
+  use case_definition, only: case_t
+  use case_schema, only: real_kind, integer_kind, text_kind, find_group, find_key
+  use case_values, only: case_values_t
+  use case_file, only: complete_case, choose_variant
+  use case_exchange, only: value_to_case
+  use case_rules, only: check_rules
+  use namelist_reader, only: token_t, read_values
+  use value_reader, only: read_real, read_integer
+  implicit none
+  private
+  public :: study_case_t
+
+  !> The values of the base case, changed in place from run to run. Each thread has its own copy.
+  type :: study_case_t
+    type(case_t) :: case                             !! the case of the present run
+    type(case_values_t), private :: values
+    integer, allocatable, private :: places(:)       !! of the parameters among the keys
+    logical, allocatable, private :: is_number(:)    !! a parameter is one number
+    integer, private :: variant = 0                  !! place of the film's variant, whose default follows its law
+  contains
+    procedure :: prepare
+    procedure :: put
+    procedure :: put_one
+    procedure :: check
+    procedure :: takes_numbers
+    procedure :: takes_whole_numbers
+  end type study_case_t
+
+contains
+
+  !> Take the values of a base case, which must be correct by itself, and find the keys of the parameters in it. `at` names
+  !> where the keys stand. A key of a model that the base case leaves out brings the model in.
+  subroutine prepare(self, values, path, keys, at, error)
+    class(study_case_t), intent(inout) :: self
+    type(case_values_t), intent(in) :: values
+    character(len=*), intent(in) :: path, keys(:), at
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: key
+    integer :: i, dot
+
+    self%values = values
+    call complete_case(values, path, self%case, error)
+    if (allocated(error)) return
+    allocate (self%places(size(keys)), self%is_number(size(keys)))
+    do i = 1, size(keys)
+      key = trim(keys(i))
+      dot = index(key, '.')
+      call values%find(key(:dot - 1), key(dot + 1:), at, self%places(i), error)
+      if (allocated(error)) return
+      associate (schema => values%keys(self%places(i)))
+        self%is_number(i) = schema%kind <= integer_kind .and. schema%count == 1
+        self%values%is_present(find_group(values%groups, trim(schema%group))) = .true.
+        self%values%values(self%places(i))%given(1) = .true.
+      end associate
+    end do
+    self%variant = find_key(values%keys, 'lubrication', 'variant')
+    do i = 1, size(values%keys)   ! of models that the parameters bring in
+      call self%values%check_required(i, error)
+      if (allocated(error)) return
+    end do
+  end subroutine prepare
+
+  !> Whether parameter i is one number, real or whole.
+  pure logical function takes_numbers(self, i)
+    class(study_case_t), intent(in) :: self
+    integer, intent(in) :: i
+    takes_numbers = self%is_number(i)
+  end function takes_numbers
+
+  !> Whether parameter i is one whole number.
+  pure logical function takes_whole_numbers(self, i)
+    class(study_case_t), intent(in) :: self
+    integer, intent(in) :: i
+    takes_whole_numbers = self%is_number(i) .and. self%values%keys(self%places(i))%kind == integer_kind
+  end function takes_whole_numbers
+
+  !> Put the values of a run in, without any check of ranges.
+  subroutine put(self, texts, error)
+    class(study_case_t), intent(inout) :: self
+    character(len=*), intent(in) :: texts(:)
+    type(error_t), allocatable, intent(out) :: error
+    integer :: i
+    do i = 1, size(texts)
+      call self%put_one(i, trim(texts(i)), error)
+      if (allocated(error)) return
+    end do
+  end subroutine put
+
+  !> Put the value of parameter i in. Error: a text that is no value of its key, told without naming the key.
+  subroutine put_one(self, i, text, error)
+    class(study_case_t), intent(inout) :: self
+    integer, intent(in) :: i
+    character(len=*), intent(in) :: text
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: wanted
+    associate (place => self%places(i))
+      if (.not. self%is_number(i)) then
+        call put_other(self, text, place, error)
+      else if (self%values%keys(place)%kind == real_kind) then
+        call read_real(text, self%values%values(place)%reals(1), wanted)
+      else
+        call read_integer(text, self%values%values(place)%whole, wanted)
+      end if
+      if (self%is_number(i)) self%values%values(place)%written(1) = text
+      if (allocated(wanted)) call fail(error, wanted, status_case_file)
+      if (.not. allocated(error)) call value_to_case(self%values, place, self%case)
+    end associate
+  end subroutine put_one
+
+  !> A value that is a word, a text, a switch or several numbers.
+  subroutine put_other(self, text, place, error)
+    class(study_case_t), intent(inout) :: self
+    character(len=*), intent(in) :: text
+    integer, intent(in) :: place
+    type(error_t), allocatable, intent(out) :: error
+    type(token_t), allocatable :: tokens(:)
+    character(len=:), allocatable :: message
+    !$omp critical (texts)
+    if (self%values%keys(place)%kind == text_kind) then
+      allocate (tokens(1))
+      tokens(1)%text = text
+    else
+      call read_values(text, tokens, message)
+    end if
+    if (allocated(message)) then
+      call fail(error, message, status_case_file)
+    else
+      call self%values%assign(place, 0, tokens, '', .true., error)
+    end if
+    !$omp end critical (texts)
+  end subroutine put_other
+
+  !> Whether the run that was put in last can be: ranges, and what must hold between values. The error is the run's, not the
+  !> study's.
+  subroutine check(self, error)
+    class(study_case_t), intent(inout) :: self
+    type(error_t), allocatable, intent(out) :: error
+    integer :: i
+    call value_to_case(self%values, self%variant, self%case)
+    call choose_variant(self%case)
+    do i = 1, size(self%places)
+      if (self%values%is_in_range(self%places(i))) cycle
+      !$omp critical (texts)
+      call self%values%check_range(self%places(i), error)
+      !$omp end critical (texts)
+      if (allocated(error)) return
+    end do
+    !$omp critical (texts)
+    call check_rules(self%case, self%values, error)
+    !$omp end critical (texts)
+  end subroutine check
+end module study_case

@@ -1,0 +1,211 @@
+!> The runs of a study: for every run the values of its parameters, as texts. What is run is what stands in the text, so a
+!> row of the results can be repeated by hand.
+module study_design
+  use, intrinsic :: iso_fortran_env, only: int64
+  use kinds, only: dp
+  use errors, only: error_t, fail, status_case_file
+  use text_tools, only: printable, integer_text
+  use number_writer, only: number_writer_t, longest_number
+  use study_definition, only: study_t, parameter_t
+  use study_table, only: study_table_t, read_table
+  use random_numbers, only: random_numbers_t
+  use sobol_points, only: sobol_points_t, most_dimensions
+  implicit none
+  private
+  public :: study_design_t, new_design
+
+  integer, parameter :: most_runs = 10000000
+
+  !> The values of one parameter: a list, or a range.
+  type :: axis_t
+    type(parameter_t) :: range
+    integer :: levels = 0             !! values on a grid
+    logical :: is_whole = .false.     !! values are whole numbers
+  end type axis_t
+
+  type :: study_design_t
+    integer :: runs = 0
+    integer :: text_length = 1                          !! of the longest value
+    character(len=:), allocatable :: keys(:)            !! GROUP.KEY of each parameter
+    type(study_table_t) :: table
+    type(axis_t), allocatable, private :: axes(:)
+    logical, private :: has_table = .false., has_sobol = .false.
+    real(dp), allocatable, private :: fraction(:, :)    !! place in the range (parameters, runs), Latin hypercube
+    type(sobol_points_t), private :: sobol
+    type(number_writer_t), private :: numbers
+  contains
+    procedure :: get_values
+    procedure :: set_whole
+    procedure :: is_range
+  end type study_design_t
+
+contains
+
+  !> The design of a study, with numbers of so many significant digits. Errors: the table, or more runs than can be.
+  subroutine new_design(study, digits, design, error)
+    type(study_t), intent(in) :: study
+    integer, intent(in) :: digits
+    type(study_design_t), intent(out) :: design
+    type(error_t), allocatable, intent(out) :: error
+    integer(int64) :: runs
+    integer :: i, k, longest
+
+    call design%numbers%prepare(digits)
+    if (study%table /= '') then
+      call read_table(study%table, design%table, error)
+      if (allocated(error)) return
+      design%has_table = .true.
+      design%runs = size(design%table%fields, 2)
+      design%text_length = len(design%table%fields)
+      allocate (character(len=len(design%table%keys)) :: design%keys(size(design%table%keys)))
+      design%keys(:) = design%table%keys
+      return
+    end if
+    longest = maxval([(len(study%parameters(i)%key), i=1, size(study%parameters))])
+    allocate (character(len=longest) :: design%keys(size(study%parameters)))
+    allocate (design%axes(size(study%parameters)))
+    design%text_length = longest_number
+    runs = 1
+    do i = 1, size(design%axes)
+      associate (axis => design%axes(i), p => study%parameters(i))
+        design%keys(i) = p%key
+        axis%range = p
+        axis%levels = merge(size(p%list), p%count, size(p%list) > 0)
+        runs = min(runs*axis%levels, 10_int64*most_runs)
+        do k = 1, size(p%list)
+          design%text_length = max(design%text_length, len(p%list(k)%text))
+        end do
+      end associate
+    end do
+    if (study%design /= 'grid') runs = study%runs
+    if (runs > most_runs) then
+      call fail(error, printable(study%file, 200)//': the grid has more than '//integer_text(most_runs)//' runs', &
+                status_case_file)
+      return
+    end if
+    design%runs = int(runs)
+    if (study%design == 'latin_hypercube') call fill_hypercube(design, study%seed)
+    if (study%design == 'sobol') call begin_sobol(study, design, error)
+  end subroutine new_design
+
+  !> Latin hypercube (McKay, Beckman and Conover 1979): each range is cut into as many equal parts as there are runs; every
+  !> part has one run, at a random place in it, and the parts are dealt out by a random permutation for each parameter.
+  subroutine fill_hypercube(design, seed)
+    type(study_design_t), intent(inout) :: design
+    integer, intent(in) :: seed
+    type(random_numbers_t) :: random
+    integer :: permutation(design%runs), i, k, other, kept
+    real(dp) :: u
+    call random%begin(seed)
+    allocate (design%fraction(size(design%axes), design%runs))
+    do i = 1, size(design%axes)
+      permutation = [(k, k=0, design%runs - 1)]
+      do k = design%runs, 2, -1
+        call random%below(k, other)
+        kept = permutation(k)
+        permutation(k) = permutation(other + 1)
+        permutation(other + 1) = kept
+      end do
+      do k = 1, design%runs
+        call random%uniform(u)
+        design%fraction(i, k) = (permutation(k) + u)/design%runs
+      end do
+    end do
+  end subroutine fill_hypercube
+
+  !> Sobol's points 0, 1, ...; a seed other than 0 adds a random digital shift in every dimension.
+  subroutine begin_sobol(study, design, error)
+    type(study_t), intent(in) :: study
+    type(study_design_t), intent(inout) :: design
+    type(error_t), allocatable, intent(out) :: error
+    type(random_numbers_t) :: random
+    real(dp) :: u
+    integer :: i
+    if (size(design%axes) > most_dimensions) then
+      call fail(error, printable(study%file, 200)//': design = ''sobol'' takes up to '//integer_text(most_dimensions)// &
+                ' parameters', status_case_file)
+      return
+    end if
+    design%has_sobol = .true.
+    call design%sobol%prepare(size(design%axes))
+    if (study%seed == 0) return
+    call random%begin(study%seed)
+    do i = 1, size(design%axes)
+      call random%uniform(u)
+      design%sobol%shift(i) = int(u*2.0_dp**32, int64)
+    end do
+  end subroutine begin_sobol
+
+  !> Parameter i takes whole numbers.
+  subroutine set_whole(self, i)
+    class(study_design_t), intent(inout) :: self
+    integer, intent(in) :: i
+    if (.not. self%has_table) self%axes(i)%is_whole = .true.
+  end subroutine set_whole
+
+  !> Whether parameter i is varied over a range of numbers.
+  pure logical function is_range(self, i)
+    class(study_design_t), intent(in) :: self
+    integer, intent(in) :: i
+    is_range = .not. self%has_table
+    if (is_range) is_range = size(self%axes(i)%range%list) == 0
+  end function is_range
+
+  !> The values of run 1 .. runs.
+  pure subroutine get_values(self, run, values)
+    class(study_design_t), intent(in) :: self
+    integer, intent(in) :: run
+    character(len=*), intent(out) :: values(:)   !! (parameters), of text_length
+    integer :: i, rest, level
+    real(dp) :: fraction
+    if (self%has_table) then
+      values(:) = self%table%fields(:, run)
+      return
+    end if
+    rest = run - 1
+    do i = size(self%axes), 1, -1
+      associate (axis => self%axes(i))
+        if (allocated(self%fraction)) then
+          fraction = self%fraction(i, run)
+          level = int(fraction*axis%levels)
+        else if (self%has_sobol) then
+          fraction = self%sobol%coordinate(run - 1, i)
+          level = int(fraction*axis%levels)
+        else
+          level = mod(rest, axis%levels)
+          rest = rest/axis%levels
+          fraction = real(level, dp)/max(1, axis%levels - 1)
+        end if
+        if (size(axis%range%list) > 0) then
+          values(i) = axis%range%list(level + 1)%text
+        else
+          call put_number(self%numbers, axis, fraction, values(i))
+        end if
+      end associate
+    end do
+  end subroutine get_values
+
+  !> The number at a fraction of a range.
+  pure subroutine put_number(numbers, axis, fraction, text)
+    type(number_writer_t), intent(in) :: numbers
+    type(axis_t), intent(in) :: axis
+    real(dp), intent(in) :: fraction
+    character(len=*), intent(out) :: text
+    real(dp) :: number
+    integer :: used
+    associate (p => axis%range)
+      if (p%is_log) then
+        number = exp((1 - fraction)*log(p%from) + fraction*log(p%to))
+      else
+        number = (1 - fraction)*p%from + fraction*p%to
+      end if
+    end associate
+    text = ''
+    used = 0
+    if (axis%is_whole) then
+      write (text, '(i0)') nint(number, int64)
+    else
+      call numbers%append(text, used, number)
+    end if
+  end subroutine put_number
+end module study_design

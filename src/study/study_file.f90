@@ -1,0 +1,271 @@
+!> Study files: reading one, and what must hold between its values. Errors are as those of case files.
+module study_file
+  use errors, only: error_t, fail, status_case_file
+  use text_tools, only: printable, integer_text, case_name, lowercase
+  use text_file, only: read_text_file
+  use posix, only: absolute_path
+  use namelist_reader, only: namelist_t, entry_t, token_t, read_namelist
+  use case_values, only: case_values_t
+  use case_schema, only: find_key
+  use case_text, only: resolved_text, template_text
+  use study_schema, only: study_groups, study_keys
+  use study_definition, only: study_t, parameter_t, text_t
+  implicit none
+  private
+  public :: read_study, study_template
+
+contains
+
+  !> A complete, commented study file.
+  function study_template() result(text)
+    character(len=:), allocatable :: text
+    text = template_text('A parameter study of gudgeon with every key there is. Keys marked required have no default.', &
+      study_groups(), study_keys())
+  end function study_template
+
+  !> Read and check a study file; paths in it become paths from here.
+  subroutine read_study(path, study, error)
+    character(len=*), intent(in) :: path
+    type(study_t), intent(out) :: study
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: text, message
+    type(namelist_t) :: list
+    type(case_values_t), allocatable :: groups(:)
+    integer :: line
+
+    call read_text_file(path, 1, 'study file', text, error)
+    if (allocated(error)) return
+    call read_namelist(text, list, message, line)
+    if (allocated(message)) then
+      call fail(error, at_line(path, line)//message, status_case_file)
+      return
+    end if
+    call take_groups(path, list, groups, error)
+    if (allocated(error)) return
+    study%file = path
+    study%name = case_name(path)
+    call take_study(groups(1), study)
+    call check_study(groups(1), study, size(groups) - 1, error)
+    if (allocated(error)) return
+    call take_parameters(groups(2:), study, error)
+  end subroutine read_study
+
+  !> The values of each group of the file: those of &study first, then of each &parameter.
+  subroutine take_groups(path, list, groups, error)
+    character(len=*), intent(in) :: path
+    type(namelist_t), intent(in) :: list
+    type(case_values_t), allocatable, intent(out) :: groups(:)
+    type(error_t), allocatable, intent(out) :: error
+    integer :: place(size(list%groups)), i, n, key
+
+    allocate (groups(count([(list%groups(i)%name == 'parameter', i=1, size(list%groups))]) + 1))
+    do i = 1, size(groups)
+      call groups(i)%set_schema(path, study_groups(), study_keys())
+    end do
+    n = 1
+    place = 0
+    do i = 1, size(list%groups)
+      select case (list%groups(i)%name)
+      case ('study')
+        if (groups(1)%is_present(1)) then
+          call fail(error, at_line(path, list%groups(i)%line)//'&study: this group stands here twice', status_case_file)
+          return
+        end if
+        place(i) = 1
+        groups(1)%is_present(1) = .true.
+      case ('parameter')
+        n = n + 1
+        place(i) = n
+        groups(n)%is_present(2) = .true.
+      case default
+        call groups(1)%find(list%groups(i)%name, '', at_line(path, list%groups(i)%line), key, error)
+        return
+      end select
+    end do
+    if (.not. groups(1)%is_present(1)) then
+      call fail(error, groups(1)%file//': &study: this group is required', status_case_file)
+      return
+    end if
+    do i = 1, size(list%entries)
+      associate (entry => list%entries(i), group => groups(place(list%entries(i)%group_number)))
+        call take_entry(entry, at_line(path, entry%line), group, error)
+        if (allocated(error)) return
+      end associate
+    end do
+    do i = 1, size(groups)
+      call groups(i)%check(error)
+      if (allocated(error)) return
+    end do
+  end subroutine take_groups
+
+  !> One `key = values` into the values of its group. What stands in a list is kept as it is written, numbers and words alike.
+  subroutine take_entry(entry, at, group, error)
+    type(entry_t), intent(in) :: entry
+    character(len=*), intent(in) :: at
+    type(case_values_t), intent(inout) :: group
+    type(error_t), allocatable, intent(out) :: error
+    type(token_t) :: tokens(size(entry%tokens))
+    integer :: key
+    call group%find(entry%group, entry%key, at, key, error)
+    if (allocated(error)) return
+    tokens = entry%tokens
+    if (entry%key == 'values') tokens%quoted = .true.
+    call group%assign(key, entry%index, tokens, at, .false., error)
+  end subroutine take_entry
+
+  !> `path:line: `
+  function at_line(path, line) result(at)
+    character(len=*), intent(in) :: path
+    integer, intent(in) :: line
+    character(len=:), allocatable :: at
+    at = printable(path, 200)//':'//integer_text(line)//': '
+  end function at_line
+
+  !> The values of &study.
+  subroutine take_study(values, study)
+    type(case_values_t), intent(in) :: values
+    type(study_t), intent(inout) :: study
+    character(len=:), allocatable :: folder
+    folder = study%file(:index(study%file, '/', back=.true.))
+    study%title = text('title')
+    study%case = path_from(folder, text('case'))
+    study%table = path_from(folder, text('table'))
+    study%design = text('design')
+    study%traces = text('traces')
+    study%strobe_columns = text('strobe_columns')
+    study%runs = whole('runs')
+    study%seed = whole('seed')
+    study%settle_cycles = whole('settle_cycles')
+    study%strobe_cycles = whole('strobe_cycles')
+    study%cycles = values%values(find_key(values%keys, 'study', 'cycles'))%switch
+    study%strobe_angle_deg = values%values(find_key(values%keys, 'study', 'strobe_angle_deg'))%reals(1)
+    study%resolved = resolved_with(absolute_path(study%case), absolute_path(study%table), study%title)
+    study%identity = resolved_with('', '', '')
+
+  contains
+
+    !> The group as text, with other paths.
+    function resolved_with(case, table, title)
+      character(len=*), intent(in) :: case, table, title
+      character(len=:), allocatable :: resolved_with
+      type(case_values_t) :: changed
+      changed = values
+      changed%values(find_key(values%keys, 'study', 'case'))%text = case
+      changed%values(find_key(values%keys, 'study', 'table'))%text = table
+      changed%values(find_key(values%keys, 'study', 'title'))%text = title
+      resolved_with = resolved_text(changed)
+    end function resolved_with
+
+    function text(name)
+      character(len=*), intent(in) :: name
+      character(len=:), allocatable :: text
+      text = values%values(find_key(values%keys, 'study', name))%text
+    end function text
+
+    integer function whole(name)
+      character(len=*), intent(in) :: name
+      whole = values%values(find_key(values%keys, 'study', name))%whole
+    end function whole
+  end subroutine take_study
+
+  !> A path that begins in a folder, unless it begins at the root or is empty.
+  pure function path_from(folder, path) result(whole)
+    character(len=*), intent(in) :: folder, path
+    character(len=:), allocatable :: whole
+    whole = path
+    if (path == '') return
+    if (path(1:1) /= '/') whole = folder//path
+  end function path_from
+
+  !> What &study asks for can be done with so many parameters.
+  subroutine check_study(values, study, n_parameters, error)
+    type(case_values_t), intent(in) :: values
+    type(study_t), intent(in) :: study
+    integer, intent(in) :: n_parameters
+    type(error_t), allocatable, intent(out) :: error
+    if (study%case == '') then
+      call values%refuse('study', 'case', 'must name a case file', error)
+    else if (study%table /= '' .and. n_parameters > 0) then
+      call values%refuse('study', 'table', 'must not be given together with &parameter', error)
+    else if (study%table == '' .and. n_parameters == 0) then
+      call values%refuse('study', 'table', 'this or &parameter is required', error)
+    else if (study%table /= '' .and. values%is_given('study', 'design')) then
+      call values%refuse('study', 'design', 'must not be given together with table', error)
+    else if (study%design == 'grid' .and. study%runs > 0) then
+      call values%refuse('study', 'runs', 'is for design = ''latin_hypercube'' or ''sobol''; a grid has the count of each '// &
+                         'parameter', error)
+    else if (study%design /= 'grid' .and. study%runs == 0) then
+      call values%refuse('study', 'runs', 'required with design = '''//trim(study%design)//'''', error)
+    end if
+  end subroutine check_study
+
+  !> The values of every &parameter.
+  subroutine take_parameters(groups, study, error)
+    type(case_values_t), intent(in) :: groups(:)
+    type(study_t), intent(inout) :: study
+    type(error_t), allocatable, intent(out) :: error
+    integer :: i, k
+    allocate (study%parameters(size(groups)))
+    do i = 1, size(groups)
+      associate (values => groups(i)%values, keys => groups(i)%keys, p => study%parameters(i))
+        p%key = lowercase(values(find_key(keys, 'parameter', 'key'))%text)
+        p%from = values(find_key(keys, 'parameter', 'from'))%reals(1)
+        p%to = values(find_key(keys, 'parameter', 'to'))%reals(1)
+        p%count = values(find_key(keys, 'parameter', 'count'))%whole
+        p%is_log = values(find_key(keys, 'parameter', 'scale'))%text == 'log'
+        call split(values(find_key(keys, 'parameter', 'values'))%text, p%list)
+      end associate
+      call check_parameter(groups(i), study, study%parameters(i), error)
+      if (allocated(error)) return
+      do k = 1, i - 1
+        if (study%parameters(k)%key /= study%parameters(i)%key) cycle
+        call groups(i)%refuse('parameter', 'key', 'is varied twice', error)
+        return
+      end do
+      study%resolved = study%resolved//resolved_text(groups(i))
+      study%identity = study%identity//resolved_text(groups(i))
+    end do
+  end subroutine take_parameters
+
+  !> A parameter has a range or a list.
+  subroutine check_parameter(values, study, p, error)
+    type(case_values_t), intent(in) :: values
+    type(study_t), intent(in) :: study
+    type(parameter_t), intent(in) :: p
+    type(error_t), allocatable, intent(out) :: error
+    logical :: has_range
+    character(len=:), allocatable :: key
+    key = '; &parameter key = '''//printable(p%key, 60)//''''
+    has_range = values%is_given('parameter', 'from') .or. values%is_given('parameter', 'to')
+    if (size(p%list) > 0) then
+      if (has_range .or. p%count > 0) call values%refuse('parameter', 'values', &
+        'must not be given together with from, to or count'//key, error)
+    else if (.not. values%is_given('parameter', 'from')) then
+      call values%refuse('parameter', 'from', 'from and to, or values, are required'//key, error)
+    else if (.not. values%is_given('parameter', 'to')) then
+      call values%refuse('parameter', 'to', 'required with from'//key, error)
+    else if (p%is_log .and. .not. (p%from > 0 .and. p%to > 0)) then
+      call values%refuse('parameter', 'scale', 'from and to must be > 0 for scale = ''log'''//key, error)
+    else if (study%design == 'grid' .and. p%count == 0) then
+      call values%refuse('parameter', 'count', 'required on a grid, with from and to'//key, error)
+    else if (study%design /= 'grid' .and. p%count > 0) then
+      call values%refuse('parameter', 'count', 'is for a grid; a sampled design has runs'//key, error)
+    end if
+  end subroutine check_parameter
+
+  !> The fields of a list with commas, without the blanks around them.
+  pure subroutine split(list, fields)
+    character(len=*), intent(in) :: list
+    type(text_t), allocatable, intent(out) :: fields(:)
+    integer :: i, first, next, n
+    n = 0
+    if (list /= '') n = count([(list(i:i) == ',', i=1, len(list))]) + 1
+    allocate (fields(n))
+    first = 1
+    do i = 1, n
+      next = index(list(first:)//',', ',')
+      fields(i)%text = trim(adjustl(list(first:first + next - 2)))
+      first = first + next
+    end do
+  end subroutine split
+end module study_file

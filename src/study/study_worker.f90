@@ -1,0 +1,180 @@
+!> What one thread needs to run the runs of a study one after the other. Everything is made once; a run makes nothing but what
+!> the simulation itself does.
+module study_worker
+  use errors, only: error_t
+  use constants, only: degree
+  use columns, only: column_list_t, choose_columns
+  use cycle_watch, only: cycle_watch_t
+  use simulation, only: simulate, run_report_t, interrupted_text
+  use trace_sink, only: trace_sink_t, trace_event_t
+  use trace_files, only: trace_files_t
+  use number_writer, only: number_writer_t
+  use posix, only: interrupted
+  use kinds, only: dp
+  use study_definition, only: study_t
+  use study_design, only: study_design_t
+  use study_case, only: study_case_t
+  use row_text, only: row_text_t
+  use study_rows, only: write_run, write_failure, write_cycles, write_strobes
+  implicit none
+  private
+  public :: study_worker_t
+
+  !> Takes nothing, and ends the run when the user interrupts it.
+  type, extends(trace_sink_t) :: patient_sink_t
+  contains
+    procedure :: take_row
+    procedure :: take_event
+    procedure :: take_progress
+  end type patient_sink_t
+
+  type :: study_worker_t
+    type(row_text_t) :: run_row, cycle_rows, strobe_rows   !! of the last run
+    logical :: is_done = .false.                           !! the last run came to its end
+    logical :: was_interrupted = .false.                   !! it was given up, and has no row
+    type(error_t), allocatable :: output_error             !! its trace could not be written
+    type(study_case_t), private :: base
+    type(cycle_watch_t), allocatable, private :: watch
+    class(trace_sink_t), allocatable, private :: sink
+    type(column_list_t), private :: no_columns
+    type(number_writer_t), private :: numbers
+    character(len=:), allocatable, private :: values(:)
+    character(len=:), allocatable, private :: trace_folder
+    logical, private :: traces_all = .false., traces_failed = .false., writes_cycles = .false., writes_strobes = .false.
+  contains
+    procedure :: prepare
+    procedure :: run
+    procedure, private :: run_with_trace
+  end type study_worker_t
+
+contains
+
+  !> `strobe_list` has no columns where there is no strobe; traces go into `trace_folder`.
+  subroutine prepare(self, study, design, base, strobe_list, trace_folder)
+    class(study_worker_t), intent(inout) :: self
+    type(study_t), intent(in) :: study
+    type(study_design_t), intent(in) :: design
+    type(study_case_t), intent(in) :: base
+    type(column_list_t), intent(in) :: strobe_list
+    character(len=*), intent(in) :: trace_folder
+    self%base = base
+    self%trace_folder = trace_folder
+    self%traces_all = study%traces == 'all'
+    self%traces_failed = study%traces == 'failed'
+    self%writes_cycles = study%cycles
+    self%writes_strobes = size(strobe_list%id) > 0
+    allocate (self%watch)
+    self%watch%settle = study%settle_cycles
+    self%watch%keeps_cycles = study%cycles
+    self%watch%strobe_list = strobe_list
+    self%watch%strobe_angle = study%strobe_angle_deg*degree
+    self%watch%most_strobes = study%strobe_cycles
+    allocate (patient_sink_t :: self%sink)
+    allocate (self%no_columns%id(0))
+    call self%numbers%prepare(base%case%output%digits)
+    allocate (character(len=design%text_length) :: self%values(size(design%keys)))
+  end subroutine prepare
+
+  !> Run one run; its rows are left in the worker.
+  subroutine run(self, design, number)
+    class(study_worker_t), intent(inout) :: self
+    type(study_design_t), intent(in) :: design
+    integer, intent(in) :: number
+    type(run_report_t) :: report
+    type(error_t), allocatable :: error
+    logical :: has_begun
+
+    self%is_done = .false.
+    has_begun = .false.
+    call design%get_values(number, self%values)
+    call self%base%put(self%values, error)
+    if (.not. allocated(error)) call self%base%check(error)
+    if (.not. allocated(error)) then
+      has_begun = .true.
+      self%watch%strobe_list%clearance = self%base%case%joint%clearance
+      if (self%traces_all) then
+        call self%run_with_trace(number, report, error)
+      else
+        call simulate(self%base%case, .false., self%no_columns, self%sink, report, error, cycles=self%watch)
+        self%was_interrupted = self%sink%wants_to_stop
+        if (allocated(error) .and. self%traces_failed .and. .not. self%was_interrupted) &
+          call self%run_with_trace(number, report, error)
+      end if
+    end if
+    if (self%was_interrupted .or. allocated(self%output_error)) return
+    call self%cycle_rows%clear()
+    call self%strobe_rows%clear()
+    associate (has_clearance => self%base%case%joint%kind == 'clearance')
+      if (allocated(error)) then
+        call write_failure(self%run_row, self%numbers, number, self%values, reason_of(error%message), has_begun, report)
+      else if (self%watch%statistics%cycles == 0) then
+        call write_failure(self%run_row, self%numbers, number, self%values, 'no whole revolution after settle_cycles', &
+          has_begun, report)
+      else
+        self%is_done = .true.
+        call write_run(self%run_row, self%numbers, number, self%values, self%watch, report, has_clearance)
+        if (self%writes_cycles) call write_cycles(self%cycle_rows, self%numbers, number, self%watch, has_clearance)
+        if (self%writes_strobes) call write_strobes(self%strobe_rows, self%numbers, number, self%watch)
+      end if
+    end associate
+  end subroutine run
+
+  !> Run what has been put in with a trace, NAME/RUN.csv and its events.
+  subroutine run_with_trace(self, number, report, error)
+    class(study_worker_t), intent(inout) :: self
+    integer, intent(in) :: number
+    type(run_report_t), intent(out) :: report
+    type(error_t), allocatable, intent(out) :: error
+    type(trace_files_t), allocatable :: files
+    class(trace_sink_t), allocatable :: sink
+    type(column_list_t) :: list
+    character(len=12) :: name
+    write (name, '(i0)') number
+    !$omp critical (texts)
+    allocate (files)
+    call choose_columns(self%base%case, .false., list, error)
+    if (.not. allocated(error)) call files%open(self%trace_folder//'/'//trim(name), list, self%base%case%output%digits, &
+      self%base%case%contact%is_present, self%output_error)
+    !$omp end critical (texts)
+    if (allocated(error) .or. allocated(self%output_error)) return
+    call move_alloc(files, sink)
+    call simulate(self%base%case, .false., list, sink, report, error, cycles=self%watch)
+    !$omp critical (texts)
+    select type (sink)
+    type is (trace_files_t)
+      call sink%close(self%output_error)
+    end select
+    !$omp end critical (texts)
+    if (allocated(error)) self%was_interrupted = index(error%message, interrupted_text) == 1
+  end subroutine run_with_trace
+
+  !> A message without the file before its group.
+  pure function reason_of(message) result(reason)
+    character(len=*), intent(in) :: message
+    character(len=len(message)) :: reason
+    reason = message
+    if (index(message, ': &') > 0) reason = message(index(message, ': &') + 2:)
+  end function reason_of
+
+  subroutine take_row(self, values)
+    class(patient_sink_t), intent(inout) :: self
+    real(dp), intent(in) :: values(:)
+    associate (unused_self => self, unused_values => values)
+    end associate
+  end subroutine take_row
+
+  subroutine take_event(self, event)
+    class(patient_sink_t), intent(inout) :: self
+    type(trace_event_t), intent(in) :: event
+    associate (unused_self => self, unused_event => event)
+    end associate
+  end subroutine take_event
+
+  subroutine take_progress(self, time)
+    class(patient_sink_t), intent(inout) :: self
+    real(dp), intent(in) :: time
+    associate (unused_time => time)
+    end associate
+    if (interrupted()) self%wants_to_stop = .true.
+  end subroutine take_progress
+end module study_worker
