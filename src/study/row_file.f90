@@ -224,7 +224,7 @@ contains
       call file%abandon()
       call report(self, status, error)
     else
-      call file%close(error)
+      call file%close(error, whole_only=.true.)
     end if
     self%size = at
   end subroutine rewrite
