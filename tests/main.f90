@@ -5,6 +5,7 @@ program gudgeon_tests
   use test_adams, only: run_test_adams
   use test_adams_order, only: run_test_adams_order
   use test_case_file, only: run_test_case_file
+  use test_checkpoint, only: run_test_checkpoint
   use test_combustion, only: run_test_combustion
   use test_command_line, only: run_test_command_line
   use test_contact, only: run_test_contact
@@ -31,6 +32,7 @@ program gudgeon_tests
   call run_test_adams(check)
   call run_test_adams_order(check)
   call run_test_case_file(check)
+  call run_test_checkpoint(check)
   call run_test_combustion(check)
   call run_test_command_line(check)
   call run_test_contact(check)

@@ -63,6 +63,8 @@ def program_built() -> Path:
 def torn(path: Path) -> str:
     """What is not whole in a result file; empty if nothing is."""
     text = path.read_bytes()
+    if path.suffix == ".checkpoint":
+        return "" if text.startswith(b"gudgeon checkpoint\n") else f"{path.name} is not one"
     name = path.name.removesuffix(".part")
     if name != path.name:
         text = text[:text.rfind(b"\n") + 1]

@@ -113,6 +113,7 @@ contains
         call archive%begin_reading(sink%state)
       end select
       if (stride > 1) limited%integrator%max_steps = limited%integrator%max_steps + stride
+      call soil_memory()
       call simulate(limited, ideal, list, sink, report, error, archive)
       pieces = pieces + 1
     end do
@@ -121,6 +122,25 @@ contains
       kept = sink
     end select
   end subroutine run_in_parts
+
+  !> Fill what the heap has to give with numbers of no meaning: an array that is allocated anew but not given back its
+  !> values must not find the old ones in its place.
+  subroutine soil_memory()
+    integer, parameter :: blocks = 12, largest = 400
+    type :: block_t
+      real(dp), allocatable :: values(:)
+    end type block_t
+    type(block_t) :: block(blocks)
+    integer :: length, i
+    do length = 1, largest
+      do i = 1, blocks
+        allocate (block(i)%values(length), source=-3e33_dp)
+      end do
+      do i = 1, blocks
+        deallocate (block(i)%values)
+      end do
+    end do
+  end subroutine soil_memory
 
   subroutine keep(self, archive)
     class(keeping_sink_t), intent(inout) :: self

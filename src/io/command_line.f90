@@ -1,5 +1,6 @@
 !> The command line: options, values and case files, from arguments given as an array so that it can be tested.
 module command_line
+  use kinds, only: dp
   use errors, only: error_t, fail, status_command_line
   use text_tools, only: printable, nearest_word, case_name
   implicit none
@@ -13,6 +14,8 @@ module command_line
     character(len=:), allocatable :: overrides(:) !! GROUP.KEY=VALUE, in their order, blanks behind
     character(len=:), allocatable :: accuracy     !! draft, standard, reference, or empty: as the case says
     integer :: jobs = 0                           !! cases side by side; 0: as many as there are cores
+    real(dp) :: checkpoint_interval = 60          !! seconds between checkpoints of a run; 0: none
+    logical :: resume = .false.                   !! go on where runs were stopped
     logical :: check = .false., template = .false., quiet = .false., help = .false., version = .false.
     character(len=:), allocatable :: progress     !! auto, always, never
     character(len=:), allocatable :: cases(:)     !! paths of case files, or of study files, blanks behind
@@ -23,14 +26,15 @@ module command_line
 
   !> An option: its names, and whether a value follows.
   type :: option_t
-    character(len=8) :: long = ''
+    character(len=10) :: long = ''
     character(len=1) :: short = ''
     logical :: takes_value = .false.
   end type option_t
 
-  type(option_t), parameter :: options(12) = [ &
+  type(option_t), parameter :: options(14) = [ &
     option_t('out', 'o', .true.), option_t('set', 's', .true.), option_t('accuracy', 'a', .true.), &
     option_t('jobs', 'j', .true.), option_t('progress', '', .true.), option_t('check', '', .false.), &
+    option_t('resume', '', .false.), option_t('checkpoint', '', .true.), &
     option_t('template', '', .false.), option_t('quiet', 'q', .false.), option_t('help', 'h', .false.), &
     option_t('version', 'V', .false.), option_t('fresh', '', .false.), option_t('rows', '', .true.)]
 
@@ -81,6 +85,9 @@ contains
     else if (.not. line%sweep .and. (line%fresh .or. line%last_row > 0)) then
       call fail(error, '--fresh and --rows are for gudgeon sweep'//hint, status_command_line)
       return
+    else if (line%sweep .and. line%resume) then
+      call fail(error, '--resume is for cases: a sweep goes on where it stopped without it'//hint, status_command_line)
+      return
     end if
     call check_names(line%cases, error)
   end subroutine parse_command_line
@@ -92,7 +99,7 @@ contains
     integer, intent(inout) :: i
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: text, name, near
-    character(len=8) :: names(size(options))
+    character(len=10) :: names(size(options))
     integer :: equals, place, k
     text = trim(arguments(i))
     equals = index(text, '=')
@@ -173,7 +180,7 @@ contains
     character(len=*), intent(in) :: name, value
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: wanted
-    integer :: dot
+    integer :: dot, status
     select case (name)
     case ('out')
       line%out = value
@@ -193,6 +200,13 @@ contains
     case ('progress')
       line%progress = value
       if (all(value /= ['auto  ', 'always', 'never '])) wanted = 'must be auto, always or never'
+    case ('checkpoint')
+      line%checkpoint_interval = -1
+      if (value /= '' .and. value /= '.' .and. verify(value, '0123456789.') == 0 .and. len(value) < 10) &
+        read (value, *, iostat=status) line%checkpoint_interval
+      if (.not. line%checkpoint_interval >= 0) wanted = 'must be a number of seconds, 0 or more'
+    case ('resume')
+      line%resume = .true.
     case ('check')
       line%check = .true.
     case ('template')
@@ -288,6 +302,10 @@ contains
       '  -a, --accuracy LEVEL      draft, standard or reference: presets of the integrator and of the'//n// &
       '                            models'' own accuracy'//n// &
       '  -j, --jobs N              run several cases side by side (default: the cores there are)'//n// &
+      '      --resume              go on with runs that were stopped, each from its checkpoint in DIR: the results'//n// &
+      '                            are those of a run that was not; give the same options as then (the limits'//n// &
+      '                            max_steps and max_evaluations may be others)'//n// &
+      '      --checkpoint SECONDS  how often a run writes CASE.checkpoint (default: 60; 0: never)'//n// &
       '      --check               read and validate the cases, run nothing'//n// &
       '      --template            print a complete, commented case (sweep: study) file with every key and default'//n// &
       '      --progress WHEN       auto, always or never: progress on standard error (auto: a terminal)'//n// &

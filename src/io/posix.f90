@@ -6,8 +6,8 @@ module posix
   implicit none
   private
   public :: open_for_reading, open_for_writing, open_for_appending, open_to_lock, lock_file, is_file, absolute_path, read_at, &
-    read_bytes, write_bytes, truncate_file, close_file, rename_file, remove_file, remove_directory, make_directory, &
-    is_terminal, error_text, hold_interrupts, interrupted, fill_standard_descriptors, ignore_write_signals, quit
+    read_bytes, write_bytes, truncate_file, synchronise_file, close_file, rename_file, remove_file, remove_directory, &
+    make_directory, is_terminal, error_text, hold_interrupts, interrupted, fill_standard_descriptors, ignore_write_signals, quit
   public :: error_no_entry, error_interrupted, error_locked, error_exists, error_is_directory, error_no_space, &
     error_broken_pipe
 
@@ -70,6 +70,11 @@ module posix
       integer(c_size_t), value :: count
       integer(c_long) :: done
     end function c_write
+    function c_fsync(descriptor) bind(c, name='fsync') result(status)
+      import :: c_int
+      integer(c_int), value :: descriptor
+      integer(c_int) :: status
+    end function c_fsync
     function c_ftruncate(descriptor, length) bind(c, name='ftruncate') result(status)
       import :: c_int, c_long
       integer(c_int), value :: descriptor
@@ -259,6 +264,13 @@ contains
       whole = whole//buffer(i)
     end do
   end function absolute_path
+
+  !> Wait until what was written to a file is on its disk.
+  subroutine synchronise_file(descriptor, status)
+    integer, intent(in) :: descriptor
+    integer, intent(out) :: status
+    status = outcome(int(c_fsync(int(descriptor, c_int))))
+  end subroutine synchronise_file
 
   !> One write: `done` bytes of `text` went out, possibly fewer than there are.
   subroutine write_bytes(descriptor, text, done, status)

@@ -5,8 +5,8 @@ module result_file
   use, intrinsic :: iso_c_binding, only: c_long
   use errors, only: error_t, fail, status_output
   use text_tools, only: printable
-  use posix, only: open_for_writing, write_bytes, truncate_file, close_file, rename_file, remove_file, error_text, &
-    error_interrupted
+  use posix, only: open_for_writing, open_for_appending, write_bytes, truncate_file, synchronise_file, close_file, &
+    rename_file, remove_file, error_text, error_interrupted
   implicit none
   private
   public :: result_file_t
@@ -25,8 +25,11 @@ module result_file
     integer :: status = 0                      !! error number of the first write that failed
   contains
     procedure :: open => open_result
+    procedure :: reopen
     procedure :: put
     procedure :: flush => flush_rows
+    procedure :: synchronise
+    procedure :: length
     procedure :: has_failed
     procedure :: close => close_result
     procedure :: abandon
@@ -52,6 +55,24 @@ contains
     if (status /= 0) call report(self, status, error)
   end subroutine open_result
 
+  !> Go on with the file that is to be called `path` from its first `length` bytes. What there is of it has the name `present`.
+  subroutine reopen(self, path, present, length, error)
+    class(result_file_t), intent(inout) :: self
+    character(len=*), intent(in) :: path, present
+    integer(c_long), intent(in) :: length
+    type(error_t), allocatable, intent(out) :: error
+    integer :: status
+    self%path = path
+    self%used = 0
+    self%written = length
+    self%status = 0
+    if (.not. allocated(self%buffer)) allocate (character(len=buffer_size) :: self%buffer)
+    call open_for_appending(present, self%descriptor, status)
+    if (status == 0) call truncate_file(self%descriptor, length, status)
+    if (status == 0 .and. present /= path//'.part') call rename_file(present, path//'.part', status)
+    if (status /= 0) call report(self, status, error)
+  end subroutine reopen
+
   !> Add whole rows; `text` ends with an end of line.
   subroutine put(self, text)
     class(result_file_t), intent(inout) :: self
@@ -72,6 +93,25 @@ contains
     if (self%used > 0) call write_rows(self, self%buffer(:self%used))
     self%used = 0
   end subroutine flush_rows
+
+  !> Write out what waits, down to the disk.
+  subroutine synchronise(self, error)
+    class(result_file_t), intent(inout) :: self
+    type(error_t), allocatable, intent(out) :: error
+    integer :: status
+    if (self%descriptor < 0) return
+    call self%flush()
+    status = self%status
+    if (status == 0) call synchronise_file(self%descriptor, status)
+    if (status /= 0) call report(self, status, error)
+  end subroutine synchronise
+
+  !> Bytes of whole rows that are in the file.
+  pure function length(self)
+    class(result_file_t), intent(in) :: self
+    integer(c_long) :: length
+    length = self%written
+  end function length
 
   !> Whether a write has failed, so that nothing more can be kept.
   pure function has_failed(self) result(failed)

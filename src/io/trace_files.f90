@@ -3,15 +3,20 @@
 !> Cases run side by side in threads, and gfortran keeps the length of a deferred-length function result in static
 !> storage: what runs during a case makes its text by subroutines, or inside the critical section `texts`.
 module trace_files
+  use, intrinsic :: iso_fortran_env, only: int64
   use kinds, only: dp
-  use errors, only: error_t
+  use errors, only: error_t, fail, status_case_file, status_output
+  use archive, only: archive_t
   use columns, only: column_list_t, column_name
   use scene, only: event_contact_begins
   use trace_sink, only: trace_sink_t, trace_event_t
   use result_file, only: result_file_t
+  use file_mark, only: file_mark_t
+  use checkpoint, only: checkpoint_t, program_build, restart_hint
   use number_writer, only: number_writer_t, longest_number
   use progress, only: progress_t
   use posix, only: interrupted
+  use text_tools, only: printable
   implicit none
   private
   public :: trace_files_t
@@ -25,6 +30,12 @@ module trace_files
     type(result_file_t) :: event_list
     type(progress_t) :: progress
     real(dp) :: end_time = 1            !! of the run, for the progress [s]
+    type(checkpoint_t) :: checkpoint    !! of the run: path and case; the rest is filled in when it is written
+    type(error_t), allocatable :: checkpoint_error        !! why the last one could not be written
+    real(dp), private :: checkpoint_interval = 0          !! [s]
+    real(dp), private :: earlier_time = 0                 !! wall time of the parts of the run before this one [s]
+    integer(int64), private :: began = 0, saved = 0       !! ticks of the clock
+    character(len=:), allocatable, private :: path        !! of the files, without their endings
     type(number_writer_t), private :: numbers
     integer, private :: phase_column = 0
     integer, private :: rows = 0
@@ -35,6 +46,10 @@ module trace_files
     procedure :: take_row
     procedure :: take_event
     procedure :: take_progress
+    procedure :: keep_checkpoints
+    procedure :: reopen
+    procedure :: take_archive
+    procedure :: wall_time
   end type trace_files_t
 
 contains
@@ -50,17 +65,15 @@ contains
     character(len=:), allocatable :: header
     integer :: i
 
+    call prepare(self, path, list, digits)
     call self%trace%open(path//'.csv', error)
     if (allocated(error)) return
     header = ''
     do i = 1, size(list%id)
       if (i > 1) header = header//','
       header = header//column_name(list, i)
-      if (column_name(list, i) == 'phase[-]') self%phase_column = i
     end do
     call self%trace%put(header//newline)
-    call self%numbers%prepare(digits)
-    allocate (character(len=(longest_number + 1)*max(size(list%id), least_fields)) :: self%line)
     if (.not. with_events) return
     call self%event_list%open(path//'.events.csv', error)
     if (allocated(error)) then
@@ -70,6 +83,115 @@ contains
     call self%event_list%put('time[s],crank_angle[rad],event,normal_speed[m/s],duration[s],max_penetration[m],'// &
       'max_normal_force[N]'//newline)
   end subroutine open
+
+  !> Before any row.
+  subroutine prepare(self, path, list, digits)
+    class(trace_files_t), intent(inout) :: self
+    character(len=*), intent(in) :: path
+    type(column_list_t), intent(in) :: list
+    integer, intent(in) :: digits
+    integer :: i
+    self%path = path
+    do i = 1, size(list%id)
+      if (column_name(list, i) == 'phase[-]') self%phase_column = i
+    end do
+    call self%numbers%prepare(digits)
+    allocate (character(len=(longest_number + 1)*max(size(list%id), least_fields)) :: self%line)
+    call system_clock(self%began)
+    self%saved = self%began
+  end subroutine prepare
+
+  !> Go on with the files of a run that was stopped, cut to what they held at its checkpoint. Error: they do not hold that
+  !> any more; nothing has been changed then.
+  subroutine reopen(self, path, list, digits, with_events, checkpoint, error)
+    class(trace_files_t), intent(inout) :: self
+    character(len=*), intent(in) :: path
+    type(column_list_t), intent(in) :: list
+    integer, intent(in) :: digits
+    logical, intent(in) :: with_events
+    type(checkpoint_t), intent(in) :: checkpoint
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: trace_name, event_name
+
+    call prepare(self, path, list, digits)
+    call find_marked(path//'.csv', checkpoint%trace, self%checkpoint%trace, trace_name, error)
+    if (with_events .and. .not. allocated(error)) &
+      call find_marked(path//'.events.csv', checkpoint%event_list, self%checkpoint%event_list, event_name, error)
+    if (allocated(error)) return
+    self%earlier_time = checkpoint%wall_time
+    call self%trace%reopen(path//'.csv', trace_name, checkpoint%trace%length, error)
+    if (with_events .and. .not. allocated(error)) &
+      call self%event_list%reopen(path//'.events.csv', event_name, checkpoint%event_list%length, error)
+  end subroutine reopen
+
+  !> Under which of its two names the file is found that begins as it was marked.
+  subroutine find_marked(path, wanted, mark, name, error)
+    character(len=*), intent(in) :: path
+    type(file_mark_t), intent(in) :: wanted
+    type(file_mark_t), intent(out) :: mark
+    character(len=:), allocatable, intent(out) :: name
+    type(error_t), allocatable, intent(out) :: error
+    type(file_mark_t) :: empty
+    logical :: is_there
+    integer :: i
+    do i = 1, 2
+      name = path
+      if (i == 1) name = path//'.part'
+      mark = empty
+      call mark%move_to(name, wanted%length, is_there)
+      if (is_there .and. mark%checksum == wanted%checksum) return
+    end do
+    call fail(error, printable(path, 200)//': not what the stopped run had written'//restart_hint, status_case_file)
+  end subroutine find_marked
+
+  !> From now on write a checkpoint every `interval` seconds (0: never) and where the run stops before its end.
+  subroutine keep_checkpoints(self, path, case_text, interval)
+    class(trace_files_t), intent(inout) :: self
+    character(len=*), intent(in) :: path, case_text
+    real(dp), intent(in) :: interval
+    self%checkpoint%path = path
+    self%checkpoint%case_text = case_text
+    self%checkpoint_interval = interval
+    self%keeps_archives = interval > 0
+  end subroutine keep_checkpoints
+
+  !> Write a checkpoint of the run with this state. A failure does not stop the run; the earlier checkpoint stays.
+  subroutine take_archive(self, archive)
+    class(trace_files_t), intent(inout) :: self
+    type(archive_t), intent(in) :: archive
+    logical :: is_there
+    self%wants_archive = .false.
+    call system_clock(self%saved)
+    !$omp critical (texts)
+    call self%trace%synchronise(self%checkpoint_error)
+    if (.not. allocated(self%checkpoint_error)) call self%event_list%synchronise(self%checkpoint_error)
+    !$omp end critical (texts)
+    if (allocated(self%checkpoint_error)) return
+    associate (checkpoint => self%checkpoint)
+      call checkpoint%trace%move_to(self%path//'.csv.part', self%trace%length(), is_there)
+      if (is_there .and. self%event_list%length() > 0) &
+        call checkpoint%event_list%move_to(self%path//'.events.csv.part', self%event_list%length(), is_there)
+      call archive%contents(checkpoint%state)
+      checkpoint%wall_time = self%wall_time()
+      !$omp critical (texts)
+      if (.not. allocated(checkpoint%build)) checkpoint%build = program_build()
+      if (is_there) then
+        call checkpoint%save(self%checkpoint_error)
+      else
+        call fail(self%checkpoint_error, printable(self%path, 200)//'.csv.part: cannot be read', status_output)
+      end if
+      !$omp end critical (texts)
+    end associate
+    call system_clock(self%saved)
+  end subroutine take_archive
+
+  !> Time since the run began, without the time between its parts [s].
+  real(dp) function wall_time(self)
+    class(trace_files_t), intent(in) :: self
+    integer(int64) :: now, rate
+    call system_clock(now, rate)
+    wall_time = self%earlier_time + real(now - self%began, dp)/real(rate, dp)
+  end function wall_time
 
   !> Give both files their final names. The first error is told.
   subroutine close(self, error)
@@ -147,9 +269,13 @@ contains
     call look(self)
   end subroutine take_progress
 
-  !> Whether there is a reason to stop.
+  !> Whether there is a reason to stop, or to write a checkpoint.
   subroutine look(self)
     class(trace_files_t), intent(inout) :: self
+    integer(int64) :: now, rate
     if (interrupted() .or. self%trace%has_failed() .or. self%event_list%has_failed()) self%wants_to_stop = .true.
+    if (.not. self%keeps_archives) return
+    call system_clock(now, rate)
+    if (real(now - self%saved, dp) >= self%checkpoint_interval*real(rate, dp)) self%wants_archive = .true.
   end subroutine look
 end module trace_files

@@ -29,6 +29,7 @@ module simulation
     character(len=:), allocatable :: status      !! 'done', or in words why and where it ended
     type(step_statistics_t) :: statistics
     type(run_figures_t) :: figures
+    logical :: can_go_on = .false.               !! stopped from outside or by a limit: the sink was given its state
     real(dp) :: auto_saves = 0                   !! > 0: evaluations of this run over those that method auto needs, measured
   end type run_report_t
 
@@ -84,6 +85,8 @@ contains
     if (present(cycles)) call move_alloc(recorder%cycles, cycles)
     report%statistics = method%totals()
     report%figures = recorder%figures
+    report%can_go_on = any(status == [integration_interrupted, step_limit_reached, evaluation_limit_reached, &
+      revolution_budget_spent])
     if (status == integration_done .and. case%integrator%method == 'adams' .and. .not. (ideal_joint .or. present(cycles))) &
       call measure_auto(case, report)
     !$omp critical (texts)

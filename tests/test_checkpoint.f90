@@ -1,0 +1,220 @@
+!> Checkpoints: what comes back, what is refused, and the checksum that tells.
+module test_checkpoint
+  use, intrinsic :: iso_fortran_env, only: int64
+  use kinds, only: dp
+  use errors, only: error_t, status_case_file
+  use archive, only: archive_t
+  use checksum, only: checksum_t
+  use file_mark, only: file_mark_t
+  use checkpoint, only: checkpoint_t, compare_cases, program_build, read_whole
+  use result_file, only: result_file_t
+  use posix, only: make_directory, remove_directory, remove_file
+  use checks, only: checks_t
+  implicit none
+  private
+  public :: run_test_checkpoint
+
+  character(len=*), parameter :: folder = 'build/test_checkpoint', n = achar(10)
+
+contains
+
+  subroutine run_test_checkpoint(check)
+    class(checks_t), intent(inout) :: check
+    integer :: status
+    call make_directory(folder, status)
+    call test_checksum(check)
+    call test_mark(check)
+    call test_round_trip(check)
+    call test_damage(check)
+    call test_comparison(check)
+    call check%that(program_build() == program_build() .and. len(program_build()) > 20, 'a build is known')
+    call remove_directory(folder, status)
+    call check%that(status == 0, 'nothing is left in the scratch folder')
+  end subroutine run_test_checkpoint
+
+  !> Known values of CRC-64, in one piece and in all others.
+  subroutine test_checksum(check)
+    class(checks_t), intent(inout) :: check
+    type(checksum_t) :: sum
+    character(len=256) :: all_bytes
+    integer(int64) :: whole
+    integer :: i
+    call check%that(sum%value() == 0, 'of nothing')
+    call sum%add('123456789')
+    call check%that(sum%value() == -7395533204333446662_int64 .and. sum%hexadecimal() == '995DC9BBDF1939FA', &
+      'of 123456789: 995DC9BBDF1939FA')
+    do i = 1, 256
+      all_bytes(i:i) = achar(i - 1)
+    end do
+    sum = checksum_t()
+    call sum%add(all_bytes)
+    call check%that(sum%hexadecimal() == '72414B2F65DB3AB0', 'of all bytes: 72414B2F65DB3AB0')
+    whole = sum%value()
+    do i = 1, 255
+      sum = checksum_t()
+      call sum%add(all_bytes(:i))
+      call sum%add(all_bytes(i + 1:))
+      call check%that(sum%value() == whole, 'in two pieces')
+    end do
+  end subroutine test_checksum
+
+  !> A mark that moves on in steps is that of the whole; a file too short, or changed, is seen.
+  subroutine test_mark(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: path = folder//'/text'
+    type(file_mark_t) :: whole, parts
+    type(checksum_t) :: sum
+    logical :: is_there
+    integer :: status
+    call write_file(path, repeat('0123456789'//n, 300000))
+    call whole%move_to(path, 3000000_int64, is_there)
+    call check%that(is_there .and. whole%length == 3000000_int64, 'a mark at a place')
+    call parts%move_to(path, 17_int64, is_there)
+    call parts%move_to(path, 2000001_int64, is_there)
+    call parts%move_to(path, 3000000_int64, is_there)
+    call check%that(is_there .and. parts%checksum == whole%checksum, 'reached in steps')
+    call sum%add(repeat('0123456789'//n, 300000))
+    call parts%move_to(path, 3300000_int64, is_there)
+    call check%that(is_there .and. parts%checksum == sum%value(), 'and at the end')
+    call parts%move_to(path, 3300001_int64, is_there)
+    call check%that(.not. is_there, 'a file that is too short')
+    parts = file_mark_t()
+    call parts%move_to(folder//'/none', 5_int64, is_there)
+    call check%that(.not. is_there, 'a file that is not there')
+    call remove_file(path, status)
+  end subroutine test_mark
+
+  subroutine test_round_trip(check)
+    class(checks_t), intent(inout) :: check
+    type(checkpoint_t) :: saved, loaded
+    type(error_t), allocatable :: error
+    logical :: found
+    call fill(saved)
+    call saved%save(error)
+    call check%that(.not. allocated(error), 'a checkpoint is written')
+    loaded%path = saved%path
+    call loaded%load('this build', found, error)
+    call check%that(found .and. .not. allocated(error), 'and read')
+    call check%that(loaded%case_text == saved%case_text .and. loaded%state == saved%state .and. &
+      .not. abs(loaded%wall_time - 2.5_dp) > 0 .and. loaded%trace%length == 3_int64 .and. &
+      loaded%event_list%checksum == -7, 'and is the same')
+    call loaded%load('that build', found, error)
+    call check%that(refused(found, error, 'another build'), 'that of another build is refused')
+    call loaded%remove()
+    call loaded%load('this build', found, error)
+    call check%that(.not. found .and. .not. allocated(error), 'none is no error')
+    saved%path = folder//'/none/a.checkpoint'
+    call saved%save(error)
+    call check%that(allocated(error), 'one that cannot be written is')
+  end subroutine test_round_trip
+
+  !> Every byte changed, every length cut, something behind, and files of other kinds.
+  subroutine test_damage(check)
+    class(checks_t), intent(inout) :: check
+    type(checkpoint_t) :: saved
+    type(error_t), allocatable :: error
+    character(len=:), allocatable :: bytes, changed
+    integer :: i, k, status, accepted
+    call fill(saved)
+    call saved%save(error)
+    call read_whole(saved%path, bytes, status)
+    call check%that(status == 0 .and. len(bytes) > 300, 'the bytes of a checkpoint')
+    accepted = 0
+    do i = 1, len(bytes)
+      do k = 0, 7, 7
+        changed = bytes
+        changed(i:i) = achar(ieor(ichar(bytes(i:i)), 2**k))
+        if (.not. is_refused(changed)) accepted = accepted + 1
+      end do
+      if (.not. is_refused(bytes(:i - 1))) accepted = accepted + 1
+    end do
+    call check%that(accepted == 0, 'a changed byte or a lost end is refused')
+    call check%that(is_refused(bytes//' ') .and. is_refused(bytes//bytes), 'and something behind the end')
+    call check%that(is_refused('') .and. is_refused('time[s]'//n) .and. is_refused(repeat(achar(0), 5000)), 'and other files')
+    call check%that(is_refused(of_version(2)) .and. .not. is_refused(of_version(1)), 'and another version of the format')
+    call saved%remove()
+
+  contains
+
+    logical function is_refused(bytes)
+      character(len=*), intent(in) :: bytes
+      type(checkpoint_t) :: loaded
+      type(error_t), allocatable :: error
+      logical :: found
+      call write_file(saved%path, bytes)
+      loaded%path = saved%path
+      call loaded%load('this build', found, error)
+      is_refused = refused(found, error, saved%path)
+    end function is_refused
+
+    !> The checkpoint with a number of its format, and the right checksum.
+    function of_version(version) result(text)
+      integer, intent(in) :: version
+      character(len=:), allocatable :: text
+      type(checksum_t) :: sum
+      character(len=8) :: mark
+      character(len=4) :: number
+      integer :: at
+      text = bytes(:len(bytes) - 8)
+      at = index(text, n) + 6   ! behind the kind and the count of the first entry
+      text(at:at + 3) = transfer(version, number)
+      call sum%add(text)
+      text = text//transfer(sum%value(), mark)
+    end function of_version
+  end subroutine test_damage
+
+  !> Cases are compared without the limits, and a difference is named.
+  subroutine test_comparison(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: one = '&joint'//n//'  clearance = 1  ! m'//n//'/'//n//'&integrator'//n//'  max_steps = 0'//n// &
+      '  max_step = 1'//n//'/'//n
+    character(len=*), parameter :: other = '&joint'//n//'  clearance = 1  ! m'//n//'/'//n//'&integrator'//n// &
+      '  max_steps = 100'//n//'  max_step = 2'//n//'/'//n
+    character(len=:), allocatable :: difference
+    call compare_cases(one, one, difference)
+    call check%equal_text(difference, '', 'a case is like itself')
+    call compare_cases(one, other, difference)
+    call check%equal_text(difference, '&integrator max_step = 1, where the run to go on with has max_step = 2', 'a key differs')
+    call compare_cases(one, other(:index(other, '  max_step =') - 1)//'  max_step = 1'//n//'/'//n, difference)
+    call check%equal_text(difference, '', 'a limit may differ')
+    call compare_cases(one, one//'&output'//n//'/'//n, difference)
+    call check%that(index(difference, '&output') > 0, 'a group more')
+    call compare_cases('', one, difference)
+    call check%that(difference /= '', 'a case and none')
+  end subroutine test_comparison
+
+  subroutine fill(checkpoint)
+    type(checkpoint_t), intent(out) :: checkpoint
+    type(archive_t) :: archive
+    real(dp) :: numbers(20)
+    integer :: i
+    numbers = [(sqrt(real(i, dp)), i=1, 20)]
+    call archive%begin_writing()
+    call archive%exchange(numbers)
+    checkpoint%path = folder//'/a.checkpoint'
+    checkpoint%build = 'this build'
+    checkpoint%case_text = '&joint'//n//'/'//n
+    checkpoint%wall_time = 2.5_dp
+    checkpoint%trace%length = 3
+    checkpoint%event_list%checksum = -7
+    call archive%contents(checkpoint%state)
+  end subroutine fill
+
+  logical function refused(found, error, word)
+    logical, intent(in) :: found
+    type(error_t), allocatable, intent(in) :: error
+    character(len=*), intent(in) :: word
+    refused = allocated(error) .and. .not. found
+    if (refused) refused = error%status == status_case_file .and. index(error%message, word) > 0 .and. &
+      index(error%message, n) == 0
+  end function refused
+
+  subroutine write_file(path, bytes)
+    character(len=*), intent(in) :: path, bytes
+    type(result_file_t) :: file
+    type(error_t), allocatable :: error
+    call file%open(path, error)
+    call file%put(bytes)
+    call file%close(error)
+  end subroutine write_file
+end module test_checkpoint
