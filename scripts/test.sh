@@ -34,6 +34,7 @@ count "tests, release" fpm test --profile release
 count "the program" sh -c 'fpm build --profile release && tests/test_program.sh'
 count "studies" tests/test_sweep.sh
 count "faults" tests/test_faults.py --kills 10
+count "runs taken up again" tests/test_resume.py --kills 10
 count "the plots" sh -c 'scripts/setup.sh --python && tests/test_plots.py'
 
 failed=$((failed + wrong))

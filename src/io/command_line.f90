@@ -303,8 +303,8 @@ contains
       '                            models'' own accuracy'//n// &
       '  -j, --jobs N              run several cases side by side (default: the cores there are)'//n// &
       '      --resume              go on with runs that were stopped, each from its checkpoint in DIR: the results'//n// &
-      '                            are those of a run that was not; give the same options as then (the limits'//n// &
-      '                            max_steps and max_evaluations may be others)'//n// &
+      '                            are those of a run that was not; give the same options as then (but the limits'//n// &
+      '                            max_steps, max_evaluations, max_evaluations_per_revolution)'//n// &
       '      --checkpoint SECONDS  how often a run writes CASE.checkpoint (default: 60; 0: never)'//n// &
       '      --check               read and validate the cases, run nothing'//n// &
       '      --template            print a complete, commented case (sweep: study) file with every key and default'//n// &
@@ -316,7 +316,7 @@ contains
       '  -V, --version             print the version'//n//n// &
       'Results for CASE.nml: CASE.csv, CASE.events.csv, CASE.summary.csv, CASE.resolved.nml;'//n// &
       'for STUDY.nml: STUDY.runs.csv, a row for each run, and STUDY.study.nml.'//n// &
-      'Exit status: 0 done; 1 internal error; 2 command line; 3 a case file; 4 the integration could not go'//n// &
-      'on, of one run of a sweep at least; 5 a result could not be written.'//n
+      'Exit status: 0 done; 1 internal error; 2 command line; 3 a case file or checkpoint; 4 the integration'//n// &
+      'could not go on, of one run of a sweep at least; 5 a result could not be written.'//n
   end function help_text
 end module command_line
