@@ -1,6 +1,7 @@
 !> gudgeon: the slider-crank mechanism with clearance in its piston-pin joint. Reads the command line and runs the cases.
 program gudgeon
-  use, intrinsic :: iso_fortran_env, only: error_unit
+  use, intrinsic :: iso_fortran_env, only: error_unit, int64, compiler_options
+  use kinds, only: dp
   use omp_lib, only: omp_get_num_procs
   use errors, only: error_t, fail, status_ok, status_integration, status_output
   use command_line, only: command_line_t, parse_command_line, program_arguments, help_text
@@ -9,6 +10,7 @@ program gudgeon
   use study_runner, only: run_study_file
   use study_file, only: study_template
   use progress, only: progress_wanted
+  use summary, only: build_advice
   use text_tools, only: printable
   use posix, only: fill_standard_descriptors, hold_interrupts, interrupted, ignore_write_signals, write_bytes, error_text, &
     error_interrupted, error_broken_pipe, quit
@@ -47,9 +49,12 @@ contains
     type(command_line_t), intent(in) :: options
     integer, intent(out) :: status
     logical :: show_progress
+    character(len=:), allocatable :: advice
+    integer(int64) :: began, ended, rate
     integer :: i, jobs
 
     call hold_interrupts()
+    call system_clock(began, rate)
     status = status_ok
     jobs = options%jobs
     if (jobs == 0) jobs = omp_get_num_procs()
@@ -60,6 +65,9 @@ contains
       call run_one(trim(options%cases(i)), options, show_progress, status)
     end do
     !$omp end parallel do
+    call system_clock(ended)
+    advice = build_advice(compiler_options(), real(ended - began, dp)/real(rate, dp))
+    if (advice /= '' .and. .not. options%quiet) call notify(advice)
   end subroutine run_all
 
   !> Run every study, one after the other; the highest exit status wins.

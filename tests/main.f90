@@ -25,6 +25,7 @@ program gudgeon_tests
   use test_scenes, only: run_test_scenes
   use test_slow_contact, only: run_test_slow_contact
   use test_standard_problems, only: run_test_standard_problems
+  use test_summary, only: run_test_summary
   use test_trace_files, only: run_test_trace_files
   implicit none
   type(checks_t) :: check
@@ -52,6 +53,7 @@ program gudgeon_tests
   call run_test_scenes(check)
   call run_test_slow_contact(check)
   call run_test_standard_problems(check)
+  call run_test_summary(check)
   call run_test_trace_files(check)
 
   write (output_unit, '(i0,a,i0,a)') check%passed, ' passed, ', check%failed, ' failed'

@@ -10,7 +10,7 @@ module summary
   use version, only: program_version
   implicit none
   private
-  public :: summary_table, summary_line, advice, relative_residual
+  public :: summary_table, summary_line, advice, build_advice, relative_residual
 
   character(len=*), parameter :: newline = achar(10)
 
@@ -120,6 +120,22 @@ contains
     if (report%auto_saves > 1.5_dp) text = "bound by the stability of Adams, not by its accuracy (a stiff film): "// &
       "method = 'auto' needs 1/"//integer_text(nint(report%auto_saves))//" of the evaluations"
   end function advice
+
+  !> What somebody should know who waits for a program that the compiler has not optimised, or an empty text.
+  pure function build_advice(flags, seconds) result(text)
+    character(len=*), intent(in) :: flags   !! of the compiler, separated by blanks
+    real(dp), intent(in) :: seconds         !! that the cases took
+    character(len=:), allocatable :: text
+    character(len=*), parameter :: worth_it(3) = [character(len=7) :: ' -O2', ' -O3', ' -Ofast']
+    real(dp), parameter :: patience = 2
+    integer :: i
+    text = ''
+    if (seconds <= patience) return
+    do i = 1, size(worth_it)
+      if (index(' '//flags, trim(worth_it(i))) > 0) return
+    end do
+    text = 'this is a build for debugging, several times slower than the fast one: fpm run --profile release -- ...'
+  end function build_advice
 
   !> One line for people.
   function summary_line(case, report, wall_time, path) result(text)

@@ -1,0 +1,23 @@
+!> What the summary says besides figures.
+module test_summary
+  use kinds, only: dp
+  use checks, only: checks_t
+  use summary, only: build_advice
+  implicit none
+  private
+  public :: run_test_summary
+
+contains
+
+  !> The line about a build for debugging: only after a while, only where the compiler has not optimised.
+  subroutine run_test_summary(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: debug = '-g -fcheck=bounds -fbacktrace -J build/-O3/x'
+    call check%that(index(build_advice(debug, 2.5_dp), 'fpm run --profile release') > 0, 'a long run of a debug build')
+    call check%equal_text(build_advice(debug, 1.9_dp), '', 'a short run of a debug build')
+    call check%that(index(build_advice('-O1 -g', 60.0_dp), 'release') > 0, 'hardly optimised')
+    call check%equal_text(build_advice('-g -O2 -fPIC', 60.0_dp), '', 'an optimised build')
+    call check%equal_text(build_advice('-mtune=generic -O3 -funroll-loops', 60.0_dp), '', 'the release build')
+    call check%equal_text(build_advice('-Ofast', 60.0_dp), '', 'faster still')
+  end subroutine run_test_summary
+end module test_summary
