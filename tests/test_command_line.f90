@@ -2,6 +2,9 @@
 module test_command_line
   use errors, only: error_t, status_command_line
   use command_line, only: command_line_t, parse_command_line, help_text
+  use accuracy_presets, only: with_preset
+  use case_definition, only: case_t
+  use case_file, only: read_case
   use checks, only: checks_t
   implicit none
   private
@@ -15,7 +18,37 @@ contains
     class(checks_t), intent(inout) :: check
     call test_options(check)
     call test_refusals(check)
+    call test_presets(check)
   end subroutine run_test_command_line
+
+  !> An accuracy level sets method, entry and tolerance of any case, the tighter the higher; --set wins; no level, no change.
+  subroutine test_presets(check)
+    class(checks_t), intent(inout) :: check
+    type(case_t) :: case
+    character(len=1) :: none(0)
+    case = with_level('draft', none)
+    call check%equal_text(trim(case%integrator%method), 'auto', 'draft: the method')
+    call check%that(case%integrator%relative_tolerance > 9e-5, 'draft: the tolerance')
+    case = with_level('standard', ['integrator.method=radau'])
+    call check%equal_text(trim(case%integrator%method), 'radau', 'standard: --set wins')
+    call check%that(abs(case%integrator%relative_tolerance - 1e-6) < 1e-9, 'standard: the tolerance')
+    case = with_level('reference', ['integrator.max_order=9'])
+    call check%that(case%integrator%relative_tolerance < 2e-10 .and. case%integrator%max_order == 9, 'reference')
+    call check%equal_text(trim(case%integrator%contact_entry), 'root', 'reference: contact entry')
+    case = with_level('', none)
+    call check%equal_text(trim(case%integrator%method), 'adams', 'no level: the method of the case')
+
+  contains
+
+    function with_level(level, more) result(case)
+      character(len=*), intent(in) :: level
+      character(len=*), intent(in) :: more(:)
+      type(case_t) :: case
+      type(error_t), allocatable :: error
+      call read_case('cases/flores/dry_0500um.nml', with_preset(level, more), case, error)
+      call check%that(.not. allocated(error), 'level '//level//' is read')
+    end function with_level
+  end subroutine test_presets
 
   subroutine test_options(check)
     class(checks_t), intent(inout) :: check

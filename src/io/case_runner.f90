@@ -2,6 +2,7 @@
 module case_runner
   use errors, only: error_t, fail, status_output, status_integration
   use case_definition, only: case_t
+  use accuracy_presets, only: with_preset
   use case_file, only: read_case, write_resolved
   use command_line, only: command_line_t
   use columns, only: column_list_t, choose_columns
@@ -19,7 +20,7 @@ module case_runner
   use text_tools, only: printable
   implicit none
   private
-  public :: run_case_file, with_accuracy, write_text
+  public :: run_case_file, write_text
 
 contains
 
@@ -86,7 +87,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     class(scene_t), allocatable :: scene
 
-    call read_case(path, with_accuracy(options), case, error)
+    call read_case(path, with_preset(options%accuracy, options%overrides), case, error)
     if (allocated(error)) return
     base = options%out//'/'//case%name
     call choose_columns(case, .false., list, error)
@@ -129,31 +130,6 @@ contains
     call start%checkpoint%remove()   ! the files that it belongs to are written anew
     call write_text(base//'.resolved.nml', case_text, error)
   end subroutine take_place
-
-  !> The overrides of the command line, those of an accuracy preset first.
-  function with_accuracy(options) result(overrides)
-    type(command_line_t), intent(in) :: options
-    character(len=:), allocatable :: overrides(:)
-    character(len=:), allocatable :: tolerance
-    integer :: i
-    select case (options%accuracy)
-    case ('draft')
-      tolerance = 'integrator.relative_tolerance=1e-4'
-    case ('standard')
-      tolerance = 'integrator.relative_tolerance=1e-6'
-    case ('reference')
-      tolerance = 'integrator.relative_tolerance=1e-9'
-    case default
-      allocate (character(len=len(options%overrides)) :: overrides(size(options%overrides)))
-      overrides(:) = options%overrides
-      return
-    end select
-    allocate (character(len=max(len(tolerance), len(options%overrides))) :: overrides(size(options%overrides) + 1))
-    overrides(1) = tolerance
-    do i = 1, size(options%overrides)
-      overrides(i + 1) = options%overrides(i)
-    end do
-  end function with_accuracy
 
   !> Run a case and write BASE.csv, events and summary, or its ideal twin and write BASE.ideal.csv. `start` tells
   !> where the run begins; the twin always does at its beginning.

@@ -299,8 +299,9 @@ contains
       'Dynamics of the slider-crank mechanism with clearance in its piston-pin joint.'//n//n// &
       '  -o, --out DIR             where results go (default: results)'//n// &
       '  -s, --set GROUP.KEY=VALUE override one case value; repeatable'//n// &
-      '  -a, --accuracy LEVEL      draft, standard or reference: presets of the integrator and of the'//n// &
-      '                            models'' own accuracy'//n// &
+      '  -a, --accuracy LEVEL      draft, standard or reference: some 3, 5 or 8 digits of a motion without impacts;'//n// &
+      '                            method auto whatever the case says, contact entry root, the tolerance of the'//n// &
+      '                            level, which the models'' own accuracy follows; --set wins over it'//n// &
       '  -j, --jobs N              run several cases side by side (default: the cores there are)'//n// &
       '      --resume              go on with runs that were stopped, each from its checkpoint in DIR: the results'//n// &
       '                            are those of a run that was not; give the same options as then (but the limits'//n// &

@@ -13,7 +13,8 @@ module study_runner
   use case_file, only: read_case_values, write_resolved
   use case_values, only: case_values_t
   use case_schema, only: find_key
-  use case_runner, only: with_accuracy, write_text
+  use accuracy_presets, only: with_preset
+  use case_runner, only: write_text
   use command_line, only: command_line_t
   use progress, only: progress_t, rate_text
   use posix, only: make_directory, error_text, interrupted
@@ -98,7 +99,7 @@ contains
 
     call read_study(path, sweep%study, error)
     if (allocated(error)) return
-    call read_case_values(sweep%study%case, with_accuracy(options), values, error)
+    call read_case_values(sweep%study%case, with_preset(options%accuracy, options%overrides), values, error)
     if (allocated(error)) return
     sweep%path = options%out//'/'//sweep%study%name
     associate (study => sweep%study, design => sweep%design)
