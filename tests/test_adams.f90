@@ -22,6 +22,7 @@ contains
     call tolerance_is_kept(check)
     call interpolant_is_smooth(check)
     call root_at_start(check)
+    call late_start_at_zero(check)
     call ball_impacts(check)
     call double_passages_are_found(check)
   end subroutine run_test_adams
@@ -198,4 +199,22 @@ contains
     end do
     call check%close_to(worst, 0.0_dp, 1e-4_dp, 'their times')
   end subroutine double_passages_are_found
+  !> A start long after t = 0 with a component at zero, whose tolerance is then so small that it moves by it in less than the
+  !> time can resolve: the first step is longer, and the integration goes on.
+  subroutine late_start_at_zero(check)
+    class(checks_t), intent(inout) :: check
+    type(oscillator_t) :: problem
+    type(adams_t) :: method
+    type(silent_observer_t) :: observer
+    real(dp) :: y(2), t
+    integer :: status
+    problem%n = 2
+    method%settings = settings(2, 1e-12_dp, 1.0_dp)
+    method%settings%absolute = 1e-17_dp
+    t = 1000
+    y = [0.0_dp, 1.0_dp]
+    call integrate(problem, method, t, y, 1001.0_dp, 0, observer, status)
+    call check%that(status == integration_done, 'a late start at zero goes on')
+    call check%close_to(norm2(y - [sin(1.0_dp), cos(1.0_dp)]), 0.0_dp, 1e-10_dp, 'and keeps the tolerance')
+  end subroutine late_start_at_zero
 end module test_adams

@@ -207,11 +207,11 @@ contains
   end subroutine weigh
 
   !> The first step: a step of order 1 whose error, h^2 |y''|/2, is a quarter of the tolerance. y'' is taken from one
-  !> Euler step short enough to stay near (Hairer, Norsett & Wanner 1993, II.4).
+  !> Euler step short enough to stay near (Hairer, Norsett & Wanner 1993, II.4), but not shorter than the time resolves.
   subroutine choose_first_step(self, problem)
     class(adams_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
-    real(dp) :: longest, h, slope, curvature
+    real(dp) :: longest, h, slope, curvature, resolution
     logical :: inside
     integer :: tries
 
@@ -223,6 +223,8 @@ contains
     slope = weighted_norm(self, self%f)
     h = longest*1e-3_dp
     if (slope*h > 1) h = 1/slope
+    resolution = epsilon(h)*max(abs(self%t), 1e-9_dp*self%settings%span)
+    if (h < 10*resolution) h = 1e4_dp*resolution
     do tries = 1, 60
       self%predicted = self%y + h*self%f(:self%n)
       self%statistics%evaluations = self%statistics%evaluations + 1
