@@ -11,6 +11,7 @@ program gudgeon_tests
   use test_contact, only: run_test_contact
   use test_cycle_watch, only: run_test_cycle_watch
   use test_error_growth, only: run_test_error_growth
+  use test_event_proof, only: run_test_event_proof
   use test_events, only: run_test_events
   use test_findings, only: run_test_findings
   use test_friction, only: run_test_friction
@@ -39,6 +40,7 @@ program gudgeon_tests
   call run_test_contact(check)
   call run_test_cycle_watch(check)
   call run_test_error_growth(check)
+  call run_test_event_proof(check)
   call run_test_events(check)
   call run_test_findings(check)
   call run_test_friction(check)

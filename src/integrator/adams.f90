@@ -26,6 +26,7 @@ module adams
   use adams_coefficients, only: adams_coefficients_t, moulton_constants, interpolation_weights, stability_limit
   use adams_differences, only: extrapolate, restore_differences, raise_differences, differences_of
   use step_rates, only: fastest_mode
+  use bernstein, only: from_newton, integral
   use archive, only: archive_t
   implicit none
   private
@@ -74,6 +75,9 @@ module adams
     procedure :: start
     procedure :: step
     procedure :: interpolate
+    procedure :: straying
+    procedure :: bernstein_form
+    procedure :: time_at_share
     procedure :: start_with_history
     procedure :: exchange
   end type adams_t
@@ -572,7 +576,21 @@ contains
       y = self%y
       return
     end if
-    if (.not. self%closed) then
+    if (.not. self%closed) call close_polynomial(self)
+    call interpolation_weights(self%coefficients, k, s, weights)
+    y = weights(k + 2)*self%closing
+    do j = k + 1, 1, -1
+      y = y + weights(j)*self%phi(:, j)
+    end do
+    y = self%y + s*y
+  end subroutine interpolate
+
+  !> The coefficient of the last polynomial of the interpolant, which makes it pass through y at the beginning of the step.
+  pure subroutine close_polynomial(self)
+    class(adams_t), intent(inout) :: self
+    real(dp) :: weights(highest_order + 2)
+    integer :: j
+    associate (k => self%k_old)
       call interpolation_weights(self%coefficients, k, self%x_old - self%x, weights)
       self%closing = self%y_old - self%y
       self%closing = self%closing/(self%x_old - self%x)
@@ -581,12 +599,51 @@ contains
       end do
       self%closing = self%closing/weights(k + 2)
       self%closed = .true.
-    end if
-    call interpolation_weights(self%coefficients, k, s, weights)
-    y = weights(k + 2)*self%closing
-    do j = k + 1, 1, -1
-      y = y + weights(j)*self%phi(:, j)
+    end associate
+  end subroutine close_polynomial
+
+  !> In the interpolant's derivative, the sum of phi_i N_i, no Newton polynomial N_i is beyond 1 within the step, so that it
+  !> is within the sum of the |phi_i|, i > 1, of a constant; what closes the polynomial changes y by less than the last
+  !> correction, h g_k+1 (f_n+1 - f_predicted), which it makes good.
+  pure real(dp) function straying(self, component)
+    class(adams_t), intent(in) :: self
+    integer, intent(in) :: component
+    integer :: j
+    straying = 0
+    do j = 2, self%k_old + 1
+      straying = straying + abs(self%phi(component, j))
     end do
-    y = self%y + s*y
-  end subroutine interpolate
+    straying = (self%x - self%x_old)*(0.5_dp*straying + &
+      abs(self%coefficients%g(self%k_old + 1)*(self%phi(component, 1) - self%f_predicted(component))))
+  end function straying
+
+  pure subroutine bernstein_form(self, component, coefficients, degree)
+    class(adams_t), intent(inout) :: self
+    integer, intent(in) :: component
+    real(dp), intent(out) :: coefficients(0:)
+    integer, intent(out) :: degree
+    real(dp) :: low(highest_order + 1), high(highest_order + 1), h
+    integer :: j, k
+
+    if (.not. self%closed) call close_polynomial(self)
+    k = self%k_old
+    h = self%x - self%x_old
+    high(1) = 0   ! factors of the Newton polynomials: (x - x_n+2-j)/psi_j
+    low(1) = -h/self%coefficients%psi(1)
+    do j = 2, k + 1
+      associate (psi => self%coefficients%psi)
+        high(j) = psi(j - 1)/psi(min(j, k))
+        low(j) = (psi(j - 1) - h)/psi(min(j, k))
+      end associate
+    end do
+    degree = k + 2
+    coefficients(:degree) = integral(self%y_old(component), h, &
+      from_newton([self%phi(component, :k + 1), self%closing(component)], low(:k + 1), high(:k + 1)))
+  end subroutine bernstein_form
+
+  pure real(dp) function time_at_share(self, share)
+    class(adams_t), intent(in) :: self
+    real(dp), intent(in) :: share
+    time_at_share = time_at(self, self%x_old + share*(self%x - self%x_old))
+  end function time_at_share
 end module adams

@@ -49,6 +49,9 @@ module auto_method
     procedure :: step
     procedure :: interpolate
     procedure :: land_on
+    procedure :: straying
+    procedure :: bernstein_form
+    procedure :: time_at_share
     procedure :: totals
     procedure :: exchange
   end type auto_t
@@ -276,6 +279,38 @@ contains
       call self%adams%land_on(problem, t, y)
     end if
   end subroutine land_on
+
+  pure real(dp) function straying(self, component)
+    class(auto_t), intent(in) :: self
+    integer, intent(in) :: component
+    if (self%stiff) then
+      straying = self%radau%straying(component)
+    else
+      straying = self%adams%straying(component)
+    end if
+  end function straying
+
+  pure subroutine bernstein_form(self, component, coefficients, degree)
+    class(auto_t), intent(inout) :: self
+    integer, intent(in) :: component
+    real(dp), intent(out) :: coefficients(0:)
+    integer, intent(out) :: degree
+    if (self%stiff) then
+      call self%radau%bernstein_form(component, coefficients, degree)
+    else
+      call self%adams%bernstein_form(component, coefficients, degree)
+    end if
+  end subroutine bernstein_form
+
+  pure real(dp) function time_at_share(self, share)
+    class(auto_t), intent(in) :: self
+    real(dp), intent(in) :: share
+    if (self%stiff) then
+      time_at_share = self%radau%time_at_share(share)
+    else
+      time_at_share = self%adams%time_at_share(share)
+    end if
+  end function time_at_share
 
   !> The counts of both methods together.
   pure function totals(self) result(statistics)

@@ -12,6 +12,7 @@ module collocation
   use ode_problem, only: ode_problem_t
   use radau_coefficients, only: radau_formula_t, radau_formula, most_stages
   use small_lu, only: decompose, solve
+  use bernstein, only: from_newton
   use archive, only: archive_t
   implicit none
   private
@@ -64,6 +65,7 @@ module collocation
     procedure :: keep
     procedure :: filtered_error
     procedure :: polynomial
+    procedure :: bernstein_form
     procedure :: jacobian_norms
     procedure :: exchange
   end type collocation_t
@@ -166,6 +168,26 @@ contains
       change = change + weights(j)*self%z(:, j)
     end do
   end subroutine polynomial
+
+  !> The same for one component, in Bernstein form on 0..1.
+  pure function bernstein_form(self, component) result(coefficients)
+    class(collocation_t), intent(in) :: self
+    integer, intent(in) :: component
+    real(dp) :: coefficients(0:self%stages_done)
+    real(dp) :: a(0:self%stages_done), node(0:self%stages_done)
+    integer :: i, j, s
+    s = self%stages_done
+    node(0) = 0
+    node(1:) = self%formula(s/2)%c(:s)
+    a(0) = 0
+    a(1:) = self%z(component, :s)
+    do j = 1, s   ! divided differences
+      do i = s, j, -1
+        a(i) = (a(i) - a(i - 1))/(node(i) - node(i - j))
+      end do
+    end do
+    coefficients = from_newton(a, -node(:s - 1), 1 - node(:s - 1))
+  end function bernstein_form
 
   !> Row-sum norms of a_v and a_p in the weights of the error of the rates.
   pure subroutine jacobian_norms(self, most_v, most_p)

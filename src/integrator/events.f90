@@ -1,13 +1,18 @@
 !> Finding events inside a step: the first passage of an event function from negative to not negative.
 !>
-!> Each event function is followed with its rate. A cubic through its values and rates at both ends of the
-!> step, with a margin for its own curvature, tells the steps in which nothing can happen; all others are sampled on the
-!> interpolant, so that a function that passes zero and comes back within one step is found too.
+!> Where the problem gives an event function as a polynomial in the state, it is a polynomial along the step, and its first
+!> passage is found or proven absent (`event_proof`), however short the function stays above zero.
+!>
+!> All others are followed with their rate. A cubic through values and rates at both ends of the step, with a margin for
+!> its own curvature, tells the steps in which nothing is to be expected; the rest is sampled on the interpolant, so that a
+!> function that passes zero and comes back within one step is found in general. So it is, for any function, in the first step
+!> after a restart until it has become negative.
 module events
   use kinds, only: dp
-  use ode_problem, only: ode_problem_t, max_events
+  use ode_problem, only: ode_problem_t, event_form_t, max_events
   use ode_method, only: ode_method_t
   use archive, only: archive_t
+  use event_proof, only: stays_negative_for_certain, isolate_passage
   use roots, only: bracket_t, next_abscissa, narrow
   implicit none
   private
@@ -151,16 +156,20 @@ contains
     real(dp), intent(out) :: t_found
     type(sample_t) :: left, right
     integer :: i, pieces
-    logical :: low
+    logical :: low, known
 
     found = .false.
     t_found = here%t
     left = self%last(index)
     low = self%low(index)
-    if (low .and. stays_negative(left, here)) return
     if (low .and. here%g >= 0 .and. problem%lands_on_step_end(index) .and. .not. here%t < method%t) then
       found = .true.
       return
+    end if
+    if (low .and. left%g < 0) then
+      call search_polynomial(self, method, problem, index, here, known, found, t_found)
+      if (known) return
+      if (stays_negative(left, here)) return
     end if
     pieces = method%order + 2
     do i = 1, pieces
@@ -172,6 +181,42 @@ contains
       left = right
     end do
   end subroutine search_one
+
+  !> Search one function that is negative at its last sample up to `here`, if the problem and the method make it a `known`
+  !> polynomial.
+  subroutine search_polynomial(self, method, problem, index, here, known, found, t_found)
+    class(event_watch_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    class(ode_problem_t), intent(in) :: problem
+    integer, intent(in) :: index
+    type(sample_t), intent(in) :: here
+    logical, intent(out) :: known, found
+    real(dp), intent(out) :: t_found
+    type(event_form_t) :: form
+    type(sample_t) :: left, right
+    real(dp) :: lower, upper
+
+    found = .false.
+    t_found = here%t
+    form = problem%event_form(index)
+    known = form%known
+    if (.not. known) return
+    if (here%g < 0) then
+      if (stays_negative_for_certain(form, method)) return
+    end if
+    call isolate_passage(form, method, known, found, lower, upper)
+    if (.not. (known .and. found)) return
+    left = self%last(index)
+    if (lower > 0) left = sample(self, method, problem, index, method%time_at_share(lower))
+    right = sample(self, method, problem, index, method%time_at_share(upper))
+    if (right%g < 0 .or. left%t > here%t) then   ! a touch within rounding, or beyond the end
+      found = .false.
+      return
+    end if
+    t_found = left%t
+    if (left%g < 0) t_found = passage(self, method, problem, index, left, right)
+    found = t_found <= here%t
+  end subroutine search_polynomial
 
   !> Whether a function that is negative at both ends cannot reach zero between them: its cubic, in Bernstein form and
   !> with its deviation from the straight line counted twice, stays negative.

@@ -88,6 +88,9 @@ module ode_method
     procedure(step), deferred :: step
     procedure(interpolate), deferred :: interpolate
     procedure :: land_on
+    procedure :: straying
+    procedure :: bernstein_form
+    procedure :: time_at_share
     procedure, non_overridable :: exchange_solution
     procedure(exchange), deferred :: exchange
   end type ode_method_t
@@ -190,6 +193,34 @@ contains
     call archive%exchange(self%time_with)
     call archive%exchange(self%stiffness)
   end subroutine exchange_statistics
+
+  !> A bound of how far a component strays, within the last step and by the method's clock, from the straight line between its
+  !> values at both ends. The default knows none.
+  pure real(dp) function straying(self, component)
+    class(ode_method_t), intent(in) :: self
+    integer, intent(in) :: component
+    associate (unused_self => self, unused_component => component)
+    end associate
+    straying = huge(straying)
+  end function straying
+
+  !> The polynomial with which the method interpolates a component over the last step, by its clock, in Bernstein form:
+  !> coefficients(0:degree) on the share 0..1 of the step. The default knows none: degree 0.
+  pure subroutine bernstein_form(self, component, coefficients, degree)
+    class(ode_method_t), intent(inout) :: self
+    integer, intent(in) :: component
+    real(dp), intent(out) :: coefficients(0:)
+    integer, intent(out) :: degree
+    degree = 0
+    coefficients = self%y(component)
+  end subroutine bernstein_form
+
+  !> The time at a share 0..1 of the last step by the method's clock, which by default is the time itself.
+  pure real(dp) function time_at_share(self, share)
+    class(ode_method_t), intent(in) :: self
+    real(dp), intent(in) :: share
+    time_at_share = self%t_old + share*(self%t - self%t_old)
+  end function time_at_share
 
   !> The counts of the whole integration so far.
   pure function totals(self) result(statistics)

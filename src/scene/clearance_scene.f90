@@ -1,7 +1,7 @@
 !> The scene with clearance in the pin joint: free flight or film while apart, contact while touching.
 module clearance_scene
   use kinds, only: dp
-  use ode_problem, only: step_admitted, step_too_deep, event_continue, difference_jacobian
+  use ode_problem, only: event_form_t, step_admitted, step_too_deep, event_continue, difference_jacobian
   use mechanism, only: motion_t, accelerations_t
   use dynamics, only: loads_t, accelerations_under
   use ideal_joint, only: follow_crank, ideal_rod_acceleration
@@ -46,6 +46,7 @@ module clearance_scene
     procedure :: handle_event
     procedure :: lands_on_step_end
     procedure :: is_rough_at
+    procedure :: event_form
     procedure :: exchange
     procedure :: measure_joint
   end type clearance_scene_t
@@ -425,6 +426,20 @@ contains
     integer, intent(in) :: index
     lands_on_step_end = self%rejects_deep_entry .and. index == begins .and. index <= self%n_joint_events
   end function lands_on_step_end
+
+  !> Contact begins and ends where e_x^2 + e_y^2 passes c^2.
+  pure function event_form(self, index) result(form)
+    class(clearance_scene_t), intent(in) :: self
+    integer, intent(in) :: index
+    type(event_form_t) :: form
+    real(dp) :: outwards
+    form%known = index <= min(ends, self%n_joint_events)
+    if (.not. form%known .or. (index == ends) .neqv. (self%phase == phase_contact)) return
+    outwards = merge(1.0_dp, -1.0_dp, index == begins)
+    form%component = [self%n_positions - 1, self%n_positions]
+    form%constant = -outwards*self%joint%clearance**2
+    form%square = outwards
+  end function event_form
 
   !> The contact force ends with the power 1.5 of the penetration.
   pure logical function is_rough_at(self, index)

@@ -1,0 +1,111 @@
+!> Polynomials on [0, 1] in Bernstein form: value = sum over j of b_j C(m, j) x^j (1 - x)^(m - j). A polynomial lies between its
+!> smallest and its largest coefficient, and has no more roots than its coefficients have changes of sign.
+module bernstein
+  use kinds, only: dp
+  implicit none
+  private
+  public :: from_newton, integral, add_product, first_rise, highest_degree
+
+  integer, parameter :: highest_degree = 28   !! of a product
+  integer, parameter :: most_halvings = 48    !! an interval of [0, 1] is not divided further
+
+contains
+
+  !> The polynomial a_1 + F_1 (a_2 + F_2 (a_3 + ...)) with the linear factors F_i that are low_i at 0 and high_i at 1; a has
+  !> one element more than they.
+  pure function from_newton(a, low, high) result(b)
+    real(dp), intent(in) :: a(:), low(:), high(:)
+    real(dp) :: b(0:size(a) - 1), longer(0:size(a) - 1)
+    integer :: i, j, m
+    b = 0
+    b(0) = a(size(a))
+    do i = size(a) - 1, 1, -1
+      m = size(a) - i   ! the degree becomes m
+      longer(0) = low(i)*b(0)
+      do j = 1, m - 1
+        longer(j) = ((m - j)*low(i)*b(j) + j*high(i)*b(j - 1))/m
+      end do
+      longer(m) = high(i)*b(m - 1)
+      b(:m) = longer(:m) + a(i)
+    end do
+  end function from_newton
+
+  !> first + the integral of scale * b from 0 on: one degree more.
+  pure function integral(first, scale, b) result(sum)
+    real(dp), intent(in) :: first, scale, b(0:)
+    real(dp) :: sum(0:size(b))
+    integer :: j
+    sum(0) = first
+    do j = 1, size(b)
+      sum(j) = sum(j - 1) + scale*b(j - 1)/size(b)
+    end do
+  end function integral
+
+  !> Add factor * a * b, a and b of the degree m, to a sum of the degree 2 m <= highest_degree.
+  pure subroutine add_product(factor, a, b, sum)
+    real(dp), intent(in) :: factor, a(0:), b(0:)
+    real(dp), intent(inout) :: sum(0:)
+    real(dp) :: weight(0:size(a) - 1)
+    integer :: i, k, m
+    m = size(a) - 1
+    weight(0) = 1
+    do i = 1, m
+      weight(i) = weight(i - 1)*(m + 1 - i)/i   ! C(m, i)
+    end do
+    do k = 0, 2*m
+      block
+        real(dp) :: total, all
+        total = 0
+        all = 0
+        do i = max(0, k - m), min(k, m)
+          total = total + weight(i)*weight(k - i)*a(i)*b(k - i)
+          all = all + weight(i)*weight(k - i)   ! C(2 m, k) in the end
+        end do
+        sum(k) = sum(k) + factor*total/all
+      end block
+    end do
+  end subroutine add_product
+
+  !> Where a polynomial that is negative at 0 first becomes not negative: an interval lower < x <= upper at whose beginning it
+  !> is negative, at whose end it is not, with one root. `found` is false where there is none in [0, 1]: that is proven
+  !> by the coefficients, up to their rounding, but for a touch that lasts less than 2^-48.
+  pure subroutine first_rise(b, found, lower, upper)
+    real(dp), intent(in) :: b(0:)
+    logical, intent(out) :: found
+    real(dp), intent(out) :: lower, upper
+    call search_between(b, 0.0_dp, 1.0_dp, 0, found, lower, upper)
+  end subroutine first_rise
+
+  !> The same between x = from and from + width, b being the polynomial there.
+  pure recursive subroutine search_between(b, from, width, halvings, found, lower, upper)
+    real(dp), intent(in) :: b(0:), from, width
+    integer, intent(in) :: halvings
+    logical, intent(out) :: found
+    real(dp), intent(out) :: lower, upper
+    real(dp) :: left(0:size(b) - 1), right(0:size(b) - 1)
+    integer :: m
+    m = size(b) - 1
+    lower = from
+    upper = from + width
+    found = .false.
+    if (maxval(b) < 0) return
+    found = b(m) >= 0 .and. (count((b(:m - 1) < 0) .neqv. (b(1:) < 0)) == 1 .or. halvings == most_halvings)
+    if (found .or. halvings == most_halvings) return
+    call halve(b, left, right)
+    call search_between(left, from, 0.5_dp*width, halvings + 1, found, lower, upper)
+    if (.not. found) call search_between(right, from + 0.5_dp*width, 0.5_dp*width, halvings + 1, found, lower, upper)
+  end subroutine search_between
+
+  !> The polynomial on both halves of [0, 1], each again on [0, 1] (de Casteljau).
+  pure subroutine halve(b, left, right)
+    real(dp), intent(in) :: b(0:)
+    real(dp), intent(out) :: left(0:), right(0:)
+    integer :: i, m
+    m = size(b) - 1
+    right = b
+    do i = 0, m
+      left(i) = right(0)
+      right(:m - i - 1) = 0.5_dp*(right(:m - i - 1) + right(1:m - i))
+    end do
+  end subroutine halve
+end module bernstein

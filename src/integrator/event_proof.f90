@@ -1,0 +1,63 @@
+!> The first passage of an event function through zero within a step where the function is a known polynomial in the state:
+!> found, or proven absent, from the polynomial that the method itself interpolates with.
+module event_proof
+  use kinds, only: dp
+  use ode_problem, only: event_form_t
+  use ode_method, only: ode_method_t
+  use bernstein, only: add_product, first_rise, highest_degree
+  implicit none
+  private
+  public :: stays_negative_for_certain, isolate_passage
+
+contains
+
+  !> Whether the function is certainly negative all along the last step, from a bound of how far each component of the state
+  !> strays from the straight line between its values at both ends. (Of the straight lines the function is a parabola, which
+  !> lies below its Bernstein coefficients.)
+  pure logical function stays_negative_for_certain(form, method) result(negative)
+    type(event_form_t), intent(in) :: form
+    class(ode_method_t), intent(in) :: method
+    real(dp) :: coefficient(3), straying, slope
+    integer :: j
+    coefficient = form%constant
+    slope = 0
+    do j = 1, 2
+      if (form%component(j) == 0) cycle
+      associate (a => method%y_old(form%component(j)), b => method%y(form%component(j)), linear => form%linear(j), &
+          square => form%square(j))
+        straying = method%straying(form%component(j))
+        coefficient = coefficient + [(linear + square*a)*a, 0.5_dp*linear*(a + b) + square*a*b, (linear + square*b)*b]
+        slope = slope + (max(abs(linear + 2*square*a), abs(linear + 2*square*b)) + abs(square)*straying)*straying
+      end associate
+    end do
+    negative = maxval(coefficient) + slope < 0
+  end function stays_negative_for_certain
+
+  !> The part lower < x <= upper of the last step, by the method's own clock, in which a function that is negative at the
+  !> beginning of the step first becomes not negative. `known` is false where the method cannot tell.
+  pure subroutine isolate_passage(form, method, known, found, lower, upper)
+    type(event_form_t), intent(in) :: form
+    class(ode_method_t), intent(inout) :: method
+    logical, intent(out) :: known, found
+    real(dp), intent(out) :: lower, upper
+    real(dp) :: component(0:highest_degree/2), one(0:highest_degree/2), g(0:highest_degree)
+    integer :: j, degree
+
+    found = .false.
+    known = .true.
+    lower = 0
+    upper = 1
+    one = 1
+    g = form%constant
+    degree = 1
+    do j = 1, 2
+      if (form%component(j) == 0) cycle
+      call method%bernstein_form(form%component(j), component, degree)
+      known = degree > 0 .and. degree <= highest_degree/2
+      if (.not. known) return
+      call add_product(form%linear(j), component(:degree), one(:degree), g(:2*degree))
+      call add_product(form%square(j), component(:degree), component(:degree), g(:2*degree))
+    end do
+    call first_rise(g(:2*degree), found, lower, upper)
+  end subroutine isolate_passage
+end module event_proof
