@@ -17,6 +17,7 @@ contains
     class(checks_t), intent(inout) :: check
     call constant_step_coefficients(check)
     call variable_step_coefficients(check)
+    call rejected_step_coefficients(check)
     call orders_at_fixed_step(check)
     call stability_limits(check)
   end subroutine run_test_adams_order
@@ -80,6 +81,34 @@ contains
     worst = max(worst, abs(sum(basis/[(j + 1, j=0, k)])/coefficients%g(k + 1) - 1))
     call check%close_to(worst, 0.0_dp, 1e-12_dp, 'g, beta and sigma on an uneven mesh')
   end subroutine variable_step_coefficients
+
+  !> A step that is tried, taken back and tried again shorter has the coefficients of the shorter step.
+  subroutine rejected_step_coefficients(check)
+    class(checks_t), intent(inout) :: check
+    type(adams_coefficients_t) :: rejected, plain
+    real(dp), parameter :: h(9) = [0.1_dp, 0.2_dp, 0.4_dp, 0.4_dp, 0.3_dp, 0.15_dp, 0.15_dp, 0.2_dp, 0.25_dp]
+    real(dp) :: worst
+    integer :: i, k, tries
+    do k = 2, 6
+      call plain%reset()
+      call rejected%reset()
+      worst = 0
+      do i = 1, size(h)
+        call plain%update(h(i), merge(h(max(1, i - 1)), 0.0_dp, i > 1), min(i, k), min(i - 1, k))
+        do tries = 1, merge(2, 0, i > k)   ! once the full history is there
+          call rejected%update(tries*2*h(i), h(i - 1), k, k)
+          call rejected%take_back(tries*2*h(i), k)
+        end do
+        call rejected%update(h(i), merge(h(max(1, i - 1)), 0.0_dp, i > 1), min(i, k), min(i - 1, k))
+        if (i <= k) cycle
+        if (abs(h(i) - h(i - 1)) > 0) worst = max(worst, maxval(abs(rejected%g(:k + 1) - plain%g(:k + 1))), &
+          maxval(abs(rejected%beta(:k) - plain%beta(:k))), abs(rejected%beta_next - plain%beta_next), &
+          abs(rejected%sigma_next - plain%sigma_next))
+        worst = max(worst, maxval(abs(rejected%psi(:k) - plain%psi(:k))))
+      end do
+      call check%close_to(worst, 0.0_dp, 1e-13_dp, 'a rejected step leaves no trace in the coefficients, k = '//trim(digits(k)))
+    end do
+  end subroutine rejected_step_coefficients
 
   !> The largest error up to t = 4 of y' = y cos t with `n` steps of order k, from an exact history.
   function error_of(k, n) result(error)

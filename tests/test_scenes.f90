@@ -5,7 +5,7 @@ module test_scenes
   use errors, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
-  use scene, only: scene_t, evaluation_t, phase_contact
+  use scene, only: scene_t, evaluation_t, phase_contact, event_contact_begins, event_contact_ends
   use clearance_scene, only: clearance_scene_t
   use scene_builder, only: build_scene
   use collecting_sink, only: trace_t, run_case, column
@@ -20,6 +20,7 @@ contains
   subroutine run_test_scenes(check)
     class(checks_t), intent(inout) :: check
     call step_rejection_limits_entry(check)
+    call rejected_steps_are_not_counted(check)
     call sticking_is_the_limit_of_ramps(check)
     call sticking_keeps_the_sliding_speed(check)
     call energy_is_accounted_for(check)
@@ -54,6 +55,35 @@ contains
     error(2) = maxval(abs(fine%event(:10)%time - root%event(:10)%time))
     call check%that(error(1) < 1e-6_dp .and. error(2) < 0.05_dp*error(1), 'instants converge with the depth')
   end subroutine step_rejection_limits_entry
+
+  !> Hundreds of steps are rejected, by the error and for their depth; contacts and peaks are those of the accepted ones: every
+  !> accepted step is a row, every contact begins and ends once, and no peak is larger than in the rows.
+  subroutine rejected_steps_are_not_counted(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    integer :: i, begun, wrong
+
+    trace = run_case('cases/flores/dry_0100um.nml', [character(len=long) :: 'integrator.relative_tolerance=1e-7', &
+      'integrator.revolutions=0.4', 'integrator.contact_entry=step_rejection', 'integrator.max_penetration=1e-9', &
+      'output.every_step=T'])
+    associate (s => trace%report%statistics, figures => trace%report%figures, e => trace%event)
+      call check%that(s%rejected_error > 50 .and. s%rejected_penetration > 10, 'enough steps are rejected')
+      begun = 0
+      wrong = 0
+      do i = 1, size(e)
+        if (e(i)%kind /= merge(event_contact_begins, event_contact_ends, mod(i, 2) == 1)) wrong = wrong + 1
+        if (e(i)%kind == event_contact_begins) begun = begun + 1
+      end do
+      call check%that(wrong == 0 .and. begun == figures%contacts, 'contacts begin and end in turn, each counted once')
+      call check%that(s%restarts == size(e), 'one restart an event')
+      call check%that(size(trace%values, 2) - s%accepted >= 1 .and. size(trace%values, 2) - s%accepted <= 1 + size(e), &
+        'a row for every accepted step, none for the others')
+      call check%close_to(figures%max_penetration, maxval(-trace%values(column(trace, 'film_thickness[m]'), :)), 1e-15_dp, &
+        'the deepest penetration is that of an accepted point')
+      call check%close_to(figures%max_pin_force, maxval(hypot(trace%values(column(trace, 'pin_force_x[N]'), :), &
+        trace%values(column(trace, 'pin_force_y[N]'), :))), 1e-9_dp, 'and so is the largest force')
+    end associate
+  end subroutine rejected_steps_are_not_counted
 
   !> Coulomb friction with sticking resolved by events against Ambrosio's ramps as they steepen.
   subroutine sticking_is_the_limit_of_ramps(check)

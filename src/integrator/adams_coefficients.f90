@@ -21,6 +21,7 @@ module adams_coefficients
     real(dp) :: v(highest_order) = 0          !! column of the recurrence for g, kept from step to step
     real(dp) :: w(highest_order) = 0          !! work
     real(dp) :: beta_next = 1, sigma_next = 1 !! beta_k+1 and sigma_k+2, where the difference of order k is known
+    real(dp) :: psi_before = 0                !! psi_k before the step, for `take_back`
     integer :: ns = 0                         !! steps taken with the present step size, this one included
   contains
     procedure :: reset
@@ -65,6 +66,7 @@ contains
     real(dp) :: reach, previous
     integer :: i, ns
 
+    self%psi_before = self%psi(k)
     if (abs(h - h_old) > 0) self%ns = 0
     if (self%ns <= k_old) self%ns = self%ns + 1
     ns = self%ns
@@ -136,6 +138,7 @@ contains
     do i = 2, k
       self%psi(i - 1) = self%psi(i) - h
     end do
+    self%psi(k) = self%psi_before
     self%ns = 0
   end subroutine take_back
 
