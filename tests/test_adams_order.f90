@@ -96,12 +96,12 @@ contains
       do i = 1, size(h)
         call plain%update(h(i), merge(h(max(1, i - 1)), 0.0_dp, i > 1), min(i, k), min(i - 1, k))
         do tries = 1, merge(2, 0, i > k)   ! once the full history is there
-          call rejected%update(tries*2*h(i), h(i - 1), k, k)
+          call rejected%update(tries*2*h(i), h(max(1, i - 1)), k, k)
           call rejected%take_back(tries*2*h(i), k)
         end do
         call rejected%update(h(i), merge(h(max(1, i - 1)), 0.0_dp, i > 1), min(i, k), min(i - 1, k))
         if (i <= k) cycle
-        if (abs(h(i) - h(i - 1)) > 0) worst = max(worst, maxval(abs(rejected%g(:k + 1) - plain%g(:k + 1))), &
+        if (abs(h(i) - h(max(1, i - 1))) > 0) worst = max(worst, maxval(abs(rejected%g(:k + 1) - plain%g(:k + 1))), &
           maxval(abs(rejected%beta(:k) - plain%beta(:k))), abs(rejected%beta_next - plain%beta_next), &
           abs(rejected%sigma_next - plain%sigma_next))
         worst = max(worst, maxval(abs(rejected%psi(:k) - plain%psi(:k))))
