@@ -95,6 +95,8 @@ contains
       self%a_p(k, m), self%a_v(k, k), self%e1(k, k), self%e2(k, k, most_pairs), self%right(k), self%pivot1(k), &
       self%pivot2(k, most_pairs), self%inverse_weight(n))
     self%z = 0
+    self%w = 0    ! the columns beyond the stages in use take part in halvings
+    self%dw = 0
   end subroutine prepare
 
   !> What is remembered between two steps, to or from an archive, after `prepare`.

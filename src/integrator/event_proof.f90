@@ -26,6 +26,8 @@ contains
       associate (a => method%y_old(form%component(j)), b => method%y(form%component(j)), linear => form%linear(j), &
           square => form%square(j))
         straying = method%straying(form%component(j))
+        negative = straying < huge(straying)
+        if (.not. negative) return
         coefficient = coefficient + [(linear + square*a)*a, 0.5_dp*linear*(a + b) + square*a*b, (linear + square*b)*b]
         slope = slope + (max(abs(linear + 2*square*a), abs(linear + 2*square*b)) + abs(square)*straying)*straying
       end associate
