@@ -4,6 +4,7 @@
 #   . scripts/setup.sh         from the top of the checkout: also puts fpm on the PATH of the calling shell
 #   scripts/setup.sh           the same for scripts and for later shells
 #   scripts/setup.sh --python  also what scripts/plot.py and scripts/report.py need, in .venv
+#   scripts/setup.sh --studies also what scripts/sensitivity.py, scripts/run_studies.sh and scripts/cluster need
 #
 # Needs root or sudo only to install Debian packages. An fpm that is installed here lives in .venv, with a link in
 # /usr/local/bin or ~/.local/bin. POSIX sh; leaves no option of the calling shell changed.
@@ -41,7 +42,7 @@ gudgeon_venv() {   # .venv, a virtual environment of Python, made where it is mi
 gudgeon_pip() { .venv/bin/python -m pip install --quiet --disable-pip-version-check "$@" >&2; }
 
 gudgeon_python() {   # the packages of the plots; pip looks only at what is missing
-  gudgeon_venv && gudgeon_pip -r scripts/requirements.txt
+  gudgeon_venv && gudgeon_pip -r scripts/requirements.txt "$@"
 }
 
 gudgeon_setup() {
@@ -72,15 +73,21 @@ gudgeon_status=$?
 case "${0##*/} $#" in
   "setup.sh 0") ;;
   setup.sh*)
-    if [ "$*" != --python ]; then
-      echo "setup: usage: scripts/setup.sh [--python]" >&2
-      gudgeon_status=2
-    elif [ "$gudgeon_status" = 0 ]; then
-      gudgeon_python || gudgeon_status=1
+    case "$*" in
+      --python) gudgeon_packages= ;;
+      --studies) gudgeon_packages="-r scripts/requirements-studies.txt" ;;
+      *)
+        echo "setup: usage: scripts/setup.sh [--python | --studies]" >&2
+        gudgeon_status=2
+        ;;
+    esac
+    if [ "$gudgeon_status" = 0 ]; then
+      # shellcheck disable=SC2086  # an option and its value, or nothing
+      gudgeon_python $gudgeon_packages || gudgeon_status=1
     fi
     ;;
 esac
 unset -f gudgeon_apt gudgeon_link gudgeon_venv gudgeon_pip gudgeon_python gudgeon_setup
-unset gudgeon_sudo gudgeon_dir
+unset gudgeon_sudo gudgeon_dir gudgeon_packages
 # the status of the last command is that of the set-up, sourced or not
 [ "$gudgeon_status" = 0 ]
