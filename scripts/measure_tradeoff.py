@@ -29,6 +29,7 @@ use_virtual_environment()
 import pandas as pd  # noqa: E402
 
 from gudgeon_plots import figures, tradeoff  # noqa: E402
+from gudgeon_plots.program import release_program  # noqa: E402
 from gudgeon_plots.results import MissingResult, Run, load_run, read_summary  # noqa: E402
 from gudgeon_plots.tradeoff import Reference, Settings  # noqa: E402
 
@@ -87,16 +88,6 @@ def arguments() -> argparse.Namespace:
         "--timeout", type=float, default=120.0, metavar="S", help="give a run up after this (default: 120)"
     )
     return parser.parse_args()
-
-
-def release_program() -> Path:
-    """The release build of gudgeon, brought up to date."""
-    command = ". scripts/setup.sh && fpm build --profile release >&2 && fpm run --profile release --runner echo"
-    outcome = subprocess.run(["sh", "-c", command], cwd=TOP, capture_output=True, text=True, check=False)
-    found = [word for word in outcome.stdout.split() if word.endswith("/app/gudgeon")]
-    if outcome.returncode != 0 or not found:
-        raise MissingResult(f"cannot build gudgeon:\n{outcome.stderr}")
-    return TOP / found[-1]
 
 
 class Study:

@@ -7,14 +7,18 @@ from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
 PACKAGES = ("matplotlib", "numpy", "pandas", "plotly")
+STUDIES = ("SALib", "f90nml")
 
 
-def use_virtual_environment() -> None:
-    """Go on in .venv's Python if this one lacks the packages; leave with what to do if neither has them."""
-    missing = [name for name in PACKAGES if importlib.util.find_spec(name) is None]
+def use_virtual_environment(studies: bool = False) -> None:
+    """Go on in .venv's Python if this one lacks the packages, with `studies` also those of parameter studies; leave with
+    what to do if neither has them."""
+    wanted = PACKAGES + (STUDIES if studies else ())
+    missing = [name for name in wanted if importlib.util.find_spec(name) is None]
     if not missing:
         return
     python = TOP / ".venv" / "bin" / "python"
     if python.exists() and Path(sys.prefix).resolve() != python.parents[1].resolve():
         os.execv(python, [str(python), *sys.argv])
-    sys.exit(f"{Path(sys.argv[0]).name}: needs {', '.join(missing)}: run scripts/setup.sh --python")
+    option = "--studies" if studies else "--python"
+    sys.exit(f"{Path(sys.argv[0]).name}: needs {', '.join(missing)}: run scripts/setup.sh {option}")

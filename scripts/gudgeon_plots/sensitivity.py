@@ -1,0 +1,222 @@
+"""Global sensitivity of a study's results to its parameters, by SALib: Morris' elementary effects, Sobol's indices."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure as Drawing
+from SALib.analyze import morris as morris_analysis
+from SALib.analyze import sobol as sobol_analysis
+from SALib.sample import morris as morris_sample
+from SALib.sample import sobol as sobol_sample
+
+from .figures import add_legend
+from .style import BLUE, GREY, ORANGE, VERMILION, WIDTH
+from .study import Parameter, Runs
+
+METHODS = ("morris", "sobol")
+
+#: Levels of Morris' grid.
+LEVELS = 4
+
+#: Of every interval given.
+CONFIDENCE = 0.95
+
+#: Resamples of the bootstrap that gives the intervals.
+RESAMPLES = 500
+
+#: For each method, the index that ranks parameters, then the one beside it.
+INDICES = {"morris": ("mu_star", "sigma"), "sobol": ("ST", "S1")}
+
+
+@dataclass(frozen=True)
+class Output:
+    """A column of the results, or its decimal logarithm."""
+
+    column: str
+    log: bool = False
+
+    @classmethod
+    def parse(cls, text: str) -> "Output":
+        return cls(text.removeprefix("log:"), text.startswith("log:"))
+
+    @property
+    def name(self) -> str:
+        return f"log10 {self.column}" if self.log else self.column
+
+    def values(self, runs: Runs) -> np.ndarray:
+        """NaN where the run failed or has no such value."""
+        values = np.where(runs.done, pd.to_numeric(runs.table[self.column], errors="coerce"), np.nan).astype(float)
+        if not self.log:
+            return values
+        return np.log10(values, where=values > 0, out=np.full(len(values), np.nan))
+
+
+@dataclass(frozen=True)
+class Indices:
+    """What one method says about one output: a row a parameter."""
+
+    method: str
+    output: str
+    table: pd.DataFrame
+    points: int  # trajectories or base points that were used
+    left_out: int  # those left out because one of their runs has no value
+    spread: float  # standard deviation of the output
+    mean: float
+
+    @property
+    def ranked(self) -> pd.DataFrame:
+        return self.table.sort_values(INDICES[self.method][0], ascending=False)
+
+    @property
+    def constant(self) -> bool:
+        return not self.spread > 0
+
+
+def problem(parameters: Sequence[Parameter]) -> dict[str, object]:
+    """As SALib wants it."""
+    return {
+        "num_vars": len(parameters),
+        "names": [parameter.key for parameter in parameters],
+        "bounds": [parameter.bounds for parameter in parameters],
+    }
+
+
+def sample(method: str, parameters: Sequence[Parameter], points: int, seed: int) -> np.ndarray:
+    """Rows of the sampled space: `points` trajectories of Morris, or base points of Saltelli's scheme."""
+    if method == "morris":
+        return morris_sample.sample(problem(parameters), points, num_levels=LEVELS, seed=seed)
+    return sobol_sample.sample(problem(parameters), points, calc_second_order=False, seed=seed)
+
+
+def block(method: str, parameters: int) -> int:
+    """Rows that stand and fall together: a trajectory, or a base point with its exchanges."""
+    return parameters + (1 if method == "morris" else 2)
+
+
+def values(parameters: Sequence[Parameter], sampled: np.ndarray) -> np.ndarray:
+    """Of the case, for rows of the sampled space."""
+    return np.column_stack([p.value(column) for p, column in zip(parameters, sampled.T)])
+
+
+def analyse(
+    method: str, parameters: Sequence[Parameter], sampled: np.ndarray, result: np.ndarray, output: str, seed: int
+) -> Indices:
+    """Indices of a result with their confidence intervals. A block with a result that is not finite is left out whole:
+    the others are still a sample of the same scheme, though no longer one of the runs that failed."""
+    size = block(method, len(parameters))
+    whole = np.isfinite(result.reshape(-1, size)).all(axis=1)
+    kept = np.repeat(whole, size)
+    names = [parameter.key for parameter in parameters]
+    columns = ("mu", "mu_star", "mu_star_conf", "sigma") if method == "morris" else ("S1", "S1_conf", "ST", "ST_conf")
+    used, given = result[kept], int(whole.sum())
+    spread = float(used.std()) if given else np.nan
+    if given < 2 or spread <= 1e-12 * np.abs(used).max():
+        table = pd.DataFrame(0.0 if given >= 2 else np.nan, index=names, columns=list(columns))
+        spread = 0.0 if given >= 2 else np.nan
+    else:
+        settings = {"conf_level": CONFIDENCE, "num_resamples": RESAMPLES, "seed": seed}
+        if method == "morris":
+            found = morris_analysis.analyze(problem(parameters), sampled[kept], used, num_levels=LEVELS, **settings)
+        else:
+            found = sobol_analysis.analyze(problem(parameters), used, calc_second_order=False, **settings)
+        table = pd.DataFrame({name: np.asarray(found[name], dtype=float) for name in columns}, index=names)
+    mean = float(used.mean()) if given else np.nan
+    return Indices(method, output, table, given, int((~whole).sum()), spread, mean)
+
+
+def prefixes(method: str, parameters: int, rows: int) -> list[int]:
+    """Rows of a quarter, a half and all of the sample."""
+    size = block(method, parameters)
+    points = rows // size
+    return [size * n for n in sorted({max(points // 4, 2), max(points // 2, 2), points})]
+
+
+def records(found: Indices) -> list[dict[str, object]]:
+    """Rows of the table of indices: one for each parameter and index."""
+    rows = []
+    for parameter, row in found.table.iterrows():
+        for index in (name for name in found.table.columns if not name.endswith("_conf")):
+            rows.append(
+                {
+                    "method": found.method,
+                    "output": found.output,
+                    "parameter": parameter,
+                    "index": index,
+                    "value": row[index],
+                    "confidence": row.get(f"{index}_conf", np.nan),
+                    "points": found.points,
+                    "points_left_out": found.left_out,
+                }
+            )
+    return rows
+
+
+def describe(found: Indices) -> str:
+    """One sentence or three."""
+    left_out = f", {found.left_out} left out for runs without a value" if found.left_out else ""
+    what = "trajectories" if found.method == "morris" else "base points"
+    head = f"{found.output}, {found.method} ({found.points} {what}{left_out}):"
+    if found.points < 2:
+        return f"{head} too few are left to say anything."
+    if found.constant:
+        return f"{head} {found.mean:.4g} in every run: no parameter matters within these ranges."
+    index, beside = INDICES[found.method]
+    ranked = found.ranked
+    ahead = ranked[ranked[index] > ranked[f"{index}_conf"]]
+    said = [f"{key} {row[index]:.2g} +- {row[f'{index}_conf']:.1g} ({row[beside]:.2g})" for key, row in ahead.iterrows()]
+    text = f"{head} mean {found.mean:.4g}, standard deviation {found.spread:.3g}; {index} ({beside}): {', '.join(said)}"
+    nothing = [key for key, row in ranked.iterrows() if row[index] == 0]
+    unclear = [key for key in ranked.index if key not in ahead.index and key not in nothing]
+    text += f"; not told from none: {', '.join(unclear)}" if unclear else ""
+    text += f"; none at all: {', '.join(nothing)}." if nothing else "."
+    if found.method == "sobol":
+        alone = 100 * ranked["S1"].sum()
+        text += f" The parameters one by one explain {alone:.0f} % of the variance, the rest is interaction"
+        text += " (scatter of a chaotic motion included)."
+    return text
+
+
+def draw(found: Sequence[Indices], parameters: Sequence[Parameter], title: str) -> Drawing:
+    """A row of panels for each output that varies, a panel for each method; parameters in the order of the study."""
+    still = {item.output: item.mean for item in found if item.constant}
+    outputs = list(dict.fromkeys(item.output for item in found if item.output not in still)) or list(still)
+    methods = [method for method in METHODS if any(item.method == method for item in found)]
+    height = 0.7 + len(outputs) * (0.75 + 0.24 * len(parameters))
+    drawing, axes = plt.subplots(
+        len(outputs), len(methods), figsize=(WIDTH, height), squeeze=False, sharey=True, layout="constrained"
+    )
+    for item in found:
+        if item.output in outputs:
+            draw_panel(axes[outputs.index(item.output)][methods.index(item.method)], item, parameters)
+    notes = [f"{name.replace('_', ' ')}: {mean:.3g} in every run" for name, mean in still.items() if name not in outputs]
+    drawing.suptitle("\n".join([title, *notes]))
+    add_legend(drawing, drawing.axes)
+    return drawing
+
+
+def draw_panel(axis: plt.Axes, found: Indices, parameters: Sequence[Parameter]) -> None:
+    place = np.arange(len(parameters))
+    axis.set_yticks(place, [parameter.key for parameter in parameters])
+    axis.set_ylim(len(parameters) - 0.4, -0.6)
+    axis.grid(axis="y", visible=False)
+    name = found.output.replace("_", " ")
+    axis.set_title(f"{name}, {'Morris' if found.method == 'morris' else 'Sobol'}")
+    if found.constant:
+        text = "no value" if np.isnan(found.mean) else f"{found.mean:.3g} in every run"
+        axis.text(0.5, 0.5, text, transform=axis.transAxes, ha="center", va="center", color=GREY)
+        axis.set_xticks([])
+        return
+    main, beside = INDICES[found.method]
+    labels = {"mu_star": "µ* (mean size)", "sigma": "σ (scatter)", "ST": "total index", "S1": "index alone"}
+    for offset, index, colour in ((-0.18, main, BLUE), (0.18, beside, ORANGE)):
+        error = found.table.get(f"{index}_conf")
+        axis.barh(place + offset, found.table[index], 0.34, color=colour, label=labels[index])
+        if error is not None:
+            axis.errorbar(
+                found.table[index], place + offset, xerr=error, fmt="none", ecolor=VERMILION, elinewidth=0.8, capsize=1.5
+            )
+    axis.axvline(0, color=GREY, linewidth=0.6)
+    axis.set_xlabel("effect over the whole range" if found.method == "morris" else "share of the variance")

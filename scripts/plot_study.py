@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+"""Draws parameter studies from their results, NAME.runs.csv and NAME.strobe.csv.
+
+    scripts/plot_study.py                                      the shipped studies, as scripts/run_studies.sh leaves them
+    scripts/plot_study.py --picture map                        one of map, bifurcation, restitution
+    scripts/plot_study.py results/x.runs.csv --columns impacts any study of one parameter or two: curves or maps
+
+Prints the numbers of the pictures and where they are. Failed runs are left blank, and counted on standard error.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+from gudgeon_plots.environment import TOP, use_virtual_environment
+
+use_virtual_environment(studies=True)
+
+import numpy as np  # noqa: E402
+
+from gudgeon_plots import figures, study_pictures  # noqa: E402
+from gudgeon_plots.results import MissingResult  # noqa: E402
+from gudgeon_plots.study import Runs, warn_of_failures  # noqa: E402
+
+COLUMNS = ("min_film_thickness", "contact_time_fraction")
+
+MAPS = ("map_I", "map_I_oscillating", "map_IV", "map_IV_oscillating")
+
+#: Of the Flores studies, where it is not their parameter.
+FLORES_SPEED = 523.5987755982989  # rad/s
+FLORES_CLEARANCE = 100e-6  # m
+
+
+def arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("runs", nargs="*", type=Path, metavar="NAME.runs.csv", help="results of any study")
+    parser.add_argument("--picture", action="append", choices=tuple(PICTURES), help="of the shipped studies; repeatable")
+    parser.add_argument("--columns", nargs="+", default=list(COLUMNS), metavar="COLUMN", help="without their units")
+    parser.add_argument(
+        "--results", type=Path, default=TOP / "results" / "studies", metavar="DIR", help="(default: results/studies)"
+    )
+    parser.add_argument("--out", type=Path, metavar="DIR", help="pictures (default: beside the results)")
+    parser.add_argument("--format", action="append", choices=("png", "svg", "pdf"), help="repeatable (default: png)")
+    return parser.parse_args()
+
+
+def read(results: Path, name: str) -> Runs:
+    runs = Runs.read(results / f"{name}.runs.csv")
+    warn_of_failures(name, runs)
+    return runs
+
+
+def maps(results: Path) -> tuple[figures.Drawing, list[str]]:
+    studies = {name: read(results, name) for name in MAPS}
+    return study_pictures.draw_maps(studies), study_pictures.describe_maps(studies)
+
+
+def bifurcation(results: Path) -> tuple[figures.Drawing, list[str]]:
+    kinds = {
+        "bifurcation_clearance": ("joint.clearance", 1e6, "µm", None, FLORES_SPEED),
+        "bifurcation_speed": ("initial.crank_speed", 1.0, "rad/s", FLORES_CLEARANCE, None),
+    }
+    strobes, lines = {}, []
+    for name, (parameter, unit, label, clearance, speed) in kinds.items():
+        strobe = study_pictures.read_strobe(results / f"{name}.strobe.csv", read(results, name))
+        strobes[name] = study_pictures.with_ratios(strobe, clearance, speed)
+        lines.append(study_pictures.describe_bifurcation(strobes[name], name, parameter, unit, label))
+    return study_pictures.draw_bifurcation(strobes), lines
+
+
+def restitution(results: Path) -> tuple[figures.Drawing, list[str]]:
+    runs = read(results, "restitution")
+    measured = study_pictures.measured_restitution(results / "restitution", runs, settled_from=40 * np.pi)
+    drawing = study_pictures.draw_restitution(runs, measured)
+    return drawing, [study_pictures.describe_restitution(runs, measured)]
+
+
+PICTURES = {"map": maps, "bifurcation": bifurcation, "restitution": restitution}
+
+
+def any_study(path: Path, columns: list[str]) -> figures.Drawing:
+    """Curves over one parameter, maps over two."""
+    runs = Runs.read(path)
+    warn_of_failures(path.name, runs)
+    names = list(runs.table.columns)
+    parameters = names[1 : names.index("status")]
+    if unknown := [column for column in columns if column not in names]:
+        raise MissingResult(f"{path}: no column {' '.join(unknown)}; there are {' '.join(names)}")
+    if len(parameters) == 1:
+        return study_pictures.draw_curves(runs, *parameters, columns)
+    if len(parameters) == 2 and not runs.table.duplicated(parameters).any():
+        return study_pictures.draw_map(runs, *parameters, columns)
+    raise MissingResult(f"{path}: has {len(parameters)} parameters: only one, or a grid of two, can be drawn")
+
+
+def main() -> int:
+    options = arguments()
+    formats = options.format or ["png"]
+    try:
+        for path in options.runs:
+            drawing = any_study(path, options.columns)
+            print(*figures.save(drawing, options.out or path.parent, path.name.removesuffix(".runs.csv"), formats))
+        for name in options.picture or ([] if options.runs else PICTURES):
+            drawing, lines = PICTURES[name](options.results)
+            print(*lines, sep="\n")
+            print(*figures.save(drawing, options.out or options.results, name, formats))
+    except (MissingResult, OSError) as problem:
+        print(f"plot_study.py: {problem}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

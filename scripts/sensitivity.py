@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+"""Says which parameters of a study its results depend on: samples their ranges, sweeps, analyses with SALib.
+
+    scripts/sensitivity.py cases/studies/sensitivity_I.nml        both methods; table and picture in results/sensitivity
+    scripts/sensitivity.py STUDY.nml --method morris --morris 20 --outputs log:min_film_thickness impacts
+
+The study's &parameter groups give the ranges (from, to, scale); its design is replaced by those of Morris (elementary
+effects along trajectories) and Sobol (shares of the variance, by Saltelli's scheme). Every sample has its seed. Runs
+that failed are counted and named, and the trajectory or base point that holds one is left out whole. Goes on where it was
+interrupted. Confidence intervals are of 95 %; --convergence prints the indices of a quarter and a half of the sample too.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+from gudgeon_plots.environment import TOP, use_virtual_environment
+
+use_virtual_environment(studies=True)
+
+import pandas as pd  # noqa: E402
+
+from gudgeon_plots import figures, sensitivity, study  # noqa: E402
+from gudgeon_plots.program import release_program  # noqa: E402
+from gudgeon_plots.results import MissingResult  # noqa: E402
+from gudgeon_plots.sensitivity import METHODS, Indices, Output  # noqa: E402
+
+OUTPUTS = ("min_film_thickness", "contact_time_fraction")
+
+
+def arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("studies", nargs="+", type=Path, metavar="STUDY.nml")
+    parser.add_argument("--method", action="append", choices=METHODS, help="repeatable (default: both)")
+    parser.add_argument(
+        "--outputs",
+        nargs="+",
+        type=Output.parse,
+        default=[Output(name) for name in OUTPUTS],
+        metavar="COLUMN",
+        help=f"results without their units, log:COLUMN for the logarithm (default: {' '.join(OUTPUTS)})",
+    )
+    parser.add_argument("--morris", type=int, default=50, metavar="N", help="trajectories (default: 50)")
+    parser.add_argument("--sobol", type=int, default=256, metavar="N", help="base points, a power of 2 (default: 256)")
+    parser.add_argument("--seed", type=int, default=1, metavar="N", help="of samples and intervals (default: 1)")
+    parser.add_argument(
+        "--out", type=Path, default=TOP / "results" / "sensitivity", metavar="DIR", help="(default: results/sensitivity)"
+    )
+    parser.add_argument("--jobs", type=int, metavar="N", help="threads (default: the cores)")
+    parser.add_argument("--set", action="append", default=[], metavar="GROUP.KEY=VALUE", help="of the base case")
+    parser.add_argument("--program", type=Path, help="gudgeon (default: the release build, brought up to date)")
+    parser.add_argument("--fresh", action="store_true", help="forget the runs of an earlier call")
+    parser.add_argument("--convergence", action="store_true", help="indices of parts of the sample too")
+    options = parser.parse_args()
+    if options.sobol < 2 or options.sobol & (options.sobol - 1):
+        parser.error(f"--sobol {options.sobol}: must be a power of 2")
+    if options.morris < 2:
+        parser.error(f"--morris {options.morris}: must be at least 2")
+    return options
+
+
+def examine(path: Path, method: str, program: Path, options: argparse.Namespace) -> tuple[list[Indices], list[Indices]]:
+    """Sample, sweep and analyse one study with one method: indices of each output, and those of parts of the sample."""
+    given = study.read_study(path)
+    points = options.morris if method == "morris" else options.sobol
+    sampled = sensitivity.sample(method, given.parameters, points, options.seed)
+    title = f"{given.settings.get('title', given.name)}: {method}, {points} points, seed {options.seed}"
+    values = sensitivity.values(given.parameters, sampled)
+    table = study.write_table_study(given, values, options.out, f"{given.name}.{method}", title)
+    flags = [part for value in options.set for part in ("--set", value)]
+    flags += ["--jobs", str(options.jobs)] if options.jobs else []
+    flags += ["--fresh"] if options.fresh else []
+    runs = study.sweep(program, table, options.out, flags)
+    study.warn_of_failures(table.stem, runs)
+    found, parts = [], []
+    for output in options.outputs:
+        if output.column not in runs.table:
+            raise MissingResult(f"{table.stem}: no result {output.column}; there are {' '.join(runs.units)}")
+        result = output.values(runs)
+        for rows in sensitivity.prefixes(method, len(given.parameters), len(sampled)):
+            part = sensitivity.analyse(
+                method, given.parameters, sampled[:rows], result[:rows], output.name, options.seed
+            )
+            (found if rows == len(sampled) else parts).append(part)
+    return found, parts
+
+
+def print_convergence(found: list[Indices], parts: list[Indices]) -> None:
+    """The ranking index of each parameter, by the size of the sample."""
+    for whole in found:
+        if whole.constant:
+            continue
+        index = sensitivity.INDICES[whole.method][0]
+        sizes = [*(part for part in parts if (part.method, part.output) == (whole.method, whole.output)), whole]
+        table = pd.DataFrame({part.points: part.table[index] for part in sizes})
+        table["+-"] = whole.table[f"{index}_conf"]
+        print(f"\n{whole.output}, {whole.method} {index} by points:")
+        print(table.to_string(float_format=lambda value: f"{value:.3f}"))
+
+
+def report(path: Path, program: Path, options: argparse.Namespace) -> None:
+    """One study with every method: table, picture, paragraph."""
+    given = study.read_study(path)
+    results = [examine(path, method, program, options) for method in options.method or METHODS]
+    found = [item for whole, _ in results for item in whole]
+    records = pd.DataFrame([row for item in found for row in sensitivity.records(item)])
+    target = options.out / f"{given.name}.indices.csv"
+    records.to_csv(target, index=False, float_format="%.6g", lineterminator="\n")
+    drawing = sensitivity.draw(found, given.parameters, str(given.settings.get("title", given.name)))
+    paths = figures.save(drawing, options.out, given.name, ["png", "svg"])
+    print(f"{given.name}:", *(sensitivity.describe(item) for item in found), sep="\n  ")
+    if options.convergence:
+        print_convergence(found, [item for _, parts in results for item in parts])
+    print(target, *paths)
+
+
+def main() -> int:
+    options = arguments()
+    try:
+        program = (options.program or release_program()).absolute()
+        for path in options.studies:
+            report(path, program, options)
+    except (MissingResult, OSError) as problem:
+        print(f"sensitivity.py: {problem}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
