@@ -46,8 +46,8 @@ def arguments() -> argparse.Namespace:
     parser.add_argument(
         "--out", type=Path, default=TOP / "results" / "sensitivity", metavar="DIR", help="(default: results/sensitivity)"
     )
-    parser.add_argument("--jobs", type=int, metavar="N", help="threads (default: the cores)")
-    parser.add_argument("--set", action="append", default=[], metavar="GROUP.KEY=VALUE", help="of the base case")
+    parser.add_argument("-j", "--jobs", type=int, metavar="N", help="threads (default: the cores)")
+    parser.add_argument("-s", "--set", action="append", default=[], metavar="GROUP.KEY=VALUE", help="of the base case")
     parser.add_argument("--program", type=Path, help="gudgeon (default: the release build, brought up to date)")
     parser.add_argument("--fresh", action="store_true", help="forget the runs of an earlier call")
     parser.add_argument("--convergence", action="store_true", help="indices of parts of the sample too")

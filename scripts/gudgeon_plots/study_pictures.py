@@ -60,7 +60,7 @@ def draw_film(axis: Axes, runs: Runs) -> plt.cm.ScalarMappable:
 def draw_contact(axis: Axes, runs: Runs) -> plt.cm.ScalarMappable:
     """The share of time in contact [%] over clearance and speed."""
     clearance, speed, share = grid(runs, "joint.clearance", "initial.crank_speed", "contact_time_fraction")
-    norm = Normalize(70.0, 100.0)
+    norm = Normalize(60.0, 100.0)
     image = axis.pcolormesh(1e6 * clearance, speed, 100 * share, norm=norm, cmap="magma", shading="nearest")
     mark_failed(axis, runs, "joint.clearance", "initial.crank_speed", 1e6)
     return image
@@ -151,9 +151,9 @@ def draw_bifurcation(strobes: dict[str, pd.DataFrame]) -> Drawing:
     for (name, parameter, unit, label, scale), (above, below) in zip(columns, axes.T):
         strobe = strobes[name]
         settled = periods(strobe, parameter)
-        once = strobe[parameter].map(settled == 1).to_numpy(dtype=bool)
+        repeats = strobe[parameter].map(settled).to_numpy()
         for axis, column in ((above, "eccentricity_ratio_y"), (below, "velocity_ratio")):
-            for mask, colour, size in ((~once, BLACK, 0.5), (once, BLUE, 3.0)):
+            for mask, colour, size in ((repeats == 0, BLACK, 0.3), (repeats > 1, VERMILION, 3.0), (repeats == 1, BLUE, 3.0)):
                 axis.scatter(
                     unit * strobe.loc[mask, parameter], strobe.loc[mask, column], s=size, c=colour, linewidths=0,
                     rasterized=True,
@@ -162,7 +162,10 @@ def draw_bifurcation(strobes: dict[str, pd.DataFrame]) -> Drawing:
         below.set_xlabel(label)
     axes[0][0].set_ylabel("eccentricity across / clearance")
     axes[1][0].set_ylabel("piston velocity / (clearance · crank speed)")
-    drawing.suptitle("Flores slider-crank, dry: state at the dead centre in 80 revolutions; blue: the same in each")
+    drawing.suptitle(
+        "Flores slider-crank, dry: state at the dead centre in 80 revolutions\n"
+        f"blue: the same in each, red: after two to {LONGEST_PERIOD}, black: never"
+    )
     return drawing
 
 

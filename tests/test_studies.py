@@ -1,0 +1,356 @@
+#!/usr/bin/env python3
+"""Tests of parameter studies outside the program: chunks merged, sensitivity, pictures' numbers, shipped studies.
+
+    .venv/bin/python tests/test_studies.py      (after scripts/setup.sh --studies; brings the release build up to date)
+
+Ends with the line "N passed, N failed".
+"""
+
+import io
+import subprocess
+import sys
+import tempfile
+import unittest
+from contextlib import redirect_stderr
+from pathlib import Path
+
+TOP = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(TOP / "scripts"), str(TOP / "scripts" / "cluster")]
+
+from gudgeon_plots.environment import use_virtual_environment  # noqa: E402
+
+use_virtual_environment(studies=True)
+
+import matplotlib.pyplot as plt  # noqa: E402
+import merge_runs  # noqa: E402
+import numpy as np  # noqa: E402
+import pandas as pd  # noqa: E402
+from scipy.integrate import solve_ivp  # noqa: E402
+
+from gudgeon_plots import sensitivity, study, study_pictures  # noqa: E402
+from gudgeon_plots.program import release_program  # noqa: E402
+from gudgeon_plots.results import MissingResult  # noqa: E402
+from gudgeon_plots.sensitivity import Output  # noqa: E402
+from gudgeon_plots.study import Parameter, Runs  # noqa: E402
+
+
+class InDirectory(unittest.TestCase):
+    """A test with a directory of its own."""
+
+    def setUp(self) -> None:
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.work = Path(holder.name)
+
+    def write(self, name: str, text: str) -> Path:
+        path = self.work / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+        return path
+
+
+class Merge(InDirectory):
+    """scripts/cluster/merge_runs.py."""
+
+    HEAD = "run,joint.clearance,status,impacts[-]\n"
+
+    def chunk(self, first: int, last: int, rows: str | None = None, head: str = HEAD, kind: str = "runs") -> None:
+        if rows is None:
+            rows = "".join(f'{run},{run}E-05,"done, well",1\n' for run in range(first, last + 1))
+        self.write(f"chunks/x.{first}-{last}.{kind}.csv", head + rows)
+
+    def merge(self, *ranges: str) -> str:
+        merge_runs.merge_all(self.work / "chunks" / "x", self.work / "out", ranges)
+        return (self.work / "out" / "x.runs.csv").read_text(encoding="utf-8")
+
+    def refused(self, message: str, *ranges: str) -> None:
+        with self.assertRaisesRegex((merge_runs.BadChunks, OSError), message):
+            self.merge(*ranges)
+        self.assertFalse((self.work / "out" / "x.runs.csv").exists())
+
+    def test_order_is_that_of_the_runs(self) -> None:
+        for first, last in ((1, 9), (10, 99), (100, 101)):  # 10 and 100 come before 2 in the order of letters
+            self.chunk(first, last)
+        merged = self.merge()
+        self.assertEqual(merged, self.HEAD + "".join(f'{n},{n}E-05,"done, well",1\n' for n in range(1, 102)))
+        self.assertEqual(merged, self.merge("1-9", "100-101", "10-99"))
+
+    def test_other_chunks_may_lie_beside(self) -> None:
+        self.chunk(1, 2)
+        self.chunk(1, 4)
+        self.chunk(3, 4)
+        self.refused("overlaps")
+        self.assertEqual(self.merge("1-4").count("\n"), 5)
+
+    def test_gaps_are_refused(self) -> None:
+        self.refused("No such file")
+        (self.work / "chunks").mkdir()
+        self.refused("no such chunk")
+        self.chunk(3, 4)
+        self.refused("runs 1 to 2 are missing")
+        self.chunk(1, 1)
+        self.refused("runs 2 to 2 are missing")
+        self.refused("No such file", "1-1", "2-2", "3-4")
+
+    def test_broken_chunks_are_refused(self) -> None:
+        self.chunk(1, 2)
+        for rows, message in (
+            ("3,a,done,1\n", "runs 4 to 4 are missing"),
+            ("3,a,done,1\n4,a,do", "ends within a row"),
+            ("4,a,done,1\n3,a,done,1\n", "run 3 expected, found '4'"),
+            ("3,a,done,1\n3,a,done,1\n", "run 4 expected, found '3'"),
+            ("3,a,done,1\n4,a,done,1\n5,a,done,1\n", "run 5 expected"),
+            ("3,a,done,1\n\n", "run 4 expected"),
+        ):
+            self.chunk(3, 4, rows)
+            self.refused(message)
+        self.chunk(3, 4, head=self.HEAD.replace("impacts", "cycles"))
+        self.refused("first line")
+
+    def test_files_of_many_rows_a_run(self) -> None:
+        for first, last in ((1, 2), (3, 4)):
+            self.chunk(first, last)
+        self.chunk(1, 2, "1,5,0.1\n1,6,0.2\n2,5,0.3\n", "run,cycle,eccentricity_x[m]\n", "strobe")
+        self.chunk(3, 4, "4,5,0.1\n4,6,0.2\n", "run,cycle,eccentricity_x[m]\n", "strobe")  # run 3 failed
+        self.merge()
+        text = (self.work / "out" / "x.strobe.csv").read_text(encoding="utf-8")
+        self.assertEqual(text, "run,cycle,eccentricity_x[m]\n1,5,0.1\n1,6,0.2\n2,5,0.3\n4,5,0.1\n4,6,0.2\n")
+        self.chunk(3, 4, "4,5,0.1\n3,6,0.2\n", "run,cycle,eccentricity_x[m]\n", "strobe")
+        with self.assertRaisesRegex(merge_runs.BadChunks, "found '3'"):
+            self.merge()
+
+    def test_count(self) -> None:
+        self.assertEqual(merge_runs.count_of("a 12.nml: correct, 1200 runs\n"), 1200)
+        with self.assertRaises(merge_runs.BadChunks):
+            merge_runs.count_of("nothing")
+
+
+PI = [Parameter(f"x.{n}", -np.pi, np.pi) for n in range(1, 4)]
+
+
+def ishigami(x: np.ndarray, a: float = 7.0, b: float = 0.1) -> np.ndarray:
+    return np.sin(x[:, 0]) + a * np.sin(x[:, 1]) ** 2 + b * x[:, 2] ** 4 * np.sin(x[:, 0])
+
+
+class Indices(unittest.TestCase):
+    """The analysis of scripts/sensitivity.py, on functions whose indices are known."""
+
+    #: Ishigami's function with a = 7, b = 0.1: V1 = (1 + b pi^4/5)^2 / 2, V2 = a^2/8, V13 = 8 b^2 pi^8 / 225.
+    PARTS = np.array([0.5 * (1 + 0.1 * np.pi**4 / 5) ** 2, 49 / 8, 8 * 0.01 * np.pi**8 / 225])
+
+    def check_ishigami(self, found: sensitivity.Indices) -> None:
+        v1, v2, v13 = self.PARTS / self.PARTS.sum()
+        for index, wanted in (("S1", [v1, v2, 0]), ("ST", [v1 + v13, v2, v13])):
+            np.testing.assert_allclose(found.table[index], wanted, atol=0.03)
+            inside = np.abs(found.table[index] - wanted) < 1.5 * found.table[f"{index}_conf"] + 1e-3
+            self.assertTrue(inside.all(), found.table)
+            self.assertTrue((found.table[f"{index}_conf"] < 0.15).all(), found.table)
+
+    def test_sobol(self) -> None:
+        x = sensitivity.sample("sobol", PI, 1024, 1)
+        self.assertEqual(len(x), 1024 * sensitivity.block("sobol", 3))
+        found = sensitivity.analyse("sobol", PI, x, ishigami(x), "y", 1)
+        self.check_ishigami(found)
+        self.assertEqual((found.points, found.left_out), (1024, 0))
+        self.assertEqual(list(found.ranked.index), ["x.1", "x.2", "x.3"])
+        self.assertNotIn("none at all", sensitivity.describe(found))
+
+    def test_failed_runs_leave_out_their_block_only(self) -> None:
+        x = sensitivity.sample("sobol", PI, 1024, 1)
+        y = ishigami(x)
+        y[[7, 8, 100, 2000]] = np.nan  # rows 7 and 8 are of one block of five
+        found = sensitivity.analyse("sobol", PI, x, y, "y", 1)
+        self.assertEqual((found.points, found.left_out), (1021, 3))
+        self.check_ishigami(found)
+        self.assertIn("3 left out for runs without a value", sensitivity.describe(found))
+        self.assertEqual({row["points_left_out"] for row in sensitivity.records(found)}, {3})
+        found = sensitivity.analyse("sobol", PI, x, np.full(len(x), np.nan), "y", 1)
+        self.assertIn("too few", sensitivity.describe(found))
+
+    def test_morris_of_a_linear_function(self) -> None:
+        parameters = [Parameter("a.x", 0.0, 2.0), Parameter("a.y", 1e-6, 1e-4, log=True), Parameter("a.z", -1.0, 1.0)]
+        sampled = sensitivity.sample("morris", parameters, 20, 3)
+        values = sensitivity.values(parameters, sampled)
+        result = 3.0 * values[:, 0] - 2.0 * np.log10(values[:, 1])
+        found = sensitivity.analyse("morris", parameters, sampled, result, "y", 3)
+        np.testing.assert_allclose(found.table["mu"], [6.0, -4.0, 0.0], atol=1e-9)
+        np.testing.assert_allclose(found.table["mu_star"], [6.0, 4.0, 0.0], atol=1e-9)
+        np.testing.assert_allclose(found.table["sigma"], 0.0, atol=1e-9)
+        self.assertEqual(sensitivity.prefixes("morris", 3, len(sampled)), [20, 40, 80])
+
+    def test_what_does_not_vary_is_said(self) -> None:
+        x = sensitivity.sample("sobol", PI, 8, 1)
+        found = sensitivity.analyse("sobol", PI, x, np.full(len(x), 0.3), "y", 1)
+        self.assertTrue(found.constant)
+        self.assertIn("0.3 in every run", sensitivity.describe(found))
+        drawing = sensitivity.draw([found, sensitivity.analyse("sobol", PI, x, ishigami(x), "z", 1)], PI, "title")
+        self.assertEqual(drawing._suptitle.get_text(), "title\ny: 0.3 in every run")
+        self.assertEqual(len(drawing.axes), 1)
+        plt.close(drawing)
+
+    def test_samples_repeat_by_seed_and_keep_the_ranges(self) -> None:
+        parameters = [Parameter("a.x", 10e-6, 60e-6, log=True), Parameter("a.y", 0.5, 0.95)]
+        for method in sensitivity.METHODS:
+            first, again, other = (sensitivity.sample(method, parameters, 16, seed) for seed in (1, 1, 2))
+            np.testing.assert_array_equal(first, again)
+            self.assertTrue((first != other).any())
+            values = sensitivity.values(parameters, first)
+            self.assertTrue((values >= [10e-6, 0.5]).all() and (values <= [60e-6, 0.95]).all())
+
+    def test_outputs(self) -> None:
+        runs = Runs(pd.DataFrame({"run": [1, 2, 3], "status": ["done", "broke", "done"], "h": [1e-6, 1e-6, -1.0]}), {})
+        np.testing.assert_array_equal(Output.parse("log:h").values(runs), [-6.0, np.nan, np.nan])
+        np.testing.assert_array_equal(Output.parse("h").values(runs), [1e-6, np.nan, -1.0])
+        self.assertEqual(runs.failures(), {"broke": 1})
+
+
+class Files(InDirectory):
+    """Studies read, results read."""
+
+    def test_ranges(self) -> None:
+        path = self.write(
+            "s.nml",
+            "&study case = 'c.nml', settle_cycles = 2 /\n&parameter key = 'a.b', from = 1e-6, to = 2.0, scale = 'log' /\n"
+            "&parameter key = 'a.c', from = 1, to = 3, count = 4 /\n",
+        )
+        found = study.read_study(path)
+        self.assertEqual(found.parameters, (Parameter("a.b", 1e-6, 2.0, True), Parameter("a.c", 1.0, 3.0)))
+        self.assertEqual(found.case, self.work / "c.nml")
+        table = study.write_table_study(found, np.array([[1e-6, 1.0], [2.0, 3.0]]), self.work / "o", "t", "it's")
+        text = (self.work / "o" / "t.csv").read_text(encoding="utf-8")
+        self.assertEqual(text.splitlines()[0], "a.b,a.c")
+        np.testing.assert_allclose(pd.read_csv(self.work / "o" / "t.csv"), [[1e-6, 1.0], [2.0, 3.0]], rtol=1e-12)
+        self.assertIn("settle_cycles = 2", table.read_text(encoding="utf-8"))
+
+    def test_what_is_no_range_is_refused(self) -> None:
+        for text in (
+            "&study case = 'c' /",
+            "&parameter key = 'a.b', from = 1, to = 2 /",
+            "&study case = 'c' / &parameter key = 'a.b', values = 1, 2 /",
+            "&study case = 'c' / &parameter key = 'a.b', from = 2, to = 1 /",
+            "&study case = 'c' / &parameter key = 'a.b', from = 0, to = 1, scale = 'log' /",
+        ):
+            with self.assertRaises(MissingResult):
+                study.read_study(self.write("s.nml", text + "\n"))
+
+    def test_results_with_missing_runs_are_refused(self) -> None:
+        path = self.write("s.runs.csv", "run,a.b,status,x[m]\n1,1,done,1\n3,1,done,1\n")
+        with self.assertRaisesRegex(MissingResult, "missing"):
+            Runs.read(path)
+
+
+class Pictures(InDirectory):
+    """The numbers of scripts/plot_study.py."""
+
+    def test_period(self) -> None:
+        def period(*values: float) -> int:
+            return study_pictures.period(np.array(values)[:, None], 1e-3)
+
+        self.assertEqual(period(*[1.0, 1.0005] * 4), 1)
+        self.assertEqual(period(*[1.0, 2.0] * 4), 2)
+        self.assertEqual(period(*[1.0, 2.0, 3.0] * 4), 3)
+        self.assertEqual(period(*np.sin(np.arange(40.0) ** 2)), 0)
+        self.assertEqual(period(1.0), 0)
+
+    def test_spans(self) -> None:
+        mask = pd.Series([True, True, False, True], index=[1.0, 2.0, 3.0, 4.0])
+        self.assertEqual(study_pictures.spans_of(mask, 10.0), [(10.0, 20.0, 2), (40.0, 40.0, 1)])
+
+    def test_restitution_of_the_law(self) -> None:
+        for nominal in (0.0, 0.4, 0.9):
+            q = 0.75 * (1 - nominal**2)
+
+            def motion(_: float, state: np.ndarray, q: float = q) -> list[float]:
+                depth, speed = state
+                return [speed, -(max(depth, 0.0) ** 1.5) * (1 + q * speed)]
+
+            def out(_: float, state: np.ndarray) -> float:
+                return state[0] if state[1] < 0 else 1.0
+
+            out.terminal = True
+            found = solve_ivp(motion, (0, 20), [0.0, 1.0], events=out, rtol=1e-9, atol=1e-12)
+            self.assertAlmostEqual(study_pictures.restitution_of_law(nominal), -found.y[1][-1], places=5)
+        self.assertEqual(study_pictures.restitution_of_law(1.0), 1.0)
+
+    def test_measured_restitution(self) -> None:
+        rows = ["time[s],crank_angle[rad],event,normal_speed[m/s],duration[s],max_penetration[m],max_normal_force[N]"]
+        for angle, before, after in ((1, 9.0, 9.0), (20, 2.0, -1.0), (21, 0.9, -0.9), (22, 1.5, -0.9), (23, 1.2, None)):
+            rows.append(f"0.1,{angle},contact_begins,{before},,,")
+            rows += [f"0.2,{angle},contact_ends,{after},0.1,1e-6,10"] if after else []
+        self.write("r/1.events.csv", "\n".join(rows) + "\n")
+        runs = Runs(pd.DataFrame({"run": [1], "contact.restitution": [0.7]}), {})
+        found = study_pictures.measured_restitution(self.work / "r", runs, settled_from=6.28).iloc[0]
+        self.assertEqual(found["count"], 2)  # not the first, which is not settled, nor the soft one, nor the last
+        self.assertAlmostEqual(found["middle"], 0.55)
+
+    def test_maps(self) -> None:
+        table = pd.DataFrame({"run": range(1, 5), "a": [1, 1, 2, 2], "b": [5, 6, 5, 6], "status": 3 * ["done"] + ["no"]})
+        x, y, z = study_pictures.grid(Runs(table.assign(h=[1.0, 2.0, 3.0, 4.0]), {}), "a", "b", "h")
+        np.testing.assert_array_equal([*x, *y], [1, 2, 5, 6])
+        np.testing.assert_array_equal(z, [[1.0, 3.0], [2.0, np.nan]])
+
+
+class Sweeps(InDirectory):
+    """With the program itself."""
+
+    STUDY = """&study
+  title = 'small', case = '{case}', settle_cycles = 1, cycles = .true.
+  strobe_angle_deg = 90.0, strobe_columns = 'eccentricity_x,film_thickness'
+/
+&parameter key = 'joint.clearance', from = 10.0e-6, to = 40.0e-6, count = 3 /
+&parameter key = 'initial.crank_speed', from = 100.0, to = 400.0, count = 3, scale = 'log' /
+"""
+
+    def setUp(self) -> None:
+        super().setUp()
+        self.program = release_program()
+        self.study = self.write("small.nml", self.STUDY.format(case=TOP / "cases" / "sim_I.nml"))
+
+    def run_program(self, *words: object) -> subprocess.CompletedProcess:
+        return subprocess.run([str(word) for word in words], capture_output=True, text=True, check=False, cwd=TOP)
+
+    def test_shipped_studies_are_correct(self) -> None:
+        studies = sorted((TOP / "cases" / "studies").glob("*.nml"))
+        self.assertGreater(len(studies), 8)
+        outcome = self.run_program(self.program, "sweep", "--check", *studies)
+        self.assertEqual(outcome.returncode, 0, outcome.stderr)
+
+    def test_snakemake_writes_what_one_process_writes(self) -> None:
+        options = "--set integrator.method=auto --set integrator.revolutions=2"
+        out = self.work / "cluster"
+        settings = (f"study={self.study}", f"out={out}", "chunk=4", f"program={self.program}", f"options={options}")
+        outcome = self.run_program(
+            *(Path(sys.executable).with_name("snakemake"), "--snakefile", TOP / "scripts" / "cluster" / "Snakefile"),
+            *("--directory", self.work, "--cores", 2, "--config", *settings),
+        )
+        self.assertEqual(outcome.returncode, 0, outcome.stderr)
+        outcome = self.run_program(self.program, "sweep", "-q", "-o", self.work, *options.split(), self.study)
+        self.assertEqual(outcome.returncode, 0, outcome.stderr)
+        for kind in merge_runs.KINDS:
+            one, merged = ((where / f"small.{kind}.csv").read_bytes() for where in (self.work, out))
+            self.assertEqual(one, merged, kind)
+            self.assertGreater(one.count(b"\n"), 9)
+
+    def test_sensitivity_of_a_small_study(self) -> None:
+        outcome = self.run_program(
+            *(sys.executable, TOP / "scripts" / "sensitivity.py", self.study, "--program", self.program),
+            *("--method", "morris", "--morris", 3, "--out", self.work, "--outputs", "log:min_film_thickness", "impacts"),
+            *("--set", "integrator.method=auto", "--set", "integrator.revolutions=2"),
+        )
+        self.assertEqual(outcome.returncode, 0, outcome.stderr)
+        found = pd.read_csv(self.work / "small.indices.csv")
+        thinner = found[(found["output"] == "log10 min_film_thickness") & (found["index"] == "mu")]
+        self.assertEqual(list(thinner["parameter"]), ["joint.clearance", "initial.crank_speed"])
+        self.assertTrue((thinner["value"] < -0.1).all(), thinner)  # a film is thinner with more clearance, and with speed
+        self.assertIn("impacts, morris (3 trajectories): 0 in every run", outcome.stdout)
+        self.assertTrue((self.work / "small.png").stat().st_size > 10_000)
+
+
+if __name__ == "__main__":
+    with redirect_stderr(io.StringIO()) as log:
+        result = unittest.main(exit=False, verbosity=0).result
+    wrong = len(result.failures) + len(result.errors)
+    if wrong:
+        print(log.getvalue())
+    print(f"{result.testsRun - wrong} passed, {wrong} failed")
+    sys.exit(1 if wrong else 0)
