@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Draws parameter studies from their results, NAME.runs.csv and NAME.strobe.csv.
 
-    scripts/plot_study.py                                      the shipped studies, as scripts/run_studies.sh leaves them
-    scripts/plot_study.py --picture map                        one of map, bifurcation, restitution
-    scripts/plot_study.py results/x.runs.csv --columns impacts any study of one parameter or two: curves or maps
+    scripts/plot_study.py                        the shipped studies, as scripts/run_studies.sh leaves them
+    scripts/plot_study.py --picture map          one of map, bifurcation, restitution
+    scripts/plot_study.py results/x.runs.csv     any study of one parameter or two: curves or maps of --columns
 
 Prints the numbers of the pictures and where they are. Failed runs are left blank, and counted on standard error.
 """
@@ -34,7 +34,9 @@ FLORES_CLEARANCE = 100e-6  # m
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("runs", nargs="*", type=Path, metavar="NAME.runs.csv", help="results of any study")
-    parser.add_argument("--picture", action="append", choices=tuple(PICTURES), help="of the shipped studies; repeatable")
+    parser.add_argument(
+        "--picture", action="append", choices=tuple(PICTURES), help="of the shipped studies; repeatable"
+    )
     parser.add_argument("--columns", nargs="+", default=list(COLUMNS), metavar="COLUMN", help="without their units")
     parser.add_argument(
         "--results", type=Path, default=TOP / "results" / "studies", metavar="DIR", help="(default: results/studies)"

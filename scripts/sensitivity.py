@@ -6,8 +6,9 @@
 
 The study's &parameter groups give the ranges (from, to, scale); its design is replaced by those of Morris (elementary
 effects along trajectories) and Sobol (shares of the variance, by Saltelli's scheme). Every sample has its seed. Runs
-that failed are counted and named, and the trajectory or base point that holds one is left out whole. Goes on where it was
-interrupted. Confidence intervals are of 95 %; --convergence prints the indices of a quarter and a half of the sample too.
+that failed are counted and named, and the trajectory or base point that holds one is left out whole. Goes on where it
+was interrupted. Confidence intervals are of 95 %; --convergence prints the indices of a quarter and a half of the sample
+too.
 """
 
 import argparse
@@ -44,7 +45,11 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--sobol", type=int, default=256, metavar="N", help="base points, a power of 2 (default: 256)")
     parser.add_argument("--seed", type=int, default=1, metavar="N", help="of samples and intervals (default: 1)")
     parser.add_argument(
-        "--out", type=Path, default=TOP / "results" / "sensitivity", metavar="DIR", help="(default: results/sensitivity)"
+        "--out",
+        type=Path,
+        default=TOP / "results" / "sensitivity",
+        metavar="DIR",
+        help="(default: results/sensitivity)",
     )
     parser.add_argument("-j", "--jobs", type=int, metavar="N", help="threads (default: the cores)")
     parser.add_argument("-s", "--set", action="append", default=[], metavar="GROUP.KEY=VALUE", help="of the base case")
@@ -78,9 +83,8 @@ def examine(path: Path, method: str, program: Path, options: argparse.Namespace)
             raise MissingResult(f"{table.stem}: no result {output.column}; there are {' '.join(runs.units)}")
         result = output.values(runs)
         for rows in sensitivity.prefixes(method, len(given.parameters), len(sampled)):
-            part = sensitivity.analyse(
-                method, given.parameters, sampled[:rows], result[:rows], output.name, options.seed
-            )
+            named = (output.name, output.unit(runs))
+            part = sensitivity.analyse(method, given.parameters, sampled[:rows], result[:rows], named, options.seed)
             (found if rows == len(sampled) else parts).append(part)
     return found, parts
 
@@ -95,7 +99,7 @@ def print_convergence(found: list[Indices], parts: list[Indices]) -> None:
         table = pd.DataFrame({part.points: part.table[index] for part in sizes})
         table["+-"] = whole.table[f"{index}_conf"]
         print(f"\n{whole.output}, {whole.method} {index} by points:")
-        print(table.to_string(float_format=lambda value: f"{value:.3f}"))
+        print(table.to_string(float_format=lambda value: f"{value:.3g}"))
 
 
 def report(path: Path, program: Path, options: argparse.Namespace) -> None:

@@ -149,7 +149,7 @@ class Indices(unittest.TestCase):
     def test_sobol(self) -> None:
         x = sensitivity.sample("sobol", PI, 1024, 1)
         self.assertEqual(len(x), 1024 * sensitivity.block("sobol", 3))
-        found = sensitivity.analyse("sobol", PI, x, ishigami(x), "y", 1)
+        found = sensitivity.analyse("sobol", PI, x, ishigami(x), ("y", "m"), 1)
         self.check_ishigami(found)
         self.assertEqual((found.points, found.left_out), (1024, 0))
         self.assertEqual(list(found.ranked.index), ["x.1", "x.2", "x.3"])
@@ -159,12 +159,12 @@ class Indices(unittest.TestCase):
         x = sensitivity.sample("sobol", PI, 1024, 1)
         y = ishigami(x)
         y[[7, 8, 100, 2000]] = np.nan  # rows 7 and 8 are of one block of five
-        found = sensitivity.analyse("sobol", PI, x, y, "y", 1)
+        found = sensitivity.analyse("sobol", PI, x, y, ("y", "m"), 1)
         self.assertEqual((found.points, found.left_out), (1021, 3))
         self.check_ishigami(found)
         self.assertIn("3 left out for runs without a value", sensitivity.describe(found))
         self.assertEqual({row["points_left_out"] for row in sensitivity.records(found)}, {3})
-        found = sensitivity.analyse("sobol", PI, x, np.full(len(x), np.nan), "y", 1)
+        found = sensitivity.analyse("sobol", PI, x, np.full(len(x), np.nan), ("y", "m"), 1)
         self.assertIn("too few", sensitivity.describe(found))
 
     def test_morris_of_a_linear_function(self) -> None:
@@ -172,7 +172,7 @@ class Indices(unittest.TestCase):
         sampled = sensitivity.sample("morris", parameters, 20, 3)
         values = sensitivity.values(parameters, sampled)
         result = 3.0 * values[:, 0] - 2.0 * np.log10(values[:, 1])
-        found = sensitivity.analyse("morris", parameters, sampled, result, "y", 3)
+        found = sensitivity.analyse("morris", parameters, sampled, result, ("y", "m"), 3)
         np.testing.assert_allclose(found.table["mu"], [6.0, -4.0, 0.0], atol=1e-9)
         np.testing.assert_allclose(found.table["mu_star"], [6.0, 4.0, 0.0], atol=1e-9)
         np.testing.assert_allclose(found.table["sigma"], 0.0, atol=1e-9)
@@ -180,10 +180,12 @@ class Indices(unittest.TestCase):
 
     def test_what_does_not_vary_is_said(self) -> None:
         x = sensitivity.sample("sobol", PI, 8, 1)
-        found = sensitivity.analyse("sobol", PI, x, np.full(len(x), 0.3), "y", 1)
+        found = sensitivity.analyse("sobol", PI, x, np.full(len(x), 0.3), ("y", "m"), 1)
         self.assertTrue(found.constant)
         self.assertIn("0.3 in every run", sensitivity.describe(found))
-        drawing = sensitivity.draw([found, sensitivity.analyse("sobol", PI, x, ishigami(x), "z", 1)], PI, "title")
+        drawing = sensitivity.draw(
+            [found, sensitivity.analyse("sobol", PI, x, ishigami(x), ("z", "m"), 1)], PI, "title"
+        )
         self.assertEqual(drawing._suptitle.get_text(), "title\ny: 0.3 in every run")
         self.assertEqual(len(drawing.axes), 1)
         plt.close(drawing)
@@ -210,7 +212,8 @@ class Files(InDirectory):
     def test_ranges(self) -> None:
         path = self.write(
             "s.nml",
-            "&study case = 'c.nml', settle_cycles = 2 /\n&parameter key = 'a.b', from = 1e-6, to = 2.0, scale = 'log' /\n"
+            "&study case = 'c.nml', settle_cycles = 2 /\n"
+            "&parameter key = 'a.b', from = 1e-6, to = 2.0, scale = 'log' /\n"
             "&parameter key = 'a.c', from = 1, to = 3, count = 4 /\n",
         )
         found = study.read_study(path)
@@ -284,7 +287,9 @@ class Pictures(InDirectory):
         self.assertAlmostEqual(found["middle"], 0.55)
 
     def test_maps(self) -> None:
-        table = pd.DataFrame({"run": range(1, 5), "a": [1, 1, 2, 2], "b": [5, 6, 5, 6], "status": 3 * ["done"] + ["no"]})
+        table = pd.DataFrame(
+            {"run": range(1, 5), "a": [1, 1, 2, 2], "b": [5, 6, 5, 6], "status": 3 * ["done"] + ["no"]}
+        )
         x, y, z = study_pictures.grid(Runs(table.assign(h=[1.0, 2.0, 3.0, 4.0]), {}), "a", "b", "h")
         np.testing.assert_array_equal([*x, *y], [1, 2, 5, 6])
         np.testing.assert_array_equal(z, [[1.0, 3.0], [2.0, np.nan]])
@@ -334,14 +339,26 @@ class Sweeps(InDirectory):
     def test_sensitivity_of_a_small_study(self) -> None:
         outcome = self.run_program(
             *(sys.executable, TOP / "scripts" / "sensitivity.py", self.study, "--program", self.program),
-            *("--method", "morris", "--morris", 3, "--out", self.work, "--outputs", "log:min_film_thickness", "impacts"),
+            *(
+                "--method",
+                "morris",
+                "--morris",
+                3,
+                "--out",
+                self.work,
+                "--outputs",
+                "log:min_film_thickness",
+                "impacts",
+            ),
             *("--set", "integrator.method=auto", "--set", "integrator.revolutions=2"),
         )
         self.assertEqual(outcome.returncode, 0, outcome.stderr)
         found = pd.read_csv(self.work / "small.indices.csv")
         thinner = found[(found["output"] == "log10 min_film_thickness") & (found["index"] == "mu")]
         self.assertEqual(list(thinner["parameter"]), ["joint.clearance", "initial.crank_speed"])
-        self.assertTrue((thinner["value"] < -0.1).all(), thinner)  # a film is thinner with more clearance, and with speed
+        self.assertTrue(
+            (thinner["value"] < -0.1).all(), thinner
+        )  # a film is thinner with more clearance, and with speed
         self.assertIn("impacts, morris (3 trajectories): 0 in every run", outcome.stdout)
         self.assertTrue((self.work / "small.png").stat().st_size > 10_000)
 

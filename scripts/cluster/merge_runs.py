@@ -5,8 +5,8 @@
                                                            there, -> OUT/NAME.runs.csv
     gudgeon sweep --check STUDY.nml | scripts/cluster/merge_runs.py --count    the number of runs it names
 
-Also NAME.cycles.csv and NAME.strobe.csv where the chunks have them. Chunks must lie end to end from run 1 on, with equal
-first lines. Needs only Python itself.
+Also NAME.cycles.csv and NAME.strobe.csv where the chunks have them. Chunks must lie end to end from run 1 on, with
+equal first lines. Needs only Python itself.
 """
 
 import argparse

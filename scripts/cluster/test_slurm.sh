@@ -12,7 +12,8 @@ cd "$(dirname "$0")/../.." || exit 1
 scripts/setup.sh --studies || exit 1
 if ! command -v slurmctld slurmd munged sbatch >/dev/null; then
   apt-get update -qq >&2 &&
-    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends slurmctld slurmd slurm-client munge >&2 ||
+    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends slurmctld slurmd slurm-client munge \
+      >&2 ||
     exit 1
 fi
 

@@ -13,8 +13,8 @@ from SALib.sample import morris as morris_sample
 from SALib.sample import sobol as sobol_sample
 
 from .figures import add_legend
-from .style import BLUE, GREY, ORANGE, VERMILION, WIDTH
 from .study import Parameter, Runs
+from .style import BLUE, GREY, ORANGE, VERMILION, WIDTH
 
 METHODS = ("morris", "sobol")
 
@@ -46,6 +46,9 @@ class Output:
     def name(self) -> str:
         return f"log10 {self.column}" if self.log else self.column
 
+    def unit(self, runs: Runs) -> str:
+        return "decades" if self.log else runs.units[self.column]
+
     def values(self, runs: Runs) -> np.ndarray:
         """NaN where the run failed or has no such value."""
         values = np.where(runs.done, pd.to_numeric(runs.table[self.column], errors="coerce"), np.nan).astype(float)
@@ -65,6 +68,7 @@ class Indices:
     left_out: int  # those left out because one of their runs has no value
     spread: float  # standard deviation of the output
     mean: float
+    unit: str
 
     @property
     def ranked(self) -> pd.DataFrame:
@@ -102,10 +106,15 @@ def values(parameters: Sequence[Parameter], sampled: np.ndarray) -> np.ndarray:
 
 
 def analyse(
-    method: str, parameters: Sequence[Parameter], sampled: np.ndarray, result: np.ndarray, output: str, seed: int
+    method: str,
+    parameters: Sequence[Parameter],
+    sampled: np.ndarray,
+    result: np.ndarray,
+    output: tuple[str, str],
+    seed: int,
 ) -> Indices:
-    """Indices of a result with their confidence intervals. A block with a result that is not finite is left out whole:
-    the others are still a sample of the same scheme, though no longer one of the runs that failed."""
+    """Indices of a result (`output`: its name and unit) with their confidence intervals. A block with a result that is
+    not finite is left out whole: the others are still a sample of the same scheme, of what runs to its end."""
     size = block(method, len(parameters))
     whole = np.isfinite(result.reshape(-1, size)).all(axis=1)
     kept = np.repeat(whole, size)
@@ -124,7 +133,8 @@ def analyse(
             found = sobol_analysis.analyze(problem(parameters), used, calc_second_order=False, **settings)
         table = pd.DataFrame({name: np.asarray(found[name], dtype=float) for name in columns}, index=names)
     mean = float(used.mean()) if given else np.nan
-    return Indices(method, output, table, given, int((~whole).sum()), spread, mean)
+    name, unit = output
+    return Indices(method, name, table, given, int((~whole).sum()), spread, mean, unit)
 
 
 def prefixes(method: str, parameters: int, rows: int) -> list[int]:
@@ -166,7 +176,9 @@ def describe(found: Indices) -> str:
     index, beside = INDICES[found.method]
     ranked = found.ranked
     ahead = ranked[ranked[index] > ranked[f"{index}_conf"]]
-    said = [f"{key} {row[index]:.2g} +- {row[f'{index}_conf']:.1g} ({row[beside]:.2g})" for key, row in ahead.iterrows()]
+    said = [
+        f"{key} {row[index]:.2g} +- {row[f'{index}_conf']:.1g} ({row[beside]:.2g})" for key, row in ahead.iterrows()
+    ]
     text = f"{head} mean {found.mean:.4g}, standard deviation {found.spread:.3g}; {index} ({beside}): {', '.join(said)}"
     nothing = [key for key, row in ranked.iterrows() if row[index] == 0]
     unclear = [key for key in ranked.index if key not in ahead.index and key not in nothing]
@@ -191,7 +203,9 @@ def draw(found: Sequence[Indices], parameters: Sequence[Parameter], title: str) 
     for item in found:
         if item.output in outputs:
             draw_panel(axes[outputs.index(item.output)][methods.index(item.method)], item, parameters)
-    notes = [f"{name.replace('_', ' ')}: {mean:.3g} in every run" for name, mean in still.items() if name not in outputs]
+    notes = [
+        f"{name.replace('_', ' ')}: {mean:.3g} in every run" for name, mean in still.items() if name not in outputs
+    ]
     drawing.suptitle("\n".join([title, *notes]))
     add_legend(drawing, drawing.axes)
     return drawing
@@ -216,7 +230,14 @@ def draw_panel(axis: plt.Axes, found: Indices, parameters: Sequence[Parameter]) 
         axis.barh(place + offset, found.table[index], 0.34, color=colour, label=labels[index])
         if error is not None:
             axis.errorbar(
-                found.table[index], place + offset, xerr=error, fmt="none", ecolor=VERMILION, elinewidth=0.8, capsize=1.5
+                found.table[index],
+                place + offset,
+                xerr=error,
+                fmt="none",
+                ecolor=VERMILION,
+                elinewidth=0.8,
+                capsize=1.5,
             )
     axis.axvline(0, color=GREY, linewidth=0.6)
-    axis.set_xlabel("effect over the whole range" if found.method == "morris" else "share of the variance")
+    whole = f"effect over the whole range [{found.unit}]"
+    axis.set_xlabel(whole if found.method == "morris" else "share of the variance")

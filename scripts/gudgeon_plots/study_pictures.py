@@ -73,7 +73,9 @@ def draw_maps(studies: dict[str, Runs]) -> Drawing:
         carried, touching = studies[f"map_{number}"], studies[f"map_{number}_oscillating"]
         image = draw_film(row[0], carried)
         drawing.colorbar(image, ax=row[0], label="least film thickness [µm]")
-        row[0].set_title(f"{number}, Pinkus–Sternlicht: contact {100 * np.nanmax(carried['contact_time_fraction']):.3g} %")
+        row[0].set_title(
+            f"{number}, Pinkus–Sternlicht: contact {100 * np.nanmax(carried['contact_time_fraction']):.3g} %"
+        )
         image = draw_contact(row[1], touching)
         drawing.colorbar(image, ax=row[1], label="time in contact [%]", extend="min")
         row[1].set_title(f"{number}, oscillating film")
@@ -99,8 +101,8 @@ def describe_maps(studies: dict[str, Runs]) -> list[str]:
         least = ", ".join(f"above {level:g} µm in {100 * (film > level).mean():.0f} %" for level in (0.1, 0.3, 1.0))
         lines.append(
             f"{name}: {runs.done.sum()} of {len(runs.table)} runs done; in contact {100 * share.min():.3g} to"
-            f" {100 * share.max():.3g} % of the time (median {100 * share.median():.3g} %); least film {film.min():.3g} to"
-            f" {film.max():.3g} µm, {least} of the runs"
+            f" {100 * share.max():.3g} % of the time (median {100 * share.median():.3g} %);"
+            f" least film {film.min():.3g} to {film.max():.3g} µm, {least} of the runs"
         )
     return lines
 
@@ -153,9 +155,17 @@ def draw_bifurcation(strobes: dict[str, pd.DataFrame]) -> Drawing:
         settled = periods(strobe, parameter)
         repeats = strobe[parameter].map(settled).to_numpy()
         for axis, column in ((above, "eccentricity_ratio_y"), (below, "velocity_ratio")):
-            for mask, colour, size in ((repeats == 0, BLACK, 0.3), (repeats > 1, VERMILION, 3.0), (repeats == 1, BLUE, 3.0)):
+            for mask, colour, size in (
+                (repeats == 0, BLACK, 0.3),
+                (repeats > 1, VERMILION, 3.0),
+                (repeats == 1, BLUE, 3.0),
+            ):
                 axis.scatter(
-                    unit * strobe.loc[mask, parameter], strobe.loc[mask, column], s=size, c=colour, linewidths=0,
+                    unit * strobe.loc[mask, parameter],
+                    strobe.loc[mask, column],
+                    s=size,
+                    c=colour,
+                    linewidths=0,
                     rasterized=True,
                 )
             axis.set_xscale(scale)
@@ -176,7 +186,8 @@ def describe_bifurcation(strobe: pd.DataFrame, name: str, parameter: str, unit: 
     counts = found.value_counts()
     spans = [f"{span[0]:.4g} to {span[1]:.4g}" for span in spans_of(found == 1, unit) if span[2] >= 3]
     later = ", ".join(f"{counts[n]} with period {n}" for n in sorted(counts.index) if n > 1)
-    text = f"{name}: {len(found)} values from {first:.4g} to {last:.4g} {label}; {counts.get(1, 0)} repeat every revolution"
+    text = f"{name}: {len(found)} values from {first:.4g} to {last:.4g} {label}; "
+    text += f"{counts.get(1, 0)} repeat every revolution"
     text += f" (three or more in a row: {'; '.join(spans)})" if spans else ""
     return text + (f", {later}" if later else "") + f", {counts.get(0, 0)} not within {LONGEST_PERIOD}"
 
