@@ -72,7 +72,7 @@ def bifurcation(results: Path) -> tuple[figures.Drawing, list[str]]:
 
 def restitution(results: Path) -> tuple[figures.Drawing, list[str]]:
     runs = read(results, "restitution")
-    measured = study_pictures.measured_restitution(results / "restitution", runs, settled_from=40 * np.pi)
+    measured = study_pictures.measured_restitution(results / "restitution", runs, settled_from=80 * np.pi)
     drawing = study_pictures.draw_restitution(runs, measured)
     return drawing, [study_pictures.describe_restitution(runs, measured)]
 

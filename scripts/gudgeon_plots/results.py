@@ -147,8 +147,8 @@ def load_run(path: Path) -> Run:
 
 
 def case_files() -> dict[str, Path]:
-    """Case file of each name under cases/."""
-    return {path.stem: path for path in sorted((TOP / "cases").rglob("*.nml"))}
+    """Case file of each name under cases/; cases/studies/ holds studies, and cases in base/ below it."""
+    return {path.stem: path for path in sorted((TOP / "cases").rglob("*.nml")) if path.parent.name != "studies"}
 
 
 class Results:
