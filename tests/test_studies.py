@@ -255,9 +255,13 @@ class Pictures(InDirectory):
         self.assertEqual(period(*np.sin(np.arange(40.0) ** 2)), 0)
         self.assertEqual(period(1.0), 0)
 
-    def test_spans(self) -> None:
-        mask = pd.Series([True, True, False, True], index=[1.0, 2.0, 3.0, 4.0])
-        self.assertEqual(study_pictures.spans_of(mask, 10.0), [(10.0, 20.0, 2), (40.0, 40.0, 1)])
+    def test_bifurcation_in_words(self) -> None:
+        rows = []
+        for run, (value, points) in enumerate(((1.0, [0.1] * 6), (2.0, [0.1, 0.2] * 3), (3.0, [1, 5, 2, 8, 3, 9]))):
+            rows += [{"run": run, "a": value, "eccentricity_ratio_y": point} for point in points]
+        text = study_pictures.describe_bifurcation(pd.DataFrame(rows), "x", "a", 10.0, "m")
+        self.assertIn("of 3 values from 10 to 30 m 1 repeat every revolution, 1 after 2 to 8, 1 do not", text)
+        self.assertIn("that repeat lie from 10 to 20; those that do not lie from 30 to 30", text)
 
     def test_restitution_of_the_law(self) -> None:
         for nominal in (0.0, 0.4, 0.9):

@@ -52,7 +52,8 @@ def draw_film(axis: Axes, runs: Runs) -> plt.cm.ScalarMappable:
     levels = [level for level in FILM_CONTOURS if np.nanmin(film) < level < np.nanmax(film)]
     if levels:
         lines = axis.contour(1e6 * clearance, speed, film, levels=levels, colors="white", linewidths=0.8)
-        axis.clabel(lines, fmt=lambda value: f"{value:g} µm", fontsize=7)
+        long = [level for level, parts in zip(lines.levels, lines.allsegs) if sum(map(len, parts)) > 12]
+        axis.clabel(lines, long, fmt=lambda value: f"{value:g} µm", fontsize=7)
     mark_failed(axis, runs, "joint.clearance", "initial.crank_speed", 1e6)
     return image
 
@@ -170,40 +171,26 @@ def draw_bifurcation(strobes: dict[str, pd.DataFrame]) -> Drawing:
                 )
             axis.set_xscale(scale)
         below.set_xlabel(label)
-    axes[0][0].set_ylabel("eccentricity across / clearance")
-    axes[1][0].set_ylabel("piston velocity / (clearance · crank speed)")
+    axes[0][0].set_ylabel("eccentricity across / c")
+    axes[1][0].set_ylabel("piston velocity / (c · crank speed)")
     drawing.suptitle(
         "Flores slider-crank, dry: state at the dead centre in 80 revolutions\n"
-        f"blue: the same in each, red: after two to {LONGEST_PERIOD}, black: never"
+        f"blue: the same in each, red: repeats after 2 to {LONGEST_PERIOD}, black: does not"
     )
     return drawing
 
 
 def describe_bifurcation(strobe: pd.DataFrame, name: str, parameter: str, unit: float, label: str) -> str:
-    """Where the motion repeats each revolution, where it repeats later, where it does not."""
+    """How many motions repeat after how many revolutions, and where the last of each kind are."""
     found = periods(strobe, parameter)
-    first, last = unit * found.index[0], unit * found.index[-1]
     counts = found.value_counts()
-    spans = [f"{span[0]:.4g} to {span[1]:.4g}" for span in spans_of(found == 1, unit) if span[2] >= 3]
-    later = ", ".join(f"{counts[n]} with period {n}" for n in sorted(counts.index) if n > 1)
-    text = f"{name}: {len(found)} values from {first:.4g} to {last:.4g} {label}; "
-    text += f"{counts.get(1, 0)} repeat every revolution"
-    text += f" (three or more in a row: {'; '.join(spans)})" if spans else ""
-    return text + (f", {later}" if later else "") + f", {counts.get(0, 0)} not within {LONGEST_PERIOD}"
-
-
-def spans_of(mask: pd.Series, unit: float) -> list[tuple[float, float, int]]:
-    """First value, last value and length of each run of true ones."""
-    spans: list[tuple[float, float, int]] = []
-    start = None
-    values = [*mask.items(), (np.nan, False)]
-    for i, (_, true) in enumerate(values):
-        if true and start is None:
-            start = i
-        elif not true and start is not None:
-            spans.append((unit * values[start][0], unit * values[i - 1][0], i - start))
-            start = None
-    return spans
+    later = counts[[n for n in counts.index if n > 1]].sum()
+    text = f"{name}: of {len(found)} values from {unit * found.index[0]:.4g} to {unit * found.index[-1]:.4g} {label} "
+    text += f"{counts.get(1, 0)} repeat every revolution, {later} after 2 to {LONGEST_PERIOD}, {counts.get(0, 0)} do not"
+    for what, values in (("repeat", found.index[found > 0]), ("do not", found.index[found == 0])):
+        if len(values):
+            text += f"; those that {what} lie from {unit * values[0]:.4g} to {unit * values[-1]:.4g}"
+    return text
 
 
 def restitution_of_law(nominal: float) -> float:
@@ -250,7 +237,7 @@ def draw_restitution(runs: Runs, measured: pd.DataFrame) -> Drawing:
         axis.plot(nominal, unit * np.where(runs.done, runs[column], np.nan), ".-", color=BLUE)
         axis.set(ylabel=label, ylim=(0, None))
     axes[0][1].plot(nominal, 1e-3 * np.where(runs.done, runs["max_pin_force"], np.nan), ".", color=GREY)
-    axes[0][1].set_title("mean of the revolutions' peaks; grey: the highest")
+    axes[0][1].set_title("of a revolution, mean; grey: highest")
     axis = axes[1][1]
     axis.fill_between(measured["nominal"], measured["low"], measured["high"], color=BLUE, alpha=0.25, linewidth=0)
     axis.plot(measured["nominal"], measured["middle"], ".-", color=BLUE, label="hard impacts, middle half")
