@@ -36,7 +36,7 @@ count "studies" tests/test_sweep.sh
 count "faults" tests/test_faults.py --kills 10
 count "runs taken up again" tests/test_resume.py --kills 10
 count "the plots" sh -c 'scripts/setup.sh --python && tests/test_plots.py'
-count "the studies" sh -c 'scripts/setup.sh --studies && tests/test_studies.py'
+count "studies past the program" sh -c 'scripts/setup.sh --studies && tests/test_studies.py'
 
 failed=$((failed + wrong))
 echo "$passed passed, $failed failed"
