@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import random
+import resource
 import shutil
 import signal
 import subprocess
@@ -88,13 +89,29 @@ def stopped_by_signals(gudgeon: Gudgeon, work: Path, file: Path, length: str, ki
         process.communicate()
         if process.returncode == 0:
             break
-        check(process.returncode in (4, -signal.SIGKILL), f"{file.name}: stopped, exit {process.returncode}")
+        check(process.returncode in (4, -sign), f"{file.name}: stopped, exit {process.returncode}")   # -TERM: before it is held
     check(process.returncode == 0, f"{file.name}: done after {done} stops")
     check(done >= 3, f"{file.name}: stopped {done} times")
     wrong = differing(whole, parts, file.stem)
     check(not wrong, f"{file.name}, stopped {done} times by signals: {wrong}")
     check(not leftovers(parts), f"left behind: {leftovers(parts)}")
     print(f"{file.name}: stopped {done} times", flush=True)
+
+
+def stopped_by_full_disk(gudgeon: Gudgeon, work: Path) -> None:
+    """A trace that finds no room: the run goes on from its last checkpoint when there is some."""
+    words = ("--set", "integrator.revolutions=30", CASES / "flores" / "friction_100.nml")
+    check(gudgeon.run("-o", work / "whole", *words)[0] == 0, "whole run")
+
+    def no_room() -> None:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (3_000_000, 3_000_000))
+    status, _, err = gudgeon.run("--checkpoint", 0.01, "-o", work / "parts", *words, preexec_fn=no_room)
+    check(status == 5 and "File too large" in err, f"no room: {status} {err}")
+    check("friction_100.checkpoint" in leftovers(work / "parts"), "the checkpoint stays")
+    status, _, err = gudgeon.run("--resume", "-o", work / "parts", *words)
+    check(status == 0 and not err, f"goes on when there is room: {status} {err}")
+    wrong = differing(work / "whole", work / "parts", "friction_100")
+    check(not wrong, f"stopped by a full disk: {wrong}")
 
 
 def refusals(gudgeon: Gudgeon, work: Path, chance: random.Random) -> None:
@@ -179,6 +196,7 @@ def main() -> int:
         stopped_by_limits(gudgeon, work / "limits")
         stopped_by_signals(gudgeon, work / "film", CASES / "sim_V_oscillating.nml", "60", options.kills, chance)
         stopped_by_signals(gudgeon, work / "dry", CASES / "flores" / "friction_100.nml", "60", options.kills, chance)
+        stopped_by_full_disk(gudgeon, work / "disk")
         refusals(gudgeon, work / "refused", chance)
         beginnings(gudgeon, work / "begin")
     finally:

@@ -71,7 +71,7 @@ contains
     class(recorder_t), intent(inout) :: self
     integer, intent(in) :: n
     allocate (self%y(n), self%values(size(self%list%id)))
-    self%keeps_archives = self%sink%keeps_archives
+    self%keeps_archives = self%sink%keeps_archives .and. .not. allocated(self%cycles)   ! whose state is not put away
   end subroutine prepare
 
   !> Look at the initial state, and write the first row if it is due.
