@@ -49,6 +49,7 @@ module clearance_scene
     procedure :: event_form
     procedure :: exchange
     procedure :: measure_joint
+    procedure :: joint_loss
   end type clearance_scene_t
 
 contains
@@ -72,7 +73,8 @@ contains
     dydt(2*m - 1) = now%accelerations%eccentricity(1)
     dydt(2*m) = now%accelerations%eccentricity(2)
     dydt(2*m + 1) = now%power
-    if (self%n_measures > 0) dydt(2*m + 2:2*m + 3) = [norm2(now%loads%pin_force), -joint_power(now)]
+    if (self%n_measures > 0) dydt(2*m + 2) = sqrt(now%loads%pin_force(1)**2 + now%loads%pin_force(2)**2)
+    if (self%n_measures > 1) dydt(2*m + 3) = -joint_power(now)
   end subroutine derivatives
 
   !> Power of the joint on the bodies [W]: of its force along the eccentricity and of its moment along the turning pin.
@@ -83,11 +85,25 @@ contains
     end associate
   end function joint_power
 
-  !> Two measures: the integral of the force's size [N s], and what the joint takes from the bodies [J].
+  !> The integral of the force's size [N s] and, unless the work of all forces tells it, what the joint takes from the bodies.
   subroutine measure_joint(self)
     class(clearance_scene_t), intent(inout) :: self
-    call self%add_measures(2)
+    logical :: work_tells
+    work_tells = self%drive%free_crank .and. .not. (self%drive%damping > 0 .or. allocated(self%gas))
+    call self%add_measures(merge(1, 2, work_tells))
   end subroutine measure_joint
+
+  !> Energy that the joint has taken from the bodies [J]; where it is not integrated itself, the work of the drive's torque
+  !> less that of all forces.
+  pure real(dp) function joint_loss(self, t, y)
+    class(clearance_scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    if (self%n_measures > 1) then
+      joint_loss = y(2*self%n_positions + 3)
+    else
+      joint_loss = self%drive%torque*(self%crank_angle(t, y) - self%start_angle) - self%work(y)
+    end if
+  end function joint_loss
 
   pure subroutine evaluate(self, t, y, evaluation, inside)
     class(clearance_scene_t), intent(in) :: self

@@ -88,14 +88,17 @@ contains
     class(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t_to, y_to(:)
     real(dp) :: travel, t
+    logical :: counts
     travel = travel_at(self, scene, t_to, y_to)
     do while (travel >= next_end(self))   ! a step may pass several angles
-      t = passage(self, method, scene, next_end(self), t_to, travel)
+      counts = self%keeps_cycles .or. self%ended + 1 == self%settle .or. &
+        t_to + 2*(t_to - self%cycle_start) >= method%settings%stop_time   ! else sums pass over this end of a revolution
+      t = passage(self, method, scene, next_end(self), t_to, travel, counts)
       call end_cycle(self, scene, t, self%y)
     end do
     if (.not. self%has_strobe) return
     do while (travel >= next_strobe(self))
-      t = passage(self, method, scene, next_strobe(self), t_to, travel)
+      t = passage(self, method, scene, next_strobe(self), t_to, travel, .true.)
       call strobe(self, scene, t, self%y)
     end do
   end subroutine take_step
@@ -157,23 +160,23 @@ contains
   end function next_strobe
 
   !> The first time in the last step, up to t_to where the travel is past it, at which the travel reaches `target`; where it
-  !> was there before the step, its beginning. The state there is left in y: a copy of the method lands on it, since the
-  !> interpolant between two long steps of Radau misses the quadratures by 50 times the error of the steps (simulation I).
-  real(dp) function passage(self, method, scene, target, t_to, travel)
+  !> was there before the step, its beginning. The state there is left in y: from the interpolant or, where it `counts`, by a
+  !> copy of the method that lands on it, since the interpolant between two long steps of Radau misses the quadratures by 50
+  !> times the error of the steps (simulation I).
+  real(dp) function passage(self, method, scene, target, t_to, travel, counts)
     class(cycle_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     class(scene_t), intent(in) :: scene
     real(dp), intent(in) :: target, t_to, travel
+    logical, intent(in) :: counts
     class(ode_method_t), allocatable :: copy
     type(bracket_t) :: bracket
-    real(dp) :: t, miss, first_miss
-    integer :: i
+    real(dp) :: t
     bracket = bracket_t(method%t_old, t_to, travel_at(self, scene, method%t_old, method%y_old) - target, travel - target, 0, &
       abs(t_to - method%t_old))
-    first_miss = bracket%fa
     passage = method%t_old
     if (bracket%fa < 0) then
-      do
+      do while (abs(bracket%b - bracket%a) > 1e-9_dp*bracket%width)
         t = next_abscissa(bracket)
         if (.not. (t > bracket%a .and. t < bracket%b)) exit
         call method%interpolate(t, self%y)
@@ -181,16 +184,12 @@ contains
       end do
       passage = bracket%b
     end if
-    allocate (copy, source=method)
-    call copy%land_on(scene, passage, self%y)
-    do i = 1, 2   ! what lands may differ from the interpolant in the crank too
-      miss = travel_at(self, scene, passage, self%y) - target
-      if (.not. first_miss < 0 .or. abs(miss) < 1e-12_dp*target) exit
-      t = passage - miss*(t_to - method%t_old)/(travel - target - first_miss)
-      if (.not. (t > method%t_old .and. t <= t_to)) exit
-      passage = t
+    if (counts) then
+      allocate (copy, source=method)
       call copy%land_on(scene, passage, self%y)
-    end do
+    else
+      call method%interpolate(passage, self%y)
+    end if
   end function passage
 
   !> The present revolution ends at (t, y).
@@ -202,14 +201,11 @@ contains
     real(dp) :: measures(2)
     type(evaluation_t) :: now
     logical :: inside
-    integer :: first
     if (.not. self%has_points) then   ! a step longer than a revolution
       call scene%evaluate(t, y, now, inside)
       if (inside) call self%take_point(scene, t, now)
     end if
-    measures = 0
-    first = 2*scene%n_positions + 2
-    measures(:scene%n_measures) = y(first:first + scene%n_measures - 1)
+    measures = [y(2*scene%n_positions + 2), scene%joint_loss(t, y)]
     if (scene%phase == phase_contact) self%present%contact_time = self%present%contact_time + (t - self%t)
     self%present%duration = t - self%cycle_start
     self%present%pin_force_integral = measures(1) - self%measures(1)

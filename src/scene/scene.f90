@@ -42,7 +42,7 @@ module scene
 
   !> A scene as an ode_problem: y holds positions, then their rates, then quadratures: the work of all non-conservative
   !> forces and the drive [J] and, where somebody asks for them, the measures of the joint: the integral of the size of its
-  !> force [N s] and, with clearance, what it takes from the bodies [J]. With a held crank speed the crank angle is no
+  !> force [N s] and, where the work does not tell it, what it takes from the bodies [J]. With a held crank speed the crank angle is no
   !> unknown.
   type, abstract, extends(ode_problem_t) :: scene_t
     type(mechanism_t) :: mechanism
@@ -63,6 +63,7 @@ module scene
     procedure :: crank_angle
     procedure :: work
     procedure :: measure_joint
+    procedure :: joint_loss
     procedure :: add_measures
     procedure :: energy
     procedure :: energy_scale
@@ -154,6 +155,15 @@ contains
     class(scene_t), intent(inout) :: self
     call self%add_measures(1)
   end subroutine measure_joint
+
+  !> Energy that the joint has taken from the bodies, in a scene that measures it [J]: none without clearance.
+  pure real(dp) function joint_loss(self, t, y)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    associate (unused_self => self, unused_t => t, unused_y => y)
+    end associate
+    joint_loss = 0
+  end function joint_loss
 
   !> Room for so many measures.
   subroutine add_measures(self, n_measures)

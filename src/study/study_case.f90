@@ -20,7 +20,7 @@ module study_case
     type(case_values_t), private :: values
     integer, allocatable, private :: places(:)       !! of the parameters among the keys
     logical, allocatable, private :: is_number(:)    !! a parameter is one number
-    integer, private :: variant = 0                  !! place of the film's variant, whose default follows its law
+    integer, private :: variant = 0                  !! > 0: place of the film's variant, whose default follows its law, which varies
   contains
     procedure :: prepare
     procedure :: put
@@ -57,7 +57,9 @@ contains
         self%values%values(self%places(i))%given(1) = .true.
       end associate
     end do
-    self%variant = find_key(values%keys, 'lubrication', 'variant')
+    self%variant = 0
+    if (any(self%places == find_key(values%keys, 'lubrication', 'law'))) &
+      self%variant = find_key(values%keys, 'lubrication', 'variant')
     do i = 1, size(values%keys)   ! of models that the parameters bring in
       call self%values%check_required(i, error)
       if (allocated(error)) return
@@ -140,7 +142,7 @@ contains
     class(study_case_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
     integer :: i
-    call value_to_case(self%values, self%variant, self%case)
+    if (self%variant > 0) call value_to_case(self%values, self%variant, self%case)
     call choose_variant(self%case)
     do i = 1, size(self%places)
       if (self%values%is_in_range(self%places(i))) cycle
