@@ -28,7 +28,6 @@ program measure_runs
   class(trace_sink_t), allocatable :: sink
   type(cycle_watch_t), allocatable :: watch
   type(run_report_t) :: report
-  character(len=:), allocatable :: texts(:)
   character(len=400) :: argument
   integer(int64) :: began, ended, rate, evaluations
   real(dp) :: cpu_began, cpu_ended
@@ -44,14 +43,7 @@ program measure_runs
   if (.not. allocated(error)) call base%prepare(values, study%case, design%keys, '', error)
   if (allocated(error)) error stop 'measure_runs: no such study'
   allocate (cases(design%runs))
-  allocate (character(len=design%text_length) :: texts(size(design%keys)))
-  do i = 1, design%runs
-    call design%get_values(i, texts)
-    call base%put(texts, error)
-    if (.not. allocated(error)) call base%check(error)
-    if (allocated(error)) error stop 'measure_runs: a run that cannot be'
-    cases(i) = base%case
-  end do
+  call make_cases(design, base, cases)
   call get_command_argument(2, argument)
   is_watched = argument == 'watched'
   allocate (no_rows%id(0))
@@ -73,4 +65,23 @@ program measure_runs
   print '(a)', 'runs,evaluations,cpu_seconds,seconds'
   print '(i0,a,i0,a,f0.4,a,f0.4)', design%runs, ',', evaluations, ',', cpu_ended - cpu_began, ',', &
     real(ended - began, dp)/real(rate, dp)
+
+contains
+
+  !> The case of every run.
+  subroutine make_cases(design, base, cases)
+    type(study_design_t), intent(in) :: design
+    type(study_case_t), intent(inout) :: base
+    type(case_t), intent(out) :: cases(:)
+    character(len=design%text_length) :: texts(size(design%keys))
+    type(error_t), allocatable :: error
+    integer :: run
+    do run = 1, design%runs
+      call design%get_values(run, texts)
+      call base%put(texts, error)
+      if (.not. allocated(error)) call base%check(error)
+      if (allocated(error)) error stop 'measure_runs: a run that cannot be'
+      cases(run) = base%case
+    end do
+  end subroutine make_cases
 end program measure_runs

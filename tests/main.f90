@@ -26,6 +26,7 @@ program gudgeon_tests
   use test_scenes, only: run_test_scenes
   use test_slow_contact, only: run_test_slow_contact
   use test_standard_problems, only: run_test_standard_problems
+  use test_study, only: run_test_study
   use test_summary, only: run_test_summary
   use test_trace_files, only: run_test_trace_files
   implicit none
@@ -55,6 +56,7 @@ program gudgeon_tests
   call run_test_scenes(check)
   call run_test_slow_contact(check)
   call run_test_standard_problems(check)
+  call run_test_study(check)
   call run_test_summary(check)
   call run_test_trace_files(check)
 

@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+"""What a parameter study costs beyond its runs, and what a second thread brings.
+
+    scripts/measure_sweep.py [--runs 10000] [--repeats 3] [--threads 2]
+
+Simulation I, method auto, draft accuracy, over clearance and viscosity (Latin hypercube). Three measurements:
+ - throughput of `gudgeon sweep` on one thread and on several, in turns, the best of the repeats: wants idle cores;
+ - processor time of the sweep against that of the same runs simulated one after the other in one process
+   (scripts/measure_runs.f90), bare and with the statistics of revolutions;
+ - instructions of the same under valgrind, on 100 runs: the same figures without the noise of the machine.
+Run it from the top of the checkout. Prints a table.
+"""
+import argparse
+import os
+import re
+import resource
+import subprocess
+import tempfile
+import time
+
+STUDY = """&study case = '{case}', design = 'latin_hypercube', runs = {runs}, seed = 1 /
+&parameter key = 'joint.clearance', from = 1e-5, to = 4e-5 /
+&parameter key = 'lubrication.viscosity', from = 0.005, to = 0.02 /
+"""
+SETTINGS = ["-q", "--fresh", "-s", "integrator.method=auto", "-s", "integrator.relative_tolerance=1e-4"]
+
+
+def program(*target):
+    """Path of a program of the release build, which is made where it is missing."""
+    command = ["fpm", "run", "--profile", "release", *target, "--runner", "echo"]
+    found = subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()
+    return os.path.abspath(found[-1])
+
+
+def timed(command):
+    """Seconds of clock and processor of a command, and what it prints."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    start = time.monotonic()
+    done = subprocess.run(command, check=True, capture_output=True, text=True)
+    clock = time.monotonic() - start
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return clock, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, after.ru_maxrss, done.stdout
+
+
+def instructions(command, function, folder):
+    """Instructions spent inside a function."""
+    done = subprocess.run(["valgrind", "--tool=callgrind", f"--toggle-collect={function}",
+                           f"--callgrind-out-file={folder}/callgrind", *command], capture_output=True, text=True, check=True)
+    return int(re.search(r"Collected : (\d+)", done.stderr).group(1))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--runs", type=int, default=10000)
+    parser.add_argument("--repeats", type=int, default=3)
+    parser.add_argument("--threads", type=int, default=2)
+    options = parser.parse_args()
+    gudgeon, runs = program(), program("--example", "measure_runs")
+    with tempfile.TemporaryDirectory() as folder:
+        def study(count):
+            path = f"{folder}/study_{count}.nml"
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(STUDY.format(case=os.path.abspath("cases/sim_I.nml"), runs=count))
+            return path
+
+        def sweep(path, threads):
+            return [gudgeon, "sweep", *SETTINGS, "-j", str(threads), "-o", folder, path]
+
+        path = study(options.runs)
+        clock, processor = {}, {}
+        for _ in range(options.repeats):
+            for name, command in (("sweep, 1 thread", sweep(path, 1)),
+                                  (f"sweep, {options.threads} threads", sweep(path, options.threads)),
+                                  ("bare runs", [runs, path]), ("runs with statistics", [runs, path, "watched"])):
+                seconds, cpu, _, printed = timed(command)
+                if "runs" == name.split()[-1] or "statistics" in name:   # without making the cases
+                    cpu, seconds = (float(x) for x in printed.split("\n")[1].split(",")[2:])
+                clock[name] = min(seconds, clock.get(name, seconds))
+                processor[name] = min(cpu, processor.get(name, cpu))
+        print(f"{options.runs} runs, best of {options.repeats}; load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
+        for name in clock:
+            print(f"{name:24s} {clock[name]:8.2f} s  {processor[name]:8.2f} s of processor, "
+                  f"{1e6*processor[name]/options.runs:8.1f} us a run, {100*(processor[name]/processor['bare runs'] - 1):+5.1f} %")
+        print(f"throughput on {options.threads} threads over 1: "
+              f"{clock['sweep, 1 thread']/clock[f'sweep, {options.threads} threads']:.2f}; processor time of a run, 1 thread over "
+              f"{options.threads}: {processor['sweep, 1 thread']/processor[f'sweep, {options.threads} threads']:.3f}")
+        path = study(100)
+        bare = instructions([runs, path], "__simulation_MOD_simulate", folder)
+        for name, command, function in (("runs with statistics", [runs, path, "watched"], "__simulation_MOD_simulate"),
+                                        ("sweep", sweep(path, 1), "__study_runner_MOD_work")):
+            count = instructions(command, function, folder)
+            print(f"{name:24s} {count/100:12.0f} instructions a run, {100*(count/bare - 1):+5.2f} % of bare runs ({bare/100:.0f})")
+
+
+if __name__ == "__main__":
+    main()
