@@ -2,7 +2,9 @@
 !> trace, for scenes that grow by one model at a time. Run by scripts/measure_costs.
 !>
 !>     measure_costs                       a CSV table of nanoseconds: the best of many blocks, beside a pair of sine and cosine
-!>     measure_costs SCENE QUANTITY COUNT  does it COUNT times, and prints what was done: for counting instructions
+!>     measure_costs SCENE QUANTITY COUNT  does it COUNT times: for counting instructions
+!>     measure_costs FILE integration N    the best of N integrations of a case by method auto, nothing recorded, in milliseconds:
+!>                                         its scene, and its ideal twin if it asks for one
 program measure_costs
   use, intrinsic :: iso_fortran_env, only: int64
   use kinds, only: dp
@@ -14,8 +16,10 @@ program measure_costs
   use solver, only: integrate, observer_t, silent_observer_t, integration_done, step_limit_reached
   use scene, only: scene_t, evaluation_t, phase_contact
   use clearance_scene, only: clearance_scene_t
-  use scene_builder, only: build_scene, settings_for
+  use scene_builder, only: build_scene, settings_for, simulated_time
   use columns, only: column_list_t, choose_columns, row_values
+  use ode_method, only: ode_method_t
+  use methods, only: new_method
   use recorder, only: recorder_t
   use trace_sink, only: trace_sink_t
   use silent_sink, only: silent_sink_t
@@ -36,7 +40,11 @@ program measure_costs
     call get_command_argument(2, quantity)
     call get_command_argument(3, text)
     read (text, *) count
-    call do_once(trim(scene_name), trim(quantity), count)
+    if (quantity == 'integration') then
+      call integrate_case(count)
+    else
+      call do_once(trim(scene_name), trim(quantity), count)
+    end if
   else
     print '(a)', 'scene,quantity,ns,pairs,evaluations'
     do i = 1, n_scenes
@@ -298,4 +306,47 @@ contains
       ns = time_of_rows(case, scene, y, quantity, count)
     end select
   end subroutine do_once
+  !> The case file of the first argument.
+  subroutine integrate_case(count)
+    integer, intent(in) :: count
+    character(len=500) :: path
+    type(case_t) :: case
+    type(error_t), allocatable :: error
+    real(dp) :: best, ms
+    integer :: i
+    call get_command_argument(1, path)
+    call read_case(trim(path), ['integrator.method=auto'], case, error)
+    if (allocated(error)) error stop 'measure_costs: no such case'
+    best = huge(best)
+    do i = 1, count
+      ms = time_of_integration(case, .false.)
+      if (case%output%ideal_twin) ms = ms + time_of_integration(case, .true.)
+      best = min(best, ms)
+    end do
+    print '(f0.4)', best
+  end subroutine integrate_case
+
+  !> Milliseconds.
+  real(dp) function time_of_integration(case, ideal_joint) result(ms)
+    type(case_t), intent(in) :: case
+    logical, intent(in) :: ideal_joint
+    class(scene_t), allocatable :: scene
+    class(ode_method_t), allocatable :: method
+    type(error_t), allocatable :: error
+    type(silent_observer_t) :: nobody
+    integer(int64) :: before, after, rate
+    real(dp), allocatable :: y(:)
+    real(dp) :: t
+    integer :: status
+    call build_scene(case, ideal_joint, scene, error)
+    if (.not. allocated(error)) call new_method('auto', method, error)
+    if (allocated(error)) error stop 'measure_costs: no such scene'
+    method%settings = settings_for(case, scene)
+    allocate (y(scene%n), source=scene%initial_state())
+    t = 0
+    call system_clock(before, rate)
+    call integrate(scene, method, t, y, simulated_time(case), 0, nobody, status)
+    call system_clock(after)
+    ms = 1e3_dp*real(after - before, dp)/real(rate, dp)
+  end function time_of_integration
 end program measure_costs
