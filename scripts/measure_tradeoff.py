@@ -3,6 +3,7 @@
 
     scripts/measure_tradeoff.py cases/sim_I.nml               table, picture and recommendation, in results/tradeoff
     scripts/measure_tradeoff.py cases/flores/*.nml --repeat 9 several cases, wall times the median of nine
+    scripts/measure_tradeoff.py --presets                     what --accuracy draft, standard, reference give in every case
 
 Runs a case over tolerance x method x max_order x contact entry with the release build, side by side on the cores there
 are, and compares each run with a reference at the tightest setting, whose own error it estimates from the next
@@ -34,15 +35,17 @@ from gudgeon_plots.results import MissingResult, Run, load_run, read_summary  # 
 from gudgeon_plots.tradeoff import Reference, Settings  # noqa: E402
 
 COLUMNS = (
-    *("variant", "method", "max_order", "contact_entry", "max_penetration", "tolerance", "status", "seconds"),
-    *("evaluations", "state_error", "agrees_until", "impacts", "impacts_matched", "impacts_extra"),
-    *("impact_time_error", "peak_force_error", "least_film_error", "energy_residual", "made_of"),
+    *("variant", "method", "max_order", "contact_entry", "max_penetration", "tolerance", "points", "status", "seconds"),
+    *("evaluations", "state_error", "agrees_until", "digits_3_until", "digits_6_until"),
+    *("impacts", "impacts_matched", "impacts_extra", "impact_time_error", "peak_force_error", "least_film_error"),
+    *("energy_residual", "mean_speed", "mean_force", "impacts_per_turn", "contact_share", "made_of"),
 )
 
 
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("cases", nargs="+", type=Path, metavar="CASE.nml")
+    parser.add_argument("cases", nargs="*", type=Path, metavar="CASE.nml")
+    parser.add_argument("--presets", action="store_true", help="only the accuracy levels (default: of every shipped case)")
     parser.add_argument(
         "--out", type=Path, default=TOP / "results" / "tradeoff", metavar="DIR", help="(default: results/tradeoff)"
     )
@@ -67,6 +70,14 @@ def arguments() -> argparse.Namespace:
         help="of the film, each with its own reference (default: the case's own)",
     )
     parser.add_argument(
+        "--points",
+        nargs="+",
+        type=int,
+        default=[0, 8, 32],
+        metavar="N",
+        help="quadrature_points of an oscillating film, 0: chosen from the tolerance (default: 0 8 32)",
+    )
+    parser.add_argument(
         "--reference",
         nargs=2,
         type=float,
@@ -87,7 +98,13 @@ def arguments() -> argparse.Namespace:
     parser.add_argument(
         "--timeout", type=float, default=120.0, metavar="S", help="give a run up after this (default: 120)"
     )
-    return parser.parse_args()
+    options = parser.parse_args()
+    if options.presets and not options.cases:
+        options.cases = sorted(TOP.glob("cases/*.nml")) + sorted(TOP.glob("cases/*/*.nml"))
+        options.cases = [case for case in options.cases if "&mechanism" in case.read_text(encoding="utf-8")]
+    if not options.cases:
+        parser.error("no CASE.nml")
+    return options
 
 
 class Study:
@@ -135,14 +152,21 @@ class Study:
             raise MissingResult(f"{self.name}: too few reference runs come to an end; try --reference 1e-12 1e-11")
         return tradeoff.choose_reference(tight, loose, self.options.horizon)
 
-    def settings(self, touches: bool, clearance: float) -> list[Settings]:
+    def settings(self, run: Run) -> list[Settings]:
+        """Everything that is to be run, for a case whose reference is `run`."""
+        touches, clearance = len(tradeoff.impact_times(run)) > 0, run.clearance
+        has_points = "oscillating" in str(run.parameter("lubrication", "law", default=""))
         entries = [("root", 0.0)]
         if touches:
             entries += [("step_rejection", share * clearance) for share in self.options.penetrations]
         return [
-            Settings(self.variant, method, order, *entry, tolerance)
-            for method, order, entry, tolerance in product(
-                self.options.methods, self.options.orders, entries, self.options.tolerances
+            Settings(self.variant, method, order, *entry, tolerance, points)
+            for method, order, entry, tolerance, points in product(
+                self.options.methods,
+                self.options.orders,
+                entries,
+                self.options.tolerances,
+                self.options.points if has_points else [0],
             )
         ]
 
@@ -177,8 +201,7 @@ class Study:
 
     def measure(self, reference: Reference) -> pd.DataFrame:
         """Run what the table lacks, a row at a time as they end; all rows asked for."""
-        clearance = reference.run.clearance
-        wanted = self.settings(len(tradeoff.impact_times(reference.run)) > 0, clearance)
+        wanted = self.settings(reference.run)
         old = self.rows()
         old.to_csv(self.table, index=False, na_rep="nan")
         have = {tradeoff.settings_of(row).key for _, row in old.iterrows()}
@@ -207,6 +230,21 @@ def progress(text: str, last: bool) -> None:
         print(text, file=sys.stderr, flush=True)
 
 
+def preset_row(study: Study) -> str:
+    """One row of the table of accuracy levels."""
+    reference = study.reference()
+    run = reference.run
+    known = f"{reference.error:.0e}" + ("" if reference.whole else f" for {1e3 * reference.horizon:.3g} ms")
+    cells = [f"`{study.case.relative_to(TOP / 'cases').with_suffix('')}`", f"{1e3 * run['time'][-1]:.3g} ms", known]
+    for level, promise in tradeoff.LEVELS.items():
+        with tempfile.TemporaryDirectory() as out:
+            command = [str(study.program), "-q", "-a", level, "-o", out, "-s", "output.ideal_twin=F", "-s", "output.digits=17"]
+            outcome = subprocess.run([*command, str(study.case)], capture_output=True, text=True, check=False)
+            done = outcome.returncode == 0
+            cells.append(tradeoff.level_cell(reference, study.load(out), promise) if done else "failed")
+    return "| " + " | ".join(cells) + " |"
+
+
 def report(study: Study, reference: Reference, table: pd.DataFrame) -> None:
     """Print the reference, the Pareto front and the recommendation; draw."""
     run, done = reference.run, table[table["status"] == "done"].reset_index(drop=True)
@@ -218,6 +256,10 @@ def report(study: Study, reference: Reference, table: pd.DataFrame) -> None:
         + f", {(tradeoff.impact_times(run) <= reference.horizon).sum()} impacts"
     )
     print(f"{len(done)} of {len(table)} runs came to an end; Pareto front of wall time and state error:")
+    digits = ", ".join(f"{n} digits up to {reference.known(10.0**-n):.4g} s" for n in study.options.digits)
+    beyond = tradeoff.turn_statistics(run, 0.0 if reference.whole else reference.horizon)
+    print(f"known to {digits}; revolutions " + ("" if reference.whole else "beyond the horizon: ")
+          + ", ".join(f"{name} {value:.4g}" for name, value in beyond.items()))
     front = done.loc[tradeoff.pareto_front(done["seconds"], done["state_error"])]
     shown = front[list(COLUMNS[1:-1])].drop(columns="status")
     print(shown.to_string(index=False, float_format=lambda value: f"{value:.2g}"))
@@ -232,6 +274,11 @@ def main() -> int:
     rows: list[str] = []
     try:
         program = release_program()
+        if options.presets:
+            print("| case | length | reference known to | draft | standard | reference |", "|---|---|---|---|---|---|", sep="\n")
+            for case in options.cases:
+                print(preset_row(Study(case, "", program, options)), flush=True)
+            return 0
         for case, variant in product(options.cases, options.variants):
             study = Study(case, variant, program, options)
             reference = study.reference()

@@ -46,6 +46,7 @@ class Settings:
     contact_entry: str
     max_penetration: float
     tolerance: float
+    points: int = 0  # of the film's quadrature; 0: chosen from the tolerance
 
     @property
     def key(self) -> tuple:
@@ -57,6 +58,7 @@ class Settings:
             self.contact_entry,
             f"{self.max_penetration:.6e}",
             f"{self.tolerance:.6e}",
+            self.points,
         )
 
     def overrides(self) -> list[str]:
@@ -71,12 +73,16 @@ class Settings:
             found.append(f"integrator.max_penetration={self.max_penetration:.6e}")
         if self.variant:
             found.append(f"lubrication.variant={self.variant}")
+        if self.points > 0:
+            found.append(f"lubrication.quadrature_points={self.points}")
         return found
 
     def __str__(self) -> str:
         text = f"{self.method}, tolerance {self.tolerance:g}, max_order {self.max_order}"
         if self.contact_entry != "root":
             text += f", {self.contact_entry} {self.max_penetration:.1e} m"
+        if self.points > 0:
+            text += f", {self.points} points"
         return text
 
 
@@ -88,6 +94,11 @@ class Reference:
     horizon: float  # s
     whole: bool  # whether the horizon is the end of the run
     error: float  # largest difference to its checks up to the horizon, in shares of the range
+    checks: tuple[Run, ...] = ()  # what it was checked by
+
+    def known(self, agreement: float) -> float:
+        """Time [s] up to which it is known within a share of the states' ranges: the later the coarser."""
+        return known_until(self.run, self.checks, agreement)[0] if self.checks else self.horizon
 
 
 def moving_states(run: Run) -> list[str]:
@@ -127,7 +138,7 @@ def choose_reference(tight: dict[str, Run], next_tight: dict[str, Run], horizon:
     if horizon is not None:
         end = min(other["time"][-1] for other in [run, *checks])
         until, whole = min(horizon, end), horizon >= run["time"][-1]
-    return Reference(run, until, whole, max(state_error(run, check, until) for check in checks))
+    return Reference(run, until, whole, max(state_error(run, check, until) for check in checks), tuple(checks))
 
 
 def match_times(reference: Sequence[float], found: Sequence[float], until: float = np.inf) -> list[tuple[int, int]]:
@@ -169,8 +180,28 @@ def least_film(run: Run, until: float) -> float:
     return float(np.nanmin([*run["film_thickness"][run["time"] <= until], *-ended["max_penetration"].astype(float)]))
 
 
+def turn_statistics(run: Run, after: float) -> dict[str, float]:
+    """What a motion that nobody can follow any more is judged by, from a time on: means over whole crank revolutions."""
+    turn = np.floor(np.abs(run["crank_angle"] - run["crank_angle"][0]) / (2 * np.pi) + 1e-9)
+    first = turn[np.searchsorted(run["time"], after)] + 1 if after < run["time"][-1] else turn[-1]
+    inside = (turn >= first) & (turn < turn[-1] + (turn[-1] == 0))
+    if inside.sum() < 2:
+        inside = run["time"] >= 0  # too short for that: all of it
+    time = run["time"][inside]
+    force = np.hypot(run["pin_force_x"][inside], run["pin_force_y"][inside])
+    impacts = impact_times(run)
+    turns = max(float(np.ptp(run["crank_angle"][inside])) / (2 * np.pi), 1e-9)
+    found = {
+        "mean_speed": float(np.ptp(run["crank_angle"][inside])) / float(np.ptp(time)),
+        "mean_force": float(force.mean()),
+        "impacts_per_turn": float(((impacts >= time[0]) & (impacts <= time[-1])).sum()) / turns,
+    }
+    found["contact_share"] = float((run["phase"][inside] == 2).mean()) if "phase" in run else 0.0
+    return found
+
+
 def measure(reference: Reference, run: Run) -> dict[str, float]:
-    """The errors of a run, by the columns of the table."""
+    """The errors of a run, by the columns of the table; beyond the horizon the statistics of its revolutions."""
     until = reference.horizon
     expected, found = impact_times(reference.run), impact_times(run)
     pairs = match_times(expected, found, until)
@@ -179,6 +210,8 @@ def measure(reference: Reference, run: Run) -> dict[str, float]:
     return {
         "state_error": state_error(reference.run, run, until),
         "agrees_until": known_until(reference.run, [run], compare.AGREEMENT)[0],
+        **{f"digits_{n}_until": known_until(reference.run, [run], 10.0**-n)[0] for n in (3, 6)},
+        **turn_statistics(run, 0.0 if reference.whole else until),
         "impacts": int((expected <= until).sum()),
         "impacts_matched": len(pairs),
         "impacts_extra": int((found <= until).sum()) - sum(1 for _, j in pairs if found[j] <= until),
@@ -220,6 +253,7 @@ def settings_of(row: pd.Series) -> Settings:
         row["contact_entry"],
         float(row["max_penetration"]),
         float(row["tolerance"]),
+        int(row["points"]),
     )
 
 
@@ -255,6 +289,21 @@ def markdown(name: str, table: pd.DataFrame, reference: Reference, digits: Seque
             answer = f"{settings_of(best)} | {cost} | {best['state_error']:.0e}"
         rows.append(f"| `{name}` | {known} | {count} | {answer} |")
     return rows
+
+
+#: The accuracy levels of the command line and the share of a state's range that each is for.
+LEVELS = {"draft": 1e-2, "standard": 1e-4, "reference": 1e-8}
+
+
+def level_cell(reference: Reference, run: Run, promise: float) -> str:
+    """What a level gives: the state error to the end, or the time up to which a motion with impacts is that good."""
+    evaluations = int(run.summary["rhs_evaluations"][0])
+    error = state_error(reference.run, run, reference.horizon) if moving_states(reference.run) else 0.0
+    cost = f"{evaluations / 1000:.3g}k" if evaluations >= 1000 else str(evaluations)
+    if reference.whole or error <= promise:
+        return f"{error:.0e}, {cost}"
+    until = min(known_until(reference.run, [run], promise)[0], reference.known(promise))
+    return f"{promise:.0e} for {1e3 * until:.3g} ms, {cost}"
 
 
 def draw(table: pd.DataFrame, reference: Reference, title: str) -> Drawing:
