@@ -24,6 +24,7 @@ contains
     call sticking_is_the_limit_of_ramps(check)
     call sticking_keeps_the_sliding_speed(check)
     call energy_is_accounted_for(check)
+    call outside_the_pin_is_known(check)
     call contact_events_are_consistent(check)
     call columns_are_those_asked_for(check)
     call failures_name_their_place(check)
@@ -153,6 +154,27 @@ contains
       deallocate (y, f)
     end do
   end subroutine sticking_keeps_the_sliding_speed
+
+  !> Where a film is not defined an evaluation still tells the crank angle and where the pin is; where the rod cannot reach, too.
+  subroutine outside_the_pin_is_known(check)
+    class(checks_t), intent(inout) :: check
+    type(case_t) :: case
+    type(error_t), allocatable :: error
+    class(scene_t), allocatable :: scene
+    type(evaluation_t) :: now
+    logical :: inside
+    character(len=1) :: none(0)
+    call read_case('cases/sim_I.nml', none, case, error)
+    call build_scene(case, .false., scene, error)
+    call scene%evaluate(0.0_dp, [0.4_dp, 3e-5_dp, 4e-5_dp, 250.0_dp, 0.3_dp, 0.4_dp, 0.0_dp], now, inside)
+    call check%that(.not. inside, 'the film is not defined beyond the wall')
+    call check%relative(now%motion%crank_angle, 0.4_dp, 1e-15_dp, 'but the crank angle is')
+    call check%relative(now%joint%penetration, 5e-5_dp - case%joint%clearance, 1e-12_dp, 'and the penetration')
+    call check%relative(now%joint%penetration_rate, 0.5_dp, 1e-12_dp, 'and its rate')
+    call scene%evaluate(0.0_dp, [0.4_dp, 0.0_dp, -1.0_dp, 250.0_dp, 0.0_dp, 0.0_dp, 0.0_dp], now, inside)
+    call check%that(.not. inside, 'the rod cannot reach')
+    call check%relative(now%motion%crank_angle, 0.4_dp, 1e-15_dp, 'but the crank angle is known')
+  end subroutine outside_the_pin_is_known
 
   !> Energy residual relative to the peak energy.
   subroutine energy_is_accounted_for(check)

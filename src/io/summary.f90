@@ -37,6 +37,7 @@ contains
       call add('steps_rejected_penetration', integer_text(s%rejected_penetration), '1')
       call add('steps_rejected_domain', integer_text(s%rejected_domain), '1')
       call add('rhs_evaluations', integer_text(s%evaluations), '1')
+      call add('trace_evaluations', integer_text(f%evaluations), '1')
       call add('restarts', integer_text(s%restarts), '1')
       if (s%accepted > 0) call add('smallest_step', real_text(s%smallest_step), 's')
       do order = 1, highest_order

@@ -70,7 +70,7 @@ contains
   end function sliding_speed
 
   !> Positions and speeds of the bodies at crank angle q [rad], crank speed [rad/s], eccentricity [m] and its rate.
-  !> `reachable` is false where the pin cannot be: |R sin q - e_y| >= L.
+  !> `reachable` is false where the pin cannot be, |R sin q - e_y| >= L: then only the crank angle is set.
   pure subroutine clearance_motion(mechanism, q, crank_speed, eccentricity, eccentricity_rate, motion, reachable)
     type(mechanism_t), intent(in) :: mechanism
     real(dp), intent(in) :: q, crank_speed, eccentricity(2), eccentricity_rate(2)
@@ -78,6 +78,7 @@ contains
     logical, intent(out) :: reachable
     real(dp) :: sin_q, cos_q, sin_a, cos_a, gap, rod_speed
     associate (r => mechanism%crank_length, l => mechanism%rod_length)
+      motion%crank_angle = q
       sin_q = sin(q)
       cos_q = cos(q)
       sin_a = (r*sin_q - eccentricity(2))*mechanism%per_rod_length
@@ -87,7 +88,6 @@ contains
       cos_a = sqrt(gap)
       ! over cos A = cos A/gap: the division need not wait for the root
       rod_speed = (r*cos_q*crank_speed - eccentricity_rate(2))*mechanism%per_rod_length/gap*cos_a
-      motion%crank_angle = q
       motion%sin_crank = sin_q
       motion%cos_crank = cos_q
       motion%sin_rod = sin_a

@@ -112,12 +112,13 @@ contains
     logical, intent(out) :: inside
     evaluation%cylinder_pressure = 0
     call find_accelerations(self, t, self%n, y, evaluation, inside)
+    if (self%phase /= phase_contact) then
+      call find_joint_motion(self%joint, evaluation%joint)
+      evaluation%normal_force = 0
+      evaluation%friction_force = 0
+    end if
     if (.not. inside) return
-    if (self%phase /= phase_contact) call find_joint_motion(self%joint, evaluation%joint)
     evaluation%joint%sliding_speed = sliding_speed(self%joint, evaluation%joint%tangential_rate, -evaluation%motion%rod_speed)
-    if (self%phase == phase_contact) return
-    evaluation%normal_force = 0
-    evaluation%friction_force = 0
   end subroutine evaluate
 
   !> Motion, loads, accelerations and power, as far as the present phase needs them: the right-hand side, and what

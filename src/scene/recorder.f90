@@ -19,6 +19,7 @@ module recorder
   type :: run_figures_t
     integer :: contacts = 0                   !! contacts begun
     integer :: impacts_beyond_validity = 0    !! of them faster than the contact law is meant for
+    integer :: evaluations = 0                !! of the scene for rows, events and these figures
     real(dp) :: contact_time = 0              !! [s]
     real(dp) :: max_penetration = 0           !! [m]
     real(dp) :: max_entry_penetration = 0     !! penetration at the beginning of a contact [m]
@@ -82,7 +83,7 @@ contains
     type(evaluation_t) :: now
     logical :: inside
 
-    call scene%evaluate(0.0_dp, y, now, inside)
+    call look_at(self, scene, 0.0_dp, y, now, inside)
     if (inside) then
       self%initial_energy = scene%energy(now%motion)
       self%start_angle = now%motion%crank_angle
@@ -152,6 +153,17 @@ contains
     self%over_budget = evaluations - self%evaluations_then >= self%max_evaluations_per_revolution
   end subroutine keep_budget
 
+  !> Evaluate the scene for the trace or the figures, which is counted.
+  subroutine look_at(self, scene, t, y, now, inside)
+    class(recorder_t), intent(inout) :: self
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(:)
+    type(evaluation_t), intent(out) :: now
+    logical, intent(out) :: inside
+    self%figures%evaluations = self%figures%evaluations + 1
+    call scene%evaluate(t, y, now, inside)
+  end subroutine look_at
+
   !> The figures of one accepted point.
   subroutine take_point(self, scene, t, y)
     class(recorder_t), intent(inout) :: self
@@ -161,7 +173,7 @@ contains
     logical :: inside
     real(dp) :: energy
 
-    call scene%evaluate(t, y, now, inside)
+    call look_at(self, scene, t, y, now, inside)
     if (.not. inside) return
     energy = scene%energy(now%motion)
     associate (f => self%figures)
@@ -192,7 +204,7 @@ contains
     select type (problem)
     class is (scene_t)
       if (problem%reported_event(index) == event_none) return
-      call problem%evaluate(t, y, now, inside)
+      call look_at(self, problem, t, y, now, inside)
       call take_contact(self, problem%reported_event(index), t, now)
     end select
   end subroutine event_taken
@@ -260,6 +272,7 @@ contains
     type(archive_t), intent(inout) :: archive
     call archive%exchange(self%contacts)
     call archive%exchange(self%impacts_beyond_validity)
+    call archive%exchange(self%evaluations)
     call archive%exchange(self%contact_time)
     call archive%exchange(self%max_penetration)
     call archive%exchange(self%max_entry_penetration)
@@ -285,7 +298,7 @@ contains
     type(evaluation_t) :: now
     logical :: inside
     if (size(self%values) == 0) return
-    call scene%evaluate(t, y, now, inside)
+    call look_at(self, scene, t, y, now, inside)
     if (.not. inside) return
     call row_values(self%list, scene, t, now, scene%work(y), self%initial_energy, self%values)
     call self%sink%take_row(self%values)

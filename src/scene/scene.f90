@@ -78,7 +78,8 @@ module scene
   end type scene_t
 
   abstract interface
-    !> Everything at (t, y). `inside` is false where a model is not defined.
+    !> Everything at (t, y). `inside` is false where a model is not defined: then there are only the crank angle and the joint
+    !> without its sliding speed.
     pure subroutine evaluate(self, t, y, evaluation, inside)
       import :: scene_t, evaluation_t, dp
       class(scene_t), intent(in) :: self
