@@ -11,8 +11,7 @@ module collocation
   use kinds, only: dp
   use ode_problem, only: ode_problem_t
   use radau_coefficients, only: radau_formula_t, radau_formula, most_stages
-  use small_lu, only: decompose, solve
-  use bernstein, only: from_newton
+  use small_lu, only: solve
   use archive, only: archive_t
   implicit none
   private
@@ -69,6 +68,48 @@ module collocation
     procedure :: jacobian_norms
     procedure :: exchange
   end type collocation_t
+
+  interface
+    !> Increment of y along the last step at its fraction x: the collocation polynomial.
+    pure module subroutine polynomial(self, x, change)
+      class(collocation_t), intent(in) :: self
+      real(dp), intent(in) :: x
+      real(dp), intent(out) :: change(:)   !! (n)
+    end subroutine polynomial
+
+    !> The same for one component, in Bernstein form on 0..1.
+    pure module function bernstein_form(self, component) result(coefficients)
+      class(collocation_t), intent(in) :: self
+      integer, intent(in) :: component
+      real(dp) :: coefficients(0:self%stages_done)
+    end function bernstein_form
+
+    !> The matrices of Newton's equations for the present step size.
+    pure module subroutine decompose_matrices(self, singular)
+      class(collocation_t), intent(inout) :: self
+      logical, intent(out) :: singular
+    end subroutine decompose_matrices
+
+    !> Increments of the rates at the stages, from the last step's polynomial continued.
+    pure module subroutine guess_stages(self)
+      class(collocation_t), intent(inout) :: self
+    end subroutine guess_stages
+
+    !> Simplified Newton iteration for the stage increments. The contraction that it shows is trusted for the first
+    !> iteration of the next step too.
+    module subroutine iterate(self, problem, outcome)
+      class(collocation_t), intent(inout) :: self
+      class(ode_problem_t), intent(in) :: problem
+      integer, intent(out) :: outcome
+    end subroutine iterate
+
+    !> y(:, i) = factor sum_j matrix(i, j) x(:, j) over the stages, for the first `rows` rows.
+    pure module subroutine combine(rows, stages, factor, matrix, x, first_x, y, first_y)
+      integer, intent(in) :: rows, stages, first_x, first_y
+      real(dp), intent(in) :: factor, matrix(stages, stages), x(first_x, *)
+      real(dp), intent(inout) :: y(first_y, *)
+    end subroutine combine
+  end interface
 
 contains
 
@@ -157,40 +198,6 @@ contains
     self%h_done = self%h
   end subroutine keep
 
-  !> Increment of y along the last step at its fraction x: the collocation polynomial.
-  pure subroutine polynomial(self, x, change)
-    class(collocation_t), intent(in) :: self
-    real(dp), intent(in) :: x
-    real(dp), intent(out) :: change(:)   !! (n)
-    real(dp) :: weights(0:most_stages)
-    integer :: j
-    call lagrange(self, self%stages_done, x, weights)
-    change = 0
-    do j = 1, self%stages_done
-      change = change + weights(j)*self%z(:, j)
-    end do
-  end subroutine polynomial
-
-  !> The same for one component, in Bernstein form on 0..1.
-  pure function bernstein_form(self, component) result(coefficients)
-    class(collocation_t), intent(in) :: self
-    integer, intent(in) :: component
-    real(dp) :: coefficients(0:self%stages_done)
-    real(dp) :: a(0:self%stages_done), node(0:self%stages_done)
-    integer :: i, j, s
-    s = self%stages_done
-    node(0) = 0
-    node(1:) = self%formula(s/2)%c(:s)
-    a(0) = 0
-    a(1:) = self%z(component, :s)
-    do j = 1, s   ! divided differences
-      do i = s, j, -1
-        a(i) = (a(i) - a(i - 1))/(node(i) - node(i - j))
-      end do
-    end do
-    coefficients = from_newton(a, -node(:s - 1), 1 - node(:s - 1))
-  end function bernstein_form
-
   !> Row-sum norms of a_v and a_p in the weights of the error of the rates.
   pure subroutine jacobian_norms(self, most_v, most_p)
     class(collocation_t), intent(in) :: self
@@ -215,84 +222,6 @@ contains
     end do
   end subroutine jacobian_norms
 
-  !> The matrices of Newton's equations for the present step size.
-  pure subroutine decompose_matrices(self, singular)
-    class(collocation_t), intent(inout) :: self
-    logical, intent(out) :: singular
-    complex(dp) :: shift
-    integer :: i, j, m
-
-    m = self%m
-    associate (formula => self%formula(self%level), h => self%h)
-      self%e1 = -self%a_v
-      self%e1(:, :m) = self%e1(:, :m) - (h/formula%gamma)*self%a_p
-      do i = 1, self%k
-        self%e1(i, i) = self%e1(i, i) + formula%gamma/h
-      end do
-      call decompose(self%e1, self%pivot1, singular)
-      if (singular) return
-      do j = 1, formula%stages/2
-        shift = cmplx(formula%alpha(j), -formula%beta(j), dp)/h
-        self%e2(:, :, j) = -self%a_v
-        self%e2(:, :m, j) = self%e2(:, :m, j) - self%a_p/shift
-        do i = 1, self%k
-          self%e2(i, i, j) = self%e2(i, i, j) + shift
-        end do
-        call decompose(self%e2(:, :, j), self%pivot2(:, j), singular)
-        if (singular) return
-      end do
-    end associate
-  end subroutine decompose_matrices
-
-  !> Increments of the rates at the stages, from the last step's polynomial continued.
-  pure subroutine guess_stages(self)
-    class(collocation_t), intent(inout) :: self
-    real(dp) :: weights(0:most_stages)
-    integer :: i, j, l, s, m, k
-
-    m = self%m
-    k = self%k
-    s = self%formula(self%level)%stages
-    do i = 1, s
-      call lagrange(self, self%stages_done, 1 + self%formula(self%level)%c(i)*self%h/self%h_done, weights)
-      weights(self%stages_done) = weights(self%stages_done) - 1
-      do l = 1, k
-        self%rates(l, i) = 0
-        do j = 1, self%stages_done
-          self%rates(l, i) = self%rates(l, i) + weights(j)*self%z(m + l, j)
-        end do
-      end do
-    end do
-    call combine(k, s, 1.0_dp, self%formula(self%level)%t_inverse, self%rates, k, self%w, k)
-  end subroutine guess_stages
-
-  !> Lagrange polynomials at x over the nodes 0, c_1, ..., c_s of a formula: products of the distances before and after
-  !> each node, over those at the node itself, which `prepare` has found.
-  pure subroutine lagrange(self, stages, x, weights)
-    class(collocation_t), intent(in) :: self
-    integer, intent(in) :: stages
-    real(dp), intent(in) :: x
-    real(dp), intent(out) :: weights(0:)
-    real(dp) :: distance(0:most_stages), product
-    integer :: i
-    associate (formula => self%formula(stages/2))
-      distance(0) = x
-      do i = 1, stages
-        distance(i) = x - formula%c(i)
-      end do
-      product = 1
-      do i = 0, stages
-        weights(i) = product*self%per_node(i, stages/2)
-        product = product*distance(i)
-      end do
-      product = 1
-      do i = stages, 0, -1
-        weights(i) = weights(i)*product
-        product = product*distance(i)
-      end do
-    end associate
-  end subroutine lagrange
-
   !> One over the product of the distances of each node 0, c_1, ..., c_s from the others.
   pure function inverse_node_products(formula) result(per_node)
     type(radau_formula_t), intent(in) :: formula
@@ -307,174 +236,6 @@ contains
       end do
     end do
   end function inverse_node_products
-
-  !> Simplified Newton iteration for the stage increments. The contraction that it shows is trusted for the first
-  !> iteration of the next step too.
-  subroutine iterate(self, problem, outcome)
-    class(collocation_t), intent(inout) :: self
-    class(ode_problem_t), intent(in) :: problem
-    integer, intent(out) :: outcome
-    real(dp) :: change, last_change, ratio, last_ratio
-    integer :: iteration, halvings
-    logical :: inside
-
-    last_change = 0
-    last_ratio = 0
-    self%trust = max(self%trust, epsilon(1.0_dp))**0.8_dp
-    self%contraction = least_contraction
-    outcome = newton_outside
-    call evaluate_stages(self, problem, inside)
-    if (.not. inside) return
-    do iteration = 1, most_iterations
-      self%iterations = iteration
-      call newton_step(self)
-      change = change_norm(self)
-      outcome = newton_diverged
-      if (.not. change < huge(change)) return
-      if (last_change > 0) then
-        ratio = change/last_change
-        self%contraction = ratio
-        if (last_ratio > 0) self%contraction = sqrt(ratio*last_ratio)
-        last_ratio = ratio
-        if (self%contraction >= 0.99_dp) return
-        self%trust = self%contraction/(1 - self%contraction)
-        if (self%trust*change*self%contraction**(most_iterations - 1 - iteration) > self%goal) return
-      end if
-      last_change = change
-      if (self%trust*change <= self%goal) then
-        call expand_stages(self, .true.)
-        outcome = newton_converged
-        return
-      end if
-      call evaluate_stages(self, problem, inside)
-      do halvings = 1, most_halvings
-        if (inside) exit
-        self%dw = 0.5_dp*self%dw   ! half of the step just made is taken back
-        self%w = self%w - self%dw
-        last_change = 0
-        last_ratio = 0
-        self%trust = 1
-        call evaluate_stages(self, problem, inside)
-      end do
-      outcome = newton_outside
-      if (.not. inside) return
-    end do
-    outcome = newton_diverged
-  end subroutine iterate
-
-  !> One Newton step: self%dw, added to self%w. The right-hand sides at the stages are those of self%w.
-  subroutine newton_step(self)
-    class(collocation_t), intent(inout) :: self
-    complex(dp) :: shift
-    integer :: i, j, m, k
-
-    m = self%m
-    k = self%k
-    associate (formula => self%formula(self%level), h => self%h, s => self%formula(self%level)%stages)
-      call combine(k, s, 1.0_dp, formula%t_inverse, self%f_stage(m + 1, 1), size(self%f_stage, 1), self%dw, k)
-      do i = 1, k
-        self%dw(i, 1) = self%dw(i, 1) - (formula%gamma/h)*self%w(i, 1)
-      end do
-      call solve(self%e1, self%pivot1, self%dw(:, 1))
-      do j = 1, s/2
-        shift = cmplx(formula%alpha(j), -formula%beta(j), dp)/h
-        do i = 1, k
-          self%right(i) = cmplx(self%dw(i, 2*j), self%dw(i, 2*j + 1), dp) - shift*cmplx(self%w(i, 2*j), self%w(i, 2*j + 1), dp)
-        end do
-        call solve(self%e2(:, :, j), self%pivot2(:, j), self%right)
-        do i = 1, k
-          self%dw(i, 2*j) = real(self%right(i), dp)
-          self%dw(i, 2*j + 1) = aimag(self%right(i))
-        end do
-      end do
-      do j = 1, s
-        do i = 1, k
-          self%w(i, j) = self%w(i, j) + self%dw(i, j)
-        end do
-      end do
-    end associate
-  end subroutine newton_step
-
-  !> Size of a Newton step relative to the inner tolerance, with what it moves the positions.
-  pure real(dp) function change_norm(self)
-    class(collocation_t), intent(in) :: self
-    real(dp) :: total, weight
-    integer :: i, s
-    s = self%formula(self%level)%stages
-    total = 0
-    do i = 1, self%k
-      weight = self%inverse_weight(self%m + i)
-      if (i <= self%m) weight = max(weight, self%h*self%inverse_weight(i))
-      total = total + sum((self%dw(i, :s)*weight)**2)
-    end do
-    change_norm = sqrt(total/(s*max(self%k, 1)))
-  end function change_norm
-
-  !> Increments of all components at the stages: rates from w, positions by collocation, quadratures from the last
-  !> evaluation.
-  subroutine expand_stages(self, with_quadratures)
-    class(collocation_t), intent(inout) :: self
-    logical, intent(in) :: with_quadratures
-    integer :: i, j, n, m, k
-
-    n = self%n
-    m = self%m
-    k = self%k
-    associate (formula => self%formula(self%level), h => self%h, s => self%formula(self%level)%stages, z => self%z_new)
-      call combine(k, s, 1.0_dp, formula%t, self%w, k, self%rates, k)
-      do i = 1, s
-        do j = 1, k
-          z(m + j, i) = self%rates(j, i)
-        end do
-      end do
-      if (m > 0) then
-        call combine(m, s, h, formula%a, self%rates, k, z, n)
-        do i = 1, s
-          do j = 1, m
-            z(j, i) = z(j, i) + h*formula%c(i)*self%base(m + j)
-          end do
-        end do
-      end if
-      if (with_quadratures .and. n > m + k) &
-        call combine(n - m - k, s, h, formula%a, self%f_stage(m + k + 1, 1), size(self%f_stage, 1), z(m + k + 1, 1), n)
-    end associate
-  end subroutine expand_stages
-
-  !> y(:, i) = factor sum_j matrix(i, j) x(:, j) over the stages, for the first `rows` rows.
-  pure subroutine combine(rows, stages, factor, matrix, x, first_x, y, first_y)
-    integer, intent(in) :: rows, stages, first_x, first_y
-    real(dp), intent(in) :: factor, matrix(stages, stages), x(first_x, *)
-    real(dp), intent(inout) :: y(first_y, *)
-    real(dp) :: total
-    integer :: i, j, r
-    do i = 1, stages
-      do r = 1, rows
-        total = 0
-        do j = 1, stages
-          total = total + matrix(i, j)*x(r, j)
-        end do
-        y(r, i) = factor*total
-      end do
-    end do
-  end subroutine combine
-
-  !> Right-hand sides at the stages of self%w.
-  subroutine evaluate_stages(self, problem, inside)
-    class(collocation_t), intent(inout) :: self
-    class(ode_problem_t), intent(in) :: problem
-    logical, intent(out) :: inside
-    integer :: i, j
-    call expand_stages(self, .false.)
-    inside = .true.
-    do i = 1, self%formula(self%level)%stages
-      do j = 1, self%n
-        self%y_stage(j) = self%base(j) + self%z_new(j, i)
-      end do
-      self%evaluations = self%evaluations + 1
-      call problem%derivatives(self%t + self%formula(self%level)%c(i)*self%h, self%y_stage, self%f_stage(:, i), inside)
-      if (.not. inside) return
-    end do
-  end subroutine evaluate_stages
 
   !> (I - h/gamma J)^-1 (h/gamma f_0 + sum e_i z_i): the difference to an embedded formula of order s, filtered.
   pure subroutine filtered_error(self, f_0, error)

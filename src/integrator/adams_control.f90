@@ -1,0 +1,168 @@
+!> What the Adams method makes of its errors: their estimates, the order and the size of the next step, what limited the last.
+submodule (adams) adams_control
+  use ode_method, only: limit_error, limit_stability, limit_max_step, limit_refusal
+  use adams_coefficients, only: stability_limit
+  use adams_differences, only: restore_differences
+  use step_rates, only: fastest_mode
+  implicit none
+contains
+
+  module procedure weigh
+    real(dp) :: weight
+    integer :: i
+    do i = 1, self%n
+      weight = self%settings%relative(i)*abs(self%y(i)) + self%settings%absolute(i)
+      self%inverse_weight(i) = 0
+      if (weight > 0) self%inverse_weight(i) = 1/weight
+    end do
+  end procedure weigh
+
+  module procedure weighted_norm
+    integer :: i
+    weighted_norm = 0
+    do i = 1, self%n
+      weighted_norm = weighted_norm + (values(i)*self%inverse_weight(i))**2
+    end do
+    weighted_norm = sqrt(weighted_norm)
+  end procedure weighted_norm
+
+  module procedure clock_step
+    clock_step = dt
+    if (self%rooted) clock_step = dt/(sqrt(self%x**2 + dt) + self%x)
+  end procedure clock_step
+
+  module procedure retreat
+    real(dp) :: factor
+
+    call restore_differences(self%n, self%k, self%coefficients%beta, self%coefficients%beta_next, self%phi)
+    call self%coefficients%take_back(self%h, self%k)
+    self%opening = .false.
+    factor = fraction
+    select case (outcome)
+    case (try_error)
+      self%limit = limit_error
+      self%statistics%rejected_error = self%statistics%rejected_error + 1
+      failures = failures + 1
+      factor = 0.5_dp
+      if (failures > 3 .and. errors%same > 2) factor = sqrt(0.5_dp/errors%same)
+      self%k = merge(1, errors%order, failures >= 3)
+    case (try_too_deep)
+      self%limit = limit_refusal
+      self%statistics%rejected_penetration = self%statistics%rejected_penetration + 1
+    case default
+      self%limit = limit_refusal
+      self%statistics%rejected_domain = self%statistics%rejected_domain + 1
+    end select
+    self%h = factor*self%h
+  end procedure retreat
+
+  module procedure estimate_errors
+    real(dp) :: correction, weight, same, lower, lowest
+    integer :: i, k
+
+    k = self%k
+    same = 0
+    lower = 0
+    lowest = 0
+    do i = 1, self%n
+      weight = self%inverse_weight(i)
+      correction = self%f_predicted(i) - self%phi(i, 1)
+      same = same + (correction*weight)**2
+      if (k >= 2) lower = lower + ((self%phi(i, k) + correction)*weight)**2
+      if (k >= 3) lowest = lowest + ((self%phi(i, k - 1) + correction)*weight)**2
+    end do
+    same = self%h*sqrt(same)
+    errors%step = same*(self%coefficients%g(k) - self%coefficients%g(k + 1))
+    errors%same = same*self%coefficients%sigma(k + 1)*self%moulton(k)
+    errors%order = k
+    if (k >= 2) errors%lower = self%h*self%coefficients%sigma(k)*self%moulton(k - 1)*sqrt(lower)
+    if (k >= 3) errors%lowest = self%h*self%coefficients%sigma(k - 1)*self%moulton(k - 2)*sqrt(lowest)
+    if (k == 2 .and. errors%lower <= 0.5_dp*errors%same) errors%order = k - 1
+    if (k >= 3 .and. max(errors%lower, errors%lowest) <= errors%same) errors%order = k - 1
+  end procedure estimate_errors
+
+  module procedure respect_rough_time
+    real(dp), parameter :: share = 1/6.0_dp   !! of the way there, in one step
+    real(dp) :: way
+    if (.not. self%rough_time < huge(1.0_dp) .or. self%settings%fixed_step > 0) return
+    way = clock_step(self, self%rough_time - self%t)
+    if (self%h > share*way .and. self%h < 2*way) self%h = max(share*way, 0.5_dp*self%h)
+  end procedure respect_rough_time
+
+  module procedure count_limit
+    real(dp) :: scale, reach, slow, near
+    integer :: limit
+    scale = 1
+    if (self%rooted) scale = 2*self%x
+    call fastest_mode(self%n, self%h, self%inverse_weight, self%f, scale, self%f_predicted, self%f_new, self%y, &
+      self%predicted, self%y_new, 100*self%rounding, reach, slow)
+    self%statistics%stiffness = self%statistics%stiffness + reach
+    near = reach/stability_limit(self%k)
+    self%bound = near > 0.3_dp .and. slow < 0.6_dp
+    limit = self%limit
+    if (limit == limit_error .and. near > 0.5_dp .and. slow < 0.3_dp) limit = limit_stability
+    associate (count => self%statistics)
+      count%limited_by(limit) = count%limited_by(limit) + 1
+      count%time_limited_by(limit) = count%time_limited_by(limit) + (time_at(self, x_new) - self%t)
+    end associate
+  end procedure count_limit
+
+  module procedure choose_order_and_step
+    real(dp) :: error, higher, factor
+    integer :: k
+
+    k = self%k
+    error = errors%same
+    if (self%settings%fixed_step > 0) then
+      self%k = min(k + 1, self%settings%max_order)
+      return
+    end if
+    if (errors%order < k .or. k >= self%settings%max_order) self%opening = .false.
+    if (self%opening) then
+      self%k = k + 1
+      self%limit = limit_start
+      factor = (0.1_dp/max(errors%same, tiny(1.0_dp)))**(1.0_dp/(k + 1))
+      call grow(self, max(2.0_dp, min(64.0_dp, factor)))
+      return
+    end if
+    if (errors%order < k) then
+      self%k = k - 1
+      error = errors%lower
+    else if (self%higher_known) then
+      higher = self%h*self%coefficients%sigma_next*self%moulton(k + 1)*weighted_norm(self, self%phi(:, k + 2))
+      if (k == 1) then
+        if (higher < 0.5_dp*error .and. k < self%settings%max_order) self%k = 2
+      else if (errors%lower <= min(error, higher)) then
+        self%k = k - 1
+        error = errors%lower
+      else if (higher < error .and. k < self%settings%max_order) then
+        self%k = k + 1
+      end if
+      if (self%k > k) error = higher
+    end if
+
+    if (0.5_dp >= error*2.0_dp**(self%k + 1)) then
+      factor = 2
+    else if (0.5_dp >= error*1.25_dp**(self%k + 1) .and. self%coefficients%ns > 1) then
+      factor = 1.25_dp
+    else if (0.5_dp >= error) then
+      factor = 1
+    else
+      factor = max(0.5_dp, min(0.9_dp, (0.5_dp/error)**(1.0_dp/(self%k + 1))))
+    end if
+    self%limit = limit_error
+    call grow(self, factor)
+  end procedure choose_order_and_step
+
+  !> Multiply the step size, within what the settings allow.
+  pure subroutine grow(self, factor)
+    class(adams_t), intent(inout) :: self
+    real(dp), intent(in) :: factor
+    real(dp) :: longest
+    self%h = factor*self%h
+    longest = clock_step(self, self%settings%max_step)
+    if (self%h < longest) return
+    self%h = longest
+    self%limit = limit_max_step
+  end subroutine grow
+end submodule adams_control

@@ -1,0 +1,83 @@
+!> The solution inside the last step of the Adams method.
+submodule (adams) adams_interpolant
+  use adams_coefficients, only: interpolation_weights
+  use bernstein, only: from_newton, integral
+  implicit none
+contains
+
+  module procedure time_at
+    time_at = x
+    if (self%rooted) time_at = self%t_origin + x**2
+  end procedure time_at
+
+  module procedure interpolate
+    real(dp) :: weights(highest_order + 2), s
+    integer :: j, k
+
+    k = self%k_old
+    s = t - self%t
+    if (self%rooted) s = sqrt(max(t - self%t_origin, 0.0_dp)) - self%x
+    if (k == 0 .or. s >= 0) then
+      y = self%y
+      return
+    end if
+    if (.not. self%closed) call close_polynomial(self)
+    call interpolation_weights(self%coefficients, k, s, weights)
+    y = weights(k + 2)*self%closing
+    do j = k + 1, 1, -1
+      y = y + weights(j)*self%phi(:, j)
+    end do
+    y = self%y + s*y
+  end procedure interpolate
+
+  !> The coefficient of the last polynomial of the interpolant, which makes it pass through y at the beginning of the step.
+  pure subroutine close_polynomial(self)
+    class(adams_t), intent(inout) :: self
+    real(dp) :: weights(highest_order + 2)
+    integer :: j
+    associate (k => self%k_old)
+      call interpolation_weights(self%coefficients, k, self%x_old - self%x, weights)
+      self%closing = self%y_old - self%y
+      self%closing = self%closing/(self%x_old - self%x)
+      do j = 1, k + 1
+        self%closing = self%closing - weights(j)*self%phi(:, j)
+      end do
+      self%closing = self%closing/weights(k + 2)
+      self%closed = .true.
+    end associate
+  end subroutine close_polynomial
+
+  module procedure straying
+    integer :: j
+    straying = 0
+    do j = 2, self%k_old + 1
+      straying = straying + abs(self%phi(component, j))
+    end do
+    straying = (self%x - self%x_old)*(0.5_dp*straying + &
+      abs(self%coefficients%g(self%k_old + 1)*(self%phi(component, 1) - self%f_predicted(component))))
+  end procedure straying
+
+  module procedure bernstein_form
+    real(dp) :: low(highest_order + 1), high(highest_order + 1), h
+    integer :: j, k
+
+    if (.not. self%closed) call close_polynomial(self)
+    k = self%k_old
+    h = self%x - self%x_old
+    high(1) = 0   ! factors of the Newton polynomials: (x - x_n+2-j)/psi_j
+    low(1) = -h/self%coefficients%psi(1)
+    do j = 2, k + 1
+      associate (psi => self%coefficients%psi)
+        high(j) = psi(j - 1)/psi(min(j, k))
+        low(j) = (psi(j - 1) - h)/psi(min(j, k))
+      end associate
+    end do
+    degree = k + 2
+    coefficients(:degree) = integral(self%y_old(component), h, &
+      from_newton([self%phi(component, :k + 1), self%closing(component)], low(:k + 1), high(:k + 1)))
+  end procedure bernstein_form
+
+  module procedure time_at_share
+    time_at_share = time_at(self, self%x_old + share*(self%x - self%x_old))
+  end procedure time_at_share
+end submodule adams_interpolant

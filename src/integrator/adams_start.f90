@@ -1,0 +1,136 @@
+!> How the Adams method begins: memory, the first step of order 1, or a history that is given.
+submodule (adams) adams_start
+  use ode_method, only: start_outside, step_statistics_t
+  use adams_coefficients, only: moulton_constants
+  use adams_differences, only: differences_of
+  implicit none
+contains
+
+  module procedure start
+    logical :: inside
+
+    if (first .or. .not. allocated(self%phi)) call prepare(self, problem)
+    self%t = t
+    self%t_old = t
+    self%y = y
+    self%y_old = y
+    self%order = 0
+    self%closed = .false.
+    self%carry = 0
+    self%rooted = problem%smooth_in_root .and. .not. self%goes_on
+    self%t_origin = t
+    self%x = merge(0.0_dp, t, self%rooted)
+    self%x_old = self%x
+    self%statistics%evaluations = self%statistics%evaluations + 1
+    if (.not. first) self%statistics%restarts = self%statistics%restarts + 1
+    call problem%derivatives(t, self%y, self%f, inside)
+    status = merge(step_done, start_outside, inside)
+    if (.not. inside) return
+
+    self%k = 1
+    self%k_old = 0
+    self%h_old = 0
+    self%opening = .true.
+    call self%coefficients%reset()
+    self%phi = 0
+    if (.not. self%rooted) self%phi(:, 1) = self%f(:self%n)
+    call weigh(self)
+    call choose_first_step(self, problem)
+    self%limit = limit_start
+  end procedure start
+
+  module procedure start_with_history
+    integer :: m
+
+    m = size(x)
+    call self%start(problem, x(m), y, .true., status)
+    if (status /= step_done) return
+    call differences_of(x, f(:self%n, :), self%phi(:, :m), self%coefficients%psi(:m - 1))
+    self%k = m
+    self%k_old = m - 1
+    self%h_old = self%coefficients%psi(1)
+    self%h = h
+    self%opening = .false.
+  end procedure start_with_history
+
+  module procedure prepare
+    integer :: n
+    n = problem%n
+    self%n = n
+    self%moulton = moulton_constants()
+    self%statistics = step_statistics_t()
+    if (allocated(self%phi)) deallocate (self%phi, self%predicted, self%f_predicted, self%f_new, self%y_new, &
+      self%inverse_weight, self%carry, self%carry_predicted, self%closing, self%y, self%y_old, self%f)
+    allocate (self%phi(n, highest_order + 2), self%predicted(n), self%f_predicted(n), &
+      self%f_new(n), self%y_new(n), self%inverse_weight(n), self%carry(n), &
+      self%carry_predicted(n), self%closing(n), self%y(n), self%y_old(n), self%f(n))
+  end procedure prepare
+
+  module procedure exchange
+    if (archive%is_reading) call prepare(self, problem)
+    call self%exchange_solution(problem, archive)
+    call self%coefficients%exchange(archive)
+    call archive%exchange(self%k)
+    call archive%exchange(self%k_old)
+    call archive%exchange(self%closed)
+    call archive%exchange(self%rooted)
+    call archive%exchange(self%t_origin)
+    call archive%exchange(self%x)
+    call archive%exchange(self%x_old)
+    call archive%exchange(self%h)
+    call archive%exchange(self%h_old)
+    call archive%exchange(self%limit)
+    call archive%exchange(self%bound)
+    call archive%exchange(self%higher_known)
+    call archive%exchange(self%rounding)
+    call archive%exchange(self%opening)
+    call archive%exchange(self%phi)
+    call archive%exchange(self%inverse_weight)
+    call archive%exchange(self%carry)
+    call archive%exchange(self%closing)
+  end procedure exchange
+
+  !> The first step: a step of order 1 whose error, h^2 |y''|/2, is a quarter of the tolerance. y'' is taken from one
+  !> Euler step short enough to stay near (Hairer, Norsett & Wanner 1993, II.4), but not shorter than the time resolves.
+  subroutine choose_first_step(self, problem)
+    class(adams_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    real(dp) :: longest, h, slope, curvature, resolution
+    logical :: inside
+    integer :: tries
+
+    longest = min(self%settings%max_step, self%settings%span)
+    if (self%settings%fixed_step > 0) then
+      self%h = self%settings%fixed_step
+      return
+    end if
+    slope = weighted_norm(self, self%f)
+    h = longest*1e-3_dp
+    if (slope*h > 1) h = 1/slope
+    resolution = epsilon(h)*max(abs(self%t), 1e-9_dp*self%settings%span)
+    if (h < 10*resolution) h = 1e4_dp*resolution
+    do tries = 1, 60
+      self%predicted = self%y + h*self%f(:self%n)
+      self%statistics%evaluations = self%statistics%evaluations + 1
+      call problem%derivatives(self%t + h, self%predicted, self%f_predicted, inside)
+      if (inside) exit
+      h = 0.1_dp*h
+    end do
+    curvature = 0
+    if (inside .and. self%rooted) then   ! by the clock, y'' is 2 f at the start
+      curvature = 2*weighted_norm(self, self%f_predicted)
+    else if (inside) then
+      self%f_predicted = self%f_predicted - self%f
+      curvature = weighted_norm(self, self%f_predicted)/h
+    end if
+    if (self%rooted) then
+      longest = sqrt(longest)
+      h = sqrt(h)
+    end if
+    if (curvature > 0) then
+      self%h = min(sqrt(0.5_dp/curvature), 100*h, longest)
+    else
+      self%h = min(100*h, longest)
+    end if
+  end subroutine choose_first_step
+end submodule adams_start

@@ -1,0 +1,119 @@
+!> What Radau makes of its errors: weights, the estimate, the size and the formula of the next step.
+submodule (radau) radau_control
+  use collocation, only: most_iterations
+  implicit none
+contains
+
+  module procedure weigh
+    real(dp) :: factor, weight
+    integer :: i
+    factor = inner_tolerance(working_tolerance(self), self%stages%stages())/self%nominal_tolerance()
+    do i = 1, size(self%y)
+      weight = factor*(self%settings%relative(i)*abs(self%y(i)) + self%settings%absolute(i))
+      self%stages%inverse_weight(i) = 0
+      if (weight > 0) self%stages%inverse_weight(i) = 1/weight
+    end do
+    self%weighted = max(1, count(self%stages%inverse_weight > 0))
+  end procedure weigh
+
+  module procedure scaled_norm
+    scaled_norm = sqrt(sum((x*self%stages%inverse_weight)**2)/self%weighted)
+  end procedure scaled_norm
+
+  module procedure newton_goal
+    real(dp) :: tolerance, s
+    s = self%stages%stages()
+    tolerance = inner_tolerance(working_tolerance(self), self%stages%stages())
+    newton_goal = max(10*epsilon(1.0_dp)/tolerance, min(0.03_dp, tolerance**(2*s/(s + 1) - 1)))
+  end procedure newton_goal
+
+  module procedure estimate_error
+    logical :: inside
+
+    call self%stages%filtered_error(self%f, self%error)
+    error = scaled_norm(self, self%error)
+    if (error < 1 .or. .not. (self%first .or. self%failed)) return
+    self%y_try = self%y + self%error
+    self%statistics%evaluations = self%statistics%evaluations + 1
+    call problem%derivatives(self%t, self%y_try, self%f_new, inside)
+    if (.not. inside) return
+    call self%stages%filtered_error(self%f_new, self%error)
+    error = scaled_norm(self, self%error)
+  end procedure estimate_error
+
+  module procedure retreat
+    real(dp) :: factor
+
+    factor = 0.5_dp
+    select case (outcome)
+    case (try_error)
+      self%statistics%rejected_error = self%statistics%rejected_error + 1
+      factor = step_factor(self, error)
+      if (self%first) factor = 0.1_dp
+    case (try_too_deep)
+      self%statistics%rejected_penetration = self%statistics%rejected_penetration + 1
+      factor = fraction
+    case (try_outside)
+      self%statistics%rejected_domain = self%statistics%rejected_domain + 1
+    case default
+      self%statistics%rejected_convergence = self%statistics%rejected_convergence + 1
+      self%since_change = 0
+      if (self%stages%contraction > 0.8_dp .and. .not. self%first) self%stages%level = max(1, self%stages%level - 1)
+    end select
+    if (outcome /= try_error .and. outcome /= try_too_deep) then
+      self%stages%trust = 1
+      self%cautious = cautious_steps
+    end if
+    self%failed = .true.
+    self%h = factor*self%h
+    call weigh(self)
+  end procedure retreat
+
+  !> Factor of the step size that the error asks for: less room where Newton's method needed many iterations.
+  pure real(dp) function step_factor(self, error)
+    class(radau_t), intent(in) :: self
+    real(dp), intent(in) :: error
+    real(dp) :: margin
+    integer :: s
+    s = self%stages%stages()
+    margin = safety*min(1.0_dp, (2*most_iterations + 1.0_dp)/(2*most_iterations + self%stages%iterations))
+    step_factor = margin*max(error, 1e-30_dp)**(-1.0_dp/(s + 1))
+    step_factor = min(largest_growth, max(1/largest_cut, step_factor))
+  end function step_factor
+
+  module procedure choose_step
+    real(dp) :: factor, predicted
+    integer :: s
+
+    s = self%stages%stages()
+    factor = step_factor(self, error)
+    if (.not. self%first .and. error > 0) then
+      predicted = safety*(self%h/self%h_last)*(self%error_done/error**2)**(1.0_dp/(s + 1))
+      factor = min(factor, max(1/largest_cut, predicted))
+    end if
+    if (self%failed) factor = min(factor, 1.0_dp)
+    if (self%cautious > 0) factor = min(factor, cautious_growth)
+    self%cautious = max(0, self%cautious - 1)
+    self%h_last = self%h
+    self%error_done = max(error, 1e-2_dp)
+    self%first = .false.
+    self%failed = .false.
+    self%h = min(factor*self%h, self%settings%max_step)
+  end procedure choose_step
+
+  module procedure choose_formula
+    real(dp), parameter :: raise_below = 2e-3_dp, lower_above = 0.8_dp
+    integer, parameter :: steps_between_changes = 10
+
+    self%since_change = self%since_change + 1
+    if (self%since_change < steps_between_changes) return
+    if (self%stages%contraction < raise_below .and. self%stages%level < first_level(self)) then
+      self%stages%level = self%stages%level + 1
+    else if (self%stages%contraction > lower_above .and. self%stages%level > 1) then
+      self%stages%level = self%stages%level - 1
+    else
+      return
+    end if
+    self%since_change = 0
+  end procedure choose_formula
+end submodule radau_control
