@@ -1,7 +1,8 @@
 #!/bin/sh
-# scripts/compare_adams.sh [scenes | standard]
+# scripts/compare_adams.sh [scenes | standard | coordinates]
 # The Adams method side by side with what a published Shampine-Gordon code needed on the same scenes: evaluations
-# and errors at four tolerances; before that, the standard battery of non-stiff problems. The references are integrated first, by a copy that computes in 80 bits.
+# and errors at four tolerances; before that, the standard battery of non-stiff problems; after it, how well the eccentricity
+# is known by coordinates. The references are integrated first, by a copy that computes in 80 bits.
 cd "$(dirname "$0")/.." || exit 1
 . scripts/setup.sh || exit 1
 set -e
@@ -15,6 +16,10 @@ reference() {   # reference WHAT FILE
 table() {   # table WHAT FILE
   fpm run --profile release --example integrator_battery -- "$1" "$2" | grep -v '^\[\|^Project'
 }
+if [ "$1" = coordinates ]; then
+  table coordinates
+  exit
+fi
 if [ "$1" != scenes ]; then
   reference standard_reference build/standard_references.txt
   table standard build/standard_references.txt
@@ -23,3 +28,4 @@ if [ "$1" != standard ]; then
   reference reference build/references.txt
   table scenes build/references.txt
 fi
+[ -n "$1" ] || table coordinates

@@ -3,6 +3,7 @@
 !>
 !>     integrator_battery reference       prints a reference for every scene; meant for a build in extended precision
 !>     integrator_battery scenes FILE     prints the table, errors against the references in FILE
+!>     integrator_battery coordinates     prints how well the eccentricity is known in (q, e) and in (q, A, x)
 !>     integrator_battery standard_reference, integrator_battery standard FILE: the same for the standard battery
 program integrator_battery
   use kinds, only: dp
@@ -18,6 +19,7 @@ program integrator_battery
   use conditioning, only: condition_of
   use local_errors, only: local_error_watcher_t
   use sampler, only: sampler_t
+  use coordinate_errors, only: eccentricity_error, own_coordinates, absolute_by_clearance
   use state_watcher, only: state_watcher_t, watched
   implicit none
 
@@ -56,8 +58,10 @@ program integrator_battery
     call print_standard(trim(file))
   case ('scenes')
     call print_scenes(trim(file))
+  case ('coordinates')
+    call print_coordinates()
   case default
-    error stop 'integrator_battery reference | scenes FILE | standard_reference | standard FILE'
+    error stop 'integrator_battery reference | scenes FILE | coordinates | standard_reference | standard FILE'
   end select
 
 contains
@@ -237,6 +241,23 @@ contains
     print '(/,a,10i8)', 'evaluations of the whole battery at 1e-3 ... 1e-12:', all_evaluations
     close (unit)
   end subroutine print_standard
+
+  !> Half a revolution of simulations I, II and V: the largest error of e/c at 100 instants.
+  subroutine print_coordinates()
+    character(len=20), parameter :: files(3) = [character(len=20) :: 'cases/sim_I.nml', 'cases/sim_II.nml', 'cases/sim_V.nml']
+    real(dp) :: error(own_coordinates:absolute_by_clearance)
+    integer :: evaluations(own_coordinates:absolute_by_clearance), i, j, way
+    do i = 1, size(files)
+      print '(/,2a)', trim(files(i)), ': error of e/c and evaluations'
+      print '(a)', '  rtol          (q, e)       (q, A, x), tolerances by size     by the clearance'
+      do j = 4, 10, 2
+        do way = own_coordinates, absolute_by_clearance
+          call eccentricity_error(trim(files(i)), 0.5_dp, way, 10.0_dp**(-j), error(way), evaluations(way))
+        end do
+        print '(es7.0,3(es14.1,i8))', 10.0_dp**(-j), (error(way), evaluations(way), way=own_coordinates, absolute_by_clearance)
+      end do
+    end do
+  end subroutine print_coordinates
 
   pure real(dp) function slope(error)
     real(dp), intent(in) :: error(3:12)

@@ -10,6 +10,7 @@ program gudgeon_tests
   use test_command_line, only: run_test_command_line
   use test_contact, only: run_test_contact
   use test_cycle_watch, only: run_test_cycle_watch
+  use test_coordinates, only: run_test_coordinates
   use test_error_growth, only: run_test_error_growth
   use test_event_proof, only: run_test_event_proof
   use test_events, only: run_test_events
@@ -40,6 +41,7 @@ program gudgeon_tests
   call run_test_command_line(check)
   call run_test_contact(check)
   call run_test_cycle_watch(check)
+  call run_test_coordinates(check)
   call run_test_error_growth(check)
   call run_test_event_proof(check)
   call run_test_events(check)

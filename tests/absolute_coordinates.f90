@@ -1,0 +1,63 @@
+!> A scene with clearance in the coordinates (q, A, x) of its bodies, in which the eccentricity is a difference of numbers ten
+!> thousand times larger: what the scenes' own coordinates are measured against.
+module absolute_coordinates
+  use kinds, only: dp
+  use ode_problem, only: ode_problem_t
+  use clearance_scene, only: clearance_scene_t
+  use scene, only: evaluation_t
+  implicit none
+  private
+  public :: absolute_coordinates_t, in_absolute_coordinates
+
+  !> y = (q, A, x, q', A', x'). The scene within is that of a free crank without quadratures of the joint.
+  type, extends(ode_problem_t) :: absolute_coordinates_t
+    type(clearance_scene_t) :: scene
+  contains
+    procedure :: derivatives
+    procedure :: eccentricity
+  end type absolute_coordinates_t
+
+contains
+
+  !> A scene in these coordinates, and its initial state.
+  subroutine in_absolute_coordinates(scene, problem, y)
+    type(clearance_scene_t), intent(in) :: scene
+    type(absolute_coordinates_t), intent(out) :: problem
+    real(dp), intent(out) :: y(6)
+    type(evaluation_t) :: now
+    logical :: inside
+    problem%scene = scene
+    problem%n = 6
+    call scene%evaluate(0.0_dp, scene%initial_state(), now, inside)
+    associate (m => now%motion)
+      y = [m%crank_angle, atan2(m%sin_rod, m%cos_rod), m%piston_position, m%crank_speed, m%rod_speed, m%piston_velocity]
+    end associate
+  end subroutine in_absolute_coordinates
+
+  !> e = pin centre - bearing centre, and its rate [m, m/s].
+  pure subroutine eccentricity(self, y, e, rate)
+    class(absolute_coordinates_t), intent(in) :: self
+    real(dp), intent(in) :: y(:)
+    real(dp), intent(out) :: e(2), rate(2)
+    associate (r => self%scene%mechanism%crank_length, l => self%scene%mechanism%rod_length)
+      e = [r*cos(y(1)) + l*cos(y(2)) - y(3), r*sin(y(1)) - l*sin(y(2))]
+      rate = [-r*sin(y(1))*y(4) - l*sin(y(2))*y(5) - y(6), r*cos(y(1))*y(4) - l*cos(y(2))*y(5)]
+    end associate
+  end subroutine eccentricity
+
+  pure subroutine derivatives(self, t, y, dydt, inside)
+    class(absolute_coordinates_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: dydt(:)
+    logical, intent(out) :: inside
+    type(evaluation_t) :: now
+    real(dp) :: e(2), rate(2), state(self%scene%n)
+    call self%eccentricity(y, e, rate)
+    state = 0
+    state(1:6) = [y(1), e, y(4), rate]
+    call self%scene%evaluate(t, state, now, inside)
+    if (.not. inside) return
+    dydt(:3) = y(4:6)
+    dydt(4:6) = [now%accelerations%crank, now%accelerations%rod, now%accelerations%piston]
+  end subroutine derivatives
+end module absolute_coordinates
