@@ -33,6 +33,7 @@ count "case files, fuzzed" tests/test_fuzz.py
 count "tests, release" fpm test --profile release
 count "the program" sh -c 'fpm build --profile release && tests/test_program.sh'
 count "studies" tests/test_sweep.sh
+count "extreme scenes" scripts/extremes --scenes 120 --seed 5 --evaluations 100000 --quiet
 count "faults" tests/test_faults.py --kills 10
 count "runs taken up again" tests/test_resume.py --kills 10
 count "the plots" sh -c 'scripts/setup.sh --python && tests/test_plots.py'

@@ -7,7 +7,9 @@ module test_scenes
   use case_file, only: read_case
   use scene, only: scene_t, evaluation_t, phase_contact, event_contact_begins, event_contact_ends
   use clearance_scene, only: clearance_scene_t
-  use scene_builder, only: build_scene
+  use ode_method, only: ode_settings_t, step_too_small
+  use scene_builder, only: build_scene, settings_for
+  use stop_reason, only: reason
   use collecting_sink, only: trace_t, run_case, column
   implicit none
   private
@@ -28,6 +30,7 @@ contains
     call contact_events_are_consistent(check)
     call columns_are_those_asked_for(check)
     call failures_name_their_place(check)
+    call event_at_the_end(check)
   end subroutine run_test_scenes
 
   !> Entry no deeper than allowed, no impact missed, and the instants converge to those of the root with the depth.
@@ -264,5 +267,50 @@ contains
       'and says that it left the model')
     trace = run_case('cases/sim_I.nml', [character(len=long) :: 'integrator.relative_tolerance=1e-16'])
     call check%that(allocated(trace%error), 'a tolerance below rounding is refused')
+    call ends_with(check, 'cases/sim_I_oscillating.nml', [character(len=long) :: 'integrator.relative_tolerance=1e-14', &
+      'integrator.method=auto'], 'tolerance below the rounding of the forces')
+    call ends_with(check, 'cases/sim_I.nml', [character(len=long) :: 'initial.eccentricity=-2.02e-5,0', &
+      'integrator.method=auto'], 'ill-posed: a film')
+    call small_steps_have_causes(check)
   end subroutine failures_name_their_place
+
+  !> A pin pressed deep into its bearing: late in a run the rounding of the time alone moves it by more than a tolerance.
+  subroutine small_steps_have_causes(check)
+    class(checks_t), intent(inout) :: check
+    type(case_t) :: case
+    type(error_t), allocatable :: error
+    class(scene_t), allocatable :: scene
+    type(ode_settings_t) :: settings
+    real(dp), allocatable :: y(:)
+    call read_case('cases/flores/dry_0100um.nml', [character(len=long) :: 'initial.eccentricity=1e-3,0'], case, error)
+    call build_scene(case, .false., scene, error)
+    call check%that(scene%phase == phase_contact, 'the pin starts in contact')
+    settings = settings_for(case, scene)
+    allocate (y(scene%n))
+    y = scene%initial_state()
+    call check%equal_text(reason(step_too_small, scene, settings, 1e3_dp, y), &
+      'stiff: within the rounding of the time the state changes by more than the tolerance allows', 'late')
+    call check%equal_text(reason(step_too_small, scene, settings, 1e-6_dp, y), 'step too small', 'early')
+  end subroutine small_steps_have_causes
+
+  !> A run ends with a reason.
+  subroutine ends_with(check, file, overrides, wanted)
+    class(checks_t), intent(inout) :: check
+    character(len=*), intent(in) :: file, overrides(:), wanted
+    type(trace_t) :: trace
+    trace = run_case(file, overrides)
+    call check%that(allocated(trace%error), 'ends: '//wanted)
+    if (allocated(trace%error)) call check%equal_text(trace%error%message(:min(len(wanted), len(trace%error%message))), wanted, &
+      'reason')
+  end subroutine ends_with
+
+  !> The cylinder opens at the very end of the run, but for rounding: no step fits between.
+  subroutine event_at_the_end(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    trace = run_case('cases/sim_V.nml', [character(len=long) :: 'initial.crank_angle_deg=180', 'drive.kind=constant_speed', &
+      'integrator.revolutions=1', 'integrator.method=radau'])
+    call check%that(.not. allocated(trace%error), 'an event at the end of a run is its end')
+    call check%that(size(trace%values, 2) == 721, 'with all rows')
+  end subroutine event_at_the_end
 end module test_scenes

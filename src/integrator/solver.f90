@@ -109,7 +109,7 @@ contains
       if (status /= step_done) exit
       call take_step(problem, method, observer, t_end, at, status)
       if (status == integration_stopped) exit
-      if (at%event > 0 .and. .not. at%t < t_end .or. at%event == 0 .and. method%t >= t_end) exit
+      if (at%event > 0 .and. is_at_end(at%t, t_end) .or. at%event == 0 .and. method%t >= t_end) exit
       call look_around(method, max_steps, observer, status)
       if (observer%keeps_archives) call hand_over(problem, method, observer, at, status)
     end do
@@ -154,10 +154,16 @@ contains
     if (at%in_place == 0) at%t_place = at%t
     at%in_place = at%in_place + 1
     if (at%in_place > most_events_in_place) status = chattering
-    if (.not. at%t < t_end) return
+    if (is_at_end(at%t, t_end)) return
     if (status == step_done) call method%start(problem, at%t, at%y, .false., status)
     call at%watch%begin(problem, at%t, at%y, at%event)
   end subroutine take_step
+
+  !> Whether an event lies so near the end that no step fits between.
+  pure logical function is_at_end(t, t_end)
+    real(dp), intent(in) :: t, t_end
+    is_at_end = .not. t_end - t > 8*epsilon(t)*abs(t_end)
+  end function is_at_end
 
   !> Whether there is a reason to end between two steps.
   subroutine look_around(method, max_steps, observer, status)

@@ -39,6 +39,7 @@ module clearance_scene
     procedure :: jacobian
     procedure :: initial_state
     procedure :: prepare_start
+    procedure :: is_singular
     procedure :: natural_scales
     procedure :: reported_event
     procedure :: events => all_events
@@ -572,6 +573,16 @@ contains
     self%mode = self%phase
     if (self%phase == phase_contact) call choose_sliding(self, 0.0_dp, y, .true.)
   end subroutine prepare_start
+
+  !> A film that grows without bound at the wall, and has next to no thickness.
+  pure logical function is_singular(self, y)
+    class(clearance_scene_t), intent(in) :: self
+    real(dp), intent(in) :: y(:)
+    real(dp), parameter :: thin = 1e-6_dp   !! of the clearance
+    is_singular = .false.
+    if (self%phase == phase_film) is_singular = self%film%singular_at_wall .and. &
+      norm2(y(self%n_positions - 1:self%n_positions)) > (1 - thin)*self%joint%clearance
+  end function is_singular
 
   !> d2|e|/dt2 [m/s^2].
   pure real(dp) function outward_acceleration(now)

@@ -60,6 +60,7 @@ module scene
     procedure(natural_scales), deferred :: natural_scales
     procedure(reported_event), deferred :: reported_event
     procedure :: prepare_start
+    procedure :: is_singular
     procedure :: crank_angle
     procedure :: work
     procedure :: measure_joint
@@ -114,6 +115,15 @@ module scene
   end interface
 
 contains
+
+  !> Whether the forces of the present phase have no bound next to this state. The default is a scene that has none such.
+  pure logical function is_singular(self, y)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: y(:)
+    associate (unused_self => self, unused_y => y)
+    end associate
+    is_singular = .false.
+  end function is_singular
 
   !> Find the discrete state at t = 0 when all else is set. The default has nothing to find.
   subroutine prepare_start(self)

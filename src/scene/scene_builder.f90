@@ -24,6 +24,8 @@ module scene_builder
   !> a result may miss (the ideal twin of simulation IV loses 18 % of its energy at 1e-2, 2 % at 1e-3).
   real(dp), parameter :: loosest_tolerance = 1e-3_dp
 
+  real(dp), parameter :: longest_chatter = 1e-8_dp   !! [s]; a crank that hardly turns has no time scale for its pin
+
 contains
 
   !> Build the scene of a case; with `ideal_joint` its twin without clearance. The case has been validated by its
@@ -131,7 +133,7 @@ contains
 
   !> Settings of the integrator for a scene of the case. Component i is held to relative_tolerance*|y_i| (unless it grows
   !> without bound) + a*scale_i, a = absolute_tolerance or, where that is 0, relative_tolerance. A hundred events within
-  !> 1e-6 of a revolution are chatter.
+  !> 1e-6 of a revolution, 1e-8 s at most, are chatter.
   pure function settings_for(case, scene) result(settings)
     type(case_t), intent(in) :: case
     class(scene_t), intent(in) :: scene
@@ -150,6 +152,6 @@ contains
     if (case%integrator%max_step > 0) settings%max_step = case%integrator%max_step
     settings%max_order = case%integrator%max_order
     settings%max_evaluations = case%integrator%max_evaluations
-    settings%chatter_time = 1e-6_dp*two_pi/scene%speed_scale(settings%span)
+    settings%chatter_time = min(1e-6_dp*two_pi/scene%speed_scale(settings%span), longest_chatter)
   end function settings_for
 end module scene_builder

@@ -1,0 +1,105 @@
+!> Why and where a run ended before its end, in words.
+module stop_reason
+  use kinds, only: dp
+  use constants, only: degree
+  use ode_method, only: ode_settings_t, step_too_small, tolerance_too_small, start_outside, left_domain
+  use solver, only: step_limit_reached, integration_interrupted, chattering, evaluation_limit_reached, unreadable_archive
+  use scene, only: scene_t, evaluation_t
+  implicit none
+  private
+  public :: reason, place, interrupted_text, revolution_budget_spent
+
+  character(len=*), parameter :: interrupted_text = 'interrupted'
+  integer, parameter :: revolution_budget_spent = 21   !! besides the status codes of `solver` and `ode_method`
+
+  real(dp), parameter :: tight_tolerance = 1e-12_dp    !! from here on the forces' own rounding counts
+
+contains
+
+  !> Why an integration with these settings ended at (t, y).
+  function reason(status, scene, settings, t, y) result(text)
+    integer, intent(in) :: status
+    class(scene_t), intent(in) :: scene
+    type(ode_settings_t), intent(in) :: settings
+    real(dp), intent(in) :: t, y(:)
+    character(len=:), allocatable :: text
+    select case (status)
+    case (step_too_small)
+      text = small_step_reason(scene, settings, t, y)
+    case (tolerance_too_small)
+      text = 'tolerance below the rounding of the state'
+    case (left_domain, start_outside)
+      text = 'the state leaves the model (the pin its bearing or its film)'
+      if (scene%is_singular(y)) text = ill_posed_text()
+    case (step_limit_reached)
+      text = 'too many steps (&integrator max_steps)'
+    case (evaluation_limit_reached)
+      text = 'too much work (&integrator max_evaluations)'
+    case (revolution_budget_spent)
+      text = 'too much work in one revolution (&integrator max_evaluations_per_revolution)'
+    case (integration_interrupted)
+      text = interrupted_text
+    case (unreadable_archive)
+      text = 'the state to go on from does not fit the case'
+    case (chattering)
+      text = 'contact events without progress in time (chatter)'
+    case default
+      text = 'stopped'
+    end select
+  end function reason
+
+  function ill_posed_text() result(text)
+    character(len=:), allocatable :: text
+    text = 'ill-posed: a film of next to no thickness, whose force has no bound'
+  end function ill_posed_text
+
+  !> Why no step was short enough.
+  function small_step_reason(scene, settings, t, y) result(text)
+    class(scene_t), intent(in) :: scene
+    type(ode_settings_t), intent(in) :: settings
+    real(dp), intent(in) :: t, y(:)
+    character(len=:), allocatable :: text
+    real(dp), parameter :: appreciable = 0.01_dp
+    if (scene%is_singular(y)) then
+      text = ill_posed_text()
+    else if (settings%tolerance <= tight_tolerance) then
+      text = 'tolerance below the rounding of the forces'
+    else if (change_in_rounding(scene, settings, t, y) > appreciable) then
+      text = 'stiff: within the rounding of the time the state changes by more than the tolerance allows'
+    else
+      text = 'step too small'
+    end if
+  end function small_step_reason
+
+  !> How far the state goes in the shortest step that the time resolves, in tolerances.
+  real(dp) function change_in_rounding(scene, settings, t, y)
+    class(scene_t), intent(in) :: scene
+    type(ode_settings_t), intent(in) :: settings
+    real(dp), intent(in) :: t, y(:)
+    real(dp) :: rates(size(y)), weight, step
+    logical :: inside
+    integer :: i
+    change_in_rounding = 0
+    call scene%derivatives(t, y, rates, inside)
+    if (.not. inside) return
+    step = 4*epsilon(t)*max(abs(t), 1e-9_dp*settings%span)
+    do i = 1, size(y)
+      weight = settings%relative(i)*abs(y(i)) + settings%absolute(i)
+      if (weight > 0) change_in_rounding = max(change_in_rounding, step*abs(rates(i))/weight)
+    end do
+  end function change_in_rounding
+
+  !> Where a run stands: time, crank angle and phase.
+  function place(scene, t, y) result(text)
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(:)
+    character(len=:), allocatable :: text
+    character(len=*), parameter :: phase_names(0:2) = [character(len=13) :: 'free flight', 'film', 'contact']
+    character(len=80) :: figures
+    type(evaluation_t) :: now
+    logical :: inside
+    call scene%evaluate(t, y, now, inside)
+    write (figures, '(a,es15.8,a,f0.4,a)') 't =', t, ' s, crank angle ', now%motion%crank_angle/degree, ' deg'
+    text = trim(figures)//', phase '//trim(phase_names(scene%phase))
+  end function place
+end module stop_reason
