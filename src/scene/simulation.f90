@@ -5,7 +5,8 @@ module simulation
   use case_definition, only: case_t
   use ode_method, only: ode_method_t, step_statistics_t, limit_stability
   use methods, only: new_method
-  use solver, only: integrate, silent_observer_t, integration_done, integration_interrupted, unreadable_archive
+  use solver, only: integrate, silent_observer_t, integration_done, integration_interrupted, step_limit_reached, &
+    evaluation_limit_reached, unreadable_archive
   use scene, only: scene_t
   use stop_reason, only: reason, place, interrupted_text, revolution_budget_spent
   use scene_builder, only: build_scene, simulated_time, sample_interval, settings_for
