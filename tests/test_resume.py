@@ -9,6 +9,7 @@ that were changed. Needs a release build (or makes one). Ends with the line "N p
 from __future__ import annotations
 
 import argparse
+import os
 import random
 import resource
 import shutil
@@ -123,13 +124,14 @@ def refusals(gudgeon: Gudgeon, work: Path, chance: random.Random) -> None:
     checkpoint, trace = "friction_100.checkpoint", "friction_100.csv"
     good = (stopped / checkpoint).read_bytes()
 
-    def refused(what: str, *extra: object, program: Gudgeon = gudgeon, change=lambda folder: None, want: str = "") -> None:
+    def refused(what: str, *extra: object, program: Gudgeon = gudgeon, change=lambda folder: None, want: str = "",
+                **how) -> None:
         folder = work / "changed"
         shutil.rmtree(folder, ignore_errors=True)
         shutil.copytree(stopped, folder)
         change(folder)
         before = {path.name: path.read_bytes() for path in folder.iterdir()}
-        status, out, err = program.run("--resume", "-o", folder, *extra, *words)
+        status, out, err = program.run("--resume", "-o", folder, *extra, *words, **how)
         check(status == 3 and not out and err.count("\n") == 1 and err.startswith("gudgeon: ") and want in err,
               f"{what} is refused in one line: exit {status}, {out}{err}")
         check(before == {path.name: path.read_bytes() for path in folder.iterdir()}, f"{what}: nothing is touched")
@@ -156,6 +158,13 @@ def refusals(gudgeon: Gudgeon, work: Path, chance: random.Random) -> None:
     other.write_bytes(gudgeon.program.read_bytes() + b"\0")
     other.chmod(0o755)
     refused("another build", program=Gudgeon(other), want="another build")
+    plain = {**os.environ, "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-FMA_Usable,-AVX2_Usable"}
+    words_of = ("-o", work / "processor", "--set", "integrator.revolutions=1", file)
+    gudgeon.run(*words_of, env=plain)
+    with_plain = (work / "processor" / trace).read_bytes()
+    gudgeon.run(*words_of)
+    if with_plain != (work / "processor" / trace).read_bytes():   # else the processor has no choice, or the library
+        refused("another processor", env=plain, want="another kind of processor")
     check(gudgeon.run("--resume", "-o", stopped, *words)[0] == 0, "the right one goes on")
 
 

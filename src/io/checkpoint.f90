@@ -2,7 +2,7 @@
 !> all.
 !>
 !> The file holds a line that says what it is, an archive and the CRC-64 of all that. It belongs to one build of the
-!> program (the rounding of another may differ) and to one case.
+!> program on one kind of processor (the rounding of others may differ) and to one case.
 module checkpoint
   use, intrinsic :: iso_fortran_env, only: compiler_version, compiler_options
   use kinds, only: dp
@@ -43,7 +43,8 @@ module checkpoint
 
 contains
 
-  !> Which program this is, to the byte: version, compiler, options, checksum of the executable.
+  !> Which program this is, to the byte, and how it rounds on this machine: version, compiler, options, checksum of the
+  !> executable and of elementary functions (the C library has several of each and takes what the processor can).
   function program_build() result(text)
     character(len=:), allocatable :: text
     type(checksum_t) :: sum
@@ -51,8 +52,23 @@ contains
     integer :: status
     call read_whole('/proc/self/exe', bytes, status)
     call sum%add(bytes)
+    call add_functions(sum)
     text = program_version//newline//compiler_version()//newline//compiler_options()//newline//sum%hexadecimal()
   end function program_build
+
+  !> Elementary functions at a thousand points.
+  pure subroutine add_functions(sum)
+    type(checksum_t), intent(inout) :: sum
+    real(dp) :: x, values(7)
+    character(len=8*size(values)) :: bytes
+    integer :: i
+    do i = 1, 1000
+      x = 0.0137_dp*i
+      values = [sin(x), cos(x), tan(x), exp(-x), log(x), x**1.5_dp, atan2(x, 3.0_dp)]
+      bytes = transfer(values, bytes)
+      call sum%add(bytes)
+    end do
+  end subroutine add_functions
 
   !> Write the file: first under another name, then by renaming, so that a checkpoint is there at every time.
   subroutine save_checkpoint(self, error)
@@ -114,7 +130,7 @@ contains
         if (archive%failed .or. .not. archive%is_at_end()) then
           wrong = 'written by another version of gudgeon'//restart_hint
         else if (self%build /= build) then
-          wrong = 'written by another build of gudgeon, whose rounding may differ'//restart_hint
+          wrong = 'written by another build of gudgeon, or on another kind of processor: the rounding may differ'//restart_hint
         end if
       end if
     end if
