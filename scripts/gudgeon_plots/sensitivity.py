@@ -186,7 +186,7 @@ def describe(found: Indices) -> str:
     text += f"; none at all: {', '.join(nothing)}." if nothing else "."
     if found.method == "sobol":
         alone = 100 * ranked["S1"].sum()
-        text += f" The parameters one by one explain {min(alone, 100):.0f} % of the variance, "
+        text += f" The parameters one by one explain {np.clip(alone, 0, 100):.0f} % of the variance, "
         text += "interaction the rest (with it, chance)." if alone < 100 else "interaction nothing that shows."
     return text
 
