@@ -67,7 +67,7 @@ contains
     class(checks_t), intent(inout) :: check
     type(sampler_t) :: sampler
     real(dp), allocatable :: y(:)
-    real(dp) :: condition, exact(4), ratio, largest
+    real(dp) :: condition, exact(4), ratio, largest, log_error(3:12), slope
     integer :: i, j, k, status
     character(len=6) :: label
     largest = 0
@@ -83,9 +83,12 @@ contains
           ratio = max(ratio, maxval(abs(sampler%y(:, k) - exact)/(1 + abs(exact)))*10.0_dp**j/condition)
         end do
         largest = max(largest, ratio)
+        log_error(j) = log10(ratio) - j
         write (label, '(a,i0)') '1e-', j
         call check%that(status == integration_done .and. ratio <= 10, trim(names(i))//': error within its condition at '//label)
       end do
+      slope = sum([((7.5_dp - j)*log_error(j), j=3, 12)])/sum([((7.5_dp - j)**2, j=3, 12)])
+      call check%close_to(slope, 1.0_dp, 0.25_dp, trim(names(i))//': the error falls as the tolerance')
     end do
     call check%that(largest > 0.3_dp, 'the condition is not a loose bound')
   end subroutine orbits_keep_their_condition
