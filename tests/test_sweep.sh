@@ -177,6 +177,7 @@ refused "rows backwards" 2 "A:B" --rows 5:4 "$work/grid.nml"
 run sweep --check "$work/grid.nml"
 check "--check counts the runs" [ "$status" = 0 -a "$(cat "$work/out")" = "$work/grid.nml: correct, 12 runs" ]
 run sweep --check "$work/table.nml"
+check "--check does not call it correct" [ "$status" = 3 -a ! -s "$work/out" ]
 check "--check finds the run that cannot be" grep -q 'table.nml: run 2: .*clearance = -1e-5: must be > 0' "$work/err"
 run sweep --template
 cp "$work/out" "$work/template.nml"

@@ -3,51 +3,22 @@ module study_runner
   use, intrinsic :: iso_fortran_env, only: int64
   use omp_lib, only: omp_get_num_procs
   use kinds, only: dp
-  use errors, only: error_t, fail, status_output, status_integration, status_case_file
+  use errors, only: error_t, fail, status_output, status_integration
   use text_tools, only: printable, integer_text
   use number_text, only: short_text
-  use checksum, only: checksum_t
-  use version, only: program_version
-  use columns, only: column_list_t, choose_columns
-  use case_definition, only: case_t
-  use case_file, only: read_case_values, write_resolved
-  use case_values, only: case_values_t
-  use case_schema, only: find_key
-  use accuracy_presets, only: with_preset
   use case_runner, only: write_text
   use command_line, only: command_line_t
-  use progress, only: progress_t, rate_text
+  use progress, only: rate_text
   use posix, only: make_directory, error_text, interrupted
   use text_file, only: read_text_file
-  use study_definition, only: study_t
-  use study_file, only: read_study
-  use study_design, only: study_design_t, new_design
-  use study_case, only: study_case_t
+  use study_sweep, only: sweep_t, read_sweep, check_rows, study_checksum
   use study_worker, only: study_worker_t
   use study_rows, only: run_header, cycle_header, strobe_header
-  use row_file, only: row_file_t
-  use case_lock, only: case_lock_t
   implicit none
   private
   public :: run_study_file
 
   character(len=*), parameter :: newline = achar(10), checksum_label = '! checksum '
-
-  !> A study under way, shared by the threads that run it.
-  type :: sweep_t
-    type(study_t) :: study
-    type(study_design_t) :: design
-    type(study_case_t) :: base
-    type(column_list_t) :: strobe_list
-    character(len=:), allocatable :: path          !! of the results, without their endings
-    integer :: first = 1, last = 0                 !! runs to run
-    type(row_file_t) :: runs, cycles, strobes
-    type(progress_t) :: progress
-    type(case_lock_t) :: lock
-    integer :: began = 0, done = 0, failed = 0     !! rows: there at the start, there now; of them those that failed
-    logical :: is_over = .false.                   !! interrupted, or nothing more can be written
-    type(error_t), allocatable :: error
-  end type sweep_t
 
 contains
 
@@ -64,11 +35,11 @@ contains
 
     line = ''
     allocate (sweep)
-    call read_all(path, options, sweep, error)
+    call read_sweep(path, options, sweep, error)
     if (allocated(error)) return
     if (options%check) then
       call check_rows(sweep, error)
-      line = path//': correct, '//integer_text(sweep%last - sweep%first + 1)//' runs'
+      if (.not. allocated(error)) line = path//': correct, '//integer_text(sweep%last - sweep%first + 1)//' runs'
       return
     end if
     call open_files(options, sweep, error)
@@ -85,101 +56,6 @@ contains
     call system_clock(ended)
     call conclude(sweep, real(ended - began, dp)/real(rate, dp), line, error)
   end subroutine run_study_file
-
-  !> Study, base case and design, checked against each other.
-  subroutine read_all(path, options, sweep, error)
-    character(len=*), intent(in) :: path
-    type(command_line_t), intent(in) :: options
-    type(sweep_t), intent(inout) :: sweep
-    type(error_t), allocatable, intent(out) :: error
-    type(case_values_t) :: values
-    type(case_t) :: case
-    character(len=:), allocatable :: at
-    integer :: i
-
-    call read_study(path, sweep%study, error)
-    if (allocated(error)) return
-    call read_case_values(sweep%study%case, with_preset(options%accuracy, options%overrides), values, error)
-    if (allocated(error)) return
-    sweep%path = options%out//'/'//sweep%study%name
-    associate (study => sweep%study, design => sweep%design)
-      call new_design(study, values%values(find_key(values%keys, 'output', 'digits'))%whole, design, error)
-      if (allocated(error)) return
-      at = printable(path, 200)//': '
-      if (study%table /= '') at = printable(study%table, 200)//':1: '
-      call sweep%base%prepare(values, study%case, design%keys, at, error)
-      if (allocated(error)) return
-      do i = 1, size(design%keys)
-        if (sweep%base%takes_whole_numbers(i)) call design%set_whole(i)
-        if (.not. design%is_range(i) .or. sweep%base%takes_numbers(i)) cycle
-        call fail(error, at//'&parameter key = '''//trim(design%keys(i))//''': has no range; give values', status_case_file)
-        return
-      end do
-      call check_values(sweep, error)
-      if (allocated(error)) return
-      sweep%last = design%runs
-      if (options%last_row > 0) then
-        sweep%first = options%first_row
-        sweep%last = options%last_row
-        sweep%path = sweep%path//'.'//integer_text(sweep%first)//'-'//integer_text(sweep%last)
-        if (sweep%last > design%runs) call fail(error, at//'--rows '//integer_text(sweep%first)//':'// &
-          integer_text(sweep%last)//': the study has '//integer_text(design%runs)//' runs', status_case_file)
-        if (allocated(error)) return
-      end if
-      if (study%strobe_columns == '') then
-        allocate (sweep%strobe_list%id(0))
-      else
-        case = sweep%base%case
-        case%output%columns = study%strobe_columns
-        call choose_columns(case, .false., sweep%strobe_list, error)
-        if (allocated(error)) error%message = at//'strobe_columns: '//error%message
-      end if
-    end associate
-  end subroutine read_all
-
-  !> Every text of a table or list is a value of its key.
-  subroutine check_values(sweep, error)
-    type(sweep_t), intent(inout) :: sweep
-    type(error_t), allocatable, intent(out) :: error
-    integer :: i, k
-    associate (study => sweep%study, table => sweep%design%table)
-      do k = 1, sweep%design%runs
-        if (study%table == '') exit
-        do i = 1, size(table%keys)
-          call sweep%base%put_one(i, trim(table%fields(i, k)), error)
-          if (.not. allocated(error)) cycle
-          error%message = printable(study%table, 200)//':'//integer_text(table%lines(k))//': column '//integer_text(i)//', '// &
-            trim(table%keys(i))//' = '//printable(trim(table%fields(i, k)), 48)//': '//error%message
-          return
-        end do
-      end do
-      do i = 1, size(study%parameters)
-        do k = 1, size(study%parameters(i)%list)
-          call sweep%base%put_one(i, study%parameters(i)%list(k)%text, error)
-          if (.not. allocated(error)) cycle
-          error%message = printable(study%file, 200)//': &parameter key = '''//study%parameters(i)%key//''', values = '// &
-            printable(study%parameters(i)%list(k)%text, 48)//': '//error%message
-          return
-        end do
-      end do
-    end associate
-  end subroutine check_values
-
-  !> Whether every run can be, as far as its values tell.
-  subroutine check_rows(sweep, error)
-    type(sweep_t), intent(inout) :: sweep
-    type(error_t), allocatable, intent(out) :: error
-    character(len=sweep%design%text_length) :: values(size(sweep%design%keys))
-    integer :: run
-    do run = sweep%first, sweep%last
-      call sweep%design%get_values(run, values)
-      call sweep%base%put(values, error)
-      if (.not. allocated(error)) call sweep%base%check(error)
-      if (.not. allocated(error)) cycle
-      error%message = printable(sweep%study%file, 200)//': run '//integer_text(run)//': '//error%message
-      return
-    end do
-  end subroutine check_rows
 
   !> Take up the results of the same study, or begin anew. Results of another study of that name are not touched.
   subroutine open_files(options, sweep, error)
@@ -222,26 +98,6 @@ contains
     end do
     sweep%done = sweep%began
   end subroutine open_files
-
-  !> Tells apart studies whose rows would differ.
-  function study_checksum(sweep) result(text)
-    type(sweep_t), intent(in) :: sweep
-    character(len=16) :: text
-    type(checksum_t) :: checksum
-    integer :: i, run
-    call checksum%add(program_version//newline//write_resolved(sweep%base%case)//sweep%study%identity)
-    if (sweep%study%table /= '') then
-      do i = 1, size(sweep%design%keys)
-        call checksum%add(sweep%design%keys(i)//',')
-      end do
-      do run = 1, sweep%design%runs
-        do i = 1, size(sweep%design%keys)
-          call checksum%add(sweep%design%table%fields(i, run)//',')
-        end do
-      end do
-    end if
-    text = checksum%hexadecimal()
-  end function study_checksum
 
   !> All runs that have no row yet, by so many threads (0: as many as there are cores).
   subroutine run_rows(jobs, sweep)
