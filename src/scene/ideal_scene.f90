@@ -86,8 +86,10 @@ contains
     real(dp), intent(out) :: scales(:)
     logical, intent(out) :: growing(:)
     growing = .true.
-    scales = 0   ! measures take no part in the error control
     scales(2*self%n_positions + 1) = self%energy_scale(span)
+    ! The measured force has part in the error control: nothing else here makes steps short enough for it.
+    if (self%n_measures > 0) scales(2*self%n_positions + 2) = self%energy_scale(span)/ &
+      (self%mechanism%crank_length*self%speed_scale(span))
     if (self%drive%free_crank) then
       scales(1:2) = [1.0_dp, self%speed_scale(span)]
       growing(2) = .false.

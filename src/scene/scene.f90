@@ -160,8 +160,8 @@ contains
     work = y(2*self%n_positions + 1)
   end function work
 
-  !> Integrate the measures of the joint too; before the run. They do not change its steps. A joint without clearance has
-  !> one, the integral of the force's size.
+  !> Integrate the measures of the joint too; before the run. They do not change its steps where the joint has clearance. One
+  !> without has one measure, the integral of the force's size.
   subroutine measure_joint(self)
     class(scene_t), intent(inout) :: self
     call self%add_measures(1)
