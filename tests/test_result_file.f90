@@ -40,8 +40,14 @@ contains
     call check%equal_text(real_text(0.0_dp), '0.000000000E+00', 'zero')
     call check%equal_text(real_text(1e-120_dp), '1.000000000E-120', 'small')
     call check%equal_text(real_text(-1e150_dp), '-1.000000000E+150', 'large')
-    call check%equal_text(short_text(0.5_dp), '5E-01', 'short')
+    call check%equal_text(short_text(0.5_dp), '0.5', 'short')
     call check%equal_text(short_text(4.0_dp), '4', 'short, whole')
+    call check%equal_text(short_text(-123456.4_dp), '-123456', 'short, six digits before the point')
+    call check%equal_text(short_text(9.9999996_dp), '10', 'short, rounded up to the next power')
+    call check%equal_text(short_text(1.23e6_dp), '1.23E+06', 'short, large')
+    call check%equal_text(short_text(1.25e-4_dp), '0.000125', 'short, small')
+    call check%equal_text(short_text(1e-5_dp), '1E-05', 'short, smaller')
+    call check%equal_text(short_text(0.0_dp), '0', 'short, zero')
     do i = -30, 30
       text = exact_text(0.1_dp*3.0_dp**i)
       read (text, *) back

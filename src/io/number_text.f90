@@ -22,22 +22,34 @@ contains
     text = scientific(value, '(es23.16e2)', '(es24.16e3)')
   end function exact_text
 
-  !> A real for people: 6 significant digits, without the zeros at their end.
+  !> A real for people: 6 significant digits, without the zeros at their end; as 0.0125 or 36000.5 where that is short.
   pure function short_text(value) result(text)
     real(dp), intent(in) :: value
     character(len=:), allocatable :: text
-    integer :: last, exponent
+    character(len=24) :: plain, form
+    integer :: exponent, power, status
     text = scientific(value, '(es12.5e2)', '(es13.5e3)')
     exponent = index(text, 'E')
     if (exponent == 0) return
-    last = verify(text(:exponent - 1), '0', back=.true.)
-    if (text(last:last) == '.') last = last - 1
-    if (text(exponent:) == 'E+00') then
-      text = text(:last)
+    read (text(exponent + 1:), *, iostat=status) power
+    if (status == 0 .and. power >= -4 .and. power <= 5) then
+      write (form, '(a,i0,a)') '(f24.', 5 - power, ')'
+      write (plain, form) value
+      text = without_zeros(trim(adjustl(plain)))
     else
-      text = text(:last)//text(exponent:)
+      text = without_zeros(text(:exponent - 1))//text(exponent:)
     end if
   end function short_text
+
+  !> A number with a point, without zeros at its end, or the point.
+  pure function without_zeros(number) result(text)
+    character(len=*), intent(in) :: number
+    character(len=:), allocatable :: text
+    integer :: last
+    last = verify(number, '0', back=.true.)
+    if (number(last:last) == '.') last = last - 1
+    text = number(:last)
+  end function without_zeros
 
   !> `wide` is the format for exponents of three digits.
   pure function scientific(value, usual, wide) result(text)
