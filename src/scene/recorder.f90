@@ -107,7 +107,7 @@ contains
 
     select type (problem)
     class is (scene_t)
-      if (self%every_step) then
+      if (self%every_step .and. size(self%values) > 0) then
         if (t_to >= self%first_sample) then
           call method%interpolate(t_to, self%y)
           call self%write_row(problem, t_to, self%y)
