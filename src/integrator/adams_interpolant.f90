@@ -1,7 +1,7 @@
 !> The solution inside the last step of the Adams method.
 submodule (adams) adams_interpolant
   use adams_coefficients, only: interpolation_weights
-  use bernstein, only: from_newton, integral
+  use bernstein, only: from_newton, integrate_polynomial
   implicit none
 contains
 
@@ -58,7 +58,7 @@ contains
   end procedure straying
 
   module procedure bernstein_form
-    real(dp) :: low(highest_order + 1), high(highest_order + 1), h
+    real(dp) :: low(highest_order + 1), high(highest_order + 1), rates(highest_order + 2), form(0:highest_order + 1), h
     integer :: j, k
 
     if (.not. self%closed) call close_polynomial(self)
@@ -73,8 +73,10 @@ contains
       end associate
     end do
     degree = k + 2
-    coefficients(:degree) = integral(self%y_old(component), h, &
-      from_newton([self%phi(component, :k + 1), self%closing(component)], low(:k + 1), high(:k + 1)))
+    rates(:k + 1) = self%phi(component, :k + 1)
+    rates(k + 2) = self%closing(component)
+    call from_newton(rates(:k + 2), low(:k + 1), high(:k + 1), form(:k + 1))
+    call integrate_polynomial(self%y_old(component), h, form(:k + 1), coefficients(:degree))
   end procedure bernstein_form
 
   module procedure time_at_share

@@ -4,7 +4,7 @@ module bernstein
   use kinds, only: dp
   implicit none
   private
-  public :: from_newton, integral, add_product, first_rise, highest_degree
+  public :: from_newton, integrate_polynomial, add_product, first_rise, highest_degree
 
   integer, parameter :: highest_degree = 28   !! of a product
   integer, parameter :: most_halvings = 48    !! an interval of [0, 1] is not divided further
@@ -12,12 +12,12 @@ module bernstein
 contains
 
   !> The polynomial a_1 + F_1 (a_2 + F_2 (a_3 + ...)) with the linear factors F_i that are low_i at 0 and high_i at 1; a has
-  !> one element more than they.
-  pure function from_newton(a, low, high) result(b)
+  !> one element more than they, b as many as a.
+  pure subroutine from_newton(a, low, high, b)
     real(dp), intent(in) :: a(:), low(:), high(:)
-    real(dp) :: b(0:size(a) - 1), longer(0:size(a) - 1)
+    real(dp), intent(out) :: b(0:)
+    real(dp) :: longer(0:highest_degree)
     integer :: i, j, m
-    b = 0
     b(0) = a(size(a))
     do i = size(a) - 1, 1, -1
       m = size(a) - i   ! the degree becomes m
@@ -28,24 +28,24 @@ contains
       longer(m) = high(i)*b(m - 1)
       b(:m) = longer(:m) + a(i)
     end do
-  end function from_newton
+  end subroutine from_newton
 
-  !> first + the integral of scale * b from 0 on: one degree more.
-  pure function integral(first, scale, b) result(sum)
+  !> first + the integral of scale * b from 0 on: `sum` is of one degree more.
+  pure subroutine integrate_polynomial(first, scale, b, sum)
     real(dp), intent(in) :: first, scale, b(0:)
-    real(dp) :: sum(0:size(b))
+    real(dp), intent(out) :: sum(0:)
     integer :: j
     sum(0) = first
     do j = 1, size(b)
       sum(j) = sum(j - 1) + scale*b(j - 1)/size(b)
     end do
-  end function integral
+  end subroutine integrate_polynomial
 
   !> Add factor * a * b, a and b of the degree m, to a sum of the degree 2 m <= highest_degree.
   pure subroutine add_product(factor, a, b, sum)
     real(dp), intent(in) :: factor, a(0:), b(0:)
     real(dp), intent(inout) :: sum(0:)
-    real(dp) :: weight(0:size(a) - 1)
+    real(dp) :: weight(0:highest_degree/2)
     integer :: i, k, m
     m = size(a) - 1
     weight(0) = 1
@@ -82,7 +82,7 @@ contains
     integer, intent(in) :: halvings
     logical, intent(out) :: found
     real(dp), intent(out) :: lower, upper
-    real(dp) :: left(0:size(b) - 1), right(0:size(b) - 1)
+    real(dp) :: left(0:highest_degree), right(0:highest_degree)
     integer :: m
     m = size(b) - 1
     lower = from
@@ -91,9 +91,9 @@ contains
     if (maxval(b) < 0) return
     found = b(m) >= 0 .and. (count((b(:m - 1) < 0) .neqv. (b(1:) < 0)) == 1 .or. halvings == most_halvings)
     if (found .or. halvings == most_halvings) return
-    call halve(b, left, right)
-    call search_between(left, from, 0.5_dp*width, halvings + 1, found, lower, upper)
-    if (.not. found) call search_between(right, from + 0.5_dp*width, 0.5_dp*width, halvings + 1, found, lower, upper)
+    call halve(b, left(:m), right(:m))
+    call search_between(left(:m), from, 0.5_dp*width, halvings + 1, found, lower, upper)
+    if (.not. found) call search_between(right(:m), from + 0.5_dp*width, 0.5_dp*width, halvings + 1, found, lower, upper)
   end subroutine search_between
 
   !> The polynomial on both halves of [0, 1], each again on [0, 1] (de Casteljau).

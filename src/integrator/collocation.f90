@@ -77,12 +77,12 @@ module collocation
       real(dp), intent(out) :: change(:)   !! (n)
     end subroutine polynomial
 
-    !> The same for one component, in Bernstein form on 0..1.
-    pure module function bernstein_form(self, component) result(coefficients)
+    !> The same for one component, in Bernstein form on 0..1, of the degree stages_done.
+    pure module subroutine bernstein_form(self, component, coefficients)
       class(collocation_t), intent(in) :: self
       integer, intent(in) :: component
-      real(dp) :: coefficients(0:self%stages_done)
-    end function bernstein_form
+      real(dp), intent(out) :: coefficients(0:)
+    end subroutine bernstein_form
 
     !> The matrices of Newton's equations for the present step size.
     pure module subroutine decompose_matrices(self, singular)
@@ -242,8 +242,7 @@ contains
     class(collocation_t), intent(in) :: self
     real(dp), intent(in) :: f_0(:)
     real(dp), intent(out) :: error(:)   !! (n)
-    real(dp) :: rate(self%k)
-    integer :: i, m, k
+    integer :: i, j, m, k
     m = self%m
     k = self%k
     associate (formula => self%formula(self%level))
@@ -251,13 +250,16 @@ contains
       do i = 1, formula%stages
         error = error + formula%e(i)*self%z_new(:, i)
       end do
-      rate = (formula%gamma/self%h)*error(m + 1:m + k)
-      do i = 1, m
-        rate = rate + self%a_p(:, i)*error(i)
+      do j = 1, k
+        error(m + j) = (formula%gamma/self%h)*error(m + j)
+        do i = 1, m
+          error(m + j) = error(m + j) + self%a_p(j, i)*error(i)
+        end do
       end do
-      call solve(self%e1, self%pivot1, rate)
-      error(m + 1:m + k) = rate
-      error(:m) = error(:m) + (self%h/formula%gamma)*rate(:m)
+      call solve(self%e1, self%pivot1, error(m + 1:m + k))
+      do i = 1, m
+        error(i) = error(i) + (self%h/formula%gamma)*error(m + i)
+      end do
     end associate
   end subroutine filtered_error
 end module collocation

@@ -42,23 +42,31 @@ contains
     class(ode_method_t), intent(inout) :: method
     logical, intent(out) :: known, found
     real(dp), intent(out) :: lower, upper
-    real(dp) :: component(0:highest_degree/2), one(0:highest_degree/2), g(0:highest_degree)
+    real(dp) :: component(0:highest_degree/2, 2), one(0:highest_degree/2), g(0:highest_degree), most
     integer :: j, degree
 
     found = .false.
     known = .true.
     lower = 0
     upper = 1
-    one = 1
-    g = form%constant
+    most = form%constant   ! what the function can reach with each component at the end of its range that suits it best
     degree = 1
     do j = 1, 2
       if (form%component(j) == 0) cycle
-      call method%bernstein_form(form%component(j), component, degree)
+      call method%bernstein_form(form%component(j), component(:, j), degree)
       known = degree > 0 .and. degree <= highest_degree/2
       if (.not. known) return
-      call add_product(form%linear(j), component(:degree), one(:degree), g(:2*degree))
-      call add_product(form%square(j), component(:degree), component(:degree), g(:2*degree))
+      associate (least => minval(component(:degree, j)), largest => maxval(component(:degree, j)))
+        most = most + max(form%linear(j)*least, form%linear(j)*largest) + max(form%square(j), 0.0_dp)*max(least**2, largest**2)
+      end associate
+    end do
+    if (most < 0) return
+    one = 1
+    g = form%constant
+    do j = 1, 2
+      if (form%component(j) == 0) cycle
+      call add_product(form%linear(j), component(:degree, j), one(:degree), g(:2*degree))
+      call add_product(form%square(j), component(:degree, j), component(:degree, j), g(:2*degree))
     end do
     call first_rise(g(:2*degree), found, lower, upper)
   end subroutine isolate_passage

@@ -334,6 +334,8 @@ contains
     integer, intent(out) :: degree
     degree = self%stages%stages_done
     coefficients(0) = self%y(component)
-    if (degree > 0) coefficients(:degree) = self%y_old(component) + self%stages%bernstein_form(component)
+    if (degree == 0) return
+    call self%stages%bernstein_form(component, coefficients(:degree))
+    coefficients(:degree) = self%y_old(component) + coefficients(:degree)
   end subroutine bernstein_form
 end module radau
