@@ -110,6 +110,8 @@ def test_kills(gudgeon: Gudgeon, work: Path, kills: int, rng: random.Random) -> 
             left += any(folder.glob("*.part"))
             whole(folder, f"kill {i}", parts=True)
     check(left > 0, "some runs are killed in the middle")
+    for ending in (".ideal.csv", ".summary.csv", ".resolved.nml"):   # also of files that the next run does not write
+        (work / "killed" / f"sim_IV{ending}.part").write_text("left behind\n")
     status, _, err = gudgeon.run("-o", work / "killed", *SHORT, *cases)
     check(status == 0 and not err, f"after the kills a run goes through: {status} {err}")
     whole(work / "killed", "after the kills")

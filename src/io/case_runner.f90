@@ -16,7 +16,7 @@ module case_runner
   use continuation, only: continuation_t
   use archive, only: archive_t
   use summary, only: summary_table, summary_line, advice
-  use posix, only: make_directory, write_bytes, error_text
+  use posix, only: make_directory, write_bytes, remove_file, error_text
   use text_tools, only: printable
   implicit none
   private
@@ -128,8 +128,20 @@ contains
     start%checkpoint%case_text = case_text
     if (start%goes_on) return
     call start%checkpoint%remove()   ! the files that it belongs to are written anew
+    call remove_leftovers(base)
     call write_text(base//'.resolved.nml', case_text, error)
   end subroutine take_place
+
+  !> Remove what a run that was killed has left under temporary names.
+  subroutine remove_leftovers(base)
+    character(len=*), intent(in) :: base
+    character(len=13), parameter :: endings(5) = [character(len=13) :: '.csv', '.events.csv', '.summary.csv', '.ideal.csv', &
+      '.resolved.nml']
+    integer :: i, ignored
+    do i = 1, size(endings)
+      call remove_file(base//trim(endings(i))//'.part', ignored)
+    end do
+  end subroutine remove_leftovers
 
   !> Run a case and write BASE.csv, events and summary, or its ideal twin and write BASE.ideal.csv. `start` tells
   !> where the run begins; the twin always does at its beginning.
