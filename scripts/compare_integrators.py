@@ -21,9 +21,9 @@ TARGET = 1e-6
 
 
 def cheapest(rows: pd.DataFrame, target: float) -> pd.Series | None:
-    """The fastest run whose error is at most the target."""
+    """The run of fewest evaluations whose error is at most the target."""
     good = rows[(rows["error"] <= target) & (rows["status"] == 0)]
-    return None if good.empty else good.loc[good["seconds"].idxmin()]
+    return None if good.empty else good.loc[good["evaluations"].idxmin()]
 
 
 def print_table(data: pd.DataFrame) -> None:
