@@ -1,36 +1,7 @@
 #!/bin/sh
 # The program as a user meets it: messages, exit statuses, files. Run from the top of the checkout, after a release
 # build; ends with the line "N passed, N failed".
-passed=0
-failed=0
-work=$(mktemp -d)
-trap 'chmod -R u+w "$work" 2>/dev/null; rm -rf "$work"' EXIT
-gudgeon=$(fpm run gudgeon --profile release --runner echo 2>/dev/null | tail -n 1)
-[ -x "$gudgeon" ] || { echo "0 passed, 1 failed"; exit 1; }
-
-check() {   # check NAME CONDITION...: a test command
-  name=$1
-  shift
-  if "$@"; then passed=$((passed + 1)); else failed=$((failed + 1)); echo "FAILED: $name"; fi
-}
-
-run() {   # run ARGUMENTS...: sets status, $work/out and $work/err
-  "$gudgeon" "$@" >"$work/out" 2>"$work/err" </dev/null
-  status=$?
-}
-
-refused() {   # refused NAME STATUS PATTERN ARGUMENTS...: one line on standard error, nothing written
-  name=$1
-  want=$2
-  pattern=$3
-  shift 3
-  run -o "$work/refused" "$@"
-  check "$name: exit status $want, got $status" [ "$status" = "$want" ]
-  check "$name: one line, got $(cat "$work/err")" [ "$(wc -l <"$work/err")" = 1 ]
-  check "$name: message $(cat "$work/err")" grep -q "^gudgeon: .*$pattern" "$work/err"
-  check "$name: nothing written" [ ! -e "$work/refused" ]
-  check "$name: nothing on standard output" [ ! -s "$work/out" ]
-}
+. tests/program_checks.sh
 
 edit() { sed "$1" cases/sim_I.nml >"$work/case.nml"; }   # edit SED: a changed simulation I
 

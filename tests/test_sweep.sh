@@ -1,35 +1,8 @@
 #!/bin/sh
 # Parameter studies as a user meets them: results the same for any number of threads, for chunks, after a kill and a resume;
 # failed runs; messages. Run from the top of the checkout, after a release build; ends with the line "N passed, N failed".
-passed=0
-failed=0
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-gudgeon=$(fpm run gudgeon --profile release --runner echo 2>/dev/null | tail -n 1)
-[ -x "$gudgeon" ] || { echo "0 passed, 1 failed"; exit 1; }
-
-check() {   # check NAME CONDITION...: a test command
-  name=$1
-  shift
-  if "$@"; then passed=$((passed + 1)); else failed=$((failed + 1)); echo "FAILED: $name"; fi
-}
-
-run() {   # run ARGUMENTS...: sets status, $work/out and $work/err
-  "$gudgeon" "$@" >"$work/out" 2>"$work/err" </dev/null
-  status=$?
-}
-
-refused() {   # refused NAME STATUS PATTERN ARGUMENTS...: one line on standard error, nothing written
-  name=$1
-  want=$2
-  pattern=$3
-  shift 3
-  run sweep -o "$work/refused" "$@"
-  check "$name: exit status $want, got $status" [ "$status" = "$want" ]
-  check "$name: one line, got $(cat "$work/err")" [ "$(wc -l <"$work/err")" = 1 ]
-  check "$name: message $(cat "$work/err")" grep -q "^gudgeon: .*$pattern" "$work/err"
-  check "$name: nothing written" [ ! -e "$work/refused" ]
-}
+. tests/program_checks.sh
+subcommand=sweep
 
 study() { cat >"$work/$1.nml"; }   # study NAME: a study file from standard input
 

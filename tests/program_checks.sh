@@ -1,0 +1,33 @@
+# Checks of the program from the shell, for tests that source this from the top of the checkout after a release build. They
+# count in $passed and $failed; $work is a folder that goes with them; $subcommand is what `refused` asks the program for.
+subcommand=
+passed=0
+failed=0
+work=$(mktemp -d)
+trap 'chmod -R u+w "$work" 2>/dev/null; rm -rf "$work"' EXIT
+gudgeon=$(fpm run gudgeon --profile release --runner echo 2>/dev/null | tail -n 1)
+[ -x "$gudgeon" ] || { echo "0 passed, 1 failed"; exit 1; }
+
+check() {   # check NAME CONDITION...: a test command
+  name=$1
+  shift
+  if "$@"; then passed=$((passed + 1)); else failed=$((failed + 1)); echo "FAILED: $name"; fi
+}
+
+run() {   # run ARGUMENTS...: sets status, $work/out and $work/err
+  "$gudgeon" "$@" >"$work/out" 2>"$work/err" </dev/null
+  status=$?
+}
+
+refused() {   # refused NAME STATUS PATTERN ARGUMENTS...: one line on standard error, nothing written
+  name=$1
+  want=$2
+  pattern=$3
+  shift 3
+  run $subcommand -o "$work/refused" "$@"
+  check "$name: exit status $want, got $status" [ "$status" = "$want" ]
+  check "$name: one line, got $(cat "$work/err")" [ "$(wc -l <"$work/err")" = 1 ]
+  check "$name: message $(cat "$work/err")" grep -q "^gudgeon: .*$pattern" "$work/err"
+  check "$name: nothing written" [ ! -e "$work/refused" ]
+  check "$name: nothing on standard output" [ ! -s "$work/out" ]
+}
