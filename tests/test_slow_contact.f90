@@ -6,6 +6,7 @@ module test_slow_contact
   use contact_stiffness, only: hertz_stiffness
   use lankarani_nikravesh, only: lankarani_nikravesh_t
   use scene, only: event_contact_begins
+  use free_impact, only: speed_given_back, exact_restitution
   use collecting_sink, only: trace_t, run_case, column
   implicit none
   private
@@ -44,62 +45,16 @@ contains
       previous = 0
       do power = 3, 15
         speed = 10.0_dp**(-power)
-        back = given_back(law, speed)
+        back = speed_given_back(law, law%stiffness, law%exponent, speed, 4000, 40000)
         call check%that(back > 0 .and. back <= 1 + 1e-9_dp, 'a slow impact gives back no more than it had')
         call check%that(back >= previous - 1e-7_dp, 'the slower, the more')
-        call check%close_to(back, exact(law%damping*min(1.0_dp, speed/law%least_impact_speed)), 1e-6_dp, 'slow free impact')
+        call check%close_to(back, exact_restitution(law%damping*min(1.0_dp, speed/law%least_impact_speed)), 1e-6_dp, &
+          'slow free impact')
         previous = back
       end do
       call check%close_to(previous, 1.0_dp, 1e-6_dp, 'in the end all')
     end do
   end subroutine slow_impacts_lose_less
-
-  !> Speed after over speed before the impact of a free mass, by the classical Runge-Kutta method.
-  function given_back(law, speed) result(ratio)
-    type(lankarani_nikravesh_t), intent(in) :: law
-    real(dp), intent(in) :: speed
-    real(dp) :: ratio
-    real(dp), parameter :: mass = 1.3_dp
-    integer, parameter :: steps = 4000
-    real(dp) :: state(2), k(2, 4), step
-    integer :: i
-    step = 4*(mass*speed**2/law%stiffness)**0.4_dp/speed/steps
-    state = [0.0_dp, speed]
-    do i = 1, 10*steps
-      k(:, 1) = rate(state)
-      k(:, 2) = rate(state + step/2*k(:, 1))
-      k(:, 3) = rate(state + step/2*k(:, 2))
-      k(:, 4) = rate(state + step*k(:, 3))
-      state = state + step/6*(k(:, 1) + 2*k(:, 2) + 2*k(:, 3) + k(:, 4))
-      if (state(1) <= 0) exit
-    end do
-    ratio = -state(2)/speed
-  contains
-    pure function rate(y)
-      real(dp), intent(in) :: y(2)
-      real(dp) :: rate(2)
-      rate = [y(2), -law%normal_force(y(1), y(2), speed)/mass]
-    end function rate
-  end function given_back
-
-  !> Root in (0,1] of chi (1 + x) = ln[(1 + chi)/(1 - chi x)].
-  pure real(dp) function exact(chi)
-    real(dp), intent(in) :: chi
-    real(dp) :: low, high
-    integer :: i
-    exact = 1 - 2*chi/3   ! to first order, where the difference below is rounding
-    if (chi < 1e-5_dp) return
-    low = 0
-    high = 1
-    do i = 1, 60
-      exact = (low + high)/2
-      if (chi*(1 + exact) > log((1 + chi)/(1 - chi*exact))) then
-        low = exact
-      else
-        high = exact
-      end if
-    end do
-  end function exact
 
   !> Dropped from the centre the pin bounces, settles and carries the piston: K delta^1.5 = m g; with every restitution and
   !> method, in a number of contacts that does not grow without bound.
