@@ -4,13 +4,13 @@ module local_errors
   use kinds, only: dp
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t
-  use solver, only: observer_t
+  use solver, only: silent_observer_t
   implicit none
   private
   public :: local_error_watcher_t, local_solution
 
   !> Errors are in the method's own weights and norm: 1 is the tolerance.
-  type, extends(observer_t) :: local_error_watcher_t
+  type, extends(silent_observer_t) :: local_error_watcher_t
     integer :: steps = 0
     integer :: unsure = 0          !! steps whose local solution is not known well enough to judge them; not counted otherwise
     integer :: deceived = 0        !! steps whose error is above the tolerance
@@ -18,7 +18,6 @@ module local_errors
     real(dp) :: largest_per_unit = 0   !! largest error, less the rounding of y, over the length of its step
   contains
     procedure :: step_taken
-    procedure :: event_taken
   end type local_error_watcher_t
 
 contains
@@ -110,13 +109,4 @@ contains
       dyds = dyds*((t_to - t_from)*30*s**2*(1 - s)**2)
     end subroutine slope
   end subroutine extrapolated_midpoint
-
-  subroutine event_taken(self, problem, index, t, y)
-    class(local_error_watcher_t), intent(inout) :: self
-    class(ode_problem_t), intent(in) :: problem
-    integer, intent(in) :: index
-    real(dp), intent(in) :: t, y(:)
-    associate (unused_self => self, unused_problem => problem, unused_index => index, unused_t => t, unused_y => y)
-    end associate
-  end subroutine event_taken
 end module local_errors

@@ -3,18 +3,17 @@ module sampler
   use kinds, only: dp
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t
-  use solver, only: observer_t
+  use solver, only: silent_observer_t
   implicit none
   private
   public :: sampler_t
 
-  type, extends(observer_t) :: sampler_t
+  type, extends(silent_observer_t) :: sampler_t
     real(dp) :: interval = 1
     integer :: taken = 0
     real(dp), allocatable :: y(:, :)   !! (n, samples): y at interval, 2*interval, ...
   contains
     procedure :: step_taken
-    procedure :: event_taken
   end type sampler_t
 
 contains
@@ -34,13 +33,4 @@ contains
       call method%interpolate(min(t, t_to), self%y(:, self%taken))
     end do
   end subroutine step_taken
-
-  subroutine event_taken(self, problem, index, t, y)
-    class(sampler_t), intent(inout) :: self
-    class(ode_problem_t), intent(in) :: problem
-    integer, intent(in) :: index
-    real(dp), intent(in) :: t, y(:)
-    associate (unused_self => self, unused_problem => problem, unused_index => index, unused_t => t, unused_y => y)
-    end associate
-  end subroutine event_taken
 end module sampler

@@ -3,6 +3,7 @@ module test_events
   use kinds, only: dp
   use constants, only: pi
   use checks, only: checks_t
+  use test_problems, only: oscillator_t
   use ode_problem, only: ode_problem_t, event_continue, step_admitted, step_too_deep
   use ode_method, only: ode_method_t
   use adams, only: adams_t
@@ -16,12 +17,11 @@ module test_events
 
   !> y = (sin t, cos t) with three events: sin rises through 1/2, sin falls through 1/2, cos rises through 0. Where
   !> it `refuses`, two of three steps are refused as too deep.
-  type, extends(ode_problem_t) :: crossings_t
+  type, extends(oscillator_t) :: crossings_t
     logical :: refuses = .false.
     integer :: taken = 0, index(most) = 0
     real(dp) :: time(most) = 0
   contains
-    procedure :: derivatives => circle
     procedure :: events => three_events
     procedure :: handle_event => note_event
     procedure :: judge_step => refuse_long_steps
@@ -158,18 +158,6 @@ contains
     call check%close_to(t, 1.0_dp, 1e-5_dp, 'chatter ends the run where it begins')
     call check%that(problem%taken <= 110, 'chatter ends after a hundred events')
   end subroutine chatter
-
-  pure subroutine circle(self, t, y, dydt, inside)
-    class(crossings_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    real(dp), intent(out) :: dydt(:)
-    logical, intent(out) :: inside
-    associate (unused_self => self, unused_t => t)
-    end associate
-    dydt(1) = y(2)
-    dydt(2) = -y(1)
-    inside = .true.
-  end subroutine circle
 
   pure subroutine three_events(self, t, y, g, g_rate)
     class(crossings_t), intent(in) :: self

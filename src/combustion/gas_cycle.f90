@@ -12,7 +12,7 @@ module gas_cycle
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t
   use adams, only: adams_t
-  use solver, only: integrate, observer_t, integration_done
+  use solver, only: integrate, silent_observer_t, integration_done
   use cylinder, only: cylinder_t
   use hermite_table, only: hermite_table_t, new_hermite_table
   implicit none
@@ -60,12 +60,11 @@ module gas_cycle
   end type combustion_problem_t
 
   !> Keeps the solution at equidistant points.
-  type, extends(observer_t) :: point_keeper_t
+  type, extends(silent_observer_t) :: point_keeper_t
     real(dp), allocatable :: value(:)   !! (0:n)
     integer :: next = 0
   contains
     procedure :: step_taken
-    procedure :: event_taken
   end type point_keeper_t
 
 contains
@@ -249,15 +248,6 @@ contains
       self%next = self%next + 1
     end do
   end subroutine step_taken
-
-  subroutine event_taken(self, problem, index, t, y)
-    class(point_keeper_t), intent(inout) :: self
-    class(ode_problem_t), intent(in) :: problem
-    integer, intent(in) :: index
-    real(dp), intent(in) :: t, y(:)
-    associate (unused_self => self, unused_problem => problem, unused_index => index, unused_t => t, unused_y => y)
-    end associate
-  end subroutine event_taken
 
   !> The part of the cycle at crank angle q, and the angle at which its cycle began, a multiple of 720 degrees: the
   !> smallest part whose end is beyond q, or where the crank turns `backwards` the one that it is about to enter.
