@@ -11,12 +11,12 @@ module case_runner
   use simulation, only: simulate, run_report_t, interrupted_text
   use trace_sink, only: trace_sink_t
   use trace_files, only: trace_files_t
-  use result_file, only: result_file_t
+  use result_file, only: result_file_t, remove_unfinished
   use case_lock, only: case_lock_t
   use continuation, only: continuation_t
   use archive, only: archive_t
   use summary, only: summary_table, summary_line, advice
-  use posix, only: make_directory, write_bytes, remove_file, error_text
+  use posix, only: make_directory, write_bytes, error_text
   use text_tools, only: printable
   implicit none
   private
@@ -137,9 +137,9 @@ contains
     character(len=*), intent(in) :: base
     character(len=13), parameter :: endings(5) = [character(len=13) :: '.csv', '.events.csv', '.summary.csv', '.ideal.csv', &
       '.resolved.nml']
-    integer :: i, ignored
+    integer :: i
     do i = 1, size(endings)
-      call remove_file(base//trim(endings(i))//'.part', ignored)
+      call remove_unfinished(base//trim(endings(i)))
     end do
   end subroutine remove_leftovers
 

@@ -55,14 +55,11 @@ contains
   subroutine update(self, fraction, time)
     class(progress_t), intent(inout) :: self
     real(dp), intent(in) :: fraction, time
-    integer(int64) :: now, rate
     real(dp) :: elapsed
+    logical :: is_due
     character(len=:), allocatable :: line
-    if (.not. self%is_on) return
-    call system_clock(now, rate)
-    if (real(now - self%shown, dp) < least_interval*real(rate, dp)) return
-    self%shown = now
-    elapsed = real(now - self%began, dp)/real(rate, dp)
+    call look_at_clock(self, elapsed, is_due)
+    if (.not. is_due) return
     line = self%name//': '//integer_text(int(100*min(1.0_dp, max(0.0_dp, fraction))))//' %, t = '//short_text(time)//' s'
     if (fraction > 1e-6_dp) line = line//', '//duration_text(elapsed*max(0.0_dp, 1/fraction - 1))//' left'
     call show(self%rewrites, line)
@@ -73,20 +70,33 @@ contains
   subroutine update_runs(self, done, total, began)
     class(progress_t), intent(inout) :: self
     integer, intent(in) :: done, total, began
-    integer(int64) :: now, rate
     real(dp) :: elapsed, speed
+    logical :: is_due
     character(len=:), allocatable :: line
-    if (.not. self%is_on) return
-    call system_clock(now, rate)
-    if (real(now - self%shown, dp) < least_interval*real(rate, dp)) return
-    self%shown = now
-    elapsed = real(now - self%began, dp)/real(rate, dp)
+    call look_at_clock(self, elapsed, is_due)
+    if (.not. is_due) return
     speed = (done - began)/elapsed
     line = self%name//': '//integer_text(done)//' of '//integer_text(total)//' runs'
     if (done > began) line = line//', '//rate_text(speed)//', '//duration_text((total - done)/speed)//' left'
     call show(self%rewrites, line)
     self%has_shown = .true.
   end subroutine update_runs
+
+  !> Whether a line is due, and the time since the beginning [s].
+  subroutine look_at_clock(self, elapsed, is_due)
+    class(progress_t), intent(inout) :: self
+    real(dp), intent(out) :: elapsed
+    logical, intent(out) :: is_due
+    integer(int64) :: now, rate
+    elapsed = 0
+    is_due = self%is_on
+    if (.not. is_due) return
+    call system_clock(now, rate)
+    is_due = real(now - self%shown, dp) >= least_interval*real(rate, dp)
+    if (.not. is_due) return
+    self%shown = now
+    elapsed = real(now - self%began, dp)/real(rate, dp)
+  end subroutine look_at_clock
 
   !> Clear the line, if there is one.
   subroutine finish(self)

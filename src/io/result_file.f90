@@ -9,7 +9,7 @@ module result_file
     rename_file, remove_file, error_text, error_interrupted
   implicit none
   private
-  public :: result_file_t
+  public :: result_file_t, remove_unfinished
 
   integer, parameter :: buffer_size = 262144   !! bytes
 
@@ -155,6 +155,13 @@ contains
     self%descriptor = -1
     self%used = 0
   end subroutine abandon
+
+  !> Remove what a killed program has left of a file under its temporary name.
+  subroutine remove_unfinished(path)
+    character(len=*), intent(in) :: path
+    integer :: ignored
+    call remove_file(path//'.part', ignored)
+  end subroutine remove_unfinished
 
   !> All of `text`, in as many calls as it takes. When one fails the file is cut back to its last whole row.
   subroutine write_rows(self, text)
