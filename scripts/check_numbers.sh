@@ -5,5 +5,4 @@
 #
 # The exit status is 0 if all agree and the conversion is at least 8 times faster.
 cd "$(dirname "$0")/.." || exit 1
-. scripts/setup.sh || exit 1
-fpm run --profile release --example check_numbers -- "$@"
+exec "$(scripts/build.sh check_numbers)" "$@"

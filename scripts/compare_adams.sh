@@ -8,13 +8,13 @@ cd "$(dirname "$0")/.." || exit 1
 set -e
 copy=build/extended_precision
 mkdir -p "$copy"
-cp -rp fpm.toml src tests cases scripts "$copy"
+cp -rp fpm.toml fpm.rsp src tests cases scripts "$copy"
 sed -i 's/dp = real64 .*/dp = selected_real_kind(18)/' "$copy/src/base/kinds.f90"
 reference() {   # reference WHAT FILE
-  (cd "$copy" && fpm run --profile release --example integrator_battery -- "$1") | grep '^[0-9]* .*E' >"$2"
+  "$copy/$("$copy/scripts/build.sh" integrator_battery)" "$1" | grep '^[0-9]* .*E' >"$2"
 }
 table() {   # table WHAT FILE
-  fpm run --profile release --example integrator_battery -- "$1" "$2" | grep -v '^\[\|^Project'
+  "$(scripts/build.sh integrator_battery)" "$1" "$2"
 }
 if [ "$1" = coordinates ]; then
   table coordinates

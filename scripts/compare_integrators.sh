@@ -6,10 +6,10 @@
 #
 # Takes about five minutes, nearly all of it Adams in stiff films.
 cd "$(dirname "$0")/.." || exit 1
-. scripts/setup.sh || exit 1
 scripts/setup.sh --python || exit 1
 out=${1:-results}
 mkdir -p "$out" || exit 5
-fpm run --profile release --example integrator_comparison -- | grep -v '^\[\|^Project\|^ +' >"$out/integrators.csv.part" || exit 1
+program=$(scripts/build.sh integrator_comparison) || exit 1
+"$program" >"$out/integrators.csv.part" || exit 1
 mv "$out/integrators.csv.part" "$out/integrators.csv"
 exec .venv/bin/python scripts/compare_integrators.py "$out/integrators.csv"

@@ -27,9 +27,7 @@ SETTINGS = ["-q", "--fresh", "-s", "integrator.method=auto", "-s", "integrator.r
 
 def program(*target):
     """Path of a program of the release build, which is made where it is missing."""
-    command = ["fpm", "run", "--profile", "release", *target, "--runner", "echo"]
-    found = subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()
-    return os.path.abspath(found[-1])
+    return os.path.abspath(subprocess.run(["scripts/build.sh", *target], check=True, capture_output=True, text=True).stdout.strip())
 
 
 def timed(command):
@@ -55,7 +53,7 @@ def main():
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--threads", type=int, default=2)
     options = parser.parse_args()
-    gudgeon, runs = program(), program("--example", "measure_runs")
+    gudgeon, runs = program(), program("measure_runs")
     with tempfile.TemporaryDirectory() as folder:
         def study(count):
             path = f"{folder}/study_{count}.nml"

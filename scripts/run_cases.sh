@@ -5,7 +5,6 @@
 #
 # The exit status is that of gudgeon: not 0 if one case failed.
 cd "$(dirname "$0")/.." || exit 1
-. scripts/setup.sh || exit 1
 
 out=results
 previous=
@@ -15,9 +14,8 @@ for argument in "$@"; do
   previous=$argument
 done
 
-fpm build --profile release >build.log 2>&1 || { cat build.log >&2; rm -f build.log; exit 1; }
-rm -f build.log
-fpm run --profile release -- "$@"
+program=$(scripts/build.sh) || exit 1
+"$program" "$@"
 status=$?
 [ "$status" = 2 ] && exit 2
 

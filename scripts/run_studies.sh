@@ -6,7 +6,6 @@
 #
 # Results, tables and pictures are in DIR (default: results/studies). Goes on where it was interrupted.
 cd "$(dirname "$0")/.." || exit 1
-. scripts/setup.sh || exit 1
 scripts/setup.sh --studies || exit 1
 
 out=results/studies
@@ -21,9 +20,7 @@ while [ $# -gt 0 ]; do
   shift
 done
 
-fpm build --profile release >build.log 2>&1 || { cat build.log >&2; rm -f build.log; exit 1; }
-rm -f build.log
-program=$(fpm run --profile release --runner echo | grep '/app/gudgeon$')
+program=$(scripts/build.sh) || exit 1
 
 status=0
 for study in map_I map_IV map_I_oscillating map_IV_oscillating bifurcation_clearance bifurcation_speed restitution; do

@@ -30,8 +30,8 @@ count() {   # count NAME COMMAND...: run the command and add up its counts
 count "every module compiles" sh -c 'fpm build --no-prune && echo "1 passed, 0 failed"'
 count "tests, strict" fpm @strict
 count "case files, fuzzed" tests/test_fuzz.py
-count "tests, release" fpm test --profile release
-count "the program" sh -c 'fpm build --profile release && tests/test_program.sh'
+count "tests, release" fpm @release_tests
+count "the program" tests/test_program.sh
 count "studies" tests/test_sweep.sh
 count "extreme scenes" scripts/extremes --scenes 120 --seed 5 --evaluations 100000 --quiet
 count "faults" tests/test_faults.py --kills 10

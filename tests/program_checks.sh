@@ -1,12 +1,11 @@
-# Checks of the program from the shell, for tests that source this from the top of the checkout after a release build. They
+# Checks of the program from the shell, for tests that source this from the top of the checkout. They
 # count in $passed and $failed; $work is a folder that goes with them; $subcommand is what `refused` asks the program for.
 subcommand=
 passed=0
 failed=0
 work=$(mktemp -d)
 trap 'chmod -R u+w "$work" 2>/dev/null; rm -rf "$work"' EXIT
-gudgeon=$(fpm run gudgeon --profile release --runner echo 2>/dev/null | tail -n 1)
-[ -x "$gudgeon" ] || { echo "0 passed, 1 failed"; exit 1; }
+gudgeon=$(scripts/build.sh) || { echo "0 passed, 1 failed"; exit 1; }
 
 check() {   # check NAME CONDITION...: a test command
   name=$1

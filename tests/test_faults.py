@@ -53,11 +53,10 @@ class Gudgeon:
 
 
 def program_built() -> Path:
-    run = subprocess.run(["fpm", "run", "gudgeon", "--profile", "release", "--runner", "echo"], cwd=ROOT, capture_output=True,
-                         text=True, check=False)
+    run = subprocess.run([ROOT / "scripts" / "build.sh"], capture_output=True, text=True, check=False)
     if run.returncode:
-        sys.exit(f"{run.stdout}{run.stderr}\n0 passed, 1 failed")
-    return ROOT / run.stdout.split()[-1]
+        sys.exit(f"{run.stderr}\n0 passed, 1 failed")
+    return ROOT / run.stdout.strip()
 
 
 def torn(path: Path) -> str:

@@ -160,7 +160,7 @@ def mutant(case: bytes, rng: random.Random) -> tuple[bytes, str]:
 
 def build(sanitize: bool) -> Path:
     """The program with the flags of the strict tests."""
-    flags = re.search(r'^options --flag "(.*)"', (ROOT / "strict.rsp").read_text(), re.M)[1]
+    flags = re.search(r'^@strict\n[^@]*^options --flag "(.*)"', (ROOT / "fpm.rsp").read_text(), re.M)[1]
     if sanitize:
         flags += " -fsanitize=address,undefined"
     words = ["fpm", "run", "gudgeon", "--profile", "debug", "--flag", flags, "--runner", "echo"]

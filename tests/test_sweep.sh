@@ -1,6 +1,6 @@
 #!/bin/sh
 # Parameter studies as a user meets them: results the same for any number of threads, for chunks, after a kill and a resume;
-# failed runs; messages. Run from the top of the checkout, after a release build; ends with the line "N passed, N failed".
+# failed runs; messages. Run from the top of the checkout; ends with the line "N passed, N failed".
 . tests/program_checks.sh
 subcommand=sweep
 

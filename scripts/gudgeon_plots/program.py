@@ -9,9 +9,7 @@ from .results import MissingResult
 
 def release_program() -> Path:
     """The release build of gudgeon, brought up to date."""
-    command = ". scripts/setup.sh && fpm build --profile release >&2 && fpm run --profile release --runner echo"
-    outcome = subprocess.run(["sh", "-c", command], cwd=TOP, capture_output=True, text=True, check=False)
-    found = [word for word in outcome.stdout.split() if word.endswith("/app/gudgeon")]
-    if outcome.returncode != 0 or not found:
+    outcome = subprocess.run([TOP / "scripts" / "build.sh"], capture_output=True, text=True, check=False)
+    if outcome.returncode != 0:
         raise MissingResult(f"cannot build gudgeon:\n{outcome.stderr}")
-    return TOP / found[-1]
+    return TOP / outcome.stdout.strip()

@@ -135,7 +135,7 @@ contains
     do i = 1, size(worth_it)
       if (index(' '//flags, trim(worth_it(i))) > 0) return
     end do
-    text = 'this is a build for debugging, several times slower than the fast one: fpm run --profile release -- ...'
+    text = 'this is a build for debugging, several times slower than the fast one: fpm @release -- ...'
   end function build_advice
 
   !> One line for people.
