@@ -20,6 +20,7 @@ contains
     call test_powers(check)
     call test_known(check)
     call test_near_ties(check)
+    call test_list(check)
     random = 88172645463325252_int64
     do digits = fewest_digits, most_digits
       call writer%prepare(digits)
@@ -118,6 +119,30 @@ contains
     call writer%append(line, used, value)
     call check%equal_text(line(:used), 'a,'//text, 'number')
   end subroutine expect
+
+  !> A list: what the tables find, between numbers that they do not: a tie, a very small one, none at all. It begins behind
+  !> what is there, and ends with a comma.
+  subroutine test_list(check)
+    class(checks_t), intent(inout) :: check
+    type(number_writer_t) :: writer
+    real(dp) :: values(2, 7)
+    character(len=200) :: line
+    integer :: used
+    values(1, :) = [-2.5e-7_dp, 12345678905.0_dp, 0.0_dp, ieee_value(1.0_dp, ieee_quiet_nan), 9.99e96_dp, -1e-300_dp, -1e9_dp]
+    values(2, :) = 8
+    line = 'a,'
+    used = 2
+    call writer%prepare(10)
+    call writer%append_list(line, used, values(1, :))   ! not one behind the other in memory
+    call check%equal_text(line(:used), 'a,-2.500000000E-07,1.234567890E+10,0.000000000E+00,NaN,9.990000000E+96,'// &
+      '-1.000000000E-300,-1.000000000E+09,', 'list of numbers')
+    call writer%append_list(line, used, values(1, :0))
+    call check%that(used == len_trim(line), 'nothing of an empty list')
+    used = 0
+    call writer%prepare(9)
+    call writer%append_list(line, used, values(1, :3))
+    call check%equal_text(line(:used), '-2.50000000E-07,1.23456789E+10,0.00000000E+00,', 'list of nine digits')
+  end subroutine test_list
 
   !> Any bits, and ordinary magnitudes. At 17 digits numbers read back as they were.
   subroutine test_random(check, writer, digits, random)

@@ -2,7 +2,9 @@
 module number_writer
   use, intrinsic :: iso_fortran_env, only: int64
   use kinds, only: dp
-  use powers_of_ten, only: power_of_ten_t, make_powers, first_power, last_power, last_exact_power, limb_bits
+  use powers_of_ten, only: power_of_ten_t, make_powers, first_power, last_power, last_exact_power, limb_bits, &
+    floor_log
+  use ten_digits, only: ten_digits_t
   implicit none
   private
   public :: number_writer_t, append_formatted, longest_number, fewest_digits, most_digits
@@ -17,22 +19,17 @@ module number_writer
     '40414243444546474849'//'50515253545556575859'//'60616263646566676869'//'70717273747576777879'// &
     '80818283848586878889'//'90919293949596979899'
 
-  integer, parameter :: wide = selected_int_kind(38)   !! holds the product of two int64
-
   !> Writes reals with a fixed number of significant digits: 1.234567890E-05, -1.234567890E+100, NaN, Infinity.
   type :: number_writer_t
     private
     integer :: digits = 10
     integer(int64) :: too_large = 10_int64**10   !! 10**digits
     type(power_of_ten_t) :: powers(first_power:last_power)
-    integer(int64) :: leading(-110:110) = 0      !! 63 bits of them, and
-    integer :: leading_exponent(-110:110) = 0    !! what they are to be multiplied by, as a power of two
-    character(len=3) :: openings(0:99) = ''      !! two digits with the point between them
-    character(len=4) :: exponents(-99:99) = ''   !! E-99 to E+99
-    logical :: takes_ten = .false.               !! `append_ten` may be asked
+    type(ten_digits_t) :: ten_digits
   contains
     procedure :: prepare
     procedure :: append
+    procedure :: append_list
     procedure :: decides
   end type number_writer_t
 
@@ -42,24 +39,10 @@ contains
   pure subroutine prepare(self, digits)
     class(number_writer_t), intent(inout) :: self
     integer, intent(in) :: digits   !! fewest_digits to most_digits
-    character(len=2) :: two
-    integer :: k
     self%digits = digits
     self%too_large = 10_int64**digits
     call make_powers(self%powers)
-    self%takes_ten = digits == 10 .and. eight_digits(12345678_int64) == '12345678'
-    do k = 0, 99
-      two = pair(k)
-      self%openings(k) = two(1:1)//'.'//two(2:2)
-      self%exponents(k) = 'E+'//two
-      if (k > 0) self%exponents(-k) = 'E-'//two
-    end do
-    do k = lbound(self%leading, 1), ubound(self%leading, 1)
-      associate (power => self%powers(k))
-        self%leading(k) = shiftl(power%high, 33) + shiftl(power%middle, 3) + shiftr(power%low, 27)
-        self%leading_exponent(k) = int(power%exponent) + 27
-      end associate
-    end do
+    if (digits == 10) call self%ten_digits%prepare(self%powers)
   end subroutine prepare
 
   !> Append a real to the first `used` characters of a line that has room for `longest_number` more. Zero has no sign.
@@ -68,14 +51,24 @@ contains
     character(len=*), intent(inout) :: line
     integer, intent(inout) :: used
     real(dp), intent(in) :: value
+    character(len=longest_number + 1) :: field
+    integer :: length
+    length = 0
+    call self%append_list(field, length, [value])
+    line(used + 1:used + length - 1) = field(:length - 1)
+    used = used + length - 1
+  end subroutine append
+
+  !> The same for all numbers and digits, a little slower.
+  pure subroutine append_any(self, line, used, value)
+    type(number_writer_t), intent(in) :: self
+    character(len=*), intent(inout) :: line
+    integer, intent(inout) :: used
+    real(dp), intent(in) :: value
     integer(int64) :: significand, whole
     integer :: exponent, decade
     logical :: is_decided
 
-    if (self%takes_ten) then
-      call append_ten(self, line, used, value, is_decided)
-      if (is_decided) return
-    end if
     whole = 0
     decade = 0
     call take_apart(value, significand, exponent)
@@ -94,67 +87,26 @@ contains
     call put_digits(line(used + 1:used + self%digits + 1), whole)
     used = used + self%digits + 1
     call append_exponent(line, used, decade)
-  end subroutine append
+  end subroutine append_any
 
-  !> The same for ten digits and where 63 bits of the power of ten decide the last of them, which is nearly always: faster.
-  !> Of the product of significand and power, 63 bits each, the 62 highest bits are the digits and what is left over, too small
-  !> by less than 2 because the power is cut off.
-  pure subroutine append_ten(self, line, used, value, is_decided)
+  !> Append values, a comma behind each, to the first `used` characters of a text that has room for `longest_number` + 1 more
+  !> for each of them.
+  pure subroutine append_list(self, text, used, values)
     class(number_writer_t), intent(in) :: self
-    character(len=*), intent(inout) :: line
+    character(len=*), intent(inout) :: text
     integer, intent(inout) :: used
-    real(dp), intent(in) :: value
-    logical, intent(out) :: is_decided
-    integer(int64), parameter :: hidden_bit = 2_int64**52, least = 10_int64**9, too_many = 10_int64**10, eight = 10_int64**8
-    integer(int64) :: bits, significand, high, whole, part, half, opening
-    integer :: exponent, decade, shift, at
-
-    is_decided = .false.
-    bits = transfer(value, bits)
-    exponent = int(iand(shiftr(bits, 52), 2047_int64)) - 1023
-    decade = shifta(exponent*78913, 18)   ! floor(log10(2**exponent)): right or one too small
-    if (abs(decade) > 97) return
-    significand = shiftl(ior(iand(bits, hidden_bit - 1), hidden_bit), 10)
+    real(dp), intent(in) :: values(:)
+    integer :: i
+    i = 1
     do
-      high = int(shiftr(int(significand, wide)*int(self%leading(9 - decade), wide), 64), int64)
-      shift = -2 - exponent - self%leading_exponent(9 - decade)
-      whole = shiftr(high, shift)
-      if (whole < too_many) exit
-      decade = decade + 1
+      if (self%digits == 10) call self%ten_digits%append(text, used, values, i)
+      if (i > size(values)) exit
+      call append_any(self, text, used, values(i))
+      used = used + 1
+      text(used:used) = ','
+      i = i + 1
     end do
-    part = high - shiftl(whole, shift)
-    half = shiftl(1_int64, shift - 1)
-    if (part >= half - 3 .and. part <= half) return   ! it may be the half
-    if (part > half) whole = whole + 1
-    if (whole >= too_many .or. whole < least) return
-    is_decided = .true.
-    at = used
-    if (bits < 0) then
-      at = at + 1
-      line(at:at) = '-'
-    end if
-    opening = whole/eight
-    line(at + 1:at + 3) = self%openings(opening)
-    line(at + 4:at + 11) = eight_digits(whole - opening*eight)
-    line(at + 12:at + 15) = self%exponents(decade)
-    used = at + 15
-  end subroutine append_ten
-
-  !> The digits of a number below 10**8, all at once: its halves, quarters and digits side by side in one integer. The first
-  !> digit is in the lowest byte; where that is not the first of a text, `prepare` finds out.
-  pure character(len=8) function eight_digits(number)
-    integer(int64), intent(in) :: number
-    integer(int64), parameter :: zeros = 3472328296227680304_int64   !! eight times achar 48
-    integer(int64), parameter :: pair_mask = 545460846719_int64      !! 127 in each half
-    integer(int64), parameter :: digit_mask = 4222189076152335_int64 !! 15 in each quarter
-    integer(int64) :: halves, hundreds, quarters, tens
-    halves = number/10000
-    halves = halves + shiftl(number - 10000*halves, 32)
-    hundreds = iand(shiftr(halves*10486, 20), pair_mask)
-    quarters = hundreds + shiftl(halves - 100*hundreds, 16)
-    tens = iand(shiftr(quarters*103, 10), digit_mask)
-    eight_digits = transfer(zeros + tens + shiftl(quarters - 10*tens, 8), eight_digits)
-  end function eight_digits
+  end subroutine append_list
 
   !> Whether `append` finds the digits of a finite value itself, as it nearly always does.
   pure logical function decides(self, value)
@@ -206,7 +158,7 @@ contains
     integer :: k, shift
     logical :: is_tie
 
-    decade = shifta((exponent + 52)*78913, 18)   ! floor(log10(2**(exponent + 52))): right or one too small
+    decade = floor_log(exponent + 52)   ! right or one too small
     do
       k = writer%digits - 1 - decade
       call multiply(significand, writer%powers(k), high, low, rest)

@@ -3,7 +3,8 @@ module powers_of_ten
   use, intrinsic :: iso_fortran_env, only: int64
   implicit none
   private
-  public :: power_of_ten_t, make_powers, first_power, last_power, last_exact_power, limb_bits
+  public :: power_of_ten_t, make_powers, first_power, last_power, last_exact_power, limb_bits, &
+    floor_log
 
   integer, parameter :: first_power = -308, last_power = 340   !! enough for 1 to 17 digits of any real(dp)
   integer, parameter :: last_exact_power = 38   !! 5**38 < 2**90: 10**0 to 10**38 lose nothing
@@ -20,6 +21,12 @@ module powers_of_ten
   integer(int64), parameter :: base = 2_int64**limb_bits
 
 contains
+
+  !> floor(log10(2**exponent)); |exponent| < 1200.
+  pure integer function floor_log(exponent)
+    integer, intent(in) :: exponent
+    floor_log = shifta(exponent*78913, 18)
+  end function floor_log
 
   !> All powers, in some 20 microseconds.
   pure subroutine make_powers(powers)

@@ -16,17 +16,17 @@ module result_file
   !> One file being written. A failed write ends the writing: rows put after it are dropped, `close` keeps what went
   !> out whole and reports the failure.
   type :: result_file_t
-    private
-    character(len=:), allocatable :: path      !! final name
-    character(len=:), allocatable :: buffer
-    integer :: used = 0                        !! bytes waiting in the buffer
-    integer :: descriptor = -1
-    integer(c_long) :: written = 0             !! bytes of whole rows in the file
-    integer :: status = 0                      !! error number of the first write that failed
+    character(len=:), allocatable :: buffer             !! who has asked for room may add whole rows here, and to `used`
+    integer :: used = 0                                 !! bytes waiting in the buffer
+    character(len=:), allocatable, private :: path      !! final name
+    integer, private :: descriptor = -1
+    integer(c_long), private :: written = 0             !! bytes of whole rows in the file
+    integer, private :: status = 0                      !! error number of the first write that failed
   contains
     procedure :: open => open_result
     procedure :: reopen
     procedure :: put
+    procedure :: make_room
     procedure :: flush => flush_rows
     procedure :: synchronise
     procedure :: length
@@ -86,6 +86,13 @@ contains
       self%used = self%used + len(text)
     end if
   end subroutine put
+
+  !> Room in the buffer for so many bytes, `buffer_size` at most.
+  subroutine make_room(self, length)
+    class(result_file_t), intent(inout) :: self
+    integer, intent(in) :: length
+    if (self%used + length > buffer_size) call self%flush()
+  end subroutine make_room
 
   !> Write out what waits in the buffer.
   subroutine flush_rows(self)

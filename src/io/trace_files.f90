@@ -22,7 +22,7 @@ module trace_files
   public :: trace_files_t
 
   character(len=*), parameter :: newline = achar(10)
-  integer, parameter :: least_fields = 8   !! room in a line for an event
+  integer, parameter :: event_fields = 8   !! at most, in a line
 
   !> A sink that writes. It asks for the end of the run when the user interrupts it or a file cannot be written.
   type, extends(trace_sink_t) :: trace_files_t
@@ -37,7 +37,7 @@ module trace_files
     integer(int64), private :: began = 0, saved = 0       !! ticks of the clock
     character(len=:), allocatable, private :: path        !! of the files, without their endings
     type(number_writer_t), private :: numbers
-    integer, private :: phase_column = 0
+    integer, private :: phase_column = 1   !! one behind the last: there is none
     integer, private :: rows = 0
     character(len=:), allocatable, private :: line   !! the row being written
   contains
@@ -92,11 +92,12 @@ contains
     integer, intent(in) :: digits
     integer :: i
     self%path = path
+    self%phase_column = size(list%id) + 1
     do i = 1, size(list%id)
       if (column_name(list, i) == 'phase[-]') self%phase_column = i
     end do
     call self%numbers%prepare(digits)
-    allocate (character(len=(longest_number + 1)*max(size(list%id), least_fields)) :: self%line)
+    allocate (character(len=(longest_number + 1)*event_fields) :: self%line)
     call system_clock(self%began)
     self%saved = self%began
   end subroutine prepare
@@ -204,23 +205,21 @@ contains
     if (.not. allocated(error)) call move_alloc(second, error)
   end subroutine close
 
+  !> The row is made where it waits to be written.
   subroutine take_row(self, values)
     class(trace_files_t), intent(inout) :: self
     real(dp), intent(in) :: values(:)
     integer, parameter :: rows_between_looks = 100
-    integer :: i, used
 
-    used = 0
-    do i = 1, size(values)
-      if (i > 1) call append(self%line, used, ',')
-      if (i == self%phase_column) then
-        call append(self%line, used, achar(iachar('0') + nint(values(i))))
-      else
-        call self%numbers%append(self%line, used, values(i))
+    call self%trace%make_room((longest_number + 1)*size(values))
+    associate (text => self%trace%buffer, used => self%trace%used, phase => self%phase_column)
+      call self%numbers%append_list(text, used, values(:phase - 1))
+      if (phase <= size(values)) then
+        call append(text, used, achar(iachar('0') + nint(values(phase)))//',')
+        call self%numbers%append_list(text, used, values(phase + 1:))
       end if
-    end do
-    call append(self%line, used, newline)
-    call self%trace%put(self%line(:used))
+      text(used:used) = newline
+    end associate
     self%rows = self%rows + 1
     if (mod(self%rows, rows_between_looks) == 0) call look(self)
   end subroutine take_row
