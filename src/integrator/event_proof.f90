@@ -19,6 +19,8 @@ contains
     class(ode_method_t), intent(in) :: method
     real(dp) :: coefficient(3), straying, slope
     integer :: j
+    negative = form%known
+    if (.not. negative) return
     coefficient = form%constant
     slope = 0
     do j = 1, 2

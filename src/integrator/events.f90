@@ -23,14 +23,25 @@ module events
     real(dp) :: t = 0, g = 0, rate = 0
   end type sample_t
 
-  !> The event functions at the end of what has been searched.
+  !> An event function that can pass zero before the next restart, and what the problem tells of it.
+  type :: watched_t
+    integer :: index = 0           !! of the problem
+    type(event_form_t) :: form
+    logical :: on_step_end = .false., is_rough = .false.
+    logical :: low = .false.       !! it has been negative since the last restart: a passage counts
+  end type watched_t
+
+  !> The event functions at the end of what has been searched. Their values there are only asked for when they are needed.
   type :: event_watch_t
     private
-    integer :: n = 0
-    type(sample_t) :: last(max_events)   !! at the beginning of the next step
-    logical :: low(max_events) = .false. !! the function has been negative since the last restart: a passage counts
+    integer :: n = 0                     !! functions watched
+    type(watched_t) :: watched(max_events)
+    logical :: any_rough = .false.       !! one of them is
     integer :: just_taken = 0            !! the event that led to the last restart
     logical :: fresh = .true.            !! no step since the restart
+    logical :: is_sampled = .false.      !! the next three belong to the end of what has been searched
+    real(dp) :: t = 0
+    real(dp) :: g(max_events) = 0, rate(max_events) = 0   !! of all functions of the problem
     real(dp), allocatable :: y(:)        !! work
   contains
     procedure :: begin
@@ -48,48 +59,75 @@ contains
     class(ode_problem_t), intent(in) :: problem
     real(dp), intent(in) :: t, y(:)
     integer, intent(in) :: just_taken
-    real(dp) :: g(max_events), rate(max_events)
     integer :: i
     self%just_taken = just_taken
-    self%n = problem%n_events
     self%fresh = .true.
     if (.not. allocated(self%y)) allocate (self%y(size(y)))
+    call choose_watched(self, problem)
     if (self%n == 0) return
-    call problem%events(t, y, g(:self%n), rate(:self%n))
+    call look(self, problem, t, y)
     do i = 1, self%n
-      self%last(i) = sample_t(t, g(i), rate(i))
-      self%low(i) = g(i) < 0
+      self%watched(i)%low = self%g(self%watched(i)%index) < 0
     end do
   end subroutine begin
 
-  !> To or from an archive, for states of n components.
-  subroutine exchange(self, n, archive)
+  !> Which functions are to be watched from now to the next restart: those that are not negative constants.
+  subroutine choose_watched(self, problem)
     class(event_watch_t), intent(inout) :: self
-    integer, intent(in) :: n
-    type(archive_t), intent(inout) :: archive
+    class(ode_problem_t), intent(in) :: problem
+    type(event_form_t) :: form
     integer :: i
-    if (.not. allocated(self%y)) allocate (self%y(n))
-    call archive%exchange(self%n)
-    do i = 1, max_events
-      call archive%exchange(self%last(i)%t)
-      call archive%exchange(self%last(i)%g)
-      call archive%exchange(self%last(i)%rate)
+    self%n = 0
+    self%any_rough = .false.
+    do i = 1, problem%n_events
+      form = problem%event_form(i)
+      if (form%known .and. all(form%component == 0) .and. form%constant < 0) cycle
+      self%n = self%n + 1
+      self%watched(self%n) = watched_t(i, form, problem%lands_on_step_end(i), problem%is_rough_at(i))
+      self%any_rough = self%any_rough .or. self%watched(self%n)%is_rough
     end do
-    call archive%exchange(self%low)
+  end subroutine choose_watched
+
+  !> Values and rates of the functions at (t, y), the end of what has been searched.
+  subroutine look(self, problem, t, y)
+    class(event_watch_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    real(dp), intent(in) :: t, y(:)
+    self%t = t
+    call problem%events(t, y, self%g(:problem%n_events), self%rate(:problem%n_events))
+    self%is_sampled = .true.
+  end subroutine look
+
+  !> To or from an archive, for a problem that has been in it before.
+  subroutine exchange(self, problem, archive)
+    class(event_watch_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    type(archive_t), intent(inout) :: archive
+    if (.not. allocated(self%y)) allocate (self%y(problem%n))
+    if (archive%is_reading) call choose_watched(self, problem)
+    call archive%exchange(self%watched%low)
     call archive%exchange(self%just_taken)
     call archive%exchange(self%fresh)
+    call archive%exchange(self%is_sampled)
+    call archive%exchange(self%t)
+    call archive%exchange(self%g)
+    call archive%exchange(self%rate)
   end subroutine exchange
 
-  !> When the first event at which f is not smooth is to be expected, by the tangents of the event functions.
-  pure real(dp) function rough_time(self, problem)
-    class(event_watch_t), intent(in) :: self
+  !> When the first event at which f is not smooth is to be expected after the last step or start of the method, by the
+  !> tangents of the event functions.
+  real(dp) function rough_time(self, method, problem)
+    class(event_watch_t), intent(inout) :: self
+    class(ode_method_t), intent(in) :: method
     class(ode_problem_t), intent(in) :: problem
     integer :: i
     rough_time = huge(rough_time)
+    if (.not. self%any_rough) return
+    if (.not. self%is_sampled) call look(self, problem, method%t, method%y)
     do i = 1, self%n
-      associate (last => self%last(i))
-        if (.not. (last%g < 0 .and. last%rate > 0)) cycle
-        if (problem%is_rough_at(i)) rough_time = min(rough_time, last%t - last%g/last%rate)
+      if (.not. self%watched(i)%is_rough) cycle
+      associate (g => self%g(self%watched(i)%index), rate => self%rate(self%watched(i)%index))
+        if (g < 0 .and. rate > 0) rough_time = min(rough_time, self%t - g/rate)
       end associate
     end do
   end function rough_time
@@ -104,54 +142,82 @@ contains
     integer, intent(out) :: index
     real(dp), intent(out) :: t_event
     real(dp), intent(inout) :: y_event(:)
-    real(dp) :: g(max_events), rate(max_events), t_found, t_end
-    type(sample_t) :: here
-    logical :: found
     integer :: i
 
     index = 0
     t_event = t_last
     if (self%n == 0) return
-    if (self%fresh) then
-      do i = 1, self%n   ! already past at the restart, and going on
-        if (i == self%just_taken) cycle
-        if (self%last(i)%g > 0 .and. self%last(i)%rate >= 0 .or. &
-            .not. self%last(i)%g < 0 .and. self%last(i)%rate > 0) then
-          index = i
-          t_event = self%last(i)%t
-          y_event = method%y_old
-          return
-        end if
+    if (self%fresh) then   ! already past at the restart, and going on
+      do i = 1, self%n
+        associate (candidate => self%watched(i)%index)
+          if (candidate == self%just_taken) cycle
+          if (self%g(candidate) > 0 .and. self%rate(candidate) >= 0 .or. &
+              .not. self%g(candidate) < 0 .and. self%rate(candidate) > 0) then
+            index = candidate
+            t_event = self%t
+            y_event = method%y_old
+            return
+          end if
+        end associate
       end do
-    end if
-    t_end = min(t_last, method%t)
-    if (t_end < method%t) then
-      call method%interpolate(t_end, self%y)
-      call problem%events(t_end, self%y, g(:self%n), rate(:self%n))
-    else
-      call problem%events(method%t, method%y, g(:self%n), rate(:self%n))
+      self%fresh = .false.
     end if
     do i = 1, self%n
-      here = sample_t(t_end, g(i), rate(i))
-      call search_one(self, method, problem, i, here, found, t_found)
-      if (found .and. (index == 0 .or. t_found < t_event)) then
-        index = i
-        t_event = t_found
-      end if
-      if (.not. found) self%last(i) = here
-      if (here%g < 0) self%low(i) = .true.
+      if (.not. stays_negative_for_certain(self%watched(i)%form, method)) exit
+      self%watched(i)%low = .true.
     end do
-    self%fresh = .false.
-    if (index > 0) call method%interpolate(t_event, y_event)
+    if (i > self%n) then
+      self%is_sampled = .false.
+    else
+      call search_closely(self, method, problem, i, min(t_last, method%t), index, t_event)
+      if (index > 0) call method%interpolate(t_event, y_event)
+    end if
   end subroutine search
 
-  !> Search one function from its last sample to `here`.
-  subroutine search_one(self, method, problem, index, here, found, t_found)
+  !> Search the last step up to t_end for the first passage of the functions from the one watched as number `first` on.
+  subroutine search_closely(self, method, problem, first, t_end, index, t_event)
     class(event_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     class(ode_problem_t), intent(in) :: problem
-    integer, intent(in) :: index
-    type(sample_t), intent(in) :: here
+    integer, intent(in) :: first
+    real(dp), intent(in) :: t_end
+    integer, intent(inout) :: index
+    real(dp), intent(inout) :: t_event
+    type(sample_t) :: before(max_events), here
+    logical :: found
+    real(dp) :: t_found
+    integer :: i
+
+    if (.not. self%is_sampled) call look(self, problem, method%t_old, method%y_old)
+    do i = first, self%n
+      before(i) = sample_t(self%t, self%g(self%watched(i)%index), self%rate(self%watched(i)%index))
+    end do
+    if (t_end < method%t) then
+      call method%interpolate(t_end, self%y)
+      call look(self, problem, t_end, self%y)
+    else
+      call look(self, problem, method%t, method%y)
+    end if
+    do i = first, self%n
+      associate (watched => self%watched(i))
+        here = sample_t(t_end, self%g(watched%index), self%rate(watched%index))
+        call search_one(self, method, problem, watched, before(i), here, found, t_found)
+        if (found .and. (index == 0 .or. t_found < t_event)) then
+          index = watched%index
+          t_event = t_found
+        end if
+        if (here%g < 0) watched%low = .true.
+      end associate
+    end do
+  end subroutine search_closely
+
+  !> Search one function from `before` to `here`, the end of the step or less.
+  subroutine search_one(self, method, problem, watched, before, here, found, t_found)
+    class(event_watch_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    class(ode_problem_t), intent(in) :: problem
+    type(watched_t), intent(in) :: watched
+    type(sample_t), intent(in) :: before, here
     logical, intent(out) :: found
     real(dp), intent(out) :: t_found
     type(sample_t) :: left, right
@@ -160,61 +226,52 @@ contains
 
     found = .false.
     t_found = here%t
-    left = self%last(index)
-    low = self%low(index)
-    if (low .and. here%g >= 0 .and. problem%lands_on_step_end(index) .and. .not. here%t < method%t) then
+    low = watched%low
+    if (low .and. here%g >= 0 .and. watched%on_step_end .and. .not. here%t < method%t) then
       found = .true.
       return
     end if
-    if (low .and. left%g < 0) then
-      call search_polynomial(self, method, problem, index, here, known, found, t_found)
+    if (low .and. before%g < 0) then
+      known = watched%form%known
+      if (known) call search_polynomial(self, method, problem, watched, before, here, known, found, t_found)
       if (known) return
-      if (stays_negative(left, here)) return
+      if (stays_negative(before, here)) return
     end if
     pieces = method%order + 2
+    left = before
     do i = 1, pieces
       right = here
-      if (i < pieces) right = sample(self, method, problem, index, &
-        self%last(index)%t + (here%t - self%last(index)%t)*i/pieces)
-      call search_piece(self, method, problem, index, left, right, low, found, t_found)
+      if (i < pieces) right = sample(self, method, problem, watched%index, before%t + (here%t - before%t)*i/pieces)
+      call search_piece(self, method, problem, watched%index, left, right, low, found, t_found)
       if (found) return
       left = right
     end do
   end subroutine search_one
 
-  !> Search one function that is negative at its last sample up to `here`, if the problem and the method make it a `known`
-  !> polynomial.
-  subroutine search_polynomial(self, method, problem, index, here, known, found, t_found)
+  !> Search one function of known form, negative at `before`, if the method makes it a `known` polynomial.
+  subroutine search_polynomial(self, method, problem, watched, before, here, known, found, t_found)
     class(event_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     class(ode_problem_t), intent(in) :: problem
-    integer, intent(in) :: index
-    type(sample_t), intent(in) :: here
+    type(watched_t), intent(in) :: watched
+    type(sample_t), intent(in) :: before, here
     logical, intent(out) :: known, found
     real(dp), intent(out) :: t_found
-    type(event_form_t) :: form
     type(sample_t) :: left, right
     real(dp) :: lower, upper
 
-    found = .false.
     t_found = here%t
-    form = problem%event_form(index)
-    known = form%known
-    if (.not. known) return
-    if (here%g < 0) then
-      if (stays_negative_for_certain(form, method)) return
-    end if
-    call isolate_passage(form, method, known, found, lower, upper)
+    call isolate_passage(watched%form, method, known, found, lower, upper)
     if (.not. (known .and. found)) return
-    left = self%last(index)
-    if (lower > 0) left = sample(self, method, problem, index, method%time_at_share(lower))
-    right = sample(self, method, problem, index, method%time_at_share(upper))
+    left = before
+    if (lower > 0) left = sample(self, method, problem, watched%index, method%time_at_share(lower))
+    right = sample(self, method, problem, watched%index, method%time_at_share(upper))
     if (right%g < 0 .or. left%t > here%t) then   ! a touch within rounding, or beyond the end
       found = .false.
       return
     end if
     t_found = left%t
-    if (left%g < 0) t_found = passage(self, method, problem, index, left, right)
+    if (left%g < 0) t_found = passage(self, method, problem, watched%index, left, right)
     found = t_found <= here%t
   end subroutine search_polynomial
 
@@ -316,7 +373,7 @@ contains
     type(sample_t) :: sample
     real(dp) :: g(max_events), rate(max_events)
     call method%interpolate(t, self%y)
-    call problem%events(t, self%y, g(:self%n), rate(:self%n))
+    call problem%events(t, self%y, g(:problem%n_events), rate(:problem%n_events))
     sample = sample_t(t, g(index), rate(index))
   end function sample
 end module events

@@ -25,7 +25,7 @@ module ode_problem
   integer, parameter :: event_stop = 1      !! end the integration at the event
 
   !> An event function as a polynomial in the state: it has the sign of constant + sum over j of
-  !> (linear_j + square_j y_c) y_c, c = component(j).
+  !> (linear_j + square_j y_c) y_c, c = component(j). A negative constant without components is not watched.
   type :: event_form_t
     logical :: known = .false.       !! else there is no such polynomial
     integer :: component(2) = 0      !! 0: none
@@ -155,8 +155,8 @@ contains
     never_on_step_end = .false.
   end function never_on_step_end
 
-  !> Event function `index` as a polynomial in the state. Where it is known, no passage inside a step can be missed. The
-  !> default is that it is not.
+  !> Event function `index` in the present discrete state as a polynomial in the state. Where it is known, no passage inside a
+  !> step can be missed. The default is that it is not.
   pure function unknown_form(self, index) result(form)
     class(ode_problem_t), intent(in) :: self
     integer, intent(in) :: index

@@ -104,7 +104,7 @@ contains
       at%t_place = t
     end if
     do while (status == step_done)
-      method%rough_time = at%watch%rough_time(problem)
+      method%rough_time = at%watch%rough_time(method, problem)
       call method%step(problem, status)
       if (status /= step_done) exit
       call take_step(problem, method, observer, t_end, at, status)
@@ -208,7 +208,7 @@ contains
     type(archive_t), intent(inout) :: archive
     call problem%exchange(archive)
     call method%exchange(problem, archive)
-    call at%watch%exchange(problem%n, archive)
+    call at%watch%exchange(problem, archive)
     call archive%exchange(at%t)
     call archive%exchange(at%y)
     call archive%exchange(at%event)

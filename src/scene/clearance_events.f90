@@ -135,9 +135,11 @@ contains
 
   module procedure event_form
     real(dp) :: outwards
-    form%known = index <= min(ends, self%n_joint_events)
-    if (.not. form%known .or. (index == ends) .neqv. (self%phase == phase_contact)) return
-    outwards = merge(1.0_dp, -1.0_dp, index == begins)
+    logical :: touches
+    touches = self%phase == phase_contact
+    form%known = index <= self%n_joint_events .and. .not. (index == sliding_changes .and. touches)
+    if (.not. form%known .or. index /= merge(ends, begins, touches)) return
+    outwards = merge(-1.0_dp, 1.0_dp, touches)
     form%component = [self%n_positions - 1, self%n_positions]
     form%constant = -outwards*self%joint%clearance**2
     form%square = outwards

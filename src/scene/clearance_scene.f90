@@ -71,7 +71,7 @@ module clearance_scene
       integer, intent(in) :: index
     end function lands_on_step_end
 
-    !> Contact begins and ends where e_x^2 + e_y^2 passes c^2.
+    !> Contact begins and ends where e_x^2 + e_y^2 passes c^2. Functions of the other phase are constant.
     pure module function event_form(self, index) result(form)
       class(clearance_scene_t), intent(in) :: self
       integer, intent(in) :: index
