@@ -77,7 +77,7 @@ contains
     logical, intent(out) :: unproven   !! the bound by straight lines left it open
     type(adams_t) :: method
     type(event_watch_t) :: watch
-    real(dp) :: x(12), f(2, 12), y(2), t_last, y_event(2)
+    real(dp) :: x(12), f(2, 12), y(2), t_last
     integer :: i, status, index, before
     logical :: inside
     method%settings%fixed_step = 1
@@ -95,7 +95,7 @@ contains
     unproven = .not. stays_negative_for_certain(problem%event_form(1), method)
     before = method%statistics%evaluations
     t_last = 2
-    call watch%search(method, problem, t_last, index, t_event, y_event)
+    call watch%search(method, problem, t_last, index, t_event)
     if (index == 0) t_event = 0
     if (method%statistics%evaluations > before) t_event = -1
   end subroutine one_step

@@ -45,25 +45,19 @@ contains
   pure subroutine add_product(factor, a, b, sum)
     real(dp), intent(in) :: factor, a(0:), b(0:)
     real(dp), intent(inout) :: sum(0:)
-    real(dp) :: weight(0:highest_degree/2)
-    integer :: i, k, m
+    real(dp) :: scaled_a(0:highest_degree/2), scaled_b(0:highest_degree/2), product(0:highest_degree)
+    integer :: i, m
+    real(dp), parameter :: binomial(0:highest_degree, 0:highest_degree) = reshape([ &
+      ((anint(gamma(m + 1.0_dp)/(gamma(i + 1.0_dp)*gamma(max(m - i, 0) + 1.0_dp))), i=0, highest_degree), m=0, highest_degree)], &
+      [highest_degree + 1, highest_degree + 1])   !! C(m, i) in (i <= m, m)
     m = size(a) - 1
-    weight(0) = 1
-    do i = 1, m
-      weight(i) = weight(i - 1)*(m + 1 - i)/i   ! C(m, i)
+    scaled_a(:m) = factor*binomial(:m, m)*a   ! with their binomials coefficients multiply like those of powers
+    scaled_b(:m) = binomial(:m, m)*b
+    product(:2*m) = 0
+    do i = 0, m
+      product(i:i + m) = product(i:i + m) + scaled_a(i)*scaled_b(:m)
     end do
-    do k = 0, 2*m
-      block
-        real(dp) :: total, all
-        total = 0
-        all = 0
-        do i = max(0, k - m), min(k, m)
-          total = total + weight(i)*weight(k - i)*a(i)*b(k - i)
-          all = all + weight(i)*weight(k - i)   ! C(2 m, k) in the end
-        end do
-        sum(k) = sum(k) + factor*total/all
-      end block
-    end do
+    sum = sum + product(:2*m)/binomial(:2*m, 2*m)
   end subroutine add_product
 
   !> Where a polynomial that is negative at 0 first becomes not negative: an interval lower < x <= upper at whose beginning it

@@ -7,7 +7,7 @@ module event_proof
   use bernstein, only: add_product, first_rise, highest_degree
   implicit none
   private
-  public :: stays_negative_for_certain, isolate_passage
+  public :: stays_negative_for_certain, may_rise, isolate_passage
 
 contains
 
@@ -17,25 +17,46 @@ contains
   pure logical function stays_negative_for_certain(form, method) result(negative)
     type(event_form_t), intent(in) :: form
     class(ode_method_t), intent(in) :: method
-    real(dp) :: coefficient(3), straying, slope
+    real(dp) :: at_start, at_middle, at_end, straying, slope, slope_a, slope_b
     integer :: j
     negative = form%known
     if (.not. negative) return
-    coefficient = form%constant
+    at_start = form%constant   ! Bernstein coefficients of the parabola
+    at_middle = form%constant
+    at_end = form%constant
     slope = 0
     do j = 1, 2
       if (form%component(j) == 0) cycle
+      straying = method%straying(form%component(j))
+      negative = straying < huge(straying)
+      if (.not. negative) return
       associate (a => method%y_old(form%component(j)), b => method%y(form%component(j)), linear => form%linear(j), &
           square => form%square(j))
-        straying = method%straying(form%component(j))
-        negative = straying < huge(straying)
-        if (.not. negative) return
-        coefficient = coefficient + [(linear + square*a)*a, 0.5_dp*linear*(a + b) + square*a*b, (linear + square*b)*b]
-        slope = slope + (max(abs(linear + 2*square*a), abs(linear + 2*square*b)) + abs(square)*straying)*straying
+        slope_a = linear + 2*square*a
+        slope_b = linear + 2*square*b
+        at_start = at_start + (linear + square*a)*a
+        at_middle = at_middle + 0.5_dp*(linear*a + slope_a*b)
+        at_end = at_end + (linear + square*b)*b
+        slope = slope + (max(abs(slope_a), abs(slope_b)) + abs(square)*straying)*straying
       end associate
     end do
-    negative = maxval(coefficient) + slope < 0
+    negative = max(at_start, at_middle, at_end) + slope < 0
   end function stays_negative_for_certain
+
+  !> Whether the function rises at the end of the last step, or its rate there is not known.
+  pure logical function may_rise(form, method)
+    type(event_form_t), intent(in) :: form
+    class(ode_method_t), intent(in) :: method
+    real(dp) :: rate
+    integer :: j
+    rate = 0
+    do j = 1, 2
+      associate (c => form%component(j))
+        if (c > 0) rate = rate + (form%linear(j) + 2*form%square(j)*method%y(c))*method%f(c)
+      end associate
+    end do
+    may_rise = rate > 0 .or. .not. form%known
+  end function may_rise
 
   !> The part lower < x <= upper of the last step, by the method's own clock, in which a function that is negative at the
   !> beginning of the step first becomes not negative. `known` is false where the method cannot tell.
@@ -67,8 +88,8 @@ contains
     g = form%constant
     do j = 1, 2
       if (form%component(j) == 0) cycle
-      call add_product(form%linear(j), component(:degree, j), one(:degree), g(:2*degree))
-      call add_product(form%square(j), component(:degree, j), component(:degree, j), g(:2*degree))
+      if (abs(form%linear(j)) > 0) call add_product(form%linear(j), component(:degree, j), one(:degree), g(:2*degree))
+      if (abs(form%square(j)) > 0) call add_product(form%square(j), component(:degree, j), component(:degree, j), g(:2*degree))
     end do
     call first_rise(g(:2*degree), found, lower, upper)
   end subroutine isolate_passage

@@ -12,7 +12,7 @@ module events
   use ode_problem, only: ode_problem_t, event_form_t, max_events
   use ode_method, only: ode_method_t
   use archive, only: archive_t
-  use event_proof, only: stays_negative_for_certain, isolate_passage
+  use event_proof, only: stays_negative_for_certain, may_rise, isolate_passage
   use roots, only: bracket_t, next_abscissa, narrow
   implicit none
   private
@@ -46,7 +46,7 @@ module events
   contains
     procedure :: begin
     procedure :: search
-    procedure :: rough_time
+    procedure :: find_rough_time
     procedure :: exchange
   end type event_watch_t
 
@@ -116,63 +116,68 @@ contains
 
   !> When the first event at which f is not smooth is to be expected after the last step or start of the method, by the
   !> tangents of the event functions.
-  real(dp) function rough_time(self, method, problem)
+  subroutine find_rough_time(self, method, problem, rough_time)
     class(event_watch_t), intent(inout) :: self
     class(ode_method_t), intent(in) :: method
     class(ode_problem_t), intent(in) :: problem
+    real(dp), intent(out) :: rough_time
     integer :: i
     rough_time = huge(rough_time)
     if (.not. self%any_rough) return
-    if (.not. self%is_sampled) call look(self, problem, method%t, method%y)
     do i = 1, self%n
       if (.not. self%watched(i)%is_rough) cycle
+      if (.not. may_rise(self%watched(i)%form, method)) cycle
+      if (.not. self%is_sampled) call look(self, problem, method%t, method%y)
       associate (g => self%g(self%watched(i)%index), rate => self%rate(self%watched(i)%index))
         if (g < 0 .and. rate > 0) rough_time = min(rough_time, self%t - g/rate)
       end associate
     end do
-  end function rough_time
+  end subroutine find_rough_time
 
-  !> Search the last step of the method up to t_last. `index` is the first event, 0 if there is none; then (t_event,
-  !> y_event) is where it happened, on the not negative side.
-  subroutine search(self, method, problem, t_last, index, t_event, y_event)
+  !> Search the last step of the method up to t_last. `index` is the first event, 0 if there is none; then t_event is when it
+  !> happened, on the not negative side.
+  subroutine search(self, method, problem, t_last, index, t_event)
     class(event_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     class(ode_problem_t), intent(in) :: problem
     real(dp), intent(in) :: t_last
     integer, intent(out) :: index
     real(dp), intent(out) :: t_event
-    real(dp), intent(inout) :: y_event(:)
     integer :: i
 
     index = 0
     t_event = t_last
-    if (self%n == 0) return
-    if (self%fresh) then   ! already past at the restart, and going on
-      do i = 1, self%n
-        associate (candidate => self%watched(i)%index)
-          if (candidate == self%just_taken) cycle
-          if (self%g(candidate) > 0 .and. self%rate(candidate) >= 0 .or. &
-              .not. self%g(candidate) < 0 .and. self%rate(candidate) > 0) then
-            index = candidate
-            t_event = self%t
-            y_event = method%y_old
-            return
-          end if
-        end associate
-      end do
-      self%fresh = .false.
-    end if
+    if (self%fresh) call take_passed(self, index, t_event)
+    if (index > 0) return
     do i = 1, self%n
-      if (.not. stays_negative_for_certain(self%watched(i)%form, method)) exit
+      if (.not. stays_negative_for_certain(self%watched(i)%form, method)) then
+        call search_closely(self, method, problem, i, min(t_last, method%t), index, t_event)
+        return
+      end if
       self%watched(i)%low = .true.
     end do
-    if (i > self%n) then
-      self%is_sampled = .false.
-    else
-      call search_closely(self, method, problem, i, min(t_last, method%t), index, t_event)
-      if (index > 0) call method%interpolate(t_event, y_event)
-    end if
+    self%is_sampled = .false.
   end subroutine search
+
+  !> In the first step after a restart: a function that was past zero already, and going on.
+  pure subroutine take_passed(self, index, t_event)
+    class(event_watch_t), intent(inout) :: self
+    integer, intent(inout) :: index
+    real(dp), intent(inout) :: t_event
+    integer :: i
+    do i = 1, self%n
+      associate (candidate => self%watched(i)%index)
+        if (candidate == self%just_taken) cycle
+        if (self%g(candidate) > 0 .and. self%rate(candidate) >= 0 .or. &
+            .not. self%g(candidate) < 0 .and. self%rate(candidate) > 0) then
+          index = candidate
+          t_event = self%t
+          return
+        end if
+      end associate
+    end do
+    self%fresh = .false.
+  end subroutine take_passed
 
   !> Search the last step up to t_end for the first passage of the functions from the one watched as number `first` on.
   subroutine search_closely(self, method, problem, first, t_end, index, t_event)
@@ -190,7 +195,9 @@ contains
 
     if (.not. self%is_sampled) call look(self, problem, method%t_old, method%y_old)
     do i = first, self%n
-      before(i) = sample_t(self%t, self%g(self%watched(i)%index), self%rate(self%watched(i)%index))
+      before(i)%t = self%t
+      before(i)%g = self%g(self%watched(i)%index)
+      before(i)%rate = self%rate(self%watched(i)%index)
     end do
     if (t_end < method%t) then
       call method%interpolate(t_end, self%y)

@@ -104,7 +104,7 @@ contains
       at%t_place = t
     end if
     do while (status == step_done)
-      method%rough_time = at%watch%rough_time(method, problem)
+      call at%watch%find_rough_time(method, problem, method%rough_time)
       call method%step(problem, status)
       if (status /= step_done) exit
       call take_step(problem, method, observer, t_end, at, status)
@@ -134,11 +134,15 @@ contains
     real(dp) :: t_event, chatter_time
     integer :: action
 
-    call at%watch%search(method, problem, t_end, at%event, t_event, at%y)
+    call at%watch%search(method, problem, t_end, at%event, t_event)
     at%t = min(method%t, t_end)
     if (at%event > 0) then
       at%t = t_event
-      if (at%t < method%t) call land(problem, method, at%event, at%t, at%y)
+      if (at%t < method%t) then
+        call land(problem, method, at%event, at%t, at%y)
+      else
+        call method%interpolate(at%t, at%y)
+      end if
     end if
     call observer%step_taken(method, problem, at%t)
     if (at%event == 0) return

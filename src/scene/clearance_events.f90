@@ -11,9 +11,27 @@ submodule (clearance_scene) clearance_events
 contains
 
   module procedure all_events
-    integer :: n
+    real(dp) :: distance, rate
+    integer :: m, n
+    m = self%n_positions
     n = self%n_joint_events
-    if (n > 0) call joint_events(self, t, y, g(:n), g_rate(:n))
+    if (n > 0) then
+      distance = sqrt(y(m - 1)**2 + y(m)**2)
+      rate = 0
+      if (distance > 0) rate = (y(m - 1)*y(2*m - 1) + y(m)*y(2*m))/distance
+      if (self%phase == phase_contact) then
+        g(begins) = -1
+        g_rate(begins) = 0
+        g(ends) = self%joint%clearance - distance
+        g_rate(ends) = -rate
+      else
+        g(begins) = distance - self%joint%clearance
+        g_rate(begins) = rate
+        g(ends) = -1
+        g_rate(ends) = 0
+      end if
+      if (n >= sliding_changes) call find_sliding_change(self, t, y, g(sliding_changes), g_rate(sliding_changes))
+    end if
     if (.not. allocated(self%gas)) return
     if (self%drive%free_crank) then
       call self%gas_events(y(1), y(4), g(n + 1:n + n_gas_events), g_rate(n + 1:n + n_gas_events))
@@ -23,41 +41,26 @@ contains
     end if
   end procedure all_events
 
-  !> Event functions of the joint: contact begins, contact ends, and with set-valued friction the change of sliding.
-  pure subroutine joint_events(self, t, y, g, g_rate)
+  !> Event function of set-valued friction: the pin slips that stuck, or the sliding speed passes zero.
+  pure subroutine find_sliding_change(self, t, y, g, g_rate)
     class(clearance_scene_t), intent(in) :: self
     real(dp), intent(in) :: t, y(:)
-    real(dp), intent(out) :: g(:), g_rate(:)
+    real(dp), intent(out) :: g, g_rate
     type(evaluation_t) :: now
     logical :: inside
-    real(dp) :: x, vx, distance, rate
-    integer :: m
 
-    m = self%n_positions
-    x = y(m - 1)
-    vx = y(2*m - 1)
-    distance = sqrt(x**2 + y(m)**2)
-    rate = 0
-    if (distance > 0) rate = (x*vx + y(m)*y(2*m))/distance
     g = -1
     g_rate = 0
-    if (self%phase == phase_contact) then
-      g(ends) = self%joint%clearance - distance
-      g_rate(ends) = -rate
-      if (self%n_joint_events < sliding_changes) return
-      call self%evaluate(t, y, now, inside)
-      if (.not. inside) return
-      if (self%sliding == 0) then
-        g(sliding_changes) = abs(now%friction_force) - sticking_limit(self, now%normal_force)
-      else
-        g(sliding_changes) = -self%sliding*now%joint%sliding_speed
-        g_rate(sliding_changes) = -self%sliding*sliding_acceleration(self, now, now%friction_force)
-      end if
+    if (self%phase /= phase_contact) return
+    call self%evaluate(t, y, now, inside)
+    if (.not. inside) return
+    if (self%sliding == 0) then
+      g = abs(now%friction_force) - sticking_limit(self, now%normal_force)
     else
-      g(begins) = distance - self%joint%clearance
-      g_rate(begins) = rate
+      g = -self%sliding*now%joint%sliding_speed
+      g_rate = -self%sliding*sliding_rate(self, now, now%accelerations)
     end if
-  end subroutine joint_events
+  end subroutine find_sliding_change
 
   module procedure sliding_acceleration
     type(accelerations_t) :: accelerations
@@ -68,10 +71,17 @@ contains
     loads%pin_force = -now%normal_force*now%joint%normal + friction_force*tangent
     loads%pin_moment = friction_force*self%joint%pin_radius
     call accelerations_under(self%mechanism, self%drive, loads, now%motion, accelerations, moment)
-    sliding_acceleration = dot_product(tangent, accelerations%eccentricity) &
-      - now%joint%tangential_rate*now%joint%penetration_rate/now%joint%distance &
-      - accelerations%rod*self%joint%pin_radius
+    sliding_acceleration = sliding_rate(self, now, accelerations)
   end procedure sliding_acceleration
+
+  !> v_T' under these accelerations [m/s^2].
+  pure real(dp) function sliding_rate(self, now, accelerations)
+    class(clearance_scene_t), intent(in) :: self
+    type(evaluation_t), intent(in) :: now
+    type(accelerations_t), intent(in) :: accelerations
+    sliding_rate = (now%joint%normal(1)*accelerations%eccentricity(2) - now%joint%normal(2)*accelerations%eccentricity(1)) &
+      - now%joint%tangential_rate*now%joint%penetration_rate/now%joint%distance - accelerations%rod*self%joint%pin_radius
+  end function sliding_rate
 
   !> Largest friction force that a set-valued law can give [N].
   pure real(dp) function sticking_limit(self, normal_force)
