@@ -11,20 +11,21 @@ module event_proof
 
 contains
 
-  !> Whether the function is certainly negative all along the last step, from a bound of how far each component of the state
-  !> strays from the straight line between its values at both ends. (Of the straight lines the function is a parabola, which
-  !> lies below its Bernstein coefficients.)
+  !> Whether the function is certainly negative all along the last step, but perhaps zero at its beginning, from a bound of how
+  !> far each component of the state strays from the straight line between its values at both ends. Along the straight lines,
+  !> x being the share of the step, the function is a parabola; what the straying adds is below 4 x (1 - x) times a
+  !> constant. Both together have the Bernstein coefficients a, m, b and are below zero between the ends where a and b are
+  !> not above it and m < sqrt(a b), or m < 0.
   pure logical function stays_negative_for_certain(form, method) result(negative)
     type(event_form_t), intent(in) :: form
     class(ode_method_t), intent(in) :: method
-    real(dp) :: at_start, at_middle, at_end, straying, slope, slope_a, slope_b
+    real(dp) :: at_start, at_middle, at_end, straying, slope_a, slope_b
     integer :: j
     negative = form%known
     if (.not. negative) return
-    at_start = form%constant   ! Bernstein coefficients of the parabola
+    at_start = form%constant
     at_middle = form%constant
     at_end = form%constant
-    slope = 0
     do j = 1, 2
       if (form%component(j) == 0) cycle
       straying = method%straying(form%component(j))
@@ -35,12 +36,12 @@ contains
         slope_a = linear + 2*square*a
         slope_b = linear + 2*square*b
         at_start = at_start + (linear + square*a)*a
-        at_middle = at_middle + 0.5_dp*(linear*a + slope_a*b)
+        at_middle = at_middle + 0.5_dp*(linear*a + slope_a*b) &
+          + 2*(max(abs(slope_a), abs(slope_b)) + abs(square)*straying)*straying
         at_end = at_end + (linear + square*b)*b
-        slope = slope + (max(abs(slope_a), abs(slope_b)) + abs(square)*straying)*straying
       end associate
     end do
-    negative = max(at_start, at_middle, at_end) + slope < 0
+    negative = at_start <= 0 .and. at_end < 0 .and. (at_middle < 0 .or. at_middle**2 < at_start*at_end)
   end function stays_negative_for_certain
 
   !> Whether the function rises at the end of the last step, or its rate there is not known.
