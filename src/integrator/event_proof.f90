@@ -44,19 +44,22 @@ contains
     negative = at_start <= 0 .and. at_end < 0 .and. (at_middle < 0 .or. at_middle**2 < at_start*at_end)
   end function stays_negative_for_certain
 
-  !> Whether the function rises at the end of the last step, or its rate there is not known.
-  pure logical function may_rise(form, method)
+  !> Whether the function rises in the state y, m of whose components are positions, or its rate cannot be told from y.
+  pure logical function may_rise(form, m, y)
     type(event_form_t), intent(in) :: form
-    class(ode_method_t), intent(in) :: method
+    integer, intent(in) :: m
+    real(dp), intent(in) :: y(:)
     real(dp) :: rate
     integer :: j
+    may_rise = .not. form%known .or. any(form%component > m)
+    if (may_rise) return
     rate = 0
     do j = 1, 2
       associate (c => form%component(j))
-        if (c > 0) rate = rate + (form%linear(j) + 2*form%square(j)*method%y(c))*method%f(c)
+        if (c > 0) rate = rate + (form%linear(j) + 2*form%square(j)*y(c))*y(m + c)
       end associate
     end do
-    may_rise = rate > 0 .or. .not. form%known
+    may_rise = rate > 0
   end function may_rise
 
   !> The part lower < x <= upper of the last step, by the method's own clock, in which a function that is negative at the

@@ -103,9 +103,12 @@ contains
     class(event_watch_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
     type(archive_t), intent(inout) :: archive
+    integer :: i
     if (.not. allocated(self%y)) allocate (self%y(problem%n))
     if (archive%is_reading) call choose_watched(self, problem)
-    call archive%exchange(self%watched%low)
+    do i = 1, self%n
+      call archive%exchange(self%watched(i)%low)
+    end do
     call archive%exchange(self%just_taken)
     call archive%exchange(self%fresh)
     call archive%exchange(self%is_sampled)
@@ -126,7 +129,7 @@ contains
     if (.not. self%any_rough) return
     do i = 1, self%n
       if (.not. self%watched(i)%is_rough) cycle
-      if (.not. may_rise(self%watched(i)%form, method)) cycle
+      if (.not. may_rise(self%watched(i)%form, problem%n_positions, method%y)) cycle
       if (.not. self%is_sampled) call look(self, problem, method%t, method%y)
       associate (g => self%g(self%watched(i)%index), rate => self%rate(self%watched(i)%index))
         if (g < 0 .and. rate > 0) rough_time = min(rough_time, self%t - g/rate)
