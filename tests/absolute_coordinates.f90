@@ -47,8 +47,8 @@ contains
 
   pure subroutine derivatives(self, t, y, dydt, inside)
     class(absolute_coordinates_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    real(dp), intent(out) :: dydt(:)
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: inside
     type(evaluation_t) :: now
     real(dp) :: e(2), rate(2), state(self%scene%n)

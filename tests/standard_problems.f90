@@ -141,8 +141,8 @@ contains
 
   pure subroutine derivatives(self, t, y, dydt, inside)
     class(standard_problem_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    real(dp), intent(out) :: dydt(:)
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: inside
     inside = .true.
     select case (self%name(1:1))

@@ -218,8 +218,8 @@ contains
 
   pure subroutine derivatives(self, t, y, dydt, inside)
     class(polynomial_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    real(dp), intent(out) :: dydt(:)
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: inside
     integer :: j
     associate (unused => y)

@@ -197,8 +197,8 @@ contains
 
   pure subroutine towards_zero(self, t, y, dydt, inside)
     class(chatterer_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    real(dp), intent(out) :: dydt(:)
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: inside
     associate (unused_t => t, unused_y => y)
     end associate

@@ -56,8 +56,8 @@ contains
 
   pure subroutine root_derivatives(self, t, y, dydt, inside)
     class(root_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    real(dp), intent(out) :: dydt(:)
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: inside
     associate (unused_self => self)
     end associate
@@ -68,8 +68,8 @@ contains
 
   pure subroutine modulated_derivatives(self, t, y, dydt, inside)
     class(modulated_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    real(dp), intent(out) :: dydt(:)
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: inside
     dydt = y*cos(t)
     if (self%decay > 0) dydt = -self%decay*y
@@ -78,8 +78,8 @@ contains
 
   pure subroutine oscillator_derivatives(self, t, y, dydt, inside)
     class(oscillator_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    real(dp), intent(out) :: dydt(:)
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: inside
     associate (unused_self => self, unused_t => t)
     end associate
@@ -90,8 +90,8 @@ contains
 
   pure subroutine two_body_derivatives(self, t, y, dydt, inside)
     class(two_body_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    real(dp), intent(out) :: dydt(:)
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: inside
     real(dp) :: r3
     associate (unused_self => self, unused_t => t)
@@ -104,8 +104,8 @@ contains
 
   pure subroutine ball_derivatives(self, t, y, dydt, inside)
     class(bouncing_ball_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    real(dp), intent(out) :: dydt(:)
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: inside
     associate (unused_self => self, unused_t => t)
     end associate

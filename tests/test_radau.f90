@@ -50,8 +50,8 @@ contains
 
   pure subroutine derivatives(self, t, y, dydt, inside)
     class(van_der_pol_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    real(dp), intent(out) :: dydt(:)
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: inside
     associate (unused => t)
     end associate

@@ -224,8 +224,8 @@ contains
 
   pure subroutine pressure_derivative(self, t, y, dydt, inside)
     class(combustion_problem_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    real(dp), intent(out) :: dydt(:)
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: inside
     real(dp) :: unused_curvature
     call pressure_slopes(self%gas, part_combustion, t, y(1), dydt(1), unused_curvature)

@@ -54,13 +54,14 @@ module ode_problem
   end type ode_problem_t
 
   abstract interface
-    !> Right-hand side f(t, y), (n). `inside` is false where the model is not defined at y; dydt is then not to be used.
+    !> Right-hand side f(t, y). `inside` is false where the model is not defined at y; dydt is then not to be used. Its arrays
+    !> have explicit shapes: their strides need not be handed on and looked at in every call.
     pure subroutine derivatives(self, t, y, dydt, inside)
       import :: ode_problem_t, dp
       class(ode_problem_t), intent(in) :: self
       real(dp), intent(in) :: t
-      real(dp), intent(in) :: y(:)
-      real(dp), intent(out) :: dydt(:)
+      real(dp), intent(in) :: y(self%n)
+      real(dp), intent(out) :: dydt(self%n)
       logical, intent(out) :: inside
     end subroutine derivatives
   end interface

@@ -9,8 +9,8 @@ module clearance_joint
   use mechanism, only: mechanism_t, motion_t
   implicit none
   private
-  public :: joint_geometry_t, joint_motion_t, joint_motion, find_joint_motion, sliding_speed, &
-    clearance_motion
+  public :: joint_geometry_t, joint_motion_t, joint_motion, find_joint_motion, sliding_speed, clearance_motion, &
+    find_rod, find_piston
 
   !> Constants of the joint.
   type :: joint_geometry_t
@@ -70,32 +70,48 @@ contains
   end function sliding_speed
 
   !> Positions and speeds of the bodies at crank angle q [rad], crank speed [rad/s], eccentricity [m] and its rate.
-  !> `reachable` is false where the pin cannot be, |R sin q - e_y| >= L: then only the crank angle is set.
+  !> `reachable` is false where the pin cannot be, |R sin q - e_y| >= L: then there is only the crank.
   pure subroutine clearance_motion(mechanism, q, crank_speed, eccentricity, eccentricity_rate, motion, reachable)
     type(mechanism_t), intent(in) :: mechanism
     real(dp), intent(in) :: q, crank_speed, eccentricity(2), eccentricity_rate(2)
     type(motion_t), intent(out) :: motion
     logical, intent(out) :: reachable
-    real(dp) :: sin_q, cos_q, sin_a, cos_a, gap, rod_speed
-    associate (r => mechanism%crank_length, l => mechanism%rod_length)
-      motion%crank_angle = q
-      sin_q = sin(q)
-      cos_q = cos(q)
-      sin_a = (r*sin_q - eccentricity(2))*mechanism%per_rod_length
-      gap = (1 - sin_a)*(1 + sin_a)
+    motion%crank_angle = q
+    motion%sin_crank = sin(q)
+    motion%cos_crank = cos(q)
+    motion%crank_speed = crank_speed
+    call find_rod(mechanism, eccentricity, eccentricity_rate, motion, reachable)
+    if (reachable) call find_piston(mechanism, eccentricity, eccentricity_rate, motion)
+  end subroutine clearance_motion
+
+  !> The rod of a motion whose crank is known, with its sine and cosine.
+  pure subroutine find_rod(mechanism, eccentricity, eccentricity_rate, motion, reachable)
+    type(mechanism_t), intent(in) :: mechanism
+    real(dp), intent(in) :: eccentricity(2), eccentricity_rate(2)
+    type(motion_t), intent(inout) :: motion
+    logical, intent(out) :: reachable
+    real(dp) :: gap
+    associate (r => mechanism%crank_length)
+      motion%sin_rod = (r*motion%sin_crank - eccentricity(2))*mechanism%per_rod_length
+      gap = (1 - motion%sin_rod)*(1 + motion%sin_rod)
       reachable = gap > 0
       if (.not. reachable) return
-      cos_a = sqrt(gap)
+      motion%cos_rod = sqrt(gap)
       ! over cos A = cos A/gap: the division need not wait for the root
-      rod_speed = (r*cos_q*crank_speed - eccentricity_rate(2))*mechanism%per_rod_length/gap*cos_a
-      motion%sin_crank = sin_q
-      motion%cos_crank = cos_q
-      motion%sin_rod = sin_a
-      motion%cos_rod = cos_a
-      motion%crank_speed = crank_speed
-      motion%rod_speed = rod_speed
-      motion%piston_position = r*cos_q + l*cos_a - eccentricity(1)
-      motion%piston_velocity = -r*sin_q*crank_speed - l*sin_a*rod_speed - eccentricity_rate(1)
+      motion%rod_speed = (r*motion%cos_crank*motion%crank_speed - eccentricity_rate(2))*mechanism%per_rod_length/gap &
+        *motion%cos_rod
     end associate
-  end subroutine clearance_motion
+  end subroutine find_rod
+
+  !> The piston of a motion whose crank and rod are known.
+  pure subroutine find_piston(mechanism, eccentricity, eccentricity_rate, motion)
+    type(mechanism_t), intent(in) :: mechanism
+    real(dp), intent(in) :: eccentricity(2), eccentricity_rate(2)
+    type(motion_t), intent(inout) :: motion
+    associate (r => mechanism%crank_length, l => mechanism%rod_length)
+      motion%piston_position = r*motion%cos_crank + l*motion%cos_rod - eccentricity(1)
+      motion%piston_velocity = -r*motion%sin_crank*motion%crank_speed - l*motion%sin_rod*motion%rod_speed &
+        - eccentricity_rate(1)
+    end associate
+  end subroutine find_piston
 end module clearance_joint

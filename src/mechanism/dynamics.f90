@@ -38,34 +38,34 @@ contains
     type(motion_t), intent(in) :: motion
     type(accelerations_t), intent(out) :: accelerations
     real(dp), intent(out) :: crank_moment
-    real(dp) :: sin_s, cos_s, m12, slope, on_crank, on_rod, per_determinant
+    real(dp) :: m12, slope, on_crank, on_rod, crank(2), rod(2), per_determinant
 
-    associate (m => mechanism, sin_q => motion%sin_crank, cos_q => motion%cos_crank, sin_a => motion%sin_rod, &
-               cos_a => motion%cos_rod, crank_speed => motion%crank_speed, f => loads%pin_force)
-      sin_s = sin_q*cos_a + cos_q*sin_a
-      cos_s = cos_q*cos_a - sin_q*sin_a
-      m12 = -(m%static_moment(1)*cos_s + m%static_moment(2)*sin_s)
-      slope = m%static_moment(1)*sin_s - m%static_moment(2)*cos_s
-      on_crank = m%crank_weight(1)*sin_q + m%crank_weight(2)*cos_q - slope*motion%rod_speed**2 &
-        - drive%damping*crank_speed + m%crank_length*(f(2)*cos_q - f(1)*sin_q)
-      on_rod = m%rod_weight(1)*sin_a - m%rod_weight(2)*cos_a - slope*crank_speed**2 - loads%pin_moment &
-        - m%rod_length*(f(1)*sin_a + f(2)*cos_a)
+    call mechanism%coupling(motion, m12, slope)
+    associate (m => mechanism, f => loads%pin_force)
+      crank(1) = m%crank_length*motion%cos_crank
+      crank(2) = m%crank_length*motion%sin_crank
+      rod(1) = m%rod_length*motion%cos_rod
+      rod(2) = m%rod_length*motion%sin_rod
+      on_crank = drive%torque - drive%damping*motion%crank_speed &
+        + (m%crank_weight(1)*motion%sin_crank + m%crank_weight(2)*motion%cos_crank) &
+        + (f(2)*crank(1) - f(1)*crank(2)) - slope*motion%rod_speed**2
+      on_rod = (m%rod_weight(1)*motion%sin_rod - m%rod_weight(2)*motion%cos_rod) &
+        - (loads%pin_moment + f(1)*rod(2) + f(2)*rod(1)) - slope*motion%crank_speed**2
       if (drive%free_crank) then
         crank_moment = drive%torque
-        on_crank = on_crank + crank_moment
-        per_determinant = 1/(m%crank_term*m%rod_term - m12**2)
+        per_determinant = 1/(m%inertia_product - m12**2)
         accelerations%crank = (on_crank*m%rod_term - on_rod*m12)*per_determinant
         accelerations%rod = (on_rod*m%crank_term - on_crank*m12)*per_determinant
       else
         accelerations%crank = 0
         accelerations%rod = on_rod/m%rod_term
-        crank_moment = m12*accelerations%rod - on_crank
+        crank_moment = m12*accelerations%rod - (on_crank - drive%torque)
       end if
       accelerations%piston = -(loads%gas_force + f(1))*m%per_piston_mass - m%gravity
-      accelerations%eccentricity(1) = -m%crank_length*(sin_q*accelerations%crank + cos_q*crank_speed**2) &
-        - m%rod_length*(sin_a*accelerations%rod + cos_a*motion%rod_speed**2) - accelerations%piston
-      accelerations%eccentricity(2) = m%crank_length*(cos_q*accelerations%crank - sin_q*crank_speed**2) &
-        - m%rod_length*(cos_a*accelerations%rod - sin_a*motion%rod_speed**2)
+      accelerations%eccentricity(1) = -(crank(1)*motion%crank_speed**2 + rod(1)*motion%rod_speed**2 + accelerations%piston) &
+        - (crank(2)*accelerations%crank + rod(2)*accelerations%rod)
+      accelerations%eccentricity(2) = (rod(2)*motion%rod_speed**2 - crank(2)*motion%crank_speed**2) &
+        + (crank(1)*accelerations%crank - rod(1)*accelerations%rod)
     end associate
   end subroutine accelerations_under
 end module dynamics

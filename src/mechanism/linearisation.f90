@@ -31,7 +31,7 @@ contains
     end associate
   end function motion_change
 
-  !> Changes of q'', e_x'' and e_y'' with a change of the motion and of the loads.
+  !> Changes of q'', e_x'', e_y'' and A'' with a change of the motion and of the loads.
   pure function acceleration_change(mechanism, drive, loads, motion, accelerations, change, load_change) result(a)
     type(mechanism_t), intent(in) :: mechanism
     type(drive_t), intent(in) :: drive
@@ -39,7 +39,7 @@ contains
     type(motion_t), intent(in) :: motion
     type(accelerations_t), intent(in) :: accelerations
     type(motion_change_t), intent(in) :: change
-    real(dp) :: a(3)
+    real(dp) :: a(4)
     real(dp) :: m11, m12, m22, slope, sum_angle, on_crank, on_rod, crank, rod, weight_c, weight_r(2)
 
     call mechanism%coupling(motion, m12, slope)
@@ -66,6 +66,7 @@ contains
         + (load_change%gas_force + df(1))/mechanism%piston_mass
       a(3) = -r*(cq*qd**2 + sq*accelerations%crank)*change%crank_angle - 2*r*sq*qd*change%crank_speed + r*cq*crank &
         + l*(ca*ad**2 + sa*accelerations%rod)*change%rod_angle + 2*l*sa*ad*change%rod_speed - l*ca*rod
+      a(4) = rod
     end associate
   end function acceleration_change
 end module linearisation

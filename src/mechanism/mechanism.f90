@@ -25,6 +25,7 @@ module mechanism
     real(dp) :: gravity = 0         !! along -x [m/s^2]
     real(dp) :: crank_term = 0      !! m11 = I_crank + m_crank (U_c^2 + V_c^2) + m_rod R^2 [kg m^2]
     real(dp) :: rod_term = 0        !! m22 = I_rod + m_rod (U_r^2 + V_r^2) [kg m^2]
+    real(dp) :: inertia_product = 0 !! m11 m22 [kg^2 m^4]
     real(dp) :: static_moment(2) = 0 !! m_rod R (U_r, V_r) [kg m^2]
     real(dp) :: crank_weight(2) = 0 !! gravity's moment on q is (1) sin q + (2) cos q [N m]
     real(dp) :: rod_weight(2) = 0   !! and on A (1) sin A - (2) cos A [N m]
@@ -81,6 +82,7 @@ contains
     m%gravity = gravity
     m%crank_term = crank_inertia + crank_mass*sum(crank_com**2) + rod_mass*crank_length**2
     m%rod_term = rod_inertia + rod_mass*sum(rod_com**2)
+    m%inertia_product = m%crank_term*m%rod_term
     m%static_moment = rod_mass*crank_length*rod_com
     m%crank_weight = gravity*[crank_mass*crank_com(1) + rod_mass*crank_length, crank_mass*crank_com(2)]
     m%rod_weight = gravity*rod_mass*rod_com
@@ -93,11 +95,12 @@ contains
     class(mechanism_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
     real(dp), intent(out) :: m12, slope
-    real(dp) :: sin_s, cos_s
-    sin_s = motion%sin_crank*motion%cos_rod + motion%cos_crank*motion%sin_rod
-    cos_s = motion%cos_crank*motion%cos_rod - motion%sin_crank*motion%sin_rod
-    m12 = -(self%static_moment(1)*cos_s + self%static_moment(2)*sin_s)
-    slope = self%static_moment(1)*sin_s - self%static_moment(2)*cos_s
+    real(dp) :: along, across
+    ! by the sines and cosines of q first, which are known before those of A
+    along = self%static_moment(1)*motion%cos_crank + self%static_moment(2)*motion%sin_crank
+    across = self%static_moment(1)*motion%sin_crank - self%static_moment(2)*motion%cos_crank
+    m12 = across*motion%sin_rod - along*motion%cos_rod
+    slope = across*motion%cos_rod + along*motion%sin_rod
   end subroutine coupling
 
   !> Kinetic energy of the three bodies [J].

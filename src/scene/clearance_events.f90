@@ -1,8 +1,7 @@
 !> Events of the scene with clearance: contact begins and ends, set-valued friction changes, the crank passes a bound of the gas.
 submodule (clearance_scene) clearance_events
   use ode_problem, only: step_admitted, step_too_deep, event_continue
-  use mechanism, only: accelerations_t
-  use scene, only: phase_free, event_none, event_contact_begins, event_contact_ends, n_gas_events
+  use scene, only: event_none, event_contact_begins, event_contact_ends, n_gas_events
   implicit none
 
   !> Event functions of the integrator.
@@ -58,30 +57,16 @@ contains
       g = abs(now%friction_force) - sticking_limit(self, now%normal_force)
     else
       g = -self%sliding*now%joint%sliding_speed
-      g_rate = -self%sliding*sliding_rate(self, now, now%accelerations)
+      g_rate = -self%sliding*sliding_acceleration(self, now)
     end if
   end subroutine find_sliding_change
 
   module procedure sliding_acceleration
-    type(accelerations_t) :: accelerations
-    type(loads_t) :: loads
-    real(dp) :: tangent(2), moment
-    tangent = [-now%joint%normal(2), now%joint%normal(1)]
-    loads = now%loads
-    loads%pin_force = -now%normal_force*now%joint%normal + friction_force*tangent
-    loads%pin_moment = friction_force*self%joint%pin_radius
-    call accelerations_under(self%mechanism, self%drive, loads, now%motion, accelerations, moment)
-    sliding_acceleration = sliding_rate(self, now, accelerations)
+    associate (joint => now%joint, n => now%joint%normal, a => now%accelerations)
+      sliding_acceleration = (n(1)*a%eccentricity(2) - n(2)*a%eccentricity(1)) &
+        - joint%tangential_rate*joint%penetration_rate/joint%distance - a%rod*self%joint%pin_radius
+    end associate
   end procedure sliding_acceleration
-
-  !> v_T' under these accelerations [m/s^2].
-  pure real(dp) function sliding_rate(self, now, accelerations)
-    class(clearance_scene_t), intent(in) :: self
-    type(evaluation_t), intent(in) :: now
-    type(accelerations_t), intent(in) :: accelerations
-    sliding_rate = (now%joint%normal(1)*accelerations%eccentricity(2) - now%joint%normal(2)*accelerations%eccentricity(1)) &
-      - now%joint%tangential_rate*now%joint%penetration_rate/now%joint%distance - accelerations%rod*self%joint%pin_radius
-  end function sliding_rate
 
   !> Largest friction force that a set-valued law can give [N].
   pure real(dp) function sticking_limit(self, normal_force)

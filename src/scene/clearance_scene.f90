@@ -5,13 +5,13 @@ module clearance_scene
   use mechanism, only: motion_t
   use dynamics, only: loads_t, accelerations_under
   use ideal_joint, only: follow_crank, ideal_rod_acceleration
-  use clearance_joint, only: joint_geometry_t, find_joint_motion, sliding_speed, clearance_motion
+  use clearance_joint, only: joint_geometry_t, find_joint_motion, sliding_speed, find_rod, find_piston
   use linearisation, only: motion_change_t, motion_change, acceleration_change
   use contact_law, only: contact_law_t
   use friction_law, only: friction_law_t
   use archive, only: archive_t
   use film_law, only: film_law_t, film_motion_t
-  use scene, only: scene_t, evaluation_t, phase_film, phase_contact
+  use scene, only: scene_t, evaluation_t, phase_free, phase_film, phase_contact
   implicit none
   private
   public :: clearance_scene_t
@@ -103,11 +103,10 @@ module clearance_scene
       class(clearance_scene_t), intent(inout) :: self
     end subroutine prepare_start
 
-    !> v_T' = t . e'' - gamma' n . e' + omega_rod' R_pin under a friction force, with gamma' = t . e'/|e| [m/s^2].
-    pure real(dp) module function sliding_acceleration(self, now, friction_force)
+    !> v_T' = t . e'' - gamma' n . e' + omega_rod' R_pin, with gamma' = t . e'/|e| [m/s^2].
+    pure real(dp) module function sliding_acceleration(self, now)
       class(clearance_scene_t), intent(in) :: self
       type(evaluation_t), intent(in) :: now
-      real(dp), intent(in) :: friction_force
     end function sliding_acceleration
   end interface
 
@@ -115,25 +114,33 @@ contains
 
   pure subroutine derivatives(self, t, y, dydt, inside)
     class(clearance_scene_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    real(dp), intent(out) :: dydt(:)
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: inside
     type(evaluation_t) :: now
-    integer :: m
-    call find_accelerations(self, t, self%n, y, now, inside)
+    integer :: last   ! of the work
+    call find_accelerations(self, t, y, .false., now, inside)
     if (.not. inside) return
-    m = self%n_positions
-    if (self%drive%free_crank) then
-      dydt(1) = now%motion%crank_speed
-      dydt(4) = now%accelerations%crank
-    end if
-    dydt(m - 1) = now%joint%eccentricity_rate(1)
-    dydt(m) = now%joint%eccentricity_rate(2)
-    dydt(2*m - 1) = now%accelerations%eccentricity(1)
-    dydt(2*m) = now%accelerations%eccentricity(2)
-    dydt(2*m + 1) = now%power
-    if (self%n_measures > 0) dydt(2*m + 2) = sqrt(now%loads%pin_force(1)**2 + now%loads%pin_force(2)**2)
-    if (self%n_measures > 1) dydt(2*m + 3) = -joint_power(now)
+    associate (rate => now%joint%eccentricity_rate, acceleration => now%accelerations%eccentricity)
+      if (self%drive%free_crank) then
+        dydt(1) = now%motion%crank_speed
+        dydt(2) = rate(1)
+        dydt(3) = rate(2)
+        dydt(4) = now%accelerations%crank
+        dydt(5) = acceleration(1)
+        dydt(6) = acceleration(2)
+        last = 7
+      else
+        dydt(1) = rate(1)
+        dydt(2) = rate(2)
+        dydt(3) = acceleration(1)
+        dydt(4) = acceleration(2)
+        last = 5
+      end if
+    end associate
+    dydt(last) = now%power
+    if (self%n_measures > 0) dydt(last + 1) = sqrt(now%loads%pin_force(1)**2 + now%loads%pin_force(2)**2)
+    if (self%n_measures > 1) dydt(last + 2) = -joint_power(now)
   end subroutine derivatives
 
   !> Power of the joint on the bodies [W]: of its force along the eccentricity and of its moment along the turning pin.
@@ -166,69 +173,103 @@ contains
 
   pure subroutine evaluate(self, t, y, evaluation, inside)
     class(clearance_scene_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(in) :: t, y(self%n)
     type(evaluation_t), intent(out) :: evaluation
     logical, intent(out) :: inside
     evaluation%cylinder_pressure = 0
-    call find_accelerations(self, t, self%n, y, evaluation, inside)
-    if (self%phase /= phase_contact) then
-      call find_joint_motion(self%joint, evaluation%joint)
-      evaluation%normal_force = 0
-      evaluation%friction_force = 0
-    end if
+    evaluation%normal_force = 0
+    evaluation%friction_force = 0
+    call find_accelerations(self, t, y, .true., evaluation, inside)
     if (.not. inside) return
     evaluation%joint%sliding_speed = sliding_speed(self%joint, evaluation%joint%tangential_rate, -evaluation%motion%rod_speed)
   end subroutine evaluate
 
-  !> Motion, loads, accelerations and power, as far as the present phase needs them: the right-hand side, and what
-  !> `evaluate` completes. `inside` is false where the pin cannot be.
-  pure subroutine find_accelerations(self, t, n, y, now, inside)
+  !> Motion, loads, accelerations and power; the joint in polar terms and the piston only as far as the present phase needs
+  !> them, unless it is to be `complete`. `inside` is false where the pin cannot be.
+  !>
+  !> The order is for speed: a processor has room for half of this ahead. What waits for the sine and cosine comes last, and
+  !> what needs neither comes right after them.
+  pure subroutine find_accelerations(self, t, y, complete, now, inside)
     class(clearance_scene_t), intent(in) :: self
-    integer, intent(in) :: n
-    real(dp), intent(in) :: t, y(n)
+    real(dp), intent(in) :: t, y(self%n)
+    logical, value, intent(in) :: complete
     type(evaluation_t), intent(inout) :: now
     logical, intent(out) :: inside
-    real(dp) :: angle, speed, distance_squared
+    real(dp) :: crank_angle
+    logical :: sticks
 
-    associate (e => now%joint%eccentricity, rate => now%joint%eccentricity_rate, loads => now%loads)
+    call read_state(self, t, y, crank_angle, now)
+    now%motion%crank_angle = crank_angle
+    now%motion%sin_crank = sin(crank_angle)
+    now%motion%cos_crank = cos(crank_angle)
+    if (complete .or. self%phase == phase_contact) call find_joint_motion(self%joint, now%joint)
+    if (self%phase == phase_contact) now%normal_force = &
+      self%contact%normal_force(now%joint%penetration, now%joint%penetration_rate, self%impact_speed)
+    now%loads%gas_force = 0
+    if (allocated(self%gas)) call self%add_gas(crank_angle, now)
+    call find_rod(self%mechanism, now%joint%eccentricity, now%joint%eccentricity_rate, now%motion, inside)
+    inside = inside .and. may_be_at(self, now%joint%eccentricity)
+    if (.not. inside) return
+    if (complete .or. allocated(self%gas)) &
+      call find_piston(self%mechanism, now%joint%eccentricity, now%joint%eccentricity_rate, now%motion)
+    sticks = .false.
+    select case (self%phase)
+    case (phase_contact)
+      call add_contact(self, now, sticks)
+    case (phase_film)
+      call self%film%film_force(film_motion(self, now), now%loads%pin_force, now%loads%pin_moment)
+    case default
+      now%loads%pin_force = 0
+      now%loads%pin_moment = 0
+    end select
+    do
+      call accelerations_under(self%mechanism, self%drive, now%loads, now%motion, now%accelerations, now%crank_moment)
+      if (.not. sticks) exit
+      call hold_pin(self, now)   ! found without friction: once more with the one that holds the pin
+      sticks = .false.
+    end do
+    associate (speed => now%motion%crank_speed)
+      now%power = (now%crank_moment - self%drive%damping*speed)*speed
+      if (self%phase /= phase_free) now%power = now%power + joint_power(now)
+      if (allocated(self%gas)) now%power = now%power - now%loads%gas_force*now%motion%piston_velocity
+    end associate
+  end subroutine find_accelerations
+
+  !> Crank and eccentricity from the state.
+  pure subroutine read_state(self, t, y, crank_angle, now)
+    class(clearance_scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: crank_angle
+    type(evaluation_t), intent(inout) :: now
+    associate (e => now%joint%eccentricity, rate => now%joint%eccentricity_rate)
       if (self%drive%free_crank) then
-        angle = y(1)
-        speed = y(4)
+        crank_angle = y(1)
+        now%motion%crank_speed = y(4)
         e(1) = y(2)
         e(2) = y(3)
         rate(1) = y(5)
         rate(2) = y(6)
       else
-        angle = self%start_angle + self%start_speed*t
-        speed = self%start_speed
+        crank_angle = self%start_angle + self%start_speed*t
+        now%motion%crank_speed = self%start_speed
         e(1) = y(1)
         e(2) = y(2)
         rate(1) = y(3)
         rate(2) = y(4)
       end if
-      if (self%phase == phase_contact) call press(self, now)   ! first, beside the sine and cosine that it does not need
-      call clearance_motion(self%mechanism, angle, speed, e, rate, now%motion, inside)
-      distance_squared = e(1)**2 + e(2)**2
-      inside = inside .and. distance_squared < self%joint%bearing_radius**2   ! beyond, the pin is through its bearing
-      if (.not. inside) return
-      now%loads%gas_force = 0
-      if (allocated(self%gas)) call self%add_gas(now)
-      select case (self%phase)
-      case (phase_contact)
-        call add_contact(self, now)
-      case (phase_film)
-        inside = distance_squared < self%joint%clearance**2 .or. .not. self%film%singular_at_wall
-        if (.not. inside) return
-        call self%film%film_force(film_motion(self, now), loads%pin_force, loads%pin_moment)
-      case default
-        loads%pin_force = 0
-        loads%pin_moment = 0
-      end select
-      call accelerations_under(self%mechanism, self%drive, loads, now%motion, now%accelerations, now%crank_moment)
-      now%power = (now%crank_moment - self%drive%damping*speed)*speed - loads%gas_force*now%motion%piston_velocity &
-        + joint_power(now)
     end associate
-  end subroutine find_accelerations
+  end subroutine read_state
+
+  !> Whether the pin may be there: inside the bearing's wall and, where a film is singular, inside the clearance.
+  pure logical function may_be_at(self, e)
+    class(clearance_scene_t), intent(in) :: self
+    real(dp), intent(in) :: e(2)
+    real(dp) :: distance_squared
+    distance_squared = e(1)**2 + e(2)**2
+    may_be_at = distance_squared < self%joint%bearing_radius**2
+    if (self%phase == phase_film) &
+      may_be_at = may_be_at .and. (distance_squared < self%joint%clearance**2 .or. .not. self%film%singular_at_wall)
+  end function may_be_at
 
   !> Derivatives of the accelerations by positions and rates, in closed form but for films that have none, and for a pin
   !> that sticks.
@@ -239,7 +280,7 @@ contains
     type(evaluation_t) :: now
     type(motion_change_t) :: change
     type(loads_t) :: load_change
-    real(dp) :: force(3, 5), direction(6), a(3)
+    real(dp) :: force(3, 5), direction(6), loads(3), a(4)
     logical :: inside
     integer :: i, skip
 
@@ -260,16 +301,16 @@ contains
       direction = 0
       direction(i) = 1   ! of q, e_x, e_y, q', e_x', e_y'
       change = motion_change(self%mechanism, now%motion, direction(1), direction(4), direction(3), direction(6))
-      a = matmul(force(:, 1:2), direction(2:3)) + matmul(force(:, 3:4), direction(5:6)) - force(:, 5)*change%rod_speed
-      load_change%pin_force = a(1:2)
-      load_change%pin_moment = a(3)
+      loads = matmul(force(:, 1:2), direction(2:3)) + matmul(force(:, 3:4), direction(5:6)) - force(:, 5)*change%rod_speed
+      load_change%pin_force = loads(1:2)
+      load_change%pin_moment = loads(3)
       load_change%gas_force = 0
       if (allocated(self%gas) .and. i == 1) load_change%gas_force = self%gas_force_slope(now%motion%crank_angle)
       a = acceleration_change(self%mechanism, self%drive, now%loads, now%motion, now%accelerations, change, load_change)
       if (i <= 3) then
-        a_p(:, i - skip) = a(1 + skip:)
+        a_p(:, i - skip) = a(1 + skip:3)
       else
-        a_v(:, i - 3 - skip) = a(1 + skip:)
+        a_v(:, i - 3 - skip) = a(1 + skip:3)
       end if
     end do
   end subroutine jacobian
@@ -325,45 +366,44 @@ contains
     end if
   end function film_motion
 
-  !> The joint in polar terms and the normal force, from the eccentricity and its rate alone.
-  pure subroutine press(self, now)
+  !> Friction and the joint's loads. Where the pin `sticks` there is none yet: `hold_pin` finds it.
+  pure subroutine add_contact(self, now, sticks)
     class(clearance_scene_t), intent(in) :: self
     type(evaluation_t), intent(inout) :: now
-    call find_joint_motion(self%joint, now%joint)
-    now%normal_force = self%contact%normal_force(now%joint%penetration, now%joint%penetration_rate, self%impact_speed)
-  end subroutine press
-
-  !> Friction, then the joint's loads: force -F_N n + F_T t on the pin, moment F_T R_pin.
-  pure subroutine add_contact(self, now)
-    class(clearance_scene_t), intent(in) :: self
-    type(evaluation_t), intent(inout) :: now
-    real(dp) :: friction
-    friction = 0
+    logical, intent(out) :: sticks
+    sticks = .false.
+    now%friction_force = 0
     if (allocated(self%friction)) then
       now%joint%sliding_speed = sliding_speed(self%joint, now%joint%tangential_rate, -now%motion%rod_speed)
-      if (self%friction%set_valued .and. self%sliding == 0) then
-        friction = sticking_force(self, now)
-      else
-        friction = now%normal_force*self%friction%friction_ratio(now%joint%sliding_speed, self%sliding)
-      end if
+      sticks = self%friction%set_valued .and. self%sliding == 0
+      if (.not. sticks) now%friction_force = now%normal_force*self%friction%friction_ratio(now%joint%sliding_speed, self%sliding)
     end if
-    now%friction_force = friction
-    now%loads%pin_moment = friction*self%joint%pin_radius
-    associate (n => now%joint%normal, pressing => now%normal_force)
-      now%loads%pin_force = [-pressing*n(1) - friction*n(2), friction*n(1) - pressing*n(2)]
-    end associate
+    call put_contact_loads(self, now)
   end subroutine add_contact
 
-  !> The friction force that keeps the sliding speed constant: v_T' is linear in it. `now` holds the normal force.
-  pure real(dp) function sticking_force(self, now)
+  !> The joint's loads in contact: force -F_N n + F_T t on the pin, moment F_T R_pin.
+  pure subroutine put_contact_loads(self, now)
     class(clearance_scene_t), intent(in) :: self
-    type(evaluation_t), intent(in) :: now
-    real(dp) :: without, change, unit
-    unit = max(now%normal_force, 1.0_dp)
-    without = sliding_acceleration(self, now, 0.0_dp)
-    change = sliding_acceleration(self, now, unit) - without
-    sticking_force = -unit*without/change
-  end function sticking_force
+    type(evaluation_t), intent(inout) :: now
+    associate (n => now%joint%normal, pressing => now%normal_force, friction => now%friction_force)
+      now%loads%pin_force(1) = -pressing*n(1) - friction*n(2)
+      now%loads%pin_force(2) = friction*n(1) - pressing*n(2)
+      now%loads%pin_moment = friction*self%joint%pin_radius
+    end associate
+  end subroutine put_contact_loads
+
+  !> Add the friction force that keeps the sliding speed constant: v_T' is linear in it. `now` is found without it.
+  pure subroutine hold_pin(self, now)
+    class(clearance_scene_t), intent(in) :: self
+    type(evaluation_t), intent(inout) :: now
+    type(motion_change_t) :: none
+    type(loads_t) :: unit
+    real(dp) :: a(4)
+    unit = loads_t([-now%joint%normal(2), now%joint%normal(1)], self%joint%pin_radius, 0.0_dp)
+    a = acceleration_change(self%mechanism, self%drive, now%loads, now%motion, now%accelerations, none, unit)
+    now%friction_force = -sliding_acceleration(self, now)/(dot_product(unit%pin_force, a(2:3)) - a(4)*unit%pin_moment)
+    call put_contact_loads(self, now)
+  end subroutine hold_pin
 
   !> The discrete state, to or from an archive.
   subroutine exchange(self, archive)

@@ -29,8 +29,8 @@ contains
 
   pure subroutine derivatives(self, t, y, dydt, inside)
     class(ideal_scene_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    real(dp), intent(out) :: dydt(:)
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: inside
     type(evaluation_t) :: now
     inside = .true.
@@ -45,7 +45,7 @@ contains
 
   pure subroutine evaluate(self, t, y, evaluation, inside)
     class(ideal_scene_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(in) :: t, y(self%n)
     type(evaluation_t), intent(out) :: evaluation
     logical, intent(out) :: inside
     inside = .true.
@@ -67,7 +67,7 @@ contains
       call find_ideal_motion(self%mechanism, self%start_angle + self%start_speed*t, self%start_speed, now%motion)
     end if
     now%loads%gas_force = 0
-    if (allocated(self%gas)) call self%add_gas(now)
+    if (allocated(self%gas)) call self%add_gas(now%motion%crank_angle, now)
     call ideal_accelerations(self%mechanism, self%drive, now%motion, now%loads, now%accelerations, now%crank_moment)
     now%power = (now%crank_moment - self%drive%damping*now%motion%crank_speed)*now%motion%crank_speed &
       - now%loads%gas_force*now%motion%piston_velocity

@@ -84,7 +84,7 @@ module scene
     pure subroutine evaluate(self, t, y, evaluation, inside)
       import :: scene_t, evaluation_t, dp
       class(scene_t), intent(in) :: self
-      real(dp), intent(in) :: t, y(:)
+      real(dp), intent(in) :: t, y(self%n)
       type(evaluation_t), intent(out) :: evaluation
       logical, intent(out) :: inside
     end subroutine evaluate
@@ -217,11 +217,12 @@ contains
     call self%gas%part_at(crank_angle, crank_speed < 0, self%gas_part, self%gas_cycle_start)
   end subroutine set_gas_part
 
-  !> Pressure and force of the gas at the crank angle of `now`, in a scene with gas.
-  pure subroutine add_gas(self, now)
+  !> Pressure and force of the gas at a crank angle [rad], in a scene with gas.
+  pure subroutine add_gas(self, crank_angle, now)
     class(scene_t), intent(in) :: self
+    real(dp), value, intent(in) :: crank_angle
     type(evaluation_t), intent(inout) :: now
-    now%cylinder_pressure = self%gas%pressure(now%motion%crank_angle, self%gas_part, self%gas_cycle_start)
+    now%cylinder_pressure = self%gas%pressure(crank_angle, self%gas_part, self%gas_cycle_start)
     now%loads%gas_force = self%gas%gas_force(now%cylinder_pressure)
   end subroutine add_gas
 
