@@ -23,7 +23,7 @@ module adams
   use ode_problem, only: ode_problem_t, step_admitted, step_too_deep
   use ode_method, only: ode_method_t, highest_order, step_done, step_too_small, tolerance_too_small, left_domain, limit_start
   use adams_coefficients, only: adams_coefficients_t
-  use adams_differences, only: extrapolate, raise_differences
+  use adams_differences, only: extrapolate, correct, advance
   use archive, only: archive_t
   implicit none
   private
@@ -48,6 +48,7 @@ module adams
     type(adams_coefficients_t) :: coefficients
     real(dp) :: moulton(highest_order + 1) = 0    !! |gamma*_i|
     integer :: n = 0                    !! equations
+    integer :: blocks = 0               !! of `lanes` components, n and zeros; arrays of (blocks*lanes) are said to be wide
     integer :: k = 1                    !! order of the next step
     integer :: k_old = 0                !! order of the last accepted step, 0 at a start
     logical :: closed = .false.         !! `closing` belongs to the last accepted step
@@ -62,11 +63,14 @@ module adams
     logical :: higher_known = .false.   !! phi_k+2 tells the error at order k+1
     real(dp) :: rounding = 0            !! weighted norm of the rounding of y
     logical :: opening = .true.         !! order and step are still being raised from the start
-    real(dp), allocatable :: phi(:, :)  !! modified divided differences, (n, highest_order+2)
-    real(dp), allocatable :: predicted(:), f_predicted(:), f_new(:), y_new(:)
-    real(dp), allocatable :: inverse_weight(:)       !! 1/(relative |y| + absolute), 0: not controlled
-    real(dp), allocatable :: carry(:), carry_predicted(:)  !! what the rounding of y left out
-    real(dp), allocatable :: closing(:) !! coefficient of the last polynomial of the interpolant
+    integer :: owing = 0                !! columns of phi that lack the highest difference
+    real(dp), allocatable :: phi(:, :)  !! modified divided differences, (wide, highest_order+2)
+    real(dp), allocatable :: state(:)   !! y, wide
+    real(dp), allocatable :: predicted(:), f_predicted(:), f_new(:), y_new(:)   !! wide
+    real(dp), allocatable :: relative(:), absolute(:) !! tolerances, wide
+    real(dp), allocatable :: inverse_weight(:)       !! 1/(relative |y| + absolute), 0: not controlled; wide
+    real(dp), allocatable :: carry(:), carry_new(:)  !! what the rounding of y and of what follows it left out, wide
+    real(dp), allocatable :: closing(:) !! coefficient of the last polynomial of the interpolant, wide
   contains
     procedure :: prepare
     procedure :: start
@@ -110,16 +114,10 @@ module adams
       type(archive_t), intent(inout) :: archive
     end subroutine exchange
 
-    !> Weights of the error norm at the present state.
+    !> Weights of the error norm at the present state, and the rounding of the state in it.
     pure module subroutine weigh(self)
       class(adams_t), intent(inout) :: self
     end subroutine weigh
-
-    !> The norm in which errors are measured: 1 is the tolerance.
-    pure real(dp) module function weighted_norm(self, values)
-      class(adams_t), intent(in) :: self
-      real(dp), intent(in) :: values(:)
-    end function weighted_norm
 
     !> How far the clock goes while the time goes by dt from the end of the last accepted step.
     pure real(dp) module function clock_step(self, dt)
@@ -154,9 +152,9 @@ module adams
     !> order though the mode itself is not being followed any more. A wider sense of it, `bound`, keeps the order from rising:
     !> measured on the films, at 1e-6 it saves 40 % of the evaluations. On the films the integral of rho dt so estimated
     !> agrees with that of the eigenvalues (1.04e4, 2.14e5, 2.49e6) within 1 %.
-    pure module subroutine count_limit(self, x_new)
+    pure module subroutine count_limit(self, t_new)
       class(adams_t), intent(inout) :: self
-      real(dp), intent(in) :: x_new
+      real(dp), intent(in) :: t_new   !! end of the step
     end subroutine count_limit
 
     !> The order and size of the next step (Shampine & Gordon, ch. 7): order raised while opening; else where the
@@ -217,7 +215,6 @@ contains
     call respect_rough_time(self)
     failures = 0
     outcome = try_accepted
-    self%rounding = epsilon(1.0_dp)*weighted_norm(self, self%y)
     if (0.5_dp < 2*self%rounding .and. .not. self%settings%fixed_step > 0) then
       status = tolerance_too_small
       return
@@ -252,9 +249,10 @@ contains
   pure subroutine predict(self)
     class(adams_t), intent(inout) :: self
     associate (c => self%coefficients)
-      call extrapolate(self%n, self%k, c%ns, self%h, c%g, c%beta, c%beta_next, self%y, self%carry, self%phi, self%predicted, &
-        self%carry_predicted)
+      call extrapolate(self%blocks, self%k, self%owing, self%h, c%g, c%beta, c%beta_next, self%state, self%carry, self%phi, &
+        self%predicted, self%carry_new)
     end associate
+    self%owing = 0
   end subroutine predict
 
   !> Evaluate, estimate the error, correct, let the problem judge, evaluate again.
@@ -271,44 +269,36 @@ contains
     fraction = 0.5_dp
     outcome = try_outside
     self%statistics%evaluations = self%statistics%evaluations + 1
-    call problem%derivatives(t_new, self%predicted, self%f_predicted, inside)
+    call problem%derivatives(t_new, self%predicted(:self%n), self%f_predicted(:self%n), inside)
     if (.not. inside) return
-    if (self%rooted) self%f_predicted(:self%n) = 2*x_new*self%f_predicted(:self%n)
+    if (self%rooted) self%f_predicted = 2*x_new*self%f_predicted
     call estimate_errors(self, errors)
     if (.not. errors%step <= 1 .and. .not. self%settings%fixed_step > 0) then   ! a NaN is an error too
       outcome = try_error
       return
     end if
-    call correct(self)
-    call problem%judge_step(self%t, self%y, t_new, self%y_new, verdict, fraction)
+    call correct(self%blocks, self%h*self%coefficients%g(self%k + 1), self%f_predicted, self%phi, self%predicted, &
+      self%y_new, self%carry_new)
+    call problem%judge_step(self%t, self%y, t_new, self%y_new(:self%n), verdict, fraction)
     if (verdict == step_too_deep) outcome = try_too_deep
     if (verdict /= step_admitted) return
     self%statistics%evaluations = self%statistics%evaluations + 1
-    call problem%derivatives(t_new, self%y_new, self%f_new, inside)
+    call problem%derivatives(t_new, self%y_new(:self%n), self%f_new(:self%n), inside)
     if (.not. inside) then
       fraction = 0.5_dp
       return
     end if
-    if (self%rooted) self%f_new(:self%n) = 2*x_new*self%f_new(:self%n)
+    if (self%rooted) self%f_new = 2*x_new*self%f_new
     outcome = try_accepted
   end subroutine attempt
-
-  !> Correct to order k+1.
-  pure subroutine correct(self)
-    class(adams_t), intent(inout) :: self
-    real(dp) :: factor
-    factor = self%h*self%coefficients%g(self%k + 1)
-    self%y_new = self%predicted + (factor*(self%f_predicted(:self%n) - self%phi(:, 1)) - self%carry_predicted)
-  end subroutine correct
 
   !> The step stands: update the differences with the second evaluation.
   pure subroutine accept(self, x_new, t_new)
     class(adams_t), intent(inout) :: self
     real(dp), intent(in) :: x_new, t_new
-    real(dp) :: factor
     integer :: i, k
 
-    call count_limit(self, x_new)
+    call count_limit(self, t_new)
     k = self%k
     self%higher_known = k < self%coefficients%ns .or. self%k_old >= k .and. .not. self%bound
     self%k_old = k
@@ -317,16 +307,14 @@ contains
     self%t = t_new
     self%x_old = self%x
     self%x = x_new
-    factor = self%h*self%coefficients%g(k + 1)
+    call advance(self%blocks, k, self%f_new, self%y_new, self%carry_new, self%phi, self%state, self%carry)
+    self%owing = k
     do i = 1, self%n
-      self%carry(i) = (self%y_new(i) - self%predicted(i)) - &
-        (factor*(self%f_predicted(i) - self%phi(i, 1)) - self%carry_predicted(i))
       self%y_old(i) = self%y(i)
       self%y(i) = self%y_new(i)
+      self%f(i) = self%f_new(i)
     end do
-    call raise_differences(self%n, k, self%f_new, self%phi)
-    self%f = self%f_new
-    if (self%rooted) self%f(:self%n) = self%f_new(:self%n)/(2*x_new)
+    if (self%rooted) self%f = self%f/(2*x_new)
     self%order = k
     self%closed = .false.
     associate (count => self%statistics)

@@ -2,29 +2,31 @@
 submodule (adams) adams_control
   use ode_method, only: limit_error, limit_stability, limit_max_step, limit_refusal
   use adams_coefficients, only: stability_limit
-  use adams_differences, only: restore_differences
-  use step_rates, only: fastest_mode
+  use adams_differences, only: lanes, restore_differences
+  use step_rates, only: norm, fastest_mode, path_rate
   implicit none
 contains
 
   module procedure weigh
-    real(dp) :: weight
-    integer :: i
-    do i = 1, self%n
-      weight = self%settings%relative(i)*abs(self%y(i)) + self%settings%absolute(i)
-      self%inverse_weight(i) = 0
-      if (weight > 0) self%inverse_weight(i) = 1/weight
-    end do
+    call weigh_components(self%blocks, self%relative, self%absolute, self%state, self%inverse_weight)
+    self%rounding = epsilon(1.0_dp)*norm(self%blocks, self%state, self%inverse_weight)
   end procedure weigh
 
-  module procedure weighted_norm
-    integer :: i
-    weighted_norm = 0
-    do i = 1, self%n
-      weighted_norm = weighted_norm + (values(i)*self%inverse_weight(i))**2
+  !> 1/(relative |y| + absolute), 0 where that is zero.
+  pure subroutine weigh_components(blocks, relative, absolute, y, inverse_weight)
+    integer, intent(in) :: blocks
+    real(dp), dimension(lanes, blocks), intent(in) :: relative, absolute, y
+    real(dp), intent(out) :: inverse_weight(lanes, blocks)
+    real(dp) :: weight
+    integer :: i, b
+    do b = 1, blocks
+      do i = 1, lanes
+        weight = relative(i, b)*abs(y(i, b)) + absolute(i, b)
+        inverse_weight(i, b) = 0
+        if (weight > 0) inverse_weight(i, b) = 1/weight
+      end do
     end do
-    weighted_norm = sqrt(weighted_norm)
-  end procedure weighted_norm
+  end subroutine weigh_components
 
   module procedure clock_step
     clock_step = dt
@@ -34,7 +36,7 @@ contains
   module procedure retreat
     real(dp) :: factor
 
-    call restore_differences(self%n, self%k, self%coefficients%beta, self%coefficients%beta_next, self%phi)
+    call restore_differences(lanes*self%blocks, self%k, self%coefficients%beta, self%coefficients%beta_next, self%phi)
     call self%coefficients%take_back(self%h, self%k)
     self%opening = .false.
     factor = fraction
@@ -57,20 +59,12 @@ contains
   end procedure retreat
 
   module procedure estimate_errors
-    real(dp) :: correction, weight, same, lower, lowest
-    integer :: i, k
+    real(dp) :: same, lower, lowest
+    integer :: k
 
     k = self%k
-    same = 0
-    lower = 0
-    lowest = 0
-    do i = 1, self%n
-      weight = self%inverse_weight(i)
-      correction = self%f_predicted(i) - self%phi(i, 1)
-      same = same + (correction*weight)**2
-      if (k >= 2) lower = lower + ((self%phi(i, k) + correction)*weight)**2
-      if (k >= 3) lowest = lowest + ((self%phi(i, k - 1) + correction)*weight)**2
-    end do
+    call correction_squares(self%blocks, self%f_predicted, self%phi, self%phi(:, k), self%phi(:, max(k - 1, 1)), &
+      self%inverse_weight, same, lower, lowest)
     same = self%h*sqrt(same)
     errors%step = same*(self%coefficients%g(k) - self%coefficients%g(k + 1))
     errors%same = same*self%coefficients%sigma(k + 1)*self%moulton(k)
@@ -81,6 +75,26 @@ contains
     if (k >= 3 .and. max(errors%lower, errors%lowest) <= errors%same) errors%order = k - 1
   end procedure estimate_errors
 
+  !> Squares of the weighted norms of the correction of f and of its sums with the two highest extrapolated differences.
+  pure subroutine correction_squares(blocks, f_predicted, first, highest, second_highest, inverse_weight, same, lower, lowest)
+    integer, intent(in) :: blocks
+    real(dp), dimension(lanes, blocks), intent(in) :: f_predicted, first, highest, second_highest, inverse_weight
+    real(dp), intent(out) :: same, lower, lowest
+    real(dp) :: correction
+    integer :: i, b
+    same = 0
+    lower = 0
+    lowest = 0
+    do b = 1, blocks
+      do i = 1, lanes
+        correction = f_predicted(i, b) - first(i, b)
+        same = same + (correction*inverse_weight(i, b))**2
+        lower = lower + ((highest(i, b) + correction)*inverse_weight(i, b))**2
+        lowest = lowest + ((second_highest(i, b) + correction)*inverse_weight(i, b))**2
+      end do
+    end do
+  end subroutine correction_squares
+
   module procedure respect_rough_time
     real(dp), parameter :: share = 1/6.0_dp   !! of the way there, in one step
     real(dp) :: way
@@ -90,20 +104,24 @@ contains
   end procedure respect_rough_time
 
   module procedure count_limit
-    real(dp) :: scale, reach, slow, near
+    real(dp) :: scale, reach, near, slow
     integer :: limit
-    scale = 1
-    if (self%rooted) scale = 2*self%x
-    call fastest_mode(self%n, self%h, self%inverse_weight, self%f, scale, self%f_predicted, self%f_new, self%y, &
-      self%predicted, self%y_new, 100*self%rounding, reach, slow)
+    reach = self%h*fastest_mode(self%blocks, self%inverse_weight, self%f_predicted, self%f_new, self%predicted, self%y_new, &
+      100*self%rounding)
     self%statistics%stiffness = self%statistics%stiffness + reach
     near = reach/stability_limit(self%k)
-    self%bound = near > 0.3_dp .and. slow < 0.6_dp
     limit = self%limit
-    if (limit == limit_error .and. near > 0.5_dp .and. slow < 0.3_dp) limit = limit_stability
+    self%bound = .false.
+    if (near > 0.3_dp) then
+      scale = 1
+      if (self%rooted) scale = 2*self%x
+      slow = self%h*path_rate(self%n, self%inverse_weight, self%f, scale, self%f_new, self%y, self%y_new)/reach
+      self%bound = slow < 0.6_dp
+      if (limit == limit_error .and. near > 0.5_dp .and. slow < 0.3_dp) limit = limit_stability
+    end if
     associate (count => self%statistics)
       count%limited_by(limit) = count%limited_by(limit) + 1
-      count%time_limited_by(limit) = count%time_limited_by(limit) + (time_at(self, x_new) - self%t)
+      count%time_limited_by(limit) = count%time_limited_by(limit) + (t_new - self%t)
     end associate
   end procedure count_limit
 
@@ -129,7 +147,8 @@ contains
       self%k = k - 1
       error = errors%lower
     else if (self%higher_known) then
-      higher = self%h*self%coefficients%sigma_next*self%moulton(k + 1)*weighted_norm(self, self%phi(:, k + 2))
+      higher = self%h*self%coefficients%sigma_next*self%moulton(k + 1) &
+        *norm(self%blocks, self%phi(:, k + 2), self%inverse_weight)
       if (k == 1) then
         if (higher < 0.5_dp*error .and. k < self%settings%max_order) self%k = 2
       else if (errors%lower <= min(error, higher)) then

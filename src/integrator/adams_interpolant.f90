@@ -1,6 +1,7 @@
 !> The solution inside the last step of the Adams method.
 submodule (adams) adams_interpolant
   use adams_coefficients, only: interpolation_weights
+  use adams_differences, only: add_weighted
   use bernstein, only: from_newton, integrate_polynomial
   implicit none
 contains
@@ -11,8 +12,8 @@ contains
   end procedure time_at
 
   module procedure interpolate
-    real(dp) :: weights(highest_order + 2), s
-    integer :: j, k
+    real(dp) :: weights(highest_order + 2), rates(size(self%closing)), s
+    integer :: k
 
     k = self%k_old
     s = t - self%t
@@ -23,11 +24,9 @@ contains
     end if
     if (.not. self%closed) call close_polynomial(self)
     call interpolation_weights(self%coefficients, k, s, weights)
-    y = weights(k + 2)*self%closing
-    do j = k + 1, 1, -1
-      y = y + weights(j)*self%phi(:, j)
-    end do
-    y = self%y + s*y
+    rates = weights(k + 2)*self%closing
+    call add_weighted(self%blocks, k, weights, self%phi, rates)
+    y = self%y + s*rates(:self%n)
   end procedure interpolate
 
   !> The coefficient of the last polynomial of the interpolant, which makes it pass through y at the beginning of the step.
@@ -37,24 +36,27 @@ contains
     integer :: j
     associate (k => self%k_old)
       call interpolation_weights(self%coefficients, k, self%x_old - self%x, weights)
-      self%closing = self%y_old - self%y
-      self%closing = self%closing/(self%x_old - self%x)
-      do j = 1, k + 1
-        self%closing = self%closing - weights(j)*self%phi(:, j)
+      self%closing(:self%n) = (self%y_old - self%y)/(self%x_old - self%x)
+      do j = 1, k
+        self%closing = self%closing - weights(j)*(self%phi(:, j) + self%phi(:, k + 1))
       end do
-      self%closing = self%closing/weights(k + 2)
+      self%closing = (self%closing - weights(k + 1)*self%phi(:, k + 1))/weights(k + 2)
       self%closed = .true.
     end associate
   end subroutine close_polynomial
 
   module procedure straying
-    integer :: j
+    real(dp) :: highest
+    integer :: j, k
+    k = self%k_old
+    highest = self%phi(component, k + 1)
     straying = 0
-    do j = 2, self%k_old + 1
-      straying = straying + abs(self%phi(component, j))
+    do j = 2, k
+      straying = straying + abs(self%phi(component, j) + highest)
     end do
+    straying = straying + abs(highest)
     straying = (self%x - self%x_old)*(0.5_dp*straying + &
-      abs(self%coefficients%g(self%k_old + 1)*(self%phi(component, 1) - self%f_predicted(component))))
+      abs(self%coefficients%g(k + 1)*((self%phi(component, 1) + highest) - self%f_predicted(component))))
   end procedure straying
 
   module procedure bernstein_form
@@ -73,7 +75,8 @@ contains
       end associate
     end do
     degree = k + 2
-    rates(:k + 1) = self%phi(component, :k + 1)
+    rates(:k) = self%phi(component, :k) + self%phi(component, k + 1)
+    rates(k + 1) = self%phi(component, k + 1)
     rates(k + 2) = self%closing(component)
     call from_newton(rates(:k + 2), low(:k + 1), high(:k + 1), form(:k + 1))
     call integrate_polynomial(self%y_old(component), h, form(:k + 1), coefficients(:degree))

@@ -2,7 +2,8 @@
 submodule (adams) adams_start
   use ode_method, only: start_outside, step_statistics_t
   use adams_coefficients, only: moulton_constants
-  use adams_differences, only: differences_of
+  use adams_differences, only: lanes, differences_of
+  use step_rates, only: norm
   implicit none
 contains
 
@@ -14,6 +15,7 @@ contains
     self%t_old = t
     self%y = y
     self%y_old = y
+    self%state(:self%n) = y
     self%order = 0
     self%closed = .false.
     self%carry = 0
@@ -33,7 +35,8 @@ contains
     self%opening = .true.
     call self%coefficients%reset()
     self%phi = 0
-    if (.not. self%rooted) self%phi(:, 1) = self%f(:self%n)
+    self%owing = 0
+    if (.not. self%rooted) self%phi(:self%n, 1) = self%f
     call weigh(self)
     call choose_first_step(self, problem)
     self%limit = limit_start
@@ -45,7 +48,7 @@ contains
     m = size(x)
     call self%start(problem, x(m), y, .true., status)
     if (status /= step_done) return
-    call differences_of(x, f(:self%n, :), self%phi(:, :m), self%coefficients%psi(:m - 1))
+    call differences_of(x, f(:self%n, :), self%phi(:self%n, :m), self%coefficients%psi(:m - 1))
     self%k = m
     self%k_old = m - 1
     self%h_old = self%coefficients%psi(1)
@@ -54,16 +57,22 @@ contains
   end procedure start_with_history
 
   module procedure prepare
-    integer :: n
+    integer :: n, width
     n = problem%n
     self%n = n
+    self%blocks = (n + lanes - 1)/lanes
+    width = lanes*self%blocks
     self%moulton = moulton_constants()
     self%statistics = step_statistics_t()
-    if (allocated(self%phi)) deallocate (self%phi, self%predicted, self%f_predicted, self%f_new, self%y_new, &
-      self%inverse_weight, self%carry, self%carry_predicted, self%closing, self%y, self%y_old, self%f)
-    allocate (self%phi(n, highest_order + 2), self%predicted(n), self%f_predicted(n), &
-      self%f_new(n), self%y_new(n), self%inverse_weight(n), self%carry(n), &
-      self%carry_predicted(n), self%closing(n), self%y(n), self%y_old(n), self%f(n))
+    if (allocated(self%phi)) deallocate (self%phi, self%state, self%predicted, self%f_predicted, self%f_new, self%y_new, &
+      self%relative, self%absolute, self%inverse_weight, self%carry, self%carry_new, self%closing, self%y, self%y_old, self%f)
+    allocate (self%y(n), self%y_old(n), self%f(n))
+    allocate (self%phi(width, highest_order + 2), source=0.0_dp)
+    allocate (self%state(width), self%predicted(width), self%f_predicted(width), self%f_new(width), self%y_new(width), &
+      self%relative(width), self%absolute(width), self%inverse_weight(width), self%carry(width), self%carry_new(width), &
+      self%closing(width), source=0.0_dp)
+    self%relative(:n) = self%settings%relative
+    self%absolute(:n) = self%settings%absolute
   end procedure prepare
 
   module procedure exchange
@@ -84,7 +93,9 @@ contains
     call archive%exchange(self%higher_known)
     call archive%exchange(self%rounding)
     call archive%exchange(self%opening)
+    call archive%exchange(self%owing)
     call archive%exchange(self%phi)
+    call archive%exchange(self%state)
     call archive%exchange(self%inverse_weight)
     call archive%exchange(self%carry)
     call archive%exchange(self%closing)
@@ -104,24 +115,25 @@ contains
       self%h = self%settings%fixed_step
       return
     end if
-    slope = weighted_norm(self, self%f)
+    self%f_new(:self%n) = self%f
+    slope = norm(self%blocks, self%f_new, self%inverse_weight)
     h = longest*1e-3_dp
     if (slope*h > 1) h = 1/slope
     resolution = epsilon(h)*max(abs(self%t), 1e-9_dp*self%settings%span)
     if (h < 10*resolution) h = 1e4_dp*resolution
     do tries = 1, 60
-      self%predicted = self%y + h*self%f(:self%n)
+      self%predicted = self%state + h*self%f_new
       self%statistics%evaluations = self%statistics%evaluations + 1
-      call problem%derivatives(self%t + h, self%predicted, self%f_predicted, inside)
+      call problem%derivatives(self%t + h, self%predicted(:self%n), self%f_predicted(:self%n), inside)
       if (inside) exit
       h = 0.1_dp*h
     end do
     curvature = 0
     if (inside .and. self%rooted) then   ! by the clock, y'' is 2 f at the start
-      curvature = 2*weighted_norm(self, self%f_predicted)
+      curvature = 2*norm(self%blocks, self%f_predicted, self%inverse_weight)
     else if (inside) then
-      self%f_predicted = self%f_predicted - self%f
-      curvature = weighted_norm(self, self%f_predicted)/h
+      self%f_predicted = self%f_predicted - self%f_new
+      curvature = norm(self%blocks, self%f_predicted, self%inverse_weight)/h
     end if
     if (self%rooted) then
       longest = sqrt(longest)
