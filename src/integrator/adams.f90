@@ -23,7 +23,7 @@ module adams
   use ode_problem, only: ode_problem_t, step_admitted, step_too_deep
   use ode_method, only: ode_method_t, highest_order, step_done, step_too_small, tolerance_too_small, left_domain, limit_start
   use adams_coefficients, only: adams_coefficients_t
-  use adams_differences, only: extrapolate, correct, advance
+  use adams_differences, only: lanes, extrapolate, correct, advance, change_clock
   use archive, only: archive_t
   implicit none
   private
@@ -63,9 +63,10 @@ module adams
     logical :: higher_known = .false.   !! phi_k+2 tells the error at order k+1
     real(dp) :: rounding = 0            !! weighted norm of the rounding of y
     logical :: opening = .true.         !! order and step are still being raised from the start
-    integer :: owing = 0                !! columns of phi that lack the highest difference
     real(dp), allocatable :: phi(:, :)  !! modified divided differences, (wide, highest_order+2)
+    real(dp), allocatable :: owed(:)    !! what the first columns of phi lack, wide
     real(dp), allocatable :: state(:)   !! y, wide
+    real(dp), allocatable :: f(:)       !! its rate by the clock, 0 at the start of a rooted one; wide
     real(dp), allocatable :: predicted(:), f_predicted(:), f_new(:), y_new(:)   !! wide
     real(dp), allocatable :: relative(:), absolute(:) !! tolerances, wide
     real(dp), allocatable :: inverse_weight(:)       !! 1/(relative |y| + absolute), 0: not controlled; wide
@@ -249,10 +250,9 @@ contains
   pure subroutine predict(self)
     class(adams_t), intent(inout) :: self
     associate (c => self%coefficients)
-      call extrapolate(self%blocks, self%k, self%owing, self%h, c%g, c%beta, c%beta_next, self%state, self%carry, self%phi, &
-        self%predicted, self%carry_new)
+      call extrapolate(self%blocks, self%k, self%k_old, self%h, c%g, c%beta, c%beta_next, self%state, self%carry, self%owed, &
+        self%phi, self%predicted, self%carry_new)
     end associate
-    self%owing = 0
   end subroutine predict
 
   !> Evaluate, estimate the error, correct, let the problem judge, evaluate again.
@@ -271,7 +271,7 @@ contains
     self%statistics%evaluations = self%statistics%evaluations + 1
     call problem%derivatives(t_new, self%predicted(:self%n), self%f_predicted(:self%n), inside)
     if (.not. inside) return
-    if (self%rooted) self%f_predicted = 2*x_new*self%f_predicted
+    if (self%rooted) call change_clock(self%blocks, 2*x_new, self%f_predicted)
     call estimate_errors(self, errors)
     if (.not. errors%step <= 1 .and. .not. self%settings%fixed_step > 0) then   ! a NaN is an error too
       outcome = try_error
@@ -288,7 +288,7 @@ contains
       fraction = 0.5_dp
       return
     end if
-    if (self%rooted) self%f_new = 2*x_new*self%f_new
+    if (self%rooted) call change_clock(self%blocks, 2*x_new, self%f_new)
     outcome = try_accepted
   end subroutine attempt
 
@@ -296,7 +296,7 @@ contains
   pure subroutine accept(self, x_new, t_new)
     class(adams_t), intent(inout) :: self
     real(dp), intent(in) :: x_new, t_new
-    integer :: i, k
+    integer :: k
 
     call count_limit(self, t_new)
     k = self%k
@@ -307,14 +307,8 @@ contains
     self%t = t_new
     self%x_old = self%x
     self%x = x_new
-    call advance(self%blocks, k, self%f_new, self%y_new, self%carry_new, self%phi, self%state, self%carry)
-    self%owing = k
-    do i = 1, self%n
-      self%y_old(i) = self%y(i)
-      self%y(i) = self%y_new(i)
-      self%f(i) = self%f_new(i)
-    end do
-    if (self%rooted) self%f = self%f/(2*x_new)
+    call advance(self%blocks, self%f_new, self%phi(:, 1), self%phi(:, k + 2), self%owed)
+    call keep(self%n, self%blocks, self%y_new, self%carry_new, self%f_new, self%state, self%carry, self%f, self%y, self%y_old)
     self%order = k
     self%closed = .false.
     associate (count => self%statistics)
@@ -323,4 +317,23 @@ contains
       count%smallest_step = min(count%smallest_step, self%t - self%t_old)
     end associate
   end subroutine accept
+
+  !> Put the solution at the end of the step in the place of that at its beginning.
+  pure subroutine keep(n, blocks, y_new, carry_new, f_new, state, carry, f, y, y_old)
+    integer, intent(in) :: n, blocks
+    real(dp), dimension(lanes*blocks), intent(in) :: y_new, carry_new, f_new
+    real(dp), dimension(lanes*blocks), intent(out) :: state, carry, f
+    real(dp), intent(inout) :: y(n)
+    real(dp), intent(out) :: y_old(n)
+    integer :: i
+    do i = 1, n
+      y_old(i) = y(i)
+      y(i) = y_new(i)
+    end do
+    do i = 1, lanes*blocks
+      state(i) = y_new(i)
+      carry(i) = carry_new(i)
+      f(i) = f_new(i)
+    end do
+  end subroutine keep
 end module adams

@@ -5,6 +5,11 @@ submodule (adams) adams_control
   use adams_differences, only: lanes, restore_differences
   use step_rates, only: norm, fastest_mode, path_rate
   implicit none
+
+  !> What the error is multiplied by, at each order, when the step is doubled or raised by a quarter.
+  integer, parameter :: powers(highest_order) = [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13]
+  real(dp), parameter :: doubled(highest_order) = 2.0_dp**powers, raised(highest_order) = 1.25_dp**powers
+
 contains
 
   module procedure weigh
@@ -104,7 +109,7 @@ contains
   end procedure respect_rough_time
 
   module procedure count_limit
-    real(dp) :: scale, reach, near, slow
+    real(dp) :: reach, near, slow
     integer :: limit
     reach = self%h*fastest_mode(self%blocks, self%inverse_weight, self%f_predicted, self%f_new, self%predicted, self%y_new, &
       100*self%rounding)
@@ -113,9 +118,7 @@ contains
     limit = self%limit
     self%bound = .false.
     if (near > 0.3_dp) then
-      scale = 1
-      if (self%rooted) scale = 2*self%x
-      slow = self%h*path_rate(self%n, self%inverse_weight, self%f, scale, self%f_new, self%y, self%y_new)/reach
+      slow = self%h*path_rate(self%blocks, self%inverse_weight, self%f, self%f_new, self%state, self%y_new)/reach
       self%bound = slow < 0.6_dp
       if (limit == limit_error .and. near > 0.5_dp .and. slow < 0.3_dp) limit = limit_stability
     end if
@@ -160,9 +163,9 @@ contains
       if (self%k > k) error = higher
     end if
 
-    if (0.5_dp >= error*2.0_dp**(self%k + 1)) then
+    if (0.5_dp >= error*doubled(self%k)) then
       factor = 2
-    else if (0.5_dp >= error*1.25_dp**(self%k + 1) .and. self%coefficients%ns > 1) then
+    else if (0.5_dp >= error*raised(self%k) .and. self%coefficients%ns > 1) then
       factor = 1.25_dp
     else if (0.5_dp >= error) then
       factor = 1

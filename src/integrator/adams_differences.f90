@@ -4,46 +4,47 @@
 !> The components of a state are held in blocks of `lanes`, the last one filled up with zeros, so that every loop over the
 !> components of a block becomes a few vector instructions without any test of what is left over.
 !>
-!> A step that stands adds its highest difference, f at its end less the f extrapolated there, to all the extrapolated ones.
-!> That is put off to the next pass over the table: the first `owing` columns lack what stands in column owing+1.
+!> A step of order k that stands adds its highest difference, f at its end less the f extrapolated there, to the columns 1..k+1
+!> of the table (the last of which was zero). That is put off to the next pass over the table: until then the columns lack
+!> what is `owed`.
 module adams_differences
   use kinds, only: dp
-  use ode_method, only: highest_order
   implicit none
   private
-  public :: lanes, extrapolate, restore_differences, correct, advance, add_weighted, differences_of
+  public :: lanes, extrapolate, restore_differences, correct, advance, add_weighted, change_clock, differences_of
 
   integer, parameter :: lanes = 4   !! components in a block
 
 contains
 
-  !> Predict y at the end of a step of size h and order k; phi becomes the differences that the prediction extrapolates, which
-  !> owe nothing.
-  !> `carry` is what the rounding of y left out, `carry_predicted` what it leaves out of the prediction.
-  pure subroutine extrapolate(blocks, k, owing, h, g, beta, beta_next, y, carry, phi, predicted, carry_predicted)
-    integer, intent(in) :: blocks, k, owing
-    real(dp), intent(in) :: h, g(k), beta(k), beta_next, y(lanes, blocks), carry(lanes, blocks)
-    real(dp), intent(inout) :: phi(lanes, blocks, highest_order + 2)
-    real(dp), intent(out) :: predicted(lanes, blocks), carry_predicted(lanes, blocks)
-    real(dp), dimension(lanes) :: owed, column, sum, next, change
+  !> Predict y at the end of a step of size h and order k; phi becomes the differences that the prediction extrapolates, in
+  !> which nothing is missing. `carry` is what the rounding of y left out, `carry_predicted` what it leaves out of the prediction.
+  pure subroutine extrapolate(blocks, k, k_old, h, g, beta, beta_next, y, carry, owed, phi, predicted, carry_predicted)
+    integer, intent(in) :: blocks, k, k_old
+    real(dp), intent(in) :: h, g(k), beta(k), beta_next
+    real(dp), dimension(lanes, blocks), intent(in) :: y, carry
+    real(dp), intent(inout) :: owed(lanes, blocks), phi(lanes, blocks, k + 2)
+    real(dp), dimension(lanes, blocks), intent(out) :: predicted, carry_predicted
+    real(dp), dimension(lanes) :: column, sum, next, change
+    real(dp) :: share
     integer :: b, j
+    share = merge(0, 1, k > k_old)   ! column k_old+2 lacks nothing
     do b = 1, blocks
-      owed = 0
-      if (owing > 0) owed = phi(:, b, owing + 1)
-      if (k > owing) phi(:, b, k) = phi(:, b, k) - owed   ! it is what the others are owed: exactly zero, or all is paid
-      column = phi(:, b, k + 1)
-      if (k < owing) column = column + owed
-      phi(:, b, k + 2) = beta_next*column
+      phi(:, b, k + 2) = beta_next*(phi(:, b, k + 1) + share*owed(:, b))
       phi(:, b, k + 1) = 0
       sum = 0
       next = 0
-      do j = k, 1, -1   ! beta_j = 1 up to the number of steps of one size
-        column = beta(j)*(phi(:, b, j) + owed)
+      do j = k, 1, -1   ! where the step size has not changed beta_j is 1
+        column = beta(j)*(phi(:, b, j) + owed(:, b))
         sum = sum + g(j)*column
         next = next + column
         phi(:, b, j) = next
       end do
-      change = h*sum - carry(:, b)
+      predicted(:, b) = sum
+    end do
+    do b = 1, blocks
+      owed(:, b) = 0
+      change = h*predicted(:, b) - carry(:, b)
       predicted(:, b) = y(:, b) + change
       carry_predicted(:, b) = (predicted(:, b) - y(:, b)) - change
     end do
@@ -77,40 +78,46 @@ contains
     phi(:, k + 1) = phi(:, k + 2)/beta_next
   end subroutine restore_differences
 
-  !> A step of order k stands: its y and what the rounding left out of it, and the two highest differences at its end, from the
-  !> extrapolated ones and f there. The first k columns then owe the first of the two.
-  pure subroutine advance(blocks, k, f_new, y_new, carry_new, phi, y, carry)
-    integer, intent(in) :: blocks, k
-    real(dp), dimension(lanes, blocks), intent(in) :: f_new, y_new, carry_new
-    real(dp), intent(inout) :: phi(lanes, blocks, k + 2)
-    real(dp), dimension(lanes, blocks), intent(out) :: y, carry
-    real(dp) :: highest(lanes)
+  !> A step of order k stands: what its columns are now owed, from the first of them and f at the end of the step, and the
+  !> difference of order k+1 there, in column k+2.
+  pure subroutine advance(blocks, f_new, first, next_higher, owed)
+    integer, intent(in) :: blocks
+    real(dp), dimension(lanes, blocks), intent(in) :: f_new, first
+    real(dp), intent(inout) :: next_higher(lanes, blocks)
+    real(dp), intent(out) :: owed(lanes, blocks)
     integer :: b
     do b = 1, blocks
-      highest = f_new(:, b) - phi(:, b, 1)
-      phi(:, b, k + 2) = highest - phi(:, b, k + 2)
-      phi(:, b, k + 1) = highest
-      y(:, b) = y_new(:, b)
-      carry(:, b) = carry_new(:, b)
+      owed(:, b) = f_new(:, b) - first(:, b)
+      next_higher(:, b) = owed(:, b) - next_higher(:, b)
     end do
   end subroutine advance
 
-  !> Add weights_j phi_j, j = k+1..1, to `total` after a step of order k.
-  pure subroutine add_weighted(blocks, k, weights, phi, total)
-    integer, intent(in) :: blocks, k
-    real(dp), intent(in) :: weights(k + 1), phi(lanes, blocks, k + 1)
+  !> Add weights_j phi_j, j = m..1, to `total`.
+  pure subroutine add_weighted(blocks, m, weights, phi, owed, total)
+    integer, intent(in) :: blocks, m
+    real(dp), intent(in) :: weights(m), phi(lanes, blocks, m), owed(lanes, blocks)
     real(dp), intent(inout) :: total(lanes, blocks)
-    real(dp), dimension(lanes) :: owed, sum
+    real(dp) :: sum(lanes)
     integer :: b, j
     do b = 1, blocks
-      owed = phi(:, b, k + 1)
-      sum = total(:, b) + weights(k + 1)*owed
-      do j = k, 1, -1
-        sum = sum + weights(j)*(phi(:, b, j) + owed)
+      sum = total(:, b)
+      do j = m, 1, -1
+        sum = sum + weights(j)*(phi(:, b, j) + owed(:, b))
       end do
       total(:, b) = sum
     end do
   end subroutine add_weighted
+
+  !> Multiply f by what it takes to be the rate by another clock.
+  pure subroutine change_clock(blocks, factor, f)
+    integer, intent(in) :: blocks
+    real(dp), intent(in) :: factor
+    real(dp), intent(inout) :: f(lanes, blocks)
+    integer :: b
+    do b = 1, blocks
+      f(:, b) = factor*f(:, b)
+    end do
+  end subroutine change_clock
 
   !> Modified divided differences of values f(:, 1..m) at x(1) < ... < x(m), latest first, and psi_i = x(m) - x(m-i).
   pure subroutine differences_of(x, f, phi, psi)

@@ -25,7 +25,7 @@ contains
     if (.not. self%closed) call close_polynomial(self)
     call interpolation_weights(self%coefficients, k, s, weights)
     rates = weights(k + 2)*self%closing
-    call add_weighted(self%blocks, k, weights, self%phi, rates)
+    call add_weighted(self%blocks, k + 1, weights, self%phi, self%owed, rates)
     y = self%y + s*rates(:self%n)
   end procedure interpolate
 
@@ -37,26 +37,24 @@ contains
     associate (k => self%k_old)
       call interpolation_weights(self%coefficients, k, self%x_old - self%x, weights)
       self%closing(:self%n) = (self%y_old - self%y)/(self%x_old - self%x)
-      do j = 1, k
-        self%closing = self%closing - weights(j)*(self%phi(:, j) + self%phi(:, k + 1))
+      do j = 1, k + 1
+        self%closing = self%closing - weights(j)*(self%phi(:, j) + self%owed)
       end do
-      self%closing = (self%closing - weights(k + 1)*self%phi(:, k + 1))/weights(k + 2)
+      self%closing = self%closing/weights(k + 2)
       self%closed = .true.
     end associate
   end subroutine close_polynomial
 
   module procedure straying
-    real(dp) :: highest
-    integer :: j, k
-    k = self%k_old
-    highest = self%phi(component, k + 1)
+    real(dp) :: owed
+    integer :: j
+    owed = self%owed(component)
     straying = 0
-    do j = 2, k
-      straying = straying + abs(self%phi(component, j) + highest)
+    do j = 2, self%k_old + 1
+      straying = straying + abs(self%phi(component, j) + owed)
     end do
-    straying = straying + abs(highest)
     straying = (self%x - self%x_old)*(0.5_dp*straying + &
-      abs(self%coefficients%g(k + 1)*((self%phi(component, 1) + highest) - self%f_predicted(component))))
+      abs(self%coefficients%g(self%k_old + 1)*((self%phi(component, 1) + owed) - self%f_predicted(component))))
   end procedure straying
 
   module procedure bernstein_form
@@ -75,8 +73,7 @@ contains
       end associate
     end do
     degree = k + 2
-    rates(:k) = self%phi(component, :k) + self%phi(component, k + 1)
-    rates(k + 1) = self%phi(component, k + 1)
+    rates(:k + 1) = self%phi(component, :k + 1) + self%owed(component)
     rates(k + 2) = self%closing(component)
     call from_newton(rates(:k + 2), low(:k + 1), high(:k + 1), form(:k + 1))
     call integrate_polynomial(self%y_old(component), h, form(:k + 1), coefficients(:degree))

@@ -25,7 +25,7 @@ contains
     self%x_old = self%x
     self%statistics%evaluations = self%statistics%evaluations + 1
     if (.not. first) self%statistics%restarts = self%statistics%restarts + 1
-    call problem%derivatives(t, self%y, self%f, inside)
+    call problem%derivatives(t, self%y, self%f_new(:self%n), inside)
     status = merge(step_done, start_outside, inside)
     if (.not. inside) return
 
@@ -35,8 +35,10 @@ contains
     self%opening = .true.
     call self%coefficients%reset()
     self%phi = 0
-    self%owing = 0
-    if (.not. self%rooted) self%phi(:self%n, 1) = self%f
+    self%owed = 0
+    self%f = 0
+    if (.not. self%rooted) self%f = self%f_new
+    self%phi(:, 1) = self%f
     call weigh(self)
     call choose_first_step(self, problem)
     self%limit = limit_start
@@ -65,12 +67,13 @@ contains
     self%moulton = moulton_constants()
     self%statistics = step_statistics_t()
     if (allocated(self%phi)) deallocate (self%phi, self%state, self%predicted, self%f_predicted, self%f_new, self%y_new, &
-      self%relative, self%absolute, self%inverse_weight, self%carry, self%carry_new, self%closing, self%y, self%y_old, self%f)
-    allocate (self%y(n), self%y_old(n), self%f(n))
+      self%owed, self%f, self%relative, self%absolute, self%inverse_weight, self%carry, self%carry_new, self%closing, &
+      self%y, self%y_old)
+    allocate (self%y(n), self%y_old(n))
     allocate (self%phi(width, highest_order + 2), source=0.0_dp)
-    allocate (self%state(width), self%predicted(width), self%f_predicted(width), self%f_new(width), self%y_new(width), &
-      self%relative(width), self%absolute(width), self%inverse_weight(width), self%carry(width), self%carry_new(width), &
-      self%closing(width), source=0.0_dp)
+    allocate (self%owed(width), self%state(width), self%f(width), self%predicted(width), self%f_predicted(width), &
+      self%f_new(width), self%y_new(width), self%relative(width), self%absolute(width), self%inverse_weight(width), &
+      self%carry(width), self%carry_new(width), self%closing(width), source=0.0_dp)
     self%relative(:n) = self%settings%relative
     self%absolute(:n) = self%settings%absolute
   end procedure prepare
@@ -93,9 +96,10 @@ contains
     call archive%exchange(self%higher_known)
     call archive%exchange(self%rounding)
     call archive%exchange(self%opening)
-    call archive%exchange(self%owing)
     call archive%exchange(self%phi)
+    call archive%exchange(self%owed)
     call archive%exchange(self%state)
+    call archive%exchange(self%f)
     call archive%exchange(self%inverse_weight)
     call archive%exchange(self%carry)
     call archive%exchange(self%closing)
@@ -115,7 +119,6 @@ contains
       self%h = self%settings%fixed_step
       return
     end if
-    self%f_new(:self%n) = self%f
     slope = norm(self%blocks, self%f_new, self%inverse_weight)
     h = longest*1e-3_dp
     if (slope*h > 1) h = 1/slope

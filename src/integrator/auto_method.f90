@@ -252,7 +252,6 @@ contains
     self%order = method%order
     self%y = method%y
     self%y_old = method%y_old
-    self%f = method%f
     self%statistics%accepted = method%statistics%accepted
     self%statistics%evaluations = method%statistics%evaluations
   end subroutine take_over

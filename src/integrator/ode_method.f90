@@ -80,7 +80,6 @@ module ode_method
     real(dp) :: rough_time = huge(1.0_dp) !! where f is expected to lose its smoothness, see `is_rough_at`
     real(dp), allocatable :: y_old(:)     !! state at t_old, (n)
     real(dp), allocatable :: y(:)         !! state at t, (n)
-    real(dp), allocatable :: f(:)         !! right-hand side at (t, y), (n)
   contains
     procedure :: nominal_tolerance
     procedure :: totals
@@ -162,13 +161,11 @@ contains
     type(archive_t), intent(inout) :: archive
     if (.not. allocated(self%y)) allocate (self%y(problem%n))
     if (.not. allocated(self%y_old)) allocate (self%y_old(problem%n))
-    if (.not. allocated(self%f)) allocate (self%f(problem%n))
     call archive%exchange(self%t_old)
     call archive%exchange(self%t)
     call archive%exchange(self%order)
     call archive%exchange(self%y_old)
     call archive%exchange(self%y)
-    call archive%exchange(self%f)
     call self%statistics%exchange(archive)
   end subroutine exchange_solution
 

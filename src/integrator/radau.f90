@@ -36,6 +36,7 @@ module radau
     logical :: failed = .false.            !! the last try was rejected
     integer :: cautious = 0                !! steps for which the step size grows slowly, after one without convergence
     logical :: first = .true.              !! no step since the start
+    real(dp), allocatable :: f(:)                 !! right-hand side at (t, y), (n)
     real(dp), allocatable :: y_try(:), y_new(:), f_new(:), error(:)
   contains
     procedure :: prepare

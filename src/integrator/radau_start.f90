@@ -46,6 +46,7 @@ contains
   module procedure exchange
     if (archive%is_reading) call prepare(self, problem)
     call self%exchange_solution(problem, archive)
+    call archive%exchange(self%f)
     call self%stages%exchange(archive)
     call archive%exchange(self%h)
     call archive%exchange(self%h_last)

@@ -43,18 +43,20 @@ contains
     if (y_jump > noise**2) fastest_mode = sqrt(f_jump/y_jump)
   end function fastest_mode
 
-  !> The rate at which f changes along the solution, |f_new - f|/|y_new - y|, f at the beginning being `scale` times f_old; 0
-  !> where the solution moves by no more than five tolerances in the step.
-  pure real(dp) function path_rate(n, inverse_weight, f_old, scale, f_new, y_old, y_new)
-    integer, intent(in) :: n
-    real(dp), intent(in) :: inverse_weight(n), f_old(n), scale, f_new(n), y_old(n), y_new(n)
+  !> The rate at which f changes along the solution, |f_new - f_old|/|y_new - y_old|; 0 where the solution moves by no more than
+  !> five tolerances in the step.
+  pure real(dp) function path_rate(blocks, inverse_weight, f_old, f_new, y_old, y_new)
+    integer, intent(in) :: blocks
+    real(dp), dimension(lanes, blocks), intent(in) :: inverse_weight, f_old, f_new, y_old, y_new
     real(dp) :: f_path, y_path
-    integer :: i
+    integer :: i, b
     f_path = 0
     y_path = 0
-    do i = 1, n
-      f_path = f_path + ((f_new(i) - scale*f_old(i))*inverse_weight(i))**2
-      y_path = y_path + ((y_new(i) - y_old(i))*inverse_weight(i))**2
+    do b = 1, blocks
+      do i = 1, lanes
+        f_path = f_path + ((f_new(i, b) - f_old(i, b))*inverse_weight(i, b))**2
+        y_path = y_path + ((y_new(i, b) - y_old(i, b))*inverse_weight(i, b))**2
+      end do
     end do
     path_rate = 0
     if (y_path >= 25) path_rate = sqrt(f_path/y_path)
