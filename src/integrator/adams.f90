@@ -23,7 +23,7 @@ module adams
   use ode_problem, only: ode_problem_t, step_admitted, step_too_deep
   use ode_method, only: ode_method_t, highest_order, step_done, step_too_small, tolerance_too_small, left_domain, limit_start
   use adams_coefficients, only: adams_coefficients_t
-  use adams_differences, only: lanes, extrapolate, correct, advance, change_clock
+  use adams_differences, only: extrapolate, correct, advance
   use archive, only: archive_t
   implicit none
   private
@@ -65,13 +65,12 @@ module adams
     logical :: opening = .true.         !! order and step are still being raised from the start
     real(dp), allocatable :: phi(:, :)  !! modified divided differences, (wide, highest_order+2)
     real(dp), allocatable :: owed(:)    !! what the first columns of phi lack, wide
-    real(dp), allocatable :: state(:)   !! y, wide
-    real(dp), allocatable :: f(:)       !! its rate by the clock, 0 at the start of a rooted one; wide
-    real(dp), allocatable :: predicted(:), f_predicted(:), f_new(:), y_new(:)   !! wide
-    real(dp), allocatable :: relative(:), absolute(:) !! tolerances, wide
-    real(dp), allocatable :: inverse_weight(:)       !! 1/(relative |y| + absolute), 0: not controlled; wide
-    real(dp), allocatable :: carry(:), carry_new(:)  !! what the rounding of y and of what follows it left out, wide
     real(dp), allocatable :: closing(:) !! coefficient of the last polynomial of the interpolant, wide
+    real(dp), allocatable :: slope(:)   !! work, wide
+    real(dp), allocatable :: f(:)       !! rate of y by the clock, 0 at the start of a rooted one
+    real(dp), allocatable :: predicted(:), f_predicted(:), f_new(:), y_new(:)
+    real(dp), allocatable :: inverse_weight(:)       !! 1/(relative |y| + absolute), 0: not controlled
+    real(dp), allocatable :: carry(:), carry_new(:)  !! what the rounding of y and of what follows it left out
   contains
     procedure :: prepare
     procedure :: start
@@ -250,8 +249,8 @@ contains
   pure subroutine predict(self)
     class(adams_t), intent(inout) :: self
     associate (c => self%coefficients)
-      call extrapolate(self%blocks, self%k, self%k_old, self%h, c%g, c%beta, c%beta_next, self%state, self%carry, self%owed, &
-        self%phi, self%predicted, self%carry_new)
+      call extrapolate(self%n, self%blocks, self%k, self%k_old, self%h, c%g, c%beta, c%beta_next, self%y, self%carry, self%owed, &
+        self%phi, self%slope, self%predicted, self%carry_new)
     end associate
   end subroutine predict
 
@@ -269,26 +268,26 @@ contains
     fraction = 0.5_dp
     outcome = try_outside
     self%statistics%evaluations = self%statistics%evaluations + 1
-    call problem%derivatives(t_new, self%predicted(:self%n), self%f_predicted(:self%n), inside)
+    call problem%derivatives(t_new, self%predicted, self%f_predicted, inside)
     if (.not. inside) return
-    if (self%rooted) call change_clock(self%blocks, 2*x_new, self%f_predicted)
+    if (self%rooted) call change_clock(self%n, 2*x_new, self%f_predicted)
     call estimate_errors(self, errors)
     if (.not. errors%step <= 1 .and. .not. self%settings%fixed_step > 0) then   ! a NaN is an error too
       outcome = try_error
       return
     end if
-    call correct(self%blocks, self%h*self%coefficients%g(self%k + 1), self%f_predicted, self%phi, self%predicted, &
+    call correct(self%n, self%h*self%coefficients%g(self%k + 1), self%f_predicted, self%phi(:, 1), self%predicted, &
       self%y_new, self%carry_new)
-    call problem%judge_step(self%t, self%y, t_new, self%y_new(:self%n), verdict, fraction)
+    call problem%judge_step(self%t, self%y, t_new, self%y_new, verdict, fraction)
     if (verdict == step_too_deep) outcome = try_too_deep
     if (verdict /= step_admitted) return
     self%statistics%evaluations = self%statistics%evaluations + 1
-    call problem%derivatives(t_new, self%y_new(:self%n), self%f_new(:self%n), inside)
+    call problem%derivatives(t_new, self%y_new, self%f_new, inside)
     if (.not. inside) then
       fraction = 0.5_dp
       return
     end if
-    if (self%rooted) call change_clock(self%blocks, 2*x_new, self%f_new)
+    if (self%rooted) call change_clock(self%n, 2*x_new, self%f_new)
     outcome = try_accepted
   end subroutine attempt
 
@@ -307,8 +306,8 @@ contains
     self%t = t_new
     self%x_old = self%x
     self%x = x_new
-    call advance(self%blocks, self%f_new, self%phi(:, 1), self%phi(:, k + 2), self%owed)
-    call keep(self%n, self%blocks, self%y_new, self%carry_new, self%f_new, self%state, self%carry, self%f, self%y, self%y_old)
+    call advance(self%n, self%f_new, self%phi(:, 1), self%phi(:, k + 2), self%owed)
+    call keep(self%n, self%y_new, self%carry_new, self%f_new, self%y, self%y_old, self%carry, self%f)
     self%order = k
     self%closed = .false.
     associate (count => self%statistics)
@@ -319,21 +318,30 @@ contains
   end subroutine accept
 
   !> Put the solution at the end of the step in the place of that at its beginning.
-  pure subroutine keep(n, blocks, y_new, carry_new, f_new, state, carry, f, y, y_old)
-    integer, intent(in) :: n, blocks
-    real(dp), dimension(lanes*blocks), intent(in) :: y_new, carry_new, f_new
-    real(dp), dimension(lanes*blocks), intent(out) :: state, carry, f
+  pure subroutine keep(n, y_new, carry_new, f_new, y, y_old, carry, f)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: y_new(n), carry_new(n), f_new(n)
     real(dp), intent(inout) :: y(n)
-    real(dp), intent(out) :: y_old(n)
+    real(dp), intent(out) :: y_old(n), carry(n), f(n)
     integer :: i
+    !GCC$ novector
     do i = 1, n
       y_old(i) = y(i)
       y(i) = y_new(i)
-    end do
-    do i = 1, lanes*blocks
-      state(i) = y_new(i)
       carry(i) = carry_new(i)
       f(i) = f_new(i)
     end do
   end subroutine keep
+
+  !> Multiply f by what makes it the rate by another clock.
+  pure subroutine change_clock(n, factor, f)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: factor
+    real(dp), intent(inout) :: f(n)
+    integer :: i
+    !GCC$ novector
+    do i = 1, n
+      f(i) = factor*f(i)
+    end do
+  end subroutine change_clock
 end module adams

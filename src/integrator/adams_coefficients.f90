@@ -11,6 +11,10 @@ module adams_coefficients
   real(dp), parameter :: stability_limit(highest_order) = [2.00_dp, 2.40_dp, 1.93_dp, 1.41_dp, 1.04_dp, 0.77_dp, 0.58_dp, &
     0.44_dp, 0.34_dp, 0.26_dp, 0.21_dp, 0.17_dp]
 
+  !> i, and 1/(i (i+1)), the i-fold integral of the first basis polynomial, by (i-1)!.
+  real(dp), parameter :: ordinal(highest_order) = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]
+  real(dp), parameter :: first_column(highest_order) = 1/(ordinal*(ordinal + 1))
+
   !> Coefficients of the step from t_n to t_n+1 = t_n + h at order k, in the notation of Shampine & Gordon.
   type :: adams_coefficients_t
     real(dp) :: psi(highest_order) = 0        !! psi_i = t_n+1 - t_n+1-i
@@ -19,7 +23,6 @@ module adams_coefficients
     real(dp) :: sigma(highest_order + 1) = 0  !! sigma_i = (i-1)! product over j < i of alpha_j
     real(dp) :: g(highest_order + 1) = 0      !! g_i = integral of the i-th Newton basis polynomial over the step, by h
     real(dp) :: v(highest_order) = 0          !! column of the recurrence for g, kept from step to step
-    real(dp) :: w(highest_order) = 0          !! work
     real(dp) :: beta_next = 1, sigma_next = 1 !! beta_k+1 and sigma_k+2, where the difference of order k is known
     real(dp) :: psi_before = 0                !! psi_k before the step, for `take_back`
     integer :: ns = 0                         !! steps taken with the present step size, this one included
@@ -84,7 +87,7 @@ contains
       self%beta(i) = self%beta(i - 1)*self%psi(i - 1)/previous
       reach = previous + h
       self%alpha(i) = h/reach
-      self%sigma(i + 1) = i*self%alpha(i)*self%sigma(i)
+      self%sigma(i + 1) = ordinal(i)*self%alpha(i)*self%sigma(i)
     end do
     if (k_old >= k) then
       previous = self%psi(k)
@@ -99,17 +102,16 @@ contains
   pure subroutine update_g(self, k, k_old)
     class(adams_coefficients_t), intent(inout) :: self
     integer, intent(in) :: k, k_old
+    real(dp) :: w(highest_order), left, right, alpha
     integer :: i, j, ns
 
     ns = self%ns
     if (ns == 1) then
-      do i = 1, k
-        self%v(i) = 1.0_dp/(i*(i + 1))
-        self%w(i) = self%v(i)
-      end do
+      self%v = first_column   ! of which k are needed, but a copy of fixed length is quicker
+      w = first_column
     else
       if (k > k_old) then   ! the order was raised: extend the column
-        self%v(k) = 1.0_dp/(k*(k + 1))
+        self%v(k) = first_column(k)
         do j = 1, ns - 2
           i = k - j
           self%v(i) = self%v(i) - self%alpha(j + 1)*self%v(i + 1)
@@ -117,15 +119,19 @@ contains
       end if
       do i = 1, k + 1 - ns
         self%v(i) = self%v(i) - self%alpha(ns)*self%v(i + 1)
-        self%w(i) = self%v(i)
+        w(i) = self%v(i)
       end do
-      self%g(ns + 1) = self%w(1)
+      self%g(ns + 1) = w(1)
     end if
     do i = ns + 2, k + 1
+      alpha = self%alpha(i - 1)
+      left = w(1)
       do j = 1, k + 2 - i
-        self%w(j) = self%w(j) - self%alpha(i - 1)*self%w(j + 1)
+        right = w(j + 1)
+        w(j) = left - alpha*right
+        left = right
       end do
-      self%g(i) = self%w(1)
+      self%g(i) = w(1)
     end do
   end subroutine update_g
 
@@ -152,7 +158,6 @@ contains
     call archive%exchange(self%sigma)
     call archive%exchange(self%g)
     call archive%exchange(self%v)
-    call archive%exchange(self%w)
     call archive%exchange(self%beta_next)
     call archive%exchange(self%sigma_next)
     call archive%exchange(self%ns)

@@ -13,23 +13,22 @@ submodule (adams) adams_control
 contains
 
   module procedure weigh
-    call weigh_components(self%blocks, self%relative, self%absolute, self%state, self%inverse_weight)
-    self%rounding = epsilon(1.0_dp)*norm(self%blocks, self%state, self%inverse_weight)
+    call weigh_components(self%n, self%settings%relative, self%settings%absolute, self%y, self%inverse_weight)
+    self%rounding = epsilon(1.0_dp)*norm(self%n, self%y, self%inverse_weight)
   end procedure weigh
 
   !> 1/(relative |y| + absolute), 0 where that is zero.
-  pure subroutine weigh_components(blocks, relative, absolute, y, inverse_weight)
-    integer, intent(in) :: blocks
-    real(dp), dimension(lanes, blocks), intent(in) :: relative, absolute, y
-    real(dp), intent(out) :: inverse_weight(lanes, blocks)
+  pure subroutine weigh_components(n, relative, absolute, y, inverse_weight)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: relative(n), absolute(n), y(n)
+    real(dp), intent(out) :: inverse_weight(n)
     real(dp) :: weight
-    integer :: i, b
-    do b = 1, blocks
-      do i = 1, lanes
-        weight = relative(i, b)*abs(y(i, b)) + absolute(i, b)
-        inverse_weight(i, b) = 0
-        if (weight > 0) inverse_weight(i, b) = 1/weight
-      end do
+    integer :: i
+    !GCC$ novector
+    do i = 1, n
+      weight = relative(i)*abs(y(i)) + absolute(i)
+      inverse_weight(i) = 0
+      if (weight > 0) inverse_weight(i) = 1/weight
     end do
   end subroutine weigh_components
 
@@ -68,7 +67,7 @@ contains
     integer :: k
 
     k = self%k
-    call correction_squares(self%blocks, self%f_predicted, self%phi, self%phi(:, k), self%phi(:, max(k - 1, 1)), &
+    call correction_squares(self%n, self%f_predicted, self%phi, self%phi(:, k), self%phi(:, max(k - 1, 1)), &
       self%inverse_weight, same, lower, lowest)
     same = self%h*sqrt(same)
     errors%step = same*(self%coefficients%g(k) - self%coefficients%g(k + 1))
@@ -81,22 +80,21 @@ contains
   end procedure estimate_errors
 
   !> Squares of the weighted norms of the correction of f and of its sums with the two highest extrapolated differences.
-  pure subroutine correction_squares(blocks, f_predicted, first, highest, second_highest, inverse_weight, same, lower, lowest)
-    integer, intent(in) :: blocks
-    real(dp), dimension(lanes, blocks), intent(in) :: f_predicted, first, highest, second_highest, inverse_weight
+  pure subroutine correction_squares(n, f_predicted, first, highest, second_highest, inverse_weight, same, lower, lowest)
+    integer, intent(in) :: n
+    real(dp), dimension(n), intent(in) :: f_predicted, first, highest, second_highest, inverse_weight
     real(dp), intent(out) :: same, lower, lowest
     real(dp) :: correction
-    integer :: i, b
+    integer :: i
     same = 0
     lower = 0
     lowest = 0
-    do b = 1, blocks
-      do i = 1, lanes
-        correction = f_predicted(i, b) - first(i, b)
-        same = same + (correction*inverse_weight(i, b))**2
-        lower = lower + ((highest(i, b) + correction)*inverse_weight(i, b))**2
-        lowest = lowest + ((second_highest(i, b) + correction)*inverse_weight(i, b))**2
-      end do
+    !GCC$ novector
+    do i = 1, n
+      correction = f_predicted(i) - first(i)
+      same = same + (correction*inverse_weight(i))**2
+      lower = lower + ((highest(i) + correction)*inverse_weight(i))**2
+      lowest = lowest + ((second_highest(i) + correction)*inverse_weight(i))**2
     end do
   end subroutine correction_squares
 
@@ -111,14 +109,14 @@ contains
   module procedure count_limit
     real(dp) :: reach, near, slow
     integer :: limit
-    reach = self%h*fastest_mode(self%blocks, self%inverse_weight, self%f_predicted, self%f_new, self%predicted, self%y_new, &
+    reach = self%h*fastest_mode(self%n, self%inverse_weight, self%f_predicted, self%f_new, self%predicted, self%y_new, &
       100*self%rounding)
     self%statistics%stiffness = self%statistics%stiffness + reach
     near = reach/stability_limit(self%k)
     limit = self%limit
     self%bound = .false.
     if (near > 0.3_dp) then
-      slow = self%h*path_rate(self%blocks, self%inverse_weight, self%f, self%f_new, self%state, self%y_new)/reach
+      slow = self%h*path_rate(self%n, self%inverse_weight, self%f, self%f_new, self%y, self%y_new)/reach
       self%bound = slow < 0.6_dp
       if (limit == limit_error .and. near > 0.5_dp .and. slow < 0.3_dp) limit = limit_stability
     end if
@@ -151,7 +149,7 @@ contains
       error = errors%lower
     else if (self%higher_known) then
       higher = self%h*self%coefficients%sigma_next*self%moulton(k + 1) &
-        *norm(self%blocks, self%phi(:, k + 2), self%inverse_weight)
+        *norm(self%n, self%phi(:, k + 2), self%inverse_weight)
       if (k == 1) then
         if (higher < 0.5_dp*error .and. k < self%settings%max_order) self%k = 2
       else if (errors%lower <= min(error, higher)) then

@@ -1,8 +1,9 @@
 !> The table of modified divided differences of the Adams method: phi_i, i = 1..k+2 (Shampine & Gordon 1975, ch. 5). Work
 !> on plain arrays, which the compiler knows to be apart.
 !>
-!> The components of a state are held in blocks of `lanes`, the last one filled up with zeros, so that every loop over the
-!> components of a block becomes a few vector instructions without any test of what is left over.
+!> The table holds the components in blocks of `lanes`, the last one filled up with zeros, so that a loop over the components of
+!> a block becomes a few vector instructions without any test of what is left over. All other loops are kept scalar: vectors
+!> would be loaded from what the right-hand side or a loop before has just stored number by number, which stalls processors.
 !>
 !> A step of order k that stands adds its highest difference, f at its end less the f extrapolated there, to the columns 1..k+1
 !> of the table (the last of which was zero). That is put off to the next pass over the table: until then the columns lack
@@ -11,27 +12,46 @@ module adams_differences
   use kinds, only: dp
   implicit none
   private
-  public :: lanes, extrapolate, restore_differences, correct, advance, add_weighted, change_clock, differences_of
+  public :: lanes, extrapolate, restore_differences, correct, advance, add_weighted, differences_of
 
   integer, parameter :: lanes = 4   !! components in a block
 
 contains
 
   !> Predict y at the end of a step of size h and order k; phi becomes the differences that the prediction extrapolates, in
-  !> which nothing is missing. `carry` is what the rounding of y left out, `carry_predicted` what it leaves out of the prediction.
-  pure subroutine extrapolate(blocks, k, k_old, h, g, beta, beta_next, y, carry, owed, phi, predicted, carry_predicted)
-    integer, intent(in) :: blocks, k, k_old
-    real(dp), intent(in) :: h, g(k), beta(k), beta_next
-    real(dp), dimension(lanes, blocks), intent(in) :: y, carry
+  !> which nothing is missing. `carry` is what the rounding of y left out, `carry_predicted` what it leaves out of the prediction,
+  !> `slope` the mean slope of y over the step.
+  pure subroutine extrapolate(n, blocks, k, k_old, h, g, beta, beta_next, y, carry, owed, phi, slope, predicted, &
+    carry_predicted)
+    integer, intent(in) :: n, blocks, k, k_old
+    real(dp), intent(in) :: h, g(k), beta(k), beta_next, y(n), carry(n)
     real(dp), intent(inout) :: owed(lanes, blocks), phi(lanes, blocks, k + 2)
-    real(dp), dimension(lanes, blocks), intent(out) :: predicted, carry_predicted
-    real(dp), dimension(lanes) :: column, sum, next, change
-    real(dp) :: share
+    real(dp), intent(out) :: slope(lanes*blocks), predicted(n), carry_predicted(n)
+    real(dp) :: change
+    integer :: i
+    call extrapolate_table(blocks, k, merge(0.0_dp, 1.0_dp, k > k_old), g, beta, beta_next, owed, phi, slope)
+    !GCC$ novector
+    do i = 1, n
+      change = h*slope(i) - carry(i)
+      predicted(i) = y(i) + change
+      carry_predicted(i) = (predicted(i) - y(i)) - change
+    end do
+  end subroutine extrapolate
+
+  !> The table of `extrapolate`, and the mean slope of y in the step. Column k+1 lacks the `share` of what the others do.
+  pure subroutine extrapolate_table(blocks, k, share, g, beta, beta_next, owed, phi, slope)
+    integer, intent(in) :: blocks, k
+    real(dp), intent(in) :: share, g(k), beta(k), beta_next
+    real(dp), intent(inout) :: owed(lanes, blocks), phi(lanes, blocks, k + 2)
+    real(dp), intent(out) :: slope(lanes, blocks)
+    real(dp), dimension(lanes) :: column, sum, next
     integer :: b, j
-    share = merge(0, 1, k > k_old)   ! column k_old+2 lacks nothing
     do b = 1, blocks
-      phi(:, b, k + 2) = beta_next*(phi(:, b, k + 1) + share*owed(:, b))
+      column = phi(:, b, k + 1) + share*owed(:, b)
+      phi(:, b, k + 2) = beta_next*column
       phi(:, b, k + 1) = 0
+    end do
+    do b = 1, blocks
       sum = 0
       next = 0
       do j = k, 1, -1   ! where the step size has not changed beta_j is 1
@@ -40,29 +60,25 @@ contains
         next = next + column
         phi(:, b, j) = next
       end do
-      predicted(:, b) = sum
+      slope(:, b) = sum
     end do
-    do b = 1, blocks
-      owed(:, b) = 0
-      change = h*predicted(:, b) - carry(:, b)
-      predicted(:, b) = y(:, b) + change
-      carry_predicted(:, b) = (predicted(:, b) - y(:, b)) - change
-    end do
-  end subroutine extrapolate
+    owed = 0
+  end subroutine extrapolate_table
 
-  !> Correct to order k+1: `factor` is h g_k+1. `carry` becomes what the rounding leaves out of y_new.
-  pure subroutine correct(blocks, factor, f_predicted, phi, predicted, y_new, carry)
-    integer, intent(in) :: blocks
-    real(dp), intent(in) :: factor
-    real(dp), dimension(lanes, blocks), intent(in) :: f_predicted, phi, predicted   !! of phi, the first column
-    real(dp), intent(out) :: y_new(lanes, blocks)
-    real(dp), intent(inout) :: carry(lanes, blocks)
-    real(dp) :: change(lanes)
-    integer :: b
-    do b = 1, blocks
-      change = factor*(f_predicted(:, b) - phi(:, b)) - carry(:, b)
-      y_new(:, b) = predicted(:, b) + change
-      carry(:, b) = (y_new(:, b) - predicted(:, b)) - change
+  !> Correct to order k+1 with f at the prediction: `factor` is h g_k+1, `first` the first column of the table. `carry` becomes
+  !> what the rounding leaves out of y_new.
+  pure subroutine correct(n, factor, f_predicted, first, predicted, y_new, carry)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: factor, f_predicted(n), first(n), predicted(n)
+    real(dp), intent(out) :: y_new(n)
+    real(dp), intent(inout) :: carry(n)
+    real(dp) :: change
+    integer :: i
+    !GCC$ novector
+    do i = 1, n
+      change = factor*(f_predicted(i) - first(i)) - carry(i)
+      y_new(i) = predicted(i) + change
+      carry(i) = (y_new(i) - predicted(i)) - change
     end do
   end subroutine correct
 
@@ -80,15 +96,16 @@ contains
 
   !> A step of order k stands: what its columns are now owed, from the first of them and f at the end of the step, and the
   !> difference of order k+1 there, in column k+2.
-  pure subroutine advance(blocks, f_new, first, next_higher, owed)
-    integer, intent(in) :: blocks
-    real(dp), dimension(lanes, blocks), intent(in) :: f_new, first
-    real(dp), intent(inout) :: next_higher(lanes, blocks)
-    real(dp), intent(out) :: owed(lanes, blocks)
-    integer :: b
-    do b = 1, blocks
-      owed(:, b) = f_new(:, b) - first(:, b)
-      next_higher(:, b) = owed(:, b) - next_higher(:, b)
+  pure subroutine advance(n, f_new, first, next_higher, owed)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: f_new(n), first(n)
+    real(dp), intent(inout) :: next_higher(n)
+    real(dp), intent(out) :: owed(n)
+    integer :: i
+    !GCC$ novector
+    do i = 1, n
+      owed(i) = f_new(i) - first(i)
+      next_higher(i) = owed(i) - next_higher(i)
     end do
   end subroutine advance
 
@@ -107,17 +124,6 @@ contains
       total(:, b) = sum
     end do
   end subroutine add_weighted
-
-  !> Multiply f by what it takes to be the rate by another clock.
-  pure subroutine change_clock(blocks, factor, f)
-    integer, intent(in) :: blocks
-    real(dp), intent(in) :: factor
-    real(dp), intent(inout) :: f(lanes, blocks)
-    integer :: b
-    do b = 1, blocks
-      f(:, b) = factor*f(:, b)
-    end do
-  end subroutine change_clock
 
   !> Modified divided differences of values f(:, 1..m) at x(1) < ... < x(m), latest first, and psi_i = x(m) - x(m-i).
   pure subroutine differences_of(x, f, phi, psi)

@@ -12,7 +12,7 @@ contains
   end procedure time_at
 
   module procedure interpolate
-    real(dp) :: weights(highest_order + 2), rates(size(self%closing)), s
+    real(dp) :: weights(highest_order + 2), s
     integer :: k
 
     k = self%k_old
@@ -24,9 +24,9 @@ contains
     end if
     if (.not. self%closed) call close_polynomial(self)
     call interpolation_weights(self%coefficients, k, s, weights)
-    rates = weights(k + 2)*self%closing
-    call add_weighted(self%blocks, k + 1, weights, self%phi, self%owed, rates)
-    y = self%y + s*rates(:self%n)
+    self%slope = weights(k + 2)*self%closing
+    call add_weighted(self%blocks, k + 1, weights, self%phi, self%owed, self%slope)
+    y = self%y + s*self%slope(:self%n)
   end procedure interpolate
 
   !> The coefficient of the last polynomial of the interpolant, which makes it pass through y at the beginning of the step.

@@ -15,7 +15,6 @@ contains
     self%t_old = t
     self%y = y
     self%y_old = y
-    self%state(:self%n) = y
     self%order = 0
     self%closed = .false.
     self%carry = 0
@@ -25,7 +24,7 @@ contains
     self%x_old = self%x
     self%statistics%evaluations = self%statistics%evaluations + 1
     if (.not. first) self%statistics%restarts = self%statistics%restarts + 1
-    call problem%derivatives(t, self%y, self%f_new(:self%n), inside)
+    call problem%derivatives(t, self%y, self%f_new, inside)
     status = merge(step_done, start_outside, inside)
     if (.not. inside) return
 
@@ -38,7 +37,7 @@ contains
     self%owed = 0
     self%f = 0
     if (.not. self%rooted) self%f = self%f_new
-    self%phi(:, 1) = self%f
+    self%phi(:self%n, 1) = self%f
     call weigh(self)
     call choose_first_step(self, problem)
     self%limit = limit_start
@@ -66,16 +65,11 @@ contains
     width = lanes*self%blocks
     self%moulton = moulton_constants()
     self%statistics = step_statistics_t()
-    if (allocated(self%phi)) deallocate (self%phi, self%state, self%predicted, self%f_predicted, self%f_new, self%y_new, &
-      self%owed, self%f, self%relative, self%absolute, self%inverse_weight, self%carry, self%carry_new, self%closing, &
-      self%y, self%y_old)
-    allocate (self%y(n), self%y_old(n))
-    allocate (self%phi(width, highest_order + 2), source=0.0_dp)
-    allocate (self%owed(width), self%state(width), self%f(width), self%predicted(width), self%f_predicted(width), &
-      self%f_new(width), self%y_new(width), self%relative(width), self%absolute(width), self%inverse_weight(width), &
-      self%carry(width), self%carry_new(width), self%closing(width), source=0.0_dp)
-    self%relative(:n) = self%settings%relative
-    self%absolute(:n) = self%settings%absolute
+    if (allocated(self%phi)) deallocate (self%phi, self%owed, self%closing, self%slope, self%f, self%predicted, &
+      self%f_predicted, self%f_new, self%y_new, self%inverse_weight, self%carry, self%carry_new, self%y, self%y_old)
+    allocate (self%phi(width, highest_order + 2), self%owed(width), self%closing(width), self%slope(width), source=0.0_dp)
+    allocate (self%f(n), self%predicted(n), self%f_predicted(n), self%f_new(n), self%y_new(n), self%inverse_weight(n), &
+      self%carry(n), self%carry_new(n), self%y(n), self%y_old(n))
   end procedure prepare
 
   module procedure exchange
@@ -98,7 +92,6 @@ contains
     call archive%exchange(self%opening)
     call archive%exchange(self%phi)
     call archive%exchange(self%owed)
-    call archive%exchange(self%state)
     call archive%exchange(self%f)
     call archive%exchange(self%inverse_weight)
     call archive%exchange(self%carry)
@@ -119,24 +112,24 @@ contains
       self%h = self%settings%fixed_step
       return
     end if
-    slope = norm(self%blocks, self%f_new, self%inverse_weight)
+    slope = norm(self%n, self%f_new, self%inverse_weight)
     h = longest*1e-3_dp
     if (slope*h > 1) h = 1/slope
     resolution = epsilon(h)*max(abs(self%t), 1e-9_dp*self%settings%span)
     if (h < 10*resolution) h = 1e4_dp*resolution
     do tries = 1, 60
-      self%predicted = self%state + h*self%f_new
+      self%predicted = self%y + h*self%f_new
       self%statistics%evaluations = self%statistics%evaluations + 1
-      call problem%derivatives(self%t + h, self%predicted(:self%n), self%f_predicted(:self%n), inside)
+      call problem%derivatives(self%t + h, self%predicted, self%f_predicted, inside)
       if (inside) exit
       h = 0.1_dp*h
     end do
     curvature = 0
     if (inside .and. self%rooted) then   ! by the clock, y'' is 2 f at the start
-      curvature = 2*norm(self%blocks, self%f_predicted, self%inverse_weight)
+      curvature = 2*norm(self%n, self%f_predicted, self%inverse_weight)
     else if (inside) then
       self%f_predicted = self%f_predicted - self%f_new
-      curvature = norm(self%blocks, self%f_predicted, self%inverse_weight)/h
+      curvature = norm(self%n, self%f_predicted, self%inverse_weight)/h
     end if
     if (self%rooted) then
       longest = sqrt(longest)
