@@ -44,25 +44,27 @@ program gudgeon
 
 contains
 
-  !> Run every case, several side by side; the highest exit status wins.
+  !> Run every case, several side by side, and with threads to spare their ideal twins beside them; the highest exit status
+  !> wins.
   subroutine run_all(options, status)
     type(command_line_t), intent(in) :: options
     integer, intent(out) :: status
     logical :: show_progress
     character(len=:), allocatable :: advice
     integer(int64) :: began, ended, rate
-    integer :: i, jobs
+    integer :: i, jobs, threads
 
     call hold_interrupts()
     call system_clock(began, rate)
     status = status_ok
     jobs = options%jobs
     if (jobs == 0) jobs = omp_get_num_procs()
+    threads = jobs/max(1, size(options%cases))   ! for each case
     jobs = min(jobs, size(options%cases))
     show_progress = progress_wanted(options%progress) .and. .not. options%quiet
     !$omp parallel do schedule(dynamic) num_threads(jobs) reduction(max: status)
     do i = 1, size(options%cases)
-      call run_one(trim(options%cases(i)), options, show_progress, status)
+      call run_one(trim(options%cases(i)), options, show_progress, threads, status)
     end do
     !$omp end parallel do
     call system_clock(ended)
@@ -91,10 +93,11 @@ contains
   end subroutine run_studies
 
   !> Run one case and say how it went; `status` rises to that of an error.
-  subroutine run_one(path, options, show_progress, status)
+  subroutine run_one(path, options, show_progress, threads, status)
     character(len=*), intent(in) :: path
     type(command_line_t), intent(in) :: options
     logical, intent(in) :: show_progress
+    integer, intent(in) :: threads
     integer, intent(inout) :: status
     character(len=:), allocatable :: line, notice
     type(error_t), allocatable :: error
@@ -103,7 +106,7 @@ contains
       call fail(error, printable(path, 200)//': interrupted before it began', status_integration)
       !$omp end critical (texts)
     else
-      call run_case_file(path, options, show_progress, line, notice, error)
+      call run_case_file(path, options, show_progress, threads, line, notice, error)
     end if
     !$omp critical (messages)
     if (allocated(error)) then

@@ -133,6 +133,19 @@ def test_signals(gudgeon: Gudgeon, work: Path) -> None:
         summary = (folder / "sim_I.summary.csv").read_text()
         check('status,"interrupted at t' in summary, f"{number.name}: the summary says so")
         whole(folder, number.name)
+    folder = work / "twin"   # of a run that is interrupted there is no twin, also where it went beside it; an earlier one stays
+    folder.mkdir()
+    earlier = folder / "sim_I.ideal.csv"
+    earlier.write_text("time[s]\n0\n")
+    process = gudgeon.start("-o", folder, "-j", "2", *LONG, "--set", "output.ideal_twin=T", ROOT / "cases" / "sim_I.nml")
+    while not ((folder / "sim_I.csv.part").exists() and (folder / "sim_I.ideal.csv.part").exists()):
+        time.sleep(0.01)
+    time.sleep(0.2)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=PATIENCE)
+    check(process.returncode == 4 and err.decode().count("\n") == 1 and b"interrupted at t =" in err, f"twin: one line, not {err}")
+    check(earlier.read_text() == "time[s]\n0\n", "of an interrupted run there is no twin")
+    whole(folder, "twin")
     folder = work / "nohup"
     process = gudgeon.start("-o", folder, *SHORT, FLORES / "dry_0100um.nml",
                             preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))

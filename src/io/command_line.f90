@@ -13,7 +13,7 @@ module command_line
     character(len=:), allocatable :: out          !! folder for results
     character(len=:), allocatable :: overrides(:) !! GROUP.KEY=VALUE, in their order, blanks behind
     character(len=:), allocatable :: accuracy     !! draft, standard, reference, or empty: as the case says
-    integer :: jobs = 0                           !! cases side by side; 0: as many as there are cores
+    integer :: jobs = 0                           !! threads; 0: as many as there are cores
     real(dp) :: checkpoint_interval = 60          !! seconds between checkpoints of a run; 0: none
     logical :: resume = .false.                   !! go on where runs were stopped
     logical :: check = .false., template = .false., quiet = .false., help = .false., version = .false.
@@ -302,7 +302,8 @@ contains
       '  -a, --accuracy LEVEL      draft, standard or reference: some 3, 5 or 8 digits of a motion without impacts;'//n// &
       '                            method auto whatever the case says, contact entry root, the tolerance of the'//n// &
       '                            level, which the models'' own accuracy follows; --set wins over it'//n// &
-      '  -j, --jobs N              run several cases side by side (default: the cores there are)'//n// &
+      '  -j, --jobs N              how many threads run cases, and their ideal twins, side by side (default: the cores'//n// &
+      '                            there are)'//n// &
       '      --resume              go on with runs that were stopped, each from its checkpoint in DIR: the results'//n// &
       '                            are those of a run that was not; give the same options as then (but the limits'//n// &
       '                            max_steps, max_evaluations, max_evaluations_per_revolution)'//n// &

@@ -9,7 +9,7 @@ module result_file
     rename_file, remove_file, error_text, error_interrupted
   implicit none
   private
-  public :: result_file_t, remove_unfinished
+  public :: result_file_t, write_text, remove_unfinished
 
   integer, parameter :: buffer_size = 262144   !! bytes
 
@@ -162,6 +162,17 @@ contains
     self%descriptor = -1
     self%used = 0
   end subroutine abandon
+
+  !> A small file, written whole or not at all.
+  subroutine write_text(path, text, error)
+    character(len=*), intent(in) :: path, text
+    type(error_t), allocatable, intent(out) :: error
+    type(result_file_t) :: file
+    call file%open(path, error)
+    if (allocated(error)) return
+    call file%put(text)
+    call file%close(error, whole_only=.true.)
+  end subroutine write_text
 
   !> Remove what a killed program has left of a file under its temporary name.
   subroutine remove_unfinished(path)

@@ -43,6 +43,7 @@ module trace_files
   contains
     procedure :: open
     procedure :: close
+    procedure :: abandon
     procedure :: take_row
     procedure :: take_event
     procedure :: take_progress
@@ -204,6 +205,14 @@ contains
     call self%event_list%close(second)
     if (.not. allocated(error)) call move_alloc(second, error)
   end subroutine close
+
+  !> Nothing stays of either file.
+  subroutine abandon(self)
+    class(trace_files_t), intent(inout) :: self
+    call self%progress%finish()
+    call self%trace%abandon()
+    call self%event_list%abandon()
+  end subroutine abandon
 
   !> The row is made where it waits to be written.
   subroutine take_row(self, values)

@@ -6,7 +6,7 @@ module study_runner
   use errors, only: error_t, fail, status_output, status_integration
   use text_tools, only: printable, integer_text
   use number_text, only: short_text
-  use case_runner, only: write_text
+  use result_file, only: write_text
   use command_line, only: command_line_t
   use progress, only: rate_text
   use posix, only: make_directory, error_text, interrupted
