@@ -1,6 +1,6 @@
 !> One run of a case with its result files: of the scene itself, or of its ideal twin.
 module case_run
-  use, intrinsic :: iso_c_binding, only: c_f_pointer, c_funloc, c_loc, c_null_ptr, c_ptr
+  use, intrinsic :: iso_c_binding, only: c_f_pointer, c_funloc, c_funptr, c_loc, c_null_ptr, c_ptr
   use errors, only: error_t
   use case_definition, only: case_t
   use columns, only: column_list_t
@@ -62,8 +62,10 @@ contains
   !> given up.
   subroutine go_beside(run)
     type(case_run_t), intent(inout), target :: run
+    type(c_funptr) :: routine
     logical :: has_started
-    call run%thread%start(c_funloc(run_in_thread), c_loc(run), has_started)
+    routine = c_funloc(run_in_thread)   ! gfortran 12.2, optimising across modules, loses it where it is not a variable
+    call run%thread%start(routine, c_loc(run), has_started)
     run%has_gone = has_started
   end subroutine go_beside
 
