@@ -304,13 +304,21 @@ contains
     call move_alloc(longer, list)
   end subroutine append_group
 
-  !> Add a key with its values to the list.
+  !> Add a key with its values to the list. What the others hold is handed over, not copied.
   subroutine append_entry(list, entry)
     type(entry_t), allocatable, intent(inout) :: list(:)
     type(entry_t), intent(in) :: entry
     type(entry_t), allocatable :: longer(:)
+    integer :: i
     allocate (longer(size(list) + 1))
-    longer(:size(list)) = list
+    do i = 1, size(list)
+      call move_alloc(list(i)%group, longer(i)%group)
+      call move_alloc(list(i)%key, longer(i)%key)
+      call move_alloc(list(i)%tokens, longer(i)%tokens)
+      longer(i)%group_number = list(i)%group_number
+      longer(i)%index = list(i)%index
+      longer(i)%line = list(i)%line
+    end do
     longer(size(longer)) = entry
     call move_alloc(longer, list)
   end subroutine append_entry

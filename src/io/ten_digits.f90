@@ -8,7 +8,8 @@ module ten_digits
   private
   public :: ten_digits_t
 
-  integer, parameter :: last_binade = 321   !! below 10**97: numbers beyond, and their inverses, are left to others
+  integer, parameter :: last_binade = 321   !! numbers beyond, and their inverses, are left to others
+  integer, parameter :: last_decade = 97    !! that it reaches into
   integer, parameter :: field_length = 19   !! of 1.234567890E-05, and three blanks
   character(len=16), parameter :: zero = '0.000000000E+00,'
   integer, parameter :: wide = selected_int_kind(38)   !! holds the product of two int64
@@ -32,21 +33,29 @@ module ten_digits
 
 contains
 
-  !> Make the tables. Call it first.
+  !> Make the tables. Call it first. (Without concatenation, which takes ten times as long.)
   pure subroutine prepare(self, powers)
     class(ten_digits_t), intent(inout) :: self
     type(power_of_ten_t), intent(in) :: powers(first_power:last_power)
+    character(len=8) :: endings(-last_decade:last_decade)
     integer :: i, e, k
     do i = 0, 999
-      self%triples(i) = digit(i/100)//digit(mod(i/10, 10))//digit(mod(i, 10))
+      self%triples(i)(1:1) = digit(i/100)
+      self%triples(i)(2:2) = digit(mod(i/10, 10))
+      self%triples(i)(3:3) = digit(mod(i, 10))
+    end do
+    do k = -last_decade, last_decade
+      endings(k) = 'E+00,'
+      if (k < 0) endings(k)(2:2) = '-'
+      endings(k)(3:3) = digit(abs(k)/10)
+      endings(k)(4:4) = digit(mod(abs(k), 10))
     end do
     do e = -last_binade, last_binade
       k = floor_log(e)
       self%binades(e)%next = bits_of(powers(k + 1))
-      do i = 0, 1
-        self%binades(e)%factor(i) = factor_of(powers(9 - k - i), e)
-        self%binades(e)%ending(i) = 'E'//merge('-', '+', k + i < 0)//digit(abs(k + i)/10)//digit(mod(abs(k + i), 10))//','
-      end do
+      self%binades(e)%factor(0) = factor_of(powers(9 - k), e)
+      self%binades(e)%factor(1) = factor_of(powers(8 - k), e)
+      self%binades(e)%ending = endings(k:k + 1)
     end do
   end subroutine prepare
 

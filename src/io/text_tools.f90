@@ -20,9 +20,18 @@ contains
   pure function integer_text(number) result(text)
     integer, intent(in) :: number
     character(len=:), allocatable :: text
-    character(len=12) :: digits
-    write (digits, '(i0)') number
-    text = trim(digits)
+    character(len=11) :: digits
+    integer :: rest, first
+    rest = merge(number, -max(number, 0), number < 0)   ! not positive: of those there is one less
+    first = len(digits) + 1
+    do
+      first = first - 1
+      digits(first:first) = achar(iachar('0') - mod(rest, 10))
+      rest = rest/10
+      if (rest == 0) exit
+    end do
+    text = digits(first:)
+    if (number < 0) text = '-'//text
   end function integer_text
 
   !> The text as one safe line: control characters, characters that cannot be seen or turn the direction of writing, and bytes
@@ -33,6 +42,10 @@ contains
     character(len=:), allocatable :: shown
     character(len=4) :: escaped
     integer :: i, bytes
+    if (len(text) <= limit .and. is_plain(text)) then
+      shown = text
+      return
+    end if
     shown = ''
     i = 1
     do while (i <= len(text))
@@ -51,6 +64,17 @@ contains
       i = i + max(bytes, 1)
     end do
   end function printable
+
+  !> Whether the text is ASCII without control characters, as nearly all are.
+  pure logical function is_plain(text)
+    character(len=*), intent(in) :: text
+    integer :: i
+    is_plain = .false.
+    do i = 1, len(text)
+      if (ichar(text(i:i)) < 32 .or. ichar(text(i:i)) > 126) return
+    end do
+    is_plain = .true.
+  end function is_plain
 
   !> Whether a character of UTF-8 beyond ASCII is a blank, has no width or turns the direction of writing: U+00A0, U+00AD,
   !> U+2000-200F, U+2028-202F, U+205F-206F, U+3000, U+FEFF.
