@@ -82,6 +82,8 @@ contains
       call check%that(s%restarts == size(e), 'one restart an event')
       call check%that(size(trace%values, 2) - s%accepted >= 1 .and. size(trace%values, 2) - s%accepted <= 1 + size(e), &
         'a row for every accepted step, none for the others')
+      call check%that(figures%evaluations == size(trace%values, 2) + size(e) + 1, &
+        'one evaluation serves the row and the figures; each event takes one, and the start')
       call check%close_to(figures%max_penetration, maxval(-trace%values(column(trace, 'film_thickness[m]'), :)), 1e-15_dp, &
         'the deepest penetration is that of an accepted point')
       call check%close_to(figures%max_pin_force, maxval(hypot(trace%values(column(trace, 'pin_force_x[N]'), :), &

@@ -90,11 +90,8 @@ contains
     end if
     if (allocated(self%cycles)) call self%cycles%begin(scene, y, self%initial_energy)
     if (inside .and. scene%phase == phase_contact) call take_contact(self, event_contact_begins, 0.0_dp, now)
-    call self%take_point(scene, 0.0_dp, y)
-    if (self%first_sample <= 0) then
-      call self%write_row(scene, 0.0_dp, y)
-      self%next_row = 1
-    end if
+    call self%take_point(scene, 0.0_dp, y, self%first_sample <= 0)
+    if (self%first_sample <= 0) self%next_row = 1
   end subroutine begin
 
   subroutine step_taken(self, method, problem, t_to)
@@ -107,12 +104,7 @@ contains
 
     select type (problem)
     class is (scene_t)
-      if (self%every_step .and. size(self%values) > 0) then
-        if (t_to >= self%first_sample) then
-          call method%interpolate(t_to, self%y)
-          call self%write_row(problem, t_to, self%y)
-        end if
-      else if (size(self%values) > 0) then
+      if (.not. self%every_step .and. size(self%values) > 0) then
         do
           t = self%first_sample + self%next_row*self%interval
           if (t > t_to .or. t > self%end_time*(1 + 4*epsilon(t))) exit
@@ -123,11 +115,9 @@ contains
       end if
       if (t_to < method%t) then
         call method%interpolate(t_to, self%y)
-        if (allocated(self%cycles)) call self%cycles%take_step(method, problem, t_to, self%y)
-        call self%take_point(problem, t_to, self%y)
+        call take_end(self, method, problem, t_to, self%y)
       else
-        if (allocated(self%cycles)) call self%cycles%take_step(method, problem, method%t, method%y)
-        call self%take_point(problem, method%t, method%y)
+        call take_end(self, method, problem, method%t, method%y)
       end if
     end select
     self%steps = self%steps + 1
@@ -136,6 +126,16 @@ contains
     self%wants_to_stop = self%sink%wants_to_stop .or. self%over_budget
     self%wants_archive = self%sink%wants_archive
   end subroutine step_taken
+
+  !> The end of a step, or of the part of it that stands.
+  subroutine take_end(self, method, scene, t, y)
+    class(recorder_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(:)
+    if (allocated(self%cycles)) call self%cycles%take_step(method, scene, t, y)
+    call self%take_point(scene, t, y, self%every_step .and. t >= self%first_sample)
+  end subroutine take_end
 
   !> Whether the present revolution costs more than it may. One that takes longer than the first would have ends there: a crank
   !> at rest must not spend for ever.
@@ -164,11 +164,12 @@ contains
     call scene%evaluate(t, y, now, inside)
   end subroutine look_at
 
-  !> The figures of one accepted point.
-  subroutine take_point(self, scene, t, y)
+  !> The figures of one accepted point, and its row where one is due.
+  subroutine take_point(self, scene, t, y, has_row)
     class(recorder_t), intent(inout) :: self
     class(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
+    logical, intent(in) :: has_row
     type(evaluation_t) :: now
     logical :: inside
     real(dp) :: energy
@@ -191,6 +192,7 @@ contains
       f%time = t
     end associate
     if (allocated(self%cycles)) call self%cycles%take_point(scene, t, now)
+    if (has_row) call put_row(self, scene, t, y, now)
   end subroutine take_point
 
   subroutine event_taken(self, problem, index, t, y)
@@ -291,6 +293,7 @@ contains
     call self%sink%take_archive(archive)
   end subroutine take_archive
 
+  !> The row at a time where nothing else is looked at.
   subroutine write_row(self, scene, t, y)
     class(recorder_t), intent(inout) :: self
     class(scene_t), intent(in) :: scene
@@ -299,8 +302,16 @@ contains
     logical :: inside
     if (size(self%values) == 0) return
     call look_at(self, scene, t, y, now, inside)
-    if (.not. inside) return
+    if (inside) call put_row(self, scene, t, y, now)
+  end subroutine write_row
+
+  subroutine put_row(self, scene, t, y, now)
+    class(recorder_t), intent(inout) :: self
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(:)
+    type(evaluation_t), intent(in) :: now
+    if (size(self%values) == 0) return
     call row_values(self%list, scene, t, now, scene%work(y), self%initial_energy, self%values)
     call self%sink%take_row(self%values)
-  end subroutine write_row
+  end subroutine put_row
 end module recorder
