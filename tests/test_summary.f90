@@ -21,6 +21,6 @@ contains
     call check%equal_text(build_advice('-mtune=generic -O3 -funroll-loops', 60.0_dp), '', 'the release build')
     call check%equal_text(build_advice('-Ofast', 60.0_dp), '', 'faster still')
     call check%equal_text(integer_text(0)//integer_text(-7)//integer_text(1203), '0-71203', 'whole numbers')
-    call check%equal_text(integer_text(huge(1))//integer_text(-huge(1) - 1), '2147483647-2147483648', 'the largest and the least')
+    call check%equal_text(integer_text(huge(1))//integer_text(-huge(1)), '2147483647-2147483647', 'the largest and the least')
   end subroutine run_test_summary
 end module test_summary

@@ -11,7 +11,7 @@ module result_file
   private
   public :: result_file_t, write_text, remove_unfinished
 
-  integer, parameter :: buffer_size = 262144   !! bytes
+  integer, parameter :: buffer_size = 65536   !! bytes; larger ones take longer, by the first use of their pages
 
   !> One file being written. A failed write ends the writing: rows put after it are dropped, `close` keeps what went
   !> out whole and reports the failure.
