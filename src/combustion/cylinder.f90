@@ -14,6 +14,7 @@ module cylinder
     real(dp) :: rod_ratio = 0     !! L/R [-]
   contains
     procedure :: volume
+    procedure :: volume_at
     procedure :: volume_slope
     procedure :: volume_curvature
   end type cylinder_t
@@ -32,14 +33,23 @@ contains
     cylinder%rod_ratio = rod_length/crank_length
   end function new_cylinder
 
-  !> V(q) [m^3], q in rad from a top dead centre; with r = L/R, r - sqrt(r^2 - sin^2 q) is written without cancellation.
+  !> V(q) [m^3], q in rad from a top dead centre.
   pure real(dp) function volume(self, q)
     class(cylinder_t), intent(in) :: self
     real(dp), intent(in) :: q
-    real(dp) :: s
-    s = sin(q)
-    volume = self%dead_volume + 0.5_dp*self%displacement*(2*sin(0.5_dp*q)**2 + s**2/(self%rod_ratio + root(self, s)))
+    volume = self%volume_at(sin(q), cos(q))
   end function volume
+
+  !> V where sine and cosine of q are known; with r = L/R, 1 - cos q and r - sqrt(r^2 - sin^2 q) are written without
+  !> cancellation.
+  pure real(dp) function volume_at(self, s, c)
+    class(cylinder_t), intent(in) :: self
+    real(dp), intent(in) :: s, c   !! sin q, cos q
+    real(dp) :: drop
+    drop = 1 - c
+    if (c > 0) drop = s**2/(1 + c)
+    volume_at = self%dead_volume + 0.5_dp*self%displacement*(drop + s**2/(self%rod_ratio + root(self, s)))
+  end function volume_at
 
   !> dV/dq [m^3/rad] (A.11, corrected).
   pure real(dp) function volume_slope(self, q)

@@ -6,7 +6,7 @@
 !> from sin A = (R sin q - e_y)/L without a trigonometric function.
 module clearance_joint
   use kinds, only: dp
-  use mechanism, only: mechanism_t, motion_t
+  use mechanism, only: mechanism_t, motion_t, turn_crank
   implicit none
   private
   public :: joint_geometry_t, joint_motion_t, joint_motion, find_joint_motion, sliding_speed, clearance_motion, &
@@ -76,10 +76,7 @@ contains
     real(dp), intent(in) :: q, crank_speed, eccentricity(2), eccentricity_rate(2)
     type(motion_t), intent(out) :: motion
     logical, intent(out) :: reachable
-    motion%crank_angle = q
-    motion%sin_crank = sin(q)
-    motion%cos_crank = cos(q)
-    motion%crank_speed = crank_speed
+    call turn_crank(motion, q, crank_speed)
     call find_rod(mechanism, eccentricity, eccentricity_rate, motion, reachable)
     if (reachable) call find_piston(mechanism, eccentricity, eccentricity_rate, motion)
   end subroutine clearance_motion

@@ -7,7 +7,7 @@ module mechanism
   use kinds, only: dp
   implicit none
   private
-  public :: mechanism_t, motion_t, accelerations_t
+  public :: mechanism_t, motion_t, accelerations_t, turn_crank
 
   !> Constants of the bodies. Centres of mass are given in each body's own frame: the crank's from the crank
   !> bearing, the first axis towards the crank pin; the rod's from the crank pin, the first axis towards the pin. The
@@ -89,6 +89,16 @@ contains
     m%per_rod_length = 1/rod_length
     m%per_piston_mass = 1/piston_mass
   end function new_mechanism
+
+  !> The crank of a motion: its angle [rad] with sine and cosine, and its speed [rad/s].
+  pure subroutine turn_crank(motion, crank_angle, crank_speed)
+    type(motion_t), intent(inout) :: motion
+    real(dp), value, intent(in) :: crank_angle, crank_speed
+    motion%crank_angle = crank_angle
+    motion%sin_crank = sin(crank_angle)
+    motion%cos_crank = cos(crank_angle)
+    motion%crank_speed = crank_speed
+  end subroutine turn_crank
 
   !> m12 = -m_rod R (U_r cos s + V_r sin s) and c = dm12/ds, s = q + A [kg m^2].
   pure subroutine coupling(self, motion, m12, slope)

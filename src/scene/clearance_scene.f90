@@ -2,10 +2,10 @@
 module clearance_scene
   use kinds, only: dp
   use ode_problem, only: event_form_t, difference_jacobian
-  use mechanism, only: motion_t
+  use mechanism, only: motion_t, turn_crank
   use dynamics, only: loads_t, accelerations_under
   use ideal_joint, only: follow_crank, ideal_rod_acceleration
-  use clearance_joint, only: joint_geometry_t, find_joint_motion, sliding_speed, find_rod, find_piston
+  use clearance_joint, only: joint_geometry_t, joint_motion_t, find_joint_motion, sliding_speed, find_rod, find_piston
   use linearisation, only: motion_change_t, motion_change, acceleration_change
   use contact_law, only: contact_law_t
   use friction_law, only: friction_law_t
@@ -195,13 +195,11 @@ contains
     logical, value, intent(in) :: complete
     type(evaluation_t), intent(inout) :: now
     logical, intent(out) :: inside
-    real(dp) :: crank_angle
+    real(dp) :: crank_angle, crank_speed
     logical :: sticks
 
-    call read_state(self, t, y, crank_angle, now)
-    now%motion%crank_angle = crank_angle
-    now%motion%sin_crank = sin(crank_angle)
-    now%motion%cos_crank = cos(crank_angle)
+    call read_state(self, t, y, crank_angle, crank_speed, now%joint)
+    call turn_crank(now%motion, crank_angle, crank_speed)
     if (complete .or. self%phase == phase_contact) call find_joint_motion(self%joint, now%joint)
     if (self%phase == phase_contact) now%normal_force = &
       self%contact%normal_force(now%joint%penetration, now%joint%penetration_rate, self%impact_speed)
@@ -228,36 +226,32 @@ contains
       call hold_pin(self, now)   ! found without friction: once more with the one that holds the pin
       sticks = .false.
     end do
-    associate (speed => now%motion%crank_speed)
-      now%power = (now%crank_moment - self%drive%damping*speed)*speed
-      if (self%phase /= phase_free) now%power = now%power + joint_power(now)
-      if (allocated(self%gas)) now%power = now%power - now%loads%gas_force*now%motion%piston_velocity
-    end associate
+    now%power = (now%crank_moment - self%drive%damping*crank_speed)*crank_speed
+    if (self%phase /= phase_free) now%power = now%power + joint_power(now)
+    if (allocated(self%gas)) now%power = now%power - now%loads%gas_force*now%motion%piston_velocity
   end subroutine find_accelerations
 
   !> Crank and eccentricity from the state.
-  pure subroutine read_state(self, t, y, crank_angle, now)
+  pure subroutine read_state(self, t, y, crank_angle, crank_speed, joint)
     class(clearance_scene_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
-    real(dp), intent(out) :: crank_angle
-    type(evaluation_t), intent(inout) :: now
-    associate (e => now%joint%eccentricity, rate => now%joint%eccentricity_rate)
-      if (self%drive%free_crank) then
-        crank_angle = y(1)
-        now%motion%crank_speed = y(4)
-        e(1) = y(2)
-        e(2) = y(3)
-        rate(1) = y(5)
-        rate(2) = y(6)
-      else
-        crank_angle = self%start_angle + self%start_speed*t
-        now%motion%crank_speed = self%start_speed
-        e(1) = y(1)
-        e(2) = y(2)
-        rate(1) = y(3)
-        rate(2) = y(4)
-      end if
-    end associate
+    real(dp), intent(out) :: crank_angle, crank_speed
+    type(joint_motion_t), intent(inout) :: joint
+    if (self%drive%free_crank) then
+      crank_angle = y(1)
+      crank_speed = y(4)
+      joint%eccentricity(1) = y(2)
+      joint%eccentricity(2) = y(3)
+      joint%eccentricity_rate(1) = y(5)
+      joint%eccentricity_rate(2) = y(6)
+    else
+      crank_angle = self%start_angle + self%start_speed*t
+      crank_speed = self%start_speed
+      joint%eccentricity(1) = y(1)
+      joint%eccentricity(2) = y(2)
+      joint%eccentricity_rate(1) = y(3)
+      joint%eccentricity_rate(2) = y(4)
+    end if
   end subroutine read_state
 
   !> Whether the pin may be there: inside the bearing's wall and, where a film is singular, inside the clearance.

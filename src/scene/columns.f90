@@ -138,7 +138,7 @@ contains
       all_values(23:32) = [joint%eccentricity, joint%distance/list%clearance, -joint%penetration, real(scene%phase, dp), &
         now%normal_force, now%friction_force, joint%sliding_speed, in_film*now%loads%pin_force]
       volume = 0
-      if (allocated(scene%gas)) volume = scene%gas%cylinder%volume(m%crank_angle)
+      if (allocated(scene%gas)) volume = scene%gas%cylinder%volume_at(m%sin_crank, m%cos_crank)
       all_values(33:35) = [now%cylinder_pressure, volume, now%loads%gas_force]
     end associate
     do i = 1, size(values)   ! all_values(list%id) would allocate a copy of the subscripts

@@ -2,7 +2,8 @@
 module ideal_scene
   use kinds, only: dp
   use ode_problem, only: event_continue
-  use ideal_joint, only: find_ideal_motion, ideal_accelerations
+  use mechanism, only: turn_crank
+  use ideal_joint, only: follow_crank, ideal_accelerations
   use clearance_joint, only: joint_motion_t
   use scene, only: scene_t, evaluation_t, event_none
   implicit none
@@ -59,17 +60,22 @@ contains
   !> Motion, loads, accelerations and power: the right-hand side, and all of an evaluation but the joint.
   pure subroutine find_accelerations(self, t, y, now)
     class(ideal_scene_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(in) :: t, y(self%n)
     type(evaluation_t), intent(inout) :: now
+    real(dp) :: crank_angle, crank_speed
     if (self%drive%free_crank) then
-      call find_ideal_motion(self%mechanism, y(1), y(2), now%motion)
+      crank_angle = y(1)
+      crank_speed = y(2)
     else
-      call find_ideal_motion(self%mechanism, self%start_angle + self%start_speed*t, self%start_speed, now%motion)
+      crank_angle = self%start_angle + self%start_speed*t
+      crank_speed = self%start_speed
     end if
+    call turn_crank(now%motion, crank_angle, crank_speed)
     now%loads%gas_force = 0
-    if (allocated(self%gas)) call self%add_gas(now%motion%crank_angle, now)
+    if (allocated(self%gas)) call self%add_gas(crank_angle, now)
+    call follow_crank(self%mechanism, now%motion)
     call ideal_accelerations(self%mechanism, self%drive, now%motion, now%loads, now%accelerations, now%crank_moment)
-    now%power = (now%crank_moment - self%drive%damping*now%motion%crank_speed)*now%motion%crank_speed &
+    now%power = (now%crank_moment - self%drive%damping*crank_speed)*crank_speed &
       - now%loads%gas_force*now%motion%piston_velocity
   end subroutine find_accelerations
 
