@@ -4,7 +4,7 @@ module number_writer
   use kinds, only: dp
   use powers_of_ten, only: power_of_ten_t, make_powers, first_power, last_power, last_exact_power, limb_bits, &
     floor_log
-  use ten_digits, only: ten_digits_t
+  use ten_digits, only: ten_digits_t, digit
   implicit none
   private
   public :: number_writer_t, append_formatted, longest_number, fewest_digits, most_digits
@@ -246,12 +246,6 @@ contains
     integer, intent(in) :: number
     pair = pairs(2*number + 1:2*number + 2)
   end function pair
-
-  !> The digit of a number below 10.
-  pure character(len=1) function digit(number)
-    integer, intent(in) :: number
-    digit = achar(iachar('0') + number)
-  end function digit
 
   !> E-05, with a third digit where it takes one.
   pure subroutine append_exponent(line, used, decade)

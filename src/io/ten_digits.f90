@@ -6,7 +6,7 @@ module ten_digits
   use powers_of_ten, only: power_of_ten_t, first_power, last_power, floor_log
   implicit none
   private
-  public :: ten_digits_t
+  public :: ten_digits_t, digit
 
   integer, parameter :: last_binade = 321   !! numbers beyond, and their inverses, are left to others
   integer, parameter :: last_decade = 97    !! that it reaches into
