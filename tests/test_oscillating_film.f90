@@ -29,6 +29,7 @@ contains
     call test_sommerfeld_limit(check)
     call test_points(check)
     call test_chosen_points(check)
+    call test_series(check)
     call test_flow(check)
     call test_force(check)
     call test_as_printed(check)
@@ -210,6 +211,34 @@ contains
       call check%that(worst <= accuracies(k), 'the chosen points are enough')
     end do
   end subroutine test_chosen_points
+
+  !> The series in Q against sums over many points, up to the Q that it serves, for any eccentricity: to the accuracy asked
+  !> for, and to rounding. Points that are asked for are taken, not the series.
+  subroutine test_series(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: accuracies(4) = [1e-8_dp, 1e-10_dp, 1e-13_dp, epsilon(1.0_dp)]
+    real(dp), parameter :: ratios(8) = [0.0_dp, 1e-9_dp, 0.01_dp, 0.3_dp, 0.7_dp, 0.95_dp, 0.999_dp, 1 - 1e-6_dp]
+    type(oscillating_response_t) :: series, reference, coarse
+    real(dp) :: worst, q
+    integer :: i, j, k, variant
+    do variant = 1, 2
+      call new_oscillating_response(reference, 1e-15_dp, 2048, variant == 2)
+      do k = 1, size(accuracies)
+        call new_oscillating_response(series, accuracies(k), 0, variant == 2)
+        worst = 0
+        do i = 0, 80
+          q = series%series%limit*10**(-0.05_dp*i)
+          do j = 1, size(ratios)
+            worst = max(worst, distance(series, reference, ratios(j), 2*sqrt(q)))
+          end do
+        end do
+        call check%that(worst <= max(accuracies(k), 1e-14_dp), 'the series is the sum')
+        call check%that(series%series%limit > 0.4_dp, 'the series serves far beyond the films of engines')
+      end do
+      call new_oscillating_response(coarse, 1e-15_dp, 4, variant == 2)
+      call check%that(distance(coarse, reference, 0.9_dp, 1.0_dp) > 1e-7_dp, 'points asked for are taken')
+    end do
+  end subroutine test_series
 
   !> A film as used by the tests of the flow.
   subroutine make(film, as_printed)

@@ -12,14 +12,14 @@ module films
   private
   public :: new_film_law
 
-  !> Error allowed to a quadrature over the run's relative tolerance, and at most.
-  real(dp), parameter :: quadrature_margin = 1e-4_dp
-  real(dp), parameter :: coarsest_quadrature = 1e-8_dp
+  !> Error allowed to means over the film, over the run's relative tolerance, and at most.
+  real(dp), parameter :: mean_margin = 1e-4_dp
+  real(dp), parameter :: coarsest_mean = 1e-8_dp
 
 contains
 
   !> The film that a case asks for. Errors: an unknown law, a variant that the law does not have. The oscillating film's
-  !> quadrature is finer than the run by `quadrature_margin`.
+  !> means are finer than the run by `mean_margin`.
   subroutine new_film_law(definition, bearing_radius, bearing_length, clearance, relative_tolerance, film, error, &
     rod_length)
     type(lubrication_case_t), intent(in) :: definition
@@ -73,7 +73,7 @@ contains
       type(oscillating_film_t), allocatable :: oscillating
       type(oscillating_response_t) :: response
       real(dp) :: accuracy
-      accuracy = min(max(quadrature_margin*relative_tolerance, epsilon(1.0_dp)), coarsest_quadrature)
+      accuracy = min(max(mean_margin*relative_tolerance, epsilon(1.0_dp)), coarsest_mean)
       call new_oscillating_response(response, accuracy, definition%quadrature_points, arm_length > 0)
       allocate (oscillating)
       call new_oscillating_film(oscillating, response, bearing_radius, bearing_length, clearance, definition%viscosity, &

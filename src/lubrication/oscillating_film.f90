@@ -3,7 +3,7 @@
 !> It carries no load along the line of centres: only forces along the tangent, and the shear's moment.
 module oscillating_film
   use kinds, only: dp
-  use constants, only: pi
+  use constants, only: pi, two_pi
   use film_law, only: film_law_t, film_motion_t
   use oscillating_response, only: oscillating_response_t, film_phasors_t, inertia_function, max_eccentricity_ratio
   implicit none
@@ -12,6 +12,7 @@ module oscillating_film
 
   type, extends(film_law_t) :: oscillating_film_t
     type(oscillating_response_t) :: response
+    real(dp) :: per_clearance = 1         !! 1/c [1/m]
     real(dp) :: pin_radius = 0            !! R [m]
     real(dp) :: viscosity = 0             !! mu [Pa s]
     real(dp) :: kinematic_viscosity = 0   !! nu [m^2/s]
@@ -23,7 +24,7 @@ module oscillating_film
   contains
     procedure :: film_force
     procedure :: phasors
-    procedure :: surface_speed
+    procedure, non_overridable :: surface_speed
     procedure :: pressure_gradient
     procedure :: velocity
   end type oscillating_film_t
@@ -42,6 +43,7 @@ contains
     film%singular_at_wall = .false.
     film%response = response
     film%clearance = clearance
+    film%per_clearance = 1/clearance
     film%pin_radius = bearing_radius - clearance
     film%viscosity = viscosity
     film%kinematic_viscosity = kinematic_viscosity
@@ -55,9 +57,12 @@ contains
     class(oscillating_film_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
     complex(dp) :: speed
-    speed = cmplx(self%pin_radius*motion%ideal_pin_speed, 0.0_dp, dp)
-    if (motion%frequency > 0) &
-      speed = speed - cmplx(0.0_dp, self%pin_radius*(motion%ideal_pin_acceleration/motion%frequency), dp)
+    real(dp), parameter :: slowest = 1e-300_dp   !! frequency that has a reciprocal
+    real(dp) :: lag
+    lag = 0
+    ! the reciprocal need not wait for the acceleration
+    if (motion%frequency > slowest) lag = motion%ideal_pin_acceleration*(1/motion%frequency)
+    speed = cmplx(self%pin_radius*motion%ideal_pin_speed, -self%pin_radius*lag, dp)
   end function surface_speed
 
   !> The film's response to unit surface speed.
@@ -79,22 +84,36 @@ contains
     type(film_motion_t), intent(in) :: motion
     real(dp), intent(out) :: force(2)
     real(dp), intent(out) :: moment
-    real(dp), parameter :: centred = 1e-150_dp   !! an eccentricity below this [m] has no direction to take
     type(film_phasors_t) :: response
     complex(dp) :: speed
-    real(dp) :: eccentricity, tangential, radial, n(2)
-    eccentricity = sqrt(motion%eccentricity(1)**2 + motion%eccentricity(2)**2)
-    n = [1.0_dp, 0.0_dp]
-    if (eccentricity > centred) n = motion%eccentricity/eccentricity
-    response = self%phasors(motion)
+    real(dp) :: e(2), n(2), square, held, scale, along, across, lever, tangential, radial
+
+    e = motion%eccentricity*self%per_clearance
+    square = e(1)**2 + e(2)**2
+    held = min(self%largest_ratio, max_eccentricity_ratio)
+    if (square > held**2) then
+      e = e*(held/sqrt(square))
+      square = held**2
+    end if
+    call self%response%respond(square, 1 - square, self%inertia_scale*motion%frequency, response)
     speed = self%surface_speed(motion)
-    tangential = self%force_scale*real(speed*(response%shear - self%pin_radius/self%clearance*response%pressure))
-    moment = self%force_scale*self%pin_radius*real(speed*response%moment)
-    radial = 0
-    if (self%arm_length > 0) radial = pi*self%force_scale*self%clearance/self%kinematic_viscosity &
-      *motion%frequency*self%arm_length*real(speed)
-    force(1) = radial*n(1) - tangential*n(2)
-    force(2) = radial*n(2) + tangential*n(1)
+    scale = two_pi*self%force_scale
+    along = scale*real(speed)
+    across = scale*aimag(speed)
+    lever = self%pin_radius*self%per_clearance
+    tangential = along*(real(response%shear) - lever*real(response%pressure)) &
+      - across*(aimag(response%shear) - lever*aimag(response%pressure))   ! over eps
+    moment = self%pin_radius*(along*real(response%moment) - across*aimag(response%moment))
+    force(1) = -tangential*e(2)
+    force(2) = tangential*e(1)
+    if (self%arm_length > 0) then
+      radial = pi*self%force_scale*self%clearance/self%kinematic_viscosity*motion%frequency*self%arm_length*real(speed)
+      n(1) = 1   ! the centre has no direction: x is taken
+      n(2) = 0
+      if (square > 0) n = e*(1/sqrt(square))
+      force(1) = force(1) + radial*n(1)
+      force(2) = force(2) + radial*n(2)
+    end if
   end subroutine film_force
 
   !> dP/dth [Pa] as a phasor, at the angle theta [rad] from the thinnest place (the direction of the eccentricity), x

@@ -12,11 +12,13 @@
 !> factor R, (5.5) has nu for i and c/2 for h/2.
 !>
 !> B = 3 + u^2/5 - u^4/175 + ... is even in eta and smooth near the wall. The powers of 1/eta that it leaves have closed
-!> means; only a smooth remainder is summed over points, whose number does not depend on the eccentricity. P*' and t* are
-!> even in th: pressure and shear have no resultant along the line of centres, and half the circle is enough.
+!> means. Those of the smooth remainder are a power series in Q (inertia_series); beyond the Q that it serves they are summed
+!> over points, whose number does not depend on the eccentricity. P*' and t* are even in th: pressure and shear have no
+!> resultant along the line of centres, and half the circle is enough.
 module oscillating_response
   use kinds, only: dp
   use constants, only: pi, two_pi
+  use inertia_series, only: inertia_series_t, remainder_t, new_inertia_series
   implicit none
   private
   public :: oscillating_response_t, film_phasors_t, new_oscillating_response, inertia_function, max_eccentricity_ratio
@@ -49,22 +51,17 @@ module oscillating_response
 
   type :: oscillating_response_t
     logical :: as_printed = .false.       !! with the second acceleration term of (5.4), which takes 4iQ from P*'
-    type(rule_t), allocatable :: rule(:)  !! coarsest first
+    type(inertia_series_t) :: series      !! for small Q
+    type(rule_t), allocatable :: rule(:)  !! beyond; coarsest first
   contains
     procedure, non_overridable :: phasors
+    procedure, non_overridable :: respond
   end type oscillating_response_t
-
-  !> What the closed means leave over.
-  type :: remainder_t
-    complex(dp) :: n1, c2   !! of <B/eta^2>: less 3 <1/eta^2>; the same with cos th
-    complex(dp) :: n2, c3   !! of <(B + u^2)/eta^3>: less 3 <1/eta^3>; the same with cos th
-    complex(dp) :: m1, mc   !! of <(1 + B + u^2/B)/eta>: less 4 <1/eta>; the same with cos th
-  end type remainder_t
 
 contains
 
-  !> `accuracy` is the relative error allowed to the quadrature, between 0 and 1; `points` > 0 fixes the number of points
-  !> on the whole circle instead.
+  !> `accuracy` is the relative error allowed to series and sums, between 0 and 1; `points` > 0 asks for sums over that
+  !> many points on the whole circle instead.
   pure subroutine new_oscillating_response(response, accuracy, points, as_printed)
     type(oscillating_response_t), intent(out) :: response
     real(dp), intent(in) :: accuracy
@@ -72,6 +69,7 @@ contains
     logical, intent(in) :: as_printed
     integer :: i, n
     response%as_printed = as_printed
+    if (points == 0) call new_inertia_series(response%series, accuracy)
     allocate (response%rule(merge(1, size(rule_points), points > 0)))
     do i = 1, size(response%rule)
       n = rule_points(i)
@@ -102,65 +100,99 @@ contains
     q = (pi*(2*total - sqrt(8.0_dp))/((total - 2)*(total + 2)))**2
   end function served_inertia
 
-  !> The response at an eccentricity ratio and Q = c^2 w/(4 nu). The closed means of 1/eta, 1/eta^2, 1/eta^3 and their
-  !> products with cos th are multiplied out with the remainders, so that nothing cancels as eps -> 1.
+  !> The response at an eccentricity ratio and Q = c^2 w/(4 nu).
   pure function phasors(self, eccentricity_ratio, q)
     class(oscillating_response_t), intent(in) :: self
     real(dp), intent(in) :: eccentricity_ratio   !! >= 0
     real(dp), intent(in) :: q                    !! >= 0
     type(film_phasors_t) :: phasors
-    type(remainder_t) :: rest
-    complex(dp) :: driven, scale
-    real(dp) :: eps, s
-    integer :: i
+    real(dp) :: eps
     eps = min(eccentricity_ratio, max_eccentricity_ratio)
-    s = sqrt((1 - eps)*(1 + eps))
+    call self%respond(eps**2, (1 - eps)*(1 + eps), q, phasors)
+    phasors%pressure = two_pi*eps*phasors%pressure
+    phasors%shear = two_pi*eps*phasors%shear
+    phasors%moment = two_pi*phasors%moment
+  end function phasors
+
+  !> The same, but pressure and shear over 2 pi eps and the moment over 2 pi: without the root eps. The closed means of 1/eta,
+  !> 1/eta^2, 1/eta^3 and their products with cos th are multiplied out with the remainders, so that nothing cancels as
+  !> eps -> 1.
+  pure subroutine respond(self, square, gap, q, phasors)
+    class(oscillating_response_t), intent(in) :: self
+    real(dp), value, intent(in) :: square, gap   !! eps^2 and 1 - eps^2, both >= 0, gap not 0
+    real(dp), value, intent(in) :: q             !! Q >= 0
+    type(film_phasors_t), intent(out) :: phasors
+    type(remainder_t) :: rest
+    complex(dp) :: driven, scale, part, pressure, shear, moment
+    real(dp) :: s, gap2, per_s, per_sum, first
+    if (q <= self%series%limit) then
+      call self%series%remainders(gap, q, rest)
+    else
+      call sum_remainders(self, sqrt(square), q, rest)
+    end if
+    s = sqrt(gap)
+    per_s = 1/(s + gap)
+    per_sum = s*per_s   ! 1/(1 + s)
+    per_s = per_s + per_sum
+    gap2 = gap**2
+    first = (1 + b(0))*q   ! of n2 and c3 times <1/eta> = 1/s and <cos th/eta> = eps/(s (1 + s))
+    driven = rest%n1
+    if (self%as_printed) driven = driven - cmplx(0.0_dp, 2*q, dp)
+    ! real times complex part by part: the compiler would multiply by the zero imaginary part, too; s^5 as s times gap^2, which
+    ! does not wait for the root
+    scale = reciprocal(cmplx(3 + 1.5_dp*square + s*(gap2*real(rest%n2)), first*gap2 + s*(gap2*aimag(rest%n2)), dp))
+    part = cmplx(3 + s*(gap*real(driven)), s*(gap*aimag(driven)), dp)*scale
+    pressure = scale*(cmplx(3*gap*(real(rest%n2) - real(rest%c3)) - 4.5_dp*per_s, &
+      3*gap*(aimag(rest%n2) - aimag(rest%c3) + first*per_sum), dp) &
+      - driven*cmplx(4.5_dp + s*(gap2*real(rest%c3)), s*(gap2*aimag(rest%c3)) + first*gap2*per_sum, dp))
+    shear = part*cmplx(3*per_s + gap*real(rest%c2), gap*aimag(rest%c2), dp)
+    moment = part*cmplx(3*per_s + gap*real(rest%n1), gap*aimag(rest%n1), dp)
+    phasors%flow = cmplx(gap*real(part), gap*aimag(part), dp)
+    phasors%pressure = cmplx(2*(real(pressure) + real(rest%c2)), 2*(aimag(pressure) + aimag(rest%c2)), dp)
+    phasors%shear = cmplx(real(shear) - (real(rest%mc) + 4*(per_s - per_sum)), aimag(shear) - aimag(rest%mc), dp)
+    phasors%moment = cmplx(real(moment) - (real(rest%m1) + 4*per_s), aimag(moment) - aimag(rest%m1), dp)
+  end subroutine respond
+
+  !> The remainders by the coarsest rule that serves. At eps = 0, where those with cos th over eps are not told by sums, they
+  !> are left out: nothing depends on them there.
+  pure subroutine sum_remainders(self, eps, q, rest)
+    type(oscillating_response_t), intent(in) :: self
+    real(dp), intent(in) :: eps
+    real(dp), intent(in) :: q   !! Q
+    type(remainder_t), intent(out) :: rest
+    complex(dp) :: first, second, shear, iq
+    real(dp) :: eta, v, per_eps
+    integer :: i, j
     do i = 1, size(self%rule) - 1
       if (q <= self%rule(i)%limit) exit
     end do
-    rest = remainder_means(self%rule(i)%cosines, eps, s, q)
-
-    driven = rest%n1
-    if (self%as_printed) driven = driven - cmplx(0.0_dp, 2*q, dp)
-    scale = reciprocal(3 + 1.5_dp*eps**2 + s**5*rest%n2)
-    phasors%flow = s**2*(3 + s**3*driven)*scale
-    phasors%pressure = 2*two_pi*scale*(-4.5_dp*eps/s + 3*s**2*(eps*rest%n2 - rest%c3) + (3 + 1.5_dp*eps**2)*rest%c2 &
-      - 4.5_dp*eps*driven + s**5*(rest%c2*rest%n2 - driven*rest%c3))
-    phasors%shear = two_pi*(-4*eps/(s*(1 + s)) - rest%mc + phasors%flow*(3*eps/s**3 + rest%c2))
-    phasors%moment = two_pi*(-4/s - rest%m1 + phasors%flow*(3/s**3 + rest%n1))
-  end function phasors
-
-  pure function remainder_means(cosines, eps, s, q) result(rest)
-    real(dp), intent(in) :: cosines(:)
-    real(dp), intent(in) :: eps, s   !! s = sqrt(1 - eps^2)
-    real(dp), intent(in) :: q        !! Q
-    type(remainder_t) :: rest
-    complex(dp) :: first, second, shear, iq
-    real(dp) :: eta, v
-    integer :: j
     rest = remainder_t((0, 0), (0, 0), (0, 0), (0, 0), (0, 0), (0, 0))
-    do j = 1, size(cosines)
-      eta = 1 - eps*cosines(j)
-      v = q*eta**2
-      second = second_remainder(v)
-      first = cmplx(b(0) - v*aimag(second), v*real(second), dp)
-      shear = eta*(first + reciprocal(cmplx(3 - v*aimag(first), v*real(first), dp)))
-      second = eta*second
-      rest%n1 = rest%n1 + first
-      rest%c2 = rest%c2 + cosines(j)*first
-      rest%n2 = rest%n2 + second
-      rest%c3 = rest%c3 + cosines(j)*second
-      rest%m1 = rest%m1 + shear
-      rest%mc = rest%mc + cosines(j)*shear
-    end do
-    iq = cmplx(0.0_dp, q/size(cosines), dp)
+    associate (cosines => self%rule(i)%cosines)
+      do j = 1, size(cosines)
+        eta = 1 - eps*cosines(j)
+        v = q*eta**2
+        second = second_remainder(v)
+        first = cmplx(b(0) - v*aimag(second), v*real(second), dp)
+        shear = eta*(first + reciprocal(cmplx(3 - v*aimag(first), v*real(first), dp)))
+        second = eta*second
+        rest%n1 = rest%n1 + first
+        rest%c2 = rest%c2 + cosines(j)*first
+        rest%n2 = rest%n2 + second
+        rest%c3 = rest%c3 + cosines(j)*second
+        rest%m1 = rest%m1 + shear
+        rest%mc = rest%mc + cosines(j)*shear
+      end do
+      iq = cmplx(0.0_dp, q/size(cosines), dp)
+    end associate
+    per_eps = 0
+    if (eps > 1e-30_dp) per_eps = 1/eps
     rest%n1 = iq*rest%n1
-    rest%c2 = iq*rest%c2
+    rest%c2 = iq*rest%c2*per_eps
     rest%m1 = iq*rest%m1
-    rest%mc = iq*rest%mc
-    rest%n2 = cmplx(0.0_dp, q*(1 + b(0))/s, dp) + cmplx(0.0_dp, q, dp)*iq*rest%n2
-    rest%c3 = cmplx(0.0_dp, q*(1 + b(0))*eps/(s*(1 + s)), dp) + cmplx(0.0_dp, q, dp)*iq*rest%c3
-  end function remainder_means
+    rest%mc = iq*rest%mc*per_eps
+    rest%n2 = cmplx(0.0_dp, q, dp)*iq*rest%n2
+    rest%c3 = cmplx(0.0_dp, q, dp)*iq*rest%c3*per_eps
+  end subroutine sum_remainders
 
   !> (B - 3 - u^2/5)/u^4 for u^2 = i v, v >= 0: by its series, or from T = tanh(u) for real and imaginary part of u equal.
   pure function second_remainder(v) result(remainder)
@@ -192,6 +224,8 @@ contains
   pure function reciprocal(z)
     complex(dp), intent(in) :: z
     complex(dp) :: reciprocal
-    reciprocal = conjg(z)/(real(z)**2 + aimag(z)**2)
+    real(dp) :: per_square
+    per_square = 1/(real(z)**2 + aimag(z)**2)
+    reciprocal = cmplx(real(z)*per_square, -aimag(z)*per_square, dp)
   end function reciprocal
 end module oscillating_response
