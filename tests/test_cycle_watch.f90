@@ -92,7 +92,7 @@ contains
     character(len=8), parameter :: methods(3) = [character(len=8) :: 'auto', 'radau', 'adams']
     character(len=long), parameter :: tolerances(3) = [character(len=long) :: 'integrator.relative_tolerance=1e-10', &
       'integrator.relative_tolerance=1e-6', 'integrator.relative_tolerance=1e-6']   ! with contact: chaotic, so that of the run
-    real(dp), parameter :: force_within(3) = [2e-5_dp, 2e-5_dp, 2e-5_dp]
+    real(dp), parameter :: force_within(3) = [2e-5_dp, 5e-5_dp, 2e-5_dp]   ! the second: 1e-5 to 3e-5 as the chaos goes
     character(len=long) :: overrides(5)
     type(cycle_watch_t), allocatable :: watch
     type(run_report_t) :: report
