@@ -1,5 +1,6 @@
 !> The Pinkus-Sternlicht film: table, limits, continuity, invariance, dissipation, factory.
 module test_pinkus_sternlicht
+  use, intrinsic :: iso_fortran_env, only: qp => real128
   use kinds, only: dp
   use constants, only: pi
   use errors, only: error_t, status_case_file
@@ -30,6 +31,7 @@ contains
     call test_as_printed(check)
     call test_half_film_table(check)
     call test_half_film_integral(check)
+    call test_half_film_rounding(check)
     call test_half_film_limits(check)
     call test_pressure(check)
     call test_invariance(check)
@@ -275,6 +277,63 @@ contains
       total = total + (b - a)/2*weight(i)*reduced_pressure(eps, w, eps_dot, angle)*[cos(angle), sin(angle)]
     end do
   end function gauss
+
+  !> The half film against its integral in quadruple precision, in every direction of the motion: rounding is all that
+  !> is lost.
+  subroutine test_half_film_rounding(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: ratios(9) = [1e-40_dp, 1e-20_dp, 1e-6_dp, 0.01_dp, 0.3_dp, 0.7_dp, 0.95_dp, 0.999_dp, 1 - 1e-6_dp]
+    class(film_law_t), allocatable :: film
+    type(film_motion_t) :: motion
+    real(dp) :: force(2), moment, angle
+    real(qp) :: exact(2)
+    integer :: i, j
+    call make('half_film', film)
+    do i = 1, size(ratios)
+      do j = 0, 180
+        angle = pi*j/90
+        motion%eccentricity = clearance*ratios(i)*[cos(3*angle), sin(3*angle)]
+        motion%pin_speed = 70*cos(angle)
+        motion%eccentricity_rate = clearance*35*sin(angle)*[cos(3*angle + 0.02_dp), sin(3*angle + 0.02_dp)]
+        call film%film_force(motion, force, moment)
+        exact = exact_force(motion)
+        call check%that(norm2(force - exact) <= 3e-15_dp/(1 - ratios(i))*norm2(exact), 'half film, rounding')
+      end do
+    end do
+  end subroutine test_half_film_rounding
+
+  !> Booker's integrals (see half_film) between zeros of the pressure that are iterated to the end, for e in units of c.
+  pure function exact_force(motion) result(force)
+    type(film_motion_t), intent(in) :: motion
+    real(qp) :: force(2)
+    real(qp) :: e(2), v(2), n(2), eps, a, b, gap, root, g, radial, tangential
+    real(qp), dimension(2) :: angle, c, s, u
+    integer :: i
+    e = motion%eccentricity/real(clearance, qp)
+    v = motion%eccentricity_rate/real(clearance, qp)
+    eps = norm2(e)
+    n = e/eps
+    b = dot_product(n, v)
+    a = eps*motion%pin_speed/2 - (n(1)*v(2) - n(2)*v(1))
+    angle = atan2(b, a) + [0.0_qp, acos(-1.0_qp)]
+    do i = 1, 40
+      c = cos(angle)
+      s = sin(angle)
+      angle = angle - (a*(4*s + 2*eps*s*c) - b*(4*c + eps*(2*c**2 - 1))) &
+        /(a*(4*c + 2*eps*(2*c**2 - 1)) + b*(4*s + 4*eps*s*c))
+    end do
+    c = cos(angle)
+    s = sin(angle)
+    u = 1 + eps*c
+    gap = (1 - eps)*(1 + eps)
+    root = sqrt(gap)
+    g = atan2(root*(s(2)*(c(1) + eps) - s(1)*(c(2) + eps)), (c(1) + eps)*(c(2) + eps) + gap*s(1)*s(2))
+    if (g < 0) g = g + 2*acos(-1.0_qp)
+    radial = -2*a*(c(2)**2/u(2) - c(1)**2/u(1)) + b*(s(2)*(3*eps - 2*gap*c(2))/(u(2)*gap) &
+      - s(1)*(3*eps - 2*gap*c(1))/(u(1)*gap) - (2 + eps**2)*g/(gap*root))
+    tangential = 2*a*(g/root - s(2)*c(2)/u(2) + s(1)*c(1)/u(1)) + b*(c(2)*(2*c(2) - eps)/u(2) - c(1)*(2*c(1) - eps)/u(1))
+    force = 6*unit_force/(2 + eps**2)*(radial*n + tangential*[-n(2), n(1)])
+  end function exact_force
 
   subroutine test_half_film_limits(check)
     class(checks_t), intent(inout) :: check

@@ -5,7 +5,7 @@ module pinkus_sternlicht
   use film_law, only: film_law_t, film_motion_t, difference_derivatives
   implicit none
   private
-  public :: pinkus_sternlicht_t, reduced_motion_t, new_pinkus_sternlicht
+  public :: pinkus_sternlicht_t, reduced_motion_t, new_pinkus_sternlicht, max_eccentricity_ratio
 
   !> Largest eccentricity ratio that is evaluated. The force is infinite at 1, which a run never reaches; a state at or
   !> beyond it is answered with the force here, so that it is finite.
@@ -21,6 +21,7 @@ module pinkus_sternlicht
 
   !> The closed form of the force (5.34-5.37).
   type, extends(film_law_t) :: pinkus_sternlicht_t
+    real(dp) :: per_clearance = 1    !! 1/c [1/m]
     real(dp) :: pressure_scale = 0   !! mu R^2/c^2 [Pa s], R of the pin
     real(dp) :: force_scale = 0      !! mu w R^3/c^2 [N s]
     real(dp) :: withdrawal_sign = 1  !! factor of the radial force for eps_dot < 0: 1 corrected, -1 as printed
@@ -42,6 +43,7 @@ contains
     real(dp) :: pin_radius
     pin_radius = bearing_radius - clearance
     film%clearance = clearance
+    film%per_clearance = 1/clearance
     film%pressure_scale = viscosity*(pin_radius/clearance)**2
     film%force_scale = film%pressure_scale*bearing_length*pin_radius
     if (as_printed) film%withdrawal_sign = -1
@@ -52,18 +54,17 @@ contains
     class(pinkus_sternlicht_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
     type(reduced_motion_t) :: state
-    call reduce(self%clearance, motion, state)
+    call reduce(self%per_clearance, motion, state)
   end function reduced
 
-  pure subroutine reduce(clearance, motion, state)
-    real(dp), intent(in) :: clearance
+  pure subroutine reduce(per_clearance, motion, state)
+    real(dp), intent(in) :: per_clearance   !! [1/m]
     type(film_motion_t), intent(in) :: motion
     type(reduced_motion_t), intent(out) :: state
     real(dp), parameter :: centred = 1e-200_dp   !! below this square the components' squares lose digits
-    real(dp) :: square, eccentricity, per_eccentricity, per_clearance
+    real(dp) :: square, eccentricity, per_eccentricity
     associate (e => motion%eccentricity, v => motion%eccentricity_rate, n => state%normal)
       square = e(1)**2 + e(2)**2
-      per_clearance = 1/clearance
       n(1) = 1
       n(2) = 0
       state%ratio = 0
@@ -89,7 +90,7 @@ contains
     real(dp), intent(out) :: moment
     type(reduced_motion_t) :: state
     real(dp) :: gap, root, s, squeeze, denominator, quotient, scale, radial, tangential
-    call reduce(self%clearance, motion, state)
+    call reduce(self%per_clearance, motion, state)
     moment = 0
     associate (eps => state%ratio, eps_dot => state%ratio_rate, n => state%normal)
       gap = (1 - eps)*(1 + eps)
