@@ -23,7 +23,7 @@ module adams
   use ode_problem, only: ode_problem_t, step_admitted, step_too_deep
   use ode_method, only: ode_method_t, highest_order, step_done, step_too_small, tolerance_too_small, left_domain, limit_start
   use adams_coefficients, only: adams_coefficients_t
-  use adams_differences, only: extrapolate, correct, advance
+  use adams_differences, only: extrapolate, correct
   use archive, only: archive_t
   implicit none
   private
@@ -136,8 +136,9 @@ module adams
     end subroutine retreat
 
     !> Errors at orders k, k-1, k-2 and whether the order should fall (Shampine & Gordon, ch. 6).
-    pure module subroutine estimate_errors(self, errors)
+    pure module subroutine estimate_errors(self, squares, errors)
       class(adams_t), intent(in) :: self
+      real(dp), intent(in) :: squares(3)   !! from `correct`
       type(error_estimates_t), intent(out) :: errors
     end subroutine estimate_errors
 
@@ -249,12 +250,12 @@ contains
   pure subroutine predict(self)
     class(adams_t), intent(inout) :: self
     associate (c => self%coefficients)
-      call extrapolate(self%n, self%blocks, self%k, self%k_old, self%h, c%g, c%beta, c%beta_next, self%y, self%carry, self%owed, &
+      call extrapolate(self%n, self%blocks, self%k, self%h, c%g, c%beta, c%beta_next, self%y, self%carry, self%owed, &
         self%phi, self%slope, self%predicted, self%carry_new)
     end associate
   end subroutine predict
 
-  !> Evaluate, estimate the error, correct, let the problem judge, evaluate again.
+  !> Evaluate, correct, estimate the error, let the problem judge, evaluate again.
   subroutine attempt(self, problem, x_new, t_new, errors, outcome, fraction)
     class(adams_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
@@ -262,7 +263,8 @@ contains
     type(error_estimates_t), intent(out) :: errors
     integer, intent(out) :: outcome
     real(dp), intent(out) :: fraction   !! part of the step to try next, where the problem refused it
-    integer :: verdict
+    real(dp) :: squares(3)
+    integer :: k, verdict
     logical :: inside
 
     fraction = 0.5_dp
@@ -271,13 +273,14 @@ contains
     call problem%derivatives(t_new, self%predicted, self%f_predicted, inside)
     if (.not. inside) return
     if (self%rooted) call change_clock(self%n, 2*x_new, self%f_predicted)
-    call estimate_errors(self, errors)
+    k = self%k
+    call correct(self%n, self%h*self%coefficients%g(k + 1), self%f_predicted, self%phi(:, 1), self%phi(:, k), &
+      self%phi(:, max(k - 1, 1)), self%inverse_weight, self%predicted, self%y_new, self%carry_new, squares)
+    call estimate_errors(self, squares, errors)
     if (.not. errors%step <= 1 .and. .not. self%settings%fixed_step > 0) then   ! a NaN is an error too
       outcome = try_error
       return
     end if
-    call correct(self%n, self%h*self%coefficients%g(self%k + 1), self%f_predicted, self%phi(:, 1), self%predicted, &
-      self%y_new, self%carry_new)
     call problem%judge_step(self%t, self%y, t_new, self%y_new, verdict, fraction)
     if (verdict == step_too_deep) outcome = try_too_deep
     if (verdict /= step_admitted) return
@@ -306,8 +309,7 @@ contains
     self%t = t_new
     self%x_old = self%x
     self%x = x_new
-    call advance(self%n, self%f_new, self%phi(:, 1), self%phi(:, k + 2), self%owed)
-    call keep(self%n, self%y_new, self%carry_new, self%f_new, self%y, self%y_old, self%carry, self%f)
+    call keep(self%n, self%y_new, self%carry_new, self%f_new, self%phi(:, 1), self%y, self%y_old, self%carry, self%f, self%owed)
     self%order = k
     self%closed = .false.
     associate (count => self%statistics)
@@ -317,12 +319,12 @@ contains
     end associate
   end subroutine accept
 
-  !> Put the solution at the end of the step in the place of that at its beginning.
-  pure subroutine keep(n, y_new, carry_new, f_new, y, y_old, carry, f)
+  !> Put the solution at the end of the step in the place of that at its beginning, and note what the differences are owed.
+  pure subroutine keep(n, y_new, carry_new, f_new, f_extrapolated, y, y_old, carry, f, owed)
     integer, intent(in) :: n
-    real(dp), intent(in) :: y_new(n), carry_new(n), f_new(n)
+    real(dp), dimension(n), intent(in) :: y_new, carry_new, f_new, f_extrapolated
     real(dp), intent(inout) :: y(n)
-    real(dp), intent(out) :: y_old(n), carry(n), f(n)
+    real(dp), dimension(n), intent(out) :: y_old, carry, f, owed
     integer :: i
     !GCC$ novector
     do i = 1, n
@@ -330,6 +332,7 @@ contains
       y(i) = y_new(i)
       carry(i) = carry_new(i)
       f(i) = f_new(i)
+      owed(i) = f_new(i) - f_extrapolated(i)
     end do
   end subroutine keep
 

@@ -3,7 +3,7 @@ submodule (adams) adams_control
   use ode_method, only: limit_error, limit_stability, limit_max_step, limit_refusal
   use adams_coefficients, only: stability_limit
   use adams_differences, only: lanes, restore_differences
-  use step_rates, only: norm, fastest_mode, path_rate
+  use step_rates, only: sum_norm, fastest_mode, path_rate
   implicit none
 
   !> What the error is multiplied by, at each order, when the step is doubled or raised by a quarter.
@@ -13,22 +13,25 @@ submodule (adams) adams_control
 contains
 
   module procedure weigh
-    call weigh_components(self%n, self%settings%relative, self%settings%absolute, self%y, self%inverse_weight)
-    self%rounding = epsilon(1.0_dp)*norm(self%n, self%y, self%inverse_weight)
+    real(dp) :: square
+    call weigh_components(self%n, self%settings%relative, self%settings%absolute, self%y, self%inverse_weight, square)
+    self%rounding = epsilon(1.0_dp)*sqrt(square)
   end procedure weigh
 
-  !> 1/(relative |y| + absolute), 0 where that is zero.
-  pure subroutine weigh_components(n, relative, absolute, y, inverse_weight)
+  !> 1/(relative |y| + absolute), 0 where that is zero, and the square of the norm of y in these weights.
+  pure subroutine weigh_components(n, relative, absolute, y, inverse_weight, square)
     integer, intent(in) :: n
     real(dp), intent(in) :: relative(n), absolute(n), y(n)
-    real(dp), intent(out) :: inverse_weight(n)
+    real(dp), intent(out) :: inverse_weight(n), square
     real(dp) :: weight
     integer :: i
+    square = 0
     !GCC$ novector
     do i = 1, n
       weight = relative(i)*abs(y(i)) + absolute(i)
-      inverse_weight(i) = 0
-      if (weight > 0) inverse_weight(i) = 1/weight
+      if (weight > 0) weight = 1/weight
+      inverse_weight(i) = weight
+      square = square + (y(i)*weight)**2
     end do
   end subroutine weigh_components
 
@@ -63,40 +66,19 @@ contains
   end procedure retreat
 
   module procedure estimate_errors
-    real(dp) :: same, lower, lowest
+    real(dp) :: norm_same
     integer :: k
 
     k = self%k
-    call correction_squares(self%n, self%f_predicted, self%phi, self%phi(:, k), self%phi(:, max(k - 1, 1)), &
-      self%inverse_weight, same, lower, lowest)
-    same = self%h*sqrt(same)
-    errors%step = same*(self%coefficients%g(k) - self%coefficients%g(k + 1))
-    errors%same = same*self%coefficients%sigma(k + 1)*self%moulton(k)
+    norm_same = self%h*sqrt(squares(1))
+    errors%step = norm_same*(self%coefficients%g(k) - self%coefficients%g(k + 1))
+    errors%same = norm_same*self%coefficients%sigma(k + 1)*self%moulton(k)
     errors%order = k
-    if (k >= 2) errors%lower = self%h*self%coefficients%sigma(k)*self%moulton(k - 1)*sqrt(lower)
-    if (k >= 3) errors%lowest = self%h*self%coefficients%sigma(k - 1)*self%moulton(k - 2)*sqrt(lowest)
+    if (k >= 2) errors%lower = self%h*self%coefficients%sigma(k)*self%moulton(k - 1)*sqrt(squares(2))
+    if (k >= 3) errors%lowest = self%h*self%coefficients%sigma(k - 1)*self%moulton(k - 2)*sqrt(squares(3))
     if (k == 2 .and. errors%lower <= 0.5_dp*errors%same) errors%order = k - 1
     if (k >= 3 .and. max(errors%lower, errors%lowest) <= errors%same) errors%order = k - 1
   end procedure estimate_errors
-
-  !> Squares of the weighted norms of the correction of f and of its sums with the two highest extrapolated differences.
-  pure subroutine correction_squares(n, f_predicted, first, highest, second_highest, inverse_weight, same, lower, lowest)
-    integer, intent(in) :: n
-    real(dp), dimension(n), intent(in) :: f_predicted, first, highest, second_highest, inverse_weight
-    real(dp), intent(out) :: same, lower, lowest
-    real(dp) :: correction
-    integer :: i
-    same = 0
-    lower = 0
-    lowest = 0
-    !GCC$ novector
-    do i = 1, n
-      correction = f_predicted(i) - first(i)
-      same = same + (correction*inverse_weight(i))**2
-      lower = lower + ((highest(i) + correction)*inverse_weight(i))**2
-      lowest = lowest + ((second_highest(i) + correction)*inverse_weight(i))**2
-    end do
-  end subroutine correction_squares
 
   module procedure respect_rough_time
     real(dp), parameter :: share = 1/6.0_dp   !! of the way there, in one step
@@ -149,7 +131,7 @@ contains
       error = errors%lower
     else if (self%higher_known) then
       higher = self%h*self%coefficients%sigma_next*self%moulton(k + 1) &
-        *norm(self%n, self%phi(:, k + 2), self%inverse_weight)
+        *sum_norm(self%n, self%phi(:, k + 2), self%owed, self%inverse_weight)
       if (k == 1) then
         if (higher < 0.5_dp*error .and. k < self%settings%max_order) self%k = 2
       else if (errors%lower <= min(error, higher)) then

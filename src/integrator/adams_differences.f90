@@ -5,14 +5,14 @@
 !> a block becomes a few vector instructions without any test of what is left over. All other loops are kept scalar: vectors
 !> would be loaded from what the right-hand side or a loop before has just stored number by number, which stalls processors.
 !>
-!> A step of order k that stands adds its highest difference, f at its end less the f extrapolated there, to the columns 1..k+1
-!> of the table (the last of which was zero). That is put off to the next pass over the table: until then the columns lack
-!> what is `owed`.
+!> A step of order k that stands adds its highest difference, f at its end less the f extrapolated there, to the columns 1..k+2
+!> of the table (of which column k+1 was zero, and column k+2 the negative of the old difference of its order). That is put
+!> off to the next pass over the table: until then the columns lack what is `owed`.
 module adams_differences
   use kinds, only: dp
   implicit none
   private
-  public :: lanes, extrapolate, restore_differences, correct, advance, add_weighted, differences_of
+  public :: lanes, extrapolate, restore_differences, correct, add_weighted, differences_of
 
   integer, parameter :: lanes = 4   !! components in a block
 
@@ -21,15 +21,14 @@ contains
   !> Predict y at the end of a step of size h and order k; phi becomes the differences that the prediction extrapolates, in
   !> which nothing is missing. `carry` is what the rounding of y left out, `carry_predicted` what it leaves out of the prediction,
   !> `slope` the mean slope of y over the step.
-  pure subroutine extrapolate(n, blocks, k, k_old, h, g, beta, beta_next, y, carry, owed, phi, slope, predicted, &
-    carry_predicted)
-    integer, intent(in) :: n, blocks, k, k_old
+  pure subroutine extrapolate(n, blocks, k, h, g, beta, beta_next, y, carry, owed, phi, slope, predicted, carry_predicted)
+    integer, intent(in) :: n, blocks, k
     real(dp), intent(in) :: h, g(k), beta(k), beta_next, y(n), carry(n)
     real(dp), intent(inout) :: owed(lanes, blocks), phi(lanes, blocks, k + 2)
     real(dp), intent(out) :: slope(lanes*blocks), predicted(n), carry_predicted(n)
     real(dp) :: change
     integer :: i
-    call extrapolate_table(blocks, k, merge(0.0_dp, 1.0_dp, k > k_old), g, beta, beta_next, owed, phi, slope)
+    call extrapolate_table(blocks, k, g, beta, beta_next, owed, phi, slope)
     !GCC$ novector
     do i = 1, n
       change = h*slope(i) - carry(i)
@@ -38,48 +37,58 @@ contains
     end do
   end subroutine extrapolate
 
-  !> The table of `extrapolate`, and the mean slope of y in the step. Column k+1 lacks the `share` of what the others do.
-  pure subroutine extrapolate_table(blocks, k, share, g, beta, beta_next, owed, phi, slope)
+  !> The table of `extrapolate`, and the mean slope of y in the step.
+  pure subroutine extrapolate_table(blocks, k, g, beta, beta_next, owed, phi, slope)
     integer, intent(in) :: blocks, k
-    real(dp), intent(in) :: share, g(k), beta(k), beta_next
+    real(dp), intent(in) :: g(k), beta(k), beta_next
     real(dp), intent(inout) :: owed(lanes, blocks), phi(lanes, blocks, k + 2)
     real(dp), intent(out) :: slope(lanes, blocks)
-    real(dp), dimension(lanes) :: column, sum, next
+    real(dp), dimension(lanes) :: missing, column, sum, next
     integer :: b, j
     do b = 1, blocks
-      column = phi(:, b, k + 1) + share*owed(:, b)
-      phi(:, b, k + 2) = beta_next*column
+      missing = owed(:, b)
+      column = -beta_next*(phi(:, b, k + 1) + missing)
+      owed(:, b) = 0
+      phi(:, b, k + 2) = column
       phi(:, b, k + 1) = 0
-    end do
-    do b = 1, blocks
       sum = 0
       next = 0
       do j = k, 1, -1   ! where the step size has not changed beta_j is 1
-        column = beta(j)*(phi(:, b, j) + owed(:, b))
+        column = beta(j)*(phi(:, b, j) + missing)
         sum = sum + g(j)*column
         next = next + column
         phi(:, b, j) = next
       end do
       slope(:, b) = sum
     end do
-    owed = 0
   end subroutine extrapolate_table
 
-  !> Correct to order k+1 with f at the prediction: `factor` is h g_k+1, `first` the first column of the table. `carry` becomes
-  !> what the rounding leaves out of y_new.
-  pure subroutine correct(n, factor, f_predicted, first, predicted, y_new, carry)
+  !> Correct to order k+1 with f at the prediction: `factor` is h g_k+1, columns are the first of the table and those that the
+  !> errors at orders k-1 and k-2 need. `carry` becomes what the rounding leaves out of y_new. `squares` are those of the weighted
+  !> norms of the correction of f and of its sums with the other two columns.
+  pure subroutine correct(n, factor, f_predicted, first, lower, lowest, inverse_weight, predicted, y_new, carry, squares)
     integer, intent(in) :: n
-    real(dp), intent(in) :: factor, f_predicted(n), first(n), predicted(n)
-    real(dp), intent(out) :: y_new(n)
+    real(dp), intent(in) :: factor
+    real(dp), dimension(n), intent(in) :: f_predicted, first, lower, lowest, inverse_weight, predicted
+    real(dp), intent(out) :: y_new(n), squares(3)
     real(dp), intent(inout) :: carry(n)
-    real(dp) :: change
+    real(dp) :: correction, change, weight, same_square, lower_square, lowest_square
     integer :: i
+    same_square = 0
+    lower_square = 0
+    lowest_square = 0
     !GCC$ novector
     do i = 1, n
-      change = factor*(f_predicted(i) - first(i)) - carry(i)
+      correction = f_predicted(i) - first(i)
+      weight = inverse_weight(i)
+      same_square = same_square + (correction*weight)**2
+      lower_square = lower_square + ((lower(i) + correction)*weight)**2
+      lowest_square = lowest_square + ((lowest(i) + correction)*weight)**2
+      change = factor*correction - carry(i)
       y_new(i) = predicted(i) + change
       carry(i) = (y_new(i) - predicted(i)) - change
     end do
+    squares = [same_square, lower_square, lowest_square]
   end subroutine correct
 
   !> Undo `extrapolate` after a step that was rejected.
@@ -91,23 +100,8 @@ contains
     do i = 1, k
       phi(:, i) = (phi(:, i) - phi(:, i + 1))/beta(i)
     end do
-    phi(:, k + 1) = phi(:, k + 2)/beta_next
+    phi(:, k + 1) = -phi(:, k + 2)/beta_next
   end subroutine restore_differences
-
-  !> A step of order k stands: what its columns are now owed, from the first of them and f at the end of the step, and the
-  !> difference of order k+1 there, in column k+2.
-  pure subroutine advance(n, f_new, first, next_higher, owed)
-    integer, intent(in) :: n
-    real(dp), intent(in) :: f_new(n), first(n)
-    real(dp), intent(inout) :: next_higher(n)
-    real(dp), intent(out) :: owed(n)
-    integer :: i
-    !GCC$ novector
-    do i = 1, n
-      owed(i) = f_new(i) - first(i)
-      next_higher(i) = owed(i) - next_higher(i)
-    end do
-  end subroutine advance
 
   !> Add weights_j phi_j, j = m..1, to `total`.
   pure subroutine add_weighted(blocks, m, weights, phi, owed, total)

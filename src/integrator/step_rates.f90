@@ -4,7 +4,7 @@ module step_rates
   use kinds, only: dp
   implicit none
   private
-  public :: norm, fastest_mode, path_rate
+  public :: norm, sum_norm, fastest_mode, path_rate
 
 contains
 
@@ -20,6 +20,19 @@ contains
     end do
     norm = sqrt(norm)
   end function norm
+
+  !> The norm of the sum of two vectors.
+  pure real(dp) function sum_norm(n, first, second, inverse_weight)
+    integer, intent(in) :: n
+    real(dp), dimension(n), intent(in) :: first, second, inverse_weight
+    integer :: i
+    sum_norm = 0
+    !GCC$ novector
+    do i = 1, n
+      sum_norm = sum_norm + ((first(i) + second(i))*inverse_weight(i))**2
+    end do
+    sum_norm = sqrt(sum_norm)
+  end function sum_norm
 
   !> The rate of the fastest mode of the system, estimated as |f_new - f_predicted|/|y_new - y_predicted| (what Hairer &
   !> Wanner 1996, IV.2, use) in the weighted norm; 0 where the correction is within `noise`.
