@@ -3,6 +3,7 @@ module test_adams_order
   use kinds, only: dp
   use checks, only: checks_t
   use adams_coefficients, only: adams_coefficients_t, stability_limit
+  use adams_differences, only: lanes, extrapolate, restore_differences
   use adams, only: adams_t
   use test_problems, only: modulated_t
   implicit none
@@ -18,6 +19,7 @@ contains
     call constant_step_coefficients(check)
     call variable_step_coefficients(check)
     call rejected_step_coefficients(check)
+    call rejected_step_differences(check)
     call orders_at_fixed_step(check)
     call stability_limits(check)
   end subroutine run_test_adams_order
@@ -109,6 +111,31 @@ contains
       call check%close_to(worst, 0.0_dp, 1e-13_dp, 'a rejected step leaves no trace in the coefficients, k = '//trim(digits(k)))
     end do
   end subroutine rejected_step_coefficients
+
+  !> Extrapolating and taking back leaves the differences as they were, what was owed included, and the filling at zero.
+  subroutine rejected_step_differences(check)
+    class(checks_t), intent(inout) :: check
+    integer, parameter :: n = 5, blocks = 2, k = 4, width = lanes*blocks
+    real(dp), parameter :: beta(k) = [1.0_dp, 1.5_dp, 0.75_dp, 2.0_dp], g(k) = [1.0_dp, 0.5_dp, 0.4_dp, 0.3_dp], next = 1.25_dp
+    real(dp) :: phi(width, k + 2), before(width, k + 2), owed(width), slope(width), predicted(n), carry(n), left_out(n), y(n)
+    integer :: i, j
+    phi = 0
+    owed = 0
+    do i = 1, n
+      phi(i, :) = [(cos(real(i*j, dp)), j=1, k + 2)]
+      owed(i) = sin(real(i, dp))
+      y(i) = i
+    end do
+    before = phi + spread(owed, 2, k + 2)
+    carry = 0
+    call extrapolate(n, blocks, k, 0.1_dp, g, beta, next, y, carry, owed, phi, slope, predicted, left_out)
+    call check%close_to(maxval(abs(predicted - (y + 0.1_dp*matmul(before(:n, :k), beta*g)))), 0.0_dp, 1e-14_dp, &
+      'the prediction is the sum of the differences')
+    call restore_differences(width, k, beta, next, phi)
+    call check%close_to(maxval(abs(phi(:, :k + 1) + spread(owed, 2, k + 1) - before(:, :k + 1))), 0.0_dp, 1e-14_dp, &
+      'a rejected step leaves no trace in the differences')
+    call check%that(.not. maxval(abs(phi(n + 1:, :))) > 0, 'the filling of the differences stays zero')
+  end subroutine rejected_step_differences
 
   !> The largest error up to t = 4 of y' = y cos t with `n` steps of order k, from an exact history.
   function error_of(k, n) result(error)
