@@ -85,8 +85,8 @@ contains
   !> force feels the square of that, since the pressure is 0 there. At the zeros, `cosine` and `sine` are those of Sommerfeld's
   !> angle g times a positive factor; `terms` are c^2/u, s (3 eps - 2 (1 - eps^2) c)/u, s c/u and c (2c - eps)/u, times eps^2.
   !>
-  !> One loop without branches, so that the compiler takes both zeros at once; sums in pairs, since what counts is how long
-  !> the chain of results is.
+  !> One loop without branches, so that a compiler that vectorises takes both zeros at once; sums in pairs, since what counts
+  !> is how long the chain of results is.
   pure subroutine terms_at_zeros(x, y, square, gap, root, cosine, sine, terms)
     real(dp), value, intent(in) :: x, y
     real(dp), value, intent(in) :: square, gap, root   !! eps^2, 1 - eps^2 and its root
