@@ -28,7 +28,7 @@ module standard_problems
     procedure :: derivatives
     procedure :: events => discontinuities
     procedure :: handle_event => pass_discontinuity
-    procedure :: is_rough_at => at_infinite_slope
+    procedure :: rough_time => at_infinite_slope
   end type standard_problem_t
 
   !> Mass of the sun and the inner planets together, and of the outer planets; gravitational constant (C5).
@@ -326,10 +326,13 @@ contains
   end subroutine discontinuities
 
   !> F5 goes with the cubic root of the time to its discontinuities.
-  pure logical function at_infinite_slope(self, index)
+  pure real(dp) function at_infinite_slope(self, t, y)
     class(standard_problem_t), intent(in) :: self
-    integer, intent(in) :: index
-    at_infinite_slope = index > 0 .and. self%name == 'F5'
+    real(dp), intent(in) :: t, y(:)
+    associate (unused => y)
+    end associate
+    at_infinite_slope = huge(t)
+    if (self%name == 'F5' .and. self%part < 19 .and. t < self%part + 1) at_infinite_slope = self%part + 1
   end function at_infinite_slope
 
   subroutine pass_discontinuity(self, index, t, y, action)

@@ -7,7 +7,7 @@ module event_proof
   use bernstein, only: add_product, first_rise, highest_degree
   implicit none
   private
-  public :: stays_negative_for_certain, may_rise, isolate_passage
+  public :: stays_negative_for_certain, isolate_passage
 
 contains
 
@@ -43,24 +43,6 @@ contains
     end do
     negative = at_start <= 0 .and. at_end < 0 .and. (at_middle < 0 .or. at_middle**2 < at_start*at_end)
   end function stays_negative_for_certain
-
-  !> Whether the function rises in the state y, m of whose components are positions, or its rate cannot be told from y.
-  pure logical function may_rise(form, m, y)
-    type(event_form_t), intent(in) :: form
-    integer, intent(in) :: m
-    real(dp), intent(in) :: y(:)
-    real(dp) :: rate
-    integer :: j
-    may_rise = .not. form%known .or. any(form%component > m)
-    if (may_rise) return
-    rate = 0
-    do j = 1, 2
-      associate (c => form%component(j))
-        if (c > 0) rate = rate + (form%linear(j) + 2*form%square(j)*y(c))*y(m + c)
-      end associate
-    end do
-    may_rise = rate > 0
-  end function may_rise
 
   !> The part lower < x <= upper of the last step, by the method's own clock, in which a function that is negative at the
   !> beginning of the step first becomes not negative. `known` is false where the method cannot tell.

@@ -12,7 +12,7 @@ module events
   use ode_problem, only: ode_problem_t, event_form_t, max_events
   use ode_method, only: ode_method_t
   use archive, only: archive_t
-  use event_proof, only: stays_negative_for_certain, may_rise, isolate_passage
+  use event_proof, only: stays_negative_for_certain, isolate_passage
   use roots, only: bracket_t, next_abscissa, narrow
   implicit none
   private
@@ -27,7 +27,7 @@ module events
   type :: watched_t
     integer :: index = 0           !! of the problem
     type(event_form_t) :: form
-    logical :: on_step_end = .false., is_rough = .false.
+    logical :: on_step_end = .false.
     logical :: low = .false.       !! it has been negative since the last restart: a passage counts
   end type watched_t
 
@@ -36,7 +36,6 @@ module events
     private
     integer :: n = 0                     !! functions watched
     type(watched_t) :: watched(max_events)
-    logical :: any_rough = .false.       !! one of them is
     integer :: just_taken = 0            !! the event that led to the last restart
     logical :: fresh = .true.            !! no step since the restart
     logical :: is_sampled = .false.      !! the next three belong to the end of what has been searched
@@ -46,7 +45,6 @@ module events
   contains
     procedure :: begin
     procedure :: search
-    procedure :: find_rough_time
     procedure :: exchange
   end type event_watch_t
 
@@ -78,13 +76,11 @@ contains
     type(event_form_t) :: form
     integer :: i
     self%n = 0
-    self%any_rough = .false.
     do i = 1, problem%n_events
       form = problem%event_form(i)
       if (form%known .and. all(form%component == 0) .and. form%constant < 0) cycle
       self%n = self%n + 1
-      self%watched(self%n) = watched_t(i, form, problem%lands_on_step_end(i), problem%is_rough_at(i))
-      self%any_rough = self%any_rough .or. self%watched(self%n)%is_rough
+      self%watched(self%n) = watched_t(i, form, problem%lands_on_step_end(i))
     end do
   end subroutine choose_watched
 
@@ -116,26 +112,6 @@ contains
     call archive%exchange(self%g)
     call archive%exchange(self%rate)
   end subroutine exchange
-
-  !> When the first event at which f is not smooth is to be expected after the last step or start of the method, by the
-  !> tangents of the event functions.
-  subroutine find_rough_time(self, method, problem, rough_time)
-    class(event_watch_t), intent(inout) :: self
-    class(ode_method_t), intent(in) :: method
-    class(ode_problem_t), intent(in) :: problem
-    real(dp), intent(out) :: rough_time
-    integer :: i
-    rough_time = huge(rough_time)
-    if (.not. self%any_rough) return
-    do i = 1, self%n
-      if (.not. self%watched(i)%is_rough) cycle
-      if (.not. may_rise(self%watched(i)%form, problem%n_positions, method%y)) cycle
-      if (.not. self%is_sampled) call look(self, problem, method%t, method%y)
-      associate (g => self%g(self%watched(i)%index), rate => self%rate(self%watched(i)%index))
-        if (g < 0 .and. rate > 0) rough_time = min(rough_time, self%t - g/rate)
-      end associate
-    end do
-  end subroutine find_rough_time
 
   !> Search the last step of the method up to t_last. `index` is the first event, 0 if there is none; then t_event is when it
   !> happened, on the not negative side.

@@ -77,7 +77,7 @@ module ode_method
     real(dp) :: t_old = 0                 !! beginning of the last accepted step
     real(dp) :: t = 0                     !! its end
     integer :: order = 0                  !! order of the last accepted step
-    real(dp) :: rough_time = huge(1.0_dp) !! where f is expected to lose its smoothness, see `is_rough_at`
+    real(dp) :: rough_time = huge(1.0_dp) !! where f is expected to lose its smoothness, see `rough_time` of the problem
     real(dp), allocatable :: y_old(:)     !! state at t_old, (n)
     real(dp), allocatable :: y(:)         !! state at t, (n)
   contains

@@ -47,7 +47,7 @@ module ode_problem
     procedure :: judge_step => admit_every_step
     procedure :: handle_event => stop_at_event
     procedure :: lands_on_step_end => never_on_step_end
-    procedure :: is_rough_at => never_rough
+    procedure :: rough_time => never_rough
     procedure :: event_form => unknown_form
     procedure, non_overridable :: exchange_mode
     procedure :: exchange => exchange_mode
@@ -167,13 +167,13 @@ contains
     form%known = .false.
   end function unknown_form
 
-  !> Whether f is not smooth at the root of event function `index` as that is approached from its negative side, like a broken
-  !> power of the distance: steps are then shortened on the way there. The default is no.
-  pure logical function never_rough(self, index)
+  !> When an event is to be expected, by the tangent of its function at (t, y), that f does not approach smoothly but like a
+  !> broken power of the distance: steps are shortened on the way there. The default is never: the largest number.
+  pure real(dp) function never_rough(self, t, y)
     class(ode_problem_t), intent(in) :: self
-    integer, intent(in) :: index
-    associate (unused_self => self, unused_index => index)
+    real(dp), intent(in) :: t, y(:)
+    associate (unused_self => self, unused_t => t, unused_y => y)
     end associate
-    never_rough = .false.
+    never_rough = huge(never_rough)
   end function never_rough
 end module ode_problem

@@ -104,7 +104,7 @@ contains
       at%t_place = t
     end if
     do while (status == step_done)
-      call at%watch%find_rough_time(method, problem, method%rough_time)
+      method%rough_time = problem%rough_time(method%t, method%y)
       call method%step(problem, status)
       if (status /= step_done) exit
       call take_step(problem, method, observer, t_end, at, status)

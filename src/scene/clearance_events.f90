@@ -140,9 +140,17 @@ contains
     form%square = outwards
   end procedure event_form
 
-  module procedure is_rough_at
-    is_rough_at = index == ends .and. index <= self%n_joint_events
-  end procedure is_rough_at
+  module procedure rough_time
+    real(dp) :: distance, product
+    integer :: m
+    rough_time = huge(rough_time)
+    if (self%phase /= phase_contact) return
+    m = self%n_positions
+    product = y(m - 1)*y(2*m - 1) + y(m)*y(2*m)   ! e . e' = |e| |e|'
+    if (.not. product < 0) return
+    distance = sqrt(y(m - 1)**2 + y(m)**2)
+    if (distance > self%joint%clearance) rough_time = t - (distance - self%joint%clearance)/(product/distance)
+  end procedure rough_time
 
   module procedure handle_event
     real(dp) :: contact(2)

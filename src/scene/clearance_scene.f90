@@ -42,7 +42,7 @@ module clearance_scene
     procedure :: judge_step
     procedure :: handle_event
     procedure :: lands_on_step_end
-    procedure :: is_rough_at
+    procedure :: rough_time
     procedure :: event_form
     procedure :: exchange
     procedure :: measure_joint
@@ -78,11 +78,11 @@ module clearance_scene
       type(event_form_t) :: form
     end function event_form
 
-    !> The contact force ends with the power 1.5 of the penetration.
-    pure logical module function is_rough_at(self, index)
+    !> When the contact ends, where the pin is on its way there: the force ends with the power 1.5 of the penetration.
+    pure real(dp) module function rough_time(self, t, y)
       class(clearance_scene_t), intent(in) :: self
-      integer, intent(in) :: index
-    end function is_rough_at
+      real(dp), intent(in) :: t, y(:)
+    end function rough_time
 
     module subroutine handle_event(self, index, t, y, action)
       class(clearance_scene_t), intent(inout) :: self
