@@ -167,17 +167,15 @@ contains
     real(dp), intent(in) :: t_end
     integer, intent(inout) :: index
     real(dp), intent(inout) :: t_event
-    type(sample_t) :: before(max_events), here
+    real(dp) :: t_before, g_before(max_events), rate_before(max_events)
     logical :: found
     real(dp) :: t_found
     integer :: i
 
     if (.not. self%is_sampled) call look(self, problem, method%t_old, method%y_old)
-    do i = first, self%n
-      before(i)%t = self%t
-      before(i)%g = self%g(self%watched(i)%index)
-      before(i)%rate = self%rate(self%watched(i)%index)
-    end do
+    t_before = self%t
+    g_before(:problem%n_events) = self%g(:problem%n_events)
+    rate_before(:problem%n_events) = self%rate(:problem%n_events)
     if (t_end < method%t) then
       call method%interpolate(t_end, self%y)
       call look(self, problem, t_end, self%y)
@@ -186,13 +184,13 @@ contains
     end if
     do i = first, self%n
       associate (watched => self%watched(i))
-        here = sample_t(t_end, self%g(watched%index), self%rate(watched%index))
-        call search_one(self, method, problem, watched, before(i), here, found, t_found)
+        call search_one(self, method, problem, watched, sample_t(t_before, g_before(watched%index), &
+          rate_before(watched%index)), sample_t(t_end, self%g(watched%index), self%rate(watched%index)), found, t_found)
         if (found .and. (index == 0 .or. t_found < t_event)) then
           index = watched%index
           t_event = t_found
         end if
-        if (here%g < 0) watched%low = .true.
+        if (self%g(watched%index) < 0) watched%low = .true.
       end associate
     end do
   end subroutine search_closely

@@ -131,8 +131,12 @@ contains
   module procedure event_form
     real(dp) :: outwards
     logical :: touches
+    if (index > self%n_joint_events) then
+      form = self%gas_event_form(index - self%n_joint_events)
+      return
+    end if
     touches = self%phase == phase_contact
-    form%known = index <= self%n_joint_events .and. .not. (index == sliding_changes .and. touches)
+    form%known = .not. (index == sliding_changes .and. touches)
     if (.not. form%known .or. index /= merge(ends, begins, touches)) return
     outwards = merge(-1.0_dp, 1.0_dp, touches)
     form%component = [self%n_positions - 1, self%n_positions]
