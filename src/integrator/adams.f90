@@ -281,9 +281,11 @@ contains
       outcome = try_error
       return
     end if
-    call problem%judge_step(self%t, self%y, t_new, self%y_new, verdict, fraction)
-    if (verdict == step_too_deep) outcome = try_too_deep
-    if (verdict /= step_admitted) return
+    if (problem%refuses_steps) then
+      call problem%judge_step(self%t, self%y, t_new, self%y_new, verdict, fraction)
+      if (verdict == step_too_deep) outcome = try_too_deep
+      if (verdict /= step_admitted) return
+    end if
     self%statistics%evaluations = self%statistics%evaluations + 1
     call problem%derivatives(t_new, self%y_new, self%f_new, inside)
     if (.not. inside) then

@@ -113,8 +113,8 @@ contains
     call archive%exchange(self%rate)
   end subroutine exchange
 
-  !> Search the last step of the method up to t_last. `index` is the first event, 0 if there is none; then t_event is when it
-  !> happened, on the not negative side.
+  !> Search the last step of the method up to t_last. `index` is the first event, 0 if there is none; t_event is when it
+  !> happened, on the not negative side, or where the search ended.
   subroutine search(self, method, problem, t_last, index, t_event)
     class(event_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
@@ -125,12 +125,12 @@ contains
     integer :: i
 
     index = 0
-    t_event = t_last
+    t_event = min(t_last, method%t)
     if (self%fresh) call take_passed(self, index, t_event)
     if (index > 0) return
     do i = 1, self%n
       if (.not. stays_negative_for_certain(self%watched(i)%form, method)) then
-        call search_closely(self, method, problem, i, min(t_last, method%t), index, t_event)
+        call search_closely(self, method, problem, i, index, t_event)
         return
       end if
       self%watched(i)%low = .true.
@@ -158,20 +158,20 @@ contains
     self%fresh = .false.
   end subroutine take_passed
 
-  !> Search the last step up to t_end for the first passage of the functions from the one watched as number `first` on.
-  subroutine search_closely(self, method, problem, first, t_end, index, t_event)
+  !> Search the last step up to t_event for the first passage of the functions from the one watched as number `first` on.
+  subroutine search_closely(self, method, problem, first, index, t_event)
     class(event_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     class(ode_problem_t), intent(in) :: problem
     integer, intent(in) :: first
-    real(dp), intent(in) :: t_end
     integer, intent(inout) :: index
     real(dp), intent(inout) :: t_event
     real(dp) :: t_before, g_before(max_events), rate_before(max_events)
     logical :: found
-    real(dp) :: t_found
+    real(dp) :: t_end, t_found
     integer :: i
 
+    t_end = t_event
     if (.not. self%is_sampled) call look(self, problem, method%t_old, method%y_old)
     t_before = self%t
     g_before(:problem%n_events) = self%g(:problem%n_events)

@@ -39,6 +39,7 @@ module ode_problem
     integer :: n_quadratures = 0 !! the last components are quadratures: nothing depends on them
     integer :: mode = 0          !! the present discrete state as far as the choice of a method cares, 0..max_modes
     integer :: n_events = 0   !! number of event functions in the present discrete state
+    logical :: refuses_steps = .true.   !! `judge_step` may do so: else it is not asked
     logical :: smooth_in_root = .false. !! from the last (re)start on f is smooth in sqrt(t - t_start), not in t
   contains
     procedure(derivatives), deferred :: derivatives

@@ -223,7 +223,8 @@ contains
       outcome = try_error
       return
     end if
-    call problem%judge_step(self%t, self%y, self%t + self%h, self%y_new, verdict, fraction)
+    verdict = step_admitted
+    if (problem%refuses_steps) call problem%judge_step(self%t, self%y, self%t + self%h, self%y_new, verdict, fraction)
     if (verdict /= step_admitted) then
       outcome = merge(try_too_deep, try_outside, verdict == step_too_deep)
       return

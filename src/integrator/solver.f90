@@ -107,9 +107,14 @@ contains
       method%rough_time = problem%rough_time(method%t, method%y)
       call method%step(problem, status)
       if (status /= step_done) exit
-      call take_step(problem, method, observer, t_end, at, status)
-      if (status == integration_stopped) exit
-      if (at%event > 0 .and. is_at_end(at%t, t_end) .or. at%event == 0 .and. method%t >= t_end) exit
+      call at%watch%search(method, problem, t_end, at%event, at%t)
+      if (at%event == 0) then
+        call observer%step_taken(method, problem, at%t)
+        if (method%t >= t_end) exit
+      else
+        call take_event(problem, method, observer, t_end, at, status)
+        if (status == integration_stopped .or. is_at_end(at%t, t_end)) exit
+      end if
       call look_around(method, max_steps, observer, status)
       if (observer%keeps_archives) call hand_over(problem, method, observer, at, status)
     end do
@@ -123,29 +128,23 @@ contains
     y = at%y
   end subroutine integrate
 
-  !> What becomes of an accepted step: the first event in it, what the observer makes of it, the restart after the event.
-  subroutine take_step(problem, method, observer, t_end, at, status)
+  !> The first event in an accepted step, what the observer makes of both, the restart after the event.
+  subroutine take_event(problem, method, observer, t_end, at, status)
     class(ode_problem_t), intent(inout) :: problem
     class(ode_method_t), intent(inout) :: method
     class(observer_t), intent(inout) :: observer
     real(dp), intent(in) :: t_end
     type(position_t), intent(inout) :: at
     integer, intent(inout) :: status
-    real(dp) :: t_event, chatter_time
+    real(dp) :: chatter_time
     integer :: action
 
-    call at%watch%search(method, problem, t_end, at%event, t_event)
-    at%t = min(method%t, t_end)
-    if (at%event > 0) then
-      at%t = t_event
-      if (at%t < method%t) then
-        call land(problem, method, at%event, at%t, at%y)
-      else
-        call method%interpolate(at%t, at%y)
-      end if
+    if (at%t < method%t) then
+      call land(problem, method, at%event, at%t, at%y)
+    else
+      call method%interpolate(at%t, at%y)
     end if
     call observer%step_taken(method, problem, at%t)
-    if (at%event == 0) return
     call observer%event_taken(problem, at%event, at%t, at%y)
     call problem%handle_event(at%event, at%t, at%y, action)
     if (action == event_stop) then
@@ -161,7 +160,7 @@ contains
     if (is_at_end(at%t, t_end)) return
     if (status == step_done) call method%start(problem, at%t, at%y, .false., status)
     call at%watch%begin(problem, at%t, at%y, at%event)
-  end subroutine take_step
+  end subroutine take_event
 
   !> Whether an event lies so near the end that no step fits between.
   pure logical function is_at_end(t, t_end)

@@ -82,7 +82,7 @@ contains
 
     verdict = step_admitted
     fraction = 1
-    if (.not. self%rejects_deep_entry .or. self%phase == phase_contact) return
+    if (self%phase == phase_contact) return
     left = penetration_and_rate(self, y_old)
     right = penetration_and_rate(self, y)
     left(2) = left(2)*(t - t_old)
@@ -125,7 +125,7 @@ contains
   end function hermite
 
   module procedure lands_on_step_end
-    lands_on_step_end = self%rejects_deep_entry .and. index == begins .and. index <= self%n_joint_events
+    lands_on_step_end = self%refuses_steps .and. index == begins .and. index <= self%n_joint_events
   end procedure lands_on_step_end
 
   module procedure event_form

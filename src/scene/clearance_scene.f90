@@ -23,8 +23,7 @@ module clearance_scene
     class(contact_law_t), allocatable :: contact
     class(friction_law_t), allocatable :: friction
     class(film_law_t), allocatable :: film
-    logical :: rejects_deep_entry = .false. !! contact_entry = 'step_rejection': contact begins at the end of a step
-    real(dp) :: max_penetration = 0         !! deepest entry then [m]
+    real(dp) :: max_penetration = 0         !! deepest entry where steps are refused: contact begins at the end of a step [m]
     real(dp) :: start_eccentricity(2) = 0, start_eccentricity_rate(2) = 0   !! at t = 0 [m], [m/s]
     real(dp) :: impact_speed = 0            !! penetration rate at which the present contact began [m/s]
     integer :: n_joint_events = 0           !! event functions of contact and friction

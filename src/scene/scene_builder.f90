@@ -40,6 +40,7 @@ contains
 
     if (ideal_joint .or. case%joint%kind == 'ideal') then
       allocate (ideal)
+      ideal%refuses_steps = .false.
       ideal%n_positions = merge(1, 0, case%drive%kind == 'free')
       call move_alloc(ideal, scene)
     else
@@ -94,7 +95,7 @@ contains
       end if
       scene%phase = merge(phase_film, phase_free, allocated(scene%film))
       scene%mode = scene%phase
-      scene%rejects_deep_entry = case%integrator%contact_entry == 'step_rejection' .and. allocated(scene%contact)
+      scene%refuses_steps = case%integrator%contact_entry == 'step_rejection' .and. allocated(scene%contact)
       scene%max_penetration = case%integrator%max_penetration
     end associate
     scene%n_events = scene%n_joint_events
