@@ -247,7 +247,7 @@ contains
     integer, intent(in) :: index
     type(event_form_t) :: form
     form%known = self%tells .and. index == 1
-    form%component = [1, 2]
+    form%first = 1
     form%square = 1
   end function circle
 end module test_event_proof

@@ -76,7 +76,7 @@ module adams
     procedure :: start
     procedure :: step
     procedure :: interpolate
-    procedure :: straying
+    procedure :: find_straying
     procedure :: bernstein_form
     procedure :: time_at_share
     procedure :: start_with_history
@@ -184,10 +184,11 @@ module adams
     !> step. What closes the polynomial makes good the last correction, d = h g_k+1 (f_n+1 - f_predicted), by d q(x): q falls from
     !> 1 to 0 with a rate in proportion to N_k+2, and strays by less than 4 x (1 - x), the most, 3.9 x (1 - x), at order 12 after
     !> much shorter steps.
-    pure real(dp) module function straying(self, component)
+    pure module subroutine find_straying(self, first, straying)
       class(adams_t), intent(in) :: self
-      integer, intent(in) :: component
-    end function straying
+      integer, intent(in) :: first
+      real(dp), intent(out) :: straying(2)
+    end subroutine find_straying
 
     pure module subroutine bernstein_form(self, component, coefficients, degree)
       class(adams_t), intent(inout) :: self

@@ -45,17 +45,18 @@ contains
     end associate
   end subroutine close_polynomial
 
-  module procedure straying
-    real(dp) :: owed
-    integer :: j
-    owed = self%owed(component)
-    straying = 0
+  module procedure find_straying
+    real(dp) :: owed(2), sums(2), correction(2)
+    integer :: j, last
+    last = first + 1
+    owed = self%owed(first:last)
+    sums = 0
     do j = 2, self%k_old + 1
-      straying = straying + abs(self%phi(component, j) + owed)
+      sums = sums + abs(self%phi(first:last, j) + owed)
     end do
-    straying = (self%x - self%x_old)*(0.5_dp*straying + &
-      abs(self%coefficients%g(self%k_old + 1)*((self%phi(component, 1) + owed) - self%f_predicted(component))))
-  end procedure straying
+    correction = self%coefficients%g(self%k_old + 1)*((self%phi(first:last, 1) + owed) - self%f_predicted(first:last))
+    straying = (self%x - self%x_old)*(0.5_dp*sums + abs(correction))
+  end procedure find_straying
 
   module procedure bernstein_form
     real(dp) :: low(highest_order + 1), high(highest_order + 1), rates(highest_order + 2), form(0:highest_order + 1), h

@@ -49,7 +49,7 @@ module auto_method
     procedure :: step
     procedure :: interpolate
     procedure :: land_on
-    procedure :: straying
+    procedure :: find_straying
     procedure :: bernstein_form
     procedure :: time_at_share
     procedure :: totals
@@ -279,15 +279,16 @@ contains
     end if
   end subroutine land_on
 
-  pure real(dp) function straying(self, component)
+  pure subroutine find_straying(self, first, straying)
     class(auto_t), intent(in) :: self
-    integer, intent(in) :: component
+    integer, intent(in) :: first
+    real(dp), intent(out) :: straying(2)
     if (self%stiff) then
-      straying = self%radau%straying(component)
+      call self%radau%find_straying(first, straying)
     else
-      straying = self%adams%straying(component)
+      call self%adams%find_straying(first, straying)
     end if
-  end function straying
+  end subroutine find_straying
 
   pure subroutine bernstein_form(self, component, coefficients, degree)
     class(auto_t), intent(inout) :: self

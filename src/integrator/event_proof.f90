@@ -19,28 +19,23 @@ contains
   pure logical function stays_negative_for_certain(form, method) result(negative)
     type(event_form_t), intent(in) :: form
     class(ode_method_t), intent(in) :: method
-    real(dp) :: at_start, at_middle, at_end, straying, slope_a, slope_b
-    integer :: j
+    real(dp) :: at_start, at_middle, at_end
+    real(dp), dimension(2) :: straying, a, b, slope_a, slope_b
     negative = form%known
     if (.not. negative) return
-    at_start = form%constant
-    at_middle = form%constant
-    at_end = form%constant
-    do j = 1, 2
-      if (form%component(j) == 0) cycle
-      straying = method%straying(form%component(j))
-      negative = straying < huge(straying)
-      if (.not. negative) return
-      associate (a => method%y_old(form%component(j)), b => method%y(form%component(j)), linear => form%linear(j), &
-          square => form%square(j))
-        slope_a = linear + 2*square*a
-        slope_b = linear + 2*square*b
-        at_start = at_start + (linear + square*a)*a
-        at_middle = at_middle + 0.5_dp*(linear*a + slope_a*b) &
-          + 2*(max(abs(slope_a), abs(slope_b)) + abs(square)*straying)*straying
-        at_end = at_end + (linear + square*b)*b
-      end associate
-    end do
+    call method%find_straying(form%first, straying)
+    negative = maxval(straying) < huge(straying)
+    if (.not. negative) return
+    a = method%y_old(form%first:form%first + 1)
+    b = method%y(form%first:form%first + 1)
+    associate (linear => form%linear, square => form%square)
+      slope_a = linear + 2*square*a
+      slope_b = linear + 2*square*b
+      at_start = form%constant + sum((linear + square*a)*a)
+      at_middle = form%constant + sum(0.5_dp*(linear*a + slope_a*b) &
+        + 2*(max(abs(slope_a), abs(slope_b)) + abs(square)*straying)*straying)
+      at_end = form%constant + sum((linear + square*b)*b)
+    end associate
     negative = at_start <= 0 .and. at_end < 0 .and. (at_middle < 0 .or. at_middle**2 < at_start*at_end)
   end function stays_negative_for_certain
 
@@ -61,8 +56,8 @@ contains
     most = form%constant   ! what the function can reach with each component at the end of its range that suits it best
     degree = 1
     do j = 1, 2
-      if (form%component(j) == 0) cycle
-      call method%bernstein_form(form%component(j), component(:, j), degree)
+      if (.not. (abs(form%linear(j)) > 0 .or. abs(form%square(j)) > 0)) cycle
+      call method%bernstein_form(form%first - 1 + j, component(:, j), degree)
       known = degree > 0 .and. degree <= highest_degree/2
       if (.not. known) return
       associate (least => minval(component(:degree, j)), largest => maxval(component(:degree, j)))
@@ -73,7 +68,6 @@ contains
     one = 1
     g = form%constant
     do j = 1, 2
-      if (form%component(j) == 0) cycle
       if (abs(form%linear(j)) > 0) call add_product(form%linear(j), component(:degree, j), one(:degree), g(:2*degree))
       if (abs(form%square(j)) > 0) call add_product(form%square(j), component(:degree, j), component(:degree, j), g(:2*degree))
     end do

@@ -78,7 +78,7 @@ contains
     self%n = 0
     do i = 1, problem%n_events
       form = problem%event_form(i)
-      if (form%known .and. all(form%component == 0) .and. form%constant < 0) cycle
+      if (form%known .and. form%first == 0 .and. form%constant < 0) cycle
       self%n = self%n + 1
       self%watched(self%n) = watched_t(i, form, problem%lands_on_step_end(i))
     end do

@@ -87,7 +87,7 @@ module ode_method
     procedure(step), deferred :: step
     procedure(interpolate), deferred :: interpolate
     procedure :: land_on
-    procedure :: straying
+    procedure :: find_straying
     procedure :: bernstein_form
     procedure :: time_at_share
     procedure, non_overridable :: exchange_solution
@@ -191,15 +191,16 @@ contains
     call archive%exchange(self%stiffness)
   end subroutine exchange_statistics
 
-  !> A bound s of how far a component strays, within the last step, from the straight line between its values at both ends:
-  !> at the share x of the step by the method's clock less than 4 s x (1 - x). The default knows none.
-  pure real(dp) function straying(self, component)
+  !> Bounds s of how far two neighbouring components stray, within the last step, from the straight lines between their values
+  !> at both ends: at the share x of the step by the method's clock less than 4 s x (1 - x). The default knows none.
+  pure subroutine find_straying(self, first, straying)
     class(ode_method_t), intent(in) :: self
-    integer, intent(in) :: component
-    associate (unused_self => self, unused_component => component)
+    integer, intent(in) :: first
+    real(dp), intent(out) :: straying(2)
+    associate (unused_self => self, unused_first => first)
     end associate
     straying = huge(straying)
-  end function straying
+  end subroutine find_straying
 
   !> The polynomial with which the method interpolates a component over the last step, by its clock, in Bernstein form:
   !> coefficients(0:degree) on the share 0..1 of the step. The default knows none: degree 0.

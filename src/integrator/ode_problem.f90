@@ -24,11 +24,11 @@ module ode_problem
   integer, parameter :: event_continue = 0  !! restart the method at the event
   integer, parameter :: event_stop = 1      !! end the integration at the event
 
-  !> An event function as a polynomial in the state: it has the sign of constant + sum over j of
-  !> (linear_j + square_j y_c) y_c, c = component(j). A negative constant without components is not watched.
+  !> An event function as a polynomial in two neighbouring components of the state: it has the sign of constant + sum over j of
+  !> (linear_j + square_j y_c) y_c, c = first - 1 + j. A negative constant without components is not watched.
   type :: event_form_t
     logical :: known = .false.       !! else there is no such polynomial
-    integer :: component(2) = 0      !! 0: none
+    integer :: first = 0             !! of the components, 0: none
     real(dp) :: constant = -1, linear(2) = 0, square(2) = 0
   end type event_form_t
 

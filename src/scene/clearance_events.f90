@@ -139,7 +139,7 @@ contains
     form%known = .not. (index == sliding_changes .and. touches)
     if (.not. form%known .or. index /= merge(ends, begins, touches)) return
     outwards = merge(-1.0_dp, 1.0_dp, touches)
-    form%component = [self%n_positions - 1, self%n_positions]
+    form%first = self%n_positions - 1
     form%constant = -outwards*self%joint%clearance**2
     form%square = outwards
   end procedure event_form

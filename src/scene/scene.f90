@@ -245,14 +245,14 @@ contains
     g_rate = [crank_speed, -crank_speed]
   end subroutine gas_events
 
-  !> They are linear in the first component, where that is the crank angle.
+  !> Their form: linear in the first component, where that is the crank angle.
   pure function gas_event_form(self, direction) result(form)
     class(scene_t), intent(in) :: self
     integer, intent(in) :: direction   !! forwards (1) or backwards (2)
     type(event_form_t) :: form
     form%known = self%drive%free_crank
     if (.not. form%known) return
-    form%component(1) = 1
+    form%first = 1
     form%linear(1) = merge(1, -1, direction == 1)
     form%constant = -form%linear(1)*(self%gas_cycle_start + self%gas%bound(self%gas_part + 1 - direction))
   end function gas_event_form
