@@ -33,6 +33,7 @@ contains
     call bernstein_algebra(check)
     call touched_and_left(check)
     call random_steps(check)
+    call straying_is_bounded(check)
     call radau_too(check)
   end subroutine run_test_event_proof
 
@@ -164,6 +165,39 @@ contains
     call check%that(invented == 0, 'none is invented')
     call check%that(late == 0, 'the first passage is taken')
   end subroutine random_steps
+
+  !> After a history of right-hand sides at random, at distances equal to the step or much shorter, the interpolant strays from
+  !> the straight lines between its ends by no more than the bound, which is not too far off.
+  subroutine straying_is_bounded(check)
+    class(checks_t), intent(inout) :: check
+    integer, parameter :: shares = 40
+    type(polynomial_t) :: problem
+    type(adams_t) :: method
+    real(dp) :: x(12), f(2, 12), y(2), bound(2), share, largest
+    integer :: i, j, order, status
+    problem%n = 2
+    largest = 0
+    do i = 1, 240
+      order = 1 + mod(i, 12)
+      call draw(problem, i)
+      call random_number(f)
+      f = merge(1.0_dp, 1e-3_dp, mod(i, 2) == 0)*(2*f - 1)
+      x = [(j - order, j=1, 12)]/merge(1.0_dp, 50.0_dp, mod(i, 3) == 0)
+      method = adams_t()
+      method%settings%fixed_step = 1
+      allocate (method%settings%relative(2), method%settings%absolute(2), source=1.0_dp)
+      call method%start_with_history(problem, x(:order), f(:, :order), problem%c(0, :), 1.0_dp, status)
+      call method%step(problem, status)
+      call method%find_straying(1, bound)
+      do j = 1, shares - 1
+        share = real(j, dp)/shares
+        call method%interpolate(share, y)
+        y = abs(y - (method%y_old + share*(method%y - method%y_old)))
+        largest = max(largest, maxval(y/(4*share*(1 - share)*bound)))
+      end do
+    end do
+    call check%that(largest < 1 + 1e-9_dp .and. largest > 0.9_dp, 'components stray no further than their bound')
+  end subroutine straying_is_bounded
 
   !> Coefficients at random, of one size or falling with the power.
   subroutine draw(problem, number)

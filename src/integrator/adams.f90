@@ -179,11 +179,11 @@ module adams
       real(dp), intent(out) :: y(:)
     end subroutine interpolate
 
-    !> In the interpolant's derivative, the sum of phi_i N_i, no Newton polynomial N_i is beyond 1 within the step, so that it
-    !> is within r, the sum of the |phi_i|, i > 1, of a constant, and y strays by less than 2 h r x (1 - x) at the share x of the
-    !> step. What closes the polynomial makes good the last correction, d = h g_k+1 (f_n+1 - f_predicted), by d q(x): q falls from
-    !> 1 to 0 with a rate in proportion to N_k+2, and strays by less than 4 x (1 - x), the most, 3.9 x (1 - x), at order 12 after
-    !> much shorter steps.
+    !> The interpolant's derivative is the sum of phi_i N_i. At the share x of the step the Newton polynomial N_2 is x - 1, and all
+    !> higher ones are of one sign and no larger than x (1 - x): their integrals stray by 1/2 x (1 - x) and by at most
+    !> 3/16 x (1 - x). What closes the polynomial makes good the last correction, d = h g_k+1 (f_n+1 - f_predicted), by d q(x): q
+    !> falls from 1 to 0 with a rate in proportion to N_k+2, and strays by less than 4 x (1 - x), the most, 3.9 x (1 - x), at
+    !> order 12 after much shorter steps.
     pure module subroutine find_straying(self, first, straying)
       class(adams_t), intent(in) :: self
       integer, intent(in) :: first

@@ -51,11 +51,12 @@ contains
     last = first + 1
     owed = self%owed(first:last)
     sums = 0
-    do j = 2, self%k_old + 1
+    do j = 3, self%k_old + 1
       sums = sums + abs(self%phi(first:last, j) + owed)
     end do
+    sums = abs(self%phi(first:last, 2) + owed)/8 + (3/64.0_dp)*sums
     correction = self%coefficients%g(self%k_old + 1)*((self%phi(first:last, 1) + owed) - self%f_predicted(first:last))
-    straying = (self%x - self%x_old)*(0.5_dp*sums + abs(correction))
+    straying = (self%x - self%x_old)*(sums + abs(correction))
   end procedure find_straying
 
   module procedure bernstein_form
