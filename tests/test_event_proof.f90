@@ -16,9 +16,10 @@ module test_event_proof
 
   integer, parameter :: degree = 11
 
-  !> y' is a polynomial in t; the event is y_1^2 + y_2^2 = 1, from within, with or without its form told.
+  !> y' is a polynomial in t less pull*y; the event is y_1^2 + y_2^2 = 1, from within, with or without its form told.
   type, extends(ode_problem_t) :: polynomial_t
     real(dp) :: c(0:degree, 2) = 0   !! y_i is the sum of c(j, i) t^j
+    real(dp) :: pull = 0
     logical :: tells = .true.
   contains
     procedure :: derivatives
@@ -34,6 +35,7 @@ contains
     call touched_and_left(check)
     call random_steps(check)
     call straying_is_bounded(check)
+    call proof_is_sharp(check)
     call radau_too(check)
   end subroutine run_test_event_proof
 
@@ -182,6 +184,7 @@ contains
       call draw(problem, i)
       call random_number(f)
       f = merge(1.0_dp, 1e-3_dp, mod(i, 2) == 0)*(2*f - 1)
+      problem%pull = merge(2.0_dp, 0.0_dp, mod(i, 5) > 1)   ! with it the interpolant has a last correction to make good
       x = [(j - order, j=1, 12)]/merge(1.0_dp, 50.0_dp, mod(i, 3) == 0)
       method = adams_t()
       method%settings%fixed_step = 1
@@ -198,6 +201,27 @@ contains
     end do
     call check%that(largest < 1 + 1e-9_dp .and. largest > 0.9_dp, 'components stray no further than their bound')
   end subroutine straying_is_bounded
+
+  !> From 0.9 and back to it along a parabola, in one step: up to its top at the circle the proof holds, beyond it does not.
+  subroutine proof_is_sharp(check)
+    class(checks_t), intent(inout) :: check
+    type(polynomial_t) :: problem
+    type(adams_t) :: method
+    real(dp) :: top
+    integer :: i, status
+    problem%n = 2
+    problem%c(0, 1) = 0.9_dp
+    do i = 1, 2
+      top = merge(0.0999_dp, 0.1001_dp, i == 1)   ! above 0.9
+      problem%c(1:2, 1) = 4*top*[1, -1]
+      method = adams_t()
+      method%settings%fixed_step = 1
+      allocate (method%settings%relative(2), method%settings%absolute(2), source=1.0_dp)
+      call method%start_with_history(problem, [0.0_dp], reshape([4*top, 0.0_dp], [2, 1]), problem%c(0, :), 1.0_dp, status)
+      call method%step(problem, status)
+      call check%that(stays_negative_for_certain(problem%event_form(1), method) .eqv. i == 1, 'the proof holds up to the circle')
+    end do
+  end subroutine proof_is_sharp
 
   !> Coefficients at random, of one size or falling with the power.
   subroutine draw(problem, number)
@@ -256,12 +280,11 @@ contains
     real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: inside
     integer :: j
-    associate (unused => y)
-    end associate
     dydt = 0
     do j = degree, 1, -1
       dydt(:2) = dydt(:2)*t + j*self%c(j, :)
     end do
+    dydt(:2) = dydt(:2) - self%pull*y(:2)
     inside = .true.
   end subroutine derivatives
 
