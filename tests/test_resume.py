@@ -106,7 +106,7 @@ def stopped_by_full_disk(gudgeon: Gudgeon, work: Path) -> None:
 
     def no_room() -> None:
         resource.setrlimit(resource.RLIMIT_FSIZE, (3_000_000, 3_000_000))
-    status, _, err = gudgeon.run("--checkpoint", 0.01, "-o", work / "parts", *words, preexec_fn=no_room)
+    status, _, err = gudgeon.run("--checkpoint", 0.001, "-o", work / "parts", *words, preexec_fn=no_room)
     check(status == 5 and "File too large" in err, f"no room: {status} {err}")
     check("friction_100.checkpoint" in leftovers(work / "parts"), "the checkpoint stays")
     status, _, err = gudgeon.run("--resume", "-o", work / "parts", *words)
