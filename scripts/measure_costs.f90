@@ -26,10 +26,10 @@ program measure_costs
   implicit none
 
   integer, parameter :: n_states = 64, blocks = 31, calls = 6400, steps_in_block = 2000
-  integer, parameter :: name_length = 28, n_scenes = 14, n_quantities = 6
+  integer, parameter :: name_length = 28, n_scenes = 16, n_quantities = 6
   character(len=name_length), parameter :: scenes(n_scenes) = [character(len=name_length) :: 'ideal', 'ideal+gas', 'free', &
-    'free+gas', 'contact_hertz', 'contact', 'contact+ambrosio', 'contact+coulomb', 'closed_form', 'closed_form+gas', &
-    'as_printed', 'half_film', 'oscillating', 'oscillating_as_printed']
+    'free+gas', 'contact_hertz', 'contact', 'contact+quadrature', 'contact+ambrosio', 'contact+coulomb', 'closed_form', &
+    'closed_form+quadrature', 'closed_form+gas', 'as_printed', 'half_film', 'oscillating', 'oscillating_as_printed']
   character(len=name_length), parameter :: quantities(n_quantities) = [character(len=name_length) :: 'rhs', 'step', &
     'step+figures', 'row', 'row_no_reactions', 'row_time_and_angle']
   character(len=name_length) :: scene_name, quantity, text
@@ -57,7 +57,8 @@ program measure_costs
 contains
 
   !> The scene of a name: simulation IV with what it needs and nothing else. Steps of the dry scenes are those of Flores's
-  !> benchmark with 0.5 mm, contacts and flights.
+  !> benchmark with 0.5 mm, contacts and flights. Every scene integrates the work of its forces, for the energy residual;
+  !> `+quadrature` is one integral more, of the size of the joint's force.
   subroutine make(name, quantity, case, scene)
     character(len=*), intent(in) :: name, quantity
     type(case_t), intent(out) :: case
@@ -89,6 +90,7 @@ contains
     end if
     call build_scene(case, .false., scene, error)
     if (allocated(error)) error stop 'measure_costs: no such scene'
+    if (index(name, '+quadrature') > 0) call scene%measure_joint()
   end subroutine make
 
   !> States along one compression stroke, the pin in the film, or touching where the scene does.
@@ -97,7 +99,7 @@ contains
     class(scene_t), intent(inout) :: scene
     real(dp), allocatable, intent(out) :: y(:, :)
     real(dp) :: part, turn, reach
-    integer :: i, n
+    integer :: i, m
 
     if (allocated(scene%gas)) call scene%set_gas_part(1.5_dp*pi, 250.0_dp)
     select type (scene)
@@ -108,13 +110,13 @@ contains
         scene%sliding = 1
       end if
     end select
-    n = scene%n
-    allocate (y(n, n_states), source=0.0_dp)
+    m = scene%n_positions
+    allocate (y(scene%n, n_states), source=0.0_dp)
     do i = 1, n_states
       part = (i - 0.5_dp)/n_states
       y(1, i) = pi*(1.05_dp + 0.8_dp*part)
-      y(n/2 + 1, i) = 250
-      if (n < 7) cycle
+      y(m + 1, i) = 250
+      if (m < 3) cycle
       turn = 40*part
       reach = 20e-6_dp*(0.1_dp + 0.8_dp*part)
       if (scene%phase == phase_contact) reach = 20e-6_dp + 1e-6_dp*part
