@@ -297,6 +297,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--program", type=Path)
     options = parser.parse_args()
+    signal.signal(signal.SIGINT, signal.default_int_handler)   # a background job, and all it starts, would ignore it
     gudgeon = Gudgeon(options.program or program_built())
     with tempfile.TemporaryDirectory(prefix="faults") as work:
         for test in (test_signals, test_full_disk, test_folders, test_standard_output, test_two_runs, test_batch):
