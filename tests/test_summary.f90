@@ -2,7 +2,9 @@
 module test_summary
   use kinds, only: dp
   use checks, only: checks_t
-  use summary, only: build_advice
+  use summary, only: build_advice, summary_table
+  use case_definition, only: case_t
+  use simulation, only: run_report_t
   use text_tools, only: integer_text
   implicit none
   private
@@ -10,8 +12,27 @@ module test_summary
 
 contains
 
-  !> The line about a build for debugging: only after a while, only where the compiler has not optimised.
   subroutine run_test_summary(check)
+    class(checks_t), intent(inout) :: check
+    call a_status_is_one_field(check, 'done', '"done"')
+    call a_status_is_one_field(check, '"a","b', '"""a"",""b"')
+    call a_status_is_one_field(check, 'a""', '"a"""""')
+    call slow_builds_are_told(check)
+  end subroutine run_test_summary
+
+  !> As RFC 4180 wants it: marks within a field twice.
+  subroutine a_status_is_one_field(check, status, field)
+    class(checks_t), intent(inout) :: check
+    character(len=*), intent(in) :: status, field
+    type(case_t) :: case
+    type(run_report_t) :: report
+    report%status = status
+    call check%that(index(summary_table(case, report, 0.0_dp), achar(10)//'status,'//field//','//achar(10)) > 0, &
+      'a status in a table: '//status)
+  end subroutine a_status_is_one_field
+
+  !> The line about a build for debugging: only after a while, only where the compiler has not optimised.
+  subroutine slow_builds_are_told(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: debug = '-g -fcheck=bounds -fbacktrace -J build/-O3/x'
     call check%that(index(build_advice(debug, 2.5_dp), 'fpm @release') > 0, 'a long run of a debug build')
@@ -22,5 +43,5 @@ contains
     call check%equal_text(build_advice('-Ofast', 60.0_dp), '', 'faster still')
     call check%equal_text(integer_text(0)//integer_text(-7)//integer_text(1203), '0-71203', 'whole numbers')
     call check%equal_text(integer_text(huge(1))//integer_text(-huge(1)), '2147483647-2147483647', 'the largest and the least')
-  end subroutine run_test_summary
+  end subroutine slow_builds_are_told
 end module test_summary

@@ -104,13 +104,16 @@ contains
   pure function quoted(value) result(field)
     character(len=*), intent(in) :: value
     character(len=:), allocatable :: field
-    integer :: i
+    integer :: from, mark
     field = '"'
-    do i = 1, len(value)
-      field = field//value(i:i)
-      if (value(i:i) == '"') field = field//'"'
+    from = 1
+    do
+      mark = index(value(from:), '"')
+      if (mark == 0) exit
+      field = field//value(from:from + mark - 1)//'"'   ! each mark twice
+      from = from + mark
     end do
-    field = field//'"'
+    field = field//value(from:)//'"'
   end function quoted
 
   !> What the user of a run that is done should know, or an empty text.
