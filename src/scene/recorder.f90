@@ -178,7 +178,7 @@ contains
     if (.not. inside) return
     energy = scene%energy(now%motion)
     associate (f => self%figures)
-      f%max_pin_force = max(f%max_pin_force, norm2(now%loads%pin_force))
+      f%max_pin_force = max(f%max_pin_force, sqrt(now%loads%pin_force(1)**2 + now%loads%pin_force(2)**2))
       f%max_energy = max(f%max_energy, abs(energy))
       f%max_energy_residual = max(f%max_energy_residual, abs(energy - self%initial_energy - scene%work(y)))
       f%min_film_thickness = min(f%min_film_thickness, -now%joint%penetration)
