@@ -107,7 +107,7 @@ contains
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
     associate (c => self%present)
-      c%max_pin_force = max(c%max_pin_force, norm2(now%loads%pin_force))
+      c%max_pin_force = max(c%max_pin_force, sqrt(now%loads%pin_force(1)**2 + now%loads%pin_force(2)**2))
       c%min_film_thickness = min(c%min_film_thickness, -now%joint%penetration)
       if (scene%phase == phase_contact) then
         c%contact_time = c%contact_time + (t - self%t)
