@@ -7,13 +7,9 @@
 # Nothing else goes to standard output. The exit status is 1, with what fpm said, if it cannot be built.
 cd "$(dirname "$0")/.." || exit 1
 . scripts/setup.sh || exit 1
-kind=app
-[ -n "$1" ] && kind=example
-example=
-[ -n "$1" ] && example=--example
 # shellcheck disable=SC2086  # an option or nothing
-said=$(fpm @release $example --runner echo 2>&1) &&
-  found=$(printf '%s\n' "$said" | grep "^build/.*/$kind/${1:-gudgeon}\$" | tail -n 1) &&
+said=$(fpm @release ${1:+--example} --runner echo 2>&1) &&
+  found=$(printf '%s\n' "$said" | grep "^build/.*/${1:-gudgeon}\$" | tail -n 1) &&
   [ -x "$found" ] && echo "$found" && exit 0
 printf '%s\n' "$said" >&2
 echo "build: cannot build ${1:-gudgeon}" >&2

@@ -4,7 +4,6 @@
 # and errors at four tolerances; before that, the standard battery of non-stiff problems; after it, how well the eccentricity
 # is known by coordinates. The references are integrated first, by a copy that computes in 80 bits.
 cd "$(dirname "$0")/.." || exit 1
-. scripts/setup.sh || exit 1
 set -e
 copy=build/extended_precision
 mkdir -p "$copy"

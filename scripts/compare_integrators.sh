@@ -4,7 +4,7 @@
 #
 #   scripts/compare_integrators.sh [DIR]      writes DIR/integrators.csv, .png and .svg (default: results)
 #
-# Takes about five minutes, nearly all of it Adams in stiff films.
+# Takes about a minute, nearly all of it Adams in stiff films.
 cd "$(dirname "$0")/.." || exit 1
 scripts/setup.sh --python || exit 1
 out=${1:-results}

@@ -3,10 +3,10 @@ module test_mechanism
   use kinds, only: dp
   use constants, only: pi, degree
   use checks, only: checks_t
-  use mechanism, only: mechanism_t, motion_t, accelerations_t
+  use mechanism, only: mechanism_t, motion_t, accelerations_t, turn_crank
   use dynamics, only: drive_t, loads_t, accelerations_under
   use ideal_joint, only: ideal_motion, ideal_accelerations
-  use clearance_joint, only: clearance_motion, joint_motion, joint_motion_t, joint_geometry_t
+  use clearance_joint, only: find_rod, find_piston, find_joint_motion, sliding_speed, joint_motion_t, joint_geometry_t
   use reactions, only: reactions_t, reactions_of
   use collecting_sink, only: trace_t, run_case, column
   implicit none
@@ -152,6 +152,28 @@ contains
         m%crank_length*there%sin_crank - m%rod_length*there%sin_rod]
     end function eccentricity_after
   end subroutine lagrange_is_energy_consistent
+
+  !> The whole mechanism at (q, e) and their rates.
+  pure subroutine clearance_motion(mechanism, q, crank_speed, eccentricity, eccentricity_rate, motion, reachable)
+    type(mechanism_t), intent(in) :: mechanism
+    real(dp), intent(in) :: q, crank_speed, eccentricity(2), eccentricity_rate(2)
+    type(motion_t), intent(out) :: motion
+    logical, intent(out) :: reachable
+    call turn_crank(motion, q, crank_speed)
+    call find_rod(mechanism, eccentricity, eccentricity_rate, motion, reachable)
+    if (reachable) call find_piston(mechanism, eccentricity, eccentricity_rate, motion)
+  end subroutine clearance_motion
+
+  !> The whole joint.
+  pure function joint_motion(geometry, eccentricity, eccentricity_rate, pin_speed) result(joint)
+    type(joint_geometry_t), intent(in) :: geometry
+    real(dp), intent(in) :: eccentricity(2), eccentricity_rate(2), pin_speed
+    type(joint_motion_t) :: joint
+    joint%eccentricity = eccentricity
+    joint%eccentricity_rate = eccentricity_rate
+    call find_joint_motion(geometry, joint)
+    joint%sliding_speed = sliding_speed(geometry, joint%tangential_rate, pin_speed)
+  end function joint_motion
 
   !> F5 = -F_x and F6 = -F_y to rounding, and the crank equation balances with F3, F4 at the crank pin.
   subroutine reactions_match_the_joint(check)

@@ -18,6 +18,7 @@ module film_law
   !> A film that carries the pin while it does not touch the bearing.
   type, abstract :: film_law_t
     real(dp) :: clearance = 1                 !! c, radial [m]
+    real(dp) :: per_clearance = 1             !! 1/c [1/m]
     logical :: needs_ideal_motion = .false.   !! whether the ideal_* fields and the frequency are read
     logical :: singular_at_wall = .true.      !! the force is infinite at |e| = c: the state may not reach it
   contains

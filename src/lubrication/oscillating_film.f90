@@ -12,7 +12,6 @@ module oscillating_film
 
   type, extends(film_law_t) :: oscillating_film_t
     type(oscillating_response_t) :: response
-    real(dp) :: per_clearance = 1         !! 1/c [1/m]
     real(dp) :: pin_radius = 0            !! R [m]
     real(dp) :: viscosity = 0             !! mu [Pa s]
     real(dp) :: kinematic_viscosity = 0   !! nu [m^2/s]

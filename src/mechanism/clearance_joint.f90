@@ -6,11 +6,10 @@
 !> from sin A = (R sin q - e_y)/L without a trigonometric function.
 module clearance_joint
   use kinds, only: dp
-  use mechanism, only: mechanism_t, motion_t, turn_crank
+  use mechanism, only: mechanism_t, motion_t
   implicit none
   private
-  public :: joint_geometry_t, joint_motion_t, joint_motion, find_joint_motion, sliding_speed, clearance_motion, &
-    find_rod, find_piston
+  public :: joint_geometry_t, joint_motion_t, find_joint_motion, sliding_speed, find_rod, find_piston
 
   !> Constants of the joint.
   type :: joint_geometry_t
@@ -33,19 +32,7 @@ module clearance_joint
 
 contains
 
-  !> Motion of the pin in the bearing. `pin_speed` is omega_rod = -A' [rad/s]. The sliding speed is the material one:
-  !> (3.74)-(3.76) as printed turn the contact points with the eccentricity, which leaves no sliding.
-  pure function joint_motion(geometry, eccentricity, eccentricity_rate, pin_speed) result(joint)
-    type(joint_geometry_t), intent(in) :: geometry
-    real(dp), intent(in) :: eccentricity(2), eccentricity_rate(2), pin_speed
-    type(joint_motion_t) :: joint
-    joint%eccentricity = eccentricity
-    joint%eccentricity_rate = eccentricity_rate
-    call find_joint_motion(geometry, joint)
-    joint%sliding_speed = sliding_speed(geometry, joint%tangential_rate, pin_speed)
-  end function joint_motion
-
-  !> The same in place, for a given eccentricity and its rate: all but the sliding speed.
+  !> Motion of the pin in the bearing, for a given eccentricity and its rate: all but the sliding speed.
   pure subroutine find_joint_motion(geometry, joint)
     type(joint_geometry_t), intent(in) :: geometry
     type(joint_motion_t), intent(inout) :: joint
@@ -62,26 +49,16 @@ contains
     end associate
   end subroutine find_joint_motion
 
-  !> v_T [m/s], which needs the speed of the pin [rad/s] besides the tangential rate [m/s].
+  !> v_T [m/s], which needs the speed of the pin, omega_rod = -A' [rad/s], besides the tangential rate [m/s]. It is the material
+  !> one: (3.74)-(3.76) as printed turn the contact points with the eccentricity, which leaves no sliding.
   pure real(dp) function sliding_speed(geometry, tangential_rate, pin_speed)
     type(joint_geometry_t), intent(in) :: geometry
     real(dp), value, intent(in) :: tangential_rate, pin_speed
     sliding_speed = tangential_rate + pin_speed*geometry%pin_radius
   end function sliding_speed
 
-  !> Positions and speeds of the bodies at crank angle q [rad], crank speed [rad/s], eccentricity [m] and its rate.
-  !> `reachable` is false where the pin cannot be, |R sin q - e_y| >= L: then there is only the crank.
-  pure subroutine clearance_motion(mechanism, q, crank_speed, eccentricity, eccentricity_rate, motion, reachable)
-    type(mechanism_t), intent(in) :: mechanism
-    real(dp), intent(in) :: q, crank_speed, eccentricity(2), eccentricity_rate(2)
-    type(motion_t), intent(out) :: motion
-    logical, intent(out) :: reachable
-    call turn_crank(motion, q, crank_speed)
-    call find_rod(mechanism, eccentricity, eccentricity_rate, motion, reachable)
-    if (reachable) call find_piston(mechanism, eccentricity, eccentricity_rate, motion)
-  end subroutine clearance_motion
-
-  !> The rod of a motion whose crank is known, with its sine and cosine.
+  !> The rod of a motion whose crank is known, with its sine and cosine, at an eccentricity [m] and its rate. `reachable` is false
+  !> where the pin cannot be, |R sin q - e_y| >= L.
   pure subroutine find_rod(mechanism, eccentricity, eccentricity_rate, motion, reachable)
     type(mechanism_t), intent(in) :: mechanism
     real(dp), intent(in) :: eccentricity(2), eccentricity_rate(2)

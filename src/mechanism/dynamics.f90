@@ -11,7 +11,7 @@ module dynamics
   use mechanism, only: mechanism_t, motion_t, accelerations_t
   implicit none
   private
-  public :: drive_t, loads_t, accelerations_under
+  public :: drive_t, loads_t, pin_force_size, accelerations_under
 
   !> How the crank is driven.
   type :: drive_t
@@ -28,6 +28,12 @@ module dynamics
   end type loads_t
 
 contains
+
+  !> Size of the joint's force [N].
+  pure real(dp) function pin_force_size(loads)
+    type(loads_t), intent(in) :: loads
+    pin_force_size = sqrt(loads%pin_force(1)**2 + loads%pin_force(2)**2)   ! without the scaling of norm2
+  end function pin_force_size
 
   !> Accelerations of the bodies, and the moment on the crank [N m]: the drive's torque if the crank is free,
   !> the moment that holds its speed if not.

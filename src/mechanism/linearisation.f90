@@ -1,5 +1,5 @@
-!> How the equations of motion of the mechanism with clearance change with its state: the tangent of `clearance_motion`,
-!> `accelerations_under` and `eccentricity_acceleration`, one direction at a time, for implicit integration.
+!> How the equations of motion of the mechanism with clearance change with its state: the tangent of `find_rod`
+!> and `find_piston` (clearance_joint) and of `accelerations_under`, one direction at a time, for implicit integration.
 module linearisation
   use kinds, only: dp
   use mechanism, only: mechanism_t, motion_t, accelerations_t

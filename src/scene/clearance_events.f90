@@ -10,22 +10,19 @@ submodule (clearance_scene) clearance_events
 contains
 
   module procedure all_events
-    real(dp) :: distance, rate
-    integer :: m, n
-    m = self%n_positions
+    real(dp) :: contact(2)
+    integer :: n
     n = self%n_joint_events
     if (n > 0) then
-      distance = sqrt(y(m - 1)**2 + y(m)**2)
-      rate = 0
-      if (distance > 0) rate = (y(m - 1)*y(2*m - 1) + y(m)*y(2*m))/distance
+      contact = penetration_and_rate(self, y)
       if (self%phase == phase_contact) then
         g(begins) = -1
         g_rate(begins) = 0
-        g(ends) = self%joint%clearance - distance
-        g_rate(ends) = -rate
+        g(ends) = -contact(1)
+        g_rate(ends) = -contact(2)
       else
-        g(begins) = distance - self%joint%clearance
-        g_rate(begins) = rate
+        g(begins) = contact(1)
+        g_rate(begins) = contact(2)
         g(ends) = -1
         g_rate(ends) = 0
       end if
@@ -113,9 +110,10 @@ contains
     real(dp) :: values(2), distance
     integer :: m
     m = self%n_positions
-    distance = norm2(y(m - 1:m))
-    values = [distance - self%joint%clearance, 0.0_dp]
-    if (distance > 0) values(2) = dot_product(y(m - 1:m), y(2*m - 1:2*m))/distance
+    distance = sqrt(y(m - 1)**2 + y(m)**2)
+    values(1) = distance - self%joint%clearance
+    values(2) = 0
+    if (distance > 0) values(2) = (y(m - 1)*y(2*m - 1) + y(m)*y(2*m))/distance
   end function penetration_and_rate
 
   !> The cubic on [0, 1] with given values and slopes at the ends.

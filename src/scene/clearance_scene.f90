@@ -3,7 +3,7 @@ module clearance_scene
   use kinds, only: dp
   use ode_problem, only: event_form_t, difference_jacobian
   use mechanism, only: motion_t, turn_crank
-  use dynamics, only: loads_t, accelerations_under
+  use dynamics, only: loads_t, pin_force_size, accelerations_under
   use ideal_joint, only: follow_crank, ideal_rod_acceleration
   use clearance_joint, only: joint_geometry_t, joint_motion_t, find_joint_motion, sliding_speed, find_rod, find_piston
   use linearisation, only: motion_change_t, motion_change, acceleration_change
@@ -138,7 +138,7 @@ contains
       end if
     end associate
     dydt(last) = now%power
-    if (self%n_measures > 0) dydt(last + 1) = sqrt(now%loads%pin_force(1)**2 + now%loads%pin_force(2)**2)
+    if (self%n_measures > 0) dydt(last + 1) = pin_force_size(now%loads)
     if (self%n_measures > 1) dydt(last + 2) = -joint_power(now)
   end subroutine derivatives
 

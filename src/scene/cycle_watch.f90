@@ -7,6 +7,7 @@ module cycle_watch
   use kinds, only: dp
   use constants, only: two_pi
   use ode_method, only: ode_method_t
+  use dynamics, only: pin_force_size
   use scene, only: scene_t, evaluation_t, phase_contact
   use roots, only: bracket_t, next_abscissa, narrow
   use columns, only: column_list_t, row_values
@@ -107,7 +108,7 @@ contains
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
     associate (c => self%present)
-      c%max_pin_force = max(c%max_pin_force, sqrt(now%loads%pin_force(1)**2 + now%loads%pin_force(2)**2))
+      c%max_pin_force = max(c%max_pin_force, pin_force_size(now%loads))
       c%min_film_thickness = min(c%min_film_thickness, -now%joint%penetration)
       if (scene%phase == phase_contact) then
         c%contact_time = c%contact_time + (t - self%t)

@@ -3,6 +3,7 @@ module ideal_scene
   use kinds, only: dp
   use ode_problem, only: event_continue, event_form_t
   use mechanism, only: turn_crank
+  use dynamics, only: pin_force_size
   use ideal_joint, only: follow_crank, ideal_accelerations
   use clearance_joint, only: joint_motion_t
   use scene, only: scene_t, evaluation_t, event_none
@@ -42,7 +43,7 @@ contains
       dydt(2) = now%accelerations%crank
     end if
     dydt(2*self%n_positions + 1) = now%power
-    if (self%n_measures > 0) dydt(2*self%n_positions + 2) = norm2(now%loads%pin_force)
+    if (self%n_measures > 0) dydt(2*self%n_positions + 2) = pin_force_size(now%loads)
   end subroutine derivatives
 
   pure subroutine evaluate(self, t, y, evaluation, inside)

@@ -6,6 +6,7 @@ module recorder
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t
   use solver, only: observer_t
+  use dynamics, only: pin_force_size
   use scene, only: scene_t, evaluation_t, phase_contact, event_none, event_contact_begins, event_contact_ends
   use columns, only: column_list_t, row_values
   use cycle_watch, only: cycle_watch_t
@@ -178,7 +179,7 @@ contains
     if (.not. inside) return
     energy = scene%energy(now%motion)
     associate (f => self%figures)
-      f%max_pin_force = max(f%max_pin_force, sqrt(now%loads%pin_force(1)**2 + now%loads%pin_force(2)**2))
+      f%max_pin_force = max(f%max_pin_force, pin_force_size(now%loads))
       f%max_energy = max(f%max_energy, abs(energy))
       f%max_energy_residual = max(f%max_energy_residual, abs(energy - self%initial_energy - scene%work(y)))
       f%min_film_thickness = min(f%min_film_thickness, -now%joint%penetration)
