@@ -208,7 +208,10 @@ contains
     type(key_t), intent(in) :: keys(:)
     character(len=*), intent(in) :: group, name
     integer :: place
+    character(len=1) :: letter
+    letter = name
     do place = size(keys), 1, -1
+      if (keys(place)%name(1:1) /= letter) cycle   ! nearly all of them, in no time
       if (keys(place)%group == group .and. keys(place)%name == name) return
     end do
   end function find_key

@@ -1,6 +1,7 @@
 !> Cases as text: the template with every key and its default, and the resolved case.
 module case_text
   use text_tools, only: integer_text
+  use growing_text, only: growing_text_t
   use number_text, only: exact_text
   use case_schema, only: key_t, group_definition_t, real_kind, integer_kind, logical_kind
   use case_values, only: case_values_t, value_t
@@ -53,51 +54,65 @@ contains
   function resolved_text(values) result(text)
     type(case_values_t), intent(in) :: values
     character(len=:), allocatable :: text
+    type(growing_text_t) :: growing
     integer :: group, i
-    text = ''
     do group = 1, size(values%groups)
       if (values%groups(group)%is_model .and. .not. values%is_present(group)) cycle
-      text = text//'&'//trim(values%groups(group)%name)//newline
+      call growing%append('&')
+      call growing%append(trim(values%groups(group)%name))
+      call growing%append(newline)
       do i = 1, size(values%keys)
-        if (values%keys(i)%group == values%groups(group)%name) &
-          text = text//resolved_line(values%keys(i), values%values(i))//newline
+        if (values%keys(i)%group == values%groups(group)%name) call append_line(growing, values%keys(i), values%values(i))
       end do
-      text = text//'/'//newline
+      call growing%append('/'//newline)
     end do
+    call growing%take(text)
   end function resolved_text
 
-  function resolved_line(key, value) result(line)
+  !> `  key = value  ! unit`
+  subroutine append_line(text, key, value)
+    type(growing_text_t), intent(inout) :: text
     type(key_t), intent(in) :: key
     type(value_t), intent(in) :: value
-    character(len=:), allocatable :: line
     integer :: element
-    line = '  '//trim(key%name)//' = '
+    call text%append('  ')
+    call text%append(trim(key%name))
+    call text%append(' = ')
     select case (key%kind)
     case (real_kind)
-      line = line//exact_text(value%reals(1))
+      call text%append(exact_text(value%reals(1)))
       do element = 2, key%count
-        line = line//', '//exact_text(value%reals(element))
+        call text%append(', ')
+        call text%append(exact_text(value%reals(element)))
       end do
     case (integer_kind)
-      line = line//integer_text(value%whole)
+      call text%append(integer_text(value%whole))
     case (logical_kind)
-      line = line//trim(merge('.true. ', '.false.', value%switch))
+      call text%append(trim(merge('.true. ', '.false.', value%switch)))
     case default
-      line = line//quoted(value%text)
+      call text%append(quoted(value%text))
     end select
-    if (key%unit /= '') line = line//'  ! '//trim(key%unit)
-  end function resolved_line
+    if (key%unit /= '') then
+      call text%append('  ! ')
+      call text%append(trim(key%unit))
+    end if
+    call text%append(newline)
+  end subroutine append_line
 
   !> In single quotes, those inside doubled.
   pure function quoted(text) result(string)
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: string
-    integer :: i
-    string = ''''
+    character(len=2*len(text)) :: inside
+    integer :: i, used
+    used = 0
     do i = 1, len(text)
-      string = string//text(i:i)
-      if (text(i:i) == '''') string = string//''''
+      used = used + 1
+      inside(used:used) = text(i:i)
+      if (text(i:i) /= '''') cycle
+      used = used + 1
+      inside(used:used) = ''''
     end do
-    string = string//''''
+    string = ''''//inside(:used)//''''
   end function quoted
 end module case_text

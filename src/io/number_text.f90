@@ -2,6 +2,7 @@
 module number_text
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: dp
+  use number_writer, only: number_writer_t, longest_number
   implicit none
   private
   public :: real_text, exact_text, short_text
@@ -12,34 +13,45 @@ contains
   pure function real_text(value) result(text)
     real(dp), intent(in) :: value
     character(len=:), allocatable :: text
-    text = scientific(value, '(es16.9e2)', '(es17.9e3)')
+    text = scientific(value, 10)
   end function real_text
 
   !> A real that reads back as the same bits: 17 significant digits.
   pure function exact_text(value) result(text)
     real(dp), intent(in) :: value
     character(len=:), allocatable :: text
-    text = scientific(value, '(es23.16e2)', '(es24.16e3)')
+    text = scientific(value, 17)
   end function exact_text
 
   !> A real for people: 6 significant digits, without the zeros at their end; as 0.0125 or 36000.5 where that is short.
   pure function short_text(value) result(text)
     real(dp), intent(in) :: value
     character(len=:), allocatable :: text
-    character(len=24) :: plain, form
-    integer :: exponent, power, status
-    text = scientific(value, '(es12.5e2)', '(es13.5e3)')
+    character(len=:), allocatable :: digits
+    integer :: first, exponent, power
+    text = scientific(value, 6)
     exponent = index(text, 'E')
     if (exponent == 0) return
-    read (text(exponent + 1:), *, iostat=status) power
-    if (status == 0 .and. power >= -4 .and. power <= 5) then
-      write (form, '(a,i0,a)') '(f24.', 5 - power, ')'
-      write (plain, form) value
-      text = without_zeros(trim(adjustl(plain)))
-    else
+    power = 10*digit(text(exponent + 2:)) + digit(text(exponent + 3:))
+    if (text(exponent + 1:exponent + 1) == '-') power = -power
+    if (len(text) > exponent + 3 .or. power < -4 .or. power > 5) then
       text = without_zeros(text(:exponent - 1))//text(exponent:)
+      return
+    end if
+    first = scan(text, '0123456789')
+    digits = text(first:first)//text(first + 2:exponent - 1)
+    if (power < 0) then
+      text = text(:first - 1)//without_zeros('0.'//repeat('0', -power - 1)//digits)
+    else
+      text = text(:first - 1)//without_zeros(digits(:power + 1)//'.'//digits(power + 2:))
     end if
   end function short_text
+
+  !> The number that the first letter of a text stands for.
+  pure integer function digit(text)
+    character(len=*), intent(in) :: text
+    digit = iachar(text(1:1)) - iachar('0')
+  end function digit
 
   !> A number with a point, without zeros at its end, or the point.
   pure function without_zeros(number) result(text)
@@ -51,24 +63,24 @@ contains
     text = number(:last)
   end function without_zeros
 
-  !> `wide` is the format for exponents of three digits.
-  pure function scientific(value, usual, wide) result(text)
+  pure function scientific(value, digits) result(text)
     real(dp), intent(in) :: value
-    character(len=*), intent(in) :: usual, wide
+    integer, intent(in) :: digits   !! significant ones
     character(len=:), allocatable :: text
-    character(len=32) :: digits
+    type(number_writer_t) :: writer
+    character(len=longest_number + 1) :: line
+    integer :: used
     if (ieee_is_nan(value)) then
       text = 'nan'
     else if (abs(value) > huge(value)) then
       text = merge('-inf', 'inf ', value < 0)
       text = trim(text)
     else
-      if (abs(value) < 1e90_dp .and. .not. (abs(value) > 0 .and. abs(value) < 1e-90_dp)) then
-        write (digits, usual) value
-      else
-        write (digits, wide) value
-      end if
-      text = trim(adjustl(digits))
+      call writer%prepare_for_few(digits)
+      line = '-'
+      used = merge(1, 0, .not. abs(value) > 0 .and. sign(1.0_dp, value) < 0)   ! the writer gives a zero no sign
+      call writer%append(line, used, value)
+      text = line(:used)
     end if
   end function scientific
 end module number_text

@@ -2,14 +2,14 @@
 module number_writer
   use, intrinsic :: iso_fortran_env, only: int64
   use kinds, only: dp
-  use powers_of_ten, only: power_of_ten_t, make_powers, first_power, last_power, last_exact_power, limb_bits, &
+  use powers_of_ten, only: power_of_ten_t, power_of_ten, make_powers, first_power, last_power, last_exact_power, limb_bits, &
     floor_log
   use ten_digits, only: ten_digits_t, digit
   implicit none
   private
   public :: number_writer_t, append_formatted, longest_number, fewest_digits, most_digits
 
-  integer, parameter :: fewest_digits = 9, most_digits = 17   !! significant digits
+  integer, parameter :: fewest_digits = 6, most_digits = 17   !! significant digits
   integer, parameter :: longest_number = most_digits + 7      !! characters, as -1.2345678901234567E-100
   integer, parameter :: not_finite = 972                      !! binary exponent of NaN and infinities
 
@@ -24,10 +24,11 @@ module number_writer
     private
     integer :: digits = 10
     integer(int64) :: too_large = 10_int64**10   !! 10**digits
-    type(power_of_ten_t) :: powers(first_power:last_power)
-    type(ten_digits_t) :: ten_digits
+    type(power_of_ten_t), allocatable :: powers(:)   !! first_power to last_power, for many numbers
+    type(ten_digits_t), allocatable :: ten_digits    !! the same, where there are ten digits
   contains
     procedure :: prepare
+    procedure :: prepare_for_few
     procedure :: append
     procedure :: append_list
     procedure :: decides
@@ -35,15 +36,27 @@ module number_writer
 
 contains
 
-  !> Set the number of significant digits, and make what `append` needs. Call it first.
+  !> Set the number of significant digits, and make the tables for many numbers. Call it first.
   pure subroutine prepare(self, digits)
+    class(number_writer_t), intent(inout) :: self
+    integer, intent(in) :: digits   !! fewest_digits to most_digits
+    call self%prepare_for_few(digits)
+    allocate (self%powers(first_power:last_power))
+    call make_powers(self%powers)
+    if (digits /= 10) return
+    allocate (self%ten_digits)
+    call self%ten_digits%prepare(self%powers)
+  end subroutine prepare
+
+  !> The same without tables, which take as long as some dozens of numbers do then.
+  pure subroutine prepare_for_few(self, digits)
     class(number_writer_t), intent(inout) :: self
     integer, intent(in) :: digits   !! fewest_digits to most_digits
     self%digits = digits
     self%too_large = 10_int64**digits
-    call make_powers(self%powers)
-    if (digits == 10) call self%ten_digits%prepare(self%powers)
-  end subroutine prepare
+    if (allocated(self%powers)) deallocate (self%powers)
+    if (allocated(self%ten_digits)) deallocate (self%ten_digits)
+  end subroutine prepare_for_few
 
   !> Append a real to the first `used` characters of a line that has room for `longest_number` more. Zero has no sign.
   pure subroutine append(self, line, used, value)
@@ -99,7 +112,7 @@ contains
     integer :: i
     i = 1
     do
-      if (self%digits == 10) call self%ten_digits%append(text, used, values, i)
+      if (allocated(self%ten_digits)) call self%ten_digits%append(text, used, values, i)
       if (i > size(values)) exit
       call append_any(self, text, used, values(i))
       used = used + 1
@@ -154,6 +167,7 @@ contains
     integer, intent(out) :: decade
     logical, intent(out) :: is_decided
     integer(int64), parameter :: margin = 2_int64**24   !! of `low`, more than (2**53 + 2**30)/2**30
+    type(power_of_ten_t) :: power
     integer(int64) :: high, low, rest, part, half
     integer :: k, shift
     logical :: is_tie
@@ -161,8 +175,13 @@ contains
     decade = floor_log(exponent + 52)   ! right or one too small
     do
       k = writer%digits - 1 - decade
-      call multiply(significand, writer%powers(k), high, low, rest)
-      shift = -81 - exponent - int(writer%powers(k)%exponent)
+      if (allocated(writer%powers)) then
+        power = writer%powers(k)
+      else
+        power = power_of_ten(k)
+      end if
+      call multiply(significand, power, high, low, rest)
+      shift = -81 - exponent - int(power%exponent)
       whole = shiftr(high, shift)
       if (whole < writer%too_large) exit
       decade = decade + 1
@@ -209,6 +228,16 @@ contains
     integer(int64), parameter :: eight = 10_int64**8
     integer :: upper, rest, at
 
+    if (len(text) < 10) then
+      rest = int(number)
+      do at = len(text), 3, -1
+        text(at:at) = digit(mod(rest, 10))
+        rest = rest/10
+      end do
+      text(1:1) = digit(rest)
+      text(2:2) = '.'
+      return
+    end if
     upper = int(number/eight)
     at = len(text) - 7
     call put_eight(text(at:at + 7), int(number - upper*eight))

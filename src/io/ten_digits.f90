@@ -8,8 +8,8 @@ module ten_digits
   private
   public :: ten_digits_t, digit
 
-  integer, parameter :: last_binade = 321   !! numbers beyond, and their inverses, are left to others
-  integer, parameter :: last_decade = 97    !! that it reaches into
+  integer, parameter :: last_binade = 133   !! numbers beyond, and their inverses, are left to others
+  integer, parameter :: last_decade = 41    !! that it reaches into
   integer, parameter :: field_length = 19   !! of 1.234567890E-05, and three blanks
   character(len=16), parameter :: zero = '0.000000000E+00,'
   integer, parameter :: wide = selected_int_kind(38)   !! holds the product of two int64
@@ -17,15 +17,15 @@ module ten_digits
   !> What makes the digits of the numbers from 2**e to 2**(e + 1), which may belong to two decades: from 10**k on, and from
   !> 10**(k + 1) on.
   type :: binade_t
-    integer(int64) :: next = 0             !! the bits of 10**(k + 1), cut off: what is as near to it has the digits 1000000000
-    integer(int64) :: factor(0:1) = 0      !! 2**(29 + e) 10**(9 - k) and a tenth of it, cut off
-    character(len=8) :: ending(0:1) = ''   !! E-05,
+    integer(int64) :: next             !! the bits of 10**(k + 1), cut off: what is as near to it has the digits 1000000000
+    integer(int64) :: factor(0:1)      !! 2**(29 + e) 10**(9 - k) and a tenth of it, cut off
+    character(len=8) :: ending(0:1)    !! E-05,
   end type binade_t
 
   type :: ten_digits_t
     private
     type(binade_t) :: binades(-last_binade:last_binade)
-    character(len=4) :: triples(0:999) = ''   !! three digits, and a blank
+    character(len=4) :: triples(0:999)   !! three digits, and a blank
   contains
     procedure :: prepare
     procedure :: append
@@ -38,11 +38,18 @@ contains
     class(ten_digits_t), intent(inout) :: self
     type(power_of_ten_t), intent(in) :: powers(first_power:last_power)
     character(len=8) :: endings(-last_decade:last_decade)
-    integer :: i, e, k
-    do i = 0, 999
-      self%triples(i)(1:1) = digit(i/100)
-      self%triples(i)(2:2) = digit(mod(i/10, 10))
-      self%triples(i)(3:3) = digit(mod(i, 10))
+    character(len=4) :: triple
+    integer :: i, j, e, k
+    triple = ''
+    do i = 0, 9
+      triple(1:1) = digit(i)
+      do j = 0, 9
+        triple(2:2) = digit(j)
+        do k = 0, 9
+          triple(3:3) = digit(k)
+          self%triples(100*i + 10*j + k) = triple
+        end do
+      end do
     end do
     do k = -last_decade, last_decade
       endings(k) = 'E+00,'

@@ -13,10 +13,8 @@ module text_scanner
     character(len=:), allocatable :: message
   end type scanner_t
 
-  character(len=*), parameter :: letters = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_'
   character(len=*), parameter :: digits = '0123456789'
   character(len=*), parameter :: tab = achar(9), newline = achar(10), return = achar(13)
-  character(len=*), parameter :: separators = ' ,/!&=()''"'//tab//newline//return
   integer, parameter :: shown = 40   !! longest piece of a file quoted in a message
 
 contains
@@ -25,14 +23,19 @@ contains
   function name_here(scan) result(name)
     type(scanner_t), intent(inout) :: scan
     character(len=:), allocatable :: name
-    integer :: length
-    name = ''
-    if (at_end(scan)) return
-    if (verify(scan%text(scan%at:scan%at), letters) > 0) return
-    length = verify(scan%text(scan%at:), letters//digits) - 1
-    if (length < 0) length = len(scan%text) - scan%at + 1
-    name = lowercase(scan%text(scan%at:scan%at + length - 1))
-    scan%at = scan%at + length
+    integer :: first
+    first = scan%at
+    do while (.not. at_end(scan))
+      select case (scan%text(scan%at:scan%at))
+      case ('a':'z', 'A':'Z', '_')
+      case ('0':'9')
+        if (scan%at == first) exit
+      case default
+        exit
+      end select
+      scan%at = scan%at + 1
+    end do
+    name = lowercase(scan%text(first:scan%at - 1))
   end function name_here
 
   !> Pass blanks, ends of lines (LF, CR LF or CR) and comments.
@@ -63,7 +66,10 @@ contains
     type(scanner_t), intent(in) :: scan
     integer :: length
     do length = 0, len(scan%text) - scan%at
-      if (index(newline//return, scan%text(scan%at + length:scan%at + length)) > 0) return
+      select case (scan%text(scan%at + length:scan%at + length))
+      case (newline, return)
+        return
+      end select
     end do
   end function rest_of_line
 
@@ -72,7 +78,10 @@ contains
     type(scanner_t), intent(in) :: scan
     integer :: length
     do length = 0, len(scan%text) - scan%at
-      if (index(separators, scan%text(scan%at + length:scan%at + length)) > 0) return
+      select case (scan%text(scan%at + length:scan%at + length))
+      case (' ', ',', '/', '!', '&', '=', '(', ')', '''', '"', tab, newline, return)   ! separators
+        return
+      end select
     end do
   end function bare_length
 

@@ -12,6 +12,7 @@ module trace_files
   use trace_sink, only: trace_sink_t, trace_event_t
   use result_file, only: result_file_t
   use file_mark, only: file_mark_t
+  use growing_text, only: growing_text_t
   use checkpoint, only: checkpoint_t, program_build, restart_hint
   use number_writer, only: number_writer_t, longest_number
   use progress, only: progress_t
@@ -63,18 +64,20 @@ contains
     integer, intent(in) :: digits
     logical, intent(in) :: with_events
     type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: header
+    type(growing_text_t) :: header
+    character(len=:), allocatable :: line
     integer :: i
 
     call prepare(self, path, list, digits)
     call self%trace%open(path//'.csv', error)
     if (allocated(error)) return
-    header = ''
     do i = 1, size(list%id)
-      if (i > 1) header = header//','
-      header = header//column_name(list, i)
+      if (i > 1) call header%append(',')
+      call header%append(column_name(list, i))
     end do
-    call self%trace%put(header//newline)
+    call header%append(newline)
+    call header%take(line)
+    call self%trace%put(line)
     if (.not. with_events) return
     call self%event_list%open(path//'.events.csv', error)
     if (allocated(error)) then

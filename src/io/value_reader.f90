@@ -20,16 +20,18 @@ contains
     character(len=:), allocatable, intent(out) :: wanted
     character(len=:), allocatable :: mantissa
     integer :: letter, exponent, whole, first, iostat
+    logical :: is_read
+    call read_short_real(text, value, is_read)
+    if (is_read) return
     value = 0
     mantissa = lowercase(text)
     letter = scan(mantissa, 'edq')
     exponent = 0
-    iostat = 0
     if (letter > 0) then
       if (.not. is_whole(mantissa(letter + 1:))) wanted = 'must be a number'
       if (len(mantissa) - letter > 8) wanted = out_of_reach()
       if (allocated(wanted)) return
-      read (mantissa(letter + 1:), *, iostat=iostat) exponent
+      exponent = int(whole_number(mantissa(letter + 1:)))
       mantissa = mantissa(:letter - 1)
     end if
     if (scan(mantissa, '+-') == 1) mantissa = mantissa(2:)
@@ -53,6 +55,52 @@ contains
     if (iostat /= 0) wanted = 'must be a number'
   end subroutine read_real
 
+  !> The real that a text of few digits says, as nearly all are: both its significand and the power of ten are exact numbers, so
+  !> their product or quotient is rounded as it should be (Clinger 1990). `is_read` is false of every other text.
+  pure subroutine read_short_real(text, value, is_read)
+    character(len=*), intent(in) :: text
+    real(dp), intent(out) :: value
+    logical, intent(out) :: is_read
+    integer(int64), parameter :: fifteen_digits = 10_int64**14   !! the least number that has them
+    integer, parameter :: largest_power = 22                     !! 5**22 < 2**53
+    real(dp), parameter :: too_large = 10.0_dp**largest_exponent
+    integer(int64) :: significand
+    integer :: i, at, digit, behind_point, power
+    real(dp), parameter :: powers(0:largest_power) = [(10.0_dp**i, i=0, largest_power)]
+    logical :: has_digits, has_point, has_sign
+
+    value = 0
+    is_read = .false.
+    has_digits = .false.
+    has_point = .false.
+    behind_point = 0
+    power = 0
+    significand = 0
+    has_sign = scan(text, '+-') == 1
+    do at = merge(2, 1, has_sign), len(text)
+      digit = iachar(text(at:at)) - iachar('0')
+      if (digit >= 0 .and. digit <= 9) then
+        if (significand >= fifteen_digits) return
+        significand = 10*significand + digit
+        has_digits = .true.
+        if (has_point) behind_point = behind_point + 1
+      else if (text(at:at) == '.' .and. .not. has_point) then
+        has_point = .true.
+      else
+        if (index('edqEDQ', text(at:at)) == 0 .or. len(text) - at > 8) return
+        if (.not. is_whole(text(at + 1:))) return
+        power = int(whole_number(text(at + 1:)))
+        exit
+      end if
+    end do
+    power = power - behind_point
+    if (.not. has_digits .or. abs(power) > largest_power) return
+    value = real(significand, dp)*powers(max(power, 0))/powers(max(-power, 0))
+    if (value >= too_large) return
+    if (has_sign .and. text(1:1) == '-' .and. significand > 0) value = -value
+    is_read = .true.
+  end subroutine read_short_real
+
   pure function out_of_reach() result(wanted)
     character(len=:), allocatable :: wanted
     wanted = 'must be 0 or of a size from 1e-30 to 1e30'
@@ -63,15 +111,14 @@ contains
     integer, intent(out) :: value
     character(len=:), allocatable, intent(out) :: wanted
     integer(int64) :: wide
-    integer :: iostat
     value = 0
     if (.not. is_whole(text)) then
       wanted = 'must be a whole number'
     else if (len(text) > 18) then
       wanted = 'must be a whole number up to 2147483647'
     else
-      read (text, *, iostat=iostat) wide
-      if (iostat /= 0 .or. abs(wide) > huge(value)) then
+      wide = whole_number(text)
+      if (abs(wide) > huge(value)) then
         wanted = 'must be a whole number up to 2147483647'
       else
         value = int(wide)
@@ -104,7 +151,7 @@ contains
     last = index(range, ' and ')
     if (last > 0) then
       within = meets(value, range(:last - 1))
-      if (within) within = meets(value, range(last + 5:))
+      if (within) within = meets(value, trim(range(last + 5:)))
     else
       within = meets(value, trim(range))
     end if
@@ -115,10 +162,11 @@ contains
     real(dp), intent(in) :: value
     character(len=*), intent(in) :: condition
     logical :: met
+    character(len=:), allocatable :: wanted
     real(dp) :: bound
     integer :: blank
     blank = index(condition, ' ')
-    read (condition(blank:), *) bound
+    call read_real(condition(blank + 1:), bound, wanted)
     select case (condition(:blank - 1))
     case ('>')
       met = value > bound
@@ -140,4 +188,15 @@ contains
     if (scan(text, '+-') == 1) first = 2
     whole = len(text) >= first .and. verify(text(first:), digits) == 0
   end function is_whole
+
+  !> The number that a text `is_whole` of, with 18 digits at most.
+  pure integer(int64) function whole_number(text) result(number)
+    character(len=*), intent(in) :: text
+    integer :: i
+    number = 0
+    do i = merge(2, 1, scan(text, '+-') == 1), len(text)
+      number = 10*number + (iachar(text(i:i)) - iachar('0'))
+    end do
+    if (text(1:1) == '-') number = -number
+  end function whole_number
 end module value_reader
