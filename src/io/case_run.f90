@@ -13,7 +13,7 @@ module case_run
   use archive, only: archive_t
   use summary, only: summary_table, summary_line, advice
   use text_tools, only: printable
-  use thread, only: thread_t
+  use thread, only: thread_t, gate_t
   implicit none
   private
   public :: case_run_t, go_beside, name_file
@@ -29,11 +29,14 @@ module case_run
     logical, private :: show_progress = .false.
     logical, private :: has_gone = .false.
     type(thread_t), private :: thread                    !! in which it goes
+    type(gate_t), private :: gate                        !! before its end there
+    logical, private :: is_kept = .false.                !! what it has written is to stay
     class(trace_sink_t), allocatable, private :: sink    !! while the files are open
     type(run_report_t), private :: report
   contains
     procedure :: prepare
     procedure :: go
+    procedure :: keep
     procedure :: finish
     procedure :: give_up
     procedure :: was_interrupted
@@ -59,11 +62,12 @@ contains
   end subroutine prepare
 
   !> Let a run go in a thread of its own, where the system gives one. It must stay where it is until it is finished or
-  !> given up.
+  !> given up, and waits with the last names of its files until it is to be kept or given up.
   subroutine go_beside(run)
     type(case_run_t), intent(inout), target :: run
     type(c_funptr) :: routine
     logical :: has_started
+    call run%gate%shut()
     routine = c_funloc(run_in_thread)   ! gfortran 12.2, optimising across modules, loses it where it is not a variable
     call run%thread%start(routine, c_loc(run), has_started)
     run%has_gone = has_started
@@ -76,16 +80,26 @@ contains
     type(case_run_t), pointer :: run
     call c_f_pointer(argument, run)
     call integrate_into_files(run)
+    call run%gate%pass()
+    if (run%is_kept) call conclude_files(run)
     nothing = c_null_ptr
   end function run_in_thread
 
   !> Integrate into BASE.csv and events, or BASE.ideal.csv; of a run that goes in a thread wait for the end.
   subroutine go(self)
     class(case_run_t), intent(inout) :: self
+    call self%keep()
     call self%thread%join()
     if (.not. self%has_gone) call integrate_into_files(self)
     self%has_gone = .true.
   end subroutine go
+
+  !> The files of a run that goes in a thread may have their last names as soon as it ends.
+  subroutine keep(self)
+    class(case_run_t), intent(inout) :: self
+    self%is_kept = .true.
+    call self%gate%open()
+  end subroutine keep
 
   subroutine integrate_into_files(self)
     class(case_run_t), intent(inout) :: self
@@ -123,12 +137,23 @@ contains
     call move_alloc(files, self%sink)
   end subroutine open_files
 
+  !> Give the files their last names. This makes no text.
+  subroutine conclude_files(self)
+    class(case_run_t), intent(inout) :: self
+    if (.not. allocated(self%sink)) return
+    select type (sink => self%sink)
+    type is (trace_files_t)
+      call sink%conclude()
+    end select
+  end subroutine conclude_files
+
   !> Close the files; but for a twin, write the summary and tell it in `line` and `notice`. An error of the output goes
   !> before one of the integration.
   subroutine finish(self, line, notice)
     class(case_run_t), intent(inout) :: self
     character(len=:), allocatable, intent(inout) :: line, notice
     if (.not. allocated(self%sink)) return
+    call conclude_files(self)
     !$omp critical (texts)
     call close_files(self, self%case, self%base, line, notice)
     !$omp end critical (texts)
@@ -166,6 +191,7 @@ contains
   !> Nothing stays of what the run has written, if it has gone.
   subroutine give_up(self)
     class(case_run_t), intent(inout) :: self
+    call self%gate%open()
     call self%thread%join()
     if (.not. allocated(self%sink)) return
     select type (sink => self%sink)

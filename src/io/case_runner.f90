@@ -70,10 +70,9 @@ contains
     call run%prepare(case, .false., start, list, base, show_progress)
     call twin%prepare(case, .true., start, ideal_list, base, show_progress .and. threads == 1)
     if (has_twin .and. threads > 1) call go_beside(twin)
-    if (.not. start%is_done) then
-      call run%go()
-      call run%finish(line, notice)
-    end if
+    if (.not. start%is_done) call run%go()
+    if (.not. run%was_interrupted()) call twin%keep()
+    call run%finish(line, notice)
     if (run%was_interrupted()) then
       call twin%give_up()
     else if (has_twin) then

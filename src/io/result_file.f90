@@ -13,8 +13,8 @@ module result_file
 
   integer, parameter :: buffer_size = 65536   !! bytes; larger ones take longer, by the first use of their pages
 
-  !> One file being written. A failed write ends the writing: rows put after it are dropped, `close` keeps what went
-  !> out whole and reports the failure.
+  !> One file being written. A failed write ends the writing: rows put after it are dropped, `conclude` keeps what went
+  !> out whole, `close` reports the failure.
   type :: result_file_t
     character(len=:), allocatable :: buffer             !! who has asked for room may add whole rows here, and to `used`
     integer :: used = 0                                 !! bytes waiting in the buffer
@@ -31,6 +31,7 @@ module result_file
     procedure :: synchronise
     procedure :: length
     procedure :: has_failed
+    procedure :: conclude
     procedure :: close => close_result
     procedure :: abandon
   end type result_file_t
@@ -128,10 +129,9 @@ contains
   end function has_failed
 
   !> Write out the rest and give the file its final name. After a failed write it holds the whole rows that fitted (there
-  !> is no file if none did, or if it is of no use in part: `whole_only`), and `error` names the file and the cause.
-  subroutine close_result(self, error, whole_only)
+  !> is no file if none did, or if it is of no use in part: `whole_only`). `close` reports the failure; this makes no text.
+  subroutine conclude(self, whole_only)
     class(result_file_t), intent(inout) :: self
-    type(error_t), allocatable, intent(out) :: error
     logical, intent(in), optional :: whole_only
     integer :: status, ignored
     logical :: needs_all
@@ -149,6 +149,14 @@ contains
     else
       call remove_file(self%path//'.part', ignored)
     end if
+  end subroutine conclude
+
+  !> Conclude the file, if that is not done yet; `error` names it and the cause of a failure.
+  subroutine close_result(self, error, whole_only)
+    class(result_file_t), intent(inout) :: self
+    type(error_t), allocatable, intent(out) :: error
+    logical, intent(in), optional :: whole_only
+    call self%conclude(whole_only)
     if (self%status /= 0) call report(self, self%status, error)
   end subroutine close_result
 

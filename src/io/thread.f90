@@ -1,10 +1,10 @@
 !> A thread for one piece of work, as a thin binding for Linux. An OpenMP region would serve too, but who waits at its end keeps
 !> a processor busy for milliseconds, as long as a whole short run takes; here who waits sleeps.
 module thread
-  use, intrinsic :: iso_c_binding, only: c_funptr, c_int, c_intptr_t, c_null_ptr, c_ptr
+  use, intrinsic :: iso_c_binding, only: c_funptr, c_int, c_intptr_t, c_null_ptr, c_ptr, c_int64_t
   implicit none
   private
-  public :: thread_t
+  public :: thread_t, gate_t
 
   type :: thread_t
     private
@@ -14,6 +14,17 @@ module thread
     procedure :: start
     procedure :: join
   end type thread_t
+
+  !> A gate that a thread waits at, asleep, until another one opens it, for good.
+  type :: gate_t
+    private
+    integer(c_int64_t) :: semaphore(4) = 0   !! a sem_t of Linux with glibc or musl
+    logical :: was_shut = .false.
+  contains
+    procedure :: shut
+    procedure :: open
+    procedure :: pass
+  end type gate_t
 
   interface
     function c_pthread_create(handle, attributes, routine, argument) bind(c, name='pthread_create') result(status)
@@ -30,9 +41,48 @@ module thread
       type(c_ptr), value :: answer
       integer(c_int) :: status
     end function c_pthread_join
+    function c_sem_init(semaphore, between_processes, value) bind(c, name='sem_init') result(status)
+      import :: c_int, c_int64_t
+      integer(c_int64_t), intent(inout) :: semaphore(*)
+      integer(c_int), value :: between_processes, value
+      integer(c_int) :: status
+    end function c_sem_init
+    function c_sem_post(semaphore) bind(c, name='sem_post') result(status)
+      import :: c_int, c_int64_t
+      integer(c_int64_t), intent(inout) :: semaphore(*)
+      integer(c_int) :: status
+    end function c_sem_post
+    function c_sem_wait(semaphore) bind(c, name='sem_wait') result(status)
+      import :: c_int, c_int64_t
+      integer(c_int64_t), intent(inout) :: semaphore(*)
+      integer(c_int) :: status
+    end function c_sem_wait
   end interface
 
 contains
+
+  !> Before any thread comes to the gate, which stays where it is from here on.
+  subroutine shut(self)
+    class(gate_t), intent(inout) :: self
+    integer(c_int) :: unimportant
+    unimportant = c_sem_init(self%semaphore, 0_c_int, 0_c_int)
+    self%was_shut = .true.
+  end subroutine shut
+
+  !> Open it, if it was ever shut.
+  subroutine open(self)
+    class(gate_t), intent(inout) :: self
+    integer(c_int) :: unimportant
+    if (self%was_shut) unimportant = c_sem_post(self%semaphore)
+  end subroutine open
+
+  !> Wait until it is open.
+  subroutine pass(self)
+    class(gate_t), intent(inout) :: self
+    do while (c_sem_wait(self%semaphore) /= 0)   ! a signal may wake who waits
+    end do
+    call self%open()
+  end subroutine pass
 
   !> Call the function `routine`, in C void *(void *), with `argument` in a thread of its own. `has_started` is false where the
   !> system gives none: nothing has been done then.

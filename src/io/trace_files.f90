@@ -43,6 +43,7 @@ module trace_files
     character(len=:), allocatable, private :: line   !! the row being written
   contains
     procedure :: open
+    procedure :: conclude
     procedure :: close
     procedure :: abandon
     procedure :: take_row
@@ -198,7 +199,14 @@ contains
     wall_time = self%earlier_time + real(now - self%began, dp)/real(rate, dp)
   end function wall_time
 
-  !> Give both files their final names. The first error is told.
+  !> Give both files their final names. This makes no text: any thread may do it at any time.
+  subroutine conclude(self)
+    class(trace_files_t), intent(inout) :: self
+    call self%trace%conclude()
+    call self%event_list%conclude()
+  end subroutine conclude
+
+  !> Conclude both files, if that is not done yet. The first error is told.
   subroutine close(self, error)
     class(trace_files_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
