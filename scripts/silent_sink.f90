@@ -18,7 +18,7 @@ contains
 
   subroutine take_row(self, values)
     class(silent_sink_t), intent(inout) :: self
-    real(dp), intent(in) :: values(:)
+    real(dp), intent(in), contiguous :: values(:)
     associate (unused => values)
     end associate
     self%rows = self%rows + 1

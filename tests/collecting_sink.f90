@@ -134,7 +134,7 @@ contains
 
   subroutine take_row(self, values)
     class(collecting_sink_t), intent(inout) :: self
-    real(dp), intent(in) :: values(:)
+    real(dp), intent(in), contiguous :: values(:)
     real(dp), allocatable :: larger(:, :)
     if (.not. allocated(self%values)) allocate (self%values(size(values), 1000))
     if (self%rows == size(self%values, 2)) then

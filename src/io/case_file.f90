@@ -111,7 +111,7 @@ contains
     character(len=*), intent(in) :: text
     type(error_t), allocatable, intent(out) :: error
     type(namelist_t) :: list
-    character(len=:), allocatable :: message
+    character(len=:), allocatable :: message, at
     integer :: i, line, group, place
     call read_namelist(text, list, message, line)
     if (allocated(message)) then
@@ -137,9 +137,10 @@ contains
     end do
     do i = 1, size(list%entries)
       associate (entry => list%entries(i))
-        call values%find(entry%group, entry%key, at_line(values, entry%line), place, error)
+        at = at_line(values, entry%line)
+        call values%find(entry%group, entry%key, at, place, error)
         if (allocated(error)) return
-        call values%assign(place, entry%index, entry%tokens, at_line(values, entry%line), .false., error)
+        call values%assign(place, entry%index, entry%tokens, at, .false., error)
         if (allocated(error)) return
       end associate
     end do

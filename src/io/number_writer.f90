@@ -108,7 +108,7 @@ contains
     class(number_writer_t), intent(in) :: self
     character(len=*), intent(inout) :: text
     integer, intent(inout) :: used
-    real(dp), intent(in) :: values(:)
+    real(dp), intent(in), contiguous :: values(:)
     integer :: i
     i = 1
     do

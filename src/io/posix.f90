@@ -5,8 +5,8 @@ module posix
     c_size_t, c_loc, c_f_pointer, c_associated
   implicit none
   private
-  public :: open_for_reading, open_for_writing, open_for_appending, open_to_lock, lock_file, is_file, absolute_path, read_at, &
-    read_bytes, write_bytes, truncate_file, synchronise_file, close_file, rename_file, remove_file, remove_directory, &
+  public :: open_for_reading, hold_file, open_for_writing, open_for_appending, open_to_lock, lock_file, is_file, absolute_path, &
+    read_at, read_bytes, write_bytes, truncate_file, synchronise_file, close_file, rename_file, remove_file, remove_directory, &
     make_directory, is_terminal, error_text, hold_interrupts, interrupted, fill_standard_descriptors, ignore_write_signals, quit
   public :: error_no_entry, error_interrupted, error_locked, error_exists, error_is_directory, error_no_space, &
     error_broken_pipe
@@ -185,6 +185,15 @@ contains
     descriptor = c_open(path//c_null_char, ior(read_only, o_cloexec), 0_c_int)
     status = outcome(descriptor)
   end subroutine open_for_reading
+
+  !> Hold on to a file, whatever it is, without opening it: it goes on to be there without a name too until it is closed.
+  !> `descriptor` is below 0 where there is none.
+  subroutine hold_file(path, descriptor)
+    character(len=*), intent(in) :: path
+    integer, intent(out) :: descriptor
+    integer(c_int), parameter :: o_path = 2097152
+    descriptor = c_open(path//c_null_char, ior(o_path, o_cloexec), 0_c_int)
+  end subroutine hold_file
 
   !> Create a file, or empty the one that is there, to be written; `status` is 0 or the error number.
   subroutine open_for_writing(path, descriptor, status)

@@ -5,7 +5,7 @@ module result_file
   use, intrinsic :: iso_c_binding, only: c_long
   use errors, only: error_t, fail, status_output
   use text_tools, only: printable
-  use posix, only: open_for_writing, open_for_appending, write_bytes, truncate_file, synchronise_file, close_file, &
+  use posix, only: hold_file, open_for_writing, open_for_appending, write_bytes, truncate_file, synchronise_file, close_file, &
     rename_file, remove_file, error_text, error_interrupted
   implicit none
   private
@@ -133,7 +133,7 @@ contains
   subroutine conclude(self, whole_only)
     class(result_file_t), intent(inout) :: self
     logical, intent(in), optional :: whole_only
-    integer :: status, ignored
+    integer :: status, ignored, earlier
     logical :: needs_all
     needs_all = .false.
     if (present(whole_only)) needs_all = whole_only
@@ -143,7 +143,9 @@ contains
     self%descriptor = -1
     if (self%status == 0 .and. status /= error_interrupted) self%status = status
     if (self%status == 0 .or. self%written > 0 .and. .not. needs_all) then
+      call hold_file(self%path, earlier)   ! to let go what it holds takes long, and would stop all others in the folder
       call rename_file(self%path//'.part', self%path, status)
+      if (earlier >= 0) call close_file(earlier, ignored)
       if (self%status == 0) self%status = status
       if (status /= 0 .and. needs_all) call remove_file(self%path//'.part', ignored)
     else

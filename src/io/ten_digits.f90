@@ -97,7 +97,7 @@ contains
     class(ten_digits_t), intent(in) :: self
     character(len=*), intent(inout) :: text
     integer, intent(inout) :: used, next
-    real(dp), intent(in) :: values(:)
+    real(dp), intent(in), contiguous :: values(:)
     integer(int64), parameter :: hidden_bit = 2_int64**52, too_large = 10_int64**10
     integer(int64), parameter :: half = 2_int64**26, short_by = 3   !! the product, and one more
     integer(int64) :: bits, exponent, decade, product, whole

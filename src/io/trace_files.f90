@@ -15,6 +15,7 @@ module trace_files
   use growing_text, only: growing_text_t
   use checkpoint, only: checkpoint_t, program_build, restart_hint
   use number_writer, only: number_writer_t, longest_number
+  use ten_digits, only: digit
   use progress, only: progress_t
   use posix, only: interrupted
   use text_tools, only: printable
@@ -228,14 +229,16 @@ contains
   !> The row is made where it waits to be written.
   subroutine take_row(self, values)
     class(trace_files_t), intent(inout) :: self
-    real(dp), intent(in) :: values(:)
+    real(dp), intent(in), contiguous :: values(:)
     integer, parameter :: rows_between_looks = 100
 
     call self%trace%make_room((longest_number + 1)*size(values))
     associate (text => self%trace%buffer, used => self%trace%used, phase => self%phase_column)
       call self%numbers%append_list(text, used, values(:phase - 1))
       if (phase <= size(values)) then
-        call append(text, used, achar(iachar('0') + nint(values(phase)))//',')
+        text(used + 1:used + 1) = digit(int(values(phase)))
+        text(used + 2:used + 2) = ','
+        used = used + 2
         call self%numbers%append_list(text, used, values(phase + 1:))
       end if
       text(used:used) = newline

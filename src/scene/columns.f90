@@ -119,27 +119,48 @@ contains
     real(dp), intent(in) :: work             !! [J]
     real(dp), intent(in) :: initial_energy   !! [J]
     real(dp), intent(out) :: values(:)       !! (size(list%id))
-    real(dp) :: all_values(n_columns), in_film, volume
+    real(dp) :: all_values(n_columns)   !! of those that the scene has not anything
     type(reactions_t) :: reaction
     integer :: i
 
-    in_film = merge(1.0_dp, 0.0_dp, scene%phase == phase_film)
-    associate (m => now%motion, a => now%accelerations, joint => now%joint)
-      all_values(1:2) = [t, m%crank_angle]
-      all_values(3) = 0
-      if (list%needs_rod_angle) all_values(3) = atan2(m%sin_rod, m%cos_rod)
-      all_values(4:13) = [m%piston_position, m%crank_speed, m%rod_speed, m%piston_velocity, a%crank, a%rod, a%piston, &
-        now%crank_moment, now%loads%pin_force]
-      if (list%needs_reactions) reaction = reactions_of(scene%mechanism, now%loads, m, a)
-      all_values(14:20) = [reaction%crankpin, reaction%crank_bearing, reaction%guide, reaction%frame]
-      all_values(21) = 0
-      if (list%needs_energy) all_values(21) = scene%energy(m)
-      all_values(22) = all_values(21) - initial_energy - work
-      all_values(23:32) = [joint%eccentricity, joint%distance/list%clearance, -joint%penetration, real(scene%phase, dp), &
-        now%normal_force, now%friction_force, joint%sliding_speed, in_film*now%loads%pin_force]
-      volume = 0
-      if (allocated(scene%gas)) volume = scene%gas%cylinder%volume_at(m%sin_crank, m%cos_crank)
-      all_values(33:35) = [now%cylinder_pressure, volume, now%loads%gas_force]
+    associate (m => now%motion, a => now%accelerations, joint => now%joint, v => all_values)
+      v(1) = t
+      v(2) = m%crank_angle
+      v(3) = 0
+      if (list%needs_rod_angle) v(3) = atan2(m%sin_rod, m%cos_rod)
+      v(4) = m%piston_position
+      v(5) = m%crank_speed
+      v(6) = m%rod_speed
+      v(7) = m%piston_velocity
+      v(8) = a%crank
+      v(9) = a%rod
+      v(10) = a%piston
+      v(11) = now%crank_moment
+      v(12:13) = now%loads%pin_force
+      if (list%needs_reactions) then
+        reaction = reactions_of(scene%mechanism, now%loads, m, a)
+        v(14:15) = reaction%crankpin
+        v(16:17) = reaction%crank_bearing
+        v(18) = reaction%guide
+        v(19:20) = reaction%frame
+      end if
+      v(21) = 0
+      if (list%needs_energy) v(21) = scene%energy(m)
+      v(22) = v(21) - initial_energy - work
+      v(23:24) = joint%eccentricity
+      v(25) = joint%distance/list%clearance
+      v(26) = -joint%penetration
+      v(27) = scene%phase
+      v(28) = now%normal_force
+      v(29) = now%friction_force
+      v(30) = joint%sliding_speed
+      v(31:32) = 0
+      if (scene%phase == phase_film) v(31:32) = now%loads%pin_force
+      if (allocated(scene%gas)) then
+        v(33) = now%cylinder_pressure
+        v(34) = scene%gas%cylinder%volume_at(m%sin_crank, m%cos_crank)
+        v(35) = now%loads%gas_force
+      end if
     end associate
     do i = 1, size(values)   ! all_values(list%id) would allocate a copy of the subscripts
       values(i) = all_values(list%id(i))

@@ -36,7 +36,7 @@ module trace_sink
     subroutine take_row(self, values)
       import :: trace_sink_t, dp
       class(trace_sink_t), intent(inout) :: self
-      real(dp), intent(in) :: values(:)
+      real(dp), intent(in), contiguous :: values(:)
     end subroutine take_row
 
     subroutine take_event(self, event)

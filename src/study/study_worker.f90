@@ -158,7 +158,7 @@ contains
 
   subroutine take_row(self, values)
     class(patient_sink_t), intent(inout) :: self
-    real(dp), intent(in) :: values(:)
+    real(dp), intent(in), contiguous :: values(:)
     associate (unused_self => self, unused_values => values)
     end associate
   end subroutine take_row
