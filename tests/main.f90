@@ -17,6 +17,7 @@ program gudgeon_tests
   use test_findings, only: run_test_findings
   use test_friction, only: run_test_friction
   use test_mechanism, only: run_test_mechanism
+  use test_number_text, only: run_test_number_text
   use test_number_writer, only: run_test_number_writer
   use test_oscillating_film, only: run_test_oscillating_film
   use test_pinkus_sternlicht, only: run_test_pinkus_sternlicht
@@ -48,6 +49,7 @@ program gudgeon_tests
   call run_test_findings(check)
   call run_test_friction(check)
   call run_test_mechanism(check)
+  call run_test_number_text(check)
   call run_test_number_writer(check)
   call run_test_oscillating_film(check)
   call run_test_pinkus_sternlicht(check)

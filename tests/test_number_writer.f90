@@ -4,7 +4,7 @@ module test_number_writer
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_positive_inf, ieee_negative_inf
   use kinds, only: dp
   use number_writer, only: number_writer_t, append_formatted, longest_number, fewest_digits, most_digits
-  use powers_of_ten, only: power_of_ten_t, make_powers, first_power, last_power
+  use powers_of_ten, only: power_of_ten_t, power_of_ten, make_powers, first_power, last_power
   use checks, only: checks_t
   implicit none
   private
@@ -50,6 +50,13 @@ contains
       end associate
     end do
     call check%that(wrong == 0, 'powers of ten follow each other')
+    wrong = 0
+    do k = first_power, last_power
+      associate (a => powers(k), b => power_of_ten(k))
+        if (a%low /= b%low .or. a%middle /= b%middle .or. a%high /= b%high .or. a%exponent /= b%exponent) wrong = wrong + 1
+      end associate
+    end do
+    call check%that(wrong == 0, 'a single power is that of the table')
     call check%that(powers(0)%high == 2_int64**29 .and. powers(0)%middle == 0 .and. powers(0)%low == 0 .and. &
                     powers(0)%exponent == -89, 'the power of ten that is 1')
   end subroutine test_powers
@@ -125,22 +132,21 @@ contains
   subroutine test_list(check)
     class(checks_t), intent(inout) :: check
     type(number_writer_t) :: writer
-    real(dp) :: values(2, 7)
+    real(dp) :: values(7)
     character(len=200) :: line
     integer :: used
-    values(1, :) = [-2.5e-7_dp, 12345678905.0_dp, 0.0_dp, ieee_value(1.0_dp, ieee_quiet_nan), 9.99e96_dp, -1e-300_dp, -1e9_dp]
-    values(2, :) = 8
+    values = [-2.5e-7_dp, 12345678905.0_dp, 0.0_dp, ieee_value(1.0_dp, ieee_quiet_nan), 9.99e96_dp, -1e-300_dp, -1e9_dp]
     line = 'a,'
     used = 2
     call writer%prepare(10)
-    call writer%append_list(line, used, values(1, :))   ! not one behind the other in memory
+    call writer%append_list(line, used, values)
     call check%equal_text(line(:used), 'a,-2.500000000E-07,1.234567890E+10,0.000000000E+00,NaN,9.990000000E+96,'// &
       '-1.000000000E-300,-1.000000000E+09,', 'list of numbers')
-    call writer%append_list(line, used, values(1, :0))
+    call writer%append_list(line, used, values(:0))
     call check%that(used == len_trim(line), 'nothing of an empty list')
     used = 0
     call writer%prepare(9)
-    call writer%append_list(line, used, values(1, :3))
+    call writer%append_list(line, used, values(:3))
     call check%equal_text(line(:used), '-2.50000000E-07,1.23456789E+10,0.00000000E+00,', 'list of nine digits')
   end subroutine test_list
 
@@ -151,6 +157,7 @@ contains
     integer, intent(in) :: digits
     integer(int64), intent(inout) :: random
     integer, parameter :: n = 20000, n_read = 500
+    type(number_writer_t) :: few
     character(len=longest_number) :: line
     real(dp) :: value, back
     integer :: i, wrong, undecided, altered, used
@@ -158,12 +165,16 @@ contains
     wrong = 0
     undecided = 0
     altered = 0
+    call few%prepare_for_few(digits)
     do i = 1, n
       call draw(random)
       if (ibits(random, 52, 11) == 2047) cycle   ! NaN
       value = transfer(random, value)
       if (.not. writer%decides(value)) undecided = undecided + 1
       if (.not. agrees(writer, value, digits)) wrong = wrong + 1
+      if (mod(i, 10) == 0) then
+        if (.not. agrees(few, value, digits)) wrong = wrong + 1
+      end if
       if (i > n_read .or. digits < most_digits) cycle
       used = 0
       call writer%append(line, used, value)

@@ -1,8 +1,7 @@
-!> Result files, the numbers in them, and the calls of the system under them.
+!> Result files, and the calls of the system under them.
 module test_result_file
   use kinds, only: dp
   use errors, only: error_t, status_output
-  use number_text, only: real_text, exact_text, short_text
   use posix, only: make_directory, remove_directory, remove_file, open_for_reading, read_bytes, close_file, error_text, &
     error_no_entry, error_no_space
   use result_file, only: result_file_t
@@ -18,7 +17,6 @@ contains
   subroutine run_test_result_file(check)
     class(checks_t), intent(inout) :: check
     integer :: status
-    call test_numbers(check)
     call make_directory(folder, status)
     call check%that(status == 0, 'folders are made')
     call make_directory(folder, status)
@@ -29,31 +27,6 @@ contains
     call check%that(status == 0, 'nothing is left in the scratch folder')
     call remove_directory('build/test_result_file', status)
   end subroutine run_test_result_file
-
-  subroutine test_numbers(check)
-    class(checks_t), intent(inout) :: check
-    real(dp) :: back
-    character(len=:), allocatable :: text
-    integer :: i
-    call check%equal_text(real_text(1.23456789e-5_dp), '1.234567890E-05', 'real')
-    call check%equal_text(real_text(-2.0_dp), '-2.000000000E+00', 'negative')
-    call check%equal_text(real_text(0.0_dp), '0.000000000E+00', 'zero')
-    call check%equal_text(real_text(1e-120_dp), '1.000000000E-120', 'small')
-    call check%equal_text(real_text(-1e150_dp), '-1.000000000E+150', 'large')
-    call check%equal_text(short_text(0.5_dp), '0.5', 'short')
-    call check%equal_text(short_text(4.0_dp), '4', 'short, whole')
-    call check%equal_text(short_text(-123456.4_dp), '-123456', 'short, six digits before the point')
-    call check%equal_text(short_text(9.9999996_dp), '10', 'short, rounded up to the next power')
-    call check%equal_text(short_text(1.23e6_dp), '1.23E+06', 'short, large')
-    call check%equal_text(short_text(1.25e-4_dp), '0.000125', 'short, small')
-    call check%equal_text(short_text(1e-5_dp), '1E-05', 'short, smaller')
-    call check%equal_text(short_text(0.0_dp), '0', 'short, zero')
-    do i = -30, 30
-      text = exact_text(0.1_dp*3.0_dp**i)
-      read (text, *) back
-      call check%relative(back, 0.1_dp*3.0_dp**i, 0.0_dp, 'exact text reads back')
-    end do
-  end subroutine test_numbers
 
   subroutine test_writing(check)
     class(checks_t), intent(inout) :: check

@@ -1,0 +1,161 @@
+!> Single numbers as text and back: the same as formatted writes and reads of the compiler; long texts of many pieces.
+module test_number_text
+  use kinds, only: dp
+  use number_text, only: real_text, exact_text, short_text
+  use value_reader, only: read_real, read_integer, is_within
+  use growing_text, only: growing_text_t
+  use checks, only: checks_t
+  implicit none
+  private
+  public :: run_test_number_text
+
+  integer, parameter :: n_random = 4000
+
+contains
+
+  subroutine run_test_number_text(check)
+    class(checks_t), intent(inout) :: check
+    call test_texts(check)
+    call test_random_texts(check)
+    call test_reading(check)
+    call test_ranges(check)
+    call test_growing(check)
+  end subroutine run_test_number_text
+
+  subroutine test_texts(check)
+    class(checks_t), intent(inout) :: check
+    real(dp) :: zero
+    zero = 0
+    call check%equal_text(real_text(1.23456789e-5_dp), '1.234567890E-05', 'real')
+    call check%equal_text(real_text(-2.0_dp), '-2.000000000E+00', 'negative')
+    call check%equal_text(real_text(zero), '0.000000000E+00', 'zero')
+    call check%equal_text(real_text(-zero), '-0.000000000E+00', 'zero from below')
+    call check%equal_text(real_text(1e-120_dp), '1.000000000E-120', 'small')
+    call check%equal_text(real_text(-1e150_dp), '-1.000000000E+150', 'large')
+    call check%equal_text(short_text(0.5_dp), '0.5', 'short')
+    call check%equal_text(short_text(4.0_dp), '4', 'short, whole')
+    call check%equal_text(short_text(-123456.4_dp), '-123456', 'short, six digits before the point')
+    call check%equal_text(short_text(9.9999996_dp), '10', 'short, rounded up to the next power')
+    call check%equal_text(short_text(1.23e6_dp), '1.23E+06', 'short, large')
+    call check%equal_text(short_text(1.25e-4_dp), '0.000125', 'short, small')
+    call check%equal_text(short_text(-1e-5_dp), '-1E-05', 'short, smaller')
+    call check%equal_text(short_text(3e105_dp), '3E+105', 'short, three digits of exponent')
+    call check%equal_text(short_text(zero), '0', 'short, zero')
+  end subroutine test_texts
+
+  subroutine test_random_texts(check)
+    class(checks_t), intent(inout) :: check
+    character(len=24) :: ten, seventeen, plain
+    real(dp) :: value, back
+    integer :: i, wrong, wrong_short, altered
+    wrong = 0
+    wrong_short = 0
+    altered = 0
+    do i = 1, n_random
+      value = random_number_of(i)
+      write (ten, '(es16.9e2)') value
+      write (seventeen, '(es23.16e2)') value
+      if (real_text(value) /= adjustl(ten) .or. exact_text(value) /= adjustl(seventeen)) wrong = wrong + 1
+      read (seventeen, *) back
+      if (abs(back - value) > 0) altered = altered + 1
+      if (abs(value) < 100 .or. abs(value) >= 999) cycle
+      write (plain, '(f24.3)') value
+      read (plain, *) back
+      if (short_text(value) /= short_text(back)) wrong_short = wrong_short + 1
+      if (verify(trim(short_text(value)), trim(adjustl(plain))) > 0) wrong_short = wrong_short + 1
+    end do
+    call check%that(wrong == 0, 'random numbers as a formatted write')
+    call check%that(wrong_short == 0, 'random numbers in short')
+    call check%that(altered == 0, 'exact text reads back')
+  end subroutine test_random_texts
+
+  !> The digits of a text, at most 15 and more than that, with and without point and exponent, as a compiler reads them.
+  subroutine test_reading(check)
+    class(checks_t), intent(inout) :: check
+    character(len=40) :: text
+    character(len=16) :: form
+    character(len=:), allocatable :: wanted
+    real(dp) :: value, expected
+    integer :: i, digits, wrong, whole
+    wrong = 0
+    do i = 1, n_random
+      digits = 1 + mod(i, 18)
+      write (form, '(a,i0,a,i0,a)') '(es', digits + 9, '.', digits, 'e2)'
+      write (text, form) random_number_of(i)
+      if (mod(i, 3) == 0) write (text, '(f0.3)') random_number_of(i)
+      text = adjustl(text)
+      if (mod(i, 5) == 0 .and. index(text, 'E') > 0) text(index(text, 'E'):index(text, 'E')) = 'd'
+      read (text, *) expected
+      call read_real(trim(text), value, wanted)
+      if (allocated(wanted) .or. abs(value - expected) > 0) wrong = wrong + 1
+    end do
+    call check%that(wrong == 0, 'random numbers as the compiler reads them')
+    call expect('12', 12.0_dp)
+    call expect('-.5', -0.5_dp)
+    call expect('+2.', 2.0_dp)
+    call expect('1Q-3', 1e-3_dp)
+    call expect('9007199254740993', 9007199254740992.0_dp)
+    call expect('-0.0', 0.0_dp)
+    call expect('999999999999999e15', 0.999999999999999e30_dp)
+    do i = 1, 9
+      call read_real(trim(adjustl(wrong_text(i))), value, wanted)
+      call check%that(allocated(wanted), 'no real, or too large: '//wrong_text(i))
+    end do
+    call read_integer('-2147483647', whole, wanted)
+    call check%that(whole == -2147483647 .and. .not. allocated(wanted), 'the least integer')
+    call read_integer('2147483648', whole, wanted)
+    call check%that(allocated(wanted), 'an integer that is too large')
+
+  contains
+
+    subroutine expect(text, want)
+      character(len=*), intent(in) :: text
+      real(dp), intent(in) :: want
+      call read_real(text, value, wanted)
+      call check%that(.not. allocated(wanted) .and. .not. abs(value - want) > 0, 'real '//text)
+    end subroutine expect
+
+    function wrong_text(i) result(text)
+      integer, intent(in) :: i
+      character(len=8) :: text
+      character(len=8), parameter :: texts(9) = [character(len=8) :: '.', '-', '1e', '1e+', '1.2.3', '1e5.', '1-5', '1e30', '2 3']
+      text = texts(i)
+    end function wrong_text
+  end subroutine test_reading
+
+  subroutine test_ranges(check)
+    class(checks_t), intent(inout) :: check
+    call check%that(is_within(0.1_dp, '> 0 and <= 0.1     '), 'the end of a range')
+    call check%that(.not. is_within(nearest(0.1_dp, 1.0_dp), '> 0 and <= 0.1'), 'just outside')
+    call check%that(.not. is_within(0.0_dp, '> 0'), 'the open end of a range')
+    call check%that(is_within(1e-6_dp, '>= 1e-6 and <= 1e3'), 'the closed end of a range')
+  end subroutine test_ranges
+
+  subroutine test_growing(check)
+    class(checks_t), intent(inout) :: check
+    type(growing_text_t) :: growing
+    character(len=:), allocatable :: text
+    integer :: i
+    call growing%take(text)
+    call check%equal_text(text, '', 'nothing appended')
+    do i = 1, 3000
+      call growing%append(achar(97 + mod(i, 26)))
+      call growing%append('')
+      call growing%append('xyz')
+    end do
+    call growing%take(text)
+    call check%that(len(text) == 12000 .and. text(:8) == 'bxyzcxyz' .and. text(11997:) == achar(97 + mod(3000, 26))//'xyz', &
+                    'a text of many pieces')
+    call growing%append('b')
+    call growing%take(text)
+    call check%equal_text(text, 'b', 'it is empty when taken')
+  end subroutine test_growing
+
+  !> A number of either sign and a size from 1e-20 to 1e20, the same for the same i.
+  pure real(dp) function random_number_of(i)
+    integer, intent(in) :: i
+    real(dp), parameter :: golden = 0.6180339887498949_dp, silver = 0.4142135623730951_dp
+    random_number_of = (0.1_dp + 0.9_dp*mod(i*golden, 1.0_dp))*10.0_dp**(nint(40*mod(i*silver, 1.0_dp)) - 20)
+    if (mod(i, 2) == 0) random_number_of = -random_number_of
+  end function random_number_of
+end module test_number_text
