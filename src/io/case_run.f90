@@ -13,7 +13,8 @@ module case_run
   use archive, only: archive_t
   use summary, only: summary_table, summary_line, advice
   use text_tools, only: printable
-  use thread, only: thread_t, gate_t
+  use row_queue, only: row_queue_t
+  use thread, only: thread_t
   implicit none
   private
   public :: case_run_t, go_beside, name_file
@@ -29,14 +30,14 @@ module case_run
     logical, private :: show_progress = .false.
     logical, private :: has_gone = .false.
     type(thread_t), private :: thread                    !! in which it goes
-    type(gate_t), private :: gate                        !! before its end there
-    logical, private :: is_kept = .false.                !! what it has written is to stay
+    logical, private :: is_kept = .false.                !! what it has written there is to stay
+    type(row_queue_t), pointer, private :: queue => null()   !! from a run to the thread of the one beside it
     class(trace_sink_t), allocatable, private :: sink    !! while the files are open
     type(run_report_t), private :: report
   contains
     procedure :: prepare
     procedure :: go
-    procedure :: keep
+    procedure :: let_end
     procedure :: finish
     procedure :: give_up
     procedure :: was_interrupted
@@ -61,16 +62,25 @@ contains
     self%show_progress = show_progress
   end subroutine prepare
 
-  !> Let a run go in a thread of its own, where the system gives one. It must stay where it is until it is finished or
-  !> given up, and waits with the last names of its files until it is to be kept or given up.
-  subroutine go_beside(run)
+  !> Let a run go in a thread of its own, where the system gives one, beside another one that is still to go. When it has come
+  !> to its end it writes rows for the other, and waits with the last names of its files, until `let_end`. It must stay
+  !> where it is until it is finished or given up, and so must the other and the queue between them.
+  subroutine go_beside(run, other, queue)
     type(case_run_t), intent(inout), target :: run
+    type(case_run_t), intent(inout) :: other
+    type(row_queue_t), intent(inout), target :: queue
     type(c_funptr) :: routine
     logical :: has_started
-    call run%gate%shut()
+    call queue%begin()
+    run%queue => queue
     routine = c_funloc(run_in_thread)   ! gfortran 12.2, optimising across modules, loses it where it is not a variable
     call run%thread%start(routine, c_loc(run), has_started)
     run%has_gone = has_started
+    if (has_started) then
+      other%queue => queue
+    else
+      run%queue => null()
+    end if
   end subroutine go_beside
 
   !> What the thread does.
@@ -80,7 +90,7 @@ contains
     type(case_run_t), pointer :: run
     call c_f_pointer(argument, run)
     call integrate_into_files(run)
-    call run%gate%pass()
+    call run%queue%serve()
     if (run%is_kept) call conclude_files(run)
     nothing = c_null_ptr
   end function run_in_thread
@@ -88,18 +98,20 @@ contains
   !> Integrate into BASE.csv and events, or BASE.ideal.csv; of a run that goes in a thread wait for the end.
   subroutine go(self)
     class(case_run_t), intent(inout) :: self
-    call self%keep()
     call self%thread%join()
     if (.not. self%has_gone) call integrate_into_files(self)
     self%has_gone = .true.
   end subroutine go
 
-  !> The files of a run that goes in a thread may have their last names as soon as it ends.
-  subroutine keep(self)
+  !> The other one has come to its end, too: of a run that goes in a thread beside it. Afterwards all rows of the other are
+  !> written; the files of this one get their last names in its own time, if they are to be kept.
+  subroutine let_end(self, is_kept)
     class(case_run_t), intent(inout) :: self
-    self%is_kept = .true.
-    call self%gate%open()
-  end subroutine keep
+    logical, intent(in) :: is_kept
+    if (.not. associated(self%queue)) return
+    self%is_kept = is_kept
+    call self%queue%end()
+  end subroutine let_end
 
   subroutine integrate_into_files(self)
     class(case_run_t), intent(inout) :: self
@@ -118,7 +130,7 @@ contains
 
   subroutine open_files(self)
     class(case_run_t), intent(inout) :: self
-    type(trace_files_t), allocatable :: files
+    type(trace_files_t), allocatable, target :: files
     allocate (files)
     associate (case => self%case, start => self%start, base => self%base, list => self%list)
       if (self%is_twin) then
@@ -130,6 +142,7 @@ contains
         call files%open(base, list, case%output%digits, case%contact%is_present, self%error)
       end if
       if (allocated(self%error)) return
+      if (associated(self%queue) .and. .not. self%is_twin) call files%share_rows(self%queue, size(list%id))
       if (.not. self%is_twin) call files%keep_checkpoints(start%checkpoint%path, start%checkpoint%case_text, start%interval)
       files%end_time = simulated_time(case)
       call files%progress%start(case%name, self%show_progress)
@@ -191,7 +204,6 @@ contains
   !> Nothing stays of what the run has written, if it has gone.
   subroutine give_up(self)
     class(case_run_t), intent(inout) :: self
-    call self%gate%open()
     call self%thread%join()
     if (.not. allocated(self%sink)) return
     select type (sink => self%sink)

@@ -10,6 +10,7 @@ module case_runner
   use scene_builder, only: build_scene
   use case_run, only: case_run_t, go_beside, name_file
   use result_file, only: write_text, remove_unfinished
+  use row_queue, only: row_queue_t
   use case_lock, only: case_lock_t
   use continuation, only: continuation_t
   use posix, only: make_directory, write_bytes, error_text
@@ -64,14 +65,15 @@ contains
     character(len=:), allocatable, intent(inout) :: line, notice
     type(error_t), allocatable, intent(out) :: error
     type(case_run_t), target :: run, twin
+    type(row_queue_t), target :: queue
     logical :: has_twin
 
     has_twin = case%output%ideal_twin .and. case%joint%kind /= 'ideal'
     call run%prepare(case, .false., start, list, base, show_progress)
     call twin%prepare(case, .true., start, ideal_list, base, show_progress .and. threads == 1)
-    if (has_twin .and. threads > 1) call go_beside(twin)
+    if (has_twin .and. threads > 1) call go_beside(twin, run, queue)
     if (.not. start%is_done) call run%go()
-    if (.not. run%was_interrupted()) call twin%keep()
+    call twin%let_end(is_kept=.not. run%was_interrupted())
     call run%finish(line, notice)
     if (run%was_interrupted()) then
       call twin%give_up()

@@ -121,11 +121,14 @@ contains
     length = self%written
   end function length
 
-  !> Whether a write has failed, so that nothing more can be kept.
-  pure function has_failed(self) result(failed)
+  !> Whether a write has failed, so that nothing more can be kept; also while another thread writes.
+  function has_failed(self) result(failed)
     class(result_file_t), intent(in) :: self
     logical :: failed
-    failed = self%status /= 0
+    integer :: status
+    !$omp atomic read
+    status = self%status
+    failed = status /= 0
   end function has_failed
 
   !> Write out the rest and give the file its final name. After a failed write it holds the whole rows that fitted (there
@@ -206,6 +209,7 @@ contains
     end do
     last = at
     if (at < len(text)) then
+      !$omp atomic write
       self%status = status
       last = index(text(:at), achar(10), back=.true.)
     end if

@@ -4,7 +4,7 @@ module thread
   use, intrinsic :: iso_c_binding, only: c_funptr, c_int, c_intptr_t, c_null_ptr, c_ptr, c_int64_t
   implicit none
   private
-  public :: thread_t, gate_t
+  public :: thread_t, semaphore_t
 
   type :: thread_t
     private
@@ -15,16 +15,15 @@ module thread
     procedure :: join
   end type thread_t
 
-  !> A gate that a thread waits at, asleep, until another one opens it, for good.
-  type :: gate_t
+  !> A number of permits that threads give and take; who takes one where there is none waits, asleep.
+  type :: semaphore_t
     private
-    integer(c_int64_t) :: semaphore(4) = 0   !! a sem_t of Linux with glibc or musl
-    logical :: was_shut = .false.
+    integer(c_int64_t) :: words(4) = 0   !! a sem_t of Linux with glibc or musl
   contains
-    procedure :: shut
-    procedure :: open
-    procedure :: pass
-  end type gate_t
+    procedure :: prepare
+    procedure :: give
+    procedure :: take
+  end type semaphore_t
 
   interface
     function c_pthread_create(handle, attributes, routine, argument) bind(c, name='pthread_create') result(status)
@@ -61,28 +60,26 @@ module thread
 
 contains
 
-  !> Before any thread comes to the gate, which stays where it is from here on.
-  subroutine shut(self)
-    class(gate_t), intent(inout) :: self
+  !> Begin with so many permits, before another thread knows of them. It stays where it is from here on.
+  subroutine prepare(self, permits)
+    class(semaphore_t), intent(inout) :: self
+    integer, intent(in) :: permits
     integer(c_int) :: unimportant
-    unimportant = c_sem_init(self%semaphore, 0_c_int, 0_c_int)
-    self%was_shut = .true.
-  end subroutine shut
+    unimportant = c_sem_init(self%words, 0_c_int, int(permits, c_int))
+  end subroutine prepare
 
-  !> Open it, if it was ever shut.
-  subroutine open(self)
-    class(gate_t), intent(inout) :: self
+  subroutine give(self)
+    class(semaphore_t), intent(inout) :: self
     integer(c_int) :: unimportant
-    if (self%was_shut) unimportant = c_sem_post(self%semaphore)
-  end subroutine open
+    unimportant = c_sem_post(self%words)
+  end subroutine give
 
-  !> Wait until it is open.
-  subroutine pass(self)
-    class(gate_t), intent(inout) :: self
-    do while (c_sem_wait(self%semaphore) /= 0)   ! a signal may wake who waits
+  !> What the givers have written before is then there to be read.
+  subroutine take(self)
+    class(semaphore_t), intent(inout) :: self
+    do while (c_sem_wait(self%words) /= 0)   ! a signal may wake who waits
     end do
-    call self%open()
-  end subroutine pass
+  end subroutine take
 
   !> Call the function `routine`, in C void *(void *), with `argument` in a thread of its own. `has_started` is false where the
   !> system gives none: nothing has been done then.

@@ -14,8 +14,9 @@ module trace_files
   use file_mark, only: file_mark_t
   use growing_text, only: growing_text_t
   use checkpoint, only: checkpoint_t, program_build, restart_hint
-  use number_writer, only: number_writer_t, longest_number
-  use ten_digits, only: digit
+  use number_writer, only: longest_number
+  use row_queue, only: row_queue_t
+  use trace_table, only: trace_table_t
   use progress, only: progress_t
   use posix, only: interrupted
   use text_tools, only: printable
@@ -28,7 +29,7 @@ module trace_files
 
   !> A sink that writes. It asks for the end of the run when the user interrupts it or a file cannot be written.
   type, extends(trace_sink_t) :: trace_files_t
-    type(result_file_t) :: trace
+    type(trace_table_t) :: trace
     type(result_file_t) :: event_list
     type(progress_t) :: progress
     real(dp) :: end_time = 1            !! of the run, for the progress [s]
@@ -38,8 +39,7 @@ module trace_files
     real(dp), private :: earlier_time = 0                 !! wall time of the parts of the run before this one [s]
     integer(int64), private :: began = 0, saved = 0       !! ticks of the clock
     character(len=:), allocatable, private :: path        !! of the files, without their endings
-    type(number_writer_t), private :: numbers
-    integer, private :: phase_column = 1   !! one behind the last: there is none
+    type(row_queue_t), pointer, private :: queue => null()   !! to a thread that may write the rows
     integer, private :: rows = 0
     character(len=:), allocatable, private :: line   !! the row being written
   contains
@@ -47,6 +47,7 @@ module trace_files
     procedure :: conclude
     procedure :: close
     procedure :: abandon
+    procedure :: share_rows
     procedure :: take_row
     procedure :: take_event
     procedure :: take_progress
@@ -96,13 +97,8 @@ contains
     character(len=*), intent(in) :: path
     type(column_list_t), intent(in) :: list
     integer, intent(in) :: digits
-    integer :: i
     self%path = path
-    self%phase_column = size(list%id) + 1
-    do i = 1, size(list%id)
-      if (column_name(list, i) == 'phase[-]') self%phase_column = i
-    end do
-    call self%numbers%prepare(digits)
+    call self%trace%prepare(list, digits)
     allocate (character(len=(longest_number + 1)*event_fields) :: self%line)
     call system_clock(self%began)
     self%saved = self%began
@@ -169,6 +165,7 @@ contains
     logical :: is_there
     self%wants_archive = .false.
     call system_clock(self%saved)
+    if (associated(self%queue)) call self%queue%settle()
     !$omp critical (texts)
     call self%trace%synchronise(self%checkpoint_error)
     if (.not. allocated(self%checkpoint_error)) call self%event_list%synchronise(self%checkpoint_error)
@@ -226,23 +223,24 @@ contains
     call self%event_list%abandon()
   end subroutine abandon
 
-  !> The row is made where it waits to be written.
+  !> From now on rows of so many values may be written by who serves the queue.
+  subroutine share_rows(self, queue, n_values)
+    class(trace_files_t), intent(inout), target :: self
+    type(row_queue_t), intent(inout), target :: queue
+    integer, intent(in) :: n_values
+    call queue%set_table(self%trace, n_values)
+    self%queue => queue
+  end subroutine share_rows
+
   subroutine take_row(self, values)
     class(trace_files_t), intent(inout) :: self
     real(dp), intent(in), contiguous :: values(:)
     integer, parameter :: rows_between_looks = 100
+    logical :: is_taken
 
-    call self%trace%make_room((longest_number + 1)*size(values))
-    associate (text => self%trace%buffer, used => self%trace%used, phase => self%phase_column)
-      call self%numbers%append_list(text, used, values(:phase - 1))
-      if (phase <= size(values)) then
-        text(used + 1:used + 1) = digit(int(values(phase)))
-        text(used + 2:used + 2) = ','
-        used = used + 2
-        call self%numbers%append_list(text, used, values(phase + 1:))
-      end if
-      text(used:used) = newline
-    end associate
+    is_taken = .false.
+    if (associated(self%queue)) call self%queue%offer(values, is_taken)
+    if (.not. is_taken) call self%trace%put_row(values)
     self%rows = self%rows + 1
     if (mod(self%rows, rows_between_looks) == 0) call look(self)
   end subroutine take_row
@@ -253,21 +251,21 @@ contains
     integer :: used
 
     used = 0
-    call self%numbers%append(self%line, used, event%time)
+    call self%trace%numbers%append(self%line, used, event%time)
     call append(self%line, used, ',')
-    call self%numbers%append(self%line, used, event%crank_angle)
+    call self%trace%numbers%append(self%line, used, event%crank_angle)
     call append(self%line, used, merge(',contact_begins,', ',contact_ends,  ', event%kind == event_contact_begins))
     if (event%kind /= event_contact_begins) used = used - 2   ! the blanks that merge needs
-    call self%numbers%append(self%line, used, event%normal_speed)
+    call self%trace%numbers%append(self%line, used, event%normal_speed)
     if (event%kind == event_contact_begins) then
       call append(self%line, used, ',,,')
     else
       call append(self%line, used, ',')
-      call self%numbers%append(self%line, used, event%duration)
+      call self%trace%numbers%append(self%line, used, event%duration)
       call append(self%line, used, ',')
-      call self%numbers%append(self%line, used, event%max_penetration)
+      call self%trace%numbers%append(self%line, used, event%max_penetration)
       call append(self%line, used, ',')
-      call self%numbers%append(self%line, used, event%max_normal_force)
+      call self%trace%numbers%append(self%line, used, event%max_normal_force)
     end if
     call append(self%line, used, newline)
     call self%event_list%put(self%line(:used))

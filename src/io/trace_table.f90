@@ -1,0 +1,51 @@
+!> The file NAME.csv of a trace: rows of numbers, the phase as one digit.
+module trace_table
+  use kinds, only: dp
+  use columns, only: column_list_t, column_name
+  use number_writer, only: number_writer_t, longest_number
+  use result_file, only: result_file_t
+  use ten_digits, only: digit
+  implicit none
+  private
+  public :: trace_table_t
+
+  type, extends(result_file_t) :: trace_table_t
+    type(number_writer_t) :: numbers
+    integer, private :: phase_column = 1   !! one behind the last: there is none
+  contains
+    procedure :: prepare
+    procedure :: put_row
+  end type trace_table_t
+
+contains
+
+  !> Before any row, of so many significant digits.
+  subroutine prepare(self, list, digits)
+    class(trace_table_t), intent(inout) :: self
+    type(column_list_t), intent(in) :: list
+    integer, intent(in) :: digits
+    integer :: i
+    self%phase_column = size(list%id) + 1
+    do i = 1, size(list%id)
+      if (column_name(list, i) == 'phase[-]') self%phase_column = i
+    end do
+    call self%numbers%prepare(digits)
+  end subroutine prepare
+
+  !> Add a row, made where it waits to be written.
+  subroutine put_row(self, values)
+    class(trace_table_t), intent(inout) :: self
+    real(dp), intent(in), contiguous :: values(:)
+    call self%make_room((longest_number + 1)*size(values))
+    associate (text => self%buffer, used => self%used, phase => self%phase_column)
+      call self%numbers%append_list(text, used, values(:phase - 1))
+      if (phase <= size(values)) then
+        text(used + 1:used + 1) = digit(int(values(phase)))
+        text(used + 2:used + 2) = ','
+        used = used + 2
+        call self%numbers%append_list(text, used, values(phase + 1:))
+      end if
+      text(used:used) = achar(10)
+    end associate
+  end subroutine put_row
+end module trace_table
