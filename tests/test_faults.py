@@ -167,8 +167,8 @@ def disk(folder: Path, options: str):
             subprocess.run(["umount", str(folder)], check=True)
 
 
-def full(gudgeon: Gudgeon, folder: Path, what: str, **how) -> None:
-    status, out, err = gudgeon.run("-o", folder, "--set", "integrator.method=auto", FLORES / "dry_0500um.nml", **how)
+def full(gudgeon: Gudgeon, folder: Path, what: str, *words: object, **how) -> None:
+    status, out, err = gudgeon.run("-o", folder, "--set", "integrator.method=auto", *words, FLORES / "dry_0500um.nml", **how)
     check(status == 5 and not out, f"{what}: exit status 5, not {status}")
     check(err.count("\n") == 1 and ("No space left" in err or "too large" in err), f"{what}: one line: {err}")
     whole(folder, what)
@@ -184,6 +184,10 @@ def test_full_disk(gudgeon: Gudgeon, work: Path) -> None:
             full(gudgeon, work / f"disk{size}", f"a disk of {size} kB")
     for size in (0, 100, 3000, 100_000, 300_000):
         full(gudgeon, work / f"limit{size}", f"files of {size} bytes at most",
+             preexec_fn=lambda size=size: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)))
+    for size in (300_000, 4_200_000):   # the second has room for the twin, whose thread then writes the rows
+        full(gudgeon, work / f"twin{size}", f"files of {size} bytes at most, with a twin", "-j", "2", "--set", "output.ideal_twin=T",
+             "--set", "output.samples_per_revolution=5000",
              preexec_fn=lambda size=size: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)))
 
 

@@ -13,7 +13,7 @@ module case_file
   use namelist_reader, only: namelist_t, token_t, read_namelist, read_values
   implicit none
   private
-  public :: read_case, parse_case, read_case_values, complete_case, choose_variant, write_resolved, template
+  public :: read_case, parse_case, read_case_values, complete_case, choose_variant, resolve, write_resolved, template
 
   integer, parameter :: largest_file = 1   !! MB; a case file has a few thousand bytes
 
@@ -94,9 +94,17 @@ contains
     character(len=:), allocatable :: text
     type(case_values_t) :: values
     call values%set_defaults('')
+    call resolve(this, values, text)
+  end function write_resolved
+
+  !> The same where the values are at hand that the case was made of.
+  subroutine resolve(this, values, text)
+    type(case_t), intent(in) :: this
+    type(case_values_t), intent(inout) :: values
+    character(len=:), allocatable, intent(out) :: text
     call case_to_values(this, values)
     text = resolved_text(values)
-  end function write_resolved
+  end subroutine resolve
 
   !> A complete, commented case file that reads back.
   function template() result(text)

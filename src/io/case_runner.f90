@@ -3,7 +3,8 @@ module case_runner
   use errors, only: error_t, fail, status_output
   use case_definition, only: case_t
   use accuracy_presets, only: with_preset
-  use case_file, only: read_case, write_resolved
+  use case_file, only: read_case_values, complete_case, resolve
+  use case_values, only: case_values_t
   use command_line, only: command_line_t
   use columns, only: column_list_t, choose_columns
   use scene, only: scene_t
@@ -31,6 +32,7 @@ contains
     integer, intent(in) :: threads   !! for this case
     character(len=:), allocatable, intent(out) :: line, notice
     type(error_t), allocatable, intent(out) :: error
+    type(case_values_t) :: values
     type(case_t) :: case
     type(column_list_t) :: list, ideal_list
     type(case_lock_t) :: lock
@@ -41,8 +43,8 @@ contains
     line = ''
     notice = ''
     base = ''
-    call prepare(path, options, case, list, ideal_list, base, error)
-    if (.not. allocated(error) .and. .not. options%check) call take_place(path, options, case, base, lock, start, error)
+    call prepare(path, options, values, case, list, ideal_list, base, error)
+    if (.not. allocated(error) .and. .not. options%check) call take_place(path, options, values, case, base, lock, start, error)
     if (.not. allocated(error)) then
       if (options%check) line = path//': correct'
       if (start%is_done) line = path//': done already; '//base//'.csv'
@@ -89,16 +91,18 @@ contains
   end subroutine run_case
 
   !> Read and check a case. `base` is the path of its results without their endings.
-  subroutine prepare(path, options, case, list, ideal_list, base, error)
+  subroutine prepare(path, options, values, case, list, ideal_list, base, error)
     character(len=*), intent(in) :: path
     type(command_line_t), intent(in) :: options
+    type(case_values_t), intent(out) :: values
     type(case_t), intent(out) :: case
     type(column_list_t), intent(out) :: list, ideal_list
     character(len=:), allocatable, intent(inout) :: base
     type(error_t), allocatable, intent(out) :: error
     class(scene_t), allocatable :: scene
 
-    call read_case(path, with_preset(options%accuracy, options%overrides), case, error)
+    call read_case_values(path, with_preset(options%accuracy, options%overrides), values, error)
+    if (.not. allocated(error)) call complete_case(values, path, case, error)
     if (allocated(error)) return
     base = options%out//'/'//case%name
     call choose_columns(case, .false., list, error)
@@ -108,9 +112,10 @@ contains
   end subroutine prepare
 
   !> Make the folder for the results, lock them, look for what is there where the run is to go on, write the resolved case.
-  subroutine take_place(path, options, case, base, lock, start, error)
+  subroutine take_place(path, options, values, case, base, lock, start, error)
     character(len=*), intent(in) :: path, base
     type(command_line_t), intent(in) :: options
+    type(case_values_t), intent(inout) :: values   !! of the case
     type(case_t), intent(in) :: case
     type(case_lock_t), intent(inout) :: lock
     type(continuation_t), intent(inout) :: start
@@ -126,7 +131,7 @@ contains
       call lock%take(base, error)
     end if
     if (allocated(error)) return
-    case_text = write_resolved(case)
+    call resolve(case, values, case_text)
     start%checkpoint%path = base//'.checkpoint'
     start%interval = options%checkpoint_interval
     if (options%resume) then

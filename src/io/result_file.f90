@@ -48,7 +48,6 @@ contains
     self%used = 0
     self%written = 0
     self%status = 0
-    if (.not. allocated(self%buffer)) allocate (character(len=buffer_size) :: self%buffer)
     do
       call open_for_writing(path//'.part', self%descriptor, status)
       if (status /= error_interrupted) exit
@@ -67,7 +66,6 @@ contains
     self%used = 0
     self%written = length
     self%status = 0
-    if (.not. allocated(self%buffer)) allocate (character(len=buffer_size) :: self%buffer)
     call open_for_appending(present, self%descriptor, status)
     if (status == 0) call truncate_file(self%descriptor, length, status)
     if (status == 0 .and. present /= path//'.part') call rename_file(present, path//'.part', status)
@@ -79,7 +77,7 @@ contains
     class(result_file_t), intent(inout) :: self
     character(len=*), intent(in) :: text
     if (self%descriptor < 0 .or. self%status /= 0) return
-    if (self%used + len(text) > buffer_size) call self%flush()
+    call self%make_room(len(text))
     if (len(text) > buffer_size) then
       call write_rows(self, text)
     else if (self%status == 0) then
@@ -93,6 +91,7 @@ contains
     class(result_file_t), intent(inout) :: self
     integer, intent(in) :: length
     if (self%used + length > buffer_size) call self%flush()
+    if (.not. allocated(self%buffer)) allocate (character(len=buffer_size) :: self%buffer)
   end subroutine make_room
 
   !> Write out what waits in the buffer.
@@ -183,7 +182,7 @@ contains
     type(result_file_t) :: file
     call file%open(path, error)
     if (allocated(error)) return
-    call file%put(text)
+    call write_rows(file, text)
     call file%close(error, whole_only=.true.)
   end subroutine write_text
 

@@ -293,7 +293,9 @@ contains
   subroutine look(self)
     class(trace_files_t), intent(inout) :: self
     integer(int64) :: now, rate
-    if (interrupted() .or. self%trace%has_failed() .or. self%event_list%has_failed()) self%wants_to_stop = .true.
+    if (interrupted()) self%wants_to_stop = .true.
+    if (self%trace%has_failed()) self%wants_to_stop = .true.
+    if (self%event_list%has_failed()) self%wants_to_stop = .true.
     if (.not. self%keeps_archives) return
     call system_clock(now, rate)
     if (real(now - self%saved, dp) >= self%checkpoint_interval*real(rate, dp)) self%wants_archive = .true.
