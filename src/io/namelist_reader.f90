@@ -3,8 +3,8 @@
 !> by / or &end, every key has its values, and no value is left out between commas.
 module namelist_reader
   use text_tools, only: printable
-  use text_scanner, only: scanner_t, name_here, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line, newline, return, &
-    digits, shown
+  use text_scanner, only: scanner_t, name_here, pass_name, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line, &
+    newline, return, digits, shown
   implicit none
   private
   public :: namelist_t, named_group_t, entry_t, token_t, read_namelist, read_values
@@ -35,6 +35,7 @@ module namelist_reader
   type :: namelist_t
     type(named_group_t), allocatable :: groups(:)
     type(entry_t), allocatable :: entries(:)
+    integer, private :: n_entries = 0   !! while it is read: entries has room for more
   end type namelist_t
 
   integer, parameter :: most = 1000  !! groups, keys, values of a key: no sane file has as many
@@ -48,7 +49,9 @@ contains
     character(len=:), allocatable, intent(out) :: message
     integer, intent(out) :: line
     type(scanner_t) :: scan
-    allocate (list%groups(0), list%entries(0))
+    integer :: i
+    allocate (list%groups(0))
+    allocate (list%entries(min(most, count([(text(i:i) == '=', i=1, len(text))]))))   ! each of them has one
     scan%text = text
     if (index(text, char(239)//char(187)//char(191)) == 1) scan%at = 4
     do
@@ -62,6 +65,7 @@ contains
       if (allocated(scan%message)) exit
     end do
     line = scan%line
+    call drop_room(list)
     if (allocated(scan%message)) call move_alloc(scan%message, message)
   end subroutine read_namelist
 
@@ -117,9 +121,10 @@ contains
       entry%group = group%name
       entry%group_number = size(list%groups)
       call read_entry(scan, entry)
-      if (size(list%entries) == most) scan%message = 'too many keys'
+      if (list%n_entries == most) scan%message = 'too many keys'
       if (allocated(scan%message)) return
-      call append_entry(list%entries, entry)
+      list%n_entries = list%n_entries + 1
+      call move_entry(entry, list%entries(list%n_entries))
     end do
   end subroutine read_group
 
@@ -282,7 +287,8 @@ contains
     at = scan%at
     line = scan%line
     found = .false.
-    if (name_here(scan) /= '') then
+    call pass_name(scan)
+    if (scan%at > at) then
       call skip_blanks(scan)
       n = 1
       if (next_is(scan, '(')) call read_index(scan, n)
@@ -304,33 +310,48 @@ contains
     call move_alloc(longer, list)
   end subroutine append_group
 
-  !> Add a key with its values to the list. What the others hold is handed over, not copied.
-  subroutine append_entry(list, entry)
-    type(entry_t), allocatable, intent(inout) :: list(:)
-    type(entry_t), intent(in) :: entry
-    type(entry_t), allocatable :: longer(:)
+  !> A key with its values, handed over, not copied.
+  subroutine move_entry(from, to)
+    type(entry_t), intent(inout) :: from, to
+    call move_alloc(from%group, to%group)
+    call move_alloc(from%key, to%key)
+    call move_alloc(from%tokens, to%tokens)
+    to%group_number = from%group_number
+    to%index = from%index
+    to%line = from%line
+  end subroutine move_entry
+
+  !> No more entries than there are.
+  subroutine drop_room(list)
+    type(namelist_t), intent(inout) :: list
+    type(entry_t), allocatable :: entries(:)
+    integer :: i
+    if (size(list%entries) == list%n_entries) return
+    allocate (entries(list%n_entries))
+    do i = 1, size(entries)
+      call move_entry(list%entries(i), entries(i))
+    end do
+    call move_alloc(entries, list%entries)
+  end subroutine drop_room
+
+  !> Add a value to the list; its text is handed over.
+  subroutine append_token(list, token)
+    type(token_t), allocatable, intent(inout) :: list(:)
+    type(token_t), intent(inout) :: token
+    type(token_t), allocatable :: longer(:)
     integer :: i
     allocate (longer(size(list) + 1))
     do i = 1, size(list)
-      call move_alloc(list(i)%group, longer(i)%group)
-      call move_alloc(list(i)%key, longer(i)%key)
-      call move_alloc(list(i)%tokens, longer(i)%tokens)
-      longer(i)%group_number = list(i)%group_number
-      longer(i)%index = list(i)%index
-      longer(i)%line = list(i)%line
+      call move_token(list(i), longer(i))
     end do
-    longer(size(longer)) = entry
-    call move_alloc(longer, list)
-  end subroutine append_entry
-
-  !> Add a value to the list.
-  subroutine append_token(list, token)
-    type(token_t), allocatable, intent(inout) :: list(:)
-    type(token_t), intent(in) :: token
-    type(token_t), allocatable :: longer(:)
-    allocate (longer(size(list) + 1))
-    longer(:size(list)) = list
-    longer(size(longer)) = token
+    call move_token(token, longer(size(longer)))
     call move_alloc(longer, list)
   end subroutine append_token
+
+  subroutine move_token(from, to)
+    type(token_t), intent(inout) :: from, to
+    call move_alloc(from%text, to%text)
+    to%quoted = from%quoted
+    to%repeat = from%repeat
+  end subroutine move_token
 end module namelist_reader

@@ -51,7 +51,7 @@ contains
   !> The finder: hand over a row, if there is a writer. From the first that is taken on, the table is the writer's.
   subroutine offer(self, row, is_taken)
     class(row_queue_t), intent(inout) :: self
-    real(dp), intent(in) :: row(:)
+    real(dp), intent(in), contiguous :: row(:)
     logical, intent(out) :: is_taken
     !$omp atomic read
     is_taken = self%is_served

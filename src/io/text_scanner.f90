@@ -3,7 +3,7 @@ module text_scanner
   use text_tools, only: lowercase, printable
   implicit none
   private
-  public :: scanner_t, name_here, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line
+  public :: scanner_t, name_here, pass_name, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line
   public :: newline, return, digits, shown
 
   !> A place in the text, and what was found wrong there.
@@ -25,6 +25,15 @@ contains
     character(len=:), allocatable :: name
     integer :: first
     first = scan%at
+    call pass_name(scan)
+    name = lowercase(scan%text(first:scan%at - 1))
+  end function name_here
+
+  !> Pass a name, if one begins here.
+  subroutine pass_name(scan)
+    type(scanner_t), intent(inout) :: scan
+    integer :: first
+    first = scan%at
     do while (.not. at_end(scan))
       select case (scan%text(scan%at:scan%at))
       case ('a':'z', 'A':'Z', '_')
@@ -35,8 +44,7 @@ contains
       end select
       scan%at = scan%at + 1
     end do
-    name = lowercase(scan%text(first:scan%at - 1))
-  end function name_here
+  end subroutine pass_name
 
   !> Pass blanks, ends of lines (LF, CR LF or CR) and comments.
   subroutine skip_blanks(scan)
