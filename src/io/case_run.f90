@@ -28,8 +28,8 @@ module case_run
     type(column_list_t), private :: list
     character(len=:), allocatable, private :: base       !! path of the results without their endings
     logical, private :: show_progress = .false.
-    logical, private :: has_gone = .false.
-    type(thread_t), private :: thread                    !! in which it goes
+    integer, private :: takers = 0                       !! who have come to let it go: only the first does
+    type(thread_t), private :: thread                    !! in which it goes, if no other has taken it
     logical, private :: is_kept = .false.                !! what it has written there is to stay
     type(row_queue_t), pointer, private :: queue => null()   !! from a run to the thread of the one beside it
     class(trace_sink_t), allocatable, private :: sink    !! while the files are open
@@ -75,7 +75,6 @@ contains
     run%queue => queue
     routine = c_funloc(run_in_thread)   ! gfortran 12.2, optimising across modules, loses it where it is not a variable
     call run%thread%start(routine, c_loc(run), has_started)
-    run%has_gone = has_started
     if (has_started) then
       other%queue => queue
     else
@@ -88,19 +87,35 @@ contains
     type(c_ptr), value :: argument
     type(c_ptr) :: nothing
     type(case_run_t), pointer :: run
+    logical :: is_mine
     call c_f_pointer(argument, run)
-    call integrate_into_files(run)
+    call take(run, is_mine)
+    if (is_mine) call integrate_into_files(run)
     call run%queue%serve()
-    if (run%is_kept) call conclude_files(run)
+    if (is_mine .and. run%is_kept) call conclude_files(run)
     nothing = c_null_ptr
   end function run_in_thread
 
-  !> Integrate into BASE.csv and events, or BASE.ideal.csv; of a run that goes in a thread wait for the end.
+  !> Whether this thread is to let the run go.
+  subroutine take(run, is_mine)
+    type(case_run_t), intent(inout) :: run
+    logical, intent(out) :: is_mine
+    integer :: earlier
+    !$omp atomic capture
+    earlier = run%takers
+    run%takers = run%takers + 1
+    !$omp end atomic
+    is_mine = earlier == 0
+  end subroutine take
+
+  !> Integrate into BASE.csv and events, or BASE.ideal.csv; of a run that goes in a thread wait for the end. (The system may
+  !> start a thread so late that the run is taken before.)
   subroutine go(self)
     class(case_run_t), intent(inout) :: self
+    logical :: is_mine
+    call take(self, is_mine)
+    if (is_mine) call integrate_into_files(self)
     call self%thread%join()
-    if (.not. self%has_gone) call integrate_into_files(self)
-    self%has_gone = .true.
   end subroutine go
 
   !> The other one has come to its end, too: of a run that goes in a thread beside it. Afterwards all rows of the other are
@@ -204,6 +219,8 @@ contains
   !> Nothing stays of what the run has written, if it has gone.
   subroutine give_up(self)
     class(case_run_t), intent(inout) :: self
+    logical :: is_mine
+    call take(self, is_mine)
     call self%thread%join()
     if (.not. allocated(self%sink)) return
     select type (sink => self%sink)
