@@ -37,7 +37,7 @@ contains
     type(power_of_ten_t) :: powers(first_power:last_power)
     integer(int64) :: factor, difference
     integer :: k, wrong
-    call make_powers(powers)
+    call make_powers(first_power, last_power, powers)
     wrong = 0
     do k = first_power, last_power - 1
       associate (a => powers(k), b => powers(k + 1))

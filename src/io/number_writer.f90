@@ -25,7 +25,7 @@ module number_writer
     integer :: digits = 10
     integer(int64) :: too_large = 10_int64**10   !! 10**digits
     type(power_of_ten_t), allocatable :: powers(:)   !! first_power to last_power, for many numbers
-    type(ten_digits_t), allocatable :: ten_digits    !! the same, where there are ten digits
+    type(ten_digits_t), allocatable :: ten_digits    !! in their place where there are ten digits
   contains
     procedure :: prepare
     procedure :: prepare_for_few
@@ -41,11 +41,13 @@ contains
     class(number_writer_t), intent(inout) :: self
     integer, intent(in) :: digits   !! fewest_digits to most_digits
     call self%prepare_for_few(digits)
-    allocate (self%powers(first_power:last_power))
-    call make_powers(self%powers)
-    if (digits /= 10) return
-    allocate (self%ten_digits)
-    call self%ten_digits%prepare(self%powers)
+    if (digits == 10) then
+      allocate (self%ten_digits)
+      call self%ten_digits%prepare()
+    else
+      allocate (self%powers(first_power:last_power))
+      call make_powers(first_power, last_power, self%powers)
+    end if
   end subroutine prepare
 
   !> The same without tables, which take as long as some dozens of numbers do then.

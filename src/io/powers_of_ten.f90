@@ -28,19 +28,20 @@ contains
     floor_log = shifta(exponent*78913, 18)
   end function floor_log
 
-  !> All powers, in some 5 microseconds.
-  pure subroutine make_powers(powers)
-    type(power_of_ten_t), intent(out) :: powers(first_power:last_power)
+  !> The powers from `first` to `last`, first_power <= first < 0 <= last <= last_power; all of them in some 5 microseconds.
+  pure subroutine make_powers(first, last, powers)
+    integer, intent(in) :: first, last
+    type(power_of_ten_t), intent(out) :: powers(first:last)
     integer(int64) :: limbs(n_limbs), exponent
     integer :: k
 
     call begin(limbs, exponent)
-    do k = 0, last_power
+    do k = 0, last
       powers(k) = highest_bits(limbs, exponent)
       call multiply_by_ten(limbs, exponent)
     end do
     call begin(limbs, exponent)
-    do k = -1, first_power, -1
+    do k = -1, first, -1
       call divide_by_ten(limbs, exponent)
       powers(k) = highest_bits(limbs, exponent)
     end do

@@ -3,7 +3,7 @@
 module ten_digits
   use, intrinsic :: iso_fortran_env, only: int64
   use kinds, only: dp
-  use powers_of_ten, only: power_of_ten_t, first_power, last_power, floor_log
+  use powers_of_ten, only: power_of_ten_t, make_powers, floor_log
   implicit none
   private
   public :: ten_digits_t, digit
@@ -34,12 +34,14 @@ module ten_digits
 contains
 
   !> Make the tables. Call it first. (Without concatenation, which takes ten times as long.)
-  pure subroutine prepare(self, powers)
+  pure subroutine prepare(self)
     class(ten_digits_t), intent(inout) :: self
-    type(power_of_ten_t), intent(in) :: powers(first_power:last_power)
+    integer, parameter :: first = -last_decade, last = last_decade + 9
+    type(power_of_ten_t) :: powers(first:last)
     character(len=8) :: endings(-last_decade:last_decade)
     character(len=4) :: triple
     integer :: i, j, e, k
+    call make_powers(first, last, powers)
     triple = ''
     do i = 0, 9
       triple(1:1) = digit(i)
