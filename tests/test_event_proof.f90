@@ -7,7 +7,7 @@ module test_event_proof
   use ode_method, only: ode_method_t
   use adams, only: adams_t
   use radau, only: radau_t
-  use bernstein, only: from_newton, integrate_polynomial, add_product, first_rise
+  use bernstein, only: from_newton, integrate_polynomial, add_product, first_rise, rise_between
   use event_proof, only: stays_negative_for_certain
   use events, only: event_watch_t
   implicit none
@@ -69,6 +69,7 @@ contains
     end do
     call first_rise([-1.0_dp, 2.0_dp, -1.0_dp], found, lower, upper)   ! -1 + 6 x (1 - x), above 0 from 0.2113 to 0.7887
     call check%that(found .and. lower <= 0.2113_dp .and. upper > 0.2114_dp .and. upper < 0.7887_dp, 'the first of two passages')
+    call check%close_to(rise_between([-1.0_dp, 2.0_dp, -1.0_dp], lower, upper), (3 - sqrt(3.0_dp))/6, 1e-12_dp, 'and where it is')
     call first_rise([-1.0_dp, 0.9_dp, -1.0_dp], found, lower, upper)   ! at most -0.05
     call check%that(.not. found, 'no passage below zero, coefficients above it or not')
   end subroutine bernstein_algebra
@@ -80,7 +81,7 @@ contains
     logical, intent(out) :: unproven   !! the bound by straight lines left it open
     type(adams_t) :: method
     type(event_watch_t) :: watch
-    real(dp) :: x(12), f(2, 12), y(2), t_last
+    real(dp) :: x(12), f(2, 12), y(2), straying(2), t_last
     integer :: i, status, index, before
     logical :: inside
     method%settings%fixed_step = 1
@@ -95,7 +96,8 @@ contains
     call method%start_with_history(problem, x, f, y, 1.0_dp, status)
     call watch%begin(problem, 0.0_dp, y, 0)
     call method%step(problem, status)
-    unproven = .not. stays_negative_for_certain(problem%event_form(1), method)
+    call method%find_straying(1, straying)
+    unproven = .not. stays_negative_for_certain(problem%event_form(1), method, straying)
     before = method%statistics%evaluations
     t_last = 2
     call watch%search(method, problem, t_last, index, t_event)
@@ -207,7 +209,7 @@ contains
     class(checks_t), intent(inout) :: check
     type(polynomial_t) :: problem
     type(adams_t) :: method
-    real(dp) :: top
+    real(dp) :: top, straying(2)
     integer :: i, status
     problem%n = 2
     problem%c(0, 1) = 0.9_dp
@@ -219,7 +221,9 @@ contains
       allocate (method%settings%relative(2), method%settings%absolute(2), source=1.0_dp)
       call method%start_with_history(problem, [0.0_dp], reshape([4*top, 0.0_dp], [2, 1]), problem%c(0, :), 1.0_dp, status)
       call method%step(problem, status)
-      call check%that(stays_negative_for_certain(problem%event_form(1), method) .eqv. i == 1, 'the proof holds up to the circle')
+      call method%find_straying(1, straying)
+      call check%that(stays_negative_for_certain(problem%event_form(1), method, straying) .eqv. i == 1, &
+        'the proof holds up to the circle')
     end do
   end subroutine proof_is_sharp
 

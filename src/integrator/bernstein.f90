@@ -2,9 +2,10 @@
 !> smallest and its largest coefficient, and has no more roots than its coefficients have changes of sign.
 module bernstein
   use kinds, only: dp
+  use roots, only: bracket_t, next_abscissa, narrow
   implicit none
   private
-  public :: from_newton, integrate_polynomial, add_product, first_rise, highest_degree
+  public :: from_newton, integrate_polynomial, add_product, first_rise, rise_between, highest_degree
 
   integer, parameter :: highest_degree = 28   !! of a product
   integer, parameter :: most_halvings = 48    !! an interval of [0, 1] is not divided further
@@ -89,6 +90,43 @@ contains
     call search_between(left(:m), from, 0.5_dp*width, halvings + 1, found, lower, upper)
     if (.not. found) call search_between(right(:m), from + 0.5_dp*width, 0.5_dp*width, halvings + 1, found, lower, upper)
   end subroutine search_between
+
+  !> The root of a polynomial that is negative at lower and not at upper, from above and to 1e-12, as far as rounding lets it.
+  pure real(dp) function rise_between(b, lower, upper)
+    real(dp), intent(in) :: b(0:), lower, upper
+    real(dp), parameter :: narrow_enough = 1e-12_dp
+    type(bracket_t) :: bracket
+    real(dp) :: terms(0:highest_degree), choices, x
+    integer :: j, m
+    m = size(b) - 1
+    choices = 1
+    do j = 0, m
+      terms(j) = choices*b(j)
+      choices = choices*(m - j)/(j + 1)
+    end do
+    bracket = bracket_t(lower, upper, value(lower), value(upper), 0, upper - lower)
+    do while (bracket%b - bracket%a > narrow_enough)
+      x = next_abscissa(bracket)
+      if (.not. (x > bracket%a .and. x < bracket%b)) exit
+      call narrow(bracket, x, value(x))
+    end do
+    rise_between = bracket%b
+
+  contains
+
+    !> Of the polynomial, in the manner of Horner.
+    pure real(dp) function value(x)
+      real(dp), intent(in) :: x
+      real(dp) :: power
+      integer :: j
+      power = 1
+      value = terms(0)
+      do j = 1, m
+        power = power*x
+        value = value*(1 - x) + power*terms(j)
+      end do
+    end function value
+  end function rise_between
 
   !> The polynomial on both halves of [0, 1], each again on [0, 1] (de Casteljau).
   pure subroutine halve(b, left, right)

@@ -4,7 +4,7 @@ module event_proof
   use kinds, only: dp
   use ode_problem, only: event_form_t
   use ode_method, only: ode_method_t
-  use bernstein, only: add_product, first_rise, highest_degree
+  use bernstein, only: add_product, first_rise, rise_between, highest_degree
   implicit none
   private
   public :: stays_negative_for_certain, isolate_passage
@@ -12,40 +12,45 @@ module event_proof
 contains
 
   !> Whether the function is certainly negative all along the last step, but perhaps zero at its beginning, from a bound of how
-  !> far each component of the state strays from the straight line between its values at both ends. Along the straight lines,
+  !> far each component of the state strays from the straight line between its values at both ends, the largest number if
+  !> there is no bound. Along the straight lines,
   !> x being the share of the step, the function is a parabola; what the straying adds is below 4 x (1 - x) times a
   !> constant. Both together have the Bernstein coefficients a, m, b and are below zero between the ends where a and b are
   !> not above it and m < sqrt(a b), or m < 0.
-  pure logical function stays_negative_for_certain(form, method) result(negative)
+  pure logical function stays_negative_for_certain(form, method, straying) result(negative)
     type(event_form_t), intent(in) :: form
     class(ode_method_t), intent(in) :: method
-    real(dp) :: at_start, at_middle, at_end
-    real(dp), dimension(2) :: straying, a, b, slope_a, slope_b
-    negative = form%known
+    real(dp), intent(in) :: straying(2)
+    real(dp) :: at_start, at_middle, at_end, a, b, slope_a, slope_b
+    integer :: j
+    negative = max(straying(1), straying(2)) < huge(straying)
     if (.not. negative) return
-    call method%find_straying(form%first, straying)
-    negative = maxval(straying) < huge(straying)
-    if (.not. negative) return
-    a = method%y_old(form%first:form%first + 1)
-    b = method%y(form%first:form%first + 1)
-    associate (linear => form%linear, square => form%square)
-      slope_a = linear + 2*square*a
-      slope_b = linear + 2*square*b
-      at_start = form%constant + sum((linear + square*a)*a)
-      at_middle = form%constant + sum(0.5_dp*(linear*a + slope_a*b) &
-        + 2*(max(abs(slope_a), abs(slope_b)) + abs(square)*straying)*straying)
-      at_end = form%constant + sum((linear + square*b)*b)
-    end associate
+    at_start = form%constant
+    at_middle = form%constant
+    at_end = form%constant
+    do j = 1, 2
+      a = method%y_old(form%first - 1 + j)
+      b = method%y(form%first - 1 + j)
+      associate (linear => form%linear(j), square => form%square(j))
+        slope_a = linear + 2*square*a
+        slope_b = linear + 2*square*b
+        at_start = at_start + (linear + square*a)*a
+        at_middle = at_middle + 0.5_dp*(linear*a + slope_a*b) &
+          + 2*(max(abs(slope_a), abs(slope_b)) + abs(square)*straying(j))*straying(j)
+        at_end = at_end + (linear + square*b)*b
+      end associate
+    end do
     negative = at_start <= 0 .and. at_end < 0 .and. (at_middle < 0 .or. at_middle**2 < at_start*at_end)
   end function stays_negative_for_certain
 
   !> The part lower < x <= upper of the last step, by the method's own clock, in which a function that is negative at the
-  !> beginning of the step first becomes not negative. `known` is false where the method cannot tell.
-  pure subroutine isolate_passage(form, method, known, found, lower, upper)
+  !> beginning of the step first becomes not negative, and where in it that is, but for rounding (`likely`). `known` is false
+  !> where the method cannot tell.
+  pure subroutine isolate_passage(form, method, known, found, lower, upper, likely)
     type(event_form_t), intent(in) :: form
     class(ode_method_t), intent(inout) :: method
     logical, intent(out) :: known, found
-    real(dp), intent(out) :: lower, upper
+    real(dp), intent(out) :: lower, upper, likely
     real(dp) :: component(0:highest_degree/2, 2), one(0:highest_degree/2), g(0:highest_degree), most
     integer :: j, degree
 
@@ -53,6 +58,7 @@ contains
     known = .true.
     lower = 0
     upper = 1
+    likely = 0
     most = form%constant   ! what the function can reach with each component at the end of its range that suits it best
     degree = 1
     do j = 1, 2
@@ -72,5 +78,6 @@ contains
       if (abs(form%square(j)) > 0) call add_product(form%square(j), component(:degree, j), component(:degree, j), g(:2*degree))
     end do
     call first_rise(g(:2*degree), found, lower, upper)
+    if (found) likely = rise_between(g(:2*degree), lower, upper)
   end subroutine isolate_passage
 end module event_proof

@@ -122,14 +122,25 @@ contains
     real(dp), intent(in) :: t_last
     integer, intent(out) :: index
     real(dp), intent(out) :: t_event
-    integer :: i
+    real(dp) :: straying(2)
+    integer :: i, first
+    logical :: negative
 
     index = 0
     t_event = min(t_last, method%t)
     if (self%fresh) call take_passed(self, index, t_event)
     if (index > 0) return
+    first = -1
     do i = 1, self%n
-      if (.not. stays_negative_for_certain(self%watched(i)%form, method)) then
+      associate (form => self%watched(i)%form)
+        negative = form%known
+        if (negative) then
+          if (form%first /= first) call method%find_straying(form%first, straying)   ! else as for the function before
+          first = form%first
+          negative = stays_negative_for_certain(form, method, straying)
+        end if
+      end associate
+      if (.not. negative) then
         call search_closely(self, method, problem, i, index, t_event)
         return
       end if
@@ -242,10 +253,11 @@ contains
     logical, intent(out) :: known, found
     real(dp), intent(out) :: t_found
     type(sample_t) :: left, right
-    real(dp) :: lower, upper
+    real(dp), parameter :: rounding = 1e-11_dp   !! of where in the step the polynomial passes zero
+    real(dp) :: lower, upper, likely
 
     t_found = here%t
-    call isolate_passage(watched%form, method, known, found, lower, upper)
+    call isolate_passage(watched%form, method, known, found, lower, upper, likely)
     if (.not. (known .and. found)) return
     left = before
     if (lower > 0) left = sample(self, method, problem, watched%index, method%time_at_share(lower))
@@ -254,9 +266,27 @@ contains
       found = .false.
       return
     end if
+    call approach(likely - rounding)
+    call approach(likely + rounding)
     t_found = left%t
     if (left%g < 0) t_found = passage(self, method, problem, watched%index, left, right)
     found = t_found <= here%t
+
+  contains
+
+    !> Bring one end of what is to be searched to a share of the step.
+    subroutine approach(share)
+      real(dp), intent(in) :: share
+      type(sample_t) :: middle
+      if (.not. (share > lower .and. share < upper)) return
+      middle = sample(self, method, problem, watched%index, method%time_at_share(share))
+      if (.not. (middle%t > left%t .and. middle%t < right%t)) return
+      if (middle%g < 0) then
+        left = middle
+      else
+        right = middle
+      end if
+    end subroutine approach
   end subroutine search_polynomial
 
   !> Whether a function that is negative at both ends cannot reach zero between them: its cubic, in Bernstein form and
