@@ -115,7 +115,7 @@ contains
   !> Extrapolating and taking back leaves the differences as they were, what was owed included, and the filling at zero.
   subroutine rejected_step_differences(check)
     class(checks_t), intent(inout) :: check
-    integer, parameter :: n = 5, blocks = 2, k = 4, width = lanes*blocks
+    integer, parameter :: n = 5, blocks = (n + lanes - 1)/lanes, k = 4, width = lanes*blocks
     real(dp), parameter :: beta(k) = [1.0_dp, 1.5_dp, 0.75_dp, 2.0_dp], g(k) = [1.0_dp, 0.5_dp, 0.4_dp, 0.3_dp], next = 1.25_dp
     real(dp) :: phi(width, k + 2), before(width, k + 2), owed(width), slope(width), predicted(n), carry(n), left_out(n), y(n)
     integer :: i, j

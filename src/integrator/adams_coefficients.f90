@@ -66,7 +66,7 @@ contains
     class(adams_coefficients_t), intent(inout) :: self
     real(dp), intent(in) :: h, h_old
     integer, intent(in) :: k, k_old
-    real(dp) :: reach, previous
+    real(dp) :: reach, previous, next, inverse
     integer :: i, ns
 
     self%psi_before = self%psi(k)
@@ -81,17 +81,19 @@ contains
     self%alpha(ns) = 1.0_dp/ns
     reach = h*ns
     self%sigma(ns + 1) = 1
-    do i = ns + 1, k
+    do i = ns + 1, k   ! of h/psi_i and psi_i-1(n+1)/psi_i-1(n), in one division: its length is what counts
       previous = self%psi(i - 1)
       self%psi(i - 1) = reach
-      self%beta(i) = self%beta(i - 1)*self%psi(i - 1)/previous
-      reach = previous + h
-      self%alpha(i) = h/reach
-      self%sigma(i + 1) = ordinal(i)*self%alpha(i)*self%sigma(i)
+      next = previous + h
+      inverse = 1/(previous*next)
+      self%beta(i) = self%beta(i - 1)*((reach*next)*inverse)
+      self%alpha(i) = (h*previous)*inverse
+      reach = next
+      self%sigma(i + 1) = (ordinal(i)*self%alpha(i))*self%sigma(i)
     end do
     if (k_old >= k) then
       previous = self%psi(k)
-      self%beta_next = self%beta(k)*reach/previous
+      self%beta_next = self%beta(k)*(reach/previous)
       self%sigma_next = (k + 1)*(h/(previous + h))*self%sigma(k + 1)
     end if
     self%psi(k) = reach

@@ -3,19 +3,21 @@ submodule (adams) adams_control
   use ode_method, only: limit_error, limit_stability, limit_max_step, limit_refusal
   use adams_coefficients, only: stability_limit
   use adams_differences, only: lanes, restore_differences
-  use step_rates, only: sum_norm, fastest_mode, path_rate
+  use step_norms, only: square_of_sum, square_of_difference
   implicit none
 
-  !> What the error is multiplied by, at each order, when the step is doubled or raised by a quarter.
-  integer, parameter :: powers(highest_order) = [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13]
+  !> What the square of the error is multiplied by, at each order, when the step is doubled or raised by a quarter.
+  integer, parameter :: powers(highest_order) = 2*[2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13]
   real(dp), parameter :: doubled(highest_order) = 2.0_dp**powers, raised(highest_order) = 1.25_dp**powers
+
+  real(dp), parameter :: per_limit_square(highest_order) = 1/stability_limit**2
 
 contains
 
   module procedure weigh
     real(dp) :: square
     call weigh_components(self%n, self%settings%relative, self%settings%absolute, self%y, self%inverse_weight, square)
-    self%rounding = epsilon(1.0_dp)*sqrt(square)
+    self%rounding_square = epsilon(1.0_dp)**2*square
   end procedure weigh
 
   !> 1/(relative |y| + absolute), 0 where that is zero, and the square of the norm of y in these weights.
@@ -53,7 +55,7 @@ contains
       self%statistics%rejected_error = self%statistics%rejected_error + 1
       failures = failures + 1
       factor = 0.5_dp
-      if (failures > 3 .and. errors%same > 2) factor = sqrt(0.5_dp/errors%same)
+      if (failures > 3 .and. errors%same > 2**2) factor = (0.5_dp**2/errors%same)**0.25_dp
       self%k = merge(1, errors%order, failures >= 3)
     case (try_too_deep)
       self%limit = limit_refusal
@@ -66,17 +68,18 @@ contains
   end procedure retreat
 
   module procedure estimate_errors
-    real(dp) :: norm_same
     integer :: k
 
     k = self%k
-    norm_same = self%h*sqrt(squares(1))
-    errors%step = norm_same*(self%coefficients%g(k) - self%coefficients%g(k + 1))
-    errors%same = norm_same*self%coefficients%sigma(k + 1)*self%moulton(k)
-    errors%order = k
-    if (k >= 2) errors%lower = self%h*self%coefficients%sigma(k)*self%moulton(k - 1)*sqrt(squares(2))
-    if (k >= 3) errors%lowest = self%h*self%coefficients%sigma(k - 1)*self%moulton(k - 2)*sqrt(squares(3))
-    if (k == 2 .and. errors%lower <= 0.5_dp*errors%same) errors%order = k - 1
+    associate (g => self%coefficients%g, sigma => self%coefficients%sigma, gamma => self%moulton)
+      errors%step = (self%h*(g(k) - g(k + 1)))**2*squares(1)
+      errors%same = (self%h*sigma(k + 1)*gamma(k))**2*squares(1)
+      errors%correction = (self%h*g(k + 1))**2*squares(1)
+      errors%order = k
+      if (k >= 2) errors%lower = (self%h*sigma(k)*gamma(k - 1))**2*squares(2)
+      if (k >= 3) errors%lowest = (self%h*sigma(k - 1)*gamma(k - 2))**2*squares(3)
+    end associate
+    if (k == 2 .and. errors%lower <= 0.5_dp**2*errors%same) errors%order = k - 1
     if (k >= 3 .and. max(errors%lower, errors%lowest) <= errors%same) errors%order = k - 1
   end procedure estimate_errors
 
@@ -89,18 +92,22 @@ contains
   end procedure respect_rough_time
 
   module procedure count_limit
-    real(dp) :: reach, near, slow
+    real(dp), parameter :: noise = 100
+    real(dp) :: reach, near, slow, path   ! all squares
     integer :: limit
-    reach = self%h*fastest_mode(self%n, self%inverse_weight, self%f_predicted, self%f_new, self%predicted, self%y_new, &
-      100*self%rounding)
-    self%statistics%stiffness = self%statistics%stiffness + reach
-    near = reach/stability_limit(self%k)
+    reach = 0
+    if (errors%correction > max(noise**2*self%rounding_square, tiny(reach))) reach = self%h**2 &
+      *(square_of_difference(self%n, self%f_new, self%f_predicted, self%inverse_weight)/errors%correction)
+    self%statistics%stiffness = self%statistics%stiffness + sqrt(reach)
+    near = reach*per_limit_square(self%k)
     limit = self%limit
     self%bound = .false.
-    if (near > 0.3_dp) then
-      slow = self%h*path_rate(self%n, self%inverse_weight, self%f, self%f_new, self%y, self%y_new)/reach
-      self%bound = slow < 0.6_dp
-      if (limit == limit_error .and. near > 0.5_dp .and. slow < 0.3_dp) limit = limit_stability
+    if (near > 0.3_dp**2) then
+      slow = 0   ! where the solution moves by no more than five tolerances
+      path = square_of_difference(self%n, self%y_new, self%y, self%inverse_weight)
+      if (path >= 5**2) slow = self%h**2*square_of_difference(self%n, self%f_new, self%f, self%inverse_weight)/(path*reach)
+      self%bound = slow < 0.6_dp**2
+      if (limit == limit_error .and. near > 0.5_dp**2 .and. slow < 0.3_dp**2) limit = limit_stability
     end if
     associate (count => self%statistics)
       count%limited_by(limit) = count%limited_by(limit) + 1
@@ -109,7 +116,8 @@ contains
   end procedure count_limit
 
   module procedure choose_order_and_step
-    real(dp) :: error, higher, factor
+    real(dp) :: error, higher   ! squares
+    real(dp) :: factor
     integer :: k
 
     k = self%k
@@ -122,7 +130,7 @@ contains
     if (self%opening) then
       self%k = k + 1
       self%limit = limit_start
-      factor = (0.1_dp/max(errors%same, tiny(1.0_dp)))**(1.0_dp/(k + 1))
+      factor = (0.1_dp**2/max(errors%same, tiny(1.0_dp)))**(0.5_dp/(k + 1))
       call grow(self, max(2.0_dp, min(64.0_dp, factor)))
       return
     end if
@@ -130,10 +138,10 @@ contains
       self%k = k - 1
       error = errors%lower
     else if (self%higher_known) then
-      higher = self%h*self%coefficients%sigma_next*self%moulton(k + 1) &
-        *sum_norm(self%n, self%phi(:, k + 2), self%owed, self%inverse_weight)
+      higher = (self%h*self%coefficients%sigma_next*self%moulton(k + 1))**2 &
+        *square_of_sum(self%n, self%phi(:, k + 2), self%owed, self%inverse_weight)
       if (k == 1) then
-        if (higher < 0.5_dp*error .and. k < self%settings%max_order) self%k = 2
+        if (higher < 0.5_dp**2*error .and. k < self%settings%max_order) self%k = 2
       else if (errors%lower <= min(error, higher)) then
         self%k = k - 1
         error = errors%lower
@@ -143,14 +151,14 @@ contains
       if (self%k > k) error = higher
     end if
 
-    if (0.5_dp >= error*doubled(self%k)) then
+    if (0.5_dp**2 >= error*doubled(self%k)) then
       factor = 2
-    else if (0.5_dp >= error*raised(self%k) .and. self%coefficients%ns > 1) then
+    else if (0.5_dp**2 >= error*raised(self%k) .and. self%coefficients%ns > 1) then
       factor = 1.25_dp
-    else if (0.5_dp >= error) then
+    else if (0.5_dp**2 >= error) then
       factor = 1
     else
-      factor = max(0.5_dp, min(0.9_dp, (0.5_dp/error)**(1.0_dp/(self%k + 1))))
+      factor = max(0.5_dp, min(0.9_dp, (0.5_dp**2/error)**(0.5_dp/(self%k + 1))))
     end if
     self%limit = limit_error
     call grow(self, factor)
@@ -160,11 +168,9 @@ contains
   pure subroutine grow(self, factor)
     class(adams_t), intent(inout) :: self
     real(dp), intent(in) :: factor
-    real(dp) :: longest
     self%h = factor*self%h
-    longest = clock_step(self, self%settings%max_step)
-    if (self%h < longest) return
-    self%h = longest
+    if (merge(self%h*(2*self%x + self%h), self%h, self%rooted) < self%settings%max_step) return
+    self%h = clock_step(self, self%settings%max_step)
     self%limit = limit_max_step
   end subroutine grow
 end submodule adams_control

@@ -1,9 +1,9 @@
 !> The table of modified divided differences of the Adams method: phi_i, i = 1..k+2 (Shampine & Gordon 1975, ch. 5). Work
 !> on plain arrays, which the compiler knows to be apart.
 !>
-!> The table holds the components in blocks of `lanes`, the last one filled up with zeros, so that a loop over the components of
-!> a block becomes a few vector instructions without any test of what is left over. All other loops are kept scalar: vectors
-!> would be loaded from what the right-hand side or a loop before has just stored number by number, which stalls processors.
+!> The table holds the components in blocks of `lanes`, the last one filled up with zeros, so that the sums of a block stay in
+!> registers while its columns pass. All loops are kept scalar: vectors would be loaded from what the right-hand side or a loop
+!> before has just stored number by number, which stalls processors.
 !>
 !> A step of order k that stands adds its highest difference, f at its end less the f extrapolated there, to the columns 1..k+2
 !> of the table (of which column k+1 was zero, and column k+2 the negative of the old difference of its order). That is put
@@ -14,7 +14,7 @@ module adams_differences
   private
   public :: lanes, extrapolate, restore_differences, correct, add_weighted, differences_of
 
-  integer, parameter :: lanes = 4   !! components in a block
+  integer, parameter :: lanes = 2   !! components in a block: scenes have from three to eight
 
 contains
 
@@ -96,11 +96,14 @@ contains
     integer, intent(in) :: width, k
     real(dp), intent(in) :: beta(k), beta_next
     real(dp), intent(inout) :: phi(width, k + 2)
+    real(dp) :: factor
     integer :: i
-    do i = 1, k
-      phi(:, i) = (phi(:, i) - phi(:, i + 1))/beta(i)
+    do i = 1, k   ! one division a column
+      factor = 1/beta(i)
+      phi(:, i) = factor*(phi(:, i) - phi(:, i + 1))
     end do
-    phi(:, k + 1) = -phi(:, k + 2)/beta_next
+    factor = -1/beta_next
+    phi(:, k + 1) = factor*phi(:, k + 2)
   end subroutine restore_differences
 
   !> Add weights_j phi_j, j = m..1, to `total`.

@@ -3,7 +3,7 @@ submodule (adams) adams_start
   use ode_method, only: start_outside, step_statistics_t
   use adams_coefficients, only: moulton_constants
   use adams_differences, only: lanes, differences_of
-  use step_rates, only: norm
+  use step_norms, only: norm
   implicit none
 contains
 
@@ -88,7 +88,7 @@ contains
     call archive%exchange(self%limit)
     call archive%exchange(self%bound)
     call archive%exchange(self%higher_known)
-    call archive%exchange(self%rounding)
+    call archive%exchange(self%rounding_square)
     call archive%exchange(self%opening)
     call archive%exchange(self%phi)
     call archive%exchange(self%owed)

@@ -151,7 +151,7 @@ contains
     product = y(m - 1)*y(2*m - 1) + y(m)*y(2*m)   ! e . e' = |e| |e|'
     if (.not. product < 0) return
     distance = sqrt(y(m - 1)**2 + y(m)**2)
-    if (distance > self%joint%clearance) rough_time = t - (distance - self%joint%clearance)/(product/distance)
+    if (distance > self%joint%clearance) rough_time = t - (distance - self%joint%clearance)*distance/product
   end procedure rough_time
 
   module procedure handle_event

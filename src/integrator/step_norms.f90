@@ -1,0 +1,47 @@
+!> Weighted norms over the n components of a state. Their squares, wherever a comparison is all that is asked: a root takes as long
+!> as a dozen products.
+module step_norms
+  use kinds, only: dp
+  implicit none
+  private
+  public :: norm, square_of_sum, square_of_difference
+
+contains
+
+  !> The norm in which errors are measured: 1 is the tolerance.
+  pure real(dp) function norm(n, values, inverse_weight)
+    integer, intent(in) :: n
+    real(dp), dimension(n), intent(in) :: values, inverse_weight
+    integer :: i
+    norm = 0
+    !GCC$ novector
+    do i = 1, n
+      norm = norm + (values(i)*inverse_weight(i))**2
+    end do
+    norm = sqrt(norm)
+  end function norm
+
+  !> The square of the norm of the sum of two vectors.
+  pure real(dp) function square_of_sum(n, first, second, inverse_weight)
+    integer, intent(in) :: n
+    real(dp), dimension(n), intent(in) :: first, second, inverse_weight
+    integer :: i
+    square_of_sum = 0
+    !GCC$ novector
+    do i = 1, n
+      square_of_sum = square_of_sum + ((first(i) + second(i))*inverse_weight(i))**2
+    end do
+  end function square_of_sum
+
+  !> The square of the norm of the difference of two vectors.
+  pure real(dp) function square_of_difference(n, first, second, inverse_weight)
+    integer, intent(in) :: n
+    real(dp), dimension(n), intent(in) :: first, second, inverse_weight
+    integer :: i
+    square_of_difference = 0
+    !GCC$ novector
+    do i = 1, n
+      square_of_difference = square_of_difference + ((first(i) - second(i))*inverse_weight(i))**2
+    end do
+  end function square_of_difference
+end module step_norms
