@@ -18,7 +18,8 @@ program measure_costs
   use clearance_scene, only: clearance_scene_t
   use scene_builder, only: build_scene, settings_for, simulated_time
   use columns, only: column_list_t, choose_columns, row_values
-  use ode_method, only: ode_method_t
+  use ode_method, only: ode_method_t, step_done
+  use events, only: event_watch_t
   use methods, only: new_method
   use recorder, only: recorder_t
   use trace_sink, only: trace_sink_t
@@ -26,12 +27,13 @@ program measure_costs
   implicit none
 
   integer, parameter :: n_states = 64, blocks = 31, calls = 6400, steps_in_block = 2000
-  integer, parameter :: name_length = 28, n_scenes = 16, n_quantities = 6
+  real(dp), parameter :: no_difference = 1e-200_dp   !! times any result: added to an angle or a state it changes nothing
+  integer, parameter :: name_length = 28, n_scenes = 16, n_quantities = 8
   character(len=name_length), parameter :: scenes(n_scenes) = [character(len=name_length) :: 'ideal', 'ideal+gas', 'free', &
     'free+gas', 'contact_hertz', 'contact', 'contact+quadrature', 'contact+ambrosio', 'contact+coulomb', 'closed_form', &
     'closed_form+quadrature', 'closed_form+gas', 'as_printed', 'half_film', 'oscillating', 'oscillating_as_printed']
-  character(len=name_length), parameter :: quantities(n_quantities) = [character(len=name_length) :: 'rhs', 'step', &
-    'step+figures', 'row', 'row_no_reactions', 'row_time_and_angle']
+  character(len=name_length), parameter :: quantities(n_quantities) = [character(len=name_length) :: 'rhs', &
+    'rhs_in_turn', 'step', 'events', 'step+figures', 'row', 'row_no_reactions', 'row_time_and_angle']
   character(len=name_length) :: scene_name, quantity, text
   integer :: i, j, count
 
@@ -68,7 +70,7 @@ contains
     logical :: dry
 
     dry = index(name, 'contact') == 1
-    if (dry .and. index(quantity, 'step') == 1) then
+    if (dry .and. along_case(quantity)) then
       call read_case('cases/flores/friction_050.nml', nothing, case, error)
     else
       call read_case('cases/sim_IV.nml', nothing, case, error)
@@ -134,37 +136,51 @@ contains
     real(dp) :: ns(blocks), pair(blocks), evaluations
     integer :: i
 
-    if (name(:4) == 'free' .and. index(quantity, 'step') == 1) return   ! nothing would hold the pin
+    if (name(:4) == 'free' .and. along_case(quantity)) return   ! nothing would hold the pin
     call make(name, quantity, case, scene)
-    if (index(quantity, 'step') /= 1) call make_states(name, scene, y)
+    if (.not. along_case(quantity)) call make_states(name, scene, y)
     evaluations = 1
     do i = 1, blocks
-      pair(i) = time_of_pairs(calls)
+      pair(i) = time_of_pairs(calls, quantity == 'rhs_in_turn')
       select case (quantity)
-      case ('rhs')
-        ns(i) = time_of_evaluations(scene, y, calls)
+      case ('rhs', 'rhs_in_turn')
+        ns(i) = time_of_evaluations(scene, y, calls, quantity == 'rhs_in_turn')
       case ('step', 'step+figures')
         call run_steps(case, scene, quantity == 'step+figures', steps_in_block, ns(i), evaluations)
+      case ('events')
+        ns(i) = time_of_events(case, scene, steps_in_block)
       case default
         ns(i) = time_of_rows(case, scene, y, quantity, calls)
       end select
     end do
+    if (quantity == 'events') ns = max(0.0_dp, median(ns))
     print '(3a,",",f0.1,2(",",f0.2))', name, ',', quantity, minval(ns), minval(ns)/minval(pair), evaluations
   end subroutine measure
 
-  real(dp) function time_of_pairs(count) result(ns)
+  !> A sine and a cosine. A processor works on several at a time, unless they are made `in_turn`: each begins when the one before
+  !> is known.
+  real(dp) function time_of_pairs(count, in_turn) result(ns)
     integer, intent(in) :: count
+    logical, intent(in) :: in_turn
     integer(int64) :: before, after, rate
     real(dp) :: total, angle(n_states)
     integer :: i, j
     angle = [(pi*(1.05_dp + 0.8_dp*j/n_states), j=1, n_states)]
     total = 0
     call system_clock(before, rate)
-    do i = 1, count/n_states
-      do j = 1, n_states
-        total = total + sine_and_cosine(angle(j))
+    if (in_turn) then
+      do i = 1, count/n_states
+        do j = 1, n_states
+          total = sine_and_cosine(angle(j) + no_difference*total)
+        end do
       end do
-    end do
+    else
+      do i = 1, count/n_states
+        do j = 1, n_states
+          total = total + sine_and_cosine(angle(j))
+        end do
+      end do
+    end if
     call system_clock(after)
     ns = 1e9_dp*real(after - before, dp)/real(rate, dp)/(count/n_states*n_states)
     if (total > huge(total)) print *, total
@@ -175,19 +191,28 @@ contains
     sine_and_cosine = sin(x) + cos(x)
   end function sine_and_cosine
 
-  real(dp) function time_of_evaluations(scene, y, count) result(ns)
+  !> Evaluations of the right-hand side, independent of each other or, as in an integration, `in_turn`: each at a state that waits for
+  !> all results of the one before.
+  real(dp) function time_of_evaluations(scene, y, count, in_turn) result(ns)
     class(scene_t), intent(in) :: scene
     real(dp), intent(in) :: y(:, :)
     integer, intent(in) :: count
+    logical, intent(in) :: in_turn
     integer(int64) :: before, after, rate
-    real(dp) :: f(size(y, 1)), total
+    real(dp) :: state(size(y, 1)), f(size(y, 1)), total
     logical :: inside
     integer :: i, j
+    f = 0
     total = 0
     call system_clock(before, rate)
     do i = 1, count/n_states
       do j = 1, n_states
-        call scene%derivatives(0.0_dp, y(:, j), f, inside)
+        if (in_turn) then
+          state = y(:, j) + no_difference*sum(f)
+          call scene%derivatives(0.0_dp, state, f, inside)
+        else
+          call scene%derivatives(0.0_dp, y(:, j), f, inside)
+        end if
         if (.not. inside) error stop 'measure_costs: a state outside the model'
         total = total + f(2)
       end do
@@ -236,7 +261,8 @@ contains
     if (total > huge(total)) print *, total
   end function time_of_rows
 
-  !> Accepted steps of Adams from the start of the case on, and evaluations of each, starts and events included.
+  !> Accepted steps of Adams along the case, from its start to its end and again, and evaluations of each: starts and events
+  !> included.
   subroutine run_steps(case, template, with_figures, count, ns, evaluations)
     type(case_t), intent(in) :: case
     class(scene_t), intent(in) :: template
@@ -250,28 +276,114 @@ contains
     integer(int64) :: before, after, rate
     real(dp), allocatable :: y(:)
     real(dp) :: t
-    integer :: status
+    integer :: status, steps
 
-    allocate (scene, source=template)
-    method%settings = settings_for(case, scene)
-    allocate (y(scene%n), source=scene%initial_state())
-    t = 0
+    method%settings = settings_for(case, template)
     call prepare_recorder(case, recorder)
-    if (with_figures) then
-      call recorder%prepare(scene%n)
-      call recorder%begin(scene, y)
-    end if
-    call system_clock(before, rate)
-    if (with_figures) then
-      call integrate(scene, method, t, y, 1e3_dp, count, recorder, status)
-    else
-      call integrate(scene, method, t, y, 1e3_dp, count, nobody, status)
-    end if
-    call system_clock(after)
-    if (status /= step_limit_reached .and. status /= integration_done) error stop 'measure_costs: a run failed'
-    evaluations = real(method%statistics%evaluations, dp)/method%statistics%accepted
-    ns = 1e9_dp*real(after - before, dp)/real(rate, dp)/method%statistics%accepted
+    if (with_figures) call recorder%prepare(template%n)
+    ns = 0
+    evaluations = 0
+    steps = 0
+    do while (steps < count)
+      scene = template
+      y = scene%initial_state()
+      t = 0
+      if (with_figures) call recorder%begin(scene, y)
+      call system_clock(before, rate)
+      if (with_figures) then
+        call integrate(scene, method, t, y, simulated_time(case), count - steps, recorder, status)
+      else
+        call integrate(scene, method, t, y, simulated_time(case), count - steps, nobody, status)
+      end if
+      call system_clock(after)
+      if (status /= step_limit_reached .and. status /= integration_done) error stop 'measure_costs: a run failed'
+      ns = ns + 1e9_dp*real(after - before, dp)/real(rate, dp)
+      steps = steps + method%statistics%accepted
+      evaluations = evaluations + method%statistics%evaluations
+    end do
+    ns = ns/steps
+    evaluations = evaluations/steps
   end subroutine run_steps
+
+  !> What a step spends on looking for events, the finding of those that happen included: the time by which steps become longer whose
+  !> events are sought twice.
+  real(dp) function time_of_events(case, template, count) result(ns)
+    type(case_t), intent(in) :: case
+    class(scene_t), intent(in) :: template
+    integer, intent(in) :: count
+    ns = time_of_searching(case, template, count, 2) - time_of_searching(case, template, count, 1)
+  end function time_of_events
+
+  !> Nanoseconds of a step as `integrate` makes it, nobody looking on, whose events are sought `searches` times.
+  real(dp) function time_of_searching(case, template, count, searches) result(ns)
+    type(case_t), intent(in) :: case
+    class(scene_t), intent(in) :: template
+    integer, intent(in) :: count, searches
+    class(scene_t), allocatable :: scene
+    type(adams_t) :: method
+    type(event_watch_t) :: watches(searches)
+    integer(int64) :: before, after, rate
+    real(dp), allocatable :: y(:)
+    real(dp) :: t, t_end
+    integer :: status, steps, event, action, i
+
+    method%settings = settings_for(case, template)
+    t_end = simulated_time(case)
+    ns = 0
+    steps = 0
+    do while (steps < count)
+      scene = template
+      y = scene%initial_state()
+      call system_clock(before, rate)
+      call method%start(scene, 0.0_dp, y, .true., status)
+      call begin_all(watches, scene, 0.0_dp, y, 0)
+      do while (method%t < t_end .and. steps + method%statistics%accepted < count)
+        method%rough_time = scene%rough_time(method%t, method%y)
+        call method%step(scene, status)
+        if (status /= step_done) error stop 'measure_costs: a run failed'
+        do i = 1, searches
+          call watches(i)%search(method, scene, t_end, event, t)
+        end do
+        if (event == 0) cycle
+        call method%interpolate(t, y)
+        call scene%handle_event(event, t, y, action)
+        call method%start(scene, t, y, .false., status)
+        call begin_all(watches, scene, t, y, event)
+      end do
+      call system_clock(after)
+      ns = ns + 1e9_dp*real(after - before, dp)/real(rate, dp)
+      steps = steps + method%statistics%accepted
+    end do
+    ns = ns/steps
+  end function time_of_searching
+
+  subroutine begin_all(watches, scene, t, y, just_taken)
+    type(event_watch_t), intent(inout) :: watches(:)
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(:)
+    integer, intent(in) :: just_taken
+    integer :: i
+    do i = 1, size(watches)
+      call watches(i)%begin(scene, t, y, just_taken)
+    end do
+  end subroutine begin_all
+
+  !> Whether a quantity is measured along a case, else at states given to it.
+  pure logical function along_case(quantity)
+    character(len=*), intent(in) :: quantity
+    along_case = index(quantity, 'step') == 1 .or. quantity == 'events'
+  end function along_case
+
+  !> Of an odd number of values.
+  pure real(dp) function median(values)
+    intrinsic :: count
+    real(dp), intent(in) :: values(:)
+    integer :: i
+    do i = 1, size(values)
+      median = values(i)
+      if (2*count(values < median) < size(values) .and. 2*count(values > median) < size(values)) return
+    end do
+  end function median
 
   !> A recorder whose rows are never due.
   subroutine prepare_recorder(case, recorder)
@@ -294,14 +406,14 @@ contains
     real(dp) :: ns, evaluations
 
     if (quantity == 'pair') then
-      ns = time_of_pairs(count)
+      ns = time_of_pairs(count, .false.)
       return
     end if
     call make(name, quantity, case, scene)
-    if (index(quantity, 'step') /= 1) call make_states(name, scene, y)
+    if (.not. along_case(quantity)) call make_states(name, scene, y)
     select case (quantity)
-    case ('rhs')
-      ns = time_of_evaluations(scene, y, count)
+    case ('rhs', 'rhs_in_turn')
+      ns = time_of_evaluations(scene, y, count, quantity == 'rhs_in_turn')
     case ('step', 'step+figures')
       call run_steps(case, scene, quantity == 'step+figures', count, ns, evaluations)
     case default
