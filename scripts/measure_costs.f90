@@ -305,7 +305,7 @@ contains
     evaluations = evaluations/steps
   end subroutine run_steps
 
-  !> What a step spends on looking for events, the finding of those that happen included: the time by which steps become longer whose
+  !> What a step spends on looking for events, the finding of those that happen included: by how much steps become longer whose
   !> events are sought twice.
   real(dp) function time_of_events(case, template, count) result(ns)
     type(case_t), intent(in) :: case
