@@ -191,8 +191,8 @@ contains
     sine_and_cosine = sin(x) + cos(x)
   end function sine_and_cosine
 
-  !> Evaluations of the right-hand side, independent of each other or, as in an integration, `in_turn`: each at a state that waits for
-  !> all results of the one before.
+  !> Evaluations of the right-hand side, independent of each other or, as in an integration, `in_turn`: each at a state that waits
+  !> for all results of the one before.
   real(dp) function time_of_evaluations(scene, y, count, in_turn) result(ns)
     class(scene_t), intent(in) :: scene
     real(dp), intent(in) :: y(:, :)
