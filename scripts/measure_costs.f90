@@ -338,7 +338,9 @@ contains
       call method%start(scene, 0.0_dp, y, .true., status)
       call begin_all(watches, scene, 0.0_dp, y, 0)
       do while (method%t < t_end .and. steps + method%statistics%accepted < count)
-        method%rough_time = scene%rough_time(method%t, method%y)
+        do i = 1, searches
+          method%rough_time = scene%rough_time(method%t, method%y)
+        end do
         call method%step(scene, status)
         if (status /= step_done) error stop 'measure_costs: a run failed'
         do i = 1, searches

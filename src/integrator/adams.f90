@@ -40,6 +40,7 @@ module adams
     real(dp) :: lowest = 0     !! at order k-2
     integer :: order = 1       !! order proposed by them: k or k-1
     real(dp) :: correction = 0 !! square of the norm of the correction of y
+    real(dp) :: change = 0     !! square of the norm of the change of f by it
   end type error_estimates_t
 
   !> The state of the method between two steps.
@@ -267,7 +268,7 @@ contains
     type(error_estimates_t), intent(out) :: errors
     integer, intent(out) :: outcome
     real(dp), intent(out) :: fraction   !! part of the step to try next, where the problem refused it
-    real(dp) :: squares(3)
+    real(dp) :: squares(3), time_rate
     integer :: k, verdict
     logical :: inside
 
@@ -276,9 +277,9 @@ contains
     self%statistics%evaluations = self%statistics%evaluations + 1
     call problem%derivatives(t_new, self%predicted, self%f_predicted, inside)
     if (.not. inside) return
-    if (self%rooted) call change_clock(self%n, 2*x_new, self%f_predicted)
     k = self%k
-    call correct(self%n, self%h*self%coefficients%g(k + 1), self%f_predicted, self%phi(:, 1), self%phi(:, k), &
+    time_rate = merge(2*x_new, 1.0_dp, self%rooted)
+    call correct(self%n, self%h*self%coefficients%g(k + 1), time_rate, self%f_predicted, self%phi(:, 1), self%phi(:, k), &
       self%phi(:, max(k - 1, 1)), self%inverse_weight, self%predicted, self%y_new, self%carry_new, squares)
     call estimate_errors(self, squares, errors)
     if (.not. errors%step <= 1 .and. .not. self%settings%fixed_step > 0) then   ! a NaN is an error too
@@ -296,7 +297,7 @@ contains
       fraction = 0.5_dp
       return
     end if
-    if (self%rooted) call change_clock(self%n, 2*x_new, self%f_new)
+    call take_by_clock(self%n, time_rate, self%f_predicted, self%inverse_weight, self%f_new, errors%change)
     outcome = try_accepted
   end subroutine attempt
 
@@ -343,15 +344,18 @@ contains
     end do
   end subroutine keep
 
-  !> Multiply f by what makes it the rate by another clock.
-  pure subroutine change_clock(n, factor, f)
+  !> Make f, the rate by the time, that by the clock; `square` is that of the norm of its difference from the one `before`.
+  pure subroutine take_by_clock(n, time_rate, before, inverse_weight, f, square)
     integer, intent(in) :: n
-    real(dp), intent(in) :: factor
+    real(dp), intent(in) :: time_rate, before(n), inverse_weight(n)
     real(dp), intent(inout) :: f(n)
+    real(dp), intent(out) :: square
     integer :: i
+    square = 0
     !GCC$ novector
     do i = 1, n
-      f(i) = factor*f(i)
+      f(i) = time_rate*f(i)
+      square = square + ((f(i) - before(i))*inverse_weight(i))**2
     end do
-  end subroutine change_clock
+  end subroutine take_by_clock
 end module adams

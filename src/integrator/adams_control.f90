@@ -42,6 +42,12 @@ contains
     if (self%rooted) clock_step = dt/(sqrt(self%x**2 + dt) + self%x)
   end procedure clock_step
 
+  !> How far the time goes in the next step.
+  pure real(dp) function time_step(self)
+    class(adams_t), intent(in) :: self
+    time_step = merge(self%h*(2*self%x + self%h), self%h, self%rooted)
+  end function time_step
+
   module procedure retreat
     real(dp) :: factor
 
@@ -87,6 +93,7 @@ contains
     real(dp), parameter :: share = 1/6.0_dp   !! of the way there, in one step
     real(dp) :: way
     if (.not. self%rough_time < huge(1.0_dp) .or. self%settings%fixed_step > 0) return
+    if (time_step(self) <= share**2*(self%rough_time - self%t)) return   ! far from there, without a root
     way = clock_step(self, self%rough_time - self%t)
     if (self%h > share*way .and. self%h < 2*way) self%h = max(share*way, 0.5_dp*self%h)
   end procedure respect_rough_time
@@ -96,8 +103,8 @@ contains
     real(dp) :: reach, near, slow, path   ! all squares
     integer :: limit
     reach = 0
-    if (errors%correction > max(noise**2*self%rounding_square, tiny(reach))) reach = self%h**2 &
-      *(square_of_difference(self%n, self%f_new, self%f_predicted, self%inverse_weight)/errors%correction)
+    if (errors%correction > max(noise**2*self%rounding_square, tiny(reach))) &
+      reach = self%h**2*(errors%change/errors%correction)
     self%statistics%stiffness = self%statistics%stiffness + sqrt(reach)
     near = reach*per_limit_square(self%k)
     limit = self%limit
@@ -169,7 +176,7 @@ contains
     class(adams_t), intent(inout) :: self
     real(dp), intent(in) :: factor
     self%h = factor*self%h
-    if (merge(self%h*(2*self%x + self%h), self%h, self%rooted) < self%settings%max_step) return
+    if (time_step(self) < self%settings%max_step) return
     self%h = clock_step(self, self%settings%max_step)
     self%limit = limit_max_step
   end subroutine grow

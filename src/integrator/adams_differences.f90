@@ -63,13 +63,15 @@ contains
     end do
   end subroutine extrapolate_table
 
-  !> Correct to order k+1 with f at the prediction: `factor` is h g_k+1, columns are the first of the table and those that the
-  !> errors at orders k-1 and k-2 need. `carry` becomes what the rounding leaves out of y_new. `squares` are those of the weighted
-  !> norms of the correction of f and of its sums with the other two columns.
-  pure subroutine correct(n, factor, f_predicted, first, lower, lowest, inverse_weight, predicted, y_new, carry, squares)
+  !> Correct to order k+1 with f at the prediction, which becomes its rate by the clock (`time_rate` is that of the time): `factor`
+  !> is h g_k+1, columns are the first of the table and those that the errors at orders k-1 and k-2 need. `carry` becomes what
+  !> the rounding leaves out of y_new. `squares` are those of the weighted norms of the correction of f and of its sums with
+  !> the other two columns.
+  pure subroutine correct(n, factor, time_rate, f_predicted, first, lower, lowest, inverse_weight, predicted, y_new, carry, squares)
     integer, intent(in) :: n
-    real(dp), intent(in) :: factor
-    real(dp), dimension(n), intent(in) :: f_predicted, first, lower, lowest, inverse_weight, predicted
+    real(dp), intent(in) :: factor, time_rate
+    real(dp), intent(inout) :: f_predicted(n)
+    real(dp), dimension(n), intent(in) :: first, lower, lowest, inverse_weight, predicted
     real(dp), intent(out) :: y_new(n), squares(3)
     real(dp), intent(inout) :: carry(n)
     real(dp) :: correction, change, weight, same_square, lower_square, lowest_square
@@ -79,6 +81,7 @@ contains
     lowest_square = 0
     !GCC$ novector
     do i = 1, n
+      f_predicted(i) = time_rate*f_predicted(i)
       correction = f_predicted(i) - first(i)
       weight = inverse_weight(i)
       same_square = same_square + (correction*weight)**2
