@@ -3,7 +3,7 @@ submodule (adams) adams_control
   use ode_method, only: limit_error, limit_stability, limit_max_step, limit_refusal
   use adams_coefficients, only: stability_limit
   use adams_differences, only: lanes, restore_differences
-  use step_norms, only: square_of_sum, square_of_difference
+  use step_norms, only: square_of_sum
   implicit none
 
   !> What the square of the error is multiplied by, at each order, when the step is doubled or raised by a quarter.
@@ -111,8 +111,9 @@ contains
     self%bound = .false.
     if (near > 0.3_dp**2) then
       slow = 0   ! where the solution moves by no more than five tolerances
-      path = square_of_difference(self%n, self%y_new, self%y, self%inverse_weight)
-      if (path >= 5**2) slow = self%h**2*square_of_difference(self%n, self%f_new, self%f, self%inverse_weight)/(path*reach)
+      path = square_of_sum(self%n, self%y_new, -1.0_dp, self%y, self%inverse_weight)
+      if (path >= 5**2) slow = self%h**2 &
+        *square_of_sum(self%n, self%f_new, -1.0_dp, self%f, self%inverse_weight)/(path*reach)
       self%bound = slow < 0.6_dp**2
       if (limit == limit_error .and. near > 0.5_dp**2 .and. slow < 0.3_dp**2) limit = limit_stability
     end if
@@ -146,7 +147,7 @@ contains
       error = errors%lower
     else if (self%higher_known) then
       higher = (self%h*self%coefficients%sigma_next*self%moulton(k + 1))**2 &
-        *square_of_sum(self%n, self%phi(:, k + 2), self%owed, self%inverse_weight)
+        *square_of_sum(self%n, self%phi(:, k + 2), 1.0_dp, self%owed, self%inverse_weight)
       if (k == 1) then
         if (higher < 0.5_dp**2*error .and. k < self%settings%max_order) self%k = 2
       else if (errors%lower <= min(error, higher)) then

@@ -4,7 +4,7 @@ module step_norms
   use kinds, only: dp
   implicit none
   private
-  public :: norm, square_of_sum, square_of_difference
+  public :: norm, square_of_sum
 
 contains
 
@@ -21,27 +21,16 @@ contains
     norm = sqrt(norm)
   end function norm
 
-  !> The square of the norm of the sum of two vectors.
-  pure real(dp) function square_of_sum(n, first, second, inverse_weight)
+  !> The square of the norm of first + factor*second.
+  pure real(dp) function square_of_sum(n, first, factor, second, inverse_weight)
     integer, intent(in) :: n
+    real(dp), intent(in) :: factor
     real(dp), dimension(n), intent(in) :: first, second, inverse_weight
     integer :: i
     square_of_sum = 0
     !GCC$ novector
     do i = 1, n
-      square_of_sum = square_of_sum + ((first(i) + second(i))*inverse_weight(i))**2
+      square_of_sum = square_of_sum + ((first(i) + factor*second(i))*inverse_weight(i))**2
     end do
   end function square_of_sum
-
-  !> The square of the norm of the difference of two vectors.
-  pure real(dp) function square_of_difference(n, first, second, inverse_weight)
-    integer, intent(in) :: n
-    real(dp), dimension(n), intent(in) :: first, second, inverse_weight
-    integer :: i
-    square_of_difference = 0
-    !GCC$ novector
-    do i = 1, n
-      square_of_difference = square_of_difference + ((first(i) - second(i))*inverse_weight(i))**2
-    end do
-  end function square_of_difference
 end module step_norms

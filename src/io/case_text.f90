@@ -1,6 +1,6 @@
 !> Cases as text: the template with every key and its default, and the resolved case.
 module case_text
-  use text_tools, only: integer_text
+  use text_tools, only: integer_text, quoted
   use growing_text, only: growing_text_t
   use number_text, only: exact_text
   use case_schema, only: key_t, group_definition_t, real_kind, integer_kind, logical_kind
@@ -36,7 +36,7 @@ contains
     character(len=:), allocatable :: line, value, note
     value = trim(key%default)
     if (key%example /= '') value = trim(key%example)
-    if (key%kind > logical_kind) value = quoted(value)
+    if (key%kind > logical_kind) value = quoted(value, '''')
     if (key%kind == real_kind .and. key%count > 1) value = value//repeat(', '//value, key%count - 1)
     line = '  '//trim(key%name)//' = '//value
     line = line//repeat(' ', max(1, 42 - len(line)))//'! '
@@ -90,7 +90,7 @@ contains
     case (logical_kind)
       call text%append(trim(merge('.true. ', '.false.', value%switch)))
     case default
-      call text%append(quoted(value%text))
+      call text%append(quoted(value%text, ''''))
     end select
     if (key%unit /= '') then
       call text%append('  ! ')
@@ -98,21 +98,4 @@ contains
     end if
     call text%append(newline)
   end subroutine append_line
-
-  !> In single quotes, those inside doubled.
-  pure function quoted(text) result(string)
-    character(len=*), intent(in) :: text
-    character(len=:), allocatable :: string
-    character(len=2*len(text)) :: inside
-    integer :: i, used
-    used = 0
-    do i = 1, len(text)
-      used = used + 1
-      inside(used:used) = text(i:i)
-      if (text(i:i) /= '''') cycle
-      used = used + 1
-      inside(used:used) = ''''
-    end do
-    string = ''''//inside(:used)//''''
-  end function quoted
 end module case_text

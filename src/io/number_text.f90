@@ -3,6 +3,7 @@ module number_text
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: dp
   use number_writer, only: number_writer_t, longest_number
+  use text_tools, only: whole_number
   implicit none
   private
   public :: real_text, exact_text, short_text
@@ -32,9 +33,8 @@ contains
     text = scientific(value, 6)
     exponent = index(text, 'E')
     if (exponent == 0) return
-    power = 10*digit(text(exponent + 2:)) + digit(text(exponent + 3:))
-    if (text(exponent + 1:exponent + 1) == '-') power = -power
-    if (len(text) > exponent + 3 .or. power < -4 .or. power > 5) then
+    power = int(whole_number(text(exponent + 1:)))
+    if (power < -4 .or. power > 5) then
       text = without_zeros(text(:exponent - 1))//text(exponent:)
       return
     end if
@@ -46,12 +46,6 @@ contains
       text = text(:first - 1)//without_zeros(digits(:power + 1)//'.'//digits(power + 2:))
     end if
   end function short_text
-
-  !> The number that the first letter of a text stands for.
-  pure integer function digit(text)
-    character(len=*), intent(in) :: text
-    digit = iachar(text(1:1)) - iachar('0')
-  end function digit
 
   !> A number with a point, without zeros at its end, or the point.
   pure function without_zeros(number) result(text)

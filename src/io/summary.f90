@@ -6,7 +6,7 @@ module summary
   use simulation, only: run_report_t
   use case_definition, only: case_t
   use number_text, only: real_text, short_text
-  use text_tools, only: integer_text
+  use text_tools, only: integer_text, quoted
   use growing_text, only: growing_text_t
   use version, only: program_version
   implicit none
@@ -29,7 +29,7 @@ contains
     integer :: order, limit, mode, method
 
     call table%append('quantity,value,unit'//newline)
-    call add('status', quoted(report%status), '')
+    call add('status', quoted(report%status, '"'), '')
     associate (s => report%statistics, f => report%figures)
       call add('simulated_time', real_text(f%time), 's')
       call add('wall_time', real_text(wall_time), 's')
@@ -84,8 +84,8 @@ contains
       end if
     end associate
     call add('version', program_version, '')
-    call add('compiler', quoted(compiler_version()), '')
-    call add('compiler_options', quoted(compiler_options()), '')
+    call add('compiler', quoted(compiler_version(), '"'), '')
+    call add('compiler_options', quoted(compiler_options(), '"'), '')
     call table%take(text)
 
   contains
@@ -107,22 +107,6 @@ contains
     relative_residual = 0
     if (report%figures%max_energy > 0) relative_residual = report%figures%max_energy_residual/report%figures%max_energy
   end function relative_residual
-
-  !> A field of a table that may hold commas.
-  pure function quoted(value) result(field)
-    character(len=*), intent(in) :: value
-    character(len=:), allocatable :: field
-    integer :: from, mark
-    field = '"'
-    from = 1
-    do
-      mark = index(value(from:), '"')
-      if (mark == 0) exit
-      field = field//value(from:from + mark - 1)//'"'   ! each mark twice
-      from = from + mark
-    end do
-    field = field//value(from:)//'"'
-  end function quoted
 
   !> What the user of a run that is done should know, or an empty text.
   function advice(report) result(text)

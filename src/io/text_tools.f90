@@ -1,8 +1,9 @@
 !> Small work on text: case, lists of words, what may be shown to a terminal.
 module text_tools
+  use, intrinsic :: iso_fortran_env, only: int64
   implicit none
   private
-  public :: lowercase, printable, is_clean, integer_text, nearest_word, base_name, case_name
+  public :: lowercase, printable, is_clean, integer_text, whole_number, quoted, nearest_word, base_name, case_name
 
 contains
 
@@ -33,6 +34,34 @@ contains
     text = digits(first:)
     if (number < 0) text = '-'//text
   end function integer_text
+
+  !> The number that a text says: digits, 18 at most, perhaps behind a sign.
+  pure integer(int64) function whole_number(text) result(number)
+    character(len=*), intent(in) :: text
+    integer :: i
+    number = 0
+    do i = merge(2, 1, scan(text, '+-') == 1), len(text)
+      number = 10*number + (iachar(text(i:i)) - iachar('0'))
+    end do
+    if (text(1:1) == '-') number = -number
+  end function whole_number
+
+  !> A text between two marks, those inside it doubled.
+  pure function quoted(text, mark) result(string)
+    character(len=*), intent(in) :: text
+    character(len=1), intent(in) :: mark
+    character(len=:), allocatable :: string
+    integer :: from, length
+    string = mark
+    from = 1
+    do
+      length = index(text(from:), mark)
+      if (length == 0) exit
+      string = string//text(from:from + length - 1)//mark
+      from = from + length
+    end do
+    string = string//text(from:)//mark
+  end function quoted
 
   !> The text as one safe line: control characters, characters that cannot be seen or turn the direction of writing, and bytes
   !> that are not UTF-8 appear as \xHH, and what would be longer than `limit` bytes ends in '...'.

@@ -3,7 +3,7 @@
 module value_reader
   use, intrinsic :: iso_fortran_env, only: int64
   use kinds, only: dp
-  use text_tools, only: lowercase
+  use text_tools, only: lowercase, whole_number
   implicit none
   private
   public :: read_real, read_integer, read_logical, is_within
@@ -188,15 +188,4 @@ contains
     if (scan(text, '+-') == 1) first = 2
     whole = len(text) >= first .and. verify(text(first:), digits) == 0
   end function is_whole
-
-  !> The number that a text `is_whole` of, with 18 digits at most.
-  pure integer(int64) function whole_number(text) result(number)
-    character(len=*), intent(in) :: text
-    integer :: i
-    number = 0
-    do i = merge(2, 1, scan(text, '+-') == 1), len(text)
-      number = 10*number + (iachar(text(i:i)) - iachar('0'))
-    end do
-    if (text(1:1) == '-') number = -number
-  end function whole_number
 end module value_reader

@@ -119,7 +119,7 @@ contains
     real(dp), intent(in) :: work             !! [J]
     real(dp), intent(in) :: initial_energy   !! [J]
     real(dp), intent(out) :: values(:)       !! (size(list%id))
-    real(dp) :: all_values(n_columns)   !! of those that the scene has not anything
+    real(dp) :: all_values(n_columns)   !! undefined for columns that the scene does not have
     type(reactions_t) :: reaction
     integer :: i
 
