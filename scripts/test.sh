@@ -1,8 +1,12 @@
 #!/bin/sh
 # Sets up the tool chain and runs every test twice: with all checks of the compiler, warnings as errors, and as released.
 # Ends with the line "N passed, N failed"; the exit status is 0 if nothing failed.
+#
+#   scripts/test.sh                     all tests
+#   scripts/test.sh contact friction    the Fortran suites test_contact and test_friction alone, with all checks of the compiler
 cd "$(dirname "$0")/.." || exit 1
 . scripts/setup.sh || { echo "0 passed, 1 failed"; exit 1; }
+[ $# -gt 0 ] && exec fpm @strict -- "$@"
 
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT

@@ -1,6 +1,9 @@
-!> Runs every test and prints `N passed, N failed` as its last line.
+!> Runs every test, or the suites named on the command line, and prints `N passed, N failed` as its last line.
+!>
+!>     fpm test                          every suite
+!>     fpm test -- contact friction      the suites test_contact and test_friction
 program gudgeon_tests
-  use, intrinsic :: iso_fortran_env, only: output_unit
+  use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use checks, only: checks_t
   use test_adams, only: run_test_adams
   use test_adams_order, only: run_test_adams_order
@@ -33,37 +36,64 @@ program gudgeon_tests
   use test_trace_files, only: run_test_trace_files
   implicit none
   type(checks_t) :: check
+  character(len=80), allocatable :: wanted(:)   !! names of suites, none: all of them
+  logical, allocatable :: found(:)              !! which of them exist
+  integer :: i
 
-  call run_test_adams(check)
-  call run_test_adams_order(check)
-  call run_test_case_file(check)
-  call run_test_checkpoint(check)
-  call run_test_combustion(check)
-  call run_test_command_line(check)
-  call run_test_contact(check)
-  call run_test_cycle_watch(check)
-  call run_test_coordinates(check)
-  call run_test_error_growth(check)
-  call run_test_event_proof(check)
-  call run_test_events(check)
-  call run_test_findings(check)
-  call run_test_friction(check)
-  call run_test_mechanism(check)
-  call run_test_number_text(check)
-  call run_test_number_writer(check)
-  call run_test_oscillating_film(check)
-  call run_test_pinkus_sternlicht(check)
-  call run_test_radau(check)
-  call run_test_reference(check)
-  call run_test_result_file(check)
-  call run_test_resume(check)
-  call run_test_scenes(check)
-  call run_test_slow_contact(check)
-  call run_test_standard_problems(check)
-  call run_test_study(check)
-  call run_test_summary(check)
-  call run_test_trace_files(check)
+  allocate (wanted(command_argument_count()), found(command_argument_count()))
+  found = .false.
+  do i = 1, size(wanted)
+    call get_command_argument(i, wanted(i))
+  end do
+
+  call run('adams', run_test_adams)
+  call run('adams_order', run_test_adams_order)
+  call run('case_file', run_test_case_file)
+  call run('checkpoint', run_test_checkpoint)
+  call run('combustion', run_test_combustion)
+  call run('command_line', run_test_command_line)
+  call run('contact', run_test_contact)
+  call run('cycle_watch', run_test_cycle_watch)
+  call run('coordinates', run_test_coordinates)
+  call run('error_growth', run_test_error_growth)
+  call run('event_proof', run_test_event_proof)
+  call run('events', run_test_events)
+  call run('findings', run_test_findings)
+  call run('friction', run_test_friction)
+  call run('mechanism', run_test_mechanism)
+  call run('number_text', run_test_number_text)
+  call run('number_writer', run_test_number_writer)
+  call run('oscillating_film', run_test_oscillating_film)
+  call run('pinkus_sternlicht', run_test_pinkus_sternlicht)
+  call run('radau', run_test_radau)
+  call run('reference', run_test_reference)
+  call run('result_file', run_test_result_file)
+  call run('resume', run_test_resume)
+  call run('scenes', run_test_scenes)
+  call run('slow_contact', run_test_slow_contact)
+  call run('standard_problems', run_test_standard_problems)
+  call run('study', run_test_study)
+  call run('summary', run_test_summary)
+  call run('trace_files', run_test_trace_files)
 
   write (output_unit, '(i0,a,i0,a)') check%passed, ' passed, ', check%failed, ' failed'
-  if (check%failed > 0 .or. check%passed == 0) error stop 1
+  do i = 1, size(wanted)
+    if (.not. found(i)) write (error_unit, '(3a)') 'no suite of the name ', trim(wanted(i)), ': see tests/main.f90'
+  end do
+  if (check%failed > 0 .or. check%passed == 0 .or. .not. all(found)) error stop 1
+
+contains
+
+  !> Run a suite if it is asked for.
+  subroutine run(name, suite)
+    character(len=*), intent(in) :: name
+    interface
+      subroutine suite(check)
+        import :: checks_t
+        class(checks_t), intent(inout) :: check
+      end subroutine suite
+    end interface
+    where (wanted == name) found = .true.
+    if (size(wanted) == 0 .or. any(wanted == name)) call suite(check)
+  end subroutine run
 end program gudgeon_tests
