@@ -101,7 +101,7 @@ contains
     class(scene_t), intent(inout) :: scene
     real(dp), allocatable, intent(out) :: y(:, :)
     real(dp) :: part, turn, reach
-    integer :: i, m
+    integer :: i
 
     if (allocated(scene%gas)) call scene%set_gas_part(1.5_dp*pi, 250.0_dp)
     select type (scene)
@@ -112,18 +112,19 @@ contains
         scene%sliding = 1
       end if
     end select
-    m = scene%n_positions
     allocate (y(scene%n, n_states), source=0.0_dp)
     do i = 1, n_states
       part = (i - 0.5_dp)/n_states
-      y(1, i) = pi*(1.05_dp + 0.8_dp*part)
-      y(m + 1, i) = 250
-      if (m < 3) cycle
+      y(scene%crank%position, i) = pi*(1.05_dp + 0.8_dp*part)
+      y(scene%crank%rate, i) = 250
       turn = 40*part
       reach = 20e-6_dp*(0.1_dp + 0.8_dp*part)
       if (scene%phase == phase_contact) reach = 20e-6_dp + 1e-6_dp*part
-      y(2:3, i) = reach*[cos(turn), sin(turn)]
-      y(5:6, i) = 2e-3_dp*[cos(3*turn), sin(5*turn)]
+      select type (scene)
+      class is (clearance_scene_t)
+        y(scene%pin%position:scene%pin%position + 1, i) = reach*[cos(turn), sin(turn)]
+        y(scene%pin%rate:scene%pin%rate + 1, i) = 2e-3_dp*[cos(3*turn), sin(5*turn)]
+      end select
     end do
   end subroutine make_states
 

@@ -5,6 +5,7 @@ module absolute_coordinates
   use ode_problem, only: ode_problem_t
   use clearance_scene, only: clearance_scene_t
   use scene, only: evaluation_t
+  use state_making, only: put_crank, put_pin
   implicit none
   private
   public :: absolute_coordinates_t, in_absolute_coordinates
@@ -54,7 +55,8 @@ contains
     real(dp) :: e(2), rate(2), state(self%scene%n)
     call self%eccentricity(y, e, rate)
     state = 0
-    state(1:6) = [y(1), e, y(4), rate]
+    call put_crank(self%scene, state, y(1), y(4))
+    call put_pin(self%scene, state, e, rate)
     call self%scene%evaluate(t, state, now, inside)
     if (.not. inside) return
     dydt(:3) = y(4:6)

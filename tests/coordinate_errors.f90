@@ -10,6 +10,7 @@ module coordinate_errors
   use scene, only: scene_t
   use scene_builder, only: build_scene
   use clearance_scene, only: clearance_scene_t
+  use state_making, only: pin_of
   use absolute_coordinates, only: absolute_coordinates_t, in_absolute_coordinates
   use sampler, only: sampler_t
   implicit none
@@ -72,11 +73,13 @@ contains
     type is (clearance_scene_t)
       if (way == own_coordinates) then
         allocate (method%settings%absolute(scene%n), method%settings%relative(scene%n), source=tolerance)
-        call scene%natural_scales(span, method%settings%absolute, growing(:scene%n))
+        call scene%layout%natural_scales(method%settings%absolute, growing(:scene%n))
         method%settings%absolute = tolerance*method%settings%absolute
         allocate (sampler%y(scene%n, samples))
         call run(scene, method, scene%initial_state(), span, sampler, status)
-        e = sampler%y(2:3, :)
+        do i = 1, samples
+          e(:, i) = pin_of(scene, sampler%y(:, i))
+        end do
       else
         call in_absolute_coordinates(scene, absolute, start)
         allocate (method%settings%absolute(6), method%settings%relative(6), source=tolerance)

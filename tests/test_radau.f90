@@ -15,6 +15,7 @@ module test_radau
   use lankarani_nikravesh, only: lankarani_nikravesh_t
   use scene, only: scene_t, phase_contact, phase_film
   use clearance_scene, only: clearance_scene_t
+  use state_making, only: put_crank, put_pin
   use scene_builder, only: build_scene
   use solver, only: integrate, silent_observer_t, integration_done
   use test_problems, only: oscillator_t, bouncing_ball_t
@@ -266,10 +267,9 @@ contains
         scene%impact_speed = 0.8_dp
       end select
       do trial = 1, 6
-        y(m - 1:m) = 0.55_dp*c*[cos(1.0_dp*trial), sin(1.0_dp*trial)]
-        if (touches(i)) y(m - 1:m) = y(m - 1:m)*2
-        y(2*m - 1:2*m) = [0.03_dp*cos(2.3_dp*trial), 0.02_dp*sin(3.1_dp*trial)]
-        if (m == 3) y(1) = 6.4_dp + 0.02_dp*trial
+        call put_pin(scene, y, merge(1.1_dp, 0.55_dp, touches(i))*c*[cos(1.0_dp*trial), sin(1.0_dp*trial)], &
+          [0.03_dp*cos(2.3_dp*trial), 0.02_dp*sin(3.1_dp*trial)])
+        call put_crank(scene, y, 6.4_dp + 0.02_dp*trial, case%initial%crank_speed)
         call scene%jacobian(1e-3_dp*trial, y, a_p, a_v)
         call difference_jacobian(scene, 1e-3_dp*trial, y, b_p, b_v)
         scale = maxval(abs(b_p))*1e-4_dp + abs(b_p)

@@ -7,6 +7,7 @@ module test_scenes
   use case_file, only: read_case
   use scene, only: scene_t, evaluation_t, phase_contact, event_contact_begins, event_contact_ends
   use clearance_scene, only: clearance_scene_t
+  use state_making, only: put_crank, put_pin
   use ode_method, only: ode_settings_t, step_too_small
   use scene_builder, only: build_scene, settings_for
   use stop_reason, only: reason
@@ -127,7 +128,7 @@ contains
     real(dp), allocatable :: y(:), f(:)
     real(dp) :: t, dt
     logical :: inside
-    integer :: i, m
+    integer :: i
     character(len=long) :: overrides(4)
 
     dt = 1e-9_dp
@@ -137,11 +138,10 @@ contains
       if (i > 3) overrides(4) = 'drive.kind=free'
       call read_case('cases/flores/friction_100.nml', overrides, case, error)
       call build_scene(case, .false., scene, error)
-      m = scene%n_positions
       allocate (y(scene%n), f(scene%n))
       y = scene%initial_state()
-      y(m - 1:m) = 1.02_dp*case%joint%clearance*[cos(1.3_dp*i), sin(1.3_dp*i)]
-      y(2*m - 1:2*m) = [0.4_dp*cos(2.1_dp*i), 0.3_dp*sin(1.7_dp*i)]
+      call put_pin(scene, y, 1.02_dp*case%joint%clearance*[cos(1.3_dp*i), sin(1.3_dp*i)], &
+        [0.4_dp*cos(2.1_dp*i), 0.3_dp*sin(1.7_dp*i)])
       select type (scene)
       type is (clearance_scene_t)
         scene%phase = phase_contact
@@ -167,16 +167,21 @@ contains
     type(error_t), allocatable :: error
     class(scene_t), allocatable :: scene
     type(evaluation_t) :: now
+    real(dp), allocatable :: y(:)
     logical :: inside
     character(len=1) :: none(0)
     call read_case('cases/sim_I.nml', none, case, error)
     call build_scene(case, .false., scene, error)
-    call scene%evaluate(0.0_dp, [0.4_dp, 3e-5_dp, 4e-5_dp, 250.0_dp, 0.3_dp, 0.4_dp, 0.0_dp], now, inside)
+    allocate (y(scene%n), source=0.0_dp)
+    call put_crank(scene, y, 0.4_dp, 250.0_dp)
+    call put_pin(scene, y, [3e-5_dp, 4e-5_dp], [0.3_dp, 0.4_dp])
+    call scene%evaluate(0.0_dp, y, now, inside)
     call check%that(.not. inside, 'the film is not defined beyond the wall')
     call check%relative(now%motion%crank_angle, 0.4_dp, 1e-15_dp, 'but the crank angle is')
     call check%relative(now%joint%penetration, 5e-5_dp - case%joint%clearance, 1e-12_dp, 'and the penetration')
     call check%relative(now%joint%penetration_rate, 0.5_dp, 1e-12_dp, 'and its rate')
-    call scene%evaluate(0.0_dp, [0.4_dp, 0.0_dp, -1.0_dp, 250.0_dp, 0.0_dp, 0.0_dp, 0.0_dp], now, inside)
+    call put_pin(scene, y, [0.0_dp, -1.0_dp], [0.0_dp, 0.0_dp])
+    call scene%evaluate(0.0_dp, y, now, inside)
     call check%that(.not. inside, 'the rod cannot reach')
     call check%relative(now%motion%crank_angle, 0.4_dp, 1e-15_dp, 'but the crank angle is known')
   end subroutine outside_the_pin_is_known

@@ -30,7 +30,7 @@ contains
     end if
     if (.not. allocated(self%gas)) return
     if (self%drive%free_crank) then
-      call self%gas_events(y(1), y(4), g(n + 1:n + n_gas_events), g_rate(n + 1:n + n_gas_events))
+      call self%gas_events(y(self%crank%position), y(self%crank%rate), g(n + 1:n + n_gas_events), g_rate(n + 1:n + n_gas_events))
     else
       call self%gas_events(self%start_angle + self%start_speed*t, self%start_speed, g(n + 1:n + n_gas_events), &
         g_rate(n + 1:n + n_gas_events))
@@ -108,12 +108,13 @@ contains
     class(clearance_scene_t), intent(in) :: self
     real(dp), intent(in) :: y(:)
     real(dp) :: values(2), distance
-    integer :: m
-    m = self%n_positions
-    distance = sqrt(y(m - 1)**2 + y(m)**2)
-    values(1) = distance - self%joint%clearance
-    values(2) = 0
-    if (distance > 0) values(2) = (y(m - 1)*y(2*m - 1) + y(m)*y(2*m))/distance
+    associate (x => y(self%pin%position), x_rate => y(self%pin%rate), &
+               across => y(self%pin%position + 1), across_rate => y(self%pin%rate + 1))
+      distance = sqrt(x**2 + across**2)
+      values(1) = distance - self%joint%clearance
+      values(2) = 0
+      if (distance > 0) values(2) = (x*x_rate + across*across_rate)/distance
+    end associate
   end function penetration_and_rate
 
   !> The cubic on [0, 1] with given values and slopes at the ends.
@@ -137,21 +138,22 @@ contains
     form%known = .not. (index == sliding_changes .and. touches)
     if (.not. form%known .or. index /= merge(ends, begins, touches)) return
     outwards = merge(-1.0_dp, 1.0_dp, touches)
-    form%first = self%n_positions - 1
+    form%first = self%pin%position
     form%constant = -outwards*self%joint%clearance**2
     form%square = outwards
   end procedure event_form
 
   module procedure rough_time
     real(dp) :: distance, product
-    integer :: m
     rough_time = huge(rough_time)
     if (self%phase /= phase_contact) return
-    m = self%n_positions
-    product = y(m - 1)*y(2*m - 1) + y(m)*y(2*m)   ! e . e' = |e| |e|'
-    if (.not. product < 0) return
-    distance = sqrt(y(m - 1)**2 + y(m)**2)
-    if (distance > self%joint%clearance) rough_time = t - (distance - self%joint%clearance)*distance/product
+    associate (x => y(self%pin%position), x_rate => y(self%pin%rate), &
+               across => y(self%pin%position + 1), across_rate => y(self%pin%rate + 1))
+      product = x*x_rate + across*across_rate   ! e . e' = |e| |e|'
+      if (.not. product < 0) return
+      distance = sqrt(x**2 + across**2)
+      if (distance > self%joint%clearance) rough_time = t - (distance - self%joint%clearance)*distance/product
+    end associate
   end procedure rough_time
 
   module procedure handle_event

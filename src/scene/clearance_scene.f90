@@ -10,16 +10,18 @@ module clearance_scene
   use contact_law, only: contact_law_t
   use friction_law, only: friction_law_t
   use archive, only: archive_t
+  use state_layout, only: coordinates_t
   use film_law, only: film_law_t, film_motion_t
   use scene, only: scene_t, evaluation_t, phase_free, phase_film, phase_contact
   implicit none
   private
   public :: clearance_scene_t
 
-  !> y = (q, e_x, e_y, q', e_x', e_y', quadratures), or (e_x, e_y, e_x', e_y', quadratures) where the crank speed is held.
+  !> It claims the eccentricity as well.
   !> A law that the case does not ask for is not allocated.
   type, extends(scene_t) :: clearance_scene_t
     type(joint_geometry_t) :: joint
+    type(coordinates_t) :: pin    !! where the eccentricity stands in the state
     class(contact_law_t), allocatable :: contact
     class(friction_law_t), allocatable :: friction
     class(film_law_t), allocatable :: film
@@ -35,7 +37,7 @@ module clearance_scene
     procedure :: initial_state
     procedure :: prepare_start
     procedure :: is_singular
-    procedure :: natural_scales
+    procedure :: claim
     procedure :: reported_event
     procedure :: events => all_events
     procedure :: judge_step
@@ -117,29 +119,22 @@ contains
     real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: inside
     type(evaluation_t) :: now
-    integer :: last   ! of the work
     call find_accelerations(self, t, y, .false., now, inside)
     if (.not. inside) return
     associate (rate => now%joint%eccentricity_rate, acceleration => now%accelerations%eccentricity)
       if (self%drive%free_crank) then
-        dydt(1) = now%motion%crank_speed
-        dydt(2) = rate(1)
-        dydt(3) = rate(2)
-        dydt(4) = now%accelerations%crank
-        dydt(5) = acceleration(1)
-        dydt(6) = acceleration(2)
-        last = 7
-      else
-        dydt(1) = rate(1)
-        dydt(2) = rate(2)
-        dydt(3) = acceleration(1)
-        dydt(4) = acceleration(2)
-        last = 5
+        dydt(self%crank%position) = now%motion%crank_speed
+        dydt(self%crank%rate) = now%accelerations%crank
       end if
+      dydt(self%pin%position) = rate(1)
+      dydt(self%pin%position + 1) = rate(2)
+      dydt(self%pin%rate) = acceleration(1)
+      dydt(self%pin%rate + 1) = acceleration(2)
     end associate
-    dydt(last) = now%power
-    if (self%n_measures > 0) dydt(last + 1) = pin_force_size(now%loads)
-    if (self%n_measures > 1) dydt(last + 2) = -joint_power(now)
+    dydt(self%work_at) = now%power
+    if (self%measures%last < self%measures%first) return
+    dydt(self%measures%first) = pin_force_size(now%loads)
+    if (self%measures%last > self%measures%first) dydt(self%measures%last) = -joint_power(now)
   end subroutine derivatives
 
   !> Power of the joint on the bodies [W]: of its force along the eccentricity and of its moment along the turning pin.
@@ -155,7 +150,7 @@ contains
     class(clearance_scene_t), intent(inout) :: self
     logical :: work_tells
     work_tells = self%drive%free_crank .and. .not. (self%drive%damping > 0 .or. allocated(self%gas))
-    call self%add_measures(merge(1, 2, work_tells))
+    call self%claim_measures(merge(1, 2, work_tells), 0.0_dp)   ! they take no part in the error control
   end subroutine measure_joint
 
   !> Energy that the joint has taken from the bodies [J]; where it is not integrated itself, the work of the drive's torque
@@ -163,8 +158,8 @@ contains
   pure real(dp) function joint_loss(self, t, y)
     class(clearance_scene_t), intent(in) :: self
     real(dp), intent(in) :: t, y(:)
-    if (self%n_measures > 1) then
-      joint_loss = y(2*self%n_positions + 3)
+    if (self%measures%last > self%measures%first) then
+      joint_loss = y(self%measures%last)
     else
       joint_loss = self%drive%torque*(self%crank_angle(t, y) - self%start_angle) - self%work(y)
     end if
@@ -237,20 +232,16 @@ contains
     real(dp), intent(out) :: crank_angle, crank_speed
     type(joint_motion_t), intent(inout) :: joint
     if (self%drive%free_crank) then
-      crank_angle = y(1)
-      crank_speed = y(4)
-      joint%eccentricity(1) = y(2)
-      joint%eccentricity(2) = y(3)
-      joint%eccentricity_rate(1) = y(5)
-      joint%eccentricity_rate(2) = y(6)
+      crank_angle = y(self%crank%position)
+      crank_speed = y(self%crank%rate)
     else
       crank_angle = self%start_angle + self%start_speed*t
       crank_speed = self%start_speed
-      joint%eccentricity(1) = y(1)
-      joint%eccentricity(2) = y(2)
-      joint%eccentricity_rate(1) = y(3)
-      joint%eccentricity_rate(2) = y(4)
     end if
+    joint%eccentricity(1) = y(self%pin%position)
+    joint%eccentricity(2) = y(self%pin%position + 1)
+    joint%eccentricity_rate(1) = y(self%pin%rate)
+    joint%eccentricity_rate(2) = y(self%pin%rate + 1)
   end subroutine read_state
 
   !> Whether the pin may be there: inside the bearing's wall and, where a film is singular, inside the clearance.
@@ -410,15 +401,13 @@ contains
   pure function initial_state(self) result(y)
     class(clearance_scene_t), intent(in) :: self
     real(dp) :: y(self%n)
-    integer :: m
-    m = self%n_positions
     y = 0
     if (self%drive%free_crank) then
-      y(1) = self%start_angle
-      y(4) = self%start_speed
+      y(self%crank%position) = self%start_angle
+      y(self%crank%rate) = self%start_speed
     end if
-    y(m - 1:m) = self%start_eccentricity
-    y(2*m - 1:2*m) = self%start_eccentricity_rate
+    y(self%pin%position:self%pin%position + 1) = self%start_eccentricity
+    y(self%pin%rate:self%pin%rate + 1) = self%start_eccentricity_rate
   end function initial_state
 
   !> A film that grows without bound at the wall, and has next to no thickness.
@@ -428,29 +417,18 @@ contains
     real(dp), parameter :: thin = 1e-6_dp   !! of the clearance
     is_singular = .false.
     if (self%phase == phase_film) is_singular = self%film%singular_at_wall .and. &
-      norm2(y(self%n_positions - 1:self%n_positions)) > (1 - thin)*self%joint%clearance
+      norm2(y(self%pin%position:self%pin%position + 1)) > (1 - thin)*self%joint%clearance
   end function is_singular
 
   !> The eccentricity is measured by the clearance, its rate by the clearance in the time of one radian. Measured
   !> (scripts/compare_adams.sh, simulation IV, c = 20 um): at the relative tolerance 1e-4 the pin is off by 4e-5 c at the
   !> end, at 1e-6 by 4e-9 c, at 1e-12 by 1e-14 c; in (q, A, x) rounding alone makes 4e-12 c.
-  pure subroutine natural_scales(self, span, scales, growing)
-    class(clearance_scene_t), intent(in) :: self
-    real(dp), intent(in) :: span
-    real(dp), intent(out) :: scales(:)
-    logical, intent(out) :: growing(:)
-    integer :: m
-    m = self%n_positions
-    growing = .false.
-    scales(m - 1:m) = self%joint%clearance
-    scales(2*m - 1:2*m) = self%joint%clearance*self%speed_scale(span)
-    scales(2*m + 1) = self%energy_scale(span)
-    scales(2*m + 2:) = 0   ! measures take no part in the error control
-    growing(2*m + 1:) = .true.
-    if (self%drive%free_crank) then
-      scales(1) = 1
-      growing(1) = .true.
-      scales(4) = self%speed_scale(span)
-    end if
-  end subroutine natural_scales
+  subroutine claim(self)
+    class(clearance_scene_t), intent(inout) :: self
+    call self%claim_crank()
+    call self%layout%claim_positions(2, self%joint%clearance, self%joint%clearance*self%speed_scale(self%span), self%pin, &
+      grows=.false.)
+    call self%layout%settle(self%pin)
+    call self%claim_work()
+  end subroutine claim
 end module clearance_scene

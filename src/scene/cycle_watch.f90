@@ -195,7 +195,7 @@ contains
       call scene%evaluate(t, y, now, inside)
       if (inside) call self%take_point(scene, t, now)
     end if
-    measures = [y(2*scene%n_positions + 2), scene%joint_loss(t, y)]
+    measures = [y(scene%measures%first), scene%joint_loss(t, y)]
     if (scene%phase == phase_contact) self%present%contact_time = self%present%contact_time + (t - self%t)
     self%present%duration = t - self%cycle_start
     self%present%pin_force_integral = measures(1) - self%measures(1)

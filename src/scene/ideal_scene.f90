@@ -15,13 +15,13 @@ module ideal_scene
   type(joint_motion_t), parameter :: centred_pin = joint_motion_t([0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp], &
     [1.0_dp, 0.0_dp], 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp)
 
-  !> y = (q, q', quadratures), or (quadratures) where the crank speed is held.
+  !> Nothing but the crank moves by itself.
   type, extends(scene_t) :: ideal_scene_t
   contains
     procedure :: derivatives
     procedure :: evaluate
     procedure :: initial_state
-    procedure :: natural_scales
+    procedure :: claim
     procedure :: reported_event
     procedure :: events => crank_events
     procedure :: event_form => crank_event_form
@@ -39,11 +39,11 @@ contains
     inside = .true.
     call find_accelerations(self, t, y, now)
     if (self%drive%free_crank) then
-      dydt(1) = now%motion%crank_speed
-      dydt(2) = now%accelerations%crank
+      dydt(self%crank%position) = now%motion%crank_speed
+      dydt(self%crank%rate) = now%accelerations%crank
     end if
-    dydt(2*self%n_positions + 1) = now%power
-    if (self%n_measures > 0) dydt(2*self%n_positions + 2) = pin_force_size(now%loads)
+    dydt(self%work_at) = now%power
+    dydt(self%measures%first:self%measures%last) = pin_force_size(now%loads)
   end subroutine derivatives
 
   pure subroutine evaluate(self, t, y, evaluation, inside)
@@ -66,8 +66,8 @@ contains
     type(evaluation_t), intent(inout) :: now
     real(dp) :: crank_angle, crank_speed
     if (self%drive%free_crank) then
-      crank_angle = y(1)
-      crank_speed = y(2)
+      crank_angle = y(self%crank%position)
+      crank_speed = y(self%crank%rate)
     else
       crank_angle = self%start_angle + self%start_speed*t
       crank_speed = self%start_speed
@@ -85,31 +85,23 @@ contains
     class(ideal_scene_t), intent(in) :: self
     real(dp) :: y(self%n)
     y = 0
-    if (self%drive%free_crank) y(1:2) = [self%start_angle, self%start_speed]
+    if (.not. self%drive%free_crank) return
+    y(self%crank%position) = self%start_angle
+    y(self%crank%rate) = self%start_speed
   end function initial_state
 
-  pure subroutine natural_scales(self, span, scales, growing)
-    class(ideal_scene_t), intent(in) :: self
-    real(dp), intent(in) :: span
-    real(dp), intent(out) :: scales(:)
-    logical, intent(out) :: growing(:)
-    growing = .true.
-    scales(2*self%n_positions + 1) = self%energy_scale(span)
-    ! The measured force has part in the error control: nothing else here makes steps short enough for it.
-    if (self%n_measures > 0) scales(2*self%n_positions + 2) = self%energy_scale(span)/ &
-      (self%mechanism%crank_length*self%speed_scale(span))
-    if (self%drive%free_crank) then
-      scales(1:2) = [1.0_dp, self%speed_scale(span)]
-      growing(2) = .false.
-    end if
-  end subroutine natural_scales
+  subroutine claim(self)
+    class(ideal_scene_t), intent(inout) :: self
+    call self%claim_crank()
+    call self%claim_work()
+  end subroutine claim
 
   pure subroutine crank_events(self, t, y, g, g_rate)
     class(ideal_scene_t), intent(in) :: self
     real(dp), intent(in) :: t, y(:)
     real(dp), intent(out) :: g(:), g_rate(:)
     if (self%drive%free_crank) then
-      call self%gas_events(y(1), y(2), g, g_rate)
+      call self%gas_events(y(self%crank%position), y(self%crank%rate), g, g_rate)
     else
       call self%gas_events(self%start_angle + self%start_speed*t, self%start_speed, g, g_rate)
     end if

@@ -9,6 +9,7 @@ module scene
   use dynamics, only: drive_t, loads_t
   use clearance_joint, only: joint_motion_t
   use archive, only: archive_t
+  use state_layout, only: layout_t, coordinates_t, slice_t
   use gas_cycle, only: gas_cycle_t, cycle_angle, n_parts
   implicit none
   private
@@ -40,24 +41,27 @@ module scene
     real(dp) :: power               !! of all non-conservative forces and the drive [W]
   end type evaluation_t
 
-  !> A scene as an ode_problem: y holds positions, then their rates, then quadratures: the work of all non-conservative
-  !> forces and the drive [J] and, where somebody asks for them, the measures of the joint: the integral of the size of its
-  !> force [N s] and, where the work does not tell it, what it takes from the bodies [J]. With a held crank speed the crank angle is no
-  !> unknown.
+  !> A scene as an ode_problem. Of the state it claims the crank angle, unless the crank speed is held, and as quadratures
+  !> the work of all non-conservative forces and the drive [J] and, where somebody asks for them, the measures of the joint: the
+  !> integral of the size of its force [N s] and, where the work does not tell it, what it takes from the bodies [J].
   type, abstract, extends(ode_problem_t) :: scene_t
     type(mechanism_t) :: mechanism
     type(drive_t) :: drive
     real(dp) :: start_angle = 0     !! crank angle at t = 0 [rad]
     real(dp) :: start_speed = 0     !! crank speed at t = 0, and always if it is held [rad/s]
     integer :: phase = phase_free
-    integer :: n_measures = 0       !! quadratures of the joint
+    real(dp) :: span = 1            !! of the simulation [s]
+    type(layout_t) :: layout        !! of the state
+    type(coordinates_t) :: crank    !! where the crank angle stands in it
+    integer :: work_at = 0          !! where the work of the forces stands
+    type(slice_t) :: measures       !! quadratures of the joint
     type(gas_cycle_t), allocatable :: gas
     integer :: gas_part = 0            !! part of the gas cycle that acts
     real(dp) :: gas_cycle_start = 0    !! crank angle at which its cycle began [rad]
   contains
     procedure(evaluate), deferred :: evaluate
     procedure(initial_state), deferred :: initial_state
-    procedure(natural_scales), deferred :: natural_scales
+    procedure(claim), deferred :: claim
     procedure(reported_event), deferred :: reported_event
     procedure :: prepare_start
     procedure :: is_singular
@@ -65,7 +69,10 @@ module scene
     procedure :: work
     procedure :: measure_joint
     procedure :: joint_loss
-    procedure :: add_measures
+    procedure :: claim_crank
+    procedure :: claim_work
+    procedure :: claim_measures
+    procedure, private :: take_layout
     procedure :: energy
     procedure :: energy_scale
     procedure :: speed_scale
@@ -97,15 +104,11 @@ module scene
       real(dp) :: y(self%n)
     end function initial_state
 
-    !> Sizes of the components of y against which a tolerance is meant. `growing` marks those that grow without
-    !> bound, for which a tolerance relative to themselves means nothing.
-    pure subroutine natural_scales(self, span, scales, growing)
-      import :: scene_t, dp
-      class(scene_t), intent(in) :: self
-      real(dp), intent(in) :: span      !! of the simulation [s]
-      real(dp), intent(out) :: scales(:)
-      logical, intent(out) :: growing(:)
-    end subroutine natural_scales
+    !> Claim the components of the state, when all else is set.
+    subroutine claim(self)
+      import :: scene_t
+      class(scene_t), intent(inout) :: self
+    end subroutine claim
 
     !> Which event of the trace event `index` of the integrator is.
     pure integer function reported_event(self, index)
@@ -148,7 +151,7 @@ contains
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: t, y(:)
     if (self%drive%free_crank) then
-      crank_angle = y(1)
+      crank_angle = y(self%crank%position)
     else
       crank_angle = self%start_angle + self%start_speed*t
     end if
@@ -158,14 +161,15 @@ contains
   pure real(dp) function work(self, y)
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: y(:)
-    work = y(2*self%n_positions + 1)
+    work = y(self%work_at)
   end function work
 
   !> Integrate the measures of the joint too; before the run. They do not change its steps where the joint has clearance. One
   !> without has one measure, the integral of the force's size.
   subroutine measure_joint(self)
     class(scene_t), intent(inout) :: self
-    call self%add_measures(1)
+    ! the measured force has part in the error control: nothing else here makes steps short enough for it
+    call self%claim_measures(1, self%energy_scale(self%span)/(self%mechanism%crank_length*self%speed_scale(self%span)))
   end subroutine measure_joint
 
   !> Energy that the joint has taken from the bodies, in a scene that measures it [J]: none without clearance.
@@ -177,14 +181,41 @@ contains
     joint_loss = 0
   end function joint_loss
 
-  !> Room for so many measures.
-  subroutine add_measures(self, n_measures)
+  !> The crank angle, where it is an unknown. It is the first owner's, before those of the joint.
+  subroutine claim_crank(self)
+    class(scene_t), intent(inout) :: self
+    if (self%drive%free_crank) &
+      call self%layout%claim_positions(1, 1.0_dp, self%speed_scale(self%span), self%crank, grows=.true.)
+  end subroutine claim_crank
+
+  !> The work of the forces, after all positions.
+  subroutine claim_work(self)
+    class(scene_t), intent(inout) :: self
+    type(slice_t) :: at
+    call self%layout%settle(self%crank)
+    call self%layout%claim_quadratures(1, self%energy_scale(self%span), at)
+    call self%layout%settle(at)
+    self%work_at = at%first
+    call self%take_layout()
+  end subroutine claim_work
+
+  !> So many measures of the joint, each of this natural size, after all else.
+  subroutine claim_measures(self, n_measures, scale)
     class(scene_t), intent(inout) :: self
     integer, intent(in) :: n_measures
-    self%n_measures = n_measures
-    self%n_quadratures = self%n_quadratures + n_measures
-    self%n = self%n + n_measures
-  end subroutine add_measures
+    real(dp), intent(in) :: scale
+    call self%layout%claim_quadratures(n_measures, scale, self%measures)
+    call self%layout%settle(self%measures)
+    call self%take_layout()
+  end subroutine claim_measures
+
+  !> What the integrator needs to know of the layout.
+  subroutine take_layout(self)
+    class(scene_t), intent(inout) :: self
+    self%n = self%layout%n()
+    self%n_positions = self%layout%n_positions
+    self%n_quadratures = self%layout%n_quadratures
+  end subroutine take_layout
 
   !> Kinetic and potential energy of the bodies [J].
   pure real(dp) function energy(self, motion)
@@ -252,7 +283,7 @@ contains
     type(event_form_t) :: form
     form%known = self%drive%free_crank
     if (.not. form%known) return
-    form%first = 1
+    form%first = self%crank%position
     form%linear(1) = merge(1, -1, direction == 1)
     form%constant = -form%linear(1)*(self%gas_cycle_start + self%gas%bound(self%gas_part + 1 - direction))
   end function gas_event_form

@@ -41,7 +41,6 @@ contains
     if (ideal_joint .or. case%joint%kind == 'ideal') then
       allocate (ideal)
       ideal%refuses_steps = .false.
-      ideal%n_positions = merge(1, 0, case%drive%kind == 'free')
       call move_alloc(ideal, scene)
     else
       allocate (clearance)
@@ -49,8 +48,6 @@ contains
       if (allocated(error)) return
       call move_alloc(clearance, scene)
     end if
-    scene%n_quadratures = 1
-    scene%n = 2*scene%n_positions + scene%n_quadratures
     associate (m => case%mechanism)
       scene%mechanism = mechanism_t(m%crank_length, m%crank_mass, m%crank_inertia, m%crank_com, m%rod_length, m%rod_mass, &
         m%rod_inertia, m%rod_com, m%piston_mass, m%gravity)
@@ -58,6 +55,8 @@ contains
     scene%drive = drive_t(case%drive%kind == 'free', case%drive%torque, case%drive%damping)
     scene%start_angle = case%initial%crank_angle_deg*degree
     scene%start_speed = case%initial%crank_speed
+    scene%span = simulated_time(case)
+    call scene%claim()
     if (case%combustion%is_present) then
       call build_gas(case, scene%gas, error)
       if (allocated(error)) return
@@ -73,7 +72,6 @@ contains
     type(clearance_scene_t), intent(inout) :: scene
     type(error_t), allocatable, intent(out) :: error
 
-    scene%n_positions = merge(3, 2, case%drive%kind == 'free')
     scene%start_eccentricity = case%initial%eccentricity
     scene%start_eccentricity_rate = case%initial%eccentricity_rate
     associate (joint => case%joint)
@@ -145,7 +143,7 @@ contains
     settings%span = simulated_time(case)
     tolerance = min(case%integrator%relative_tolerance, loosest_tolerance)
     settings%tolerance = tolerance
-    call scene%natural_scales(settings%span, scales, growing)
+    call scene%layout%natural_scales(scales, growing)
     factor = case%integrator%absolute_tolerance
     if (.not. factor > 0) factor = tolerance
     settings%relative = merge(0.0_dp, tolerance, growing)
