@@ -27,6 +27,7 @@ program gudgeon_tests
   use test_radau, only: run_test_radau
   use test_reference, only: run_test_reference
   use test_result_file, only: run_test_result_file
+  use test_run_figures, only: run_test_run_figures
   use test_resume, only: run_test_resume
   use test_scenes, only: run_test_scenes
   use test_slow_contact, only: run_test_slow_contact
@@ -68,6 +69,7 @@ program gudgeon_tests
   call run('radau', run_test_radau)
   call run('reference', run_test_reference)
   call run('result_file', run_test_result_file)
+  call run('run_figures', run_test_run_figures)
   call run('resume', run_test_resume)
   call run('scenes', run_test_scenes)
   call run('slow_contact', run_test_slow_contact)

@@ -150,7 +150,7 @@ contains
       call check%that(sum(s%limited_by) == s%accepted .and. sum(s%order_count) == s%accepted, 'every step is counted once')
       call check%that(s%evaluations == 2 + 2*s%accepted + s%rejected_error + s%rejected_penetration, &
         'two evaluations an accepted step, one a rejected one, two at the start')
-      call check%close_to(sum(s%time_limited_by), method%t, 1e-12_dp, 'the times by limit sum to the whole')
+      call check%close_to(sum(s%time_limited_by), problem%t_end, 1e-12_dp, 'the times by limit sum to the whole')
     end associate
   end subroutine refused_steps_leave_no_trace
 

@@ -156,10 +156,9 @@ module adams
     !> Hairer & Wanner 1996, IV.2, use), 0 where the correction is within the rounding. A wider sense of it, `bound`, keeps the
     !> order from rising: measured on the films, at 1e-6 it saves 40 % of the evaluations. On the films the integral of rho dt so
     !> estimated agrees with that of the eigenvalues (1.04e4, 2.14e5, 2.49e6) within 1 %.
-    pure module subroutine count_limit(self, errors, t_new)
+    pure module subroutine count_limit(self, errors)
       class(adams_t), intent(inout) :: self
       type(error_estimates_t), intent(in) :: errors
-      real(dp), intent(in) :: t_new   !! end of the step
     end subroutine count_limit
 
     !> The order and size of the next step (Shampine & Gordon, ch. 7): order raised while opening; else where the
@@ -308,7 +307,7 @@ contains
     real(dp), intent(in) :: x_new, t_new
     integer :: k
 
-    call count_limit(self, errors, t_new)
+    call count_limit(self, errors)
     k = self%k
     self%higher_known = k < self%coefficients%ns .or. self%k_old >= k .and. .not. self%bound
     self%k_old = k

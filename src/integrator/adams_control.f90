@@ -105,7 +105,7 @@ contains
     reach = 0
     if (errors%correction > max(noise**2*self%rounding_square, tiny(reach))) &
       reach = self%h**2*(errors%change/errors%correction)
-    self%statistics%stiffness = self%statistics%stiffness + sqrt(reach)
+    self%stiffness_done = sqrt(reach)
     near = reach*per_limit_square(self%k)
     limit = self%limit
     self%bound = .false.
@@ -117,10 +117,8 @@ contains
       self%bound = slow < 0.6_dp**2
       if (limit == limit_error .and. near > 0.5_dp**2 .and. slow < 0.3_dp**2) limit = limit_stability
     end if
-    associate (count => self%statistics)
-      count%limited_by(limit) = count%limited_by(limit) + 1
-      count%time_limited_by(limit) = count%time_limited_by(limit) + (t_new - self%t)
-    end associate
+    self%limit_done = limit
+    self%statistics%limited_by(limit) = self%statistics%limited_by(limit) + 1
   end procedure count_limit
 
   module procedure choose_order_and_step

@@ -52,6 +52,7 @@ module auto_method
     procedure :: find_straying
     procedure :: bernstein_form
     procedure :: time_at_share
+    procedure :: count_time
     procedure :: totals
     procedure :: exchange
   end type auto_t
@@ -241,12 +242,7 @@ contains
   !> The last step of the method at work is ours.
   subroutine take_over(self, method)
     class(auto_t), intent(inout) :: self
-    class(ode_method_t), intent(inout) :: method
-    integer :: which
-    which = merge(with_radau, with_adams, self%stiff)
-    associate (time => method%statistics%time_with(which, self%mode))
-      time = time + (method%t - method%t_old)
-    end associate
+    class(ode_method_t), intent(in) :: method
     self%t = method%t
     self%t_old = method%t_old
     self%order = method%order
@@ -311,6 +307,21 @@ contains
       time_at_share = self%adams%time_at_share(share)
     end if
   end function time_at_share
+
+  !> The time of the last step goes to the method that took it, in the mode in which it was taken.
+  subroutine count_time(self, t_to)
+    class(auto_t), intent(inout) :: self
+    real(dp), intent(in) :: t_to
+    real(dp) :: time
+    time = t_to - self%t_old
+    if (self%stiff) then
+      call self%radau%count_time(t_to)
+      self%radau%statistics%time_with(with_radau, self%mode) = self%radau%statistics%time_with(with_radau, self%mode) + time
+    else
+      call self%adams%count_time(t_to)
+      self%adams%statistics%time_with(with_adams, self%mode) = self%adams%statistics%time_with(with_adams, self%mode) + time
+    end if
+  end subroutine count_time
 
   !> The counts of both methods together.
   pure function totals(self) result(statistics)

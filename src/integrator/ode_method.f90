@@ -48,7 +48,7 @@ module ode_method
   end type ode_settings_t
 
   !> Counts of what a method has done since the beginning of an integration. Only `rejected_*` and
-  !> `evaluations` count work that left nothing behind.
+  !> `evaluations` count work that left nothing behind. Times are counted by `count_time`, and sum to the time integrated.
   type :: step_statistics_t
     integer :: accepted = 0
     integer :: rejected_error = 0        !! estimated error above the tolerance
@@ -80,9 +80,12 @@ module ode_method
     real(dp) :: rough_time = huge(1.0_dp) !! where f is expected to lose its smoothness, see `rough_time` of the problem
     real(dp), allocatable :: y_old(:)     !! state at t_old, (n)
     real(dp), allocatable :: y(:)         !! state at t, (n)
+    integer :: limit_done = 0             !! what kept the last accepted step from being longer, 0: the method does not tell
+    real(dp) :: stiffness_done = 0        !! its share of the integral of rho dt
   contains
     procedure :: nominal_tolerance
     procedure :: totals
+    procedure :: count_time
     procedure(start), deferred :: start
     procedure(step), deferred :: step
     procedure(interpolate), deferred :: interpolate
@@ -219,6 +222,21 @@ contains
     real(dp), intent(in) :: share
     time_at_share = self%t_old + share*(self%t - self%t_old)
   end function time_at_share
+
+  !> Count the time of the last accepted step, once, when it is known how far it stands: up to t_to, which is self%t or where
+  !> an event or the end of the integration cuts the step.
+  subroutine count_time(self, t_to)
+    class(ode_method_t), intent(inout) :: self
+    real(dp), intent(in) :: t_to   !! t_old <= t_to <= t
+    real(dp) :: share
+    share = 1
+    if (t_to < self%t) share = (t_to - self%t_old)/(self%t - self%t_old)
+    associate (count => self%statistics)
+      count%stiffness = count%stiffness + share*self%stiffness_done
+      if (self%limit_done > 0) count%time_limited_by(self%limit_done) = count%time_limited_by(self%limit_done) &
+        + (t_to - self%t_old)
+    end associate
+  end subroutine count_time
 
   !> The counts of the whole integration so far.
   pure function totals(self) result(statistics)

@@ -109,6 +109,7 @@ contains
       if (status /= step_done) exit
       call at%watch%search(method, problem, t_end, at%event, at%t)
       if (at%event == 0) then
+        call method%count_time(at%t)
         call observer%step_taken(method, problem, at%t)
         if (method%t >= t_end) exit
       else
@@ -144,6 +145,7 @@ contains
     else
       call method%interpolate(at%t, at%y)
     end if
+    call method%count_time(at%t)
     call observer%step_taken(method, problem, at%t)
     call observer%event_taken(problem, at%event, at%t, at%y)
     call problem%handle_event(at%event, at%t, at%y, action)
