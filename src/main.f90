@@ -1,6 +1,6 @@
 !> gudgeon: the slider-crank mechanism with clearance in its piston-pin joint. Reads the command line and runs the cases.
 program gudgeon
-  use, intrinsic :: iso_fortran_env, only: error_unit, int64, compiler_options
+  use, intrinsic :: iso_fortran_env, only: int64, compiler_options
   use kinds, only: dp
   use omp_lib, only: omp_get_num_procs
   use errors, only: error_t, fail, status_ok, status_integration, status_output
@@ -9,7 +9,7 @@ program gudgeon
   use case_runner, only: run_case_file
   use study_runner, only: run_study_file
   use study_file, only: study_template
-  use progress, only: progress_wanted
+  use progress, only: progress_wanted, tell
   use summary, only: build_advice
   use text_tools, only: printable
   use posix, only: fill_standard_descriptors, hold_interrupts, interrupted, ignore_write_signals, write_bytes, error_text, &
@@ -69,7 +69,7 @@ contains
     !$omp end parallel do
     call system_clock(ended)
     advice = build_advice(compiler_options(), real(ended - began, dp)/real(rate, dp))
-    if (advice /= '' .and. .not. options%quiet) call notify(advice)
+    if (advice /= '' .and. .not. options%quiet) call tell(advice)
   end subroutine run_all
 
   !> Run every study, one after the other; the highest exit status wins.
@@ -114,7 +114,7 @@ contains
       status = max(status, error%status)
     else if (.not. options%quiet) then
       call say(line, status)
-      if (notice /= '') call notify(notice)
+      if (notice /= '') call tell(notice)
     end if
     !$omp end critical (messages)
   end subroutine run_one
@@ -134,19 +134,12 @@ contains
       at = at + done
     end do
     if (at == len(text) .or. problem == error_broken_pipe) return
-    call notify('standard output: '//error_text(problem))
+    call tell('standard output: '//error_text(problem))
     status = max(status, status_output)
   end subroutine say
 
-  !> One line on standard error.
-  subroutine notify(line)
-    character(len=*), intent(in) :: line
-    integer :: unimportant
-    write (error_unit, '(2a)', iostat=unimportant) 'gudgeon: ', line
-  end subroutine notify
-
   subroutine complain(error)
     type(error_t), intent(in) :: error
-    call notify(error%message)
+    call tell(error%message)
   end subroutine complain
 end program gudgeon

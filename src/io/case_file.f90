@@ -62,6 +62,7 @@ contains
       call take_override(values, trim(overrides(i)), error)
       if (allocated(error)) return
     end do
+    call values%prefer_overrides()
   end subroutine parse_values
 
   !> A checked case of values; `path` names it.
@@ -132,7 +133,11 @@ contains
     end if
     do i = 1, size(list%groups)
       group = find_group(values%groups, list%groups(i)%name)
-      if (group == 0) then
+      if (list%groups(i)%name == 'study' .or. list%groups(i)%name == 'parameter') then
+        call fail(error, at_line(values, list%groups(i)%line)//'&'//list%groups(i)%name//': a study, not a case: run it with '// &
+                  'gudgeon sweep '//values%file, status_case_file)
+        return
+      else if (group == 0) then
         call values%find(list%groups(i)%name, '', at_line(values, list%groups(i)%line), place, error)
         return
       end if
@@ -154,7 +159,8 @@ contains
     end do
   end subroutine take_file
 
-  !> GROUP.KEY=VALUE into the values. A text needs no quotes here.
+  !> GROUP.KEY=VALUE into the values; a text needs no quotes here. GROUP=none takes out what the file and the overrides before
+  !> this one say of a group.
   subroutine take_override(values, override, error)
     type(case_values_t), intent(inout) :: values
     character(len=*), intent(in) :: override
@@ -165,8 +171,12 @@ contains
     at = values%file//': --set '//printable(override, 60)//': '
     equals = index(override, '=')
     dot = index(override(:max(0, equals - 1)), '.')
-    if (dot == 0) then
-      call fail(error, at//'must have the form GROUP.KEY=VALUE', status_case_file)
+    text = lowercase(trim(adjustl(override(equals + 1:))))
+    if (dot == 0 .and. equals > 1 .and. text == 'none') then
+      call values%take_out(trim(adjustl(lowercase(override(:equals - 1)))), at, error)
+      return
+    else if (dot == 0) then
+      call fail(error, at//'must have the form GROUP.KEY=VALUE or GROUP=none', status_case_file)
       return
     end if
     group = trim(adjustl(lowercase(override(:dot - 1))))
@@ -186,6 +196,8 @@ contains
     end if
     values%is_present(find_group(values%groups, group)) = .true.
     call values%assign(place, 0, tokens, at, .true., error)
+    if (allocated(error) .and. lowercase(text) == 'none') &
+      error%message = error%message//'; --set '//group//'=none takes the group out'
   end subroutine take_override
 
   !> `path:line: `

@@ -7,7 +7,7 @@ module case_rules
   use case_values, only: case_values_t
   implicit none
   private
-  public :: check_rules
+  public :: check_rules, case_warning
 
   real(dp), parameter :: most_samples = 1e9_dp   !! rows that a run may ask for
 
@@ -32,6 +32,15 @@ contains
     if (allocated(error)) return
     call check_output(c, values, error)
   end subroutine check_rules
+
+  !> What the user of a correct case should know of it, or an empty text.
+  pure function case_warning(c) result(text)
+    type(case_t), intent(in) :: c
+    character(len=:), allocatable :: text
+    text = ''
+    if (c%drive%kind == 'constant_speed' .and. abs(c%drive%torque) > 0) text = '&drive torque has no effect with kind = '// &
+      '''constant_speed'': the drive gives whatever moment keeps the speed (crank_moment); free lets the torque turn the crank'
+  end function case_warning
 
   !> The rod reaches round, and the mass matrix of crank and rod is positive definite at every angle. With
   !> A = I_c + m_c |com_c|^2 and B = I_r + m_r |com_r|^2 its smallest determinant is A B + m_r R^2 I_r.
@@ -75,7 +84,7 @@ contains
     if (c%joint%kind == 'ideal') then
       if (c%contact%is_present .or. c%friction%is_present .or. c%lubrication%is_present) then
         call values%refuse('joint', 'kind', 'must be clearance with contact, friction or lubrication: an ideal joint '// &
-                           'has no play for them; leave those groups out', error)
+                           'has no play for them; leave those groups out, as --set contact=none does', error)
       else if (c%joint%clearance > 0 .and. .not. values%is_given('joint', 'kind')) then
         call values%refuse('joint', 'clearance', 'needs kind = ''clearance''; the default is ideal', error)
       end if
@@ -171,11 +180,9 @@ contains
     type(case_values_t), intent(in) :: values
     type(error_t), allocatable, intent(out) :: error
     associate (run => c%integrator)
-      if (run%revolutions > 0 .and. run%end_time > 0) then
-        call values%refuse('integrator', 'end_time', 'must not be given together with revolutions', error)
-      else if (run%revolutions <= 0 .and. run%end_time <= 0) then
-        call values%refuse('integrator', 'revolutions', 'this or end_time is required, > 0', error)
-      else if (run%revolutions > 0 .and. .not. turns(c)) then
+      call values%check_family('integrator', 'revolutions', error)
+      if (allocated(error)) return
+      if (run%revolutions > 0 .and. .not. turns(c)) then
         call values%refuse('integrator', 'revolutions', 'needs crank_speed other than 0; give end_time', error)
       else if (run%contact_entry == 'step_rejection' .and. run%max_penetration <= 0) then
         call values%refuse('integrator', 'max_penetration', 'must be > 0 for contact_entry = ''step_rejection''', error)

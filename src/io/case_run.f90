@@ -11,7 +11,8 @@ module case_run
   use result_file, only: write_text
   use continuation, only: continuation_t
   use archive, only: archive_t
-  use summary, only: summary_table, summary_line, advice
+  use summary, only: summary_table, summary_line
+  use stability_advice, only: advice
   use text_tools, only: printable
   use row_queue, only: row_queue_t
   use thread, only: thread_t
@@ -27,7 +28,7 @@ module case_run
     type(continuation_t), private :: start               !! where it begins: a twin always at its beginning
     type(column_list_t), private :: list
     character(len=:), allocatable, private :: base       !! path of the results without their endings
-    logical, private :: show_progress = .false.
+    logical, private :: show_progress = .false., quiet = .false.
     integer, private :: takers = 0                       !! who have come to let it go: only the first does
     type(thread_t), private :: thread                    !! in which it goes, if no other has taken it
     logical, private :: is_kept = .false.                !! what it has written there is to stay
@@ -46,20 +47,21 @@ module case_run
 contains
 
   !> What is to be run, and where its results go.
-  subroutine prepare(self, case, is_twin, start, list, base, show_progress)
+  subroutine prepare(self, case, is_twin, start, list, base, show_progress, quiet)
     class(case_run_t), intent(inout) :: self
     type(case_t), intent(in) :: case
     logical, intent(in) :: is_twin
     type(continuation_t), intent(in) :: start
     type(column_list_t), intent(in) :: list
     character(len=*), intent(in) :: base
-    logical, intent(in) :: show_progress
+    logical, intent(in) :: show_progress, quiet
     self%case = case
     self%is_twin = is_twin
     if (.not. is_twin) self%start = start
     self%list = list
     self%base = base
     self%show_progress = show_progress
+    self%quiet = quiet
   end subroutine prepare
 
   !> Let a run go in a thread of its own, where the system gives one, beside another one that is still to go. When it has come
@@ -161,6 +163,7 @@ contains
       if (.not. self%is_twin) call files%keep_checkpoints(start%checkpoint%path, start%checkpoint%case_text, start%interval)
       files%end_time = simulated_time(case)
       call files%progress%start(case%name, self%show_progress)
+      if (.not. (self%is_twin .or. self%quiet)) files%advice%case = case
     end associate
     call move_alloc(files, self%sink)
   end subroutine open_files
@@ -202,7 +205,7 @@ contains
       if (allocated(trace_error)) self%report%status = 'stopped: '//trace_error%message
       if (.not. self%is_twin) then
         line = summary_line(case, self%report, sink%wall_time(), base)
-        notice = advice(self%report)
+        if (.not. sink%advice%was_given) notice = advice(self%report%auto_saves)
         if (notice /= '') notice = printable(case%file, 200)//': '//notice
         call write_text(base//'.summary.csv', summary_table(case, self%report, sink%wall_time()), summary_error)
         if (.not. (self%report%can_go_on .or. allocated(trace_error) .or. allocated(summary_error))) call sink%checkpoint%remove()

@@ -5,6 +5,7 @@ module case_runner
   use accuracy_presets, only: with_preset
   use case_file, only: read_case_values, complete_case, resolve
   use case_values, only: case_values_t
+  use case_rules, only: case_warning
   use command_line, only: command_line_t
   use columns, only: column_list_t, choose_columns
   use scene, only: scene_t
@@ -14,7 +15,8 @@ module case_runner
   use row_queue, only: row_queue_t
   use case_lock, only: case_lock_t
   use continuation, only: continuation_t
-  use posix, only: make_directory, write_bytes, error_text
+  use posix, only: make_directory, error_text
+  use progress, only: tell
   use text_tools, only: printable
   implicit none
   private
@@ -51,18 +53,18 @@ contains
     end if
     !$omp end critical (texts)
     if (.not. (allocated(error) .or. options%check)) &
-      call run_case(case, start, list, ideal_list, base, show_progress, threads, line, notice, error)
+      call run_case(case, start, list, ideal_list, base, show_progress, options%quiet, threads, line, notice, error)
     call lock%release()
   end subroutine run_case_file
 
   !> Run a case and then, or beside it, its ideal twin if it asks for one; of a run that was interrupted there is no twin. The
   !> error is the first of the two.
-  subroutine run_case(case, start, list, ideal_list, base, show_progress, threads, line, notice, error)
+  subroutine run_case(case, start, list, ideal_list, base, show_progress, quiet, threads, line, notice, error)
     type(case_t), intent(in) :: case
     type(continuation_t), intent(in) :: start
     type(column_list_t), intent(in) :: list, ideal_list
     character(len=*), intent(in) :: base
-    logical, intent(in) :: show_progress
+    logical, intent(in) :: show_progress, quiet
     integer, intent(in) :: threads
     character(len=:), allocatable, intent(inout) :: line, notice
     type(error_t), allocatable, intent(out) :: error
@@ -71,8 +73,8 @@ contains
     logical :: has_twin
 
     has_twin = case%output%ideal_twin .and. case%joint%kind /= 'ideal'
-    call run%prepare(case, .false., start, list, base, show_progress)
-    call twin%prepare(case, .true., start, ideal_list, base, show_progress .and. threads == 1)
+    call run%prepare(case, .false., start, list, base, show_progress, quiet)
+    call twin%prepare(case, .true., start, ideal_list, base, show_progress .and. threads == 1, quiet)
     if (has_twin .and. threads > 1) call go_beside(twin, run, queue)
     if (.not. start%is_done) call run%go()
     call twin%let_end(is_kept=.not. run%was_interrupted())
@@ -109,7 +111,16 @@ contains
     if (.not. allocated(error)) call choose_columns(case, .true., ideal_list, error)
     if (.not. allocated(error)) call build_scene(case, .false., scene, error)
     if (allocated(error)) call name_file(path, error)
+    if (.not. (allocated(error) .or. options%quiet)) call tell_warning(case)
   end subroutine prepare
+
+  !> Tell what in a case is right but has no effect.
+  subroutine tell_warning(case)
+    type(case_t), intent(in) :: case
+    character(len=:), allocatable :: warning
+    warning = case_warning(case)
+    if (warning /= '') call tell(printable(case%file, 200)//': '//warning)
+  end subroutine tell_warning
 
   !> Make the folder for the results, lock them, look for what is there where the run is to go on, write the resolved case.
   subroutine take_place(path, options, values, case, base, lock, start, error)
@@ -120,9 +131,8 @@ contains
     type(case_lock_t), intent(inout) :: lock
     type(continuation_t), intent(inout) :: start
     type(error_t), allocatable, intent(out) :: error
-    integer, parameter :: standard_error = 2
     character(len=:), allocatable :: case_text
-    integer :: status, done
+    integer :: status
 
     call make_directory(options%out, status)
     if (status /= 0) then
@@ -137,9 +147,8 @@ contains
     if (options%resume) then
       call start%look_for(base, path, case_text, error)
       if (allocated(error) .or. start%is_done) return
-      if (.not. start%goes_on .and. .not. options%quiet) call write_bytes(standard_error, &
-        'gudgeon: '//printable(path, 200)//': no checkpoint in '//printable(options%out, 200)//': starts from the beginning'// &
-        achar(10), done, status)
+      if (.not. start%goes_on .and. .not. options%quiet) &
+        call tell(printable(path, 200)//': no checkpoint in '//printable(options%out, 200)//': starts from the beginning')
     end if
     start%checkpoint%case_text = case_text
     if (start%goes_on) return

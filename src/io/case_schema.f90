@@ -29,6 +29,7 @@ module case_schema
     character(len=24) :: range = ''
     character(len=64) :: words = ''       !! allowed words, separated by a comma and a blank
     character(len=100) :: description = ''
+    character(len=12) :: family = ''      !! of the keys of its group that say one thing in different ways: one alone may be given
   end type key_t
 
 contains
@@ -45,7 +46,7 @@ contains
       group_definition_t('friction', .true., 'dry friction of the contact: leave the group out for none'), &
       group_definition_t('lubrication', .true., 'oil film in the clearance: leave the group out for a dry joint'), &
       group_definition_t('combustion', .true., 'four-stroke cycle on the piston: leave the group out for none'), &
-      group_definition_t('integrator', .false., 'give revolutions or end_time, not both'), &
+      group_definition_t('integrator', .false., 'how it is integrated; the run''s end by revolutions or end_time, not both'), &
       group_definition_t('output', .false., 'what is written')]
   end function schema_groups
 
@@ -71,8 +72,9 @@ contains
       real_key(m, 'piston_mass', 'kg', '> 0', 'mass', example='0.91'), &
       real_key(m, 'gravity', 'm/s^2', '', 'downwards, from the cylinder to the crank', default='9.80665'), &
       word_key('drive', 'kind', 'free', 'free, constant_speed', 'free: the crank turns as the forces make it'), &
-      real_key('drive', 'torque', 'N m', '', 'on the crank, in the sense of its angle', default='0.0'), &
-      real_key('drive', 'damping', 'N m s/rad', '>= 0', 'moment against the crank speed', default='0.0'), &
+      real_key('drive', 'torque', 'N m', '', 'on a free crank, in the sense of its angle', default='0.0'), &
+      real_key('drive', 'damping', 'N m s/rad', '>= 0', &
+               'moment against the crank speed; at constant_speed it adds to crank_moment alone', default='0.0'), &
       real_key('initial', 'crank_angle_deg', 'degrees', '', 'from the cylinder axis', default='0.0'), &
       real_key('initial', 'crank_speed', 'rad/s', '', 'held there by drive kind constant_speed', example='250.0'), &
       real_key('initial', 'eccentricity', 'm', '', 'pin centre from bearing centre; from the clearance on it touches', &
@@ -139,8 +141,8 @@ contains
     keys = [ &
       word_key(i, 'method', 'auto', 'auto, adams, radau', &
                'adams: Shampine and Gordon; radau: implicit; auto: as the phase needs'), &
-      real_key(i, 'revolutions', '', '> 0', '0: end_time is given', default='0.0', example='4.0'), &
-      real_key(i, 'end_time', 's', '> 0', '0: revolutions is given', default='0.0'), &
+      real_key(i, 'revolutions', '', '> 0', '0: end_time is given', default='0.0', example='4.0', family='end'), &
+      real_key(i, 'end_time', 's', '> 0', '0: revolutions is given', default='0.0', family='end'), &
       real_key(i, 'relative_tolerance', '', '> 0 and <= 0.1', 'of each step; above 1e-3 it counts as 1e-3', &
                default='1.0e-6'), &
       real_key(i, 'absolute_tolerance', '', '> 0 and <= 0.1', '0: relative_tolerance by the natural scales', default='0.0'), &
@@ -163,15 +165,16 @@ contains
   end function run_keys
 
   !> A key that has no default is required.
-  pure function real_key(group, name, unit, range, description, default, example, count) result(key)
+  pure function real_key(group, name, unit, range, description, default, example, count, family) result(key)
     character(len=*), intent(in) :: group, name, unit, range, description
-    character(len=*), intent(in), optional :: default, example
+    character(len=*), intent(in), optional :: default, example, family
     integer, intent(in), optional :: count
     type(key_t) :: key
     key = key_t(group=group, name=name, unit=unit, range=range, description=description, required=.not. present(default))
     if (present(default)) key%default = default
     if (present(example)) key%example = example
     if (present(count)) key%count = count
+    if (present(family)) key%family = family
   end function real_key
 
   pure function integer_key(group, name, range, description, default) result(key)

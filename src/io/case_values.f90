@@ -19,6 +19,7 @@ module case_values
   !> The value of one key, in the component of its kind.
   type :: value_t
     logical :: given(most_reals) = .false.   !! in the file or by an override, not by default
+    logical :: is_override = .false.         !! given by an override
     real(dp) :: reals(most_reals) = 0
     integer :: whole = 0
     logical :: switch = .false.
@@ -37,6 +38,10 @@ module case_values
     procedure :: set_schema
     procedure :: find         !! the place of a key
     procedure :: assign       !! values as written, to a key
+    procedure :: take_out     !! a group, as if the file did not have it
+    procedure :: prefer_overrides   !! to other keys of their families
+    procedure :: prefer
+    procedure :: check_family
     procedure :: check        !! required keys and ranges
     procedure :: check_required
     procedure :: check_range  !! the range of one key
@@ -61,23 +66,108 @@ contains
     character(len=*), intent(in) :: file
     type(group_definition_t), intent(in) :: groups(:)
     type(key_t), intent(in) :: keys(:)
-    character(len=:), allocatable :: wanted
-    type(token_t) :: token
-    integer :: i, element
+    integer :: i
     self%file = printable(file, 200)
     allocate (self%groups, source=groups)
     allocate (self%keys, source=keys)
     allocate (self%is_present(size(self%groups)), source=.false.)
     allocate (self%values(size(self%keys)))
     do i = 1, size(self%keys)
-      self%values(i)%text = ''
-      if (self%keys(i)%required) cycle
-      token%text = trim(self%keys(i)%default)
-      do element = 1, min(self%keys(i)%count, most_reals)
-        call convert(self%keys(i), token, self%values(i), element, wanted)
-      end do
+      call set_to_default(self%keys(i), self%values(i))
     end do
   end subroutine set_schema
+
+  !> As if the key had not been given.
+  subroutine set_to_default(key, value)
+    type(key_t), intent(in) :: key
+    type(value_t), intent(out) :: value
+    character(len=:), allocatable :: wanted
+    type(token_t) :: token
+    integer :: element
+    value%text = ''
+    if (key%required) return
+    token%text = trim(key%default)
+    do element = 1, min(key%count, most_reals)
+      call convert(key, token, value, element, wanted)
+    end do
+  end subroutine set_to_default
+
+  !> Take a group out, with all that has been given for it so far: as if the file did not have it. `at` names what asks for it.
+  subroutine take_out(self, name, at, error)
+    class(case_values_t), intent(inout) :: self
+    character(len=*), intent(in) :: name, at
+    type(error_t), allocatable, intent(out) :: error
+    integer :: group, i
+    group = find_group(self%groups, name)
+    if (group == 0) then
+      call self%find(name, '', at, i, error)
+      return
+    end if
+    self%is_present(group) = .false.
+    do i = 1, size(self%keys)
+      if (self%keys(i)%group == name) call set_to_default(self%keys(i), self%values(i))
+    end do
+  end subroutine take_out
+
+  !> What overrides say stands instead of what the file says by other keys of the same family.
+  subroutine prefer_overrides(self)
+    class(case_values_t), intent(inout) :: self
+    integer :: i
+    do i = 1, size(self%keys)
+      if (self%keys(i)%family == '' .or. .not. self%values(i)%is_override) cycle
+      if (is_said(self, i)) call self%prefer(i)
+    end do
+  end subroutine prefer_overrides
+
+  !> Let the key at `place` stand instead of those of its family that no override gives.
+  subroutine prefer(self, place)
+    class(case_values_t), intent(inout) :: self
+    integer, intent(in) :: place
+    integer :: i
+    do i = 1, size(self%keys)
+      if (i == place .or. self%values(i)%is_override .or. .not. is_relative(self%keys(i), self%keys(place))) cycle
+      call set_to_default(self%keys(i), self%values(i))
+    end do
+  end subroutine prefer
+
+  !> One key of the family to which this key belongs is given, and only one. To give its default, 0, is to take it back.
+  subroutine check_family(self, group, name, error)
+    class(case_values_t), intent(in) :: self
+    character(len=*), intent(in) :: group, name
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: others, earlier
+    integer :: place, first, i
+    place = find_key(self%keys, group, name)
+    first = 0
+    others = 'this'
+    do i = 1, size(self%keys)
+      if (.not. is_relative(self%keys(i), self%keys(place))) cycle
+      if (i /= place) others = others//' or '//trim(self%keys(i)%name)
+      if (.not. is_said(self, i)) cycle
+      if (first > 0) then
+        earlier = trim(self%keys(first)%name)
+        call self%refuse(group, trim(self%keys(i)%name), 'must not be given together with '//earlier//' = '// &
+          trim(self%values(first)%written(1))//'; give one of them, or take one back, as '//group//'.'//earlier//'=0 does', error)
+        return
+      end if
+      first = i
+    end do
+    if (first == 0) call self%refuse(group, name, others//' is required, > 0', error)
+  end subroutine check_family
+
+  !> Whether two keys are of one family, or are the same key.
+  pure logical function is_relative(key, other)
+    type(key_t), intent(in) :: key, other
+    is_relative = key%family == other%family .and. key%family /= '' .and. key%group == other%group
+  end function is_relative
+
+  !> Whether a number has been given that is not the default of its key.
+  logical function is_said(self, place)
+    class(case_values_t), intent(in) :: self
+    integer, intent(in) :: place
+    is_said = self%values(place)%given(1)
+    if (is_said) is_said = .not. is_default(self%keys(place), self%values(place), 1)
+  end function is_said
 
   !> The place of a key, or an error that says what is there instead. `at` names file and line.
   subroutine find(self, group, key, at, place, error)
@@ -149,6 +239,7 @@ contains
         integer_text(key%count)//' values; as '//integer_text(key%count)//'*'//printable(tokens(1)%text, 40)// &
         ' where they are the same'
       if (index > 0 .and. key%count /= most_reals) wanted = 'takes no index'
+      if (key%kind == real_kind) call find_decimal_comma(tokens, key%count, wanted)
       if (allocated(wanted)) then
         call fail(error, name//': '//wanted, status_case_file)
         return
@@ -167,11 +258,33 @@ contains
             return
           end if
           value%given(min(element, most_reals)) = .true.
+          value%is_override = is_override
           element = element + 1
         end do
       end do
     end associate
   end subroutine assign
+
+  !> Say so where the values for a key that takes `count` look like numbers with a decimal comma: 0,05 for one value, or for two,
+  !> where nobody writes 05 for a number by itself.
+  pure subroutine find_decimal_comma(tokens, count, wanted)
+    type(token_t), intent(in) :: tokens(:)
+    integer, intent(in) :: count
+    character(len=:), allocatable, intent(inout) :: wanted
+    character(len=*), parameter :: digits = '0123456789'
+    integer :: i
+    if (size(tokens) /= 2*count .and. size(tokens) /= 2) return
+    do i = 1, size(tokens), 2
+      if (.not. tokens(i + 1)%follows_comma .or. tokens(i)%repeat > 1) return
+      if (verify(tokens(i)%text, '+-'//digits) > 0 .or. verify(tokens(i + 1)%text, digits//'edED+-') > 0) return
+      if (scan(tokens(i + 1)%text, digits) /= 1) return
+    end do
+    if (size(tokens) == count) then
+      if (index(tokens(2)%text, '0') /= 1 .or. verify(tokens(2)%text//'.', digits) == 2) return
+    end if
+    wanted = printable(tokens(1)%text//','//tokens(2)%text, 40)//' has a decimal comma: write '// &
+      printable(tokens(1)%text//'.'//tokens(2)%text, 40)
+  end subroutine find_decimal_comma
 
   !> One value as written, into the component of its key's kind; `wanted` is allocated where it cannot be.
   subroutine convert(key, token, value, element, wanted)

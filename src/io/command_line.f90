@@ -2,7 +2,7 @@
 module command_line
   use kinds, only: dp
   use errors, only: error_t, fail, status_command_line
-  use text_tools, only: printable, nearest_word, case_name
+  use text_tools, only: printable, lowercase, nearest_word, case_name
   implicit none
   private
   public :: command_line_t, parse_command_line, program_arguments, help_text
@@ -11,7 +11,7 @@ module command_line
   type :: command_line_t
     integer, private :: override_count = 0, case_count = 0
     character(len=:), allocatable :: out          !! folder for results
-    character(len=:), allocatable :: overrides(:) !! GROUP.KEY=VALUE, in their order, blanks behind
+    character(len=:), allocatable :: overrides(:) !! GROUP.KEY=VALUE or GROUP=none, in their order, blanks behind
     character(len=:), allocatable :: accuracy     !! draft, standard, reference, or empty: as the case says
     integer :: jobs = 0                           !! threads; 0: as many as there are cores
     real(dp) :: checkpoint_interval = 60          !! seconds between checkpoints of a run; 0: none
@@ -57,12 +57,15 @@ contains
     allocate (character(len=len(arguments)) :: line%overrides(size(arguments)), line%cases(size(arguments)))
     only_cases = .false.
     i = 1
-    if (size(arguments) > 0) line%sweep = arguments(1) == 'sweep'
-    if (line%sweep) i = 2
     do while (i <= size(arguments))
       text = trim(arguments(i))
       if (only_cases .or. index(text, '-') /= 1) then
         if (text == '') call fail(error, 'an empty argument is no case file'//hint, status_command_line)
+        if (text == 'sweep' .and. .not. (line%sweep .or. only_cases) .and. line%case_count == 0) then
+          line%sweep = .true.
+          i = i + 1
+          cycle
+        end if
         line%case_count = line%case_count + 1
         line%cases(line%case_count) = text
       else if (text == '--') then
@@ -180,14 +183,13 @@ contains
     character(len=*), intent(in) :: name, value
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: wanted
-    integer :: dot, status
+    integer :: status
     select case (name)
     case ('out')
       line%out = value
       if (value == '') wanted = 'must name a folder'
     case ('set')
-      dot = index(value, '.')
-      if (dot < 2 .or. index(value, '=') < dot + 2) wanted = 'must have the form GROUP.KEY=VALUE'
+      if (.not. is_override(value)) wanted = 'must have the form GROUP.KEY=VALUE or GROUP=none'
       line%override_count = line%override_count + 1
       line%overrides(line%override_count) = value
     case ('accuracy')
@@ -226,6 +228,16 @@ contains
     if (allocated(wanted)) call fail(error, '--'//trim(name)//' '//printable(value, 60)//': '//wanted//hint, &
                                      status_command_line)
   end subroutine take
+
+  !> Whether a text has the form GROUP.KEY=VALUE or GROUP=none.
+  pure logical function is_override(text)
+    character(len=*), intent(in) :: text
+    integer :: dot, equals
+    equals = index(text, '=')
+    dot = index(text(:max(0, equals - 1)), '.')
+    is_override = dot > 1 .and. equals > dot + 1
+    if (equals > 1 .and. dot == 0) is_override = lowercase(trim(adjustl(text(equals + 1:)))) == 'none'
+  end function is_override
 
   !> A:B into two whole numbers; `last` is 0 where they are none.
   pure subroutine read_rows(value, first, last)
@@ -298,7 +310,10 @@ contains
       'gudgeon sweep [options] STUDY.nml [STUDY.nml ...]'//n// &
       'Dynamics of the slider-crank mechanism with clearance in its piston-pin joint.'//n//n// &
       '  -o, --out DIR             where results go (default: results)'//n// &
-      '  -s, --set GROUP.KEY=VALUE override one case value; repeatable'//n// &
+      '  -s, --set GROUP.KEY=VALUE give a key another value; repeatable, the last one counts, and one way to say where the'//n// &
+      '                            run ends (revolutions, end_time) takes the file''s other away'//n// &
+      '      --set GROUP=none      take a group out, as if the file did not have it; a later --set of one of its keys'//n// &
+      '                            brings it back with nothing but that'//n// &
       '  -a, --accuracy LEVEL      draft, standard or reference: some 3, 5 or 8 digits of a motion without impacts;'//n// &
       '                            method auto whatever the case says, contact entry root, the tolerance of the'//n// &
       '                            level, which the models'' own accuracy follows; --set wins over it'//n// &

@@ -14,6 +14,7 @@ module namelist_reader
     character(len=:), allocatable :: text   !! without quotes, doubled quotes undone
     logical :: quoted = .false.
     integer :: repeat = 1
+    logical :: follows_comma = .false.   !! without a blank between
   end type token_t
 
   !> A group where it begins.
@@ -189,8 +190,10 @@ contains
     type(token_t), allocatable, intent(out) :: tokens(:)
     type(token_t) :: token
     logical :: comma
+    integer :: behind_comma
     allocate (tokens(0))
     comma = .true.
+    behind_comma = 0
     do
       call skip_blanks(scan)
       if (at_end(scan)) exit
@@ -201,10 +204,12 @@ contains
         end if
         comma = .true.
         scan%at = scan%at + 1
+        behind_comma = scan%at
         cycle
       end if
       if (scan%text(scan%at:scan%at) == '/' .or. scan%text(scan%at:scan%at) == '&') exit
       if (key_is_next(scan)) exit
+      token%follows_comma = scan%at == behind_comma
       call read_token(scan, token)
       if (size(tokens) == most) scan%message = 'too many values'
       if (allocated(scan%message)) return
@@ -353,5 +358,6 @@ contains
     call move_alloc(from%text, to%text)
     to%quoted = from%quoted
     to%repeat = from%repeat
+    to%follows_comma = from%follows_comma
   end subroutine move_token
 end module namelist_reader

@@ -8,7 +8,7 @@ module progress
   use posix, only: is_terminal, write_bytes
   implicit none
   private
-  public :: progress_t, progress_wanted, rate_text, duration_text
+  public :: progress_t, progress_wanted, tell, rate_text, duration_text
 
   integer, parameter :: standard_error = 2
   real(dp), parameter :: least_interval = 0.2_dp   !! between two lines [s]
@@ -26,6 +26,7 @@ module progress
     procedure :: update
     procedure :: update_runs
     procedure :: finish
+    procedure :: tell => tell_above
   end type progress_t
 
 contains
@@ -105,6 +106,21 @@ contains
     self%is_on = .false.
     self%has_shown = .false.
   end subroutine finish
+
+  !> Say something to the user, and leave no progress in its line.
+  subroutine tell_above(self, line)
+    class(progress_t), intent(inout) :: self
+    character(len=*), intent(in) :: line
+    if (self%has_shown .and. self%rewrites) call show(.true., '')
+    call tell(line)
+  end subroutine tell_above
+
+  !> One line on standard error, in one call.
+  subroutine tell(line)
+    character(len=*), intent(in) :: line
+    integer :: done, ignored
+    call write_bytes(standard_error, 'gudgeon: '//line//achar(10), done, ignored)
+  end subroutine tell
 
   !> Replace the line on the screen, or add one to a file.
   subroutine show(rewrites, line)

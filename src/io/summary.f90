@@ -11,7 +11,7 @@ module summary
   use version, only: program_version
   implicit none
   private
-  public :: summary_table, summary_line, advice, build_advice, relative_residual
+  public :: summary_table, summary_line, build_advice, relative_residual
 
   character(len=*), parameter :: newline = achar(10)
 
@@ -107,15 +107,6 @@ contains
     relative_residual = 0
     if (report%figures%max_energy > 0) relative_residual = report%figures%max_energy_residual/report%figures%max_energy
   end function relative_residual
-
-  !> What the user of a run that is done should know, or an empty text.
-  function advice(report) result(text)
-    type(run_report_t), intent(in) :: report
-    character(len=:), allocatable :: text
-    text = ''
-    if (report%auto_saves > 1.5_dp) text = "bound by the stability of Adams, not by its accuracy (a stiff film): "// &
-      "method = 'auto' needs 1/"//integer_text(nint(report%auto_saves))//" of the evaluations"
-  end function advice
 
   !> What somebody should know who waits for a program that the compiler has not optimised, or an empty text.
   pure function build_advice(flags, seconds) result(text)

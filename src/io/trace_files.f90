@@ -18,6 +18,8 @@ module trace_files
   use row_queue, only: row_queue_t
   use trace_table, only: trace_table_t
   use progress, only: progress_t
+  use stability_advice, only: stability_advice_t
+  use ode_method, only: step_statistics_t
   use posix, only: interrupted
   use text_tools, only: printable
   implicit none
@@ -32,6 +34,7 @@ module trace_files
     type(trace_table_t) :: trace
     type(result_file_t) :: event_list
     type(progress_t) :: progress
+    type(stability_advice_t) :: advice
     real(dp) :: end_time = 1            !! of the run, for the progress [s]
     type(checkpoint_t) :: checkpoint    !! of the run: path and case; the rest is filled in when it is written
     type(error_t), allocatable :: checkpoint_error        !! why the last one could not be written
@@ -51,6 +54,7 @@ module trace_files
     procedure :: take_row
     procedure :: take_event
     procedure :: take_progress
+    procedure :: take_cost
     procedure :: keep_checkpoints
     procedure :: reopen
     procedure :: take_archive
@@ -288,6 +292,13 @@ contains
     !$omp end critical (texts)
     call look(self)
   end subroutine take_progress
+
+  subroutine take_cost(self, time, statistics)
+    class(trace_files_t), intent(inout) :: self
+    real(dp), intent(in) :: time
+    type(step_statistics_t), intent(in) :: statistics
+    call self%advice%consider(time, self%end_time, self%wall_time(), statistics, self%progress)
+  end subroutine take_cost
 
   !> Whether there is a reason to stop, or to write a checkpoint.
   subroutine look(self)

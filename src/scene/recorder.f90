@@ -4,7 +4,7 @@ module recorder
   use kinds, only: dp
   use constants, only: two_pi
   use ode_problem, only: ode_problem_t
-  use ode_method, only: ode_method_t
+  use ode_method, only: ode_method_t, limit_stability
   use solver, only: observer_t
   use dynamics, only: pin_force_size
   use scene, only: scene_t, evaluation_t, phase_contact, event_none, event_contact_begins, event_contact_ends
@@ -122,7 +122,10 @@ contains
       end if
     end select
     self%steps = self%steps + 1
-    if (mod(self%steps, steps_between_reports) == 0) call self%sink%take_progress(t_to)
+    if (mod(self%steps, steps_between_reports) == 0) then
+      call self%sink%take_progress(t_to)
+      if (method%statistics%time_limited_by(limit_stability) > 0.5_dp*t_to) call self%sink%take_cost(t_to, method%statistics)
+    end if
     call keep_budget(self, method%statistics%evaluations)
     self%wants_to_stop = self%sink%wants_to_stop .or. self%over_budget
     self%wants_archive = self%sink%wants_archive

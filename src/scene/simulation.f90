@@ -19,7 +19,7 @@ module simulation
   use archive, only: archive_t
   implicit none
   private
-  public :: simulate, run_report_t, interrupted_text
+  public :: simulate, try_auto, run_report_t, interrupted_text
 
   !> What is known of a run when it has ended.
   type :: run_report_t
@@ -109,11 +109,23 @@ contains
     energy_limit = min(0.05_dp, max(1e-10_dp, 1e3_dp*tolerance*max(1.0_dp, abs(crank_travel)/(100*two_pi))))
   end function energy_limit
 
-  !> After an Adams run that was bound by its stability most of the time: what method auto would have needed, found by
-  !> running it, without any output, for at most a tenth of the steps.
+  !> After an Adams run that was bound by its stability most of the time: what it cost over what method auto needs.
   subroutine measure_auto(case, report)
     type(case_t), intent(in) :: case
     type(run_report_t), intent(inout) :: report
+    integer :: needed
+    if (report%statistics%time_limited_by(limit_stability) < 0.5_dp*report%figures%time) return
+    call try_auto(case, simulated_time(case), report%statistics%evaluations, needed)
+    if (needed > 0) report%auto_saves = real(report%statistics%evaluations, dp)/needed
+  end subroutine measure_auto
+
+  !> Evaluations that method auto needs for a case up to a time [s], found by running it without any output; 0 if they are more than
+  !> `most`, or if it does not come there.
+  subroutine try_auto(case, time, most, evaluations)
+    type(case_t), intent(in) :: case
+    real(dp), intent(in) :: time
+    integer, intent(in) :: most
+    integer, intent(out) :: evaluations
     class(scene_t), allocatable :: scene
     class(ode_method_t), allocatable :: method
     type(error_t), allocatable :: error
@@ -123,15 +135,16 @@ contains
     real(dp) :: t
     integer :: status
 
-    if (report%statistics%time_limited_by(limit_stability) < 0.5_dp*report%figures%time) return
+    evaluations = 0
     call build_scene(case, .false., scene, error)
     if (.not. allocated(error)) call new_method('auto', method, error)
     if (allocated(error)) return
     method%settings = settings_for(case, scene)
+    method%settings%max_evaluations = most
     allocate (y(scene%n), source=scene%initial_state())
     t = 0
-    call integrate(scene, method, t, y, simulated_time(case), report%statistics%accepted/10 + 1, observer, status)
+    call integrate(scene, method, t, y, time, 0, observer, status)
     needed = method%totals()
-    if (status == integration_done) report%auto_saves = real(report%statistics%evaluations, dp)/needed%evaluations
-  end subroutine measure_auto
+    if (status == integration_done) evaluations = needed%evaluations
+  end subroutine try_auto
 end module simulation

@@ -2,6 +2,7 @@
 module trace_sink
   use kinds, only: dp
   use archive, only: archive_t
+  use ode_method, only: step_statistics_t
   implicit none
   private
   public :: trace_sink_t, trace_event_t
@@ -26,6 +27,7 @@ module trace_sink
     logical :: keeps_archives = .false.  !! the state is wanted too where the run stops before its end
   contains
     procedure :: take_archive => ignore_archive
+    procedure :: take_cost => ignore_cost
     procedure(take_row), deferred :: take_row
     procedure(take_event), deferred :: take_event
     procedure(take_progress), deferred :: take_progress
@@ -67,6 +69,15 @@ contains
     call archive%exchange(self%max_penetration)
     call archive%exchange(self%max_normal_force)
   end subroutine exchange
+
+  !> Called now and then while most of the time simulated so far was bound by the stability of Adams. The default does nothing.
+  subroutine ignore_cost(self, time, statistics)
+    class(trace_sink_t), intent(inout) :: self
+    real(dp), intent(in) :: time                        !! so far [s]
+    type(step_statistics_t), intent(in) :: statistics   !! so far
+    associate (unused_self => self, unused_time => time, unused_statistics => statistics)
+    end associate
+  end subroutine ignore_cost
 
   !> The state of the run after the rows and events taken so far. The default is for sinks that keep none.
   subroutine ignore_archive(self, archive)

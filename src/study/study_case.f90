@@ -46,6 +46,7 @@ contains
     call complete_case(values, path, self%case, error)
     if (allocated(error)) return
     allocate (self%places(size(keys)), self%is_number(size(keys)))
+    self%values%values%is_override = .false.   ! to the parameters, all else is the file
     do i = 1, size(keys)
       key = trim(keys(i))
       dot = index(key, '.')
@@ -55,8 +56,10 @@ contains
         self%is_number(i) = schema%kind <= integer_kind .and. schema%count == 1
         self%values%is_present(find_group(values%groups, trim(schema%group))) = .true.
         self%values%values(self%places(i))%given(1) = .true.
+        self%values%values(self%places(i))%is_override = .true.
       end associate
     end do
+    call take_families(self)
     self%variant = 0
     if (any(self%places == find_key(values%keys, 'lubrication', 'law'))) &
       self%variant = find_key(values%keys, 'lubrication', 'variant')
@@ -65,6 +68,18 @@ contains
       if (allocated(error)) return
     end do
   end subroutine prepare
+
+  !> A parameter takes away what the base case says by other keys of its family.
+  subroutine take_families(self)
+    class(study_case_t), intent(inout) :: self
+    integer :: i
+    do i = 1, size(self%places)
+      if (self%values%keys(self%places(i))%family /= '') call self%values%prefer(self%places(i))
+    end do
+    do i = 1, size(self%values%keys)
+      if (self%values%keys(i)%family /= '') call value_to_case(self%values, i, self%case)
+    end do
+  end subroutine take_families
 
   !> Whether parameter i is one number, real or whole.
   pure logical function takes_numbers(self, i)

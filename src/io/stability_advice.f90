@@ -1,0 +1,59 @@
+!> What a run should be told that the stability of Adams bounds, not its accuracy: while it goes, as soon as it is plain that it will
+!> take long, or else when it has ended.
+module stability_advice
+  use kinds, only: dp
+  use ode_method, only: step_statistics_t
+  use case_definition, only: case_t
+  use simulation, only: try_auto
+  use progress, only: progress_t, duration_text
+  use text_tools, only: integer_text, printable
+  implicit none
+  private
+  public :: stability_advice_t, advice
+
+  real(dp), parameter :: first_look = 0.3_dp   !! after so much of the run [s]
+  real(dp), parameter :: patience = 5          !! a run that has less to go is left alone [s]
+  real(dp), parameter :: worth_it = 3          !! a change of the method while the run goes: evaluations it must save
+
+  !> For one run.
+  type :: stability_advice_t
+    type(case_t), allocatable :: case   !! without it nothing is said
+    logical :: was_given = .false.
+    logical, private :: has_looked = .false.
+  contains
+    procedure :: consider
+  end type stability_advice_t
+
+contains
+
+  !> A run that is bound by stability has come to `time` of `end_time` [s] in `elapsed` seconds. Once, where there is long to go, try
+  !> what method auto needs up to here, and say so on standard error.
+  subroutine consider(self, time, end_time, elapsed, statistics, progress)
+    class(stability_advice_t), intent(inout) :: self
+    real(dp), intent(in) :: time, end_time, elapsed
+    type(step_statistics_t), intent(in) :: statistics   !! of the run so far
+    type(progress_t), intent(inout) :: progress         !! of the run, whose line on a terminal makes room
+    real(dp) :: to_go
+    integer :: needed
+    if (self%has_looked .or. .not. allocated(self%case) .or. elapsed < first_look) return
+    to_go = elapsed*(end_time/time - 1)
+    if (to_go < patience) return
+    self%has_looked = .true.
+    call try_auto(self%case, time, int(statistics%evaluations/worth_it), needed)
+    if (needed == 0) return
+    self%was_given = .true.
+    !$omp critical (texts)
+    call progress%tell(printable(self%case%file, 200)//': some '//duration_text(to_go)//' to go; '// &
+      advice(real(statistics%evaluations, dp)/needed)//' up to here (--set integrator.method=auto)')
+    !$omp end critical (texts)
+  end subroutine consider
+
+  !> What the user of a run should know that took `ratio` times the evaluations that auto needs, or an empty text.
+  function advice(ratio) result(text)
+    real(dp), intent(in) :: ratio
+    character(len=:), allocatable :: text
+    text = ''
+    if (ratio > 1.5_dp) text = "bound by the stability of Adams, not by its accuracy (a stiff film): "// &
+      "method = 'auto' needs 1/"//integer_text(nint(ratio))//" of the evaluations"
+  end function advice
+end module stability_advice
