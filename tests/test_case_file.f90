@@ -3,6 +3,7 @@ module test_case_file
   use kinds, only: dp
   use errors, only: error_t, status_case_file
   use case_definition, only: case_t
+  use case_rules, only: case_warning
   use case_file, only: read_case, parse_case, write_resolved, template
   use posix, only: make_directory, remove_directory, remove_file
   use result_file, only: result_file_t
@@ -35,6 +36,10 @@ contains
     call test_joint(check)
     call test_films(check)
     call test_runs(check)
+    call test_ends_of_runs(check)
+    call test_groups_taken_out(check)
+    call test_decimal_commas(check)
+    call test_hints(check)
     call test_files(check)
     call test_shipped_cases(check)
     call test_safe_messages(check)
@@ -144,7 +149,8 @@ contains
     call refused(check, '&contact density=2*, /', 'x.nml:1: &contact density: a value is missing after the repeat count')
     call refused(check, '&contact density=99999*1 /', 'x.nml:1: &contact density: repeat count out of range: 99999*1')
     call refused(check, '&joint '//repeat('clearance=1 ', 2000)//'/', 'x.nml:1: too many keys')
-    call refused_with(check, 'joint.clearance', 'x.nml: --set joint.clearance: must have the form GROUP.KEY=VALUE')
+    call refused_with(check, 'joint.clearance', 'x.nml: --set joint.clearance: must have the form GROUP.KEY=VALUE '// &
+                      'or GROUP=none')
     call refused_with(check, 'joint.clearance=1 /', 'x.nml: --set joint.clearance=1 /: unexpected /')
   end subroutine test_syntax
 
@@ -267,7 +273,7 @@ contains
   subroutine test_joint(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: no_play = 'must be clearance with contact, friction or lubrication: an ideal joint has '// &
-      'no play for them; leave those groups out'
+      'no play for them; leave those groups out, as --set contact=none does'
     call refused_with(check, 'joint.kind=ideal', 'x.nml: &joint kind = ideal: '//no_play)
     call refused(check, bodies//run//contact, 'x.nml: &joint kind: '//no_play)
     call refused(check, bodies//run//'&lubrication viscosity=1 /', 'x.nml: &joint kind: '//no_play)
@@ -311,8 +317,6 @@ contains
   subroutine test_runs(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: still = 'initial.crank_speed=0   ', ends = 'integrator.end_time=1   '
-    call refused_with(check, 'integrator.end_time=1', &
-                      'x.nml: &integrator end_time = 1: must not be given together with revolutions (s)')
     call refused_with(check, 'integrator.revolutions=0', &
                       'x.nml: &integrator revolutions = 0: this or end_time is required, > 0')
     call refused_with(check, 'integrator.revolutions=-1', 'x.nml: &integrator revolutions = -1: must be > 0')
@@ -329,6 +333,121 @@ contains
     call refused_with(check, 'integrator.contact_entry=step_rejection', 'x.nml: &integrator max_penetration: must be > 0 '// &
                       'for contact_entry = ''step_rejection'' (m)')
   end subroutine test_runs
+
+  !> A run ends where the last word says, and the resolved case says so; two words of one place are a mistake.
+  subroutine test_ends_of_runs(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: both = 'x.nml: &integrator end_time = 1: must not be given together with revolutions = '
+    character(len=*), parameter :: remedy = '; integrator.revolutions=0 takes that back'
+    character(len=*), parameter :: timed = bodies//'&integrator end_time=0.5 /'
+    call resolves(check, whole, ['integrator.end_time=1'], 'revolutions = 0.0', 'end_time = 1.0')
+    call resolves(check, timed, ['integrator.revolutions=3'], 'revolutions = 3.0', 'end_time = 0.0')
+    call resolves(check, timed, [character(len=30) :: 'integrator.revolutions=3', 'integrator.revolutions=0'], &
+                  'revolutions = 0.0', 'end_time = 5.0')
+    call resolves(check, timed, [character(len=40) :: 'integrator.revolutions=3', 'integrator.relative_tolerance=1e-5', &
+                                 'integrator.revolutions=4'], 'revolutions = 4.0', 'end_time = 0.0')
+    call resolves(check, whole, ['integrator.end_time=0'], 'revolutions = 2.0', 'end_time = 0.0')
+    call resolves(check, bodies//'&integrator end_time=0.5 revolutions=2 /', ['integrator.end_time=0.25'], &
+                  'revolutions = 0.0', 'end_time = 2.5')
+    call resolves(check, bodies, [character(len=30) :: 'integrator.revolutions=3', 'integrator.end_time=1', &
+                                  'integrator.revolutions=0'], 'revolutions = 0.0', 'end_time = 1.0')
+    call refused_on(check, whole, [character(len=30) :: 'integrator.end_time=1', 'integrator.revolutions=1'], both//'1'//remedy)
+    call refused_on(check, timed, [character(len=30) :: 'integrator.revolutions=7', 'integrator.end_time=1'], both//'7'//remedy)
+    call refused(check, bodies//'&integrator revolutions=2.0 end_time=1 /', both//'2.0'//remedy)
+    call refused_with(check, 'integrator.end_time=-1', 'x.nml: &integrator end_time = -1: must be > 0 (s)')
+    call refused_on(check, timed, [character(len=30) :: 'integrator.end_time=0'], &
+                    'x.nml: &integrator revolutions: this or end_time is required, > 0')
+  end subroutine test_ends_of_runs
+
+  !> A case with overrides is accepted, and resolved these two lines begin as told.
+  subroutine resolves(check, text, overrides, first, second)
+    class(checks_t), intent(inout) :: check
+    character(len=*), intent(in) :: text, overrides(:), first, second
+    type(case_t) :: c
+    type(error_t), allocatable :: error
+    character(len=:), allocatable :: resolved
+    call parse_case(text, 'x.nml', overrides, c, error)
+    call check%that(.not. allocated(error), 'accepted with '//trim(overrides(1)))
+    if (allocated(error)) return
+    resolved = write_resolved(c)
+    call check%that(index(resolved, n//'  '//first) > 0, first//' after '//trim(overrides(size(overrides))))
+    call check%that(index(resolved, n//'  '//second) > 0, second//' after '//trim(overrides(size(overrides))))
+  end subroutine resolves
+
+  !> GROUP=none: as if the file and the overrides before did not have the group; what comes later begins anew.
+  subroutine test_groups_taken_out(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: film = '&lubrication viscosity=0.01 variant=''half_film'' /'//n// &
+      '&friction law=''coulomb'' coefficient=0.3 /'//n//'&drive kind=''constant_speed'' /'
+    character(len=*), parameter :: long = 'joint.bearing_length=0.015'
+    character(len=*), parameter :: unknown = ' (allowed: case, mechanism, drive, initial, joint, contact, friction, '// &
+      'lubrication, combustion, integrator, output)'
+    type(case_t) :: c
+    type(error_t), allocatable :: error
+    call parse_case(whole//film, 'x.nml', [character(len=30) :: 'Lubrication = NONE', 'drive=none'], c, error)
+    call check%that(.not. allocated(error), 'groups are taken out')
+    call check%that(.not. c%lubrication%is_present .and. c%friction%is_present .and. c%contact%is_present, 'these and no other')
+    call check%equal_text(trim(c%drive%kind), 'free', 'a group that is always there goes back to its defaults')
+    call check%that(index(write_resolved(c), 'lubrication') == 0, 'nothing of it in the resolved case')
+    call parse_case(whole//film, 'x.nml', [character(len=30) :: long, 'lubrication.variant=as_printed', 'lubrication=none', &
+                                           'lubrication.viscosity=0.02'], c, error)
+    call check%that(.not. allocated(error), 'a later key brings the group back')
+    call check%that(c%lubrication%is_present .and. abs(c%lubrication%viscosity - 0.02_dp) < 1e-15_dp, 'with that key')
+    call check%equal_text(trim(c%lubrication%variant), 'closed_form', 'and with nothing from before')
+    call parse_case(whole//film, 'x.nml', [character(len=30) :: 'joint=none', 'contact=none', 'friction=none', &
+                                           'lubrication=none'], c, error)
+    call check%that(.not. allocated(error), 'no joint is an ideal one')
+    call check%equal_text(trim(c%joint%kind), 'ideal', 'no joint')
+    call refused_with(check, 'joint=none', 'x.nml: &joint kind: must be clearance with contact, friction or lubrication: an '// &
+                      'ideal joint has no play for them; leave those groups out, as --set contact=none does')
+    call refused_with(check, 'contact=none', 'x.nml: &joint kind = clearance: needs contact or lubrication: nothing would '// &
+                      'hold the pin')
+    call refused_on(check, whole//film, [character(len=40) :: long, 'friction.coefficient=0.1', 'friction=none', &
+                                         'friction.v0=1'], 'x.nml: &friction coefficient: required')
+    call refused_with(check, 'mechanism=none', 'x.nml: &mechanism: this group is required')
+    call refused_with(check, 'integrator=none', 'x.nml: &integrator revolutions: this or end_time is required, > 0')
+    call refused_with(check, 'contakt=none', &
+                      'x.nml: --set contakt=none: &contakt: unknown group; did you mean contact?'//unknown)
+    call refused_with(check, 'contact=off', 'x.nml: --set contact=off: must have the form GROUP.KEY=VALUE or GROUP=none')
+    call refused_with(check, 'contact.law=none', 'x.nml: --set contact.law=none: &contact law = none: must be one of '// &
+                      'lankarani_nikravesh, hertz; --set contact=none takes the group out')
+  end subroutine test_groups_taken_out
+
+  !> 0,05 for 0.05 is said to be that, where it is not two values.
+  subroutine test_decimal_commas(check)
+    class(checks_t), intent(inout) :: check
+    type(case_t) :: c
+    type(error_t), allocatable :: error
+    call refused(check, '&joint clearance=0,05 /', 'x.nml:1: &joint clearance: 0,05 has a decimal comma: write 0.05')
+    call refused(check, '&drive torque=-1,5D3 /', 'x.nml:1: &drive torque: -1,5D3 has a decimal comma: write -1.5D3')
+    call refused(check, '&mechanism rod_com=0,06,0,01 /', 'x.nml:1: &mechanism rod_com: 0,06 has a decimal comma: write 0.06')
+    call refused(check, '&mechanism rod_com=0,06 /', 'x.nml:1: &mechanism rod_com: 0,06 has a decimal comma: write 0.06')
+    call refused_with(check, 'joint.clearance=0,00002', &
+                      'x.nml: --set joint.clearance=0,00002: &joint clearance: 0,00002 has a decimal comma: write 0.00002')
+    call refused(check, '&joint clearance=0, 05 /', 'x.nml:1: &joint clearance: takes 1 value, not 2')
+    call refused(check, '&joint clearance=1.0,05 /', 'x.nml:1: &joint clearance: takes 1 value, not 2')
+    call refused(check, '&mechanism rod_com=1,2,3 /', 'x.nml:1: &mechanism rod_com: takes 2 values, not 3')
+    call parse_case(whole, 'x.nml', [character(len=30) :: 'mechanism.rod_com=0,5', 'mechanism.crank_com=1,0', &
+                                     'contact.poissons_ratio=0,0.05'], c, error)
+    call check%that(.not. allocated(error), 'two values with a comma')
+    if (allocated(error)) return
+    call check%that(abs(c%mechanism%rod_com(2) - 5) < 1e-15_dp .and. abs(c%mechanism%crank_com(1) - 1) < 1e-15_dp, 'are two')
+  end subroutine test_decimal_commas
+
+  !> A study is no case; a torque that does nothing is told.
+  subroutine test_hints(check)
+    class(checks_t), intent(inout) :: check
+    type(case_t) :: c
+    type(error_t), allocatable :: error
+    call refused(check, n//'&study case=''y.nml'' /', 'x.nml:2: &study: a study, not a case: run it with gudgeon sweep x.nml')
+    call refused(check, '&parameter key=''a.b'' /', 'x.nml:1: &parameter: a study, not a case: run it with gudgeon sweep x.nml')
+    call parse_case(whole, 'x.nml', [character(len=30) :: 'drive.torque=1', 'drive.kind=constant_speed'], c, error)
+    call check%that(index(case_warning(c), '&drive torque has no effect') == 1, 'torque on a crank that is held')
+    call parse_case(whole, 'x.nml', [character(len=30) :: 'drive.torque=1'], c, error)
+    call check%equal_text(case_warning(c), '', 'torque on a free crank')
+    call parse_case(whole, 'x.nml', [character(len=30) :: 'drive.kind=constant_speed', 'drive.damping=1'], c, error)
+    call check%equal_text(case_warning(c), '', 'no torque on a crank that is held')
+  end subroutine test_hints
 
   !> Files that are none, and one that is.
   subroutine test_files(check)

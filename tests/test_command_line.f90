@@ -82,6 +82,14 @@ contains
     call parse_command_line(['--template'], line, error)
     call check%that(.not. allocated(error) .and. line%template, 'template needs no case')
     call check%that(index(help_text(), '--accuracy LEVEL') > 0, 'help lists options')
+    call parse_command_line([character(len=16) :: '-s', 'lubrication=none', 'a.nml'], line, error)
+    call check%that(.not. allocated(error) .and. size(line%overrides) == 1, 'a group taken out')
+    call parse_command_line([character(len=16) :: '-q', 'sweep', '-o', 'r', 's.nml'], line, error)
+    call check%that(.not. allocated(error) .and. line%sweep .and. size(line%cases) == 1, 'sweep behind an option')
+    call parse_command_line([character(len=16) :: 'sweep', 'sweep'], line, error)
+    call check%that(.not. allocated(error) .and. line%sweep .and. size(line%cases) == 1, 'a study of that name')
+    call parse_command_line([character(len=16) :: '--', 'sweep'], line, error)
+    call check%that(.not. (allocated(error) .or. line%sweep) .and. size(line%cases) == 1, 'a case of that name')
   end subroutine test_options
 
   subroutine test_refusals(check)
@@ -97,8 +105,11 @@ contains
     call refused(check, ['-o'], '-o: a value is missing'//hint)
     call refused(check, ['--out='], '--out : must name a folder'//hint)
     call refused(check, ['--quiet=1'], '--quiet: takes no value'//hint)
-    call refused(check, ['-sclearance=1'], '--set clearance=1: must have the form GROUP.KEY=VALUE'//hint)
-    call refused(check, ['-sjoint.clearance'], '--set joint.clearance: must have the form GROUP.KEY=VALUE'//hint)
+    call refused(check, ['-sclearance=1'], '--set clearance=1: must have the form GROUP.KEY=VALUE or GROUP=none'//hint)
+    call refused(check, ['-sjoint.clearance'], '--set joint.clearance: must have the form GROUP.KEY=VALUE or GROUP=none'// &
+                 hint)
+    call refused(check, ['-slubrication=off'], '--set lubrication=off: must have the form GROUP.KEY=VALUE or GROUP=none'//hint)
+    call refused(check, ['-s=none'], '--set =none: must have the form GROUP.KEY=VALUE or GROUP=none'//hint)
     call refused(check, ['-abest'], '--accuracy best: must be draft, standard or reference'//hint)
     call refused(check, ['--progress=on'], '--progress on: must be auto, always or never'//hint)
     call refused(check, ['-j0'], '--jobs 0: must be a whole number from 1 to 1024'//hint)

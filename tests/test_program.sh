@@ -35,6 +35,15 @@ refused "unknown option" 2 "unknown option" --colour cases/sim_I.nml
 refused "bad override" 3 "joint.clearance" --set joint.clearance=-1 cases/sim_I.nml
 refused "override without value" 2 "GROUP.KEY=VALUE" --set joint.clearance cases/sim_I.nml
 
+refused "a study without sweep" 3 "map_I.nml:[0-9]*: &study: .*gudgeon sweep cases/studies/map_I.nml" cases/studies/map_I.nml
+refused "two ends of a run" 3 "end_time = 1: .*integrator.revolutions=0" -s integrator.revolutions=3 -s integrator.end_time=1 cases/sim_I.nml
+refused "decimal comma" 3 "0,05 has a decimal comma" -s joint.clearance=0,05 cases/sim_I.nml
+refused "an unknown group taken out" 3 "lubricaton: unknown group; did you mean lubrication" -s lubricaton=none cases/sim_I.nml
+run --check -s drive.torque=1 cases/wiebe/wiebe_320.nml
+check "a torque that does nothing is told" [ "$status" = 0 -a "$(grep -c 'wiebe_320.nml: &drive torque has no effect' "$work/err")" = 1 ]
+run -q --check -s drive.torque=1 cases/wiebe/wiebe_320.nml
+check "not when quiet" [ "$status" = 0 -a ! -s "$work/err" ]
+
 # what it tells
 run --help
 check "help" [ "$status" = 0 -a "$(grep -c -- --template "$work/out")" = 1 ]
@@ -85,6 +94,31 @@ check "quiet" [ "$status" = 0 -a ! -s "$work/out" -a ! -s "$work/err" ]
 
 run -o "$work/r" -s integrator.revolutions=1 cases/sim_I.nml
 check "a stability-bound run says what auto would save" grep -q "method = 'auto' needs 1/[0-9]* of the evaluations" "$work/err"
+
+# a long run is told so while it goes, in its first second where the machine has nothing else to do
+advised() {   # advised ARGUMENTS...: whether the run says within 20 s that it is bound by stability; it is then ended
+  : >"$work/err"
+  "$gudgeon" -o "$work/r" -s output.ideal_twin=F "$@" >"$work/out" 2>"$work/err" &
+  pid=$!
+  tries=0
+  while [ $tries -lt 200 ] && ! [ -s "$work/err" ] && kill -0 $pid 2>/dev/null; do
+    sleep 0.1
+    tries=$((tries + 1))
+  done
+  kill -TERM $pid 2>/dev/null
+  wait $pid
+  grep -q "sim_I.nml: some .* to go; bound by the stability.*method = 'auto' needs 1/[0-9]* of the evaluations up to here" "$work/err"
+}
+check "a long run bound by stability says so while it goes" advised -s integrator.revolutions=4000 cases/sim_I.nml
+check "once" [ "$(grep -c "needs 1/" "$work/err")" = 1 ]
+check "long before its end" awk -F, '$1 == "simulated_time" { exit !($2 < 60) }' "$work/r/sim_I.summary.csv"   # of 100 s
+run -o "$work/r" -s integrator.revolutions=200 -s output.ideal_twin=F cases/sim_I.nml
+check "a shorter one afterwards, once" [ "$(grep -c "needs 1/[0-9]* of the evaluations$" "$work/err")" = 1 -a "$(wc -l <"$work/err")" = 1 ]
+
+# a group taken out, one end of the run for another: the resolved case shows what ran
+run -o "$work/n" -s lubrication=none -s integrator.end_time=1e-3 -s output.ideal_twin=F cases/sim_I.nml
+check "without its film" [ "$status" = 0 -a "$(grep -c lubrication "$work/n/sim_I.resolved.nml")" = 0 ]
+check "to its end time" grep -q '^  revolutions = 0.0' "$work/n/sim_I.resolved.nml"
 
 # failures keep what there is
 run -o "$work/f" -s integrator.max_steps=2000 cases/sim_I.nml

@@ -144,6 +144,16 @@ study bad <<'END'
 END
 refused "no base case" 3 "none.nml: No such file" "$work/bad.nml"
 refused "no study" 2 "no study file"
+refused "a case for a study" 3 "sim_I.nml:[0-9]*: &case: .*run it with gudgeon cases/sim_I.nml, without sweep" cases/sim_I.nml
+study ends <<'END'
+&study case = 'base.nml' /
+&parameter key = 'integrator.end_time', values = 0.035, 0.065 /
+END
+run -q sweep -o "$work/ends" -s integrator.revolutions=1 "$work/ends.nml"
+check "a parameter that ends the run takes the revolutions of the case away, status $status" [ "$status" = 0 ]
+check "and so the runs end" [ "$(awk -F, 'NR > 1 { printf "%s ", $4 }' "$work/ends/ends.runs.csv")" = "1 2 " ]
+run sweep -q -o "$work/dry" -s lubrication=none -s integrator.revolutions=2 -s contact.restitution=0.5 "$work/grid.nml"
+check "a sweep without its film has impacts" [ "$(awk -F, 'NR > 1 && $8 > 0' "$work/dry/grid.runs.csv" | wc -l)" -gt 6 ]
 run --fresh cases/sim_I.nml
 check "--fresh is for studies" [ "$status" = 2 ]
 refused "rows beyond the study" 3 "the study has 12 runs" --rows 5:20 "$work/grid.nml"

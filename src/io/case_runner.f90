@@ -20,7 +20,7 @@ module case_runner
   use text_tools, only: printable
   implicit none
   private
-  public :: run_case_file
+  public :: run_case_file, tell_warning
 
 contains
 

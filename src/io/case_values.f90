@@ -146,8 +146,9 @@ contains
       if (.not. is_said(self, i)) cycle
       if (first > 0) then
         earlier = trim(self%keys(first)%name)
-        call self%refuse(group, trim(self%keys(i)%name), 'must not be given together with '//earlier//' = '// &
-          trim(self%values(first)%written(1))//'; give one of them, or take one back, as '//group//'.'//earlier//'=0 does', error)
+        call fail(error, self%file//': &'//group//' '//trim(self%keys(i)%name)//' = '//trim(self%values(i)%written(1))// &
+          ': must not be given together with '//earlier//' = '//trim(self%values(first)%written(1))//'; '//group//'.'// &
+          earlier//'=0 takes that back', status_case_file)
         return
       end if
       first = i

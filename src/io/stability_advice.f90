@@ -39,8 +39,8 @@ contains
     to_go = elapsed*(end_time/time - 1)
     if (to_go < patience) return
     self%has_looked = .true.
-    call try_auto(self%case, time, int(statistics%evaluations/worth_it), needed)
-    if (needed == 0) return
+    call try_auto(self%case, time, statistics%accepted/10 + 1, needed)
+    if (needed == 0 .or. statistics%evaluations < worth_it*needed) return
     self%was_given = .true.
     !$omp critical (texts)
     call progress%tell(printable(self%case%file, 200)//': some '//duration_text(to_go)//' to go; '// &

@@ -115,16 +115,16 @@ contains
     type(run_report_t), intent(inout) :: report
     integer :: needed
     if (report%statistics%time_limited_by(limit_stability) < 0.5_dp*report%figures%time) return
-    call try_auto(case, simulated_time(case), report%statistics%evaluations, needed)
+    call try_auto(case, simulated_time(case), report%statistics%accepted/10 + 1, needed)
     if (needed > 0) report%auto_saves = real(report%statistics%evaluations, dp)/needed
   end subroutine measure_auto
 
-  !> Evaluations that method auto needs for a case up to a time [s], found by running it without any output; 0 if they are more than
-  !> `most`, or if it does not come there.
-  subroutine try_auto(case, time, most, evaluations)
+  !> Evaluations that method auto needs for a case up to a time [s], found by running it without any output; 0 if it does not come there
+  !> in so many steps.
+  subroutine try_auto(case, time, max_steps, evaluations)
     type(case_t), intent(in) :: case
     real(dp), intent(in) :: time
-    integer, intent(in) :: most
+    integer, intent(in) :: max_steps
     integer, intent(out) :: evaluations
     class(scene_t), allocatable :: scene
     class(ode_method_t), allocatable :: method
@@ -140,10 +140,9 @@ contains
     if (.not. allocated(error)) call new_method('auto', method, error)
     if (allocated(error)) return
     method%settings = settings_for(case, scene)
-    method%settings%max_evaluations = most
     allocate (y(scene%n), source=scene%initial_state())
     t = 0
-    call integrate(scene, method, t, y, time, 0, observer, status)
+    call integrate(scene, method, t, y, time, max_steps, observer, status)
     needed = method%totals()
     if (status == integration_done) evaluations = needed%evaluations
   end subroutine try_auto

@@ -9,6 +9,7 @@ module study_runner
   use result_file, only: write_text
   use command_line, only: command_line_t
   use progress, only: rate_text
+  use case_runner, only: tell_warning
   use posix, only: make_directory, error_text, interrupted
   use text_file, only: read_text_file
   use study_sweep, only: sweep_t, read_sweep, check_rows, study_checksum
@@ -37,6 +38,7 @@ contains
     allocate (sweep)
     call read_sweep(path, options, sweep, error)
     if (allocated(error)) return
+    if (.not. options%quiet) call tell_warning(sweep%base%case)
     if (options%check) then
       call check_rows(sweep, error)
       if (.not. allocated(error)) line = path//': correct, '//integer_text(sweep%last - sweep%first + 1)//' runs'
