@@ -8,6 +8,7 @@ program gudgeon_tests
   use test_adams, only: run_test_adams
   use test_adams_order, only: run_test_adams_order
   use test_case_file, only: run_test_case_file
+  use test_chain, only: run_test_chain
   use test_checkpoint, only: run_test_checkpoint
   use test_combustion, only: run_test_combustion
   use test_command_line, only: run_test_command_line
@@ -32,6 +33,7 @@ program gudgeon_tests
   use test_scenes, only: run_test_scenes
   use test_slow_contact, only: run_test_slow_contact
   use test_standard_problems, only: run_test_standard_problems
+  use test_state_layout, only: run_test_state_layout
   use test_study, only: run_test_study
   use test_summary, only: run_test_summary
   use test_trace_files, only: run_test_trace_files
@@ -50,6 +52,7 @@ program gudgeon_tests
   call run('adams', run_test_adams)
   call run('adams_order', run_test_adams_order)
   call run('case_file', run_test_case_file)
+  call run('chain', run_test_chain)
   call run('checkpoint', run_test_checkpoint)
   call run('combustion', run_test_combustion)
   call run('command_line', run_test_command_line)
@@ -74,6 +77,7 @@ program gudgeon_tests
   call run('scenes', run_test_scenes)
   call run('slow_contact', run_test_slow_contact)
   call run('standard_problems', run_test_standard_problems)
+  call run('state_layout', run_test_state_layout)
   call run('study', run_test_study)
   call run('summary', run_test_summary)
   call run('trace_files', run_test_trace_files)

@@ -1,0 +1,105 @@
+!> The chain crank - rod - piston. Where the forces of its loose pins are known from the state, it falls into pieces that each have
+!> a closed form on one page.
+module gudgeon_chain
+  use kinds, only: dp
+  use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, n_pins
+  use chain_bodies, only: bodies_t, drive_t, weightless
+  use chain_loads, only: loads_t
+  use chain_reactions, only: reactions_t, reactions_of
+  use ideal_chain, only: accelerate_ideal_chain
+  use crank_rod, only: accelerate_crank_rod
+  use rod_piston, only: accelerate_rod_piston
+  use free_rod, only: accelerate_free_rod
+  implicit none
+  private
+  public :: chain_t
+
+  type :: chain_t
+    type(bodies_t) :: bodies
+    type(drive_t) :: drive
+    logical :: is_loose(n_pins) = .false.   !! pins with clearance
+  contains
+    procedure, non_overridable :: accelerate
+    procedure :: response
+    procedure :: complete_loads
+    procedure :: reactions
+    procedure :: energy
+  end type chain_t
+
+contains
+
+  !> Accelerations under gravity, the drive and the loads of gas and loose pins; the loads of ideal pins that the piece finds with
+  !> them; and the moment on the crank [N m]: the drive's torque if the crank is free, the moment that holds its speed if not.
+  pure subroutine accelerate(self, motion, loads, accelerations, crank_moment)
+    class(chain_t), intent(in) :: self
+    type(motion_t), intent(in) :: motion
+    type(loads_t), intent(inout) :: loads
+    type(accelerations_t), intent(out) :: accelerations
+    real(dp), intent(out) :: crank_moment
+    if (self%is_loose(crank_pin)) then
+      if (self%is_loose(piston_pin)) then
+        call accelerate_free_rod(self%bodies, self%drive, loads, motion, accelerations, crank_moment)
+      else
+        call accelerate_rod_piston(self%bodies, self%drive, motion, loads, accelerations, crank_moment)
+      end if
+    else if (self%is_loose(piston_pin)) then
+      call accelerate_crank_rod(self%bodies, self%drive, loads, motion, accelerations, crank_moment)
+    else
+      call accelerate_ideal_chain(self%bodies, self%drive, motion, loads, accelerations, crank_moment)
+    end if
+  end subroutine accelerate
+
+  !> What a load adds to the accelerations, in which all loads are linear: the bodies at rest, nothing else acting.
+  pure subroutine response(self, motion, loads, accelerations)
+    class(chain_t), intent(in) :: self
+    type(motion_t), intent(in) :: motion
+    type(loads_t), intent(in) :: loads
+    type(accelerations_t), intent(out) :: accelerations
+    type(chain_t) :: bare
+    type(motion_t) :: rest
+    type(loads_t) :: acting
+    real(dp) :: unused_moment
+    bare = self
+    bare%bodies = weightless(self%bodies)
+    bare%drive%torque = 0
+    rest = motion
+    rest%crank_speed = 0
+    rest%rod_speed = 0
+    acting = loads
+    call bare%accelerate(rest, acting, accelerations, unused_moment)
+  end subroutine response
+
+  !> The loads of ideal pins, from the bodies' accelerations.
+  pure subroutine complete_loads(self, motion, accelerations, loads)
+    class(chain_t), intent(in) :: self
+    type(motion_t), intent(in) :: motion
+    type(accelerations_t), intent(in) :: accelerations
+    type(loads_t), intent(inout) :: loads
+    type(reactions_t) :: found
+    integer :: pin
+    do pin = 1, n_pins
+      if (.not. self%is_loose(pin)) loads%moment(pin) = 0
+      if (.not. self%is_loose(pin)) loads%force(:, pin) = 0   ! it has no part in the rest
+    end do
+    found = self%reactions(motion, accelerations, loads)
+    if (.not. self%is_loose(crank_pin)) loads%force(:, crank_pin) = -found%crankpin
+    if (.not. self%is_loose(piston_pin)) loads%force(:, piston_pin) = -found%pin
+  end subroutine complete_loads
+
+  !> Forces between the bodies and on the frame.
+  pure function reactions(self, motion, accelerations, loads)
+    class(chain_t), intent(in) :: self
+    type(motion_t), intent(in) :: motion
+    type(accelerations_t), intent(in) :: accelerations
+    type(loads_t), intent(in) :: loads
+    type(reactions_t) :: reactions
+    reactions = reactions_of(self%bodies, loads, motion, accelerations)
+  end function reactions
+
+  !> Kinetic and potential energy of the bodies [J].
+  pure real(dp) function energy(self, motion)
+    class(chain_t), intent(in) :: self
+    type(motion_t), intent(in) :: motion
+    energy = self%bodies%kinetic_energy(motion) + self%bodies%potential_energy(motion)
+  end function energy
+end module gudgeon_chain

@@ -1,0 +1,152 @@
+!> The bodies of the chain crank - rod - piston and what drives it: constants, energy (Reis 2013, 3.1-3.66).
+!>
+!> x is vertical, up, along the cylinder axis; y is horizontal; angles are positive from x towards y. q is the crank angle from +x.
+!> A is the rod angle, measured the other way: the rod turns with -dA/dt.
+module chain_bodies
+  use kinds, only: dp
+  use chain_motion, only: motion_t
+  implicit none
+  private
+  public :: bodies_t, crank_t, rod_t, piston_t, drive_t, new_bodies, weightless
+
+  !> The crank. Its frame begins at the crank bearing, the first axis towards the crank pin.
+  type :: crank_t
+    real(dp) :: length = 0    !! R [m]
+    real(dp) :: mass = 0      !! [kg]
+    real(dp) :: inertia = 0   !! about its centre of mass [kg m^2]
+    real(dp) :: com(2) = 0    !! its centre of mass (U_c, V_c) [m]
+  end type crank_t
+
+  !> The connecting rod. Its frame begins at its big end, the first axis towards the piston pin.
+  type :: rod_t
+    real(dp) :: length = 0    !! L [m], > R
+    real(dp) :: mass = 0      !! [kg]
+    real(dp) :: inertia = 0   !! about its centre of mass [kg m^2]
+    real(dp) :: com(2) = 0    !! its centre of mass (U_r, V_r) [m]
+  end type rod_t
+
+  type :: piston_t
+    real(dp) :: mass = 0      !! [kg], > 0
+  end type piston_t
+
+  !> How the crank is driven.
+  type :: drive_t
+    logical :: free_crank = .true.   !! the crank moves under its loads; else its speed is held constant
+    real(dp) :: torque = 0           !! tau on a free crank [N m]
+    real(dp) :: damping = 0          !! D, moment per crank speed [N m s/rad]
+  end type drive_t
+
+  !> The bodies, and what follows from their constants: made by `new_bodies`.
+  type :: bodies_t
+    type(crank_t) :: crank
+    type(rod_t) :: rod
+    type(piston_t) :: piston
+    real(dp) :: gravity(2) = 0          !! (x, y) [m/s^2]
+    real(dp) :: per_rod_length = 0      !! 1/L [1/m]
+    real(dp) :: per_piston_mass = 0     !! [1/kg]
+    real(dp) :: crank_inertia = 0       !! of the crank about its bearing [kg m^2]
+    real(dp) :: crank_term = 0          !! m11, the same with the rod's mass at the crank pin [kg m^2]
+    real(dp) :: rod_term = 0            !! m22, of the rod about its big end [kg m^2]
+    real(dp) :: inertia_product = 0     !! m11 m22 [kg^2 m^4]
+    real(dp) :: static_moment(2) = 0    !! m_rod R (U_r, V_r) [kg m^2]
+    real(dp) :: crank_weight(2) = 0     !! gravity's moment on q is (1) sin q + (2) cos q [N m], the rod's mass at the crank pin
+    real(dp) :: crank_own_weight(2) = 0 !! the same of the crank alone
+    real(dp) :: rod_weight(2) = 0       !! gravity's moment on A about the big end: (1) sin A - (2) cos A [N m]
+  contains
+    procedure :: coupling
+    procedure :: kinetic_energy
+    procedure :: potential_energy
+  end type bodies_t
+
+contains
+
+  !> The bodies with what follows from their constants. Limits: rod%length > 0, piston%mass > 0.
+  pure function new_bodies(crank, rod, piston, gravity) result(b)
+    type(crank_t), intent(in) :: crank
+    type(rod_t), intent(in) :: rod
+    type(piston_t), intent(in) :: piston
+    real(dp), intent(in) :: gravity(2)   !! (x, y) [m/s^2]
+    type(bodies_t) :: b
+    real(dp) :: moment(2)
+    b%crank = crank
+    b%rod = rod
+    b%piston = piston
+    b%gravity = gravity
+    b%per_rod_length = 1/rod%length
+    b%per_piston_mass = 1/piston%mass
+    b%crank_inertia = crank%inertia + crank%mass*sum(crank%com**2)
+    b%crank_term = b%crank_inertia + rod%mass*crank%length**2
+    b%rod_term = rod%inertia + rod%mass*sum(rod%com**2)
+    b%inertia_product = b%crank_term*b%rod_term
+    b%static_moment = rod%mass*crank%length*rod%com
+    moment = crank%mass*crank%com
+    b%crank_own_weight = weight_on_crank(moment)
+    b%crank_weight = weight_on_crank(moment + [rod%mass*crank%length, 0.0_dp])
+    moment = rod%mass*rod%com
+    b%rod_weight = -[gravity(1)*moment(1) + gravity(2)*moment(2), gravity(1)*moment(2) - gravity(2)*moment(1)]
+
+  contains
+
+    !> Factors of sin q and cos q in the moment of gravity on a crank of this first moment [kg m].
+    pure function weight_on_crank(first_moment) result(weight)
+      real(dp), intent(in) :: first_moment(2)
+      real(dp) :: weight(2)
+      weight = [-gravity(1)*first_moment(1) - gravity(2)*first_moment(2), &
+        gravity(2)*first_moment(1) - gravity(1)*first_moment(2)]
+    end function weight_on_crank
+  end function new_bodies
+
+  !> The same bodies without gravity.
+  pure function weightless(bodies) result(b)
+    type(bodies_t), intent(in) :: bodies
+    type(bodies_t) :: b
+    b = bodies
+    b%gravity = 0
+    b%crank_weight = 0
+    b%crank_own_weight = 0
+    b%rod_weight = 0
+  end function weightless
+
+  !> m12 = -m_rod R (U_r cos s + V_r sin s) and c = dm12/ds, s = q + A [kg m^2].
+  pure subroutine coupling(self, motion, m12, slope)
+    class(bodies_t), intent(in) :: self
+    type(motion_t), intent(in) :: motion
+    real(dp), intent(out) :: m12, slope
+    real(dp) :: along, across
+    ! by the sines and cosines of q first, which are known before those of A
+    along = self%static_moment(1)*motion%cos_crank + self%static_moment(2)*motion%sin_crank
+    across = self%static_moment(1)*motion%sin_crank - self%static_moment(2)*motion%cos_crank
+    m12 = across*motion%sin_rod - along*motion%cos_rod
+    slope = across*motion%cos_rod + along*motion%sin_rod
+  end subroutine coupling
+
+  !> Kinetic energy of the three bodies [J]. The motion of the piston must be known (`follow_piston`).
+  pure real(dp) function kinetic_energy(self, motion)
+    class(bodies_t), intent(in) :: self
+    type(motion_t), intent(in) :: motion
+    real(dp) :: m12, slope, slip(2), turned(2)
+    call self%coupling(motion, m12, slope)
+    kinetic_energy = 0.5_dp*(self%crank_term*motion%crank_speed**2 + self%rod_term*motion%rod_speed**2 &
+      + self%piston%mass*motion%piston_velocity**2) + m12*motion%crank_speed*motion%rod_speed
+    ! a big end that does not move with the crank pin
+    slip = -motion%crank_pin_rate
+    turned = [-self%rod%com(1)*motion%sin_rod + self%rod%com(2)*motion%cos_rod, &
+      -self%rod%com(1)*motion%cos_rod - self%rod%com(2)*motion%sin_rod]
+    kinetic_energy = kinetic_energy + self%rod%mass*dot_product(slip, 0.5_dp*slip &
+      + self%crank%length*motion%crank_speed*[-motion%sin_crank, motion%cos_crank] + motion%rod_speed*turned)
+  end function kinetic_energy
+
+  !> Potential energy of the three bodies in gravity, 0 at the crank axis [J].
+  pure real(dp) function potential_energy(self, motion)
+    class(bodies_t), intent(in) :: self
+    type(motion_t), intent(in) :: motion
+    real(dp) :: crank(2), rod(2)
+    associate (c => self%crank%com, r => self%rod%com)
+      crank = [c(1)*motion%cos_crank - c(2)*motion%sin_crank, c(1)*motion%sin_crank + c(2)*motion%cos_crank]
+      rod = self%crank%length*[motion%cos_crank, motion%sin_crank] - motion%crank_pin &
+        + [r(1)*motion%cos_rod + r(2)*motion%sin_rod, -r(1)*motion%sin_rod + r(2)*motion%cos_rod]
+      potential_energy = -(dot_product(self%gravity, self%crank%mass*crank + self%rod%mass*rod) &
+        + self%gravity(1)*self%piston%mass*motion%piston_position)
+    end associate
+  end function potential_energy
+end module chain_bodies

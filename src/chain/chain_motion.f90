@@ -1,0 +1,91 @@
+!> Where the bodies of the chain are and how they move, from the crank and the eccentricities of its pins (Reis 2013, 3.1-3.30 and
+!> 3.70-3.72).
+!>
+!> The coordinates are the crank angle q and, where a pin has clearance, its eccentricity: c at the crank pin, e at the piston pin,
+!> each the centre of the journal (crank pin, piston pin) less that of the bearing around it. An ideal pin has none. With
+!> o = c + e all else follows in closed form:
+!>
+!>     sin A = (R sin q - o_y)/L,    A' = (R cos q q' - o_y')/(L cos A)
+!>     x = R cos q + L cos A - o_x,  x' = -R sin q q' - L sin A A' - o_x'
+!>
+!> In (q, A, x) an eccentricity is a difference of numbers 10^4 times larger; here it is known to full precision.
+module chain_motion
+  use kinds, only: dp
+  implicit none
+  private
+  public :: motion_t, accelerations_t, crank_pin, piston_pin, n_pins
+  public :: turn_crank, follow_rod, follow_piston, rod_angle_acceleration
+
+  !> The pins of the chain.
+  integer, parameter :: crank_pin = 1    !! journal on the crank, bearing in the rod
+  integer, parameter :: piston_pin = 2   !! journal on the rod, bearing in the piston
+  integer, parameter :: n_pins = 2
+
+  !> Positions and speeds of the three bodies at one instant.
+  type :: motion_t
+    real(dp) :: crank_angle         !! q [rad]
+    real(dp) :: sin_crank, cos_crank
+    real(dp) :: sin_rod, cos_rod    !! of A; cos A > 0
+    real(dp) :: crank_speed         !! dq/dt [rad/s]
+    real(dp) :: rod_speed           !! dA/dt [rad/s]
+    real(dp) :: piston_position     !! x of the bearing centre [m]
+    real(dp) :: piston_velocity     !! [m/s]
+    real(dp) :: crank_pin(2)        !! c, eccentricity at the crank pin [m], 0 where it is ideal
+    real(dp) :: crank_pin_rate(2)   !! [m/s]
+  end type motion_t
+
+  !> Accelerations of the three bodies.
+  type :: accelerations_t
+    real(dp) :: crank               !! d2q/dt2 [rad/s^2]
+    real(dp) :: rod                 !! d2A/dt2 [rad/s^2]
+    real(dp) :: piston              !! [m/s^2]
+    real(dp) :: pin(2, n_pins)      !! (:, pin): of its eccentricity [m/s^2]; 0 of an ideal pin
+  end type accelerations_t
+
+contains
+
+  !> The crank of a motion: its angle [rad] with sine and cosine, and its speed [rad/s].
+  pure subroutine turn_crank(motion, crank_angle, crank_speed)
+    type(motion_t), intent(inout) :: motion
+    real(dp), value, intent(in) :: crank_angle, crank_speed
+    motion%crank_angle = crank_angle
+    motion%sin_crank = sin(crank_angle)
+    motion%cos_crank = cos(crank_angle)
+    motion%crank_speed = crank_speed
+  end subroutine turn_crank
+
+  !> The rod of a motion whose crank is known, at an offset o [m] and its rate. `reachable` is false where the piston pin cannot
+  !> be, |R sin q - o_y| >= L.
+  pure subroutine follow_rod(crank_length, per_rod_length, offset, offset_rate, motion, reachable)
+    real(dp), intent(in) :: crank_length, per_rod_length   !! R [m], 1/L [1/m]
+    real(dp), intent(in) :: offset(2), offset_rate(2)
+    type(motion_t), intent(inout) :: motion
+    logical, intent(out) :: reachable
+    real(dp) :: gap
+    motion%sin_rod = (crank_length*motion%sin_crank - offset(2))*per_rod_length
+    gap = (1 - motion%sin_rod)*(1 + motion%sin_rod)
+    reachable = gap > 0
+    if (.not. reachable) return
+    motion%cos_rod = sqrt(gap)
+    ! over cos A = cos A/gap: the division need not wait for the root
+    motion%rod_speed = (crank_length*motion%cos_crank*motion%crank_speed - offset_rate(2))*per_rod_length/gap*motion%cos_rod
+  end subroutine follow_rod
+
+  !> The piston of a motion whose crank and rod are known.
+  pure subroutine follow_piston(crank_length, rod_length, offset, offset_rate, motion)
+    real(dp), intent(in) :: crank_length, rod_length       !! R, L [m]
+    real(dp), intent(in) :: offset(2), offset_rate(2)      !! o [m] and its rate
+    type(motion_t), intent(inout) :: motion
+    motion%piston_position = crank_length*motion%cos_crank + rod_length*motion%cos_rod - offset(1)
+    motion%piston_velocity = -crank_length*motion%sin_crank*motion%crank_speed - rod_length*motion%sin_rod*motion%rod_speed &
+      - offset_rate(1)
+  end subroutine follow_piston
+
+  !> A'' where q'' and o'' vanish [rad/s^2].
+  pure real(dp) function rod_angle_acceleration(crank_length, rod_length, motion)
+    real(dp), intent(in) :: crank_length, rod_length       !! R, L [m]
+    type(motion_t), intent(in) :: motion
+    rod_angle_acceleration = (rod_length*motion%sin_rod*motion%rod_speed**2 &
+      - crank_length*motion%sin_crank*motion%crank_speed**2)/(rod_length*motion%cos_rod)
+  end function rod_angle_acceleration
+end module chain_motion

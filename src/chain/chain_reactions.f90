@@ -1,0 +1,65 @@
+!> Reactions in the joints and on the frame from the accelerations (Reis 2013, 3.83, parentheses restored).
+module chain_reactions
+  use kinds, only: dp
+  use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin
+  use chain_bodies, only: bodies_t
+  use chain_loads, only: loads_t, bearing_moment
+  implicit none
+  private
+  public :: reactions_t, reactions_of
+
+  !> Forces [N] found from the bodies' accelerations alone, so F5 = -F_x and F6 = -F_y of the joint's law are a check, and with
+  !> clearance at the crank pin F3 = -J_x and F4 = -J_y too.
+  type :: reactions_t
+    real(dp) :: crank_bearing(2) = 0  !! F1, F2: of the frame on the crank
+    real(dp) :: crankpin(2) = 0       !! F3, F4: of the crank on the rod
+    real(dp) :: pin(2) = 0            !! F5, F6: of the rod on the piston
+    real(dp) :: guide = 0             !! F7: of the piston on the guide
+    real(dp) :: frame(2) = 0          !! R_x, R_y: resultant on the frame
+  end type reactions_t
+
+contains
+
+  !> The moments of the pins' joints are given, those on the rod at an ideal pin 0.
+  pure function reactions_of(bodies, loads, motion, accelerations) result(reactions)
+    type(bodies_t), intent(in) :: bodies
+    type(loads_t), intent(in) :: loads
+    type(motion_t), intent(in) :: motion
+    type(accelerations_t), intent(in) :: accelerations
+    type(reactions_t) :: reactions
+    real(dp) :: rod(2), crank(2), u, v, f1, f2, f3, f4, f5, f6, f7, on_rod
+
+    call centre_forces(bodies, motion, accelerations, crank, rod)
+    u = bodies%rod%com(1)
+    v = bodies%rod%com(2)
+    associate (g => bodies%gravity, l => bodies%rod%length, sin_a => motion%sin_rod, cos_a => motion%cos_rod)
+      on_rod = loads%moment(piston_pin) + bearing_moment(motion%crank_pin, loads%force(:, crank_pin), loads%moment(crank_pin))
+      f5 = loads%gas_force + bodies%piston%mass*(accelerations%piston - g(1))
+      f3 = f5 + rod(1)
+      f1 = f3 + crank(1)
+      f6 = (bodies%rod%inertia*accelerations%rod + on_rod - rod(2)*(u*cos_a + v*sin_a) &
+        - f3*(u*sin_a - v*cos_a) - f5*((l - u)*sin_a + v*cos_a))/(l*cos_a)
+      f4 = f6 + rod(2)
+      f2 = f4 + crank(2)
+      f7 = f6 + bodies%piston%mass*g(2)
+    end associate
+    reactions = reactions_t([f1, f2], [f3, f4], [f5, f6], f7, [f1 - loads%gas_force, f2 - f7])
+  end function reactions_of
+
+  !> Mass times acceleration less weight (x, y) of crank and rod [N].
+  pure subroutine centre_forces(bodies, motion, accelerations, crank, rod)
+    type(bodies_t), intent(in) :: bodies
+    type(motion_t), intent(in) :: motion
+    type(accelerations_t), intent(in) :: accelerations
+    real(dp), intent(out) :: crank(2), rod(2)
+    real(dp) :: along(2), pin(2)
+    associate (c => bodies%crank%com, r => bodies%rod%com, q_2 => motion%crank_speed**2)
+      along = [c(1)*motion%cos_crank - c(2)*motion%sin_crank, c(1)*motion%sin_crank + c(2)*motion%cos_crank]
+      crank = bodies%crank%mass*([-along(2), along(1)]*accelerations%crank - along*q_2 - bodies%gravity)
+      pin = bodies%crank%length*[motion%cos_crank, motion%sin_crank]
+      along = [r(1)*motion%cos_rod + r(2)*motion%sin_rod, r(2)*motion%cos_rod - r(1)*motion%sin_rod]
+      rod = bodies%rod%mass*([-pin(2), pin(1)]*accelerations%crank - pin*q_2 - accelerations%pin(:, crank_pin) &
+        + [along(2), -along(1)]*accelerations%rod - along*motion%rod_speed**2 - bodies%gravity)
+    end associate
+  end subroutine centre_forces
+end module chain_reactions

@@ -1,0 +1,71 @@
+!> The chain with two ideal pins, crank with rod and piston: one degree of freedom.
+module ideal_chain
+  use kinds, only: dp
+  use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, turn_crank, follow_rod, follow_piston
+  use chain_bodies, only: bodies_t, drive_t
+  use chain_loads, only: loads_t
+  implicit none
+  private
+  public :: accelerate_ideal_chain, ideal_motion
+
+contains
+
+  !> Positions and speeds of all bodies at crank angle q [rad] and crank speed [rad/s].
+  pure function ideal_motion(bodies, q, crank_speed) result(motion)
+    type(bodies_t), intent(in) :: bodies
+    real(dp), intent(in) :: q, crank_speed
+    type(motion_t) :: motion
+    real(dp), parameter :: none(2) = 0
+    logical :: reachable
+    call turn_crank(motion, q, crank_speed)
+    call follow_rod(bodies%crank%length, bodies%per_rod_length, none, none, motion, reachable)
+    call follow_piston(bodies%crank%length, bodies%rod%length, none, none, motion)
+    motion%crank_pin = 0
+    motion%crank_pin_rate = 0
+  end function ideal_motion
+
+  !> Accelerations from the one equation in q that remains (virtual work of the three bodies: the pins do none), the force of the
+  !> piston pin's joint from the piston equation and (3.80), and the moment on the crank (see `accelerate_crank_rod`).
+  pure subroutine accelerate_ideal_chain(bodies, drive, motion, loads, accelerations, crank_moment)
+    type(bodies_t), intent(in) :: bodies
+    type(drive_t), intent(in) :: drive
+    type(motion_t), intent(in) :: motion
+    type(loads_t), intent(inout) :: loads   !! in: the gas; out: the piston pin
+    type(accelerations_t), intent(out) :: accelerations
+    real(dp), intent(out) :: crank_moment
+    real(dp) :: m12, slope, on_crank, on_rod, on_piston, per_arm, ratio, ratio_slope, rate, rate_slope, inertia, total, &
+      speed_square
+
+    call bodies%coupling(motion, m12, slope)
+    associate (b => bodies, across => bodies%crank%length*motion%sin_crank, m22 => bodies%rod_term)
+      ! with k = dA/dq and p = dx/dq: A'' = k q'' + k' q'^2, x'' = p q'' + p' q'^2; k = R cos q/(L cos A), k' = tan A (k^2 - 1)
+      per_arm = b%per_rod_length/((1 - motion%sin_rod)*(1 + motion%sin_rod))*motion%cos_rod
+      ratio = b%crank%length*motion%cos_crank*per_arm
+      ratio_slope = b%rod%length*motion%sin_rod*per_arm*((ratio - 1)*(ratio + 1))
+      rate = -across*(1 + ratio)
+      rate_slope = -(across*ratio_slope + b%crank%length*motion%cos_crank*(1 + ratio))
+      speed_square = motion%crank_speed**2
+      on_crank = drive%torque - drive%damping*motion%crank_speed &
+        + (b%crank_weight(1)*motion%sin_crank + b%crank_weight(2)*motion%cos_crank)
+      on_rod = b%rod_weight(1)*motion%sin_rod - b%rod_weight(2)*motion%cos_rod
+      on_piston = b%gravity(1)*b%piston%mass - loads%gas_force
+      inertia = b%crank_term + ratio*(2*m12 + ratio*m22) + b%piston%mass*rate**2
+      total = on_crank + ratio*on_rod + rate*on_piston &
+        - speed_square*(slope*ratio*(1 + ratio) + (m12 + ratio*m22)*ratio_slope + b%piston%mass*rate*rate_slope)
+      if (drive%free_crank) then
+        crank_moment = drive%torque
+        accelerations%crank = total/inertia
+      else
+        accelerations%crank = 0
+        crank_moment = drive%torque - total
+      end if
+      accelerations%rod = ratio*accelerations%crank + ratio_slope*speed_square
+      accelerations%piston = rate*accelerations%crank + rate_slope*speed_square
+      accelerations%pin = 0
+      loads%moment(piston_pin) = 0
+      loads%force(1, piston_pin) = on_piston - b%piston%mass*accelerations%piston
+      loads%force(2, piston_pin) = (on_rod - slope*speed_square - m12*accelerations%crank - m22*accelerations%rod &
+        - b%rod%length*motion%sin_rod*loads%force(1, piston_pin))*per_arm
+    end associate
+  end subroutine accelerate_ideal_chain
+end module ideal_chain
