@@ -66,30 +66,30 @@ contains
     type(case_t), intent(out) :: case
     class(scene_t), allocatable, intent(out) :: scene
     type(error_t), allocatable :: error
-    character(len=1) :: nothing(0)
+    character(len=*), parameter :: oscillating(2) = [character(len=40) :: 'lubrication.law=oscillating_film', &
+      'lubrication.kinematic_viscosity=1.38e-5']
+    character(len=40) :: law
     logical :: dry
 
+    law = 'contact.law=lankarani_nikravesh'
+    if (index(name, 'hertz') > 0) law = 'contact.law=hertz'
+    if (index(name, 'coulomb') > 0) law = 'friction.law=coulomb'
+    if (index(name, 'as_printed') > 0) law = 'lubrication.variant=as_printed'
+    if (index(name, 'half_film') > 0) law = 'lubrication.variant=half_film'
     dry = index(name, 'contact') == 1
     if (dry .and. along_case(quantity)) then
-      call read_case('cases/flores/friction_050.nml', nothing, case, error)
+      call read_case('cases/flores/friction_050.nml', [law], case, error)
+    else if (index(name, 'oscillating') == 1) then
+      call read_case('cases/sim_IV.nml', [law, oscillating], case, error)
     else
-      call read_case('cases/sim_IV.nml', nothing, case, error)
+      call read_case('cases/sim_IV.nml', [law], case, error)
     end if
     if (allocated(error)) error stop 'measure_costs: run it from the top of the checkout'
-    case%combustion%is_present = index(name, '+gas') > 0
-    case%contact%is_present = .not. (index(name, 'ideal') == 1 .or. index(name, 'free') == 1)
-    if (index(name, 'hertz') > 0) case%contact%law = 'hertz'
-    case%friction%is_present = index(name, 'ambrosio') > 0 .or. index(name, 'coulomb') > 0
-    if (case%friction%is_present) case%friction%law = name(9:)
+    if (index(name, '+gas') == 0 .and. allocated(case%combustion)) deallocate (case%combustion)
+    if (index(name, 'ambrosio') + index(name, 'coulomb') == 0) deallocate (case%friction)
+    if ((dry .or. index(name, 'free') == 1 .or. index(name, 'ideal') == 1) .and. allocated(case%film)) deallocate (case%film)
+    if (index(name, 'ideal') == 1 .or. index(name, 'free') == 1) deallocate (case%contact)
     if (index(name, 'ideal') == 1) case%joint%kind = 'ideal'
-    case%lubrication%is_present = case%contact%is_present .and. .not. dry
-    case%lubrication%variant = name
-    if (index(name, '+') > 0) case%lubrication%variant = name(:index(name, '+') - 1)
-    if (index(name, 'oscillating') == 1) then
-      case%lubrication%law = 'oscillating_film'
-      case%lubrication%kinematic_viscosity = 1.38e-5_dp
-      case%lubrication%variant = merge('as_printed   ', 'bearing_frame', index(name, 'as_printed') > 0)
-    end if
     call build_scene(case, .false., scene, error)
     if (allocated(error)) error stop 'measure_costs: no such scene'
     if (index(name, '+quadrature') > 0) call scene%measure_joint()

@@ -3,9 +3,8 @@ module test_contact
   use kinds, only: dp
   use errors, only: error_t, status_case_file
   use checks, only: checks_t
-  use case_definition, only: contact_case_t
   use contact_law, only: contact_law_t
-  use contact_laws, only: new_contact_law
+  use laws, only: contact_law_of
   use contact_stiffness, only: hertz_stiffness, valid_impact_speed
   use lankarani_nikravesh, only: ratio_limit
   use free_impact, only: speed_given_back, exact_restitution
@@ -75,8 +74,9 @@ contains
     real(dp) :: ratio
     class(contact_law_t), allocatable :: law
     type(error_t), allocatable :: error
-    call new_contact_law(contact_case_t(law=name, restitution=restitution, exponent=exponent, stiffness=1e9_dp), &
-      bearing_radius, clearance, law, error)
+    character(len=100) :: keys
+    write (keys, '(3a,f4.2,a,f4.2)') "law='", name, "' stiffness=1e9 restitution=", restitution, ' exponent=', exponent
+    call contact_law_of(trim(keys), law, error)
     ratio = speed_given_back(law, 1e9_dp, exponent, 0.4_dp, 20000, 80000)
   end function impact_restitution
 
@@ -87,11 +87,9 @@ contains
     real(dp) :: rates(5)
     integer :: i
     rates = [-1.0_dp, -0.01_dp, 0.0_dp, 0.01_dp, 1.0_dp]
-    call new_contact_law(contact_case_t(law='hertz'), bearing_radius, clearance, hertz, error)
-    call new_contact_law(contact_case_t(law='lankarani_nikravesh', restitution=1.0_dp), bearing_radius, clearance, &
-      lossless, error)
-    call new_contact_law(contact_case_t(law='hertz', exponent=1.0_dp, stiffness=2e6_dp), bearing_radius, clearance, &
-      linear, error)
+    call contact_law_of("law='hertz'", hertz, error)
+    call contact_law_of("law='lankarani_nikravesh' restitution=1.0", lossless, error)
+    call contact_law_of("law='hertz' exponent=1.0 stiffness=2e6", linear, error)
     call check%relative(hertz%normal_force(1e-6_dp, 0.1_dp, 0.2_dp), 338.7568_dp, 1e-6_dp, 'Hertz force at 1 um')
     call check%relative(linear%normal_force(1e-6_dp, 0.1_dp, 0.2_dp), 2.0_dp, 1e-14_dp, 'linear force at 1 um')
     do i = 1, size(rates)
@@ -111,8 +109,8 @@ contains
     type(error_t), allocatable :: error
     real(dp) :: impact, rate, force, reference, previous
     integer :: i, j
-    call new_contact_law(contact_case_t(restitution=0.3_dp), bearing_radius, clearance, law, error)
-    call new_contact_law(contact_case_t(law='hertz'), bearing_radius, clearance, elastic, error)
+    call contact_law_of('restitution=0.3', law, error)
+    call contact_law_of("law='hertz'", elastic, error)
     reference = elastic%normal_force(2e-6_dp, 0.0_dp, 0.0_dp)
     do i = 0, 12
       impact = 0.1_dp**i
@@ -148,7 +146,7 @@ contains
     real(dp), parameter :: sizes(8) = [0.0_dp, 1e-310_dp, 1e-300_dp, 1e-20_dp, 1e-6_dp, 1.0_dp, 1e10_dp, 1e100_dp]
     real(dp) :: force
     integer :: i, j, k, direction
-    call new_contact_law(contact_case_t(), bearing_radius, clearance, law, error)
+    call contact_law_of('', law, error)
     do i = 1, size(sizes)
       do j = 1, size(sizes)
         do k = 1, size(sizes)
@@ -165,10 +163,10 @@ contains
     class(checks_t), intent(inout) :: check
     class(contact_law_t), allocatable :: law
     type(error_t), allocatable :: error
-    call new_contact_law(contact_case_t(law='velcro'), bearing_radius, clearance, law, error)
+    call contact_law_of("law='velcro'", law, error)
     call check%that(allocated(error) .and. .not. allocated(law), 'an unknown contact law is refused')
     if (.not. allocated(error)) return
-    call check%equal_text(error%message, "&contact law = 'velcro': must be 'lankarani_nikravesh' or 'hertz'", &
+    call check%equal_text(error%message, "x.nml:1: &contact law = velcro: must be one of lankarani_nikravesh, hertz", &
       'the refusal names the laws')
     call check%that(error%status == status_case_file, 'the refusal is a case file error')
   end subroutine test_factory

@@ -3,9 +3,8 @@ module test_friction
   use kinds, only: dp
   use errors, only: error_t, status_case_file
   use checks, only: checks_t
-  use case_definition, only: friction_case_t
   use friction_law, only: friction_law_t
-  use friction_laws, only: new_friction_law
+  use laws, only: friction_law_of
   implicit none
   private
   public :: run_test_friction
@@ -26,7 +25,7 @@ contains
     type(error_t), allocatable :: error
     real(dp) :: speed, ratio, previous
     integer :: i
-    call new_friction_law(friction_case_t(law='ambrosio', coefficient=0.05_dp, v0=1e-3_dp, v1=1e-2_dp), law, error)
+    call friction_law_of("law='ambrosio' coefficient=0.05 v0=1e-3 v1=1e-2", law, error)
     call check%that(.not. law%set_valued, 'the ramp is single-valued')
     call check%close_to(law%friction_ratio(0.0_dp, 1), 0.0_dp, 0.0_dp, 'no friction at rest')
     call check%close_to(law%friction_ratio(0.9e-3_dp, 1), 0.0_dp, 0.0_dp, 'no friction below v0')
@@ -49,11 +48,11 @@ contains
     class(checks_t), intent(inout) :: check
     class(friction_law_t), allocatable :: law
     type(error_t), allocatable :: error
-    call new_friction_law(friction_case_t(law='ambrosio', coefficient=0.1_dp, v0=1e-3_dp, v1=1e-3_dp), law, error)
+    call friction_law_of("law='ambrosio' coefficient=0.1 v0=1e-3 v1=1e-3", law, error)
     call check%close_to(law%friction_ratio(0.999e-3_dp, 1), 0.0_dp, 0.0_dp, 'below the jump')
     call check%close_to(law%friction_ratio(1.001e-3_dp, 1), -0.1_dp, 0.0_dp, 'above the jump')
     call check%close_to(law%friction_ratio(-1.001e-3_dp, 1), 0.1_dp, 0.0_dp, 'above the jump, backwards')
-    call new_friction_law(friction_case_t(law='ambrosio', coefficient=0.1_dp, v0=0.0_dp, v1=1e-3_dp), law, error)
+    call friction_law_of("law='ambrosio' coefficient=0.1 v0=0 v1=1e-3", law, error)
     call check%close_to(law%friction_ratio(0.5e-3_dp, 1), -0.05_dp, 1e-17_dp, 'a ramp from rest')
   end subroutine test_jump
 
@@ -64,7 +63,7 @@ contains
     integer :: i
     character(len=8), parameter :: names(2) = ['coulomb ', 'ambrosio']
     do i = 1, 2
-      call new_friction_law(friction_case_t(law=names(i), coefficient=0.03_dp), law, error)
+      call friction_law_of('law='''//trim(names(i))//''' coefficient=0.03 v0=0 v1=0', law, error)
       call check%that(law%set_valued, 'Coulomb friction is set-valued')
       call check%close_to(law%friction_ratio(0.2_dp, 1), -0.03_dp, 0.0_dp, 'sliding forwards')
       call check%close_to(law%friction_ratio(-0.2_dp, -1), 0.03_dp, 0.0_dp, 'sliding backwards')
@@ -76,10 +75,10 @@ contains
     class(checks_t), intent(inout) :: check
     class(friction_law_t), allocatable :: law
     type(error_t), allocatable :: error
-    call new_friction_law(friction_case_t(law='glue'), law, error)
+    call friction_law_of("law='glue' coefficient=0.1", law, error)
     call check%that(allocated(error) .and. .not. allocated(law), 'an unknown friction law is refused')
     if (.not. allocated(error)) return
-    call check%equal_text(error%message, "&friction law = 'glue': must be 'ambrosio' or 'coulomb'", &
+    call check%equal_text(error%message, "x.nml:1: &friction law = glue: must be one of ambrosio, coulomb", &
       'the refusal names the laws')
     call check%that(error%status == status_case_file, 'the refusal is a case file error')
   end subroutine test_factory

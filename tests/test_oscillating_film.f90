@@ -4,12 +4,12 @@ module test_oscillating_film
   use constants, only: pi, two_pi
   use errors, only: error_t, status_case_file, status_internal
   use checks, only: checks_t
-  use case_definition, only: lubrication_case_t
   use film_law, only: film_law_t, film_motion_t
-  use films, only: new_film_law
+  use bearing, only: bearing_t
+  use laws, only: film_law_of
   use oscillating_response, only: oscillating_response_t, film_phasors_t, new_oscillating_response, inertia_function, &
     max_eccentricity_ratio
-  use oscillating_film, only: oscillating_film_t, new_oscillating_film
+  use oscillating_film, only: oscillating_film_t
   implicit none
   private
   public :: run_test_oscillating_film
@@ -244,9 +244,10 @@ contains
   subroutine make(film, as_printed)
     type(oscillating_film_t), intent(out) :: film
     logical, intent(in) :: as_printed
-    type(oscillating_response_t) :: response
-    call new_oscillating_response(response, 1e-13_dp, 0, as_printed)
-    call new_oscillating_film(film, response, bearing_radius, bearing_length, clearance, viscosity, kinematic_viscosity)
+    film%viscosity = viscosity
+    film%kinematic_viscosity = kinematic_viscosity
+    call film%prepare(bearing_t(bearing_radius, bearing_length, clearance, 0.0_dp), 1e-6_dp)
+    call new_oscillating_response(film%response, 1e-13_dp, 0, as_printed)
   end subroutine make
 
   pure function some_motion(eps, frequency) result(motion)
@@ -442,16 +443,14 @@ contains
 
   subroutine test_factory(check)
     class(checks_t), intent(inout) :: check
-    character(len=13), parameter :: variants(3) = ['             ', 'bearing_frame', 'as_printed   ']
+    character(len=25), parameter :: variants(3) = [character(len=25) :: '', "variant='bearing_frame'", "variant='as_printed'"]
+    character(len=*), parameter :: oil = "law='oscillating_film' viscosity=0.0117 kinematic_viscosity=1.38e-5 "
     class(film_law_t), allocatable :: film
     type(error_t), allocatable :: error
-    type(lubrication_case_t) :: wanted
     real(dp) :: force(2, 3), moment
     integer :: i
-    wanted = lubrication_case_t(law='oscillating_film', viscosity=viscosity, kinematic_viscosity=kinematic_viscosity)
     do i = 1, size(variants)
-      wanted%variant = variants(i)
-      call new_film_law(wanted, bearing_radius, bearing_length, clearance, 1e-6_dp, film, error, rod_length)
+      call film_law_of(oil//trim(variants(i)), 1e-6_dp, film, error)
       call check%that(allocated(film) .and. .not. allocated(error), 'a film for '//variants(i))
       if (.not. allocated(film)) cycle
       call check%that(film%needs_ideal_motion .and. .not. film%singular_at_wall, 'what the film needs')
@@ -459,15 +458,11 @@ contains
     end do
     call check%that(norm2(force(:, 1) - force(:, 2)) <= 0, 'the default variant')
     call check%that(norm2(force(:, 1) - force(:, 3)) > 1e-3_dp*norm2(force(:, 1)), 'the printed variant')
-    call new_film_law(wanted, bearing_radius, bearing_length, clearance, 1e-6_dp, film, error)
-    call check%that(allocated(error) .and. .not. allocated(film), 'as printed without a rod')
-    if (allocated(error)) call check%that(error%status == status_internal, 'as printed without a rod is a defect')
-    wanted%variant = 'closed_form'
-    call new_film_law(wanted, bearing_radius, bearing_length, clearance, 1e-6_dp, film, error, rod_length)
+    call film_law_of(oil//"variant='closed_form'", 1e-6_dp, film, error)
     call check%that(allocated(error) .and. .not. allocated(film), 'an unknown variant is refused')
     if (.not. allocated(error)) return
-    call check%equal_text(error%message, "&lubrication variant = 'closed_form': must be 'bearing_frame' or 'as_printed' "// &
-      "for law 'oscillating_film'", 'the refusal names the variants')
+    call check%equal_text(error%message, 'x.nml: &lubrication variant = closed_form: must be one of bearing_frame, as_printed '// &
+      'for oscillating_film', 'the refusal names the variants')
     call check%that(error%status == status_case_file, 'the refusal is a case file error')
   end subroutine test_factory
 end module test_oscillating_film

@@ -5,11 +5,10 @@ module test_pinkus_sternlicht
   use constants, only: pi
   use errors, only: error_t, status_case_file
   use checks, only: checks_t
-  use case_definition, only: lubrication_case_t
   use film_law, only: film_law_t, film_motion_t
-  use films, only: new_film_law
+  use bearing, only: bearing_t
+  use laws, only: film_law_of
   use half_film, only: half_film_t
-  use pinkus_sternlicht, only: new_pinkus_sternlicht
   implicit none
   private
   public :: run_test_pinkus_sternlicht
@@ -44,8 +43,7 @@ contains
     character(len=*), intent(in) :: variant
     class(film_law_t), allocatable, intent(out) :: film
     type(error_t), allocatable :: error
-    call new_film_law(lubrication_case_t(law='pinkus_sternlicht', variant=variant, viscosity=viscosity), &
-      bearing_radius, bearing_length, clearance, 1e-6_dp, film, error)
+    call film_law_of('variant='''//trim(variant)//''' viscosity=0.0117', 1e-6_dp, film, error)
     if (allocated(error)) error stop 'test_pinkus_sternlicht: the film cannot be made'
   end subroutine make
 
@@ -371,7 +369,8 @@ contains
     type(film_motion_t) :: motion
     real(dp) :: force(2), total(2), moment, angle, line_of_centres
     integer :: i
-    call new_pinkus_sternlicht(film, bearing_radius, bearing_length, clearance, viscosity, .false.)
+    film%viscosity = viscosity
+    call film%prepare(bearing_t(bearing_radius, bearing_length, clearance, 0.0_dp), 1e-6_dp)
     motion = film_motion_t(eccentricity=clearance*[0.3_dp, -0.5_dp], eccentricity_rate=clearance*[3.0_dp, 20.0_dp], &
       pin_speed=70.0_dp)
     call film%film_force(motion, force, moment)
@@ -437,16 +436,16 @@ contains
     class(checks_t), intent(inout) :: check
     class(film_law_t), allocatable :: film
     type(error_t), allocatable :: error
-    call new_film_law(lubrication_case_t(law='honey'), bearing_radius, bearing_length, clearance, 1e-6_dp, film, error)
+    call film_law_of("law='honey' viscosity=1", 1e-6_dp, film, error)
     call check%that(allocated(error) .and. .not. allocated(film), 'an unknown film is refused')
     if (allocated(error)) then
       call check%equal_text(error%message, &
-        "&lubrication law = 'honey': must be 'pinkus_sternlicht' or 'oscillating_film'", 'the refusal names the laws')
+        "x.nml:1: &lubrication law = honey: must be one of pinkus_sternlicht, oscillating_film", 'the refusal names the laws')
       call check%that(error%status == status_case_file, 'the refusal is a case file error')
     end if
-    call new_film_law(lubrication_case_t(variant='thick'), bearing_radius, bearing_length, clearance, 1e-6_dp, film, error)
+    call film_law_of("variant='thick' viscosity=1", 1e-6_dp, film, error)
     call check%that(allocated(error) .and. .not. allocated(film), 'an unknown variant is refused')
-    if (allocated(error)) call check%that(index(error%message, "variant = 'thick': must be 'closed_form'") > 0, &
+    if (allocated(error)) call check%that(index(error%message, 'variant = thick: must be one of closed_form') > 0, &
       'the refusal names the variants')
   end subroutine test_factory
 end module test_pinkus_sternlicht

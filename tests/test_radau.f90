@@ -11,7 +11,8 @@ module test_radau
   use radau_coefficients, only: radau_formula_t, radau_formula
   use radau, only: radau_t
   use film_law, only: film_law_t, film_motion_t, difference_derivatives
-  use pinkus_sternlicht, only: pinkus_sternlicht_t, new_pinkus_sternlicht
+  use pinkus_sternlicht, only: pinkus_sternlicht_t
+  use bearing, only: bearing_t
   use lankarani_nikravesh, only: lankarani_nikravesh_t
   use scene, only: scene_t, phase_contact, phase_film
   use clearance_scene, only: clearance_scene_t
@@ -170,7 +171,8 @@ contains
     real(dp), parameter :: step = 1e-30_dp
     integer :: i, j, sense
 
-    call new_pinkus_sternlicht(film, 0.01_dp, 0.015_dp, 2e-5_dp, 0.0117_dp, .false.)
+    film%viscosity = 0.0117_dp
+    call film%prepare(bearing_t(0.01_dp, 0.015_dp, 2e-5_dp, 0.0_dp), 1e-6_dp)
     worst = 0
     do i = 1, 40
       do sense = -1, 1, 2

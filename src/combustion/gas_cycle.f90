@@ -13,7 +13,8 @@ module gas_cycle
   use ode_method, only: ode_method_t
   use adams, only: adams_t
   use solver, only: integrate, silent_observer_t, integration_done
-  use cylinder, only: cylinder_t
+  use parameters, only: has_parameters_t, parameter_list_t
+  use cylinder, only: cylinder_t, new_cylinder
   use hermite_table, only: hermite_table_t, new_hermite_table
   implicit none
   private
@@ -35,7 +36,10 @@ module gas_cycle
     real(dp) :: duration = 0     !! [rad]
   end type heat_release_t
 
-  type :: gas_cycle_t
+  type, extends(has_parameters_t) :: gas_cycle_t
+    real(dp) :: bore = 0                          !! cylinder diameter [m]
+    real(dp) :: compression_ratio = 0             !! largest over smallest volume [-]
+    real(dp) :: start_deg = 0, duration_deg = 0   !! of combustion [degrees]
     type(cylinder_t) :: cylinder
     type(heat_release_t) :: release
     real(dp) :: heat_capacity_ratio = 1.4_dp      !! gamma [-]
@@ -46,6 +50,8 @@ module gas_cycle
     type(hermite_table_t) :: table(3)             !! pressure of the closed parts over xi
     real(dp) :: table_error = 0                   !! largest relative error found between the points of the tables
   contains
+    procedure :: parameters
+    procedure :: prepare
     procedure :: pressure
     procedure :: pressure_slope
     procedure :: gas_force
@@ -69,9 +75,38 @@ module gas_cycle
 
 contains
 
+  subroutine parameters(self, list)
+    class(gas_cycle_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%add('bore', self%bore, 'cylinder diameter', 'm', '>= 1e-6 and <= 1e3', example='0.070')
+    call list%add('compression_ratio', self%compression_ratio, 'largest over smallest volume', range='> 1 and <= 1000', &
+      example='9.0')
+    call list%add('heat_capacity_ratio', self%heat_capacity_ratio, 'of the gas', range='> 1 and <= 10', example='1.4')
+    call list%add('heat', self%release%heat, 'released in a cycle', 'J', '>= 0 and <= 1e12', example='165.0')
+    call list%add('wiebe_efficiency', self%release%efficiency, 'a of the Wiebe function', range='> 0 and <= 1000', example='5.0')
+    call list%add('wiebe_form', self%release%form, 'n of the Wiebe function', range='>= 0.05 and <= 100', example='3.0')
+    call list%add('start_deg', self%start_deg, 'start of combustion; firing dead centre is 360', 'degrees', &
+      '>= 180 and < 540', example='340.0')
+    call list%add('duration_deg', self%duration_deg, 'of combustion, which ends by 540', 'degrees', '> 0', example='40.0')
+    call list%add('intake_pressure', self%intake_pressure, 'in the open cylinder', 'Pa', '> 0', default='101325.0')
+    call list%add('crankcase_pressure', self%crankcase_pressure, 'under the piston', 'Pa', '> 0', default='101325.0')
+  end subroutine parameters
+
+  !> Integrate the cycle that the parameters ask for; see `new_gas_cycle`.
+  subroutine prepare(self, crank_length, rod_length, tolerance, error)
+    class(gas_cycle_t), intent(inout) :: self
+    real(dp), intent(in) :: crank_length, rod_length   !! [m]
+    real(dp), intent(in) :: tolerance
+    type(error_t), allocatable, intent(out) :: error
+    self%cylinder = new_cylinder(self%bore, crank_length, rod_length, self%compression_ratio)
+    self%release%start = self%start_deg*degree
+    self%release%duration = self%duration_deg*degree
+    call new_gas_cycle(self, tolerance, error)
+  end subroutine prepare
+
   !> Integrate the cycle. Its relative error is at most `tolerance`, or rounding. Error: the integration fails.
   subroutine new_gas_cycle(gas, tolerance, error)
-    type(gas_cycle_t), intent(inout) :: gas   !! cylinder, release, pressures and heat_capacity_ratio given
+    class(gas_cycle_t), intent(inout) :: gas   !! cylinder, release, pressures and heat_capacity_ratio given
     real(dp), intent(in) :: tolerance
     type(error_t), allocatable, intent(out) :: error
     real(dp) :: goal, p

@@ -1,13 +1,17 @@
 !> What every normal contact law answers.
 module contact_law
   use kinds, only: dp
+  use parameters, only: law_t
+  use bearing, only: bearing_t
   implicit none
   private
   public :: contact_law_t
 
   !> A compliant normal contact between pin and bearing.
-  type, abstract :: contact_law_t
+  type, abstract, extends(law_t) :: contact_law_t
   contains
+    procedure :: prepare => nothing_to_prepare
+    procedure :: fastest_impact => any_speed
     procedure(normal_force), deferred :: normal_force
     procedure(normal_force_slopes), deferred :: normal_force_slopes
   end type contact_law_t
@@ -32,4 +36,22 @@ module contact_law
       real(dp), intent(out) :: stiffness, damping
     end subroutine normal_force_slopes
   end interface
+
+contains
+
+  !> Find what follows from the parameters and the bearing, before the first force is asked for. The default has nothing to find.
+  subroutine nothing_to_prepare(self, bearing)
+    class(contact_law_t), intent(inout) :: self
+    type(bearing_t), intent(in) :: bearing
+    associate (unused_self => self, unused_bearing => bearing)
+    end associate
+  end subroutine nothing_to_prepare
+
+  !> The fastest impact for which the law is meant [m/s]. The default is a law without such a limit.
+  pure real(dp) function any_speed(self)
+    class(contact_law_t), intent(in) :: self
+    associate (unused_self => self)
+    end associate
+    any_speed = huge(any_speed)
+  end function any_speed
 end module contact_law

@@ -1,7 +1,10 @@
 !> Hertz contact (4.1): an elastic force, without loss.
 module hertz
   use kinds, only: dp
+  use parameters, only: parameter_list_t
+  use bearing, only: bearing_t
   use contact_law, only: contact_law_t
+  use contact_stiffness, only: hertz_stiffness, valid_impact_speed
   implicit none
   private
   public :: hertz_t
@@ -11,7 +14,15 @@ module hertz
     real(dp) :: stiffness = 0          !! K [N/m^n], > 0
     real(dp) :: exponent = 1.5_dp      !! n [-], >= 1
     logical :: is_three_halves = .true. !! n is 3/2, which a square root answers; set by `set_elastic_part`
+    real(dp) :: given_stiffness = 0     !! of the case [N/m^n]; 0: Hertz's, from the materials and the bearing
+    real(dp) :: youngs_modulus(2) = 0   !! of pin and bearing [Pa]
+    real(dp) :: poissons_ratio(2) = 0   !! of pin and bearing [-]
+    real(dp) :: density(2) = 0          !! of pin and bearing [kg/m^3]
   contains
+    procedure, nopass :: name
+    procedure :: parameters
+    procedure :: prepare
+    procedure :: fastest_impact
     procedure :: normal_force
     procedure :: normal_force_slopes
     procedure, non_overridable :: elastic_force
@@ -19,6 +30,38 @@ module hertz
   end type hertz_t
 
 contains
+
+  pure function name()
+    character(len=:), allocatable :: name
+    name = 'hertz'
+  end function name
+
+  subroutine parameters(self, list)
+    class(hertz_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%add('exponent', self%exponent, 'of the penetration', range='>= 1', default='1.5')
+    call list%add('youngs_modulus', self%youngs_modulus, 'of pin and bearing', 'Pa', '> 0', default='207.0e9')
+    call list%add('poissons_ratio', self%poissons_ratio, 'of pin and bearing', range='>= 0 and <= 0.5', default='0.3')
+    call list%add('density', self%density, 'of pin and bearing, for the limit of validity', 'kg/m^3', '> 0', default='7850.0')
+    call list%add('stiffness', self%given_stiffness, '0: from the materials', 'N/m^exponent', '> 0', default='0.0')
+  end subroutine parameters
+
+  !> The stiffness that the case gives, or else Hertz's (4.2).
+  subroutine prepare(self, bearing)
+    class(hertz_t), intent(inout) :: self
+    type(bearing_t), intent(in) :: bearing
+    real(dp) :: stiffness
+    stiffness = self%given_stiffness
+    if (.not. stiffness > 0) &
+      stiffness = hertz_stiffness(bearing%radius, bearing%clearance, self%youngs_modulus, self%poissons_ratio)
+    call self%set_elastic_part(stiffness, self%exponent)
+  end subroutine prepare
+
+  !> The limit of the materials (remark after 4.7) [m/s].
+  pure real(dp) function fastest_impact(self)
+    class(hertz_t), intent(in) :: self
+    fastest_impact = valid_impact_speed(self%youngs_modulus, self%density)
+  end function fastest_impact
 
   pure subroutine set_elastic_part(self, stiffness, exponent)
     class(hertz_t), intent(inout) :: self

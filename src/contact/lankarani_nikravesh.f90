@@ -1,6 +1,8 @@
 !> Lankarani-Nikravesh contact (4.7): Hertz contact with a hysteresis loss set by the restitution and the impact speed.
 module lankarani_nikravesh
   use kinds, only: dp
+  use parameters, only: parameter_list_t
+  use bearing, only: bearing_t
   use hertz, only: hertz_t
   implicit none
   private
@@ -12,15 +14,40 @@ module lankarani_nikravesh
 
   !> F = K delta^n [1 + chi delta_dot/delta_dot_minus], chi = (3/4)(1 - e^2).
   type, extends(hertz_t) :: lankarani_nikravesh_t
+    real(dp) :: restitution = 1            !! coefficient of restitution e of the case [-]
     real(dp) :: damping = 0                !! chi [-], 0 to 3/4
     real(dp) :: least_impact_speed = 1e-5_dp   !! slower impacts are damped as one of this speed [m/s], > 0
   contains
+    procedure, nopass :: name
+    procedure :: parameters
+    procedure :: prepare
     procedure :: normal_force
     procedure :: normal_force_slopes
     procedure :: set_restitution
   end type lankarani_nikravesh_t
 
 contains
+
+  pure function name()
+    character(len=:), allocatable :: name
+    name = 'lankarani_nikravesh'
+  end function name
+
+  subroutine parameters(self, list)
+    class(lankarani_nikravesh_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%add('restitution', self%restitution, 'coefficient of restitution', range='>= 0 and <= 1', default='0.9')
+    call self%hertz_t%parameters(list)
+    call list%add('least_impact_speed', self%least_impact_speed, 'slower impacts are damped as one of this speed', 'm/s', &
+      '>= 1e-9 and <= 1', default='1.0e-5')
+  end subroutine parameters
+
+  subroutine prepare(self, bearing)
+    class(lankarani_nikravesh_t), intent(inout) :: self
+    type(bearing_t), intent(in) :: bearing
+    call self%hertz_t%prepare(bearing)
+    call self%set_restitution(self%restitution)
+  end subroutine prepare
 
   !> Set the loss from the coefficient of restitution e, 0 to 1. The law gives back somewhat more than e: with its own
   !> restitution e*, chi (1 + e*) = ln[(1 + chi)/(1 - chi e*)] exactly, whatever the mass, stiffness and exponent.

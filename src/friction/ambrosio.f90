@@ -1,41 +1,66 @@
 !> Coulomb friction eased in over small sliding speeds, after Ambrosio (4.9, 4.10).
 module ambrosio
   use kinds, only: dp
+  use parameters, only: parameter_list_t
   use friction_law, only: friction_law_t
   implicit none
   private
-  public :: ambrosio_t, new_ambrosio
+  public :: ambrosio_t
 
-  !> F_T = -c_f c_d F_N sign(v_T), c_d rising from 0 at |v_T| = v0 to 1 at v1.
+  !> F_T = -c_f c_d F_N sign(v_T), c_d rising from 0 at |v_T| = v0 to 1 at v1. Without a ramp, v0 = v1 = 0, it is Coulomb's law.
   type, extends(friction_law_t) :: ambrosio_t
     real(dp) :: coefficient = 0   !! c_f [-], >= 0
     real(dp) :: v0 = 0            !! no friction up to this sliding speed [m/s], >= 0
-    real(dp) :: v1 = 0            !! full friction from this sliding speed on [m/s], >= v0 and > 0
+    real(dp) :: v1 = 0            !! full friction from this sliding speed on [m/s], >= v0
   contains
+    procedure, nopass :: name
+    procedure :: parameters
+    procedure :: conflict
+    procedure :: prepare
     procedure :: friction_ratio
     procedure :: friction_ratio_slope
   end type ambrosio_t
 
 contains
 
-  pure subroutine new_ambrosio(law, coefficient, v0, v1)
-    type(ambrosio_t), intent(out) :: law
-    real(dp), intent(in) :: coefficient   !! c_f [-]
-    real(dp), intent(in) :: v0, v1        !! the ramp's ends [m/s], 0 <= v0 <= v1, v1 > 0
-    law%coefficient = coefficient
-    law%v0 = v0
-    law%v1 = v1
-  end subroutine new_ambrosio
+  pure function name()
+    character(len=:), allocatable :: name
+    name = 'ambrosio'
+  end function name
 
-  !> (4.9) with (4.10). Continuous for v0 < v1; v0 = v1 is a jump of c_f at v1. `direction` is not asked.
+  subroutine parameters(self, list)
+    class(ambrosio_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%add('coefficient', self%coefficient, 'of sliding friction', range='>= 0', example='0.03')
+    call list%add('v0', self%v0, 'no friction up to this sliding speed', 'm/s', '>= 0', example='0.001')
+    call list%add('v1', self%v1, 'full friction from this sliding speed on', 'm/s', '>= 0', example='0.010')
+  end subroutine parameters
+
+  pure subroutine conflict(self, key, wanted)
+    class(ambrosio_t), intent(in) :: self
+    character(len=:), allocatable, intent(out) :: key, wanted
+    key = ''
+    wanted = 'must be >= v0'
+    if (self%v1 < self%v0) key = 'v1'
+  end subroutine conflict
+
+  subroutine prepare(self)
+    class(ambrosio_t), intent(inout) :: self
+    self%set_valued = .not. self%v1 > 0
+  end subroutine prepare
+
+  !> (4.9) with (4.10). Continuous for v0 < v1; v0 = v1 > 0 is a jump of c_f at v1. `direction` is asked only without a ramp, as
+  !> by Coulomb's law.
   pure function friction_ratio(self, sliding_speed, direction) result(ratio)
     class(ambrosio_t), intent(in) :: self
     real(dp), value, intent(in) :: sliding_speed
     integer, value, intent(in) :: direction
     real(dp) :: ratio
     real(dp) :: speed
-    associate (unused => direction)
-    end associate
+    if (self%set_valued) then
+      ratio = -self%coefficient*direction
+      return
+    end if
     speed = abs(sliding_speed)
     if (speed >= self%v1) then
       ratio = self%coefficient

@@ -1,26 +1,39 @@
 !> Coulomb friction (4.8).
 module coulomb
   use kinds, only: dp
+  use parameters, only: parameter_list_t
   use friction_law, only: friction_law_t
   implicit none
   private
-  public :: coulomb_t, new_coulomb
+  public :: coulomb_t
 
   !> F_T = -c_f F_N sign(v_T), set-valued at v_T = 0.
   type, extends(friction_law_t) :: coulomb_t
     real(dp) :: coefficient = 0   !! c_f [-], >= 0
   contains
+    procedure, nopass :: name
+    procedure :: parameters
+    procedure :: prepare
     procedure :: friction_ratio
   end type coulomb_t
 
 contains
 
-  pure subroutine new_coulomb(law, coefficient)
-    type(coulomb_t), intent(out) :: law
-    real(dp), intent(in) :: coefficient   !! c_f [-]
-    law%set_valued = .true.
-    law%coefficient = coefficient
-  end subroutine new_coulomb
+  pure function name()
+    character(len=:), allocatable :: name
+    name = 'coulomb'
+  end function name
+
+  subroutine parameters(self, list)
+    class(coulomb_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%add('coefficient', self%coefficient, 'of sliding friction', range='>= 0', example='0.03')
+  end subroutine parameters
+
+  subroutine prepare(self)
+    class(coulomb_t), intent(inout) :: self
+    self%set_valued = .true.
+  end subroutine prepare
 
   !> (4.8). The sign is that of `direction`, which the scene holds fixed between its reversals of sliding: the sliding
   !> speed itself is not asked, so that the force is smooth within a step.

@@ -1,14 +1,16 @@
 !> What every dry friction law answers.
 module friction_law
   use kinds, only: dp
+  use parameters, only: law_t
   implicit none
   private
   public :: friction_law_t
 
   !> Dry friction between pin and bearing surfaces.
-  type, abstract :: friction_law_t
+  type, abstract, extends(law_t) :: friction_law_t
     logical :: set_valued = .false.   !! the law jumps at zero sliding speed: the scene must resolve sticking
   contains
+    procedure :: prepare => nothing_to_prepare
     procedure(friction_ratio), deferred :: friction_ratio
     procedure :: friction_ratio_slope
   end type friction_law_t
@@ -25,6 +27,13 @@ module friction_law
   end interface
 
 contains
+
+  !> Find what follows from the parameters, before the first force is asked for. The default has nothing to find.
+  subroutine nothing_to_prepare(self)
+    class(friction_law_t), intent(inout) :: self
+    associate (unused_self => self)
+    end associate
+  end subroutine nothing_to_prepare
 
   !> Derivative of the ratio by the sliding speed [s/m], for implicit integration. The default is that of a law that does not
   !> depend on the size of the speed: 0.

@@ -5,15 +5,15 @@ module case_file
   use text_tools, only: lowercase, printable, integer_text, case_name
   use text_file, only: read_text_file
   use case_definition, only: case_t
-  use case_schema, only: find_group, schema_groups, schema_keys
+  use case_schema, only: key_t, group_definition_t, case_schema_of, find_group
   use case_values, only: case_values_t
-  use case_exchange, only: values_to_case, case_to_values
+  use case_loader, only: load_case
   use case_rules, only: check_rules
   use case_text, only: template_text, resolved_text
   use namelist_reader, only: namelist_t, token_t, read_namelist, read_values
   implicit none
   private
-  public :: read_case, parse_case, read_case_values, complete_case, choose_variant, resolve, write_resolved, template
+  public :: read_case, parse_case, read_case_values, complete_case, template
 
   integer, parameter :: largest_file = 1   !! MB; a case file has a few thousand bytes
 
@@ -30,14 +30,17 @@ contains
     call parse_case(text, path, overrides, this, error)
   end subroutine read_case
 
-  !> The same for a text; `path` names the case and its messages.
-  subroutine parse_case(text, path, overrides, this, error)
+  !> The same for a text; `path` names the case and its messages. `resolved` is the case with every default filled in, as text:
+  !> reading it gives the same case, bit for bit.
+  subroutine parse_case(text, path, overrides, this, error, resolved)
     character(len=*), intent(in) :: text, path, overrides(:)
     type(case_t), intent(out) :: this
     type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable, intent(out), optional :: resolved
     type(case_values_t) :: values
     call parse_values(text, path, overrides, values, error)
     if (.not. allocated(error)) call complete_case(values, path, this, error)
+    if (present(resolved) .and. .not. allocated(error)) resolved = resolved_text(values)
   end subroutine parse_case
 
   !> The values that a case file and overrides give, not yet checked against each other.
@@ -65,53 +68,29 @@ contains
     call values%prefer_overrides()
   end subroutine parse_values
 
-  !> A checked case of values; `path` names it.
+  !> A checked case of values; `path` names it. Defaults that depend on the laws chosen are put into the values.
   subroutine complete_case(values, path, this, error)
-    type(case_values_t), intent(in) :: values
+    type(case_values_t), intent(inout) :: values
     character(len=*), intent(in) :: path
     type(case_t), intent(out) :: this
     type(error_t), allocatable, intent(out) :: error
     call values%check(error)
     if (allocated(error)) return
-    call values_to_case(values, this)
+    call load_case(values, this, error)
+    if (allocated(error)) return
     this%file = path
     this%name = case_name(path)
     if (this%name == '') this%name = 'case'
-    call choose_variant(this)
     call check_rules(this, values, error)
   end subroutine complete_case
-
-  !> The variant of a film's law where none is given.
-  pure subroutine choose_variant(this)
-    type(case_t), intent(inout) :: this
-    if (.not. this%lubrication%is_present .or. this%lubrication%variant /= '') return
-    this%lubrication%variant = 'closed_form'
-    if (this%lubrication%law == 'oscillating_film') this%lubrication%variant = 'bearing_frame'
-  end subroutine choose_variant
-
-  !> The case with every default filled in; reading it gives the same case, bit for bit.
-  function write_resolved(this) result(text)
-    type(case_t), intent(in) :: this
-    character(len=:), allocatable :: text
-    type(case_values_t) :: values
-    call values%set_defaults('')
-    call resolve(this, values, text)
-  end function write_resolved
-
-  !> The same where the values are at hand that the case was made of.
-  subroutine resolve(this, values, text)
-    type(case_t), intent(in) :: this
-    type(case_values_t), intent(inout) :: values
-    character(len=:), allocatable, intent(out) :: text
-    call case_to_values(this, values)
-    text = resolved_text(values)
-  end subroutine resolve
 
   !> A complete, commented case file that reads back.
   function template() result(text)
     character(len=:), allocatable :: text
-    text = template_text('A case of gudgeon with every key there is. Keys marked required have no default.', &
-      schema_groups(), schema_keys())
+    type(group_definition_t), allocatable :: groups(:)
+    type(key_t), allocatable :: keys(:)
+    call case_schema_of(groups, keys)
+    text = template_text('A case of gudgeon with every key there is. Keys marked required have no default.', groups, keys)
   end function template
 
   !> Groups and keys of the file's text into the values.

@@ -51,9 +51,9 @@ contains
     real(dp) :: reach, crank, rod
     associate (m => c%mechanism)
       reach = m%crank_length
-      if (c%joint%kind == 'clearance') reach = reach + c%joint%clearance
+      if (c%has_clearance()) reach = reach + c%joint%clearance
       if (m%rod_length <= reach) then
-        if (c%joint%kind == 'clearance') then
+        if (c%has_clearance()) then
           call values%refuse('mechanism', 'rod_length', 'must be > crank_length + clearance', error)
         else
           call values%refuse('mechanism', 'rod_length', 'must be > crank_length', error)
@@ -62,7 +62,7 @@ contains
       end if
       crank = m%crank_inertia + m%crank_mass*sum(m%crank_com**2)
       rod = m%rod_inertia + m%rod_mass*sum(m%rod_com**2)
-      if (c%joint%kind == 'clearance') then
+      if (c%has_clearance()) then
         if (rod <= 0) then
           call values%refuse('mechanism', 'rod_inertia', 'must be > 0 unless rod_mass is > 0 away from the crank pin', error)
         else if (crank*rod + m%rod_mass*m%crank_length**2*m%rod_inertia <= 0) then
@@ -81,8 +81,8 @@ contains
     type(case_t), intent(in) :: c
     type(case_values_t), intent(in) :: values
     type(error_t), allocatable, intent(out) :: error
-    if (c%joint%kind == 'ideal') then
-      if (c%contact%is_present .or. c%friction%is_present .or. c%lubrication%is_present) then
+    if (.not. c%has_clearance()) then
+      if (allocated(c%contact) .or. allocated(c%friction) .or. allocated(c%film)) then
         call values%refuse('joint', 'kind', 'must be clearance with contact, friction or lubrication: an ideal joint '// &
                            'has no play for them; leave those groups out, as --set contact=none does', error)
       else if (c%joint%clearance > 0 .and. .not. values%is_given('joint', 'kind')) then
@@ -96,9 +96,9 @@ contains
       call values%refuse('joint', 'bearing_radius', needed('bearing_radius', values, 'with kind = ''clearance'''), error)
     else if (c%joint%bearing_radius <= c%joint%clearance) then
       call values%refuse('joint', 'bearing_radius', 'must be > clearance: the pin''s radius is the difference', error)
-    else if (c%lubrication%is_present .and. c%joint%bearing_length <= 0) then
+    else if (allocated(c%film) .and. c%joint%bearing_length <= 0) then
       call values%refuse('joint', 'bearing_length', needed('bearing_length', values, 'with lubrication'), error)
-    else if (.not. c%contact%is_present .and. .not. c%lubrication%is_present) then
+    else if (.not. allocated(c%contact) .and. .not. allocated(c%film)) then
       call values%refuse('joint', 'kind', 'needs contact or lubrication: nothing would hold the pin', error)
     end if
   end subroutine check_joint
@@ -110,13 +110,13 @@ contains
     type(error_t), allocatable, intent(out) :: error
     real(dp) :: distance
     distance = norm2(c%initial%eccentricity)
-    if (c%joint%kind == 'ideal') then
+    if (.not. c%has_clearance()) then
       if (distance > 0) then
         call values%refuse('initial', 'eccentricity', 'must be 0 in an ideal joint', error)
       else if (norm2(c%initial%eccentricity_rate) > 0) then
         call values%refuse('initial', 'eccentricity_rate', 'must be 0 in an ideal joint', error)
       end if
-    else if (.not. c%contact%is_present .and. distance >= c%joint%clearance) then
+    else if (.not. allocated(c%contact) .and. distance >= c%joint%clearance) then
       call values%refuse('initial', 'eccentricity', 'must be shorter than the clearance where there is no contact', error)
     else if (distance >= c%joint%bearing_radius) then
       call values%refuse('initial', 'eccentricity', 'must be shorter than bearing_radius: the pin would be through its bearing', &
@@ -135,41 +135,20 @@ contains
     if (values%is_given('joint', name)) wanted = 'must be > 0'
   end function needed
 
+  !> Models that need another one.
   subroutine check_models(c, values, error)
     type(case_t), intent(in) :: c
     type(case_values_t), intent(in) :: values
     type(error_t), allocatable, intent(out) :: error
-    if (c%friction%is_present) then
-      if (.not. c%contact%is_present) then
-        call values%refuse('friction', 'law', 'needs the group contact: dry friction follows the normal force', error)
-      else if (c%friction%law == 'ambrosio' .and. .not. values%is_given('friction', 'v0')) then
-        call values%refuse('friction', 'v0', 'required with law = ''ambrosio''', error)
-      else if (c%friction%law == 'ambrosio' .and. .not. values%is_given('friction', 'v1')) then
-        call values%refuse('friction', 'v1', 'required with law = ''ambrosio''', error)
-      else if (c%friction%v1 < c%friction%v0) then
-        call values%refuse('friction', 'v1', 'must be >= v0', error)
-      end if
-      if (allocated(error)) return
-    end if
-    if (.not. c%lubrication%is_present) return
-    select case (c%lubrication%law)
-    case ('oscillating_film')
-      if (all(c%lubrication%variant /= ['bearing_frame', 'as_printed   '])) then
-        call values%refuse('lubrication', 'variant', 'must be one of bearing_frame, as_printed for oscillating_film', error)
-      else if (c%lubrication%kinematic_viscosity <= 0) then
-        call values%refuse('lubrication', 'kinematic_viscosity', 'must be > 0 for oscillating_film', error)
-      end if
-    case default
-      if (all(c%lubrication%variant /= ['closed_form', 'as_printed ', 'half_film  '])) call values%refuse( &
-        'lubrication', 'variant', 'must be one of closed_form, as_printed, half_film for pinkus_sternlicht', error)
-    end select
+    if (allocated(c%friction) .and. .not. allocated(c%contact)) call values%refuse( &
+      'friction', 'law', 'needs the group contact: dry friction follows the normal force', error)
   end subroutine check_models
 
   subroutine check_combustion(c, values, error)
     type(case_t), intent(in) :: c
     type(case_values_t), intent(in) :: values
     type(error_t), allocatable, intent(out) :: error
-    if (.not. c%combustion%is_present) return
+    if (.not. allocated(c%combustion)) return
     if (c%combustion%start_deg + c%combustion%duration_deg > 540) call values%refuse( &
       'combustion', 'duration_deg', 'start_deg + duration_deg must be <= 540, where the cylinder opens', error)
   end subroutine check_combustion

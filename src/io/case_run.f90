@@ -153,10 +153,10 @@ contains
       if (self%is_twin) then
         call files%open(base//'.ideal', list, case%output%digits, .false., self%error)
       else if (start%goes_on) then
-        call files%reopen(base, list, case%output%digits, case%contact%is_present, start%checkpoint, self%error)
+        call files%reopen(base, list, case%output%digits, allocated(case%contact), start%checkpoint, self%error)
         if (.not. allocated(self%error)) call write_text(base//'.resolved.nml', start%checkpoint%case_text, self%error)
       else
-        call files%open(base, list, case%output%digits, case%contact%is_present, self%error)
+        call files%open(base, list, case%output%digits, allocated(case%contact), self%error)
       end if
       if (allocated(self%error)) return
       if (associated(self%queue) .and. .not. self%is_twin) call files%share_rows(self%queue, size(list%id))

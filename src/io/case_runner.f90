@@ -3,7 +3,8 @@ module case_runner
   use errors, only: error_t, fail, status_output
   use case_definition, only: case_t
   use accuracy_presets, only: with_preset
-  use case_file, only: read_case_values, complete_case, resolve
+  use case_file, only: read_case_values, complete_case
+  use case_text, only: resolved_text
   use case_values, only: case_values_t
   use case_rules, only: case_warning
   use command_line, only: command_line_t
@@ -46,7 +47,7 @@ contains
     notice = ''
     base = ''
     call prepare(path, options, values, case, list, ideal_list, base, error)
-    if (.not. allocated(error) .and. .not. options%check) call take_place(path, options, values, case, base, lock, start, error)
+    if (.not. allocated(error) .and. .not. options%check) call take_place(path, options, values, base, lock, start, error)
     if (.not. allocated(error)) then
       if (options%check) line = path//': correct'
       if (start%is_done) line = path//': done already; '//base//'.csv'
@@ -72,7 +73,7 @@ contains
     type(row_queue_t), target :: queue
     logical :: has_twin
 
-    has_twin = case%output%ideal_twin .and. case%joint%kind /= 'ideal'
+    has_twin = case%output%ideal_twin .and. case%has_clearance()
     call run%prepare(case, .false., start, list, base, show_progress, quiet)
     call twin%prepare(case, .true., start, ideal_list, base, show_progress .and. threads == 1, quiet)
     if (has_twin .and. threads > 1) call go_beside(twin, run, queue)
@@ -123,11 +124,10 @@ contains
   end subroutine tell_warning
 
   !> Make the folder for the results, lock them, look for what is there where the run is to go on, write the resolved case.
-  subroutine take_place(path, options, values, case, base, lock, start, error)
+  subroutine take_place(path, options, values, base, lock, start, error)
     character(len=*), intent(in) :: path, base
     type(command_line_t), intent(in) :: options
-    type(case_values_t), intent(inout) :: values   !! of the case
-    type(case_t), intent(in) :: case
+    type(case_values_t), intent(in) :: values   !! of the case
     type(case_lock_t), intent(inout) :: lock
     type(continuation_t), intent(inout) :: start
     type(error_t), allocatable, intent(out) :: error
@@ -141,7 +141,7 @@ contains
       call lock%take(base, error)
     end if
     if (allocated(error)) return
-    call resolve(case, values, case_text)
+    case_text = resolved_text(values)
     start%checkpoint%path = base//'.checkpoint'
     start%interval = options%checkpoint_interval
     if (options%resume) then

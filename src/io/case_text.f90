@@ -3,7 +3,8 @@ module case_text
   use text_tools, only: integer_text, quoted
   use growing_text, only: growing_text_t
   use number_text, only: exact_text
-  use case_schema, only: key_t, group_definition_t, real_kind, integer_kind, logical_kind
+  use parameters, only: key_t, real_kind, integer_kind, logical_kind
+  use case_schema, only: group_definition_t, find_key
   use case_values, only: case_values_t, value_t
   implicit none
   private
@@ -24,15 +25,16 @@ contains
     do group = 1, size(groups)
       text = text//newline//'! '//trim(groups(group)%description)//newline//'&'//trim(groups(group)%name)//newline
       do i = 1, size(keys)
-        if (keys(i)%group == groups(group)%name) text = text//template_line(keys(i))//newline
+        if (keys(i)%group == groups(group)%name) text = text//template_line(keys, keys(i))//newline
       end do
       text = text//'/'//newline
     end do
   end function template_text
 
   !> `  key = value   ! unit, range, default: description`
-  function template_line(key) result(line)
-    type(key_t), intent(in) :: key
+  function template_line(keys, key) result(line)
+    type(key_t), intent(in) :: keys(:)   !! of the schema
+    type(key_t), intent(in) :: key       !! one of them
     character(len=:), allocatable :: line, value, note
     value = trim(key%default)
     if (key%example /= '') value = trim(key%example)
@@ -43,14 +45,16 @@ contains
     note = ''
     if (key%unit /= '') note = note//', '//trim(key%unit)
     if (key%range /= '') note = note//', '//trim(key%range)
-    if (key%words /= '') note = note//', one of '//trim(key%words)
+    if (allocated(key%words)) note = note//', one of '//key%words
     if (key%required) note = note//', required'
     if (.not. key%required .and. key%example /= '' .and. key%default /= '') note = note//', default '//trim(key%default)
     if (note /= '') line = line//note(3:)//': '
     line = line//trim(key%description)
+    if (.not. allocated(key%laws)) return
+    if (key%laws /= keys(find_key(keys, trim(key%group), key%choice))%words) line = line//' ('//key%laws//')'
   end function template_line
 
-  !> A case file with every key of every group that is present, reals with 17 significant digits.
+  !> A case file with every key that the models of the case have, of every group that is present, reals with 17 significant digits.
   function resolved_text(values) result(text)
     type(case_values_t), intent(in) :: values
     character(len=:), allocatable :: text
@@ -62,7 +66,8 @@ contains
       call growing%append(trim(values%groups(group)%name))
       call growing%append(newline)
       do i = 1, size(values%keys)
-        if (values%keys(i)%group == values%groups(group)%name) call append_line(growing, values%keys(i), values%values(i))
+        if (values%keys(i)%group == values%groups(group)%name .and. values%is_used(i)) &
+          call append_line(growing, values%keys(i), values%values(i))
       end do
       call growing%append('/'//newline)
     end do

@@ -4,8 +4,8 @@ module case_values
   use kinds, only: dp
   use errors, only: error_t, fail, status_case_file
   use text_tools, only: lowercase, printable, is_clean, integer_text, nearest_word
-  use case_schema, only: key_t, group_definition_t, schema_groups, schema_keys, find_key, find_group, real_kind, &
-    integer_kind, logical_kind, word_kind, text_kind
+  use case_schema, only: key_t, group_definition_t, case_schema_of, find_key, find_group, is_listed, &
+    real_kind, integer_kind, logical_kind, word_kind, text_kind
   use namelist_reader, only: token_t
   use value_reader, only: read_real, read_integer, read_logical, is_within
   implicit none
@@ -44,6 +44,7 @@ module case_values
     procedure :: check_family
     procedure :: check        !! required keys and ranges
     procedure :: check_required
+    procedure :: is_used      !! the law that the case names has this key
     procedure :: check_range  !! the range of one key
     procedure :: is_in_range
     procedure :: refuse       !! the error for a value
@@ -57,7 +58,10 @@ contains
   subroutine set_defaults(self, file)
     class(case_values_t), intent(inout) :: self
     character(len=*), intent(in) :: file
-    call self%set_schema(file, schema_groups(), schema_keys())
+    type(group_definition_t), allocatable :: groups(:)
+    type(key_t), allocatable :: keys(:)
+    call case_schema_of(groups, keys)
+    call self%set_schema(file, groups, keys)
   end subroutine set_defaults
 
   !> Every key of a schema at its default, every group absent.
@@ -307,8 +311,8 @@ contains
       if (token%quoted) wanted = 'must be .true. or .false., without quotes'
     case (word_kind)
       value%text = trim(lowercase(token%text))
-      if (.not. is_one_of(value%text, trim(key%words)) .and. value%text /= key%default) wanted = 'must be one of '// &
-        trim(key%words)
+      if (.not. is_listed(value%text, key%words) .and. value%text /= key%default) wanted = 'must be one of '// &
+        key%words
     case default
       if (.not. is_clean(token%text)) wanted = 'must not hold control characters or bytes that are not UTF-8'
       if (len(token%text) + len(value%text) > longest_text) wanted = 'must be at most 4000 bytes'
@@ -320,14 +324,6 @@ contains
     end select
   end subroutine convert
 
-  !> Whether a word stands in a list with commas between.
-  pure function is_one_of(word, words) result(found)
-    character(len=*), intent(in) :: word, words
-    logical :: found
-    found = word /= '' .and. verify(word, ' ,') > 0 .and. scan(word, ' ,') == 0 .and. &
-            index(', '//words//',', ', '//word//',') > 0
-  end function is_one_of
-
   !> Required keys are there, and every number is in its range.
   subroutine check(self, error)
     class(case_values_t), intent(in) :: self
@@ -336,6 +332,7 @@ contains
     do i = 1, size(self%keys)
       group = find_group(self%groups, trim(self%keys(i)%group))
       if (self%groups(group)%is_model .and. .not. self%is_present(group)) cycle
+      if (.not. self%is_used(i)) cycle   ! it may stand there for another law
       call self%check_required(i, error)
       if (.not. allocated(error)) call self%check_range(i, error)
       if (allocated(error)) return
@@ -352,12 +349,35 @@ contains
       if (.not. key%required .or. self%values(place)%given(1)) return
       group = find_group(self%groups, trim(key%group))
       if (self%is_present(group)) then
-        call fail(error, self%file//': &'//trim(key%group)//' '//trim(key%name)//': required'//unit_of(key), status_case_file)
+        call fail(error, self%file//': &'//trim(key%group)//' '//trim(key%name)//': required'//by_law(self, key)// &
+                  unit_of(key), status_case_file)
       else if (.not. self%groups(group)%is_model) then
         call fail(error, self%file//': &'//trim(key%group)//': this group is required', status_case_file)
       end if
     end associate
   end subroutine check_required
+
+  !> Whether the model that the case asks for has the key at `place`: keys of other laws of the group may stand there too.
+  pure logical function is_used(self, place)
+    class(case_values_t), intent(in) :: self
+    integer, intent(in) :: place
+    is_used = .true.
+    associate (key => self%keys(place))
+      if (allocated(key%laws)) is_used = is_listed(self%values(find_key(self%keys, key%group, key%choice))%text, key%laws)
+    end associate
+  end function is_used
+
+  !> Which law wants a key that not all laws of its group have.
+  pure function by_law(self, key) result(text)
+    class(case_values_t), intent(in) :: self
+    type(key_t), intent(in) :: key
+    character(len=:), allocatable :: text
+    text = ''
+    if (.not. allocated(key%laws)) return
+    associate (choice => find_key(self%keys, key%group, key%choice))
+      if (key%laws /= self%keys(choice)%words) text = ' with '//key%choice//' = '''//self%values(choice)%text//''''
+    end associate
+  end function by_law
 
   !> The numbers of the key at `place` are in its range, or its default.
   subroutine check_range(self, place, error)

@@ -74,7 +74,7 @@ contains
       if (f%time > 0) call add('mean_crank_speed', real_text(f%crank_travel/f%time), 'rad/s')
       call add('max_energy_residual', real_text(f%max_energy_residual), 'J')
       call add('max_energy_residual_relative', real_text(relative_residual(report)), '1')
-      if (case%joint%kind == 'clearance') then
+      if (case%has_clearance()) then
         call add('min_film_thickness', real_text(f%min_film_thickness), 'm')
         call add('contacts', integer_text(f%contacts), '1')
         if (f%time > 0) call add('contact_time_fraction', real_text(f%contact_time/f%time), '1')
@@ -134,8 +134,8 @@ contains
     associate (s => report%statistics, f => report%figures)
       text = case%name//': '//report%status//'; '//short_text(f%time)//' s in '//short_text(wall_time)//' s, '// &
         integer_text(s%accepted)//' steps, '//integer_text(s%evaluations)//' evaluations; '
-      if (case%joint%kind == 'clearance') then
-        if (case%contact%is_present) text = text//integer_text(f%contacts)//' contacts, '
+      if (case%has_clearance()) then
+        if (allocated(case%contact)) text = text//integer_text(f%contacts)//' contacts, '
         text = text//'film at least '//short_text(f%min_film_thickness)//' m, '
       end if
       text = text//'pin force up to '//short_text(f%max_pin_force)//' N, energy residual '// &

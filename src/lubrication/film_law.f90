@@ -1,6 +1,8 @@
 !> What every lubricating film answers.
 module film_law
   use kinds, only: dp
+  use parameters, only: law_t
+  use bearing, only: bearing_t
   implicit none
   private
   public :: film_law_t, film_motion_t, difference_derivatives
@@ -16,17 +18,27 @@ module film_law
   end type film_motion_t
 
   !> A film that carries the pin while it does not touch the bearing.
-  type, abstract :: film_law_t
+  type, abstract, extends(law_t) :: film_law_t
     real(dp) :: clearance = 1                 !! c, radial [m]
     real(dp) :: per_clearance = 1             !! 1/c [1/m]
     logical :: needs_ideal_motion = .false.   !! whether the ideal_* fields and the frequency are read
     logical :: singular_at_wall = .true.      !! the force is infinite at |e| = c: the state may not reach it
   contains
+    procedure(prepare), deferred :: prepare
     procedure(film_force), deferred :: film_force
     procedure :: force_derivatives => difference_derivatives
   end type film_law_t
 
   abstract interface
+    !> Find what follows from the parameters and the bearing, before the first force is asked for. What the law sums or
+    !> tabulates is to be finer than `tolerance`, the relative tolerance of the run.
+    subroutine prepare(self, bearing, tolerance)
+      import :: film_law_t, bearing_t, dp
+      class(film_law_t), intent(inout) :: self
+      type(bearing_t), intent(in) :: bearing
+      real(dp), intent(in) :: tolerance
+    end subroutine prepare
+
     !> Force of the film on the pin [N] in x and y, and its moment on the pin about the pin centre [N m], x towards y.
     pure subroutine film_force(self, motion, force, moment)
       import :: film_law_t, film_motion_t, dp

@@ -9,14 +9,23 @@ module half_film
   private
   public :: half_film_t
 
-  !> To be made with `new_pinkus_sternlicht`.
+  !> The variant `half_film` of the law of its parent.
   type, extends(pinkus_sternlicht_t) :: half_film_t
   contains
+    procedure :: serves
     procedure :: film_force
     procedure :: force_derivatives
   end type half_film_t
 
 contains
+
+  pure logical function serves(self, variant)
+    class(half_film_t), intent(in) :: self
+    character(len=*), intent(in) :: variant
+    associate (unused => self)
+    end associate
+    serves = variant == 'half_film'
+  end function serves
 
   !> Integral of the positive pressure. In the angle a from the thickest place, z = exp(i a), u = 1 + eps cos a = h/c and
   !> A = eps W/2, B = eps_dot, the pressure is 6 mu (R/c)^2 Im[(A - iB)(4z + eps z^2)]/((2 + eps^2) u^2), positive on one

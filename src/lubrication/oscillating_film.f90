@@ -4,13 +4,23 @@
 module oscillating_film
   use kinds, only: dp
   use constants, only: pi, two_pi
+  use parameters, only: parameter_list_t
+  use bearing, only: bearing_t
   use film_law, only: film_law_t, film_motion_t
-  use oscillating_response, only: oscillating_response_t, film_phasors_t, inertia_function, max_eccentricity_ratio
+  use oscillating_response, only: oscillating_response_t, film_phasors_t, new_oscillating_response, inertia_function, &
+    max_eccentricity_ratio
   implicit none
   private
-  public :: oscillating_film_t, new_oscillating_film
+  public :: oscillating_film_t
+
+  !> Error allowed to means over the film, over the run's relative tolerance, and at most.
+  real(dp), parameter :: mean_margin = 1e-4_dp
+  real(dp), parameter :: coarsest_mean = 1e-8_dp
 
   type, extends(film_law_t) :: oscillating_film_t
+    character(len=:), allocatable :: variant   !! bearing_frame or as_printed
+    integer :: quadrature_points = 0      !! round the film; 0: what the tolerance asks for
+    real(dp) :: least_film_ratio = 0      !! the film is taken no thinner than this part of the clearance [-]
     type(oscillating_response_t) :: response
     real(dp) :: pin_radius = 0            !! R [m]
     real(dp) :: viscosity = 0             !! mu [Pa s]
@@ -21,6 +31,9 @@ module oscillating_film
     real(dp) :: force_scale = 0           !! mu w_b R/c [Pa s]
     real(dp) :: arm_length = 0            !! L of (5.4), the rod's length [m], where its acceleration term is wanted; or 0
   contains
+    procedure, nopass :: name
+    procedure :: parameters
+    procedure :: prepare
     procedure :: film_force
     procedure :: phasors
     procedure, non_overridable :: surface_speed
@@ -30,25 +43,46 @@ module oscillating_film
 
 contains
 
-  pure subroutine new_oscillating_film(film, response, bearing_radius, bearing_length, clearance, viscosity, &
-    kinematic_viscosity)
-    type(oscillating_film_t), intent(out) :: film
-    type(oscillating_response_t), intent(in) :: response
-    real(dp), intent(in) :: bearing_radius, bearing_length   !! [m]
-    real(dp), intent(in) :: clearance                        !! radial [m], 0 < clearance < bearing_radius
-    real(dp), intent(in) :: viscosity                        !! mu [Pa s], > 0
-    real(dp), intent(in) :: kinematic_viscosity              !! nu [m^2/s], > 0
-    film%needs_ideal_motion = .true.
-    film%singular_at_wall = .false.
-    film%response = response
-    film%clearance = clearance
-    film%per_clearance = 1/clearance
-    film%pin_radius = bearing_radius - clearance
-    film%viscosity = viscosity
-    film%kinematic_viscosity = kinematic_viscosity
-    film%inertia_scale = clearance**2/(4*kinematic_viscosity)
-    film%force_scale = viscosity*bearing_length*film%pin_radius/clearance
-  end subroutine new_oscillating_film
+  pure function name()
+    character(len=:), allocatable :: name
+    name = 'oscillating_film'
+  end function name
+
+  subroutine parameters(self, list)
+    class(oscillating_film_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%word('variant', self%variant, 'bearing_frame, as_printed', 'bearing_frame', &
+      'the frame of the fluid''s acceleration')
+    call list%add('viscosity', self%viscosity, 'dynamic viscosity', 'Pa s', '> 0', example='0.0117')
+    call list%add('kinematic_viscosity', self%kinematic_viscosity, 'kinematic viscosity', 'm^2/s', '> 0', example='1.38e-5')
+    call list%add('quadrature_points', self%quadrature_points, '0: chosen from the tolerance', '>= 4 and <= 1000000', &
+      default='0')
+    call list%add('least_film_ratio', self%least_film_ratio, 'taken no thinner than this part of the clearance', &
+      range='>= 0.000001 and <= 0.5', default='0.001')
+  end subroutine parameters
+
+  !> The scales, and the response of the film, whose means are finer than the run by `mean_margin`. The variant `as_printed` has
+  !> the acceleration terms of (5.4), with the rod's length as their L.
+  subroutine prepare(self, bearing, tolerance)
+    class(oscillating_film_t), intent(inout) :: self
+    type(bearing_t), intent(in) :: bearing
+    real(dp), intent(in) :: tolerance
+    logical :: as_printed
+    as_printed = .false.
+    if (allocated(self%variant)) as_printed = self%variant == 'as_printed'
+    self%needs_ideal_motion = .true.
+    self%singular_at_wall = .false.
+    self%clearance = bearing%clearance
+    self%per_clearance = 1/bearing%clearance
+    self%pin_radius = bearing%pin_radius()
+    self%inertia_scale = bearing%clearance**2/(4*self%kinematic_viscosity)
+    self%force_scale = self%viscosity*bearing%length*self%pin_radius/bearing%clearance
+    self%arm_length = 0
+    if (as_printed) self%arm_length = bearing%rod_length
+    self%largest_ratio = 1 - self%least_film_ratio
+    call new_oscillating_response(self%response, min(max(mean_margin*tolerance, epsilon(1.0_dp)), coarsest_mean), &
+      self%quadrature_points, as_printed)
+  end subroutine prepare
 
   !> Surface speed of the pin as a phasor [m/s]: Re U = R omega, Re(i w U) = R omegadot, of the ideal joint. Without
   !> oscillation it is R omega.

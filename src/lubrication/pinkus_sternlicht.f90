@@ -2,10 +2,12 @@
 module pinkus_sternlicht
   use kinds, only: dp
   use constants, only: pi
+  use parameters, only: parameter_list_t
+  use bearing, only: bearing_t
   use film_law, only: film_law_t, film_motion_t, difference_derivatives
   implicit none
   private
-  public :: pinkus_sternlicht_t, reduced_motion_t, new_pinkus_sternlicht, max_eccentricity_ratio
+  public :: pinkus_sternlicht_t, reduced_motion_t, max_eccentricity_ratio
 
   !> Largest eccentricity ratio that is evaluated. The force is infinite at 1, which a run never reaches; a state at or
   !> beyond it is answered with the force here, so that it is finite.
@@ -21,10 +23,16 @@ module pinkus_sternlicht
 
   !> The closed form of the force (5.34-5.37).
   type, extends(film_law_t) :: pinkus_sternlicht_t
+    character(len=:), allocatable :: variant   !! closed_form, as_printed or (half_film_t) half_film
+    real(dp) :: viscosity = 0        !! mu [Pa s], > 0
     real(dp) :: pressure_scale = 0   !! mu R^2/c^2 [Pa s], R of the pin
     real(dp) :: force_scale = 0      !! mu w R^3/c^2 [N s]
     real(dp) :: withdrawal_sign = 1  !! factor of the radial force for eps_dot < 0: 1 corrected, -1 as printed
   contains
+    procedure, nopass :: name
+    procedure :: serves
+    procedure :: parameters
+    procedure :: prepare
     procedure :: film_force
     procedure :: force_derivatives
     procedure :: pressure
@@ -33,20 +41,44 @@ module pinkus_sternlicht
 
 contains
 
-  pure subroutine new_pinkus_sternlicht(film, bearing_radius, bearing_length, clearance, viscosity, as_printed)
-    class(pinkus_sternlicht_t), intent(inout) :: film
-    real(dp), intent(in) :: bearing_radius, bearing_length   !! [m]
-    real(dp), intent(in) :: clearance                        !! radial [m], 0 < clearance < bearing_radius
-    real(dp), intent(in) :: viscosity                        !! mu [Pa s]
-    logical, intent(in) :: as_printed                        !! keep the misprinted sign of (5.36)
-    real(dp) :: pin_radius
-    pin_radius = bearing_radius - clearance
-    film%clearance = clearance
-    film%per_clearance = 1/clearance
-    film%pressure_scale = viscosity*(pin_radius/clearance)**2
-    film%force_scale = film%pressure_scale*bearing_length*pin_radius
-    if (as_printed) film%withdrawal_sign = -1
-  end subroutine new_pinkus_sternlicht
+  pure function name()
+    character(len=:), allocatable :: name
+    name = 'pinkus_sternlicht'
+  end function name
+
+  !> All variants but the half film, which is half_film_t.
+  pure logical function serves(self, variant)
+    class(pinkus_sternlicht_t), intent(in) :: self
+    character(len=*), intent(in) :: variant
+    associate (unused => self)
+    end associate
+    serves = variant /= 'half_film'
+  end function serves
+
+  subroutine parameters(self, list)
+    class(pinkus_sternlicht_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%word('variant', self%variant, 'closed_form, as_printed, half_film', 'closed_form', &
+      'how its pressure is integrated', example='closed_form')
+    call list%add('viscosity', self%viscosity, 'dynamic viscosity', 'Pa s', '> 0', example='0.0117')
+  end subroutine parameters
+
+  !> The scales of pressure and force, and the sign of (5.36), misprinted where the variant is `as_printed`.
+  subroutine prepare(self, bearing, tolerance)
+    class(pinkus_sternlicht_t), intent(inout) :: self
+    type(bearing_t), intent(in) :: bearing
+    real(dp), intent(in) :: tolerance
+    associate (unused => tolerance)
+    end associate
+    self%clearance = bearing%clearance
+    self%per_clearance = 1/bearing%clearance
+    self%pressure_scale = self%viscosity*(bearing%pin_radius()/bearing%clearance)**2
+    self%force_scale = self%pressure_scale*bearing%length*bearing%pin_radius()
+    self%withdrawal_sign = 1
+    if (allocated(self%variant)) then
+      if (self%variant == 'as_printed') self%withdrawal_sign = -1
+    end if
+  end subroutine prepare
 
   !> The motion in polar terms. At the centre, where there is no direction, e.g. x is taken.
   pure function reduced(self, motion) result(state)

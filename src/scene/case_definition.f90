@@ -1,81 +1,69 @@
-!> A case as data: every value that a case file can give, with the units of the case file (SI; angles in
-!> degrees only where the name ends in _deg). An `is_present` of false means that the group was left out and its
-!> model is absent from the scene.
+!> A case: every value that a case file can give, group by group, with the units of the case file (SI; angles in degrees
+!> only where the name ends in _deg). A model whose group was left out is not allocated, and absent from the scene.
+!>
+!> `visit_case` is the one list of groups. Each group hands its parameters to the visitor, and so do the laws that it can name.
 module case_definition
   use kinds, only: dp
+  use parameters, only: has_parameters_t, parameter_list_t
+  use bearing, only: bearing_t
+  use contact_law, only: contact_law_t
+  use contact_laws, only: offer_contact_laws
+  use friction_law, only: friction_law_t
+  use friction_laws, only: offer_friction_laws
+  use film_law, only: film_law_t
+  use films, only: offer_film_laws
+  use gas_cycle, only: gas_cycle_t
   implicit none
   private
-  public :: case_t, mechanism_case_t, drive_case_t, initial_case_t, joint_case_t, contact_case_t, friction_case_t, &
-    lubrication_case_t, combustion_case_t, integrator_case_t, output_case_t, word_length
+  public :: case_t, visit_case
 
-  integer, parameter :: word_length = 32   !! longest name of a law, a variant, a method
-
-  type :: mechanism_case_t
+  type, extends(has_parameters_t) :: mechanism_case_t
     real(dp) :: crank_length = 0, crank_mass = 0, crank_inertia = 0, crank_com(2) = 0
     real(dp) :: rod_length = 0, rod_mass = 0, rod_inertia = 0, rod_com(2) = 0
-    real(dp) :: piston_mass = 0, gravity = 9.80665_dp
+    real(dp) :: piston_mass = 0, gravity = 0
+  contains
+    procedure :: parameters => mechanism_parameters
   end type mechanism_case_t
 
-  type :: drive_case_t
-    character(len=word_length) :: kind = 'free'
+  type, extends(has_parameters_t) :: drive_case_t
+    character(len=:), allocatable :: kind
     real(dp) :: torque = 0, damping = 0
+  contains
+    procedure :: parameters => drive_parameters
   end type drive_case_t
 
-  type :: initial_case_t
+  type, extends(has_parameters_t) :: initial_case_t
     real(dp) :: crank_angle_deg = 0, crank_speed = 0
     real(dp) :: eccentricity(2) = 0, eccentricity_rate(2) = 0   !! of the pin in its bearing
+  contains
+    procedure :: parameters => initial_parameters
   end type initial_case_t
 
-  type :: joint_case_t
-    character(len=word_length) :: kind = 'ideal'
+  type, extends(has_parameters_t) :: joint_case_t
+    character(len=:), allocatable :: kind
     real(dp) :: clearance = 0, bearing_radius = 0, bearing_length = 0
+  contains
+    procedure :: parameters => joint_parameters
   end type joint_case_t
 
-  type :: contact_case_t
-    logical :: is_present = .false.
-    character(len=word_length) :: law = 'lankarani_nikravesh'
-    real(dp) :: restitution = 0.9_dp, exponent = 1.5_dp
-    real(dp) :: youngs_modulus(2) = 207e9_dp, poissons_ratio(2) = 0.3_dp, density(2) = 7850
-    real(dp) :: stiffness = 0
-    real(dp) :: least_impact_speed = 1e-5_dp   !! Lankarani-Nikravesh: slower impacts are damped as one of this speed
-  end type contact_case_t
-
-  type :: friction_case_t
-    logical :: is_present = .false.
-    character(len=word_length) :: law = 'ambrosio'
-    real(dp) :: coefficient = 0, v0 = 0, v1 = 0
-  end type friction_case_t
-
-  type :: lubrication_case_t
-    logical :: is_present = .false.
-    character(len=word_length) :: law = 'pinkus_sternlicht', variant = ''
-    real(dp) :: viscosity = 0, kinematic_viscosity = 0
-    integer :: quadrature_points = 0
-    real(dp) :: least_film_ratio = 1e-3_dp   !! oscillating film: it is taken no thinner than this part of the clearance
-  end type lubrication_case_t
-
-  type :: combustion_case_t
-    logical :: is_present = .false.
-    real(dp) :: bore = 0, compression_ratio = 0, heat_capacity_ratio = 0, heat = 0
-    real(dp) :: wiebe_efficiency = 0, wiebe_form = 0, start_deg = 0, duration_deg = 0
-    real(dp) :: intake_pressure = 101325, crankcase_pressure = 101325
-  end type combustion_case_t
-
-  type :: integrator_case_t
-    character(len=word_length) :: method = 'auto', contact_entry = 'root'
+  type, extends(has_parameters_t) :: integrator_case_t
+    character(len=:), allocatable :: method, contact_entry
     real(dp) :: revolutions = 0, end_time = 0   !! exactly one is given; the other is 0
-    real(dp) :: relative_tolerance = 1e-6_dp, absolute_tolerance = 0, max_step = 0
-    integer :: max_order = 12, max_steps = 0, max_evaluations = 1000000000, &
-      max_evaluations_per_revolution = 100000000
+    real(dp) :: relative_tolerance = 0, absolute_tolerance = 0, max_step = 0
+    integer :: max_order = 0, max_steps = 0, max_evaluations = 0, max_evaluations_per_revolution = 0
     real(dp) :: max_penetration = 0
+  contains
+    procedure :: parameters => integrator_parameters
   end type integrator_case_t
 
-  type :: output_case_t
-    integer :: samples_per_revolution = 720
+  type, extends(has_parameters_t) :: output_case_t
+    integer :: samples_per_revolution = 0
     real(dp) :: interval = 0, start_time = 0   !! interval > 0 wins over samples_per_revolution
     character(len=:), allocatable :: columns   !! 'standard' or column names without units, separated by commas
-    integer :: digits = 10                     !! significant digits of the numbers in traces
+    integer :: digits = 0                      !! significant digits of the numbers in traces
     logical :: every_step = .false., ideal_twin = .false.
+  contains
+    procedure :: parameters => output_parameters
   end type output_case_t
 
   !> One case, complete and validated.
@@ -87,11 +75,199 @@ module case_definition
     type(drive_case_t) :: drive
     type(initial_case_t) :: initial
     type(joint_case_t) :: joint
-    type(contact_case_t) :: contact
-    type(friction_case_t) :: friction
-    type(lubrication_case_t) :: lubrication
-    type(combustion_case_t) :: combustion
+    class(contact_law_t), allocatable :: contact
+    class(friction_law_t), allocatable :: friction
+    class(film_law_t), allocatable :: film
+    type(gas_cycle_t), allocatable :: combustion
     type(integrator_case_t) :: integrator
     type(output_case_t) :: output
+  contains
+    procedure :: has_clearance
+    procedure :: bearing => bearing_of
   end type case_t
+
+contains
+
+  !> Whether the joint has clearance.
+  pure logical function has_clearance(self)
+    class(case_t), intent(in) :: self
+    has_clearance = self%joint%kind == 'clearance'
+  end function has_clearance
+
+  !> The bearing of the joint.
+  pure type(bearing_t) function bearing_of(self)
+    class(case_t), intent(in) :: self
+    associate (j => self%joint)
+      bearing_of = bearing_t(j%bearing_radius, j%bearing_length, j%clearance, self%mechanism%rod_length)
+    end associate
+  end function bearing_of
+
+  !> Hand every group, key and law of a case to a visitor, in the order of the template and of the resolved case.
+  subroutine visit_case(case, list)
+    type(case_t), intent(inout) :: case
+    class(parameter_list_t), intent(inout) :: list
+
+    call list%group('case', 'SI units; angles in degrees only where the key ends in _deg', .false.)
+    call list%text('title', case%title, 'what the case is', '')
+    call list%group('mechanism', 'bodies; centres of mass along and across each body, from its inner pin', .false.)
+    call case%mechanism%parameters(list)
+    call list%group('drive', 'what turns the crank', .false.)
+    call case%drive%parameters(list)
+    call list%group('initial', 'start: velocities as with an ideal joint, but for those of the pin in its bearing', .false.)
+    call case%initial%parameters(list)
+    call list%group('joint', 'piston-pin joint', .false.)
+    call case%joint%parameters(list)
+    call visit_contact(case%contact, list)
+    call visit_friction(case%friction, list)
+    call visit_film(case%film, list)
+    call visit_gas(case%combustion, list)
+    call list%group('integrator', 'how it is integrated; the run''s end by revolutions or end_time, not both', .false.)
+    call case%integrator%parameters(list)
+    call list%group('output', 'what is written', .false.)
+    call case%output%parameters(list)
+  end subroutine visit_case
+
+  subroutine visit_contact(law, list)
+    class(contact_law_t), allocatable, intent(inout) :: law
+    class(parameter_list_t), intent(inout) :: list
+    call list%group('contact', 'pin against bearing: leave the group out for no contact', .true.)
+    call list%choice('law', 'lankarani_nikravesh', 'hertz: without dissipation')
+    call offer_contact_laws(list)
+    if (.not. list%sets) return
+    if (allocated(law)) deallocate (law)
+    if (.not. allocated(list%chosen)) return
+    select type (chosen => list%chosen)
+    class is (contact_law_t)
+      allocate (law, source=chosen)
+    end select
+  end subroutine visit_contact
+
+  subroutine visit_friction(law, list)
+    class(friction_law_t), allocatable, intent(inout) :: law
+    class(parameter_list_t), intent(inout) :: list
+    call list%group('friction', 'dry friction of the contact: leave the group out for none', .true.)
+    call list%choice('law', 'ambrosio', 'ambrosio: grows from 0 at v0 to full at v1')
+    call offer_friction_laws(list)
+    if (.not. list%sets) return
+    if (allocated(law)) deallocate (law)
+    if (.not. allocated(list%chosen)) return
+    select type (chosen => list%chosen)
+    class is (friction_law_t)
+      allocate (law, source=chosen)
+    end select
+  end subroutine visit_friction
+
+  subroutine visit_film(law, list)
+    class(film_law_t), allocatable, intent(inout) :: law
+    class(parameter_list_t), intent(inout) :: list
+    call list%group('lubrication', 'oil film in the clearance: leave the group out for a dry joint', .true.)
+    call list%choice('law', 'pinkus_sternlicht', 'journal bearing or oscillating film')
+    call offer_film_laws(list)
+    if (.not. list%sets) return
+    if (allocated(law)) deallocate (law)
+    if (.not. allocated(list%chosen)) return
+    select type (chosen => list%chosen)
+    class is (film_law_t)
+      allocate (law, source=chosen)
+    end select
+  end subroutine visit_film
+
+  subroutine visit_gas(gas, list)
+    type(gas_cycle_t), allocatable, intent(inout) :: gas
+    class(parameter_list_t), intent(inout) :: list
+    type(gas_cycle_t) :: described
+    call list%group('combustion', 'four-stroke cycle on the piston: leave the group out for none', .true.)
+    if (list%sets) then
+      if (allocated(gas)) deallocate (gas)
+      if (.not. list%is_present) return
+      allocate (gas)
+      call gas%parameters(list)
+    else
+      call described%parameters(list)
+    end if
+  end subroutine visit_gas
+
+  subroutine mechanism_parameters(self, list)
+    class(mechanism_case_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%add('crank_length', self%crank_length, 'crank pin from crank axis', 'm', '> 0', example='0.0508')
+    call list%add('crank_mass', self%crank_mass, 'mass', 'kg', '>= 0', example='0.80')
+    call list%add('crank_inertia', self%crank_inertia, 'moment of inertia about its centre of mass', 'kg m^2', '>= 0', &
+      example='0.006')
+    call list%add('crank_com', self%crank_com, 'centre of mass from the crank axis', 'm', default='0.0')
+    call list%add('rod_length', self%rod_length, 'piston pin from crank pin', 'm', '> 0', example='0.2032')
+    call list%add('rod_mass', self%rod_mass, 'mass', 'kg', '>= 0', example='1.36')
+    call list%add('rod_inertia', self%rod_inertia, 'moment of inertia about its centre of mass', 'kg m^2', '>= 0', &
+      example='0.010')
+    call list%add('rod_com', self%rod_com, 'centre of mass from the crank pin', 'm', default='0.0')
+    call list%add('piston_mass', self%piston_mass, 'mass', 'kg', '> 0', example='0.91')
+    call list%add('gravity', self%gravity, 'downwards, from the cylinder to the crank', 'm/s^2', default='9.80665')
+  end subroutine mechanism_parameters
+
+  subroutine drive_parameters(self, list)
+    class(drive_case_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%word('kind', self%kind, 'free, constant_speed', 'free', 'free: the crank turns as the forces make it')
+    call list%add('torque', self%torque, 'on a free crank, in the sense of its angle', 'N m', default='0.0')
+    call list%add('damping', self%damping, 'moment against the crank speed; at constant_speed it adds to crank_moment alone', &
+      'N m s/rad', '>= 0', default='0.0')
+  end subroutine drive_parameters
+
+  subroutine initial_parameters(self, list)
+    class(initial_case_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%add('crank_angle_deg', self%crank_angle_deg, 'from the cylinder axis', 'degrees', default='0.0')
+    call list%add('crank_speed', self%crank_speed, 'held there by drive kind constant_speed', 'rad/s', example='250.0')
+    call list%add('eccentricity', self%eccentricity, 'pin centre from bearing centre; from the clearance on it touches', 'm', &
+      default='0.0')
+    call list%add('eccentricity_rate', self%eccentricity_rate, 'its rate', 'm/s', default='0.0')
+  end subroutine initial_parameters
+
+  subroutine joint_parameters(self, list)
+    class(joint_case_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%word('kind', self%kind, 'ideal, clearance', 'ideal', 'ideal: no play', example='clearance')
+    call list%add('clearance', self%clearance, 'radial: bearing radius minus pin radius', 'm', '> 0', default='0.0', &
+      example='2.0e-5')
+    call list%add('bearing_radius', self%bearing_radius, 'radius of the piston''s bore', 'm', '> 0', default='0.0', &
+      example='0.010')
+    call list%add('bearing_length', self%bearing_length, 'its width, for a film', 'm', '> 0', default='0.0', example='0.015')
+  end subroutine joint_parameters
+
+  subroutine integrator_parameters(self, list)
+    class(integrator_case_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%word('method', self%method, 'auto, adams, radau', 'auto', &
+      'adams: Shampine and Gordon; radau: implicit; auto: as the phase needs')
+    call list%add('revolutions', self%revolutions, '0: end_time is given', range='> 0', default='0.0', example='4.0', &
+      family='end')
+    call list%add('end_time', self%end_time, '0: revolutions is given', 's', '> 0', default='0.0', family='end')
+    call list%add('relative_tolerance', self%relative_tolerance, 'of each step; above 1e-3 it counts as 1e-3', &
+      range='> 0 and <= 0.1', default='1.0e-6')
+    call list%add('absolute_tolerance', self%absolute_tolerance, '0: relative_tolerance by the natural scales', &
+      range='> 0 and <= 0.1', default='0.0')
+    call list%add('max_step', self%max_step, '0: no limit', 's', '> 0', default='0.0')
+    call list%add('max_order', self%max_order, 'of the method', '>= 1 and <= 12', '12')
+    call list%word('contact_entry', self%contact_entry, 'root, step_rejection', 'root', 'how the start of a contact is found')
+    call list%add('max_penetration', self%max_penetration, 'limit at contact entry, needed by step_rejection', 'm', '> 0', &
+      default='0.0')
+    call list%add('max_steps', self%max_steps, '0: no limit', '> 0', '0')
+    call list%add('max_evaluations', self%max_evaluations, &
+      'of the right-hand side: a run that needs more ends there, exit status 4', '> 0 and <= 2000000000', '1000000000')
+    call list%add('max_evaluations_per_revolution', self%max_evaluations_per_revolution, &
+      'the same within a revolution; 0: no limit', '> 0 and <= 2000000000', '100000000')
+  end subroutine integrator_parameters
+
+  subroutine output_parameters(self, list)
+    class(output_case_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%add('samples_per_revolution', self%samples_per_revolution, 'rows in a revolution', '>= 1 and <= 1000000', '720')
+    call list%add('interval', self%interval, 'between rows; 0: samples_per_revolution counts', 's', '> 0', default='0.0')
+    call list%add('start_time', self%start_time, 'of the first row', 's', '>= 0', default='0.0')
+    call list%text('columns', self%columns, '''standard'', or names of columns without their units, with commas', 'standard', &
+      many=.true.)
+    call list%add('digits', self%digits, 'significant, of every number in a trace; 17 read back exactly', '>= 9 and <= 17', '10')
+    call list%add('every_step', self%every_step, 'a row also at each step of the integrator', '.false.')
+    call list%add('ideal_twin', self%ideal_twin, 'run the same scene with an ideal joint too', '.false.')
+  end subroutine output_parameters
 end module case_definition

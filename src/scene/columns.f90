@@ -49,13 +49,13 @@ contains
 
     has = .false.
     has(always(1):always(2)) = .true.
-    if (case%joint%kind == 'clearance' .and. .not. ideal_joint) then
+    if (case%has_clearance() .and. .not. ideal_joint) then
       list%clearance = case%joint%clearance
       has(clearance(1):clearance(2)) = .true.
-      has(contact(1):contact(2)) = case%contact%is_present
-      has(film(1):film(2)) = case%lubrication%is_present
+      has(contact(1):contact(2)) = allocated(case%contact)
+      has(film(1):film(2)) = allocated(case%film)
     end if
-    has(gas(1):gas(2)) = case%combustion%is_present
+    has(gas(1):gas(2)) = allocated(case%combustion)
     wanted = .true.
     if (allocated(case%output%columns)) then
       if (case%output%columns /= 'standard') call read_names(case%output%columns, has, ideal_joint, wanted, error)

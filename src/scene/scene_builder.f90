@@ -2,17 +2,13 @@
 module scene_builder
   use kinds, only: dp
   use constants, only: two_pi, degree
+  use bearing, only: bearing_t
   use errors, only: error_t
   use case_definition, only: case_t
   use mechanism, only: mechanism_t
   use dynamics, only: drive_t
   use clearance_joint, only: joint_geometry_t
-  use contact_laws, only: new_contact_law
-  use friction_laws, only: new_friction_law
-  use films, only: new_film_law
   use ode_method, only: ode_settings_t
-  use cylinder, only: new_cylinder
-  use gas_cycle, only: gas_cycle_t, heat_release_t, new_gas_cycle
   use scene, only: scene_t, phase_free, phase_film, n_gas_events
   use ideal_scene, only: ideal_scene_t
   use clearance_scene, only: clearance_scene_t
@@ -24,12 +20,13 @@ module scene_builder
   !> a result may miss (the ideal twin of simulation IV loses 18 % of its energy at 1e-2, 2 % at 1e-3).
   real(dp), parameter :: loosest_tolerance = 1e-3_dp
 
+  real(dp), parameter :: gas_margin = 0.1_dp   !! error of the gas cycle over the run's tolerance
   real(dp), parameter :: longest_chatter = 1e-8_dp   !! [s]; a crank that hardly turns has no time scale for its pin
 
 contains
 
   !> Build the scene of a case; with `ideal_joint` its twin without clearance. The case has been validated by its
-  !> reader; errors are names of laws and variants that do not exist.
+  !> reader. Error: the gas cycle cannot be integrated.
   subroutine build_scene(case, ideal_joint, scene, error)
     type(case_t), intent(in) :: case
     logical, intent(in) :: ideal_joint
@@ -38,14 +35,13 @@ contains
     type(ideal_scene_t), allocatable :: ideal
     type(clearance_scene_t), allocatable :: clearance
 
-    if (ideal_joint .or. case%joint%kind == 'ideal') then
+    if (ideal_joint .or. .not. case%has_clearance()) then
       allocate (ideal)
       ideal%refuses_steps = .false.
       call move_alloc(ideal, scene)
     else
       allocate (clearance)
-      call build_joint(case, clearance, error)
-      if (allocated(error)) return
+      call build_joint(case, clearance)
       call move_alloc(clearance, scene)
     end if
     associate (m => case%mechanism)
@@ -57,8 +53,10 @@ contains
     scene%start_speed = case%initial%crank_speed
     scene%span = simulated_time(case)
     call scene%claim()
-    if (case%combustion%is_present) then
-      call build_gas(case, scene%gas, error)
+    if (allocated(case%combustion)) then
+      allocate (scene%gas, source=case%combustion)
+      call scene%gas%prepare(case%mechanism%crank_length, case%mechanism%rod_length, &
+        gas_margin*case%integrator%relative_tolerance, error)
       if (allocated(error)) return
       call scene%set_gas_part(scene%start_angle, scene%start_speed)
       scene%n_events = scene%n_events + n_gas_events
@@ -67,53 +65,35 @@ contains
   end subroutine build_scene
 
   !> The joint's laws, only those that the case asks for.
-  subroutine build_joint(case, scene, error)
+  subroutine build_joint(case, scene)
     type(case_t), intent(in) :: case
     type(clearance_scene_t), intent(inout) :: scene
-    type(error_t), allocatable, intent(out) :: error
+    type(bearing_t) :: bearing
 
     scene%start_eccentricity = case%initial%eccentricity
     scene%start_eccentricity_rate = case%initial%eccentricity_rate
-    associate (joint => case%joint)
-      scene%joint = joint_geometry_t(joint%clearance, joint%bearing_radius, joint%bearing_radius - joint%clearance)
-      if (case%contact%is_present) then
-        call new_contact_law(case%contact, joint%bearing_radius, joint%clearance, scene%contact, error)
-        if (allocated(error)) return
-        scene%n_joint_events = 2
-      end if
-      if (case%friction%is_present) then
-        call new_friction_law(case%friction, scene%friction, error)
-        if (allocated(error)) return
-        if (scene%friction%set_valued) scene%n_joint_events = 3
-      end if
-      if (case%lubrication%is_present) then
-        call new_film_law(case%lubrication, joint%bearing_radius, joint%bearing_length, joint%clearance, &
-          case%integrator%relative_tolerance, scene%film, error, case%mechanism%rod_length)
-        if (allocated(error)) return
-      end if
-      scene%phase = merge(phase_film, phase_free, allocated(scene%film))
-      scene%mode = scene%phase
-      scene%refuses_steps = case%integrator%contact_entry == 'step_rejection' .and. allocated(scene%contact)
-      scene%max_penetration = case%integrator%max_penetration
-    end associate
+    bearing = case%bearing()
+    scene%joint = joint_geometry_t(bearing%clearance, bearing%radius, bearing%pin_radius())
+    if (allocated(case%contact)) then
+      allocate (scene%contact, source=case%contact)
+      call scene%contact%prepare(bearing)
+      scene%n_joint_events = 2
+    end if
+    if (allocated(case%friction)) then
+      allocate (scene%friction, source=case%friction)
+      call scene%friction%prepare()
+      if (scene%friction%set_valued) scene%n_joint_events = 3
+    end if
+    if (allocated(case%film)) then
+      allocate (scene%film, source=case%film)
+      call scene%film%prepare(bearing, case%integrator%relative_tolerance)
+    end if
+    scene%phase = merge(phase_film, phase_free, allocated(scene%film))
+    scene%mode = scene%phase
+    scene%refuses_steps = case%integrator%contact_entry == 'step_rejection' .and. allocated(scene%contact)
+    scene%max_penetration = case%integrator%max_penetration
     scene%n_events = scene%n_joint_events
   end subroutine build_joint
-
-  !> The gas cycle, integrated ten times finer than the run.
-  subroutine build_gas(case, gas, error)
-    type(case_t), intent(in) :: case
-    type(gas_cycle_t), allocatable, intent(out) :: gas
-    type(error_t), allocatable, intent(out) :: error
-    allocate (gas)
-    associate (c => case%combustion)
-      gas%cylinder = new_cylinder(c%bore, case%mechanism%crank_length, case%mechanism%rod_length, c%compression_ratio)
-      gas%release = heat_release_t(c%heat, c%wiebe_efficiency, c%wiebe_form, c%start_deg*degree, c%duration_deg*degree)
-      gas%heat_capacity_ratio = c%heat_capacity_ratio
-      gas%intake_pressure = c%intake_pressure
-      gas%crankcase_pressure = c%crankcase_pressure
-    end associate
-    call new_gas_cycle(gas, 0.1_dp*case%integrator%relative_tolerance, error)
-  end subroutine build_gas
 
   !> Time to simulate [s]: revolutions are counted at the initial crank speed.
   pure real(dp) function simulated_time(case)

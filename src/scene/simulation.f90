@@ -11,7 +11,6 @@ module simulation
   use stop_reason, only: reason, place, interrupted_text, revolution_budget_spent
   use scene_builder, only: build_scene, simulated_time, sample_interval, settings_for
   use columns, only: choose_columns, column_list_t
-  use contact_stiffness, only: valid_impact_speed
   use cycle_watch, only: cycle_watch_t
   use recorder, only: recorder_t, run_figures_t
   use trace_sink, only: trace_sink_t
@@ -53,7 +52,7 @@ contains
     integer :: status
 
     call build_scene(case, ideal_joint, scene, error)
-    if (.not. allocated(error)) call new_method(trim(case%integrator%method), method, error)
+    if (.not. allocated(error)) call new_method(case%integrator%method, method, error)
     if (allocated(error)) return
     recorder%list = list
     recorder%interval = sample_interval(case)
@@ -62,8 +61,7 @@ contains
     recorder%every_step = case%output%every_step
     recorder%max_evaluations_per_revolution = case%integrator%max_evaluations_per_revolution
     recorder%revolution_time = two_pi/scene%speed_scale(recorder%end_time)
-    if (case%contact%is_present) &
-      recorder%validity_limit = valid_impact_speed(case%contact%youngs_modulus, case%contact%density)
+    if (allocated(case%contact)) recorder%validity_limit = case%contact%fastest_impact()
     call move_alloc(sink, recorder%sink)
     if (present(cycles)) then
       call scene%measure_joint()

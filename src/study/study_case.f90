@@ -3,10 +3,12 @@
 module study_case
   use errors, only: error_t, fail, status_case_file
   use case_definition, only: case_t
-  use case_schema, only: real_kind, integer_kind, text_kind, find_group, find_key
+  use parameters, only: real_kind, integer_kind, word_kind, text_kind
+  use case_schema, only: find_group
   use case_values, only: case_values_t
-  use case_file, only: complete_case, choose_variant
-  use case_exchange, only: value_to_case
+  use case_file, only: complete_case
+  use case_text, only: resolved_text
+  use case_loader, only: load_case
   use case_rules, only: check_rules
   use namelist_reader, only: token_t, read_values
   use value_reader, only: read_real, read_integer
@@ -20,12 +22,14 @@ module study_case
     type(case_values_t), private :: values
     integer, allocatable, private :: places(:)       !! of the parameters among the keys
     logical, allocatable, private :: is_number(:)    !! a parameter is one number
-    integer, private :: variant = 0                  !! > 0: place of the film's variant, whose default follows its law, which varies
+    logical, private :: varies_words = .false.       !! a parameter is a word: it may name a law, which has keys of its own
+    type(error_t), allocatable, private :: wrong     !! parameters of the present run's laws that do not fit together
   contains
     procedure :: prepare
     procedure :: put
     procedure :: put_one
     procedure :: check
+    procedure :: resolved
     procedure :: takes_numbers
     procedure :: takes_whole_numbers
   end type study_case_t
@@ -43,7 +47,7 @@ contains
     integer :: i, dot
 
     self%values = values
-    call complete_case(values, path, self%case, error)
+    call complete_case(self%values, path, self%case, error)
     if (allocated(error)) return
     allocate (self%places(size(keys)), self%is_number(size(keys)))
     self%values%values%is_override = .false.   ! to the parameters, all else is the file
@@ -53,6 +57,7 @@ contains
       call values%find(key(:dot - 1), key(dot + 1:), at, self%places(i), error)
       if (allocated(error)) return
       associate (schema => values%keys(self%places(i)))
+        self%varies_words = self%varies_words .or. schema%kind == word_kind
         self%is_number(i) = schema%kind <= integer_kind .and. schema%count == 1
         self%values%is_present(find_group(values%groups, trim(schema%group))) = .true.
         self%values%values(self%places(i))%given(1) = .true.
@@ -60,11 +65,8 @@ contains
       end associate
     end do
     call take_families(self)
-    self%variant = 0
-    if (any(self%places == find_key(values%keys, 'lubrication', 'law'))) &
-      self%variant = find_key(values%keys, 'lubrication', 'variant')
     do i = 1, size(values%keys)   ! of models that the parameters bring in
-      call self%values%check_required(i, error)
+      if (self%values%is_used(i)) call self%values%check_required(i, error)
       if (allocated(error)) return
     end do
   end subroutine prepare
@@ -74,10 +76,9 @@ contains
     class(study_case_t), intent(inout) :: self
     integer :: i
     do i = 1, size(self%places)
-      if (self%values%keys(self%places(i))%family /= '') call self%values%prefer(self%places(i))
-    end do
-    do i = 1, size(self%values%keys)
-      if (self%values%keys(i)%family /= '') call value_to_case(self%values, i, self%case)
+      if (self%values%keys(self%places(i))%family == '') cycle
+      call self%values%prefer(self%places(i))
+      call load_case(self%values, self%case, self%wrong, trim(self%values%keys(self%places(i))%group))
     end do
   end subroutine take_families
 
@@ -124,7 +125,10 @@ contains
       end if
       if (self%is_number(i)) self%values%values(place)%written(1) = text
       if (allocated(wanted)) call fail(error, wanted, status_case_file)
-      if (.not. allocated(error)) call value_to_case(self%values, place, self%case)
+      if (allocated(error)) return
+      !$omp critical (texts)
+      call load_case(self%values, self%case, self%wrong, trim(self%values%keys(place)%group))
+      !$omp end critical (texts)
     end associate
   end subroutine put_one
 
@@ -157,8 +161,6 @@ contains
     class(study_case_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
     integer :: i
-    if (self%variant > 0) call value_to_case(self%values, self%variant, self%case)
-    call choose_variant(self%case)
     do i = 1, size(self%places)
       if (self%values%is_in_range(self%places(i))) cycle
       !$omp critical (texts)
@@ -167,7 +169,16 @@ contains
       if (allocated(error)) return
     end do
     !$omp critical (texts)
-    call check_rules(self%case, self%values, error)
+    if (self%varies_words) call self%values%check(error)
+    if (.not. allocated(error) .and. allocated(self%wrong)) error = self%wrong
+    if (.not. allocated(error)) call check_rules(self%case, self%values, error)
     !$omp end critical (texts)
   end subroutine check
+
+  !> The present case with every default filled in, as the text of a case file.
+  function resolved(self) result(text)
+    class(study_case_t), intent(in) :: self
+    character(len=:), allocatable :: text
+    text = resolved_text(self%values)
+  end function resolved
 end module study_case

@@ -1,7 +1,6 @@
 !> A parameter study as data: a base case, what is varied, and what is wanted of every run.
 module study_definition
   use kinds, only: dp
-  use case_definition, only: word_length
   implicit none
   private
   public :: study_t, parameter_t, text_t
@@ -25,10 +24,10 @@ module study_definition
     character(len=:), allocatable :: title
     character(len=:), allocatable :: case           !! path of the base case
     character(len=:), allocatable :: table          !! path of the table of runs; empty: a design over parameters
-    character(len=word_length) :: design = 'grid'
+    character(len=:), allocatable :: design
     integer :: runs = 0, seed = 0                   !! of a sampled design
     integer :: settle_cycles = 0                    !! revolutions at the start that the statistics leave out
-    character(len=word_length) :: traces = 'none'
+    character(len=:), allocatable :: traces
     logical :: cycles = .false.                     !! the statistics of every revolution too
     real(dp) :: strobe_angle_deg = 0
     character(len=:), allocatable :: strobe_columns !! empty: no strobe

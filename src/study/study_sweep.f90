@@ -6,7 +6,7 @@ module study_sweep
   use version, only: program_version
   use columns, only: column_list_t, choose_columns
   use case_definition, only: case_t
-  use case_file, only: read_case_values, write_resolved
+  use case_file, only: read_case_values
   use case_values, only: case_values_t
   use case_schema, only: find_key
   use accuracy_presets, only: with_preset
@@ -141,7 +141,7 @@ contains
     character(len=16) :: text
     type(checksum_t) :: checksum
     integer :: i, run
-    call checksum%add(program_version//achar(10)//write_resolved(sweep%base%case)//sweep%study%identity)
+    call checksum%add(program_version//achar(10)//sweep%base%resolved()//sweep%study%identity)
     if (sweep%study%table /= '') then
       do i = 1, size(sweep%design%keys)
         call checksum%add(sweep%design%keys(i)//',')

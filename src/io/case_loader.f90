@@ -1,0 +1,114 @@
+!> From the values of a case file to the case: the visitor that sets every parameter, and chooses the laws that the case names.
+module case_loader
+  use kinds, only: dp
+  use errors, only: error_t
+  use parameters, only: parameter_list_t, law_t, key_t, word_kind
+  use case_definition, only: case_t, visit_case
+  use case_schema, only: find_key, find_group, is_listed
+  use case_values, only: case_values_t
+  implicit none
+  private
+  public :: load_case
+
+  type, extends(parameter_list_t) :: loader_t
+    type(case_values_t), pointer :: values => null()
+    character(len=:), allocatable :: only         !! the one group to set; empty: all
+    character(len=:), allocatable :: group_name   !! the present group
+    character(len=:), allocatable :: law_name     !! that the case names in it
+    logical :: is_loading_law = .false.
+    type(error_t), allocatable :: error           !! the first one
+  contains
+    procedure :: visit => load_parameter
+    procedure :: group => load_group
+    procedure :: choice => load_choice
+    procedure :: law => load_law
+    procedure, private :: place_of
+  end type loader_t
+
+contains
+
+  !> Set every parameter of a case, or those of one group. Defaults that depend on the law chosen are put into the values
+  !> too. Errors: parameters of a law that do not fit together.
+  subroutine load_case(values, into, error, only)
+    type(case_values_t), intent(inout), target :: values   !! within their limits
+    type(case_t), intent(inout) :: into
+    type(error_t), allocatable, intent(out) :: error
+    character(len=*), intent(in), optional :: only
+    type(loader_t) :: loader
+    loader%values => values
+    loader%only = ''
+    if (present(only)) loader%only = only
+    call visit_case(into, loader)
+    if (allocated(loader%error)) call move_alloc(loader%error, error)
+  end subroutine load_case
+
+  subroutine load_group(self, name, says, is_model)
+    class(loader_t), intent(inout) :: self
+    character(len=*), intent(in) :: name, says
+    logical, intent(in) :: is_model
+    associate (unused => says, unused_too => is_model)
+    end associate
+    self%group_name = name
+    self%law_name = ''
+    self%sets = self%only == '' .or. self%only == name
+    self%is_present = self%values%is_present(find_group(self%values%groups, name))
+    if (allocated(self%chosen)) deallocate (self%chosen)
+  end subroutine load_group
+
+  subroutine load_choice(self, key, default, says)
+    class(loader_t), intent(inout) :: self
+    character(len=*), intent(in) :: key, default, says
+    associate (unused => default, unused_too => says)
+    end associate
+    if (self%sets) self%law_name = self%values%values(self%place_of(key))%text
+  end subroutine load_choice
+
+  !> The law, if it is the one that the case names.
+  subroutine load_law(self, law)
+    class(loader_t), intent(inout) :: self
+    class(law_t), intent(in) :: law
+    character(len=:), allocatable :: key, wanted
+    integer :: variant
+    if (.not. (self%sets .and. self%is_present)) return
+    if (law%name() /= self%law_name) return
+    variant = self%place_of('variant')
+    if (variant > 0) then
+      if (.not. law%serves(self%values%values(variant)%text)) return
+    end if
+    allocate (self%chosen, source=law)
+    self%is_loading_law = .true.
+    call self%chosen%parameters(self)
+    self%is_loading_law = .false.
+    call self%chosen%conflict(key, wanted)
+    if (key /= '' .and. .not. allocated(self%error)) call self%values%refuse(self%group_name, key, wanted, self%error)
+  end subroutine load_law
+
+  !> Place of a key of the present group in the table; 0 where there is none.
+  pure integer function place_of(self, key)
+    class(loader_t), intent(in) :: self
+    character(len=*), intent(in) :: key
+    place_of = find_key(self%values%keys, self%group_name, key)
+  end function place_of
+
+  !> A word or a text that is not given has the default of the law that asks for it, which goes into the values too.
+  subroutine load_parameter(self, key, reals, whole, switch, text)
+    class(loader_t), intent(inout) :: self
+    type(key_t), intent(in) :: key
+    real(dp), intent(inout), optional :: reals(:)
+    integer, intent(inout), optional :: whole
+    logical, intent(inout), optional :: switch
+    character(len=:), allocatable, intent(inout), optional :: text
+    if (.not. self%sets) return
+    associate (value => self%values%values(self%place_of(trim(key%name))))
+      if (present(reals)) reals = value%reals(:size(reals))
+      if (present(whole)) whole = value%whole
+      if (present(switch)) switch = value%switch
+      if (.not. present(text)) return
+      if (.not. value%given(1) .or. key%kind == word_kind .and. value%text == '') value%text = trim(key%default)
+      text = value%text
+    end associate
+    if (key%kind /= word_kind .or. .not. self%is_loading_law .or. allocated(self%error)) return
+    if (.not. is_listed(text, key%words)) call self%values%refuse(self%group_name, trim(key%name), &
+      'must be one of '//key%words//' for '//self%law_name, self%error)
+  end subroutine load_parameter
+end module case_loader

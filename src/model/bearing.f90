@@ -1,0 +1,24 @@
+!> The journal bearing of a joint with clearance, as far as contact, friction and film laws need it.
+module bearing
+  use kinds, only: dp
+  implicit none
+  private
+  public :: bearing_t
+
+  type :: bearing_t
+    real(dp) :: radius = 0       !! of the bore, R_b [m]
+    real(dp) :: length = 0       !! width of the bearing [m]; 0 where the case gives none
+    real(dp) :: clearance = 0    !! radial, c = R_b - R_j [m]
+    real(dp) :: rod_length = 0   !! of the rod that carries the pin [m]
+  contains
+    procedure :: pin_radius
+  end type bearing_t
+
+contains
+
+  !> Radius of the pin, R_j [m].
+  pure real(dp) function pin_radius(self)
+    class(bearing_t), intent(in) :: self
+    pin_radius = self%radius - self%clearance
+  end function pin_radius
+end module bearing

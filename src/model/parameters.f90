@@ -1,0 +1,220 @@
+!> How a model states its parameters: once, beside the components that hold them.
+!>
+!> A type with parameters has one procedure that hands each of them, with its key, unit, limits, default and meaning, to a
+!> visitor. One visitor collects them for the reader, the template and the messages; another one sets them from the values of
+!> a case. A law is chosen from those that its family registers, by the words that the laws give as their names.
+module parameters
+  use kinds, only: dp
+  implicit none
+  private
+  public :: parameter_list_t, has_parameters_t, law_t, key_t
+  public :: real_kind, integer_kind, logical_kind, word_kind, text_kind
+
+  integer, parameter :: real_kind = 1, integer_kind = 2, logical_kind = 3, word_kind = 4, text_kind = 5
+
+  !> What is known of a parameter. Ranges and words are texts, shown to the user as they stand here; a default is allowed even
+  !> outside its range and then means "not given".
+  type :: key_t
+    character(len=12) :: group = ''          !! of the case file
+    character(len=32) :: name = ''
+    integer :: kind = real_kind
+    integer :: count = 1                     !! values
+    logical :: required = .false.            !! wherever its group is present, or one of its laws is chosen
+    character(len=24) :: default = ''        !! value where it is not given; without quotes; for all of an array
+    character(len=24) :: example = ''        !! value in the template, where the default would not do
+    character(len=12) :: unit = ''
+    character(len=24) :: range = ''          !! '> 0', '>= 0 and <= 1'
+    character(len=:), allocatable :: words   !! allowed words, separated by a comma and a blank
+    character(len=:), allocatable :: choice  !! the key that names the laws which have this one; not allocated: all have
+    character(len=:), allocatable :: laws    !! those laws, separated by a comma and a blank
+    character(len=100) :: description = ''
+    character(len=12) :: family = ''         !! of the keys of its group that say one thing in different ways: one alone may be given
+  end type key_t
+
+  !> A visitor of parameters. A model calls `add`, `word` and `text`; a visitor has to answer `visit`, and whatever else it
+  !> wants to know of.
+  type, abstract :: parameter_list_t
+    class(law_t), allocatable :: chosen   !! the law of the present group that the case names, with its parameters set
+    logical :: sets = .false.             !! this visitor sets the parameters of the present group, and `chosen`
+    logical :: is_present = .false.       !! while it sets them: the case has the present group
+  contains
+    procedure(visit_parameter), deferred :: visit
+    procedure :: group => pass_group
+    procedure :: choice => pass_choice
+    procedure :: law => pass_law
+    procedure, private, non_overridable :: add_real, add_pair, add_integer, add_logical
+    generic :: add => add_real, add_pair, add_integer, add_logical
+    procedure, non_overridable :: word
+    procedure, non_overridable :: text
+  end type parameter_list_t
+
+  type, abstract :: has_parameters_t
+  contains
+    procedure(parameters_of), deferred :: parameters
+  end type has_parameters_t
+
+  !> A law: one of a family of which a case names one.
+  type, abstract, extends(has_parameters_t) :: law_t
+  contains
+    procedure(name_of), deferred, nopass :: name
+    procedure :: serves => serves_every_variant
+    procedure :: conflict => no_conflict
+  end type law_t
+
+  abstract interface
+    !> Hand every parameter to the visitor.
+    subroutine parameters_of(self, list)
+      import :: has_parameters_t, parameter_list_t
+      class(has_parameters_t), intent(inout) :: self
+      class(parameter_list_t), intent(inout) :: list
+    end subroutine parameters_of
+
+    !> The word by which a case names the law.
+    pure function name_of() result(name)
+      character(len=:), allocatable :: name
+    end function name_of
+
+    !> A parameter, and the component that holds it: that of its kind is present.
+    subroutine visit_parameter(self, key, reals, whole, switch, text)
+      import :: parameter_list_t, key_t, dp
+      class(parameter_list_t), intent(inout) :: self
+      type(key_t), intent(in) :: key
+      real(dp), intent(inout), optional :: reals(:)
+      integer, intent(inout), optional :: whole
+      logical, intent(inout), optional :: switch
+      character(len=:), allocatable, intent(inout), optional :: text
+    end subroutine visit_parameter
+  end interface
+
+contains
+
+  !> What follows belongs to this group. A model's group may be left out of a case, and the model is then absent from its scene.
+  subroutine pass_group(self, name, says, is_model)
+    class(parameter_list_t), intent(inout) :: self
+    character(len=*), intent(in) :: name, says
+    logical, intent(in) :: is_model
+    associate (unused => self, unused_name => name, unused_text => says, unused_switch => is_model)
+    end associate
+  end subroutine pass_group
+
+  !> The key of the present group that names a law; the laws follow.
+  subroutine pass_choice(self, key, default, says)
+    class(parameter_list_t), intent(inout) :: self
+    character(len=*), intent(in) :: key, default, says
+    associate (unused => self, unused_key => key, unused_word => default, unused_text => says)
+    end associate
+  end subroutine pass_choice
+
+  !> A law that the last choice offers, with its parameters at any values.
+  subroutine pass_law(self, law)
+    class(parameter_list_t), intent(inout) :: self
+    class(law_t), intent(in) :: law
+    associate (unused => self, unused_law => law)
+    end associate
+  end subroutine pass_law
+
+  !> A number. Without a default it is required.
+  subroutine add_real(self, key, value, says, unit, range, default, example, family)
+    class(parameter_list_t), intent(inout) :: self
+    character(len=*), intent(in) :: key, says                               !! its meaning in a few words
+    real(dp), intent(inout) :: value
+    character(len=*), intent(in), optional :: unit, range, default, example
+    character(len=*), intent(in), optional :: family   !! of keys of which one alone may be given
+    type(key_t) :: new
+    real(dp) :: values(1)
+    values = value
+    new = described(key, real_kind, says, unit, range, default, example)
+    if (present(family)) new%family = family
+    call self%visit(new, reals=values)
+    value = values(1)
+  end subroutine add_real
+
+  !> Two numbers; a default or an example is that of both.
+  subroutine add_pair(self, key, value, says, unit, range, default, example)
+    class(parameter_list_t), intent(inout) :: self
+    character(len=*), intent(in) :: key, says
+    real(dp), intent(inout) :: value(2)
+    character(len=*), intent(in), optional :: unit, range, default, example
+    type(key_t) :: new
+    new = described(key, real_kind, says, unit, range, default, example)
+    new%count = size(value)
+    call self%visit(new, reals=value)
+  end subroutine add_pair
+
+  !> A whole number.
+  subroutine add_integer(self, key, value, says, range, default)
+    class(parameter_list_t), intent(inout) :: self
+    character(len=*), intent(in) :: key, says
+    integer, intent(inout) :: value
+    character(len=*), intent(in), optional :: range, default
+    call self%visit(described(key, integer_kind, says, range=range, default=default), whole=value)
+  end subroutine add_integer
+
+  !> A switch, .true. or .false.
+  subroutine add_logical(self, key, value, says, default)
+    class(parameter_list_t), intent(inout) :: self
+    character(len=*), intent(in) :: key, says, default
+    logical, intent(inout) :: value
+    call self%visit(described(key, logical_kind, says, default=default), switch=value)
+  end subroutine add_logical
+
+  !> One of several words, separated by a comma and a blank.
+  subroutine word(self, key, value, words, default, says, example)
+    class(parameter_list_t), intent(inout) :: self
+    character(len=*), intent(in) :: key, words, default, says
+    character(len=:), allocatable, intent(inout) :: value
+    character(len=*), intent(in), optional :: example
+    type(key_t) :: new
+    new = described(key, word_kind, says, default=default, example=example)
+    new%words = words
+    call self%visit(new, text=value)
+  end subroutine word
+
+  !> Any text; with `many`, several texts are joined by commas.
+  subroutine text(self, key, value, says, default, many)
+    class(parameter_list_t), intent(inout) :: self
+    character(len=*), intent(in) :: key, says, default
+    character(len=:), allocatable, intent(inout) :: value
+    logical, intent(in), optional :: many
+    type(key_t) :: new
+    new = described(key, text_kind, says, default=default)
+    if (present(many)) new%count = merge(1000, 1, many)
+    call self%visit(new, text=value)
+  end subroutine text
+
+  pure function described(name, kind, says, unit, range, default, example) result(key)
+    character(len=*), intent(in) :: name, says
+    integer, intent(in) :: kind
+    character(len=*), intent(in), optional :: unit, range, default, example
+    type(key_t) :: key
+    key%name = name
+    key%kind = kind
+    key%description = says
+    key%required = .not. present(default)
+    if (present(unit)) key%unit = unit
+    if (present(range)) key%range = range
+    if (present(default)) key%default = default
+    if (present(example)) key%example = example
+  end function described
+
+  !> Whether this type is the law of its name in a variant; an empty text means the law's own default. Two types may share a
+  !> name and split its variants. The default is a law without variants.
+  pure logical function serves_every_variant(self, variant)
+    class(law_t), intent(in) :: self
+    character(len=*), intent(in) :: variant
+    associate (unused_self => self, unused_variant => variant)
+    end associate
+    serves_every_variant = .true.
+  end function serves_every_variant
+
+  !> What does not fit between the parameters: the key of the wrong one and what is wanted of it. An empty key means that all is
+  !> well. The default has nothing that could be wrong.
+  pure subroutine no_conflict(self, key, wanted)
+    class(law_t), intent(in) :: self
+    character(len=:), allocatable, intent(out) :: key, wanted
+    associate (unused_self => self)
+    end associate
+    key = ''
+    wanted = ''
+  end subroutine no_conflict
+end module parameters

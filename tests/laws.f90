@@ -1,0 +1,100 @@
+!> Laws for tests, made as a case makes them: read, checked and prepared for a bearing.
+module laws
+  use kinds, only: dp
+  use errors, only: error_t
+  use bearing, only: bearing_t
+  use case_definition, only: case_t
+  use case_file, only: parse_case
+  use contact_law, only: contact_law_t
+  use friction_law, only: friction_law_t
+  use film_law, only: film_law_t
+  use parameters, only: has_parameters_t, parameter_list_t, key_t
+  implicit none
+  private
+  public :: contact_law_of, friction_law_of, film_law_of, parameter_of
+
+  !> Reads one parameter, a number, of a model.
+  type, extends(parameter_list_t) :: look_up_t
+    character(len=:), allocatable :: key
+    real(dp) :: found(2) = huge(1.0_dp)
+  contains
+    procedure :: visit
+  end type look_up_t
+
+  !> Bodies and a run, with a bearing of 10 mm and a clearance of 20 um.
+  character(len=*), parameter :: bodies = '&mechanism crank_length=0.05 crank_mass=1 crank_inertia=1 rod_length=0.2 '// &
+    'rod_mass=1 rod_inertia=1 piston_mass=1 / &initial crank_speed=100 / &integrator revolutions=1 / '// &
+    '&joint kind=''clearance'' clearance=20e-6 bearing_radius=10e-3 bearing_length=15e-3 /'
+
+contains
+
+  !> The contact law of a group &contact with these keys.
+  subroutine contact_law_of(keys, law, error)
+    character(len=*), intent(in) :: keys
+    class(contact_law_t), allocatable, intent(out) :: law
+    type(error_t), allocatable, intent(out) :: error
+    type(case_t) :: case
+    call read_keys('&contact '//keys//' /', case, error)
+    if (allocated(error)) return
+    allocate (law, source=case%contact)
+    call law%prepare(case%bearing())
+  end subroutine contact_law_of
+
+  !> The friction law of a group &friction with these keys.
+  subroutine friction_law_of(keys, law, error)
+    character(len=*), intent(in) :: keys
+    class(friction_law_t), allocatable, intent(out) :: law
+    type(error_t), allocatable, intent(out) :: error
+    type(case_t) :: case
+    call read_keys('&contact / &friction '//keys//' /', case, error)
+    if (allocated(error)) return
+    allocate (law, source=case%friction)
+    call law%prepare()
+  end subroutine friction_law_of
+
+  !> The film of a group &lubrication with these keys.
+  subroutine film_law_of(keys, tolerance, law, error)
+    character(len=*), intent(in) :: keys
+    real(dp), intent(in) :: tolerance   !! relative, of the run
+    class(film_law_t), allocatable, intent(out) :: law
+    type(error_t), allocatable, intent(out) :: error
+    type(case_t) :: case
+    call read_keys('&lubrication '//keys//' /', case, error)
+    if (allocated(error)) return
+    allocate (law, source=case%film)
+    call law%prepare(case%bearing(), tolerance)
+  end subroutine film_law_of
+
+  subroutine read_keys(groups, case, error)
+    character(len=*), intent(in) :: groups
+    type(case_t), intent(out) :: case
+    type(error_t), allocatable, intent(out) :: error
+    character(len=1) :: nothing(0)
+    call parse_case(bodies//groups, 'x.nml', nothing, case, error)
+  end subroutine read_keys
+
+  !> The value of a model's key; huge where it has none of that name.
+  function parameter_of(model, key) result(values)
+    class(has_parameters_t), intent(inout) :: model
+    character(len=*), intent(in) :: key
+    real(dp) :: values(2)
+    type(look_up_t) :: list
+    list%key = key
+    call model%parameters(list)
+    values = list%found
+  end function parameter_of
+
+  subroutine visit(self, key, reals, whole, switch, text)
+    class(look_up_t), intent(inout) :: self
+    type(key_t), intent(in) :: key
+    real(dp), intent(inout), optional :: reals(:)
+    integer, intent(inout), optional :: whole
+    logical, intent(inout), optional :: switch
+    character(len=:), allocatable, intent(inout), optional :: text
+    associate (unused => present(switch) .or. present(text))
+    end associate
+    if (key%name /= self%key) return
+    if (present(reals)) self%found = reals([1, size(reals)])
+    if (present(whole)) self%found = whole
+  end subroutine visit
+end module laws
