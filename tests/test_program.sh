@@ -113,7 +113,7 @@ check "a long run bound by stability says so while it goes" advised -s integrato
 check "once" [ "$(grep -c "needs 1/" "$work/err")" = 1 ]
 check "long before its end" awk -F, '$1 == "simulated_time" { exit !($2 < 60) }' "$work/r/sim_I.summary.csv"   # of 100 s
 run -o "$work/r" -s integrator.revolutions=200 -s output.ideal_twin=F cases/sim_I.nml
-check "a shorter one afterwards, once" [ "$(grep -c "needs 1/[0-9]* of the evaluations$" "$work/err")" = 1 -a "$(wc -l <"$work/err")" = 1 ]
+check "a shorter one, once" [ "$(grep -c "needs 1/[0-9]* of the evaluations" "$work/err")" = 1 -a "$(wc -l <"$work/err")" = 1 ]
 
 # a group taken out, one end of the run for another: the resolved case shows what ran
 run -o "$work/n" -s lubrication=none -s integrator.end_time=1e-3 -s output.ideal_twin=F cases/sim_I.nml

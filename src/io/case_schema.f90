@@ -8,7 +8,7 @@ module case_schema
   use case_definition, only: case_t, visit_case
   implicit none
   private
-  public :: key_t, group_definition_t, case_schema_of, find_key, find_group, is_listed
+  public :: key_t, group_definition_t, case_schema_of, find_key, find_group, is_listed, is_group_of_cases
   public :: real_kind, integer_kind, logical_kind, word_kind, text_kind, shared_keys_differ
 
   !> A group. One that stands for a model may be absent from a case, and so the model from its scene.
@@ -44,6 +44,15 @@ contains
     groups = schema%groups(:schema%n_groups)
     keys = schema%keys(:schema%n_keys)
   end subroutine case_schema_of
+
+  !> Whether case files have a group of this name.
+  logical function is_group_of_cases(name)
+    character(len=*), intent(in) :: name
+    type(group_definition_t), allocatable :: groups(:)
+    type(key_t), allocatable :: keys(:)
+    call case_schema_of(groups, keys)
+    is_group_of_cases = find_group(groups, name) > 0
+  end function is_group_of_cases
 
   !> A key that two laws of a group share but describe differently; empty where there is none.
   function shared_keys_differ() result(key)

@@ -162,7 +162,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     integer :: i
     do i = 1, size(self%places)
-      if (self%values%is_in_range(self%places(i))) cycle
+      if (self%values%is_in_range(self%places(i)) .or. .not. self%values%is_used(self%places(i))) cycle
       !$omp critical (texts)
       call self%values%check_range(self%places(i), error)
       !$omp end critical (texts)

@@ -6,7 +6,7 @@ module study_file
   use posix, only: absolute_path
   use namelist_reader, only: namelist_t, entry_t, token_t, read_namelist
   use case_values, only: case_values_t
-  use case_schema, only: find_key, find_group, schema_groups
+  use case_schema, only: find_key, is_group_of_cases
   use case_text, only: resolved_text, template_text
   use study_schema, only: study_groups, study_keys
   use study_definition, only: study_t, parameter_t, text_t
@@ -78,7 +78,7 @@ contains
         place(i) = n
         groups(n)%is_present(2) = .true.
       case default
-        if (find_group(schema_groups(), list%groups(i)%name) > 0) then
+        if (is_group_of_cases(list%groups(i)%name)) then
           call fail(error, at_line(path, list%groups(i)%line)//'&'//list%groups(i)%name//': a case, not a study: run it with '// &
                     'gudgeon '//groups(1)%file//', without sweep', status_case_file)
         else
