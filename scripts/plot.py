@@ -3,6 +3,7 @@
 
     scripts/plot.py --all                       every figure, as PNG, in results/figures
     scripts/plot.py --figure 6.7 --format pdf   one figure; both options can be repeated
+    scripts/plot.py --figure B.7 --window start appendix B from the pin's release on, as figure_B.07_start
     scripts/plot.py --list                      the figures there are
     scripts/plot.py --compare A.csv B.csv       two traces overlaid, their difference, how long they agree
     scripts/plot.py --readme                    the picture of README.md, data/readme.png
@@ -22,7 +23,7 @@ use_virtual_environment()
 
 from gudgeon_plots import compare, figures, readme_picture  # noqa: E402
 from gudgeon_plots.figure_map import Figure, read_figures  # noqa: E402
-from gudgeon_plots.results import MissingResult, Results  # noqa: E402
+from gudgeon_plots.results import MissingResult, Results, WindowResults  # noqa: E402
 
 
 def arguments() -> argparse.Namespace:
@@ -40,6 +41,13 @@ def arguments() -> argparse.Namespace:
         "--out", type=Path, metavar="DIR", help="pictures (default: figures in the directory of traces)"
     )
     parser.add_argument("--format", action="append", choices=("png", "svg", "pdf"), help="repeatable (default: png)")
+    parser.add_argument(
+        "--window",
+        choices=("settled", "start"),
+        default="settled",
+        help="appendix B: the settled motion, or the cases' own first revolutions, in which the pin drops from the centre "
+        "(default: settled)",
+    )
     parser.add_argument("--no-run", action="store_true", help="say what to run where a result is missing")
     parser.add_argument("--rerun", action="store_true", help="run the cases even where there are results")
     parser.add_argument("--columns", nargs="+", metavar="NAME", help="columns to compare, without units")
@@ -55,11 +63,13 @@ def arguments() -> argparse.Namespace:
 
 def draw_figures(wanted: list[Figure], results: Results, out: Path, formats: list[str]) -> int:
     """Draw figures one after the other; the number of those that could not be drawn."""
-    results.make({name for figure in wanted for name in figure.needs})
+    sources = {figure.window: WindowResults(results, figure.window) if figure.window else results for figure in wanted}
+    for window, source in sources.items():
+        source.make({name for figure in wanted if figure.window == window for name in figure.needs})
     failed = 0
     for figure in wanted:
         try:
-            paths = figures.save(figures.draw(figure, results), out, figure.stem, formats)
+            paths = figures.save(figures.draw(figure, sources[figure.window]), out, figure.stem, formats)
             print(*paths)
         except MissingResult as problem:
             print(f"plot.py: figure {figure.number}: {problem}", file=sys.stderr)
@@ -90,6 +100,8 @@ def main() -> int:
             return 2
         started = time.monotonic()
         wanted = [table[number] for number in options.figure or table]
+        if options.window == "start":
+            wanted = [figure.at_start for figure in wanted]
         failed = draw_figures(wanted, results, out, formats)
         print(f"{len(wanted) - failed} of {len(wanted)} figures in {time.monotonic() - started:.0f} s, in {out}")
         return 1 if failed else 0

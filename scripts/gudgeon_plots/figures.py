@@ -1,17 +1,19 @@
 """Draws the figures of the table."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import matplotlib.pyplot as plt
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
 from .figure_map import Figure
-from .quantities import QUANTITIES, Quantity
+from .quantities import QUANTITIES
+from .quantity import Quantity, colour, label
 from .results import MissingResult, Results, Run
-from .style import BLUE, GREY, VERMILION, WIDTH
+from .style import GREY, WIDTH
 
 WIDE_HEIGHT = 1.75  # of an axis with a curve over time [inch]
 LEGEND_HEIGHT = 0.55  # of title and legend [inch]
@@ -19,64 +21,56 @@ LEGEND_HEIGHT = 0.55  # of title and legend [inch]
 
 @dataclass(frozen=True)
 class Panel:
-    """One axis of a figure: a run, several, or none where its result is missing."""
+    """One axis of a figure: a run, several, or none where its result is missing.
+
+    `kind` is "full", "detail" (the range around the ideal joint) or "difference" (the run less the ideal joint).
+    """
 
     quantity: Quantity
     runs: tuple[Run, ...]
     ideal: Run | None = None
-    detail: bool = False
+    kind: str = "full"
     missing: str = ""
 
 
-def label(run: Run) -> str:
-    """What tells a run from the others of its figure."""
-    law = run.parameter("lubrication", "law")
-    if law == "pinkus_sternlicht" and run.parameter("drive", "kind") != "constant_speed":
-        return "Pinkus–Sternlicht film"
-    if law == "oscillating_film":
-        return "oscillating film"
-    clearance = f"c = {1e3 * run.clearance:.3g} mm"
-    if law:
-        return f"oil of {float(run.parameter('lubrication', 'viscosity')):.3g} Pa s, {clearance}"
-    if "friction" in run.case:
-        return f"friction {float(run.parameter('friction', 'coefficient')):.3g}, {clearance}"
-    return clearance
+def second_look(panel: Panel) -> Panel | None:
+    """What a curve with the ideal joint's overlaid needs beside it: where the run's peaks would flatten the rest, the range
+    around the ideal joint; else the difference, which the line width hides. None where neither helps."""
+    quantity, ideal = panel.quantity, panel.ideal
+    if panel.missing or ideal is None or quantity.values is None:
+        return None
+    if quantity.needs_detail(panel.runs[0], ideal):
+        return replace(panel, kind="detail")
+    return replace(panel, kind="difference") if quantity.wide else None
 
 
-def colour(run: Run) -> str:
-    return VERMILION if run.parameter("lubrication", "law") == "oscillating_film" else BLUE
-
-
-def arrange(figure: Figure, results: Results) -> list[list[Panel]]:
-    """Rows of panels: runs side by side, a detail below where peaks would flatten the rest; three runs over time go one
-    below the other, the detail at their side."""
+def arrange(figure: Figure, results: Results) -> list[list[Panel | None]]:
+    """Rows of panels: runs side by side, a second look at each below; three runs over time go one below the other, the
+    second look at their side. None is an empty place."""
     try:
         ideal = results[figure.ideal] if figure.ideal else None
     except MissingResult:
         ideal = None
-    rows: list[list[Panel]] = []
+    rows: list[list[Panel | None]] = []
     for name in figure.quantities:
         quantity = QUANTITIES[name]
-        full, detail, present = [], [], []
+        full = []
         for run_name in figure.runs:
             try:
-                run = results[run_name]
+                full.append(Panel(quantity, (results[run_name],), ideal))
             except MissingResult:
                 full.append(Panel(quantity, (), missing=run_name))
-                continue
-            present.append(run)
-            full.append(Panel(quantity, (run,), ideal))
-            if quantity.needs_detail(run, ideal):
-                detail.append(Panel(quantity, (run,), ideal, detail=True))
         if quantity.draw_all is not None:
-            rows.append([Panel(quantity, tuple(present))])
+            present = tuple(run for panel in full for run in panel.runs)
+            rows.append([Panel(quantity, present, missing="" if present else " ".join(figure.runs))])
             continue
-        if detail:
-            detail = [Panel(p.quantity, p.runs, p.ideal, True, p.missing) for p in full]
-        if quantity.wide and len(full) > 2:
-            rows += [list(pair) for pair in zip(full, detail)] if detail else [[panel] for panel in full]
+        second = [second_look(panel) for panel in full]
+        if not any(second):
+            rows += [[panel] for panel in full] if quantity.wide and len(full) > 2 else [full]
+        elif quantity.wide and len(full) > 2:
+            rows += [list(pair) for pair in zip(full, second)]
         else:
-            rows += [full, detail] if detail else [full]
+            rows += [full, second]
     if all(len(row) == 1 and not row[0].quantity.wide for row in rows):
         rows = [[panel for row in rows for panel in row]]
     return rows
@@ -91,11 +85,13 @@ def draw_panel(axis: Axes, panel: Panel, named: bool) -> None:
         panel.quantity.draw_all(axis, list(panel.runs))
         return
     run = panel.runs[0]
+    if panel.kind == "difference":
+        panel.quantity.draw_difference(axis, run, panel.ideal, colour(run))
+        return
     panel.quantity.draw(axis, run, panel.ideal, colour(run))
-    if panel.detail:
+    if panel.kind == "detail":
         axis.set_ylim(panel.quantity.detail_range(panel.ideal))
-        cut = panel.quantity.is_cut(run, panel.ideal)
-        axis.set_title("detail, peaks cut off" if cut else "in the detail's range", color=GREY)
+        axis.set_title("detail, peaks cut off", color=GREY)
     elif named:
         note = panel.quantity.note
         axis.set_title(label(run) + (f", {note(run)}" if note else ""), color=colour(run))
@@ -104,24 +100,28 @@ def draw_panel(axis: Axes, panel: Panel, named: bool) -> None:
 def draw(figure: Figure, results: Results) -> Drawing:
     """The figure, ready to be saved. Raises MissingResult if none of its runs is there."""
     rows = arrange(figure, results)
-    if all(panel.missing for row in rows for panel in row):
+    runs = [run for row in rows for panel in row if panel for run in panel.runs]
+    if not runs:
         raise MissingResult(f"no result of {' '.join(figure.runs)}")
     columns = max(len(row) for row in rows)
     plane_height = min(WIDTH / columns, 2.75)
-    heights = [WIDE_HEIGHT if row[0].quantity.wide else plane_height for row in rows]
+    heights = [WIDE_HEIGHT if any(p and p.quantity.wide for p in row) else plane_height for row in rows]
     drawing, axes = plt.subplots(
         len(rows), columns, figsize=(WIDTH, sum(heights) + LEGEND_HEIGHT), squeeze=False, height_ratios=heights
     )
     for row, row_axes in zip(rows, axes):
         for panel, axis in zip(row, row_axes):
-            draw_panel(axis, panel, named=not all(p.quantity.draw_all for p in row))
+            if panel is None:
+                axis.set_axis_off()
+            else:
+                draw_panel(axis, panel, named=not all(p and p.quantity.draw_all for p in row))
         for axis in row_axes[len(row) :]:
             axis.set_axis_off()
         previous = None
         for panel, axis in zip(row, row_axes):
-            if panel.quantity is not previous:
+            if panel and panel.quantity is not previous:
                 axis.set_ylabel(panel.quantity.label)
-            previous = panel.quantity
+                previous = panel.quantity
     for column_axes in axes.T:  # curves over time: numbers below the lowest only
         for upper, lower in zip(column_axes, column_axes[1:]):
             if upper.get_xlabel() == lower.get_xlabel() and lower.get_xlabel().startswith(("time", "crank angle [")):
@@ -129,8 +129,14 @@ def draw(figure: Figure, results: Results) -> Drawing:
                 upper.tick_params(labelbottom=False)
     drawing.align_ylabels(axes[:, 0])
     add_legend(drawing, axes.flat)
-    drawing.suptitle(f"{figure.number}  {figure.title}", fontweight="bold")
+    drawing.suptitle(f"{figure.number}  {figure.title}{span(runs[0]) if figure.has_windows else ''}", fontweight="bold")
     return drawing
+
+
+def span(run: Run) -> str:
+    """What a title says of the revolutions that a trace covers."""
+    first, last = (run["crank_angle"][row] / (2 * np.pi) for row in (0, -1))
+    return f", revolutions {first:.4g} to {last:.4g}"
 
 
 def add_legend(drawing: Drawing, axes: Iterable[Axes]) -> None:

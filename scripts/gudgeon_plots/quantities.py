@@ -1,101 +1,17 @@
 """What a figure can show of a run. A new quantity is a new entry of QUANTITIES."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle
-from matplotlib.ticker import MaxNLocator, MultipleLocator
+from matplotlib.ticker import MaxNLocator
 
+from . import contact_pictures, gas_pictures
+from .quantity import Quantity, abscissa, column, mark_abscissa, series
 from .results import Run
-from .style import BLACK, CYCLE, PURPLE
-
-#: A run's range is called far larger than the ideal joint's from this factor on: the figure then adds a detail.
-FAR_LARGER = 3.0
+from .style import BLACK, GREY, PURPLE
 
 #: Points once a cycle are spread no farther than to this share of the run's range.
 LEAST_SHARE = 1e-5
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """A way to draw runs on an axis.
-
-    `values` gives what is on the vertical axis, for ranges; `draw(axis, run, ideal, colour)` draws one run, or
-    `draw_all(axis, runs)` all of them on one axis. `wide` axes show a curve over time, others a plane.
-    """
-
-    label: str
-    values: Callable[[Run], np.ndarray] | None = None
-    draw: Callable[[Axes, Run, Run | None, str], None] | None = None
-    draw_all: Callable[[Axes, list[Run]], None] | None = None
-    wide: bool = True
-    note: Callable[[Run], str] | None = None  # beside the run's name
-
-    def needs_detail(self, run: Run, ideal: Run | None) -> bool:
-        """Whether the ideal joint's curve would be flattened by the run's peaks."""
-        if ideal is None or self.values is None:
-            return False
-        return np.ptp(self.values(run)) > FAR_LARGER * np.ptp(self.values(ideal)) > 0
-
-    def detail_range(self, ideal: Run) -> tuple[float, float]:
-        """The range of the ideal joint with as much room again on both sides together; above it only, for a size."""
-        low, high = self.values(ideal).min(), self.values(ideal).max()
-        room = high - low
-        return (-0.03 * high, high + room) if low >= 0 else (low - 0.5 * room, high + 0.5 * room)
-
-    def is_cut(self, run: Run, ideal: Run) -> bool:
-        """Whether the detail leaves part of the run out."""
-        low, high = self.detail_range(ideal)
-        return bool(self.values(run).min() < low or self.values(run).max() > high)
-
-
-def held_speed(run: Run) -> bool:
-    return run.parameter("drive", "kind") == "constant_speed"
-
-
-def abscissa(run: Run) -> tuple[np.ndarray, str]:
-    """Crank angle in degrees where the speed is held, else time in milliseconds."""
-    if held_speed(run):
-        return np.degrees(run["crank_angle"]), "crank angle [deg]"
-    return 1e3 * run["time"], "time [ms]"
-
-
-def mark_abscissa(axis: Axes, run: Run) -> None:
-    """Name and range of time or crank angle; angles are numbered in quarter, half or whole turns."""
-    x, name = abscissa(run)
-    axis.set_xlabel(name)
-    axis.set_xlim(x[0], x[-1])
-    if held_speed(run):
-        step = 90.0
-        while np.ptp(x) > 6 * step:
-            step *= 2
-        axis.xaxis.set_major_locator(MultipleLocator(step))
-
-
-def ideal_line(axis: Axes, x: np.ndarray, y: np.ndarray) -> None:
-    axis.plot(x, y, color=BLACK, linestyle=(0, (4, 2)), linewidth=0.7, label="ideal joint")
-
-
-def series(
-    label: str, values: Callable[[Run], np.ndarray], extra: Callable[[Axes, Run], None] | None = None
-) -> Quantity:
-    """A curve over time or crank angle, the ideal joint overlaid."""
-
-    def draw(axis: Axes, run: Run, ideal: Run | None, colour: str) -> None:
-        axis.plot(abscissa(run)[0], values(run), color=colour)
-        if ideal is not None:
-            ideal_line(axis, abscissa(ideal)[0], values(ideal))
-        if extra is not None:
-            extra(axis, run)
-        mark_abscissa(axis, run)
-
-    return Quantity(label, values, draw)
-
-
-def column(name: str, factor: float = 1.0) -> Callable[[Run], np.ndarray]:
-    return lambda run: factor * run[name]
 
 
 def pin_force(run: Run) -> np.ndarray:
@@ -106,17 +22,14 @@ def pin_force(run: Run) -> np.ndarray:
 def contact_peaks(axis: Axes, run: Run) -> None:
     """The largest force of each contact, from begin to end: what the samples of the trace miss."""
     contacts = run.contacts
+    contacts = contacts[contacts["end"] >= run["time"][0]]
     if contacts.empty:
         return
-    scale = 1e3 if not held_speed(run) else 1.0
-    begin, end = contacts["begin"], contacts["end"]
-    if held_speed(run):
-        speed = np.degrees(run["crank_speed"][0])
-        begin, end = speed * begin + np.degrees(run["crank_angle"][0]), speed * end + np.degrees(run["crank_angle"][0])
+    begin, end = (np.interp(contacts[edge], run["time"], abscissa(run)[0]) for edge in ("begin", "end"))
     force = 1e-3 * contacts["force"]
-    axis.hlines(force, scale * begin, scale * end, color=PURPLE, linewidth=0.9)
+    axis.hlines(force, begin, end, color=PURPLE, linewidth=0.9)
     axis.plot(
-        0.5 * scale * (begin + end),
+        0.5 * (begin + end),
         force,
         ".",
         color=PURPLE,
@@ -126,21 +39,27 @@ def contact_peaks(axis: Axes, run: Run) -> None:
 
 
 def film_thickness(axis: Axes, run: Run, _ideal: Run | None, colour: str) -> None:
+    """Film thickness, logarithmic where the film stays open; where the pin touches, logarithmic to both sides of a linear
+    stretch around 0."""
     x, _ = abscissa(run)
     h = 1e6 * run["film_thickness"]
     axis.plot(x, h, color=colour)
-    axis.axhline(0, color=BLACK, linewidth=0.7)
-    if h.min() < 0:
-        axis.fill_between(x, h, 0, where=h < 0, color=PURPLE, alpha=0.5, linewidth=0, label="penetration")
+    if h.min() > 0:
+        axis.set_yscale("log")
+        axis.yaxis.set_major_formatter("{x:g}")
+        axis.yaxis.set_minor_formatter(lambda value, _: f"{value:g}" if f"{value:.0e}"[0] in "25" else "")
     else:
-        axis.set_ylim(bottom=-0.03 * h.max())
+        axis.set_yscale("symlog", linthresh=1.0)
+        axis.yaxis.set_major_formatter("{x:g}")
+        axis.axhline(0, color=BLACK, linewidth=0.7)
+        axis.fill_between(x, h, 0, where=h < 0, color=PURPLE, alpha=0.5, linewidth=0, label="penetration")
     mark_abscissa(axis, run)
 
 
 def least_film(run: Run) -> str:
-    """The run's least film thickness, of all steps where the summary tells it."""
-    least = float(run.summary.get("min_film_thickness", (run["film_thickness"].min(), ""))[0])
-    return f"least {1e6 * least:.3g} µm".replace("-", "−")
+    """The run's least film thickness or deepest penetration, of all steps where the summary tells it."""
+    least = 1e6 * float(run.summary.get("min_film_thickness", (run["film_thickness"].min(), ""))[0])
+    return f"film at least {least:.3g} µm" if least >= 0 else f"penetration up to {-least:.3g} µm"
 
 
 def pin_orbit(axis: Axes, run: Run, _ideal: Run | None, colour: str) -> None:
@@ -154,7 +73,7 @@ def pin_orbit(axis: Axes, run: Run, _ideal: Run | None, colour: str) -> None:
     axis.plot(np.where(near & outside, np.nan, y), np.where(near & outside, np.nan, x), color=colour, linewidth=0.6)
     if outside.any():
         axis.plot(np.where(near, y, np.nan), np.where(near, x, np.nan), color=PURPLE, linewidth=0.6, label="in contact")
-    axis.plot(y[0], x[0], "o", color=BLACK, markersize=3, markerfacecolor="white", zorder=4, label="start")
+    axis.plot(y[0], x[0], "o", color=BLACK, markersize=3, markerfacecolor="white", zorder=4, label="beginning")
     reach = 1.05 * max(1.0, np.hypot(x, y).max())
     axis.set_xlim(-reach, reach)
     axis.set_ylim(-reach, reach)
@@ -163,10 +82,17 @@ def pin_orbit(axis: Axes, run: Run, _ideal: Run | None, colour: str) -> None:
 
 
 def portrait(axis: Axes, run: Run, ideal: Run | None, colour: str) -> None:
-    axis.plot(run["piston_velocity"], 1e-3 * run["piston_acceleration"], color=colour, linewidth=0.6)
+    """Piston acceleration over velocity. The ideal joint's is broad and lies below: over several cycles dashes fill up."""
     if ideal is not None:
-        last = ideal["crank_angle"] >= ideal["crank_angle"][-1] - ideal.cycle  # one turn, or the dashes fill up
-        ideal_line(axis, ideal["piston_velocity"][last], 1e-3 * ideal["piston_acceleration"][last])
+        axis.plot(
+            ideal["piston_velocity"],
+            1e-3 * ideal["piston_acceleration"],
+            color=GREY,
+            linewidth=2.2,
+            alpha=0.5,
+            label="ideal joint",
+        )
+    axis.plot(run["piston_velocity"], 1e-3 * run["piston_acceleration"], color=colour, linewidth=0.6)
     axis.set_xlabel("piston velocity [m/s]")
     axis.margins(x=0.05)
 
@@ -213,62 +139,6 @@ def widened(bounds: tuple[float, float], least: float) -> tuple[float, float]:
     return middle - half, middle + half
 
 
-def indicator(axis: Axes, run: Run, _ideal: Run | None, colour: str) -> None:
-    axis.plot(1e6 * run["cylinder_volume"], 1e-5 * run["cylinder_pressure"], color=colour, linewidth=0.6)
-    axis.set_xlabel("volume [cm³]")
-    axis.set_xlim(left=0)
-    axis.set_ylim(bottom=0)
-
-
-def gas_force(axis: Axes, run: Run, _ideal: Run | None, colour: str) -> None:
-    angle, force = fold(np.degrees(run["crank_angle"]), 1e-3 * run["gas_force"], 720.0)
-    axis.plot(angle, force, color=colour, linewidth=0.6)
-    axis.set_xlabel("crank angle in the cycle [deg]")
-    axis.set_xlim(0, 720)
-    axis.xaxis.set_major_locator(MultipleLocator(180))
-    axis.set_ylim(bottom=min(0.0, force[np.isfinite(force)].min()))
-
-
-def fold(angle: np.ndarray, values: np.ndarray, period: float) -> tuple[np.ndarray, np.ndarray]:
-    """Angles modulo a period, with a gap where a new period begins."""
-    folded = angle % period
-    breaks = np.flatnonzero(np.diff(folded) < 0) + 1
-    return np.insert(folded, breaks, np.nan), np.insert(values, breaks, np.nan)
-
-
-def _release(run: Run) -> str:
-    return f"heat from {float(run.parameter('combustion', 'start_deg')) - 360:+.0f}°".replace("-", "−").replace(
-        "+0", "0"
-    )
-
-
-def wiebe_pressure(axis: Axes, runs: list[Run]) -> None:
-    for run, colour in zip(runs, CYCLE):
-        axis.plot(
-            np.degrees(run["crank_angle"]) - 360,
-            run["cylinder_pressure"] / run["cylinder_pressure"][0],
-            color=colour,
-            label=_release(run),
-        )
-    axis.set_xlabel("crank angle from firing dead centre [deg]")
-    axis.set_xlim(-180, 180)
-    axis.xaxis.set_major_locator(MultipleLocator(60))
-    axis.set_ylim(bottom=0)
-
-
-def wiebe_indicator(axis: Axes, runs: list[Run]) -> None:
-    for run, colour in zip(runs, CYCLE):
-        axis.plot(
-            run["cylinder_volume"] / run["cylinder_volume"].max(),
-            run["cylinder_pressure"] / run["cylinder_pressure"][0],
-            color=colour,
-            label=_release(run),
-        )
-    axis.set_xlabel(r"volume $V/V_1$")
-    axis.set_xlim(left=0)
-    axis.set_ylim(bottom=0)
-
-
 QUANTITIES: dict[str, Quantity] = {
     "crank_speed": series("crank speed [rad/s]", column("crank_speed")),
     "crank_acceleration": series("crank acceleration\n[10³ rad/s²]", column("crank_acceleration", 1e-3)),
@@ -281,8 +151,17 @@ QUANTITIES: dict[str, Quantity] = {
     "pin_orbit": Quantity(r"$e_x/c$", None, pin_orbit, wide=False),
     "portrait": Quantity("piston acceleration\n[10³ m/s²]", column("piston_acceleration", 1e-3), portrait, wide=False),
     "section": Quantity("once a cycle, $q=0$:\npiston acceleration [10³ m/s²]", None, section, wide=False),
-    "indicator": Quantity("pressure [bar]", None, indicator, wide=False),
-    "gas_force": Quantity("gas force [kN]", None, gas_force, wide=False),
-    "wiebe_pressure": Quantity(r"pressure $p/p_1$", draw_all=wiebe_pressure, wide=False),
-    "wiebe_indicator": Quantity(r"pressure $p/p_1$", draw_all=wiebe_indicator, wide=False),
+    "indicator": Quantity("pressure [bar]", draw_all=gas_pictures.each(gas_pictures.indicator), wide=False),
+    "gas_force": Quantity("gas force [kN]", draw_all=gas_pictures.each(gas_pictures.gas_force), wide=False),
+    "cylinder_pressure": Quantity(
+        "pressure [bar]", draw_all=gas_pictures.each(gas_pictures.cylinder_pressure), wide=False
+    ),
+    "contact_loop": Quantity("normal force [N]", draw_all=contact_pictures.contact_loop, wide=False),
+    "penetration_speed": Quantity(
+        "penetration speed [mm/s]", draw_all=contact_pictures.penetration_speed, wide=False
+    ),
+    "penetration_portrait": Quantity(
+        "penetration speed [mm/s]", draw_all=contact_pictures.penetration_portrait, wide=False
+    ),
+    "friction": Quantity("friction force [N]", None, contact_pictures.friction, wide=False),
 }

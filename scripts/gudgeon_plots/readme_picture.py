@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, FancyBboxPatch, Polygon
 
-from .quantities import ideal_line
+from .quantity import ideal_line
 from .results import Results, Run
 from .style import BLACK, BLUE, GREY, VERMILION
 

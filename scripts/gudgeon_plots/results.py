@@ -167,23 +167,24 @@ class Results:
     def path(self, name: str) -> Path:
         return self.directory / f"{name}.csv"
 
+    def settings(self, names: Iterable[str]) -> list[str]:
+        """What runs of these cases are made with: their own values."""
+        return []
+
     def make(self, names: Iterable[str]) -> None:
         """Run the cases among `names` (a twin's name stands for its case) that have no result."""
-        wanted = {name.removesuffix(".ideal") for name in names}
-        if not self.rerun:
-            wanted = {name.removesuffix(".ideal") for name in names if not self.path(name).exists()}
+        wanted = {name.removesuffix(".ideal") for name in names if self.rerun or not self.path(name).exists()}
         if not wanted:
             return
         if unknown := wanted - self.files.keys():
             raise MissingResult(f"no such case: {' '.join(sorted(unknown))}")
         paths = [os.path.relpath(self.files[name], TOP) for name in sorted(wanted)]
-        command = ["scripts/run_cases.sh", "-o", str(self.directory.resolve()), *paths]
+        settings = [word for setting in self.settings(wanted) for word in ("--set", setting)]
+        command = ["scripts/run_cases.sh", "-o", str(self.directory.resolve()), *settings, *paths]
         if not self.run_missing:
             raise MissingResult(f"no result in {self.directory}; run: {' '.join(command)}")
         print(f"running {' '.join(sorted(wanted))}", file=sys.stderr, flush=True)
-        outcome = subprocess.run(
-            command, cwd=TOP, capture_output=True, text=True, check=False
-        )
+        outcome = subprocess.run(command, cwd=TOP, capture_output=True, text=True, check=False)
         if outcome.returncode != 0:
             print(outcome.stderr, file=sys.stderr, end="")
 
@@ -193,3 +194,30 @@ class Results:
                 raise MissingResult(f"no result {self.path(name)}")
             self._runs[name] = load_run(self.path(name))
         return self._runs[name]
+
+
+class WindowResults(Results):
+    """The same cases run on, so that a window of later revolutions can be shown: traces of that window alone, in a folder
+    of their own below the cases' own results."""
+
+    #: Rows in a revolution: a contact of a millisecond's hundredth still has several.
+    SAMPLES = 3600
+
+    def __init__(self, own: Results, window: tuple[int, int]) -> None:
+        super().__init__(own.directory / f"revolutions_{window[0]}-{window[1]}", own.run_missing, own.rerun)
+        self.files = own.files
+        self.own = own
+        self.window = window
+
+    def settings(self, names: Iterable[str]) -> list[str]:
+        """Raises MissingResult where the cases' speeds differ, which makes the window's time a different one for each."""
+        self.own.make(names)
+        speeds = {abs(float(self.own[name].parameter("initial", "crank_speed"))) for name in names}
+        if len(speeds) != 1:
+            raise MissingResult(f"{' '.join(sorted(names))}: cases of different speeds have no common window")
+        begin = 2 * np.pi * self.window[0] / speeds.pop()
+        return [
+            f"integrator.revolutions={self.window[1]}",
+            f"output.start_time={begin:.12g}",
+            f"output.samples_per_revolution={self.SAMPLES}",
+        ]
