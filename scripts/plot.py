@@ -85,7 +85,8 @@ def main() -> int:
     table = read_figures()
     if options.list:
         for figure in table.values():
-            print(f"{figure.number:5} {figure.title}  ({' '.join(figure.runs)})")
+            window = f", revolutions {figure.window[0]} to {figure.window[1]}" if figure.window else ""
+            print(f"{figure.number:5} {figure.title}{window}  ({' '.join(figure.runs)})")
         return 0
     try:
         if options.compare:

@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """Tests of the figures' table, comparisons, film pressures and trade-off of scripts/gudgeon_plots.
 
-    .venv/bin/python tests/test_plots.py        (after scripts/setup.sh --python; needs no build)
+    .venv/bin/python tests/test_plots.py        (after scripts/setup.sh --python; runs the contact and Flores cases)
 
 Ends with the line "N passed, N failed".
 """
 
+import contextlib
+import io
 import sys
 import tempfile
 import unittest
@@ -25,7 +27,15 @@ import pandas as pd  # noqa: E402
 from gudgeon_plots import compare, figures, film_pressure, report_page, tradeoff  # noqa: E402
 from gudgeon_plots.figure_map import read_figures  # noqa: E402
 from gudgeon_plots.quantities import QUANTITIES, once_a_cycle  # noqa: E402
-from gudgeon_plots.results import MissingResult, Results, Run, case_files, load_run, read_case  # noqa: E402
+from gudgeon_plots.results import (  # noqa: E402
+    MissingResult,
+    Results,
+    Run,
+    WindowResults,
+    case_files,
+    load_run,
+    read_case,
+)
 
 
 def run(columns: dict, case: dict | None = None, events: dict | None = None) -> Run:
@@ -40,13 +50,114 @@ def run(columns: dict, case: dict | None = None, events: dict | None = None) -> 
     )
 
 
+#: The print's figures of chapter 6: simulation, its first number, its quantities in the print's order.
+UNFIRED = "crank_speed crank_acceleration rod_acceleration piston_acceleration"
+CHAPTER_6 = (
+    ("I", 1, f"{UNFIRED} pin_orbit film_thickness portrait pin_force"),
+    ("II", 9, f"{UNFIRED} pin_orbit film_thickness portrait pin_force"),
+    ("III", 17, f"{UNFIRED} film_thickness pin_orbit portrait pin_force"),
+    ("IV", 25, f"indicator {UNFIRED} film_thickness pin_orbit portrait pin_force"),
+    ("V", 34, f"indicator {UNFIRED} film_thickness pin_orbit portrait pin_force"),
+    ("VI", 43, f"indicator {UNFIRED} film_thickness pin_orbit portrait pin_force"),
+)
+
+#: The other figures of the print that show results: number, first quantity, cases.
+OTHERS = """
+    4.1 contact_loop spheres_hertz
+    4.2 contact_loop spheres_hertz spheres_lankarani
+    4.3 penetration_speed spheres_hertz spheres_lankarani
+    4.4 friction sliding_coulomb
+    4.5 friction sliding_ambrosio
+    A.2 indicator wiebe_340
+    B.2 piston_velocity dry_0500um
+    B.3 piston_acceleration dry_0500um
+    B.4 crank_moment dry_0500um dry_0100um dry_0010um
+    B.5 pin_orbit dry_0500um dry_0100um dry_0010um
+    B.6 portrait dry_0500um dry_0100um dry_0010um
+    B.7 crank_moment friction_010
+    B.8 crank_moment friction_050
+    B.9 crank_moment friction_100
+    B.10 pin_orbit friction_010
+    B.11 pin_orbit friction_050
+    B.12 pin_orbit friction_100
+    B.13 portrait friction_010
+    B.14 portrait friction_050
+    B.15 portrait friction_100
+    B.16 piston_velocity lubricated_400cP
+    B.17 piston_acceleration lubricated_400cP
+    B.18 crank_moment lubricated_400cP
+    B.19 pin_orbit lubricated_400cP
+    B.20 portrait lubricated_400cP
+    B.21 pin_force lubricated_400cP
+"""
+
+#: What a title calls a quantity.
+TITLES = {
+    "crank_speed": "crank speed",
+    "crank_acceleration": "crank angular acceleration",
+    "rod_acceleration": "rod angular acceleration",
+    "piston_velocity": "piston velocity",
+    "piston_acceleration": "piston acceleration",
+    "crank_moment": "crank moment",
+    "pin_force": "pin reaction",
+    "film_thickness": "minimum film thickness",
+    "pin_orbit": "pin orbit",
+    "portrait": "Poincaré map",
+    "indicator": "p–V diagram",
+}
+
+
+def printed_figures() -> dict[str, tuple[str, tuple[str, ...]]]:
+    """Number -> first quantity and cases, as the print has them."""
+    found = {}
+    for number, quantity, *cases in (line.split() for line in OTHERS.strip().splitlines()):
+        found[number] = (quantity, tuple(cases))
+    for simulation, first, quantities in CHAPTER_6:
+        for count, quantity in enumerate(quantities.split(), first):
+            found[f"6.{count}"] = (quantity, (f"sim_{simulation}", f"sim_{simulation}_oscillating"))
+    return found
+
+
 class FigureMap(unittest.TestCase):
     def setUp(self) -> None:
         self.figures = read_figures()
 
-    def test_every_figure_is_there(self) -> None:
-        wanted = [f"6.{n}" for n in range(1, 52)] + ["A.2"] + [f"B.{n}" for n in range(2, 22)]
-        self.assertEqual(list(self.figures), wanted)
+    def test_every_figure_shows_what_the_print_has_under_its_number(self) -> None:
+        printed = printed_figures()
+        self.assertEqual(len(printed), 5 + 51 + 1 + 20)
+        self.assertEqual(set(self.figures), set(printed))
+        for number, figure in self.figures.items():
+            with self.subTest(number):
+                quantity, cases = printed[number]
+                self.assertEqual((figure.quantities[0], figure.runs), (quantity, cases))
+                if number[0] in "6B":
+                    self.assertIn(TITLES[quantity], figure.title)
+                if number[0] == "6":
+                    self.assertIn(f"Simulation {cases[0].removeprefix('sim_')}:", figure.title)
+
+    def test_two_panels_of_the_print(self) -> None:
+        for number, second in (
+            ("4.3", "penetration_portrait"),
+            ("6.25", "gas_force"),
+            ("6.34", "gas_force"),
+            ("6.43", "gas_force"),
+            ("A.2", "cylinder_pressure"),
+        ):
+            self.assertEqual(self.figures[number].quantities[1], second, number)
+
+    def test_curves_and_maps_have_their_ideal_joint(self) -> None:
+        for number, figure in self.figures.items():
+            plain = {"pin_orbit", "film_thickness", "indicator"} & set(figure.quantities) or number[0] in "4A"
+            ideal = "ideal" if number[0] == "B" else f"{figure.runs[0]}.ideal"
+            self.assertEqual(figure.ideal, "" if plain else ideal, number)
+
+    def test_appendix_b_shares_one_settled_window(self) -> None:
+        for number, figure in self.figures.items():
+            self.assertEqual(figure.window, (10, 12) if number[0] == "B" else None, number)
+            self.assertIsNone(figure.at_start.window)
+        self.assertEqual(self.figures["B.7"].stem, "figure_B.07")
+        self.assertEqual(self.figures["B.7"].at_start.stem, "figure_B.07_start")
+        self.assertEqual(self.figures["6.7"].at_start.stem, "figure_6.07")
 
     def test_quantities_and_cases_exist(self) -> None:
         cases = case_files()
@@ -68,8 +179,15 @@ class FigureMap(unittest.TestCase):
         self.assertEqual({name for figure in self.figures.values() for name in figure.quantities}, set(QUANTITIES))
 
     def test_wrong_tables_are_refused(self) -> None:
-        head = "number,quantities,runs,ideal,title\n"
-        for rows in ("6.1,a,b,,c\n6.1,a,b,,d\n", "6.01,a,b,,c\n", "six,a,b,,c\n"):
+        head = "number,quantities,runs,ideal,window,title\n"
+        rows_of = (
+            "6.1,a,b,,,c\n6.1,a,b,,,d\n",
+            "6.01,a,b,,,c\n",
+            "six,a,b,,,c\n",
+            "6.1,a,b,,12-10,c\n",
+            "6.1,a,b,,5,c\n",
+        )
+        for rows in rows_of:
             with tempfile.TemporaryDirectory() as work, self.assertRaises(ValueError):
                 path = Path(work) / "figures.csv"
                 path.write_text(head + rows, encoding="utf-8")
@@ -295,7 +413,7 @@ class Drawing(unittest.TestCase):
             "6.6",
             "6.7",
             "6.8",
-            "6.33",
+            "6.25",
             "A.2",
             "B.3",
             "B.5",
@@ -327,11 +445,204 @@ class Drawing(unittest.TestCase):
 
     def test_details_show_the_ideal_joint(self) -> None:
         table, results = read_figures(), MadeResults()
-        self.assertEqual([len(row) for row in figures.arrange(table["6.1"], results)], [2])  # same range
-        rows = figures.arrange(table["6.4"], results)
-        self.assertEqual([[panel.detail for panel in row] for row in rows], [[False, False], [True, True]])
-        rows = figures.arrange(table["B.3"], results)
-        self.assertEqual([[panel.detail for panel in row] for row in rows], [[False, True]] * 3)
+
+        def kinds(number: str) -> list:
+            return [[panel.kind for panel in row] for row in figures.arrange(table[number], results)]
+
+        self.assertEqual(kinds("6.1"), [["full", "full"], ["difference", "difference"]])  # same range
+        self.assertEqual(kinds("6.4"), [["full", "full"], ["detail", "detail"]])
+        self.assertEqual(kinds("B.3"), [["full"], ["detail"]])
+        self.assertEqual(kinds("B.4"), [["full", "detail"]] * 3)
+        self.assertEqual(kinds("6.7"), [["full", "full"], ["detail", "detail"], ["full", "full"]])
+
+    def test_the_difference_to_the_ideal_joint_is_that_at_the_same_time(self) -> None:
+        time = np.linspace(0, 1, 401)
+        columns = {"time": time, "crank_angle": time, "crank_speed": 3 * time + np.where(time < 0.01, 50, 0)}
+        ideal = run({"time": [0, 0.5, 1], "crank_speed": [0, 1, 2]})
+        drawing, axes = plt.subplots()
+        QUANTITIES["crank_speed"].draw_difference(axes, run(columns), ideal, "black")
+        np.testing.assert_allclose(axes.lines[1].get_ydata()[200:], time[200:])
+        self.assertLess(axes.get_ylim()[1], 2)  # the start does not set the range
+        self.assertIn("start cut off", axes.get_title())
+        plt.close(drawing)
+
+    def test_titles_say_the_revolutions(self) -> None:
+        figure = read_figures()["B.7"]
+        drawing = figures.draw(figure, MadeResults())
+        self.assertIn("revolutions 0 to 8", drawing._suptitle.get_text())
+        plt.close(drawing)
+
+    def test_portraits_show_the_ideal_joint_over_the_whole_run(self) -> None:
+        drawing = figures.draw(read_figures()["6.32"], MadeResults())
+        lines = {line.get_label(): line for line in drawing.axes[0].lines}
+        self.assertEqual(len(lines["ideal joint"].get_xdata()), 2001)
+        plt.close(drawing)
+
+    def test_gas_figures_show_both_films(self) -> None:
+        drawing = figures.draw(read_figures()["6.25"], MadeResults())
+        self.assertEqual([len(axes.lines) for axes in drawing.axes], [2, 2])
+        self.assertEqual(len(drawing.legends[0].get_texts()), 2)
+        plt.close(drawing)
+
+
+class FromRuns(unittest.TestCase):
+    """What figures 4.1 to 4.5 and those of appendix B show, by the numbers of their runs."""
+
+    MASS, SPEED = 0.01644, 0.05  # reduced, of the two spheres [kg]; of approach [m/s]
+    RESTITUTION = 0.913176677806  # solution of chi (1 + e) = ln[(1 + chi)/(1 - chi e)], chi = 3 (1 - 0.9^2)/4
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.work = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.work.cleanup)
+        cls.figures = read_figures()
+        cls.own = Results(Path(cls.work.name))
+        cls.settled = WindowResults(cls.own, (10, 12))
+        contact = {name for number, figure in cls.figures.items() if number[0] == "4" for name in figure.runs}
+        flores = {name for number, figure in cls.figures.items() if number[0] == "B" for name in figure.needs}
+        with contextlib.redirect_stderr(io.StringIO()):
+            cls.own.make(contact | flores)
+            cls.settled.make(flores)
+
+    def drawn(self, number: str) -> plt.Figure:
+        """Figure 4.x, its texts tested."""
+        drawing = figures.draw(self.figures[number], self.own)
+        self.addCleanup(plt.close, drawing)
+        self.assertEqual(overlaps(drawing), [], number)
+        return drawing
+
+    def lines(self, number: str) -> dict[str, np.ndarray]:
+        """Its curves by the legend's names."""
+        return {line.get_label(): line.get_xydata().T for axes in self.drawn(number).axes for line in axes.lines}
+
+    def work_of(self, curve: np.ndarray) -> float:
+        """Integral of the force over the penetration, from um to J."""
+        return float(1e-6 * np.trapezoid(curve[1], curve[0]))
+
+    def test_hertz_gives_back_what_it_took(self) -> None:
+        lines = self.lines("4.1")
+        loading, unloading = lines["Hertz, loading"], lines["Hertz, unloading"]
+        energy = self.MASS * self.SPEED**2 / 2
+        self.assertAlmostEqual(self.work_of(loading) / energy, 1, places=3)
+        self.assertAlmostEqual(self.work_of(unloading) / energy, -1, places=3)
+        back = np.interp(loading[0], unloading[0][::-1], unloading[1][::-1])
+        self.assertLess(np.abs(back - loading[1]).max(), 2e-3 * loading[1].max())
+
+    def test_lankarani_nikravesh_loses_what_the_restitution_says(self) -> None:
+        lines = self.lines("4.2")
+        loading, unloading = lines["Lankarani–Nikravesh, loading"], lines["Lankarani–Nikravesh, unloading"]
+        energy = self.MASS * self.SPEED**2 / 2
+        loop = self.work_of(loading) + self.work_of(unloading)
+        self.assertAlmostEqual(loop / energy, 1 - self.RESTITUTION**2, places=3)
+        elastic, depth = lines["Hertz, loading"], np.linspace(0.2, 1.6, 15)
+        above, below = np.interp(depth, *loading), np.interp(depth, *unloading[:, ::-1])
+        self.assertTrue(np.all(above > 1.02 * np.interp(depth, *elastic)))
+        self.assertTrue(np.all(below < 0.98 * np.interp(depth, *elastic)))
+
+    def test_speeds_of_separation(self) -> None:
+        over_time, over_depth = self.drawn("4.3").axes
+        for axes in (over_time, over_depth):
+            hertz, lossy = axes.lines[0].get_xydata(), axes.lines[1].get_xydata()
+            for curve, ratio in ((hertz, 1), (lossy, self.RESTITUTION)):
+                self.assertAlmostEqual(curve[0, 1] / 50, 1, places=3)  # mm/s
+                self.assertAlmostEqual(curve[-1, 1] / 50, -ratio, places=3)
+                self.assertTrue(np.all(np.diff(curve[:, 1]) < 0))
+        self.assertTrue(np.all(np.diff(over_time.lines[0].get_xdata()) > 0))
+        names = [text.get_text() for text in over_time.figure.legends[0].get_texts()]
+        self.assertIn("1.0000", names[0])
+        self.assertIn("0.9132", names[1])
+
+    def friction_ratio(self, number: str) -> tuple[np.ndarray, np.ndarray]:
+        """Sliding speed [mm/s] and friction force over the full friction, as drawn, slowest first."""
+        (name,) = self.figures[number].runs
+        load = self.own[name]["normal_force"].mean()
+        self.assertLess(np.ptp(self.own[name]["normal_force"]), 0.07 * load)
+        axes = self.drawn(number).axes[0]
+        speed, force = max((line.get_xydata() for line in axes.lines), key=len).T
+        self.assertGreater(speed.max(), 15)
+        self.assertLess(speed.min(), -15)
+        return speed, force / (0.03 * load)
+
+    def test_coulomb_friction_jumps_at_zero(self) -> None:
+        speed, ratio = self.friction_ratio("4.4")
+        sliding = np.abs(speed) > 0.05
+        np.testing.assert_allclose(ratio[sliding], -np.sign(speed[sliding]), atol=0.04)
+        slow = ratio[sliding & (np.abs(speed) < 1)]
+        self.assertAlmostEqual(np.ptp(slow), 2, delta=0.08)  # the whole jump within 1 mm/s of both sides
+        sticking = ratio[np.abs(speed) < 1e-6]
+        self.assertGreater(len(sticking), 20)
+        self.assertLess(np.abs(sticking).max(), 1.04)
+
+    def test_ambrosio_friction_is_a_ramp(self) -> None:
+        speed, ratio = self.friction_ratio("4.5")
+        wanted = -np.sign(speed) * np.clip((np.abs(speed) - 1) / 9, 0, 1)
+        np.testing.assert_allclose(ratio, wanted, atol=0.04)
+        self.assertLess(np.abs(np.diff(ratio)).max(), 0.05)  # no jump
+        self.assertEqual(np.abs(ratio[np.abs(speed) < 0.99]).max(), 0)
+
+    def test_appendix_b_is_drawn_of_its_window(self) -> None:
+        for name in ("friction_010", "lubricated_400cP", "ideal"):
+            turns = self.settled[name]["crank_angle"] / (2 * np.pi)
+            self.assertEqual(len(turns), 2 * WindowResults.SAMPLES + 1)
+            np.testing.assert_allclose(turns[[0, -1]], [10, 12], atol=1e-9)
+        for number in ("B.7", "B.21"):
+            drawing = figures.draw(self.figures[number], self.settled)
+            self.assertIn("revolutions 10 to 12", drawing._suptitle.get_text())
+            self.assertEqual(overlaps(drawing), [], number)
+            np.testing.assert_allclose(drawing.axes[-1].get_xlim(), [0, 720], atol=1e-6)
+            self.assertEqual(drawing.axes[-1].get_xticks()[-1], 720)
+            plt.close(drawing)
+        drawing = figures.draw(self.figures["B.7"].at_start, self.own)
+        self.assertIn("revolutions 0 to 2", drawing._suptitle.get_text())
+        plt.close(drawing)
+
+    def roughness(self, results: Results, name: str) -> float:
+        """Deviation of the crank moment from the ideal joint's, over its size."""
+        ideal = results["ideal"]["crank_moment"]
+        return float(np.sqrt(np.mean((results[name]["crank_moment"] - ideal) ** 2) / np.mean(ideal**2)))
+
+    def unrest(self, name: str) -> float:
+        """By how much the piston velocity of one revolution differs from that of the next [m/s]."""
+        velocity = self.settled[name]["piston_velocity"]
+        half = len(velocity) // 2
+        return float(np.sqrt(np.mean((velocity[:half] - velocity[half : 2 * half]) ** 2)))
+
+    def test_settled_friction_calms_and_less_clearance_too(self) -> None:
+        for names in (("friction_010", "friction_050", "friction_100"), ("dry_0500um", "dry_0100um", "dry_0010um")):
+            rough = [self.roughness(self.settled, name) for name in names]
+            self.assertGreater(rough[0], 1.1 * rough[1])
+            self.assertGreater(rough[1], 1.1 * rough[2])
+            open_share = [float((self.settled[name]["film_thickness"] > 0).mean()) for name in names]
+            self.assertEqual(sorted(open_share, reverse=True), open_share)
+            unrest = [self.unrest(name) for name in names]
+            self.assertGreater(unrest[0], 2 * unrest[1])
+            self.assertGreater(unrest[1], 100 * unrest[2])
+        for name in ("dry_0010um", "friction_100", "lubricated_400cP"):  # settled: what becomes periodic is
+            self.assertLess(self.unrest(name), 1e-4, name)
+
+    def test_the_start_would_say_the_opposite_of_friction(self) -> None:
+        peak = [np.abs(self.own[f"friction_{n}"]["crank_moment"]).max() for n in ("010", "050", "100")]
+        self.assertEqual(sorted(peak), peak)
+        settled = [np.abs(self.settled[f"friction_{n}"]["crank_moment"]).max() for n in ("050", "100")]
+        self.assertTrue(peak[1] > 2 * settled[0] and peak[2] > 3 * settled[1])
+
+
+class Windows(unittest.TestCase):
+    def test_settings_of_a_window(self) -> None:
+        class Own(Results):
+            speeds = {"a": 100 * np.pi, "b": -100 * np.pi, "c": 1.0}
+
+            def make(self, names: object) -> None:
+                pass
+
+            def __getitem__(self, name: str) -> Run:
+                return run({"time": [0.0]}, {"initial": {"crank_speed": self.speeds[name]}})
+
+        found = WindowResults(Own(Path("there")), (5, 8))
+        self.assertEqual(found.path("a"), Path("there/revolutions_5-8/a.csv"))
+        self.assertEqual(found.settings(["a", "b"])[:2], ["integrator.revolutions=8", "output.start_time=0.1"])
+        with self.assertRaisesRegex(MissingResult, "different speeds"):
+            found.settings(["a", "c"])
 
 
 class Reading(unittest.TestCase):

@@ -49,33 +49,23 @@ def contact_loop(axis: Axes, runs: list[Run]) -> None:
 
 
 def penetration_speed(axis: Axes, runs: list[Run]) -> None:
-    for run in runs:
-        name, colour = law_of(run)
-        states = contact_states(run)
-        axis.plot(1e6 * states["time"], 1e3 * states["rate"], color=colour, label=_with_restitution(name, run))
-    axis.set_xlabel("time in contact [µs]")
-    axis.set_xlim(left=0)
-    _zero(axis)
+    _speed_over(axis, runs, "time", "time in contact [µs]")
 
 
 def penetration_portrait(axis: Axes, runs: list[Run]) -> None:
+    _speed_over(axis, runs, "penetration", "penetration [µm]")
+
+
+def _speed_over(axis: Axes, runs: list[Run], abscissa: str, name: str) -> None:
+    """Penetration speed over a state of the contact, in millionths of its unit; each run with its restitution."""
     for run in runs:
-        name, colour = law_of(run)
+        law, colour = law_of(run)
         states = contact_states(run)
-        axis.plot(
-            1e6 * states["penetration"], 1e3 * states["rate"], color=colour, label=_with_restitution(name, run)
-        )
-    axis.set_xlabel("penetration [µm]")
-    axis.set_xlim(left=0)
-    _zero(axis)
-
-
-def _with_restitution(name: str, run: Run) -> str:
-    return f"{name}, speed of separation over approach {restitution(run):.4f}"
-
-
-def _zero(axis: Axes) -> None:
+        law += f", speed of separation over approach {restitution(run):.4f}"
+        axis.plot(1e6 * states[abscissa], 1e3 * states["rate"], color=colour, label=law)
     axis.axhline(0, color=GREY, linewidth=0.6)
+    axis.set_xlabel(name)
+    axis.set_xlim(left=0)
 
 
 def friction(axis: Axes, run: Run, _ideal: Run | None, _colour: str) -> None:

@@ -157,9 +157,7 @@ QUANTITIES: dict[str, Quantity] = {
         "pressure [bar]", draw_all=gas_pictures.each(gas_pictures.cylinder_pressure), wide=False
     ),
     "contact_loop": Quantity("normal force [N]", draw_all=contact_pictures.contact_loop, wide=False),
-    "penetration_speed": Quantity(
-        "penetration speed [mm/s]", draw_all=contact_pictures.penetration_speed, wide=False
-    ),
+    "penetration_speed": Quantity("penetration speed [mm/s]", draw_all=contact_pictures.penetration_speed, wide=False),
     "penetration_portrait": Quantity(
         "penetration speed [mm/s]", draw_all=contact_pictures.penetration_portrait, wide=False
     ),

@@ -6,16 +6,11 @@ mpl.use("Agg")
 
 BLACK = "#000000"
 ORANGE = "#E69F00"
-SKY = "#56B4E9"
 GREEN = "#009E73"
-YELLOW = "#F0E442"
 BLUE = "#0072B2"
 VERMILION = "#D55E00"
 PURPLE = "#CC79A7"
 GREY = "#7F7F7F"
-
-#: Colours of runs that share an axis, in turn.
-CYCLE = (BLUE, VERMILION, GREEN, ORANGE, SKY, PURPLE)
 
 #: Width of the text on A4 [inch].
 WIDTH = 6.3
