@@ -3,6 +3,7 @@ module contact_laws
   use parameters, only: parameter_list_t
   use hertz, only: hertz_t
   use lankarani_nikravesh, only: lankarani_nikravesh_t
+  use hunt_crossley, only: hunt_crossley_t
   implicit none
   private
   public :: offer_contact_laws
@@ -14,5 +15,6 @@ contains
     class(parameter_list_t), intent(inout) :: list
     call list%law(lankarani_nikravesh_t())
     call list%law(hertz_t())
+    call list%law(hunt_crossley_t())
   end subroutine offer_contact_laws
 end module contact_laws
