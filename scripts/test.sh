@@ -32,6 +32,7 @@ count() {   # count NAME COMMAND...: run the command and add up its counts
 }
 
 count "every module compiles" sh -c 'fpm build --no-prune && echo "1 passed, 0 failed"'
+count "layers" tests/test_layers.py
 count "tests, strict" fpm @strict
 count "case files, fuzzed" tests/test_fuzz.py
 count "tests, release" fpm @release_tests

@@ -1,0 +1,85 @@
+#!/usr/bin/env python3
+"""The folders of src are layers: a module uses modules of its own folder and of layers below, never of one beside or above.
+
+    tests/test_layers.py
+
+Reads the `use` lines. Ends with `N passed, N failed`; the exit status is 0 if nothing failed.
+"""
+
+import re
+import sys
+from pathlib import Path
+
+SRC = Path(__file__).resolve().parent.parent / "src"
+
+#: From the ground up; folders of one row do not know each other.
+LAYERS = [
+    ["base"],
+    ["ode", "model", "integrator"],
+    ["chain", "mechanism", "contact", "friction", "film", "gas"],
+    ["joint"],
+    ["scene"],
+    ["io"],
+    ["study"],
+    ["main"],
+]
+RANK = {folder: rank for rank, row in enumerate(LAYERS) for folder in row}
+
+
+def folder_of(path: Path) -> str:
+    """The first folder below src; `main` for the program itself."""
+    parts = path.relative_to(SRC).parts
+    return parts[0] if len(parts) > 1 else "main"
+
+
+def modules(files: list[Path]) -> dict[str, str]:
+    """Folder of every module."""
+    found = {}
+    for path in files:
+        for name in re.findall(r"^\s*module\s+(?!procedure\b)(\w+)\s*$", path.read_text(), re.M | re.I):
+            found[name.lower()] = folder_of(path)
+    return found
+
+
+def wrong_arrows(files: list[Path]) -> list[str]:
+    """`use` lines that go up, or sideways to another folder of the same layer."""
+    home = modules(files)
+    wrong = []
+    for path in files:
+        folder = folder_of(path)
+        for name in re.findall(r"^\s*use\s+(?:,\s*\w+\s*::\s*)?(\w+)", path.read_text(), re.M | re.I):
+            used = home.get(name.lower())
+            if used is None or used == folder:
+                continue
+            if RANK[used] >= RANK[folder]:
+                wrong.append(f"{path.relative_to(SRC.parent)}: {folder} uses {name} of {used}")
+    return wrong
+
+
+def main() -> int:
+    files = sorted(SRC.rglob("*.f90"))
+    passed = failed = 0
+
+    def check(name: str, holds: bool) -> None:
+        nonlocal passed, failed
+        passed, failed = passed + holds, failed + (not holds)
+        if not holds:
+            print(f"FAILED: {name}")
+
+    folders = {folder_of(path) for path in files}
+    check(f"every folder of src has a layer: {sorted(folders - set(RANK))}", folders <= set(RANK))
+    if folders <= set(RANK):
+        wrong = wrong_arrows(files)
+        check("no arrow goes up:\n  " + "\n  ".join(wrong), not wrong)
+    for path in files:
+        name = path.stem
+        check(
+            f"{path.relative_to(SRC.parent)} holds the module of its name, or of that with the prefix gudgeon_",
+            name == "main" or re.search(rf"^\s*(module|submodule\s*\(\w+\))\s+(gudgeon_)?{name}\s*$", path.read_text(), re.M | re.I) is not None,
+        )
+    print(f"{passed} passed, {failed} failed")
+    return failed > 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
