@@ -1,0 +1,120 @@
+"""The balance of energy of a run, and whether its speeds and positions are the integrals of its accelerations and speeds."""
+from __future__ import annotations
+
+import dataclasses
+import math
+
+from .mechanics import Row
+from .quadrature import Stencil, integral, stencils
+from .rows import CONTACT, RowChecks
+from .trace import Run
+
+SAFETY = 4.0   # the difference of two quadratures bounds the error of the better one where the rows resolve the motion; where
+#                they hardly do, four times that
+
+
+@dataclasses.dataclass
+class Balances:
+    """Largest residuals, in shares of the sizes of what is balanced: as found, and beyond the bound of the quadrature."""
+
+    plain: float         # energy - its first value - work, over the energy scale
+    residual: float      # the same beyond the bound
+    bound: float         # of the quadrature, in the same scale
+    differs: float       # from the column energy_residual, over the energy scale
+    claimed: float       # the largest of that column, over the energy scale
+    drift: float         # the worst speed or position against the integral of its rate
+    drift_bound: float
+    time: float          # of the largest residual [s]
+    worst: str = ""      # which speed or position
+    scale: float = 0.0   # [J]
+
+
+def pieces_of(checks: RowChecks, run: Run) -> list[list[int]]:
+    """Runs of rows within which nothing jumps: same phase, same contact, same part of the gas cycle, same side of the friction."""
+    keys = []
+    begins = 0
+    events = [float(event["time[s]"]) for event in run.events if event["event"] == "contact_begins"]
+    for i, t in enumerate(run.times):
+        while begins < len(events) and events[begins] < t:
+            begins += 1
+        phase = run.columns["phase"][i] if "phase" in run.columns else 0
+        # a row at a bound of the gas cycle stands for what was before it
+        back = math.copysign(1e-10, run.columns["crank_speed"][i])
+        part = checks.gas.part(run.columns["crank_angle"][i] - back) if checks.gas else 0
+        side = 0
+        if phase == CONTACT and checks.friction:
+            v = run.columns["sliding_speed"][i]
+            side = (v > 0) - (v < 0) if abs(v) > checks.friction.v1 else 0
+        keys.append((phase, begins if phase == CONTACT else -1, part, side))
+    pieces: list[list[int]] = []
+    for i, key in enumerate(keys):
+        if i and key == keys[i - 1]:
+            pieces[-1].append(i)
+        else:
+            pieces.append([i])
+    return pieces
+
+
+def sizes(run: Run) -> dict[str, float]:
+    """What speeds and positions are measured against where they are next to nothing: of the pin one clearance, of the crank one
+    radian, in the time that one radian takes; of a crank at rest, in the time simulated."""
+    span = max(run.times[-1] - run.times[0], 1e-300)
+    speed = max(max(map(abs, run.columns["crank_speed"])), 1 / span)
+    way = run.number("joint.clearance") or run.number("mechanism.crank_length")
+    return {"crank_speed": speed, "rod_speed": speed * way / run.number("mechanism.rod_length"), "piston_velocity": speed * way,
+            "crank_angle": 1.0, "piston_position": way}
+
+
+def worst_drift(run: Run, rates: dict[str, str], stencil: list[list[Stencil]]) -> tuple[float, float, str]:
+    """The largest of |value - first - integral of its rate| less its bound, over the value's size; that bound, and the name."""
+    worst = (0.0, 0.0, "")
+    least = sizes(run)
+    for name, rate in rates.items():
+        values, found = run.columns[name], integral(run.columns[rate], stencil)
+        size = max(least[name], *map(abs, values), abs(found.value[-1]))
+        for value, by_rate, bound in zip(values, found.value, found.bound):
+            beyond = (abs(value - values[0] - by_rate) - SAFETY * bound) / size
+            if not beyond <= worst[0]:
+                worst = (beyond, SAFETY * bound / size, name)
+    return worst
+
+
+def balances(checks: RowChecks) -> Balances:
+    """Kinetic and potential energy against the work of gas, joint, damping and drive, by quadrature over the rows."""
+    run = checks.run
+    stencil = stencils(run.times, pieces_of(checks, run), joined=not (checks.film or checks.gas))
+    kinetic, potential, power = [], [], []
+    for i in range(len(run.times)):
+        row = checks.row(i)
+        one, two = row.energy_terms()
+        kinetic.append(sum(one))
+        potential.append(sum(two))
+        power.append(power_of(checks, row))
+    work = integral(power, stencil)
+    spread = max(potential) - min(potential)
+    bodies = checks.bodies
+    scale = max(max(kinetic) + spread, max(map(abs, work.value)), sum(bodies.mass) * abs(bodies.gravity) * bodies.crank_length, 1e-300)
+    first = kinetic[0] + potential[0]
+    column = run.columns["energy_residual"]
+    found = Balances(0.0, 0.0, SAFETY * max(work.bound) / scale, 0.0, max(map(abs, column)) / scale, 0.0, 0.0, 0.0, scale=scale)
+    for i, t in enumerate(run.times):
+        residual = kinetic[i] + potential[i] - first - work.value[i]
+        found.plain = max(found.plain, abs(residual) / scale)
+        beyond = (abs(residual) - SAFETY * work.bound[i]) / scale
+        if not beyond <= found.residual:
+            found.residual, found.time = beyond, t
+        found.differs = max(found.differs, (abs(residual - column[i]) - SAFETY * work.bound[i]) / scale)
+    rates = {"crank_speed": "crank_acceleration", "rod_speed": "rod_acceleration", "piston_velocity": "piston_acceleration",
+             "crank_angle": "crank_speed", "piston_position": "piston_velocity"}
+    found.drift, found.drift_bound, found.worst = worst_drift(run, rates, stencil)
+    return found
+
+
+def power_of(checks: RowChecks, row: Row) -> float:
+    """Of gas on the piston, of the joint on pin and piston, of damping and drive on the crank [W]."""
+    power = row.get["crank_moment"] * row.turn - row.bodies.damping * row.turn**2 - row.gas * row.vx
+    if checks.has_joint:
+        moment = checks.joint_moment(row)
+        power += row.force[0] * row.slip[0] + row.force[1] * row.slip[1]
+        power += (row.joint_moment() if moment is None else moment) * row.rod_turn
+    return power

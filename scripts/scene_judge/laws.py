@@ -1,0 +1,152 @@
+"""The laws of contact, friction, film and gas, from their published equations, against the rows of a trace."""
+from __future__ import annotations
+
+import bisect
+import math
+
+from .mechanics import Row
+from .trace import Run
+
+GAUSS_5 = ((0.0, 0.5688888888888889), (0.5384693101056831, 0.47862867049936647), (0.906179845938664, 0.23692688505618908))
+ROUNDING = 1e-14   # of a speed found from those of crank, rod and piston, in their sum
+
+
+class Contact:
+    """Lankarani and Nikravesh (Reis 2013, 4.7): F = K d^n [1 + 3/4 (1 - e^2) d'/d'_0], d'_0 the speed at which the contact began.
+
+    The program's manual bounds it: it never pulls, the quotient of the rates is at most 100 and a slower impact counts as one
+    of the least impact speed. Hertz is the law without loss."""
+
+    MOST = 100.0
+
+    def __init__(self, run: Run) -> None:
+        self.exponent = run.number("contact.exponent")
+        self.stiffness = run.number("contact.stiffness")
+        if not self.stiffness:
+            (e1, e2), (nu1, nu2) = run.pair("contact.youngs_modulus"), run.pair("contact.poissons_ratio")
+            bearing = run.number("joint.bearing_radius")
+            pin = bearing - run.number("joint.clearance")
+            give = (1 - nu1**2) / e1 + (1 - nu2**2) / e2
+            self.stiffness = 4 / (3 * give) * math.sqrt(bearing * pin / run.number("joint.clearance"))
+        self.loss = 0.75 * (1 - run.number("contact.restitution")**2) if run.text("contact.law") == "lankarani_nikravesh" else 0.0
+        self.least = run.number("contact.least_impact_speed", 1e-5)
+        begins = [event for event in run.events if event["event"] == "contact_begins"]
+        self.begin = [float(event["time[s]"]) for event in begins]
+        self.speed = [float(event["normal_speed[m/s]"]) for event in begins]
+
+    def force(self, depth: float, rate: float, time: float) -> float:
+        if depth <= 0:
+            return 0.0
+        elastic = self.stiffness * depth**self.exponent
+        began = bisect.bisect_right(self.begin, time * (1 + 1e-9)) - 1
+        first = max(self.speed[began] if began >= 0 else 0.0, self.least)
+        return elastic * max(0.0, 1 + self.loss * min(rate / first, self.MOST))
+
+
+class Friction:
+    """Ambrosio (4.9, 4.10) and Coulomb (4.8): against the sliding, at most the coefficient times the normal force."""
+
+    def __init__(self, run: Run) -> None:
+        self.coefficient = run.number("friction.coefficient")
+        self.coulomb = run.text("friction.law") == "coulomb"
+        self.v0, self.v1 = run.number("friction.v0"), run.number("friction.v1")
+
+    def range(self, speed: float, give: float) -> tuple[float, float]:
+        """Least and largest friction over normal force along t at a sliding speed known to +- `give`."""
+        return tuple(sorted(self.ratio(v) for v in (speed - give, speed + give)))
+
+    def ratio(self, speed: float) -> float:
+        size = abs(speed)
+        if self.coulomb or self.v1 <= 0 or size >= self.v1:
+            part = 1.0 if size else 0.0
+        else:
+            part = 0.0 if size <= self.v0 else (size - self.v0) / (self.v1 - self.v0)
+        return -math.copysign(part * self.coefficient, speed)
+
+
+def squeeze_film(run: Run, row: Row, slip: tuple[float, float]) -> tuple[float, float]:
+    """Force on the pin of the Pinkus-Sternlicht film, the closed form (5.34 to 5.37, the sign of 5.36 corrected) [N]."""
+    c, get = run.number("joint.clearance"), row.get
+    e = get["eccentricity_x"], get["eccentricity_y"]
+    size = math.hypot(*e)
+    n = (e[0] / size, e[1] / size)
+    gap = get["film_thickness"] / c
+    eps = size / c
+    open_ = gap * (1 + eps)   # 1 - eps^2, exact near the wall
+    rate = (n[0] * slip[0] + n[1] * slip[1]) / c
+    turn = row.rod_turn - 2 * (n[0] * slip[1] - n[1] * slip[0]) / size
+    scale = run.number("lubrication.viscosity") * run.number("joint.bearing_length") * row.bodies.pin_radius**3 / c**2
+    k = math.sqrt(open_ * ((turn / (2 * rate))**2 + 1 / eps**2))
+    if rate > 0:
+        share = (k + 3) / (k + 1.5)
+        radial = -6 * scale * rate / ((2 + eps**2) * open_**1.5) * (4 * k * eps**2 + (2 + eps**2) * math.pi * share)
+    else:
+        share = k / (k + 1.5)
+        radial = 6 * scale * rate / ((2 + eps**2) * open_**1.5) * (4 * k * eps**2 - (2 + eps**2) * math.pi * share)
+    along = 6 * scale * math.pi * eps * turn / ((2 + eps**2) * math.sqrt(open_)) * share
+    return radial * n[0] - along * n[1], radial * n[1] + along * n[0]
+
+
+class Gas:
+    """The four strokes of appendix A: the first law of thermodynamics for the closed cylinder, integrated in closed form.
+
+    p V^g = p_1 V_1^g + (g - 1) * integral of V^(g-1) dQ, Wiebe's release Q = Q_in (1 - exp(-a z^n))."""
+
+    def __init__(self, run: Run) -> None:
+        n = run.number
+        self.exponent, self.heat, self.a, self.n = (n("combustion.heat_capacity_ratio"), n("combustion.heat"),
+                                                    n("combustion.wiebe_efficiency"), n("combustion.wiebe_form"))
+        self.start, self.duration = math.radians(n("combustion.start_deg")), math.radians(n("combustion.duration_deg"))
+        self.intake, self.under = n("combustion.intake_pressure"), n("combustion.crankcase_pressure")
+        self.area = math.pi / 4 * n("combustion.bore")**2
+        self.crank, self.rod = n("mechanism.crank_length"), n("mechanism.rod_length")
+        self.dead = 2 * self.crank * self.area / (n("combustion.compression_ratio") - 1)
+        self.closed = self.intake * self.volume(math.pi)**self.exponent
+        self.panels = 400
+        self.grid = [0.0]
+        for i in range(self.panels):
+            self.grid.append(self.grid[-1] + self.panel(i / self.panels, (i + 1) / self.panels))
+
+    def volume(self, q: float) -> float:
+        """Dead volume, and the piston's way from its top times the area [m^3]."""
+        height = self.crank * math.cos(q) + math.sqrt((self.rod - self.crank * math.sin(q)) * (self.rod + self.crank * math.sin(q)))
+        return self.dead + self.area * (self.crank + self.rod - height)
+
+    def source(self, s: float) -> float:
+        """V^(g-1) dQ/ds, where s is z, or for a release that begins abruptly the power z^n."""
+        if self.n >= 1:
+            z, rate = s, self.n * s**(self.n - 1) if s > 0 or self.n == 1 else 0.0
+            burnt = s**self.n
+        else:
+            z, rate, burnt = s**(1 / self.n), 1.0, s
+        return self.volume(self.start + z * self.duration)**(self.exponent - 1) * self.heat * self.a * rate * math.exp(-self.a * burnt)
+
+    def panel(self, low: float, high: float) -> float:
+        middle, half = 0.5 * (low + high), 0.5 * (high - low)
+        return half * sum(w * (self.source(middle) if x == 0 else self.source(middle - x * half) + self.source(middle + x * half))
+                          for x, w in GAUSS_5)
+
+    def pressure(self, q: float) -> float:
+        """At the crank angle q [Pa]."""
+        angle = math.fmod(q, 4 * math.pi) % (4 * math.pi)
+        if not math.pi < angle < 3 * math.pi:
+            return self.intake
+        added = 0.0
+        z = min((angle - self.start) / self.duration, 1.0)
+        if z > 0:
+            s = z if self.n >= 1 else z**self.n
+            whole = min(int(s * self.panels), self.panels)
+            added = self.grid[whole] + (self.panel(whole / self.panels, s) if whole < self.panels else 0.0)
+        return (self.closed + (self.exponent - 1) * added) / self.volume(angle)**self.exponent
+
+    def jumps_near(self, q: float, margin: float) -> bool:
+        """Whether a part of the cycle begins or ends so near that a row stands for either side."""
+        angle = q % (4 * math.pi)
+        bounds = (math.pi, self.start, self.start + self.duration, 3 * math.pi)
+        return any(abs(angle - bound) < margin for bound in bounds)
+
+    def part(self, q: float) -> int:
+        """Number of the part of the cycle, counted on over the cycles."""
+        cycle, angle = divmod(q - math.pi, 4 * math.pi)
+        bounds = (self.start, min(self.start + self.duration, 3 * math.pi), 3 * math.pi)
+        return 4 * int(cycle) + sum(angle + math.pi >= bound for bound in bounds)

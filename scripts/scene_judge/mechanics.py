@@ -1,0 +1,161 @@
+"""Kinematics, energy and the balances of force and moment of crank, rod and piston, written from the motion of each body.
+
+x points up along the cylinder, y sideways, the crank turns from x to y; the rod's column counts its angle the other way, so its
+angular velocity in the plane is minus the column. A body is a frame: an origin, an angle, its centre of mass (u, v) in it.
+"""
+from __future__ import annotations
+
+import dataclasses
+import math
+
+from .trace import Run
+
+Vector = tuple[float, float]
+
+
+def cross(a: Vector, b: Vector) -> float:
+    return a[0] * b[1] - a[1] * b[0]
+
+
+def rotated(u: float, v: float, angle: float) -> Vector:
+    c, s = math.cos(angle), math.sin(angle)
+    return u * c - v * s, u * s + v * c
+
+
+def velocity(origin: Vector, arm: Vector, turn: float) -> Vector:
+    """Of a point `arm` away from an origin that moves so, on a body of angular velocity `turn`."""
+    return origin[0] - turn * arm[1], origin[1] + turn * arm[0]
+
+
+def acceleration(origin: Vector, arm: Vector, turn: float, turn_rate: float) -> Vector:
+    return (origin[0] - turn_rate * arm[1] - turn * turn * arm[0], origin[1] + turn_rate * arm[0] - turn * turn * arm[1])
+
+
+@dataclasses.dataclass
+class Balance:
+    """A sum that must vanish, and the sum of its terms' sizes, against which rounding is measured."""
+
+    miss: float
+    size: float
+
+
+def balance(*terms: float) -> Balance:
+    return Balance(abs(math.fsum(terms)), sum(map(abs, terms)))
+
+
+def scaled(factor: float, vector: Vector) -> Vector:
+    return factor * vector[0], factor * vector[1]
+
+
+def vector_balance(name: str, *terms: Vector) -> dict[str, Balance]:
+    """Of both components, each against the sizes of the vectors: one of them may be rounding alone."""
+    size = sum(math.hypot(*term) for term in terms)
+    return {f"{name} along {axis}": Balance(abs(math.fsum(term[k] for term in terms)), size) for k, axis in enumerate("xy")}
+
+
+@dataclasses.dataclass
+class Bodies:
+    """The constants of a case that mechanics needs."""
+
+    crank_length: float
+    rod_length: float
+    mass: tuple[float, float, float]      # crank, rod, piston
+    inertia: tuple[float, float]          # crank, rod, about their centres of mass
+    crank_com: Vector
+    rod_com: Vector
+    gravity: float
+    damping: float
+    pin_radius: float
+
+    @classmethod
+    def of(cls, run: Run) -> Bodies:
+        n = run.number
+        return cls(n("mechanism.crank_length"), n("mechanism.rod_length"),
+                   (n("mechanism.crank_mass"), n("mechanism.rod_mass"), n("mechanism.piston_mass")),
+                   (n("mechanism.crank_inertia"), n("mechanism.rod_inertia")),
+                   run.pair("mechanism.crank_com"), run.pair("mechanism.rod_com"), n("mechanism.gravity"), n("drive.damping"),
+                   n("joint.bearing_radius") - n("joint.clearance"))
+
+
+class Row:
+    """One row of a trace: the motion of every body and the forces of its columns."""
+
+    def __init__(self, bodies: Bodies, columns: dict[str, list[float]], i: int) -> None:
+        self.bodies = bodies
+        get = {name: column[i] for name, column in columns.items()}
+        self.get = get
+        self.q, self.turn, self.turn_rate = get["crank_angle"], get["crank_speed"], get["crank_acceleration"]
+        self.rod_turn, self.rod_turn_rate = -get["rod_speed"], -get["rod_acceleration"]
+        self.x, self.vx, self.ax = get["piston_position"], get["piston_velocity"], get["piston_acceleration"]
+        rod_angle = -get["rod_angle"]
+        self.crank_arm = rotated(*bodies.crank_com, self.q)
+        self.crankpin = rotated(bodies.crank_length, 0.0, self.q)
+        self.rod_arm = rotated(*bodies.rod_com, rod_angle)
+        self.rod = rotated(bodies.rod_length, 0.0, rod_angle)
+        self.crankpin_velocity = velocity((0.0, 0.0), self.crankpin, self.turn)
+        self.pin_velocity = velocity(self.crankpin_velocity, self.rod, self.rod_turn)
+        self.force = get["pin_force_x"], get["pin_force_y"]
+        self.gas = get.get("gas_force", 0.0)
+        # of the pin in its bearing
+        self.slip = self.pin_velocity[0] - self.vx, self.pin_velocity[1]
+        self.speed_size = abs(bodies.crank_length * self.turn) + abs(bodies.rod_length * self.rod_turn) + abs(self.vx)
+
+    def energy_terms(self) -> tuple[list[float], list[float]]:
+        """Kinetic and potential energies of the bodies [J]."""
+        b = self.bodies
+        crank = velocity((0.0, 0.0), self.crank_arm, self.turn)
+        rod = velocity(self.crankpin_velocity, self.rod_arm, self.rod_turn)
+        kinetic = [0.5 * b.mass[0] * (crank[0]**2 + crank[1]**2), 0.5 * b.inertia[0] * self.turn**2,
+                   0.5 * b.mass[1] * (rod[0]**2 + rod[1]**2), 0.5 * b.inertia[1] * self.rod_turn**2, 0.5 * b.mass[2] * self.vx**2]
+        height = self.crank_arm[0], self.crankpin[0] + self.rod_arm[0], self.x
+        return kinetic, [m * b.gravity * h for m, h in zip(b.mass, height)]
+
+    def rod_moment_terms(self) -> list[float]:
+        """Euler's law of the rod about its centre of mass, all but the joint's moment: what is left is that moment [N m]."""
+        at_crank = self.get["crankpin_force_x"], self.get["crankpin_force_y"]
+        to_crank = -self.rod_arm[0], -self.rod_arm[1]
+        to_pin = self.rod[0] - self.rod_arm[0], self.rod[1] - self.rod_arm[1]
+        return [self.bodies.inertia[1] * self.rod_turn_rate, -to_crank[0] * at_crank[1], to_crank[1] * at_crank[0],
+                -to_pin[0] * self.force[1], to_pin[1] * self.force[0]]
+
+    def joint_moment(self) -> float:
+        return math.fsum(self.rod_moment_terms())
+
+    def balances(self, joint_moment: float | None) -> dict[str, Balance]:
+        """Sums that vanish in every row, by name. `joint_moment`: of the joint on the rod [N m], None where no law here gives it."""
+        b, get, g = self.bodies, self.get, self.bodies.gravity
+        found = {}
+        kinetic, potential = self.energy_terms()
+        found["energy column"] = balance(get["energy"], *(-e for e in kinetic), *(-e for e in potential))
+        on_rod = get["crankpin_force_x"], get["crankpin_force_y"]
+        on_crank = get["crank_bearing_force_x"], get["crank_bearing_force_y"]
+        at_pin = acceleration((0.0, 0.0), self.crankpin, self.turn, self.turn_rate)
+        crank = acceleration((0.0, 0.0), self.crank_arm, self.turn, self.turn_rate)
+        rod = acceleration(at_pin, self.rod_arm, self.rod_turn, self.rod_turn_rate)
+        found["Newton, piston"] = balance(b.mass[2] * self.ax, self.gas, self.force[0], b.mass[2] * g)
+        # the guide's force follows from the rod's moments, so their rounding is in it
+        found["guide force"] = Balance(abs(get["guide_force"] + self.force[1]), abs(self.force[1]) + abs(on_rod[1]) + (
+            sum(map(abs, self.rod_moment_terms())) + abs(self.rod[1] * on_rod[0])) / abs(self.rod[0]))
+        found |= vector_balance("Newton, rod", scaled(b.mass[1], rod), (b.mass[1] * g, 0.0), scaled(-1, on_rod), scaled(-1, self.force))
+        found |= vector_balance("Newton, crank", scaled(b.mass[0], crank), (b.mass[0] * g, 0.0), scaled(-1, on_crank), on_rod)
+        arm, pin = self.crank_arm, (self.crankpin[0] - self.crank_arm[0], self.crankpin[1] - self.crank_arm[1])
+        found["Euler, crank"] = Balance(
+            abs(math.fsum((b.inertia[0] * self.turn_rate, -get["crank_moment"], b.damping * self.turn, cross(arm, on_crank), cross(pin, on_rod)))),
+            abs(b.inertia[0] * self.turn_rate) + abs(get["crank_moment"]) + abs(b.damping * self.turn)
+            + math.hypot(*arm) * math.hypot(*on_crank) + math.hypot(*pin) * math.hypot(*on_rod))
+        if joint_moment is not None:
+            found["Euler, rod"] = Balance(abs(math.fsum((*self.rod_moment_terms(), -joint_moment))), abs(joint_moment) + sum(
+                map(abs, self.rod_moment_terms())) + b.rod_length * (math.hypot(*on_rod) + math.hypot(*self.force)))
+        found["force on the frame, x"] = balance(get["frame_force_x"], -on_crank[0], self.gas)
+        found["force on the frame, y"] = balance(get["frame_force_y"], -on_crank[1], get["guide_force"])
+        pin_at = self.crankpin[0] + self.rod[0], self.crankpin[1] + self.rod[1]
+        e = get.get("eccentricity_x", 0.0), get.get("eccentricity_y", 0.0)
+        found["pin in the bearing, x"] = balance(pin_at[0], -self.x, -e[0])
+        found["pin in the bearing, y"] = balance(self.crankpin[1], self.rod[1], -e[1])
+        if "eccentricity_x" not in get:
+            at_end = acceleration(at_pin, self.rod, self.rod_turn, self.rod_turn_rate)
+            found["pin speed, x"] = balance(self.pin_velocity[0], -self.vx)
+            found["pin speed, y"] = balance(self.crankpin_velocity[1], self.rod_turn * self.rod[0])
+            found["pin acceleration, x"] = Balance(abs(at_end[0] - self.ax), abs(at_end[0]) + abs(at_pin[0]))
+            found["pin acceleration, y"] = Balance(abs(at_end[1]), abs(at_pin[1]) + abs(self.rod_turn_rate * self.rod[0]))
+        return found

@@ -1,0 +1,271 @@
+"""A run against the same scene by the other method at a hundredth of its tolerance: states up to the horizon, statistics beyond.
+
+How far two runs may lie apart is measured, not assumed: two further runs, at the hundredth too, start as far off as the tolerance
+means (the relative tolerance times the size of each coordinate). What they have moved apart from the reference by some time is
+what one error of the size of the tolerance becomes by then. A run makes such an error in every step at most, so its distance is
+judged in these units, and beyond the time at which they are of order one, not at all: there the motion has forgotten its start,
+and only statistics can agree.
+"""
+from __future__ import annotations
+
+import dataclasses
+import math
+import random
+from pathlib import Path
+from typing import Callable
+
+from .mechanics import Bodies, Row
+from .trace import Run, run_case
+
+ROWS = 400            # at which states are compared
+LIMIT = 100.0         # grown tolerances that a run may be off, for each revolution begun
+LATE = 3              # rows for which the run may be in another contact than its reference before it is compared nevertheless
+HORIZON = 0.2         # the limit in sizes of the coordinates beyond which states say nothing
+FINEST = 1e-13        # tolerance of a reference
+MOST_EVALUATIONS = 2_000_000_000   # that a case may ask for
+BLOCKS = 10           # revolutions for the statistics
+LEAST_BLOCKS = 4      # of them beyond the horizon
+SPREAD = 5.0          # standard errors between means that agree
+SLACK = 0.02          # and this part of the mean: errors of order one do not stop at the horizon
+
+
+@dataclasses.dataclass
+class Comparison:
+    """How a run and its reference agree. Shares above 1 fail."""
+
+    share: float = 0.0          # worst distance over what is allowed, up to the horizon
+    tolerances: float = 0.0     # the same in grown tolerances
+    time: float = 0.0           # where [s]
+    horizon: float = 0.0        # [s]
+    rows: int = 0               # compared
+    statistics: dict[str, float] = dataclasses.field(default_factory=dict)   # shares, by name
+    unjudged: str = ""          # why nothing could be compared
+    no_statistics: str = ""     # why statistics could not be, where they should
+
+    @property
+    def has_statistics(self) -> bool:
+        return bool(self.statistics)
+
+
+@dataclasses.dataclass
+class Scales:
+    """Sizes of the coordinates and their rates."""
+
+    angle: float
+    speed: float
+    eccentricity: float
+    rate: float
+
+
+def states(run: Run) -> list[tuple[float, ...]]:
+    """Crank angle and speed, eccentricity and its rate, at every row."""
+    bodies = Bodies.of(run)
+    found = []
+    for i in range(len(run.times)):
+        row = Row(bodies, run.columns, i)
+        e = (row.get["eccentricity_x"], row.get["eccentricity_y"], *row.slip) if run.has_clearance else ()
+        found.append((row.q, row.turn, *e))
+    return found
+
+
+def scales_of(run: Run, rows: list[tuple[float, ...]]) -> Scales:
+    speed = max(max(abs(row[1]) for row in rows), 1 / max(run.times[-1], 1e-300))   # at rest, one radian in the time simulated
+    if not run.has_clearance:
+        return Scales(1.0, speed, 1.0, 1.0)
+    rates = sorted(math.hypot(row[4], row[5]) for row in rows)
+    c = run.number("joint.clearance")
+    return Scales(1.0, speed, c, max(c * speed, rates[len(rates) // 2]))
+
+
+def distance(one: tuple[float, ...], two: tuple[float, ...], scales: Scales) -> float:
+    """The largest difference of two states, in the sizes of the coordinates or of what is there, whichever is larger."""
+    rate = max(scales.rate, math.hypot(*two[4:6])) if len(two) > 4 else scales.rate
+    sizes = (scales.angle, scales.speed, scales.eccentricity, scales.eccentricity, rate, rate)
+    return max(abs(a - b) / size for a, b, size in zip(one, two, sizes))
+
+
+def contacts_before(run: Run) -> list[int]:
+    """At every row how many contacts have begun and ended."""
+    times = [float(event["time[s]"]) for event in run.events]
+    found, k = [], 0
+    for t in run.times:
+        while k < len(times) and times[k] <= t:
+            k += 1
+        found.append(k)
+    return found
+
+
+class Reruns:
+    """The runs of one scene that are compared. `settings` are those of the run that is judged."""
+
+    def __init__(self, program: Path, case: Path, settings: dict[str, str], judged: Run, limit: float, seed: int) -> None:
+        self.program, self.case, self.limit = program, case, limit
+        self.random = random.Random(seed)
+        self.tolerance = min(judged.number("integrator.relative_tolerance"), 1e-3)
+        self.span = float(judged.summary["simulated_time"])
+        self.turn = abs(judged.number("initial.crank_speed"))
+        self.judged = judged
+        self.settings = {**settings, "output.digits": "17", "output.ideal_twin": ".false.", "integrator.revolutions": "0.0",
+                         "output.start_time": "0.0", "integrator.max_evaluations": str(int(min(10 * judged.number("integrator.max_evaluations"), MOST_EVALUATIONS)))}
+        film_steps = float(judged.summary.get("jacobians", "0"))
+        self.other = "adams" if judged.text("integrator.method") == "radau" or (
+            judged.text("integrator.method") == "auto" and not film_steps and judged.summary.get("step_limited_by") != "stability") else "radau"
+
+    def run(self, span: float, rows: int, **more: str) -> Run:
+        settings = {**self.settings, "integrator.end_time": repr(span), "output.interval": repr(span / rows)}
+        settings.update({key.replace("__", "."): value for key, value in more.items()})
+        return run_case(self.program, self.case, settings, self.limit)
+
+    def reference(self, span: float, rows: int, start: dict[str, str]) -> Run:
+        return self.run(span, rows, integrator__method=f"'{self.other}'",
+                        integrator__relative_tolerance=repr(max(self.tolerance / 100, FINEST)), **start)
+
+    def neighbour_start(self, scales: Scales, off: float) -> dict[str, str]:
+        """The start, off by so much of its size in every coordinate that is integrated."""
+        run = self.judged
+
+        def sign() -> float:
+            return self.random.choice((-1.0, 1.0)) * off
+        start = {}
+        if run.text("drive.kind") != "constant_speed":
+            start["initial__crank_angle_deg"] = repr(run.number("initial.crank_angle_deg") + sign() * math.degrees(scales.angle))
+            start["initial__crank_speed"] = repr(run.number("initial.crank_speed") + sign() * scales.speed)
+        if run.has_clearance:
+            for key, size in (("eccentricity", scales.eccentricity), ("eccentricity_rate", scales.rate)):
+                start[f"initial__{key}"] = ",".join(repr(value + sign() * size) for value in run.pair(f"initial.{key}"))
+        return start
+
+    def compare(self) -> Comparison:
+        """States up to the horizon; where that comes before the end of the run, statistics over ten revolutions."""
+        runs = self.family(self.span, ROWS, max(self.tolerance, 10 * FINEST))
+        if isinstance(runs, str):
+            return Comparison(unjudged=runs)
+        found = compare_states(*runs, self.tolerance, self.revolutions())
+        if found.horizon < self.span and self.turn > 0 and self.judged.has_clearance:
+            self.compare_statistics(found)
+        return found
+
+    def family(self, span: float, rows: int, off: float) -> tuple[Run, Run, list[Run]] | str:
+        """The run, its reference and two neighbours of the reference; or why one of them has not come to the end."""
+        again = self.run(span, rows)
+        reference = self.reference(span, rows, {})
+        for name, run in (("the run itself", again), (f"the reference by {self.other}", reference)):
+            if run.status == 3:
+                raise ValueError(f"a scene to compare with is refused: {run.message}")
+            if run.status or len(run.times) < 10:
+                return f"{name}: {run.summary.get('status', run.message)[:120]}"
+        scales = scales_of(reference, states(reference))
+        neighbours = [self.reference(span, rows, self.neighbour_start(scales, off)) for _ in range(2)]
+        for run in neighbours:
+            if run.status == 3:
+                raise ValueError(f"a scene to compare with is refused: {run.message}")
+            if run.status:
+                return f"a neighbour of the reference: {run.summary.get('status', run.message)[:120]}"
+        return again, reference, neighbours
+
+    def revolutions(self) -> float:
+        travel = self.judged.columns["crank_angle"]
+        return max(1.0, abs(travel[-1] - travel[0]) / (2 * math.pi))
+
+    def compare_statistics(self, found: Comparison) -> None:
+        block = 2 * math.pi / self.turn
+        first = min(math.ceil(found.horizon / block), BLOCKS)
+        if BLOCKS - first < LEAST_BLOCKS:
+            return
+        # the neighbours start so far off that they have forgotten their start where the run may have
+        runs = self.family(BLOCKS * block, 720 * BLOCKS, LIMIT * max(self.tolerance, 10 * FINEST))
+        if isinstance(runs, str):
+            found.no_statistics = runs
+            return
+        run, reference, neighbours = runs
+        for name, figure in FIGURES.items():
+            by_run = [[figure(one, k * block, (k + 1) * block) for k in range(first, BLOCKS)] for one in (run, reference, *neighbours)]
+            # the energy itself is kept to its tolerance only
+            known = LIMIT * self.tolerance * max(map(abs, reference.columns["energy"])) if figure is loss else 0.0
+            found.statistics[name] = mean_share(by_run[0], by_run[1:], known)
+
+
+def compare_states(run: Run, reference: Run, neighbours: list[Run], tolerance: float, revolutions: float) -> Comparison:
+    """The worst distance of a run from its reference over what is allowed up to the horizon."""
+    count = min(map(len, (run.times, reference.times, *(one.times for one in neighbours))))
+    ours, theirs = states(run), states(reference)
+    others = [states(one) for one in neighbours]
+    events = [contacts_before(one) for one in (run, reference, *neighbours)]
+    scales = scales_of(reference, theirs)
+    found = Comparison(horizon=run.times[-1])
+    grown = max(tolerance, 10 * FINEST)
+    late, last = 0, 0
+    for i in range(count):
+        late = late + 1 if events[0][i] != events[1][i] else 0
+        if len({number[i] for number in events[1:]}) > 1 or 0 < late <= LATE:
+            continue   # one of them has not yet come to the contact that another is in
+        grown = max(grown, *(distance(theirs[i], one[i], scales) for one in others))
+        allowed = LIMIT * revolutions * grown
+        if allowed > HORIZON:
+            found.horizon = run.times[i]
+            break
+        found.rows += 1
+        last = i
+        apart = distance(ours[i], theirs[i], scales)
+        if not apart / allowed <= found.share:
+            found.share, found.tolerances, found.time = apart / allowed, apart / grown, run.times[i]
+    else:
+        if last < count - 1 - LATE:   # from there on they are in different contacts
+            found.horizon = run.times[last]
+    return found
+
+
+def window(run: Run, low: float, high: float) -> range:
+    times = run.times
+    first = next((i for i, t in enumerate(times) if t >= low), len(times))
+    last = next((i for i in range(first, len(times)) if times[i] >= high), len(times))
+    return range(first, last)
+
+
+def contact_share(run: Run, low: float, high: float) -> float:
+    rows = window(run, low, high)
+    return sum(run.columns["phase"][i] == 2 for i in rows) / max(len(rows), 1)
+
+
+def mean_pin_force(run: Run, low: float, high: float) -> float:
+    """Its logarithm: a few hard blows are most of it, and means of numbers of so many sizes say little."""
+    rows = window(run, low, high)
+    mean = sum(math.hypot(run.columns["pin_force_x"][i], run.columns["pin_force_y"][i]) for i in rows) / max(len(rows), 1)
+    return math.log(max(mean, 1e-300))
+
+
+def impacts(run: Run, low: float, high: float) -> float:
+    return sum(event["event"] == "contact_begins" and low <= float(event["time[s]"]) < high for event in run.events)
+
+
+def loss(run: Run, low: float, high: float) -> float:
+    """What the joint takes from the bodies [J]: the work of drive, damping and gas less what the energy has grown by."""
+    rows = window(run, low, high)
+    if len(rows) < 2:
+        return 0.0
+    damping, columns, work = run.number("drive.damping"), run.columns, 0.0
+    gas = columns.get("gas_force") or [0.0] * len(run.times)
+
+    def power(i: int) -> float:
+        turn = columns["crank_speed"][i]
+        return columns["crank_moment"][i] * turn - damping * turn**2 - gas[i] * columns["piston_velocity"][i]
+    for i in rows[1:]:
+        work += 0.5 * (power(i) + power(i - 1)) * (run.times[i] - run.times[i - 1])
+    return work - (columns["energy"][rows[-1]] - columns["energy"][rows[0]])
+
+
+FIGURES: dict[str, Callable[[Run, float, float], float]] = {
+    "contact share": contact_share, "mean pin force": mean_pin_force, "impacts per revolution": impacts, "loss per revolution": loss}
+
+
+def mean_share(ours: list[float], theirs: list[list[float]], known: float) -> float:
+    """The difference of the means over what chance allows, by the scatter of the references block by block, and `known` besides."""
+    blocks, n = len(ours), len(theirs)
+    means = [sum(one[k] for one in theirs) / n for k in range(blocks)]
+    mean = sum(means) / blocks
+    by_block = sum((one[k] - means[k])**2 for one in theirs for k in range(blocks)) / ((n - 1) * blocks * blocks)
+    by_run = sum((sum(one) / blocks - mean)**2 for one in theirs) / (n - 1)   # larger where blocks follow from one another
+    error = math.sqrt(max(by_block, by_run) * (1 + 1 / n))
+    allowed = SPREAD * error + SLACK * max(abs(value) for value in means) + known
+    apart = abs(sum(ours) / blocks - mean)
+    return apart / allowed if allowed > 0 else (0.0 if apart == 0 else math.inf)

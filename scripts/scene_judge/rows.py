@@ -1,0 +1,145 @@
+"""Every row of a trace against mechanics and the laws."""
+from __future__ import annotations
+
+import dataclasses
+import math
+
+from .laws import ROUNDING, Contact, Friction, Gas, squeeze_film
+from .mechanics import Bodies, Row
+from .trace import Run
+
+FREE, FILM, CONTACT = 0, 1, 2
+SUM = 1e-9        # of a sum's terms: what may be left of one that vanishes
+LAW = 1e-6        # of a force: what a law may be missed by, beyond the rounding of the speeds it was given
+
+
+@dataclasses.dataclass
+class Miss:
+    """The worst row of one check: how much of what is allowed it takes. Above 1 the check fails."""
+
+    check: str
+    share: float = 0.0
+    time: float = 0.0
+    rows: int = 0
+
+    def take(self, miss: float, allowed: float, time: float) -> None:
+        self.rows += 1
+        if miss <= 0:
+            return
+        share = miss / allowed if allowed > 0 else math.inf
+        if not share <= self.share:   # NaN is the worst of all
+            self.share, self.time = (share if share == share else math.inf), time
+
+    @property
+    def text(self) -> str:
+        return f"{self.check}: {self.share:.3g} times what is allowed at t = {self.time:.9g} s"
+
+
+def inside(value: float, low: float, high: float) -> float:
+    """How far a value is outside of a range."""
+    return max(low - value, value - high, 0.0) if value == value else math.nan
+
+
+class RowChecks:
+    """Goes through the rows of a run; `misses` are the worst of each check."""
+
+    def __init__(self, run: Run) -> None:
+        self.run = run
+        self.bodies = Bodies.of(run)
+        self.misses: dict[str, Miss] = {}
+        self.has_joint = run.has_clearance
+        self.film = run.text("lubrication.law")
+        self.contact = Contact(run) if self.has_joint and run.text("contact.law") else None
+        self.friction = Friction(run) if self.has_joint and run.text("friction.law") else None
+        self.gas = Gas(run) if "combustion.bore" in run.case else None
+        tolerance = min(run.number("integrator.relative_tolerance"), 1e-3)
+        self.gas_tolerance = max(10 * tolerance, 1e-9)
+
+    def take(self, check: str, miss: float, allowed: float, time: float) -> None:
+        self.misses.setdefault(check, Miss(check)).take(miss, allowed, time)
+
+    def row(self, i: int) -> Row:
+        return Row(self.bodies, self.run.columns, i)
+
+    def joint_moment(self, row: Row) -> float | None:
+        """Of the joint on the rod [N m]: friction at the pin's radius; none by pressure; None for the shear of a film."""
+        phase = row.get.get("phase", FREE)
+        if phase == CONTACT and self.friction:
+            return row.get["friction_force"] * self.bodies.pin_radius
+        return None if phase == FILM and self.film == "oscillating_film" else 0.0
+
+    def check(self) -> dict[str, Miss]:
+        for i in range(len(self.run.times)):
+            row = self.row(i)
+            t = row.get["time"]
+            for name, found in row.balances(self.joint_moment(row) if self.has_joint else 0.0).items():
+                self.take(name, found.miss, SUM * found.size + 1e-300, t)
+            if self.has_joint:
+                self.check_joint(row, t)
+            if self.gas:
+                self.check_gas(row, t)
+        return self.misses
+
+    def check_joint(self, row: Row, t: float) -> None:
+        get, c = row.get, self.run.number("joint.clearance")
+        e = get["eccentricity_x"], get["eccentricity_y"]
+        size = math.hypot(*e)
+        self.take("film thickness", abs(c - size - get["film_thickness"]), 1e-14 * (c + size), t)
+        self.take("eccentricity ratio", abs(size / c - get["eccentricity_ratio"]), 1e-14 * (1 + size / c), t)
+        phase = get["phase"]
+        n = (e[0] / size, e[1] / size) if size > 0 else (1.0, 0.0)
+        give = ROUNDING * row.speed_size
+        if phase == FREE:
+            self.take("no force in free flight", math.hypot(*row.force), 0.0, t)
+        if phase == FILM:
+            self.check_film(row, n, give, t)
+        if phase == CONTACT and self.contact:
+            self.check_contact(row, n, give, t)
+
+    def check_contact(self, row: Row, n: tuple[float, float], give: float, t: float) -> None:
+        get = row.get
+        depth, rate = -get["film_thickness"], n[0] * row.slip[0] + n[1] * row.slip[1]
+        low, high = (self.contact.force(depth, rate + d, t) for d in (-give, give))
+        normal, friction = get["normal_force"], get["friction_force"]
+        # the depth is the difference of two lengths
+        blur = self.contact.exponent * 1e-15 * self.run.number("joint.clearance") / depth if depth > 0 else 0.0
+        self.take("contact law", inside(normal, low, high), (LAW + blur) * max(abs(high), abs(normal)), t)
+        want = -normal * n[0] - friction * n[1], -normal * n[1] + friction * n[0]
+        self.take("contact force on the pin", math.hypot(row.force[0] - want[0], row.force[1] - want[1]),
+                  SUM * (abs(normal) + abs(friction)), t)
+        sliding = n[0] * row.slip[1] - n[1] * row.slip[0] + row.rod_turn * self.bodies.pin_radius
+        self.take("sliding speed", abs(sliding - get["sliding_speed"]), 10 * give, t)
+        if not self.friction:
+            self.take("no friction", abs(friction), 0.0, t)
+            return
+        low, high = self.friction.range(get["sliding_speed"], 10 * give)
+        if self.friction.coulomb and abs(sliding) <= 1e3 * give:   # sticking, or about to
+            low, high = -self.friction.coefficient, self.friction.coefficient
+        self.take("friction law", inside(friction, low * normal, high * normal), LAW * normal * (abs(low) + abs(high)) / 2 + 1e-300, t)
+
+    def check_film(self, row: Row, n: tuple[float, float], give: float, t: float) -> None:
+        get = row.get
+        self.take("film force on the pin", math.hypot(row.force[0] - get["film_force_x"], row.force[1] - get["film_force_y"]), 0.0, t)
+        self.take("no contact force in a film", abs(get["normal_force"]) + abs(get["friction_force"]), 0.0, t)
+        if self.film == "oscillating_film":
+            self.take("no load along the line of centres", abs(row.force[0] * n[0] + row.force[1] * n[1]), SUM * math.hypot(*row.force), t)
+            return
+        eps, rate = get["eccentricity_ratio"], n[0] * row.slip[0] + n[1] * row.slip[1]
+        if self.run.text("lubrication.variant") != "closed_form" or not 1e-3 < eps < 1 or abs(rate) < 1e6 * give:
+            return
+        want = squeeze_film(self.run, row, row.slip)
+        others = [squeeze_film(self.run, row, (row.slip[0] + dx, row.slip[1] + dy)) for dx, dy in ((give, 0), (0, give))]
+        blur = sum(math.hypot(other[0] - want[0], other[1] - want[1]) for other in others)
+        blur += 1e-15 / (1 - eps) * math.hypot(*want)
+        self.take("film law", math.hypot(row.force[0] - want[0], row.force[1] - want[1]), LAW * math.hypot(*want) + 10 * blur, t)
+
+    def check_gas(self, row: Row, t: float) -> None:
+        get, gas = row.get, self.gas
+        self.take("gas force", abs((get["cylinder_pressure"] - gas.under) * gas.area - get["gas_force"]),
+                  SUM * (get["cylinder_pressure"] + gas.under) * gas.area, t)
+        volume = gas.volume(row.q)
+        self.take("cylinder volume", abs(volume - get["cylinder_volume"]), SUM * volume, t)
+        if not gas.jumps_near(row.q, 1e-7):
+            want = gas.pressure(row.q)
+            # an angle of many turns is rounded, and where the cylinder opens abruptly a little goes a long way
+            self.take("gas law", abs(get["cylinder_pressure"] - want), self.gas_tolerance * want, t)

@@ -1,0 +1,118 @@
+"""Running the program and reading what it wrote."""
+from __future__ import annotations
+
+import csv
+import dataclasses
+import math
+import re
+import subprocess
+import tempfile
+from pathlib import Path
+
+Values = dict[str, list]         # of a case: 'joint.clearance' -> [4e-05]
+Columns = dict[str, list[float]]  # of a trace: 'crank_angle' -> values
+
+
+@dataclasses.dataclass
+class Run:
+    """What one run of the program left: exit status, message, resolved case, columns, contact events and summary."""
+
+    status: int
+    message: str
+    case: Values = dataclasses.field(default_factory=dict)
+    columns: Columns = dataclasses.field(default_factory=dict)
+    events: list[dict[str, str]] = dataclasses.field(default_factory=list)
+    summary: dict[str, str] = dataclasses.field(default_factory=dict)
+
+    def number(self, key: str, default: float = 0.0) -> float:
+        """A value of the case; `default` where its group is absent."""
+        return self.case.get(key, [default])[0]
+
+    def pair(self, key: str) -> tuple[float, float]:
+        one, two = self.case[key]
+        return one, two
+
+    def text(self, key: str) -> str:
+        return self.case.get(key, [""])[0]
+
+    @property
+    def times(self) -> list[float]:
+        return self.columns["time"]
+
+    @property
+    def has_clearance(self) -> bool:
+        return self.text("joint.kind") == "clearance"
+
+
+def read_case(text: str) -> Values:
+    """The values of a resolved case file, by group and key."""
+    values: Values = {}
+    group = ""
+    for line in text.splitlines():
+        if line.startswith("&"):
+            group = line[1:].strip()
+        found = re.match(r"\s+(\w+) = (.*)$", line)
+        if not found:
+            continue
+        key, rest = found.groups()
+        quoted = re.match(r"'((?:[^']|'')*)'", rest)
+        if quoted:
+            values[f"{group}.{key}"] = [quoted[1]]
+        else:
+            rest = rest.split("!")[0]
+            values[f"{group}.{key}"] = [word.strip() == ".true." if word.strip().startswith(".t") or word.strip().startswith(".f")
+                                        else float(word) for word in rest.split(",")]
+    return values
+
+
+def read_columns(path: Path) -> Columns:
+    """A trace, without the units of its column names. Cells that are no numbers become NaN, which passes no check."""
+    with path.open() as file:
+        names = [name.split("[")[0] for name in file.readline().strip().split(",")]
+        rows = []
+        for line in file:
+            try:
+                row = [float(cell) for cell in line.split(",")]
+            except ValueError:
+                row = [math.nan] * len(names)
+            rows.append(row)
+    return {name: list(column) for name, column in zip(names, zip(*rows))} if rows else {name: [] for name in names}
+
+
+def read_run(folder: Path, name: str, status: int = 0, message: str = "") -> Run:
+    """What the case NAME left in a folder."""
+    run = Run(status, message)
+    for suffix in (".resolved.nml", ".csv", ".summary.csv"):
+        if not (folder / f"{name}{suffix}").exists():
+            return run
+    run.case = read_case((folder / f"{name}.resolved.nml").read_text())
+    run.columns = read_columns(folder / f"{name}.csv")
+    with (folder / f"{name}.summary.csv").open(newline="") as lines:
+        run.summary = {row[0]: row[1] for row in csv.reader(lines)}
+    events = folder / f"{name}.events.csv"
+    if events.exists():
+        with events.open(newline="") as lines:
+            run.events = list(csv.DictReader(lines))
+    return run
+
+
+def run_case(program: Path, case: Path, settings: dict[str, str], limit: float = 60.0) -> Run:
+    """Run one case with settings on top, in a folder that is gone afterwards. Status -1: it took more than `limit` seconds."""
+    with tempfile.TemporaryDirectory(prefix="judged") as out:
+        words = [str(program), "-q", "-j", "1", "-o", out]
+        for key, value in settings.items():
+            words += ["--set", f"{key}={value}"]
+        try:
+            done = subprocess.run([*words, str(case)], capture_output=True, text=True, timeout=limit, check=False)
+        except subprocess.TimeoutExpired:
+            return Run(-1, f"more than {limit:g} s")
+        return read_run(Path(out), case.stem, done.returncode, done.stderr.strip())
+
+
+def merged(one: Run, other: Run) -> Run:
+    """The rows of two runs of the same motion in the order of time; of rows at the same time the first run's stays."""
+    times, more = one.times, other.times
+    taken = set(times)
+    order = sorted([(t, 0, i) for i, t in enumerate(times)] + [(t, 1, i) for i, t in enumerate(more) if t not in taken])
+    sources = (one.columns, other.columns)
+    return dataclasses.replace(one, columns={name: [sources[k][name][i] for _, k, i in order] for name in one.columns})

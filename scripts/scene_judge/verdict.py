@@ -1,0 +1,113 @@
+"""Everything that is judged of one scene, in one verdict."""
+from __future__ import annotations
+
+import dataclasses
+import math
+import zlib
+from pathlib import Path
+
+from .energy import Balances, balances
+from .reruns import Comparison, Reruns
+from .rows import RowChecks
+from .trace import Run, merged, run_case
+
+MOST_STEPS = 60_000       # of a run that is traced at every step besides the grid
+GRID = 4_000              # rows of the grid
+ENERGY = 100.0            # relative tolerances that the energy may be off, for each revolution begun
+CEILING = 1e-3            # part of the energy beyond which a result is wrong whatever the tolerance
+FLOOR = 1e-10             # rounding
+
+
+@dataclasses.dataclass
+class Verdict:
+    """`faults` is empty where nothing is wrong; `notes` say what could not be judged."""
+
+    faults: list[str] = dataclasses.field(default_factory=list)
+    notes: list[str] = dataclasses.field(default_factory=list)
+    checks: int = 0                        # kinds of checks made on the rows
+    energy: Balances | None = None
+    states: Comparison | None = None
+
+
+def judge_rows(run: Run, verdict: Verdict) -> RowChecks:
+    """Mechanics and laws in every row."""
+    checks = RowChecks(run)
+    found = checks.check()
+    verdict.checks += len(found)
+    verdict.faults += [miss.text for miss in found.values() if not miss.share <= 1]
+    return checks
+
+
+def judge_energy(checks: RowChecks, verdict: Verdict) -> None:
+    """The balance of energy and the drift of speeds and positions from the integrals of their rates."""
+    run = checks.run
+    tolerance = min(run.number("integrator.relative_tolerance"), 1e-3)
+    angle = run.columns["crank_angle"]
+    allowed = max(FLOOR, min(CEILING, ENERGY * tolerance * max(1.0, abs(angle[-1] - angle[0]) / (2 * math.pi))))
+    found = verdict.energy = balances(checks)
+    if found.plain > allowed and not found.residual > allowed:
+        verdict.notes.append(f"energy not judged: {found.plain:.1g} of it is missing, but the quadrature is only known to {found.bound:.1g}")
+    if not found.residual <= allowed:
+        verdict.faults.append(f"energy not kept: {found.residual:.3g} of it against {allowed:.1g} allowed, at t = {found.time:.9g} s; "
+                              f"the column energy_residual says {found.claimed:.3g}")
+    if not found.differs <= allowed:
+        verdict.faults.append(f"the column energy_residual is off by {found.differs:.3g} of the energy, {allowed:.1g} allowed")
+    if not found.drift <= allowed:
+        verdict.faults.append(f"{found.worst} is not the integral of its rate: {found.drift:.3g} of its size off, {allowed:.1g} allowed")
+
+
+def judge_files(run: Run, resolved: bool = True) -> Verdict:
+    """What can be judged of the files of one run alone. `resolved`: rows lie closely enough for integrals over them."""
+    verdict = Verdict()
+    if run.status or len(run.times) < 2:
+        verdict.faults.append(f"no rows to judge: {run.summary.get('status', run.message)[:120]}")
+        return verdict
+    checks = judge_rows(run, verdict)
+    if resolved:
+        judge_energy(checks, verdict)
+    else:
+        verdict.notes.append("no integrals: too many steps to trace each, and contacts between the rows of the grid")
+    return verdict
+
+
+def judge_scene(program: Path, case: Path, settings: dict[str, str], limit: float = 60.0) -> Verdict:
+    """Run a scene with rows at every step and on a fine grid, judge them, and run it again with the other method."""
+    plain = {key: value for key, value in settings.items() if not key.startswith("output.")}
+    plain |= {"output.ideal_twin": ".false.", "output.digits": "17"}
+    rows = {key: value for key, value in settings.items() if key in ("output.interval", "output.samples_per_revolution")}
+    first = run_case(program, case, {**plain, **rows}, limit)
+    if first.status or not first.times:
+        return Verdict(notes=[f"not judged: {first.summary.get('status', first.message)[:120]}"])
+    span = float(first.summary["simulated_time"])
+    fine = run_case(program, case, {**plain, "output.interval": repr(span / GRID)}, limit)
+    resolved = float(first.summary["steps_accepted"]) <= MOST_STEPS
+    if resolved and not fine.status:
+        every = run_case(program, case, {**plain, "output.interval": repr(span), "output.every_step": ".true."}, limit)
+        fine = every if every.status else merged(every, fine)
+    verdict = judge_files(fine, resolved or not first.events)
+    seed = zlib.crc32(repr(sorted(settings.items())).encode())
+    found = verdict.states = Reruns(program, case, settings, first, limit, seed).compare()
+    if found.unjudged:
+        verdict.notes.append(f"states not compared: {found.unjudged}")
+    if not found.share <= 1:
+        verdict.faults.append(f"the state is {found.tolerances:.3g} grown tolerances off the other method's at t = {found.time:.9g} s "
+                              f"(horizon {found.horizon:.3g} s): {found.share:.3g} times what is allowed")
+    if found.no_statistics:
+        verdict.notes.append(f"statistics not compared: {found.no_statistics}")
+    for name, share in found.statistics.items():
+        if not share <= 1:
+            verdict.faults.append(f"{name} beyond the horizon: {share:.3g} times as far off as chance allows")
+    return verdict
+
+
+def summary_of(verdict: Verdict) -> list[str]:
+    """What was measured, what could not be judged and what is wrong, a line each."""
+    lines = [f"{verdict.checks} kinds of checks in every row"] if verdict.checks else ["nothing judged"]
+    if verdict.energy:
+        one = verdict.energy
+        lines.append(f"energy balances to {one.plain:.1e} of it by a quadrature known to {one.bound:.1e}; the column says {one.claimed:.1e}")
+    if verdict.states and not verdict.states.unjudged:
+        two = verdict.states
+        lines.append(f"state within {two.tolerances:.2g} grown tolerances of the other method's in {two.rows} rows up to {two.horizon:.3g} s")
+        lines += [f"{name} beyond that: {share:.2g} of what chance allows" for name, share in two.statistics.items()]
+    return lines + verdict.notes + [f"FAILED: {fault}" for fault in verdict.faults]

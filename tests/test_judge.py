@@ -1,0 +1,202 @@
+#!/usr/bin/env python3
+"""Whether the independent judge of runs (scripts/scene_judge) sees what is wrong.
+
+    tests/test_judge.py [--program FILE] [--mutants]
+
+Sound runs must pass. Then each column of their traces is changed a little, by a sign or a part in a thousand; programs say that they
+ran one case and ran another (another restitution, friction, damping, heat), or with a looser tolerance than asked for: the check
+that is meant for it must go red. --mutants builds copies of the program with one line of their physics broken, and judges those: a
+minute or so each. Ends with the line "N passed, N failed".
+"""
+from __future__ import annotations
+
+import argparse
+import copy
+import dataclasses
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Callable
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "scripts"))
+from scene_judge.trace import Run, merged, run_case  # noqa: E402
+from scene_judge.verdict import judge_files, judge_scene, summary_of  # noqa: E402
+
+counts = {"passed": 0, "failed": 0}
+
+#: Runs by name: the case, and settings that keep it short. Between them they have every law and both joints.
+SCENES = {
+    "dry": ("flores/friction_050", {"integrator.revolutions": "0.3"}),
+    "film": ("sim_V", {"integrator.method": "'auto'", "integrator.revolutions": "1.2", "initial.crank_angle_deg": "170"}),
+    "contact": ("sim_V_oscillating", {"integrator.method": "'auto'", "integrator.revolutions": "0.25", "initial.crank_angle_deg": "340"}),
+    "ideal": ("flores/ideal", {"drive.kind": "'free'", "drive.damping": "0.03", "mechanism.gravity": "9.8", "initial.crank_angle_deg": "20"}),
+}
+
+#: (what is changed, scene, column, change of (value, row), what the verdict must say)
+CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
+    ("kinetic energy a part in a million too large", "dry", "energy", lambda v, i: v * (1 + 1e-6), "energy column"),
+    ("residual of energy claimed to be large", "dry", "energy_residual", lambda v, i: v + 1.0, "column energy_residual"),
+    ("joint's force along x off by a part in a million", "dry", "pin_force_x", lambda v, i: v * (1 + 1e-6), "Newton, piston"),
+    ("joint's force along y with the other sign", "dry", "pin_force_y", lambda v, i: -v, "guide force"),
+    ("guide force with the other sign", "film", "guide_force", lambda v, i: -v, "guide force"),
+    ("force on the rod off", "film", "crankpin_force_y", lambda v, i: v * 1.001, "Newton, rod along y"),
+    ("force on the crank's bearing off", "film", "crank_bearing_force_x", lambda v, i: v * 1.001, "Newton, crank along x"),
+    ("force on the frame off", "film", "frame_force_x", lambda v, i: v * 1.001, "force on the frame, x"),
+    ("crank acceleration off", "film", "crank_acceleration", lambda v, i: v * 1.001, "Euler, crank"),
+    ("rod acceleration off", "film", "rod_acceleration", lambda v, i: v * 1.001, "Euler, rod"),
+    ("piston acceleration with the other sign", "ideal", "piston_acceleration", lambda v, i: -v, "Newton, piston"),
+    ("crank moment that drives", "film", "crank_moment", lambda v, i: v + 1.0, "Euler, crank"),
+    ("piston in another place", "film", "piston_position", lambda v, i: v + 1e-9, "pin in the bearing, x"),
+    ("eccentricity of another pin", "contact", "eccentricity_y", lambda v, i: v * 1.001, "pin in the bearing, y"),
+    ("thicker film", "film", "film_thickness", lambda v, i: v * (1 + 1e-9), "film thickness"),
+    ("harder contact", "contact", "normal_force", lambda v, i: v * (1 + 1e-5), "contact law"),
+    ("friction with the sliding", "contact", "friction_force", lambda v, i: -v, "friction law"),
+    ("faster sliding", "dry", "sliding_speed", lambda v, i: v * (1 + 1e-6), "sliding speed"),
+    ("another film", "film", "film_force_x", lambda v, i: v * 1.001, "film force on the pin"),
+    ("more pressure", "film", "cylinder_pressure", lambda v, i: v * 1.001, "gas law"),
+    ("another gas force", "film", "gas_force", lambda v, i: -v, "gas force"),
+    ("another cylinder", "film", "cylinder_volume", lambda v, i: v * 1.001, "cylinder volume"),
+    ("crank speed that is not the rate of the angle", "ideal", "crank_angle", lambda v, i: v * 1.01, "is not the integral of its rate"),
+    ("one row that is no number", "dry", "crank_speed", lambda v, i: float("nan") if i == 50 else v, "Newton, crank"),
+]
+
+#: (what the program does, scene, value that it runs with instead of the one that it says, what the verdict must say)
+LIARS = [
+    ("another restitution", "dry", "contact.restitution", "0.89", "contact law"),
+    ("another friction", "dry", "friction.coefficient", "0.051", "friction law"),
+    ("more damping", "ideal", "drive.damping", "0.031", "Euler, crank"),
+    ("more heat", "film", "combustion.heat", "166.0", "gas law"),
+    ("thicker oil", "film", "lubrication.viscosity", "0.0118", "film law"),
+    ("a heavier piston", "ideal", "mechanism.piston_mass", "0.92", "Newton, piston"),
+    ("less gravity", "film", "mechanism.gravity", "9.8", "Newton, piston"),
+    ("a looser tolerance than asked for, smooth", "ideal", "integrator.relative_tolerance", "1e-3", "grown tolerances off"),
+    ("a looser tolerance than asked for, in contact", "contact", "integrator.relative_tolerance", "1e-4", "grown tolerances off"),
+    ("a looser tolerance than asked for, film", "film", "integrator.relative_tolerance", "1e-3", "energy not kept"),
+    ("a heavier piston in one method alone", "dry", "mechanism.piston_mass", "0.25", "beyond the horizon"),
+]
+
+#: (what is broken, file, what it says, what it says in the mutant, scene, what the verdict must say)
+MUTANTS = [
+    ("contact damping gives energy", "src/contact/lankarani_nikravesh.f90", "1 + self%damping*min(", "1 - self%damping*min(", "dry", "contact law"),
+    ("friction drives", "src/friction/ambrosio.f90", "ratio = -sign(ratio, sliding_speed)", "ratio = sign(ratio, sliding_speed)", "dry", "friction law"),
+    ("film pulls as it withdraws", "src/lubrication/pinkus_sternlicht.f90", "withdrawal_sign*radial", "withdrawal_sign*(-radial)", "film", "film law"),
+    ("gas loses no heat as it expands", "src/combustion/gas_cycle.f90", "values(i) = p*(volume", "values(i) = 1.001_dp*p*(volume", "film", "gas law"),
+]
+
+
+def check(name: str, condition: bool, said: str = "") -> None:
+    counts["passed" if condition else "failed"] += 1
+    if not condition:
+        print(f"FAILED: {name}" + (f": {said}" if said else ""))
+
+
+def traced(program: Path, scene: str) -> Run:
+    """A run with rows at every step and on a grid."""
+    name, settings = SCENES[scene]
+    case, plain = ROOT / "cases" / f"{name}.nml", {**settings, "output.digits": "17", "output.ideal_twin": ".false."}
+    first = run_case(program, case, {**plain, "output.every_step": ".true."})
+    if first.status:
+        sys.exit(f"{scene}: {first.message}\n0 passed, 1 failed")
+    return merged(first, run_case(program, case, {**plain, "output.interval": repr(float(first.summary["simulated_time"]) / 4000)}))
+
+
+def changed(run: Run, column: str, change: Callable[[float, int], float]) -> Run:
+    columns = dict(run.columns)
+    columns[column] = [change(value, i) for i, value in enumerate(columns[column])]
+    return dataclasses.replace(run, columns=columns)
+
+
+def test_corruptions(program: Path) -> None:
+    """A column is changed: the check that reads it goes red."""
+    runs = {scene: traced(program, scene) for scene in SCENES}
+    for scene, run in runs.items():
+        verdict = judge_files(copy.deepcopy(run))
+        check(f"{scene}: sound", not verdict.faults, "; ".join(verdict.faults))
+        check(f"{scene}: checked", verdict.checks > 10 and verdict.energy is not None, "; ".join(summary_of(verdict)))
+        phases = set(run.columns.get("phase", [0.0]))
+        check(f"{scene}: has the phases that it is there for", phases == {"dry": {0, 2}, "contact": {1, 2}, "film": {1}, "ideal": {0}}[scene],
+              str(phases))
+    for what, scene, column, change, says in CORRUPTIONS:
+        faults = judge_files(changed(runs[scene], column, change)).faults
+        check(f"{what}: not seen", any(says in fault for fault in faults), "; ".join(faults) or "no fault found")
+
+
+LIAR = """#!/usr/bin/env python3
+# Runs a program with one value changed, and writes into the resolved case that it was not.
+import re, subprocess, sys
+from pathlib import Path
+words, key, value = sys.argv[1:], {key!r}, {value!r}
+out, group, name = words[words.index("-o") + 1], *key.split(".")
+instead = [] if {once} and any("relative_tolerance=" in word for word in words) else ["--set", key + "=" + value]
+code = subprocess.run([{program!r}, *words[:-1], *instead, words[-1]]).returncode
+for file in Path(out).glob("*.resolved.nml"):
+    text = file.read_text()
+    file.write_text(re.sub(r"(?<=\\n  )" + name + r" = \\S+", name + " = " + {said!r}, text) if instead else text)
+sys.exit(code)
+"""
+
+
+def liar(folder: Path, program: Path, key: str, value: str, said: float, once: bool) -> Path:
+    """A program that runs with one value and says that it ran with another. `once`: not where a tolerance is asked for, as in the
+    runs that are compared with."""
+    file = folder / "liar"
+    file.write_text(LIAR.format(program=str(program.resolve()), key=key, value=value, said=repr(said), once=once))
+    file.chmod(0o755)
+    return file
+
+
+def test_liars(program: Path, folder: Path) -> None:
+    """A program with other physics than it says."""
+    for what, scene, key, value, says in LIARS:
+        name, settings = SCENES[scene]
+        case = ROOT / "cases" / f"{name}.nml"
+        said = run_case(program, case, {**settings, "output.ideal_twin": ".false."}).number(key)
+        verdict = judge_scene(liar(folder, program, key, value, said, once="tolerance" in what or "alone" in what), case, settings)
+        check(f"a program with {what}: not seen", any(says in fault for fault in verdict.faults), "; ".join(summary_of(verdict)))
+
+
+def test_mutants(folder: Path) -> None:
+    """Copies of the program with one line broken."""
+    for what, file, old, new, scene, says in MUTANTS:
+        tree = folder / "mutant"
+        shutil.rmtree(tree, ignore_errors=True)
+        shutil.copytree(ROOT, tree, ignore=shutil.ignore_patterns("build", ".git", ".venv", "results"))
+        text = (tree / file).read_text()
+        check(f"mutant ({what}): the line is there", text.count(old) == 1, file)
+        (tree / file).write_text(text.replace(old, new))
+        path = {**os.environ, "PATH": f"{ROOT / '.venv' / 'bin'}:{os.environ['PATH']}"}
+        built = subprocess.run(["fpm", "build", "--profile", "release"], cwd=tree, env=path, capture_output=True, text=True, check=False)
+        programs = [one for one in tree.glob("build/*/app/gudgeon") if one.is_file()]
+        if built.returncode or not programs:
+            check(f"mutant ({what}): built", False, built.stderr[-300:])
+            continue
+        faults = judge_files(traced(programs[0], scene)).faults
+        check(f"mutant ({what}): not seen", any(says in fault for fault in faults), "; ".join(faults) or "no fault found")
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", type=Path, help="this program instead of a release build")
+    parser.add_argument("--mutants", action="store_true", help="build and judge broken copies of the program too")
+    options = parser.parse_args()
+    program = options.program
+    if not program:
+        run = subprocess.run([ROOT / "scripts" / "build.sh"], capture_output=True, text=True, check=False)
+        if run.returncode:
+            sys.exit(f"{run.stderr}\n0 passed, 1 failed")
+        program = ROOT / run.stdout.strip()
+    test_corruptions(program)
+    with tempfile.TemporaryDirectory(prefix="judge") as folder:
+        test_liars(program, Path(folder))
+        if options.mutants:
+            test_mutants(Path(folder))
+    print(f"{counts['passed']} passed, {counts['failed']} failed")
+    return 1 if counts["failed"] else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
