@@ -2,7 +2,8 @@
 module case_lock
   use errors, only: error_t, fail, status_output
   use text_tools, only: printable
-  use posix, only: open_to_lock, lock_file, is_file, close_file, remove_file, error_text, error_interrupted, error_locked
+  use posix, only: open_to_lock, lock_file, is_file, close_file, remove_file, error_text, error_interrupted, error_locked, &
+    error_exists, error_no_entry
   implicit none
   private
   public :: case_lock_t
@@ -32,6 +33,7 @@ contains
     do try = 1, most_tries
       call open_to_lock(self%path, self%descriptor, status)
       if (status == error_interrupted) cycle
+      if ((status == error_exists .or. status == error_no_entry) .and. try < most_tries) cycle   ! another run is just beginning
       if (status /= 0) then
         self%descriptor = -1
         call fail(error, printable(self%path, 200)//': '//error_text(status), status_output)

@@ -1,22 +1,30 @@
 !> The few calls of the C library that Fortran has no words for, as thin bindings for Linux. Numbers of errors are
 !> returned, never kept: two threads do not meet here.
 module posix
-  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_intptr_t, c_long, c_null_char, c_ptr, &
+  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_intptr_t, c_long, c_short, c_null_char, c_ptr, &
     c_size_t, c_loc, c_f_pointer, c_associated
   implicit none
   private
-  public :: open_for_reading, hold_file, open_for_writing, open_for_appending, open_to_lock, lock_file, is_file, absolute_path, &
-    read_at, read_bytes, write_bytes, truncate_file, synchronise_file, close_file, rename_file, remove_file, remove_directory, &
-    make_directory, is_terminal, error_text, hold_interrupts, interrupted, fill_standard_descriptors, ignore_write_signals, quit
+  public :: open_for_reading, open_standard_input, hold_file, open_for_writing, open_for_appending, open_to_lock, lock_file, &
+    is_file, file_length, absolute_path, read_at, read_bytes, write_bytes, truncate_file, reserve_file, synchronise_file, &
+    synchronise_folder, close_file, rename_file, remove_file, remove_directory, make_directory, is_terminal, wait_for_input, &
+    error_text, hold_interrupts, interrupted, fill_standard_descriptors, ignore_write_signals, quit
   public :: error_no_entry, error_interrupted, error_locked, error_exists, error_is_directory, error_no_space, &
-    error_broken_pipe
+    error_broken_pipe, error_not_regular, error_is_link
 
-  !> Error numbers of Linux.
+  !> Error numbers of Linux, and two of this module: a file that is neither a regular one nor a folder, and a symbolic link where
+  !> none is followed.
   integer, parameter :: error_no_entry = 2, error_interrupted = 4, error_locked = 11, error_exists = 17, &
-    error_not_directory = 20, error_is_directory = 21, error_no_space = 28, error_broken_pipe = 32
+    error_not_directory = 20, error_is_directory = 21, error_invalid = 22, error_no_space = 28, error_broken_pipe = 32, &
+    error_not_regular = -1, error_is_link = -2
 
-  integer(c_int), parameter :: o_cloexec = 524288, read_only = 0, write_only = 1, o_creat = 64, o_trunc = 512, &
-    o_append = 1024
+  !> Flags of open and statx, as far as they are the same on every processor.
+  integer(c_int), parameter :: read_only = 0, write_only = 1, read_and_write = 2, o_creat = 64, o_excl = 128, o_append = 1024, &
+    o_nonblock = 2048, o_cloexec = 524288, o_path = 2097152
+  integer(c_int), parameter :: at_working_folder = -100, at_link_itself = 256, at_empty_path = 4096, basic_status = 2047
+
+  !> Kinds of files, as in their mode.
+  integer, parameter :: kind_mask = 61440, kind_folder = 16384, kind_regular = 32768, kind_link = 40960
   integer(c_int), parameter :: lock_exclusive = 2, lock_without_waiting = 4
   integer(c_int), parameter :: file_mode = 438, folder_mode = 511   !! rw-rw-rw-, rwxrwxrwx, before the umask
   integer(c_int), parameter :: signal_hangup = 1, signal_interrupt = 2, signal_pipe = 13, signal_terminate = 15, &
@@ -30,10 +38,22 @@ module posix
     integer(c_long) :: words(16) = 0
   end type signal_set_t
 
-  !> Room for a struct stat of Linux, which begins with the device and the number of the file on it.
+  !> The struct statx of Linux, the same on every processor.
   type, bind(c) :: file_status_t
-    integer(c_long) :: device = 0, number = 0, rest(30) = 0
+    integer(c_int) :: mask = 0, block_size = 0
+    integer(c_long) :: attributes = 0
+    integer(c_int) :: links = 0, user = 0, group = 0
+    integer(c_short) :: mode = 0, spare = 0
+    integer(c_long) :: number = 0, length = 0, blocks = 0, known_attributes = 0, times(8) = 0
+    integer(c_int) :: special(2) = 0, device(2) = 0
+    integer(c_long) :: rest(14) = 0
   end type file_status_t
+
+  !> The struct pollfd of C.
+  type, bind(c) :: poll_t
+    integer(c_int) :: descriptor
+    integer(c_short) :: wanted, found
+  end type poll_t
 
   interface
     function c_open(path, flags, mode) bind(c, name='open') result(descriptor)
@@ -86,18 +106,26 @@ module posix
       integer(c_int), value :: descriptor, operation
       integer(c_int) :: status
     end function c_flock
-    function c_fstat(descriptor, file) bind(c, name='fstat') result(status)
-      import :: c_int, file_status_t
-      integer(c_int), value :: descriptor
-      type(file_status_t), intent(inout) :: file
+    function c_fallocate(descriptor, mode, offset, length) bind(c, name='fallocate') result(status)
+      import :: c_int, c_long
+      integer(c_int), value :: descriptor, mode
+      integer(c_long), value :: offset, length
       integer(c_int) :: status
-    end function c_fstat
-    function c_stat(path, file) bind(c, name='stat') result(status)
+    end function c_fallocate
+    function c_statx(folder, path, flags, mask, file) bind(c, name='statx') result(status)
       import :: c_char, c_int, file_status_t
+      integer(c_int), value :: folder, flags, mask
       character(kind=c_char), intent(in) :: path(*)
       type(file_status_t), intent(inout) :: file
       integer(c_int) :: status
-    end function c_stat
+    end function c_statx
+    function c_poll(files, number, milliseconds) bind(c, name='poll') result(ready)
+      import :: c_int, c_long, poll_t
+      type(poll_t), intent(inout) :: files
+      integer(c_long), value :: number
+      integer(c_int), value :: milliseconds
+      integer(c_int) :: ready
+    end function c_poll
     function c_close(descriptor) bind(c, name='close') result(status)
       import :: c_int
       integer(c_int), value :: descriptor
@@ -178,38 +206,87 @@ module posix
 
 contains
 
-  !> Open a file to be read; `status` is 0 or the error number.
+  !> Open a regular file to be read, never waiting for the other end of a pipe; `status` is 0 or the error number.
   subroutine open_for_reading(path, descriptor, status)
     character(len=*), intent(in) :: path
     integer, intent(out) :: descriptor, status
-    descriptor = c_open(path//c_null_char, ior(read_only, o_cloexec), 0_c_int)
-    status = outcome(descriptor)
+    call open_regular(path, read_only, .true., descriptor, status)
   end subroutine open_for_reading
+
+  !> Open what the program was given as its standard input, also where that is a pipe or a terminal: see `wait_for_input`.
+  subroutine open_standard_input(descriptor, status)
+    integer, intent(out) :: descriptor, status
+    descriptor = c_open('/dev/stdin'//c_null_char, ior(read_only, o_cloexec), 0_c_int)
+    status = outcome(descriptor)
+  end subroutine open_standard_input
 
   !> Hold on to a file, whatever it is, without opening it: it goes on to be there without a name too until it is closed.
   !> `descriptor` is below 0 where there is none.
   subroutine hold_file(path, descriptor)
     character(len=*), intent(in) :: path
     integer, intent(out) :: descriptor
-    integer(c_int), parameter :: o_path = 2097152
     descriptor = c_open(path//c_null_char, ior(o_path, o_cloexec), 0_c_int)
   end subroutine hold_file
 
-  !> Create a file, or empty the one that is there, to be written; `status` is 0 or the error number.
+  !> Create a file to be written, always a new one: what had its name is removed before. (To follow a link that stands there would
+  !> let who can write into the folder have any file of the user overwritten.) `status` is 0 or the error number.
   subroutine open_for_writing(path, descriptor, status)
     character(len=*), intent(in) :: path
     integer, intent(out) :: descriptor, status
-    descriptor = c_open(path//c_null_char, ior(ior(write_only, o_cloexec), ior(o_creat, o_trunc)), file_mode)
-    status = outcome(descriptor)
+    descriptor = -1
+    call remove_file(path, status)
+    if (status == 0 .or. status == error_no_entry) call create_file(path, descriptor, status)
   end subroutine open_for_writing
 
-  !> Open a file that is only there to be locked, creating it where it is missing; `status` is 0 or the error number.
+  !> Create a file that is not there yet. A link is in its way like any other file.
+  subroutine create_file(path, descriptor, status)
+    character(len=*), intent(in) :: path
+    integer, intent(out) :: descriptor, status
+    descriptor = c_open(path//c_null_char, ior(ior(read_and_write, o_cloexec), ior(o_creat, o_excl)), file_mode)
+    status = outcome(descriptor)
+  end subroutine create_file
+
+  !> Open a file that is only there to be locked, creating it where it is missing; `status` is 0 or the error number, also that
+  !> of a file that another program has just made or removed: `error_exists` or `error_no_entry`.
   subroutine open_to_lock(path, descriptor, status)
     character(len=*), intent(in) :: path
     integer, intent(out) :: descriptor, status
-    descriptor = c_open(path//c_null_char, ior(ior(write_only, o_cloexec), o_creat), file_mode)
-    status = outcome(descriptor)
+    call open_regular(path, read_and_write, .false., descriptor, status)
+    if (status == error_no_entry) call create_file(path, descriptor, status)
+    if (status /= error_exists) return
+    if (kind_of_file(at_working_folder, path, at_link_itself) == kind_link) status = error_is_link   ! to nowhere
   end subroutine open_to_lock
+
+  !> Open a file to write behind what it holds; `status` is 0 or the error number.
+  subroutine open_for_appending(path, descriptor, status)
+    character(len=*), intent(in) :: path
+    integer, intent(out) :: descriptor, status
+    call open_regular(path, ior(write_only, o_append), .false., descriptor, status)
+  end subroutine open_for_appending
+
+  !> Open a file that is there, but only a regular one, and through a symbolic link only where that may be.
+  subroutine open_regular(path, flags, through_link, descriptor, status)
+    character(len=*), intent(in) :: path
+    integer(c_int), intent(in) :: flags
+    logical, intent(in) :: through_link
+    integer, intent(out) :: descriptor, status
+    integer :: ignored
+    descriptor = c_open(path//c_null_char, ior(flags, ior(o_nonblock, o_cloexec)), 0_c_int)
+    status = outcome(descriptor)
+    if (status /= 0) return
+    select case (kind_of_file(int(descriptor, c_int), '', at_empty_path))
+    case (kind_regular)
+      if (through_link .or. is_file(path, descriptor)) return
+      status = error_no_entry
+      if (kind_of_file(at_working_folder, path, at_link_itself) == kind_link) status = error_is_link
+    case (kind_folder)
+      status = error_is_directory
+    case default
+      status = error_not_regular
+    end select
+    call close_file(descriptor, ignored)
+    descriptor = -1
+  end subroutine open_regular
 
   !> Lock an open file for this opening of it alone, until it is closed or the program ends in any way. `status` is
   !> `error_locked` where another opening holds it.
@@ -219,26 +296,36 @@ contains
     status = outcome(int(c_flock(int(descriptor, c_int), ior(lock_exclusive, lock_without_waiting))))
   end subroutine lock_file
 
-  !> Whether `path` is the name of this open file.
+  !> Whether `path` is the name of this open file, and not of a link to it.
   function is_file(path, descriptor) result(answer)
     character(len=*), intent(in) :: path
     integer, intent(in) :: descriptor
     logical :: answer
     type(file_status_t) :: named, opened
-    integer(c_int) :: status
     answer = .false.
-    status = c_stat(path//c_null_char, named)
-    if (status == 0) status = c_fstat(int(descriptor, c_int), opened)
-    if (status == 0) answer = named%device == opened%device .and. named%number == opened%number
+    if (c_statx(at_working_folder, path//c_null_char, at_link_itself, basic_status, named) /= 0) return
+    if (c_statx(int(descriptor, c_int), ''//c_null_char, at_empty_path, basic_status, opened) /= 0) return
+    answer = all(named%device == opened%device) .and. named%number == opened%number
   end function is_file
 
-  !> Open a file to write behind what it holds; `status` is 0 or the error number.
-  subroutine open_for_appending(path, descriptor, status)
+  !> Bytes in a file, below 0 where there is none.
+  function file_length(path) result(length)
     character(len=*), intent(in) :: path
-    integer, intent(out) :: descriptor, status
-    descriptor = c_open(path//c_null_char, ior(ior(write_only, o_cloexec), ior(o_creat, o_append)), file_mode)
-    status = outcome(descriptor)
-  end subroutine open_for_appending
+    integer(c_long) :: length
+    type(file_status_t) :: file
+    length = -1
+    if (c_statx(at_working_folder, path//c_null_char, 0_c_int, basic_status, file) == 0) length = file%length
+  end function file_length
+
+  !> The kind of a file, found as statx finds it; 0 where it cannot be told.
+  function kind_of_file(folder, path, flags) result(kind_bits)
+    integer(c_int), intent(in) :: folder, flags
+    character(len=*), intent(in) :: path
+    integer :: kind_bits
+    type(file_status_t) :: file
+    kind_bits = 0
+    if (c_statx(folder, path//c_null_char, flags, basic_status, file) == 0) kind_bits = iand(int(file%mode), kind_mask)
+  end function kind_of_file
 
   !> One read: `done` bytes of `buffer` are filled, 0 at the end of the file.
   subroutine read_bytes(descriptor, buffer, done, status)
@@ -280,6 +367,31 @@ contains
     integer, intent(out) :: status
     status = outcome(int(c_fsync(int(descriptor, c_int))))
   end subroutine synchronise_file
+
+  !> Wait until the names in the folder of `path` are on its disk; where the file system cannot tell, do not wait.
+  subroutine synchronise_folder(path, status)
+    character(len=*), intent(in) :: path   !! of a file
+    integer, intent(out) :: status
+    integer :: descriptor, ignored
+    descriptor = c_open('./'(:merge(0, 2, index(path, '/') > 0))//path(:index(path, '/', back=.true.))//c_null_char, &
+                        ior(read_only, o_cloexec), 0_c_int)
+    status = outcome(descriptor)
+    if (status /= 0) return
+    call synchronise_file(descriptor, status)
+    if (status == error_invalid) status = 0
+    call close_file(descriptor, ignored)
+  end subroutine synchronise_folder
+
+  !> Have the disk keep room for the first `length` bytes of an open file; nothing happens where the file system cannot.
+  !> `status` is `error_no_space` where there is none.
+  subroutine reserve_file(descriptor, length, status)
+    integer, intent(in) :: descriptor
+    integer(c_long), intent(in) :: length
+    integer, intent(out) :: status
+    integer(c_int), parameter :: keep_length = 1
+    status = outcome(int(c_fallocate(int(descriptor, c_int), keep_length, 0_c_long, length)))
+    if (status /= error_no_space) status = 0
+  end subroutine reserve_file
 
   !> One write: `done` bytes of `text` went out, possibly fewer than there are.
   subroutine write_bytes(descriptor, text, done, status)
@@ -328,15 +440,14 @@ contains
   subroutine make_directory(path, status)
     character(len=*), intent(in) :: path
     integer, intent(out) :: status
-    integer :: i, descriptor, ignored
+    integer :: i
     do i = 2, len(path)
       if (path(i:i) == '/') status = c_mkdir(path(:i - 1)//c_null_char, folder_mode)
     end do
     status = outcome(int(c_mkdir(path//c_null_char, folder_mode)))
     if (status /= error_exists) return
-    call open_for_reading(path//'/', descriptor, status)
-    if (status == 0) call close_file(descriptor, ignored)
-    if (status /= error_not_directory) status = 0
+    status = 0
+    if (kind_of_file(at_working_folder, path, 0_c_int) /= kind_folder) status = error_not_directory
   end subroutine make_directory
 
   !> Whether a file descriptor (1 standard output, 2 standard error) is a terminal.
@@ -346,12 +457,25 @@ contains
     answer = c_isatty(int(descriptor, c_int)) == 1
   end function is_terminal
 
+  !> Wait for bytes to read, or the end of them, so many milliseconds at most. `is_there` is true also where reading would fail.
+  subroutine wait_for_input(descriptor, milliseconds, is_there)
+    integer, intent(in) :: descriptor, milliseconds
+    logical, intent(out) :: is_there
+    integer(c_short), parameter :: to_read = 1
+    type(poll_t) :: file
+    file = poll_t(int(descriptor, c_int), to_read, 0_c_short)
+    is_there = c_poll(file, 1_c_long, int(milliseconds, c_int)) > 0
+  end subroutine wait_for_input
+
   !> What an error number means, in the words of the system.
   function error_text(number) result(text)
     integer, intent(in) :: number
     character(len=:), allocatable :: text
     character(kind=c_char, len=1) :: buffer(256)
     integer :: i
+    if (number == error_not_regular) text = 'not a regular file'
+    if (number == error_is_link) text = 'a symbolic link'
+    if (number < 0) return
     if (c_strerror_r(int(number, c_int), buffer, size(buffer, kind=c_size_t)) /= 0) buffer(1) = c_null_char
     text = ''
     do i = 1, size(buffer)
@@ -393,7 +517,7 @@ contains
   !> result file would, and what goes to standard output would go into it.
   subroutine fill_standard_descriptors()
     integer :: descriptor
-    integer(c_int), parameter :: read_and_write = 2, last_standard = 2
+    integer(c_int), parameter :: last_standard = 2
     integer(c_int) :: unused
     do
       descriptor = c_open('/dev/null'//c_null_char, read_and_write, 0_c_int)

@@ -5,8 +5,8 @@ module result_file
   use, intrinsic :: iso_c_binding, only: c_long
   use errors, only: error_t, fail, status_output
   use text_tools, only: printable
-  use posix, only: hold_file, open_for_writing, open_for_appending, write_bytes, truncate_file, synchronise_file, close_file, &
-    rename_file, remove_file, error_text, error_interrupted
+  use posix, only: hold_file, open_for_writing, open_for_appending, write_bytes, truncate_file, reserve_file, &
+    synchronise_file, close_file, rename_file, remove_file, error_text, error_interrupted
   implicit none
   private
   public :: result_file_t, write_text, remove_unfinished
@@ -21,18 +21,21 @@ module result_file
     character(len=:), allocatable, private :: path      !! final name
     integer, private :: descriptor = -1
     integer(c_long), private :: written = 0             !! bytes of whole rows in the file
+    logical, private :: is_reserved = .false.           !! the disk keeps more room for it than it has bytes
     integer, private :: status = 0                      !! error number of the first write that failed
   contains
     procedure :: open => open_result
     procedure :: reopen
     procedure :: put
     procedure :: make_room
+    procedure :: reserve
     procedure :: flush => flush_rows
     procedure :: synchronise
     procedure :: length
     procedure :: has_failed
     procedure :: conclude
     procedure :: close => close_result
+    procedure :: leave
     procedure :: abandon
   end type result_file_t
 
@@ -48,6 +51,7 @@ contains
     self%used = 0
     self%written = 0
     self%status = 0
+    self%is_reserved = .false.
     do
       call open_for_writing(path//'.part', self%descriptor, status)
       if (status /= error_interrupted) exit
@@ -94,6 +98,19 @@ contains
     if (.not. allocated(self%buffer)) allocate (character(len=buffer_size) :: self%buffer)
   end subroutine make_room
 
+  !> Have the disk keep room for so many bytes, before any is written: they can be written even when it is full then. Error: it
+  !> is full already.
+  subroutine reserve(self, length, error)
+    class(result_file_t), intent(inout) :: self
+    integer, intent(in) :: length
+    type(error_t), allocatable, intent(out) :: error
+    integer :: status
+    if (self%descriptor < 0) return
+    call reserve_file(self%descriptor, int(length, c_long), status)
+    self%is_reserved = status == 0
+    if (status /= 0) call report(self, status, error)
+  end subroutine reserve
+
   !> Write out what waits in the buffer.
   subroutine flush_rows(self)
     class(result_file_t), intent(inout) :: self
@@ -101,16 +118,22 @@ contains
     self%used = 0
   end subroutine flush_rows
 
-  !> Write out what waits, down to the disk.
+  !> Write out what waits, down to the disk. A failure ends the writing: the system may have thrown away what it could not write.
   subroutine synchronise(self, error)
     class(result_file_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
     integer :: status
     if (self%descriptor < 0) return
     call self%flush()
-    status = self%status
-    if (status == 0) call synchronise_file(self%descriptor, status)
-    if (status /= 0) call report(self, status, error)
+    status = 0
+    if (self%is_reserved) call truncate_file(self%descriptor, self%written, status)   ! what is beyond goes back to the disk
+    self%is_reserved = .false.
+    if (self%status == 0) call synchronise_file(self%descriptor, status)
+    if (self%status == 0 .and. status /= 0) then
+      !$omp atomic write
+      self%status = status
+    end if
+    if (self%status /= 0) call report(self, self%status, error)
   end subroutine synchronise
 
   !> Bytes of whole rows that are in the file.
@@ -164,6 +187,16 @@ contains
     if (self%status /= 0) call report(self, self%status, error)
   end subroutine close_result
 
+  !> Leave what is written under the temporary name.
+  subroutine leave(self)
+    class(result_file_t), intent(inout) :: self
+    integer :: ignored
+    if (self%descriptor < 0) return
+    call self%flush()
+    call close_file(self%descriptor, ignored)
+    self%descriptor = -1
+  end subroutine leave
+
   !> Give the file up: nothing of it stays.
   subroutine abandon(self)
     class(result_file_t), intent(inout) :: self
@@ -175,7 +208,7 @@ contains
     self%used = 0
   end subroutine abandon
 
-  !> A small file, written whole or not at all.
+  !> A small file, written whole down to the disk, or not at all.
   subroutine write_text(path, text, error)
     character(len=*), intent(in) :: path, text
     type(error_t), allocatable, intent(out) :: error
@@ -183,7 +216,12 @@ contains
     call file%open(path, error)
     if (allocated(error)) return
     call write_rows(file, text)
-    call file%close(error, whole_only=.true.)
+    call file%synchronise(error)
+    if (allocated(error)) then
+      call file%abandon()
+    else
+      call file%close(error, whole_only=.true.)
+    end if
   end subroutine write_text
 
   !> Remove what a killed program has left of a file under its temporary name.
