@@ -3,16 +3,15 @@ program gudgeon
   use, intrinsic :: iso_fortran_env, only: int64, compiler_options
   use kinds, only: dp
   use omp_lib, only: omp_get_num_procs
-  use errors, only: error_t, fail, status_ok, status_integration, status_output
+  use errors, only: error_t, status_ok, status_output
   use command_line, only: command_line_t, parse_command_line, program_arguments, help_text
   use case_file, only: template
-  use case_runner, only: run_case_file
+  use case_runner, only: case_job_t
   use study_runner, only: run_study_file
   use study_file, only: study_template
   use progress, only: progress_wanted, tell
   use summary, only: build_advice
-  use text_tools, only: printable
-  use posix, only: fill_standard_descriptors, hold_interrupts, interrupted, ignore_write_signals, write_bytes, error_text, &
+  use posix, only: fill_standard_descriptors, hold_interrupts, ignore_write_signals, write_bytes, error_text, &
     error_interrupted, error_broken_pipe, quit
   use version, only: program_version
   implicit none
@@ -44,27 +43,33 @@ program gudgeon
 
 contains
 
-  !> Run every case, several side by side, and with threads to spare their ideal twins beside them; the highest exit status
-  !> wins.
+  !> Run every case and the ideal twins that they ask for, several side by side; the highest exit status wins.
   subroutine run_all(options, status)
     type(command_line_t), intent(in) :: options
     integer, intent(out) :: status
-    logical :: show_progress
+    type(case_job_t), allocatable :: cases(:)
+    logical :: show_progress, is_last
     character(len=:), allocatable :: advice
     integer(int64) :: began, ended, rate
-    integer :: i, jobs, threads
+    integer :: i, run, jobs
 
     call hold_interrupts()
     call system_clock(began, rate)
     status = status_ok
+    show_progress = progress_wanted(options%progress) .and. .not. options%quiet
+    allocate (cases(size(options%cases)))
+    do i = 1, size(cases)
+      call cases(i)%prepare(trim(options%cases(i)), options, show_progress)
+      if (options%check) call say_outcome(cases(i), options, status)
+    end do
+    if (options%check) return
     jobs = options%jobs
     if (jobs == 0) jobs = omp_get_num_procs()
-    threads = jobs/max(1, size(options%cases))   ! for each case
-    jobs = min(jobs, size(options%cases))
-    show_progress = progress_wanted(options%progress) .and. .not. options%quiet
-    !$omp parallel do schedule(dynamic) num_threads(jobs) reduction(max: status)
-    do i = 1, size(options%cases)
-      call run_one(trim(options%cases(i)), options, show_progress, threads, status)
+    jobs = min(jobs, 2*size(cases))
+    !$omp parallel do schedule(dynamic) num_threads(jobs) reduction(max: status) private(is_last)
+    do run = 1, 2*size(cases)   ! each case, then its twin
+      call cases((run + 1)/2)%go(mod(run, 2) == 0, options, is_last)
+      if (is_last) call say_outcome(cases((run + 1)/2), options, status)
     end do
     !$omp end parallel do
     call system_clock(ended)
@@ -92,23 +97,15 @@ contains
     end do
   end subroutine run_studies
 
-  !> Run one case and say how it went; `status` rises to that of an error.
-  subroutine run_one(path, options, show_progress, threads, status)
-    character(len=*), intent(in) :: path
+  !> Say how a case went, or that it is correct; `status` rises to that of an error.
+  subroutine say_outcome(case, options, status)
+    type(case_job_t), intent(inout) :: case
     type(command_line_t), intent(in) :: options
-    logical, intent(in) :: show_progress
-    integer, intent(in) :: threads
     integer, intent(inout) :: status
     character(len=:), allocatable :: line, notice
     type(error_t), allocatable :: error
-    if (interrupted()) then
-      !$omp critical (texts)
-      call fail(error, printable(path, 200)//': interrupted before it began', status_integration)
-      !$omp end critical (texts)
-    else
-      call run_case_file(path, options, show_progress, threads, line, notice, error)
-    end if
     !$omp critical (messages)
+    call case%tell_outcome(line, notice, error)
     if (allocated(error)) then
       call complain(error)
       status = max(status, error%status)
@@ -117,7 +114,7 @@ contains
       if (notice /= '') call tell(notice)
     end if
     !$omp end critical (messages)
-  end subroutine run_one
+  end subroutine say_outcome
 
   !> One line on standard output. Where it cannot be written `status` rises, unless the reader has gone: he has seen enough.
   subroutine say(line, status)

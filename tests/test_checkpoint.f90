@@ -1,4 +1,4 @@
-!> Checkpoints: what comes back, what is refused, and the checksum that tells.
+!> Checkpoints: what comes back, what is refused, the checksum that tells, and the identity of a run.
 module test_checkpoint
   use, intrinsic :: iso_fortran_env, only: int64
   use kinds, only: dp
@@ -6,7 +6,9 @@ module test_checkpoint
   use archive, only: archive_t
   use checksum, only: checksum_t
   use file_mark, only: file_mark_t
-  use checkpoint, only: checkpoint_t, compare_cases, program_build, read_whole
+  use checkpoint, only: checkpoint_t
+  use run_identity, only: identity_of, compare_cases
+  use text_file, only: read_whole
   use result_file, only: result_file_t
   use posix, only: make_directory, remove_directory, remove_file
   use checks, only: checks_t
@@ -20,7 +22,6 @@ contains
 
   subroutine run_test_checkpoint(check)
     class(checks_t), intent(inout) :: check
-    character(len=:), allocatable :: build
     integer :: status
     call make_directory(folder, status)
     call test_checksum(check)
@@ -28,9 +29,7 @@ contains
     call test_round_trip(check)
     call test_damage(check)
     call test_comparison(check)
-    build = program_build()
-    call check%that(build == program_build(), 'a build is known')
-    call check%that(len(build) > 20, 'and has a name')
+    call test_identity(check)
     call remove_directory(folder, status)
     call check%that(status == 0, 'nothing is left in the scratch folder')
   end subroutine run_test_checkpoint
@@ -110,15 +109,14 @@ contains
     call saved%save(error)
     call check%that(.not. allocated(error), 'a checkpoint is written')
     loaded%path = saved%path
-    call loaded%load('this build', found, error)
+    call loaded%load(found, error)
     call check%that(found .and. .not. allocated(error), 'and read')
+    call check%equal_text(loaded%identity, '0123456789ABCDEF', 'the identity')
     call check%that(loaded%case_text == saved%case_text .and. loaded%state == saved%state .and. &
       .not. abs(loaded%wall_time - 2.5_dp) > 0 .and. loaded%trace%length == 3_int64 .and. &
       loaded%event_list%checksum == -7, 'and is the same')
-    call loaded%load('that build', found, error)
-    call check%that(refused(found, error, 'another build'), 'that of another build is refused')
     call loaded%remove()
-    call loaded%load('this build', found, error)
+    call loaded%load(found, error)
     call check%that(.not. found .and. .not. allocated(error), 'none is no error')
     saved%path = folder//'/none/a.checkpoint'
     call saved%save(error)
@@ -153,9 +151,9 @@ contains
     call try('time[s]'//n)
     call try(repeat(achar(0), 5000))
     call check%that(accepted == 0, 'and other files')
-    call try(of_version(2))
-    call check%that(accepted == 0, 'and another version of the format')
     call try(of_version(1))
+    call check%that(accepted == 0, 'and another version of the format')
+    call try(of_version(2))
     call check%that(accepted == 1, 'but not its own')
     call saved%remove()
 
@@ -169,7 +167,7 @@ contains
       logical :: found
       call write_file(saved%path, bytes)
       loaded%path = saved%path
-      call loaded%load('this build', found, error)
+      call loaded%load(found, error)
       if (.not. refused(found, error, saved%path)) accepted = accepted + 1
     end subroutine try
 
@@ -188,6 +186,21 @@ contains
       text = text//transfer(sum%value(), mark)
     end function of_version
   end subroutine test_damage
+
+  !> The same case and program have the same identity, whatever the limits; another value, its ideal twin or a lost line do not.
+  subroutine test_identity(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: case = '&joint'//n//'  clearance = 1'//n//'/'//n//'&integrator'//n
+    character(len=16) :: identity
+    identity = identity_of(case//'  max_steps = 0'//n//'/'//n, .false.)
+    call check%that(verify(identity, '0123456789ABCDEF') == 0, 'an identity is 16 digits')
+    call check%equal_text(identity_of(case//'  max_steps = 700'//n//'/'//n, .false.), identity, 'a limit does not count')
+    call check%equal_text(identity_of(case//'/'//n, .false.), identity, 'also where it is left out')
+    call check%that(identity_of(case//'  max_step = 0'//n//'/'//n, .false.) /= identity, 'another key does')
+    call check%that(identity_of(case//'/'//n, .true.) /= identity, 'the twin is another run')
+    call check%that(identity_of('&joint'//n//'  clearance = 2'//n//'/'//n//'&integrator'//n//'/'//n, .false.) /= identity, &
+      'another value')
+  end subroutine test_identity
 
   !> Cases are compared without the limits, and a difference is named.
   subroutine test_comparison(check)
@@ -218,7 +231,7 @@ contains
     call archive%begin_writing()
     call archive%exchange(numbers)
     checkpoint%path = folder//'/a.checkpoint'
-    checkpoint%build = 'this build'
+    checkpoint%identity = '0123456789ABCDEF'
     checkpoint%case_text = '&joint'//n//'/'//n
     checkpoint%wall_time = 2.5_dp
     checkpoint%trace%length = 3

@@ -1,14 +1,31 @@
 !> Result files, and the calls of the system under them.
 module test_result_file
+  use, intrinsic :: iso_c_binding, only: c_int, c_long
   use kinds, only: dp
   use errors, only: error_t, status_output
   use posix, only: make_directory, remove_directory, remove_file, open_for_reading, read_bytes, close_file, error_text, &
-    error_no_entry, error_no_space
-  use result_file, only: result_file_t
+    ignore_write_signals, synchronise_folder, file_length, open_for_appending, open_to_lock, error_no_entry, error_no_space, &
+    error_is_directory, error_is_link, error_not_regular
+  use result_file, only: result_file_t, remove_result
   use checks, only: checks_t
   implicit none
   private
   public :: run_test_result_file
+
+  interface
+    function c_getrlimit(resource, limits) bind(c, name='getrlimit') result(status)
+      import :: c_int, c_long
+      integer(c_int), value :: resource
+      integer(c_long), intent(out) :: limits(2)
+      integer(c_int) :: status
+    end function c_getrlimit
+    function c_setrlimit(resource, limits) bind(c, name='setrlimit') result(status)
+      import :: c_int, c_long
+      integer(c_int), value :: resource
+      integer(c_long), intent(in) :: limits(2)
+      integer(c_int) :: status
+    end function c_setrlimit
+  end interface
 
   character(len=*), parameter :: n = achar(10), folder = 'build/test_result_file/deep'
 
@@ -23,6 +40,7 @@ contains
     call check%that(status == 0, 'a folder that exists is no error')
     call test_writing(check)
     call test_failures(check)
+    call test_planted(check)
     call remove_directory(folder, status)
     call check%that(status == 0, 'nothing is left in the scratch folder')
     call remove_directory('build/test_result_file', status)
@@ -69,21 +87,25 @@ contains
     class(checks_t), intent(inout) :: check
     type(result_file_t) :: file
     type(error_t), allocatable :: error
+    character(len=:), allocatable :: text
     integer :: status
     call file%open(folder//'/none/a.csv', error)
     call expect(check, error, folder//'/none/a.csv: No such file or directory')
     call file%put('x'//n)
     call file%close(error)
     call check%that(.not. allocated(error), 'a file never opened is closed without an error')
-    call execute_command_line('ln -s /dev/full '//folder//'/full.csv.part', exitstat=status)
+    call limit_files(20, status)
     call file%open(folder//'/full.csv', error)
-    call check%that(.not. allocated(error), 'a full disk opens')
-    call file%put('x'//n)
+    call check%that(status == 0 .and. .not. allocated(error), 'a full disk opens')
+    call file%put('whole row'//n//'row that does not fit'//n)
     call check%that(.not. file%has_failed(), 'a full disk goes unseen while rows wait')
     call file%flush()
     call check%that(file%has_failed(), 'a full disk is seen')
     call file%close(error)
-    call expect(check, error, folder//'/full.csv: No space left on device')
+    call limit_files(-1, status)
+    call expect(check, error, folder//'/full.csv: File too large')
+    call read_back(folder//'/full.csv', text, status)
+    call check%equal_text(text, 'whole row'//n, 'whole rows stay')
     call remove_file(folder//'/full.csv', status)
     call check%equal_text(error_text(error_no_space), 'No space left on device', 'words of the system')
     call make_directory('/dev/null/x', status)
@@ -91,6 +113,74 @@ contains
     call make_directory('/dev/null', status)
     call check%that(status /= 0, 'a file is no folder')
   end subroutine test_failures
+
+  !> What somebody else has put where a file is to be written: links are neither followed nor emptied, and nothing waits for the
+  !> other end of a pipe.
+  subroutine test_planted(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: victim = folder//'/victim', link = folder//'/link', pipe = folder//'/pipe'
+    type(result_file_t) :: file
+    type(error_t), allocatable :: error
+    character(len=:), allocatable :: text
+    integer :: descriptor, status
+    logical :: was_there
+    call file%open(victim, error)
+    call file%put('kept'//n)
+    call file%close(error)
+    call execute_command_line('ln -s victim '//link//' && ln -s victim '//folder//'/a.csv.part && mkfifo '//pipe// &
+                              ' && ln -s nowhere '//folder//'/lost', exitstat=status)
+    call check%that(status == 0, 'links and a pipe')
+    call file%open(folder//'/a.csv', error)
+    call file%put('mine'//n)
+    call file%close(error)
+    call read_back(folder//'/a.csv', text, status)
+    call check%equal_text(text, 'mine'//n, 'a link under the temporary name is replaced')
+    call open_for_appending(link, descriptor, status)
+    call check%that(status == error_is_link, 'nothing is added through a link: '//error_text(status))
+    call open_to_lock(link, descriptor, status)
+    call check%that(status == error_is_link, 'nothing is locked through a link: '//error_text(status))
+    call open_to_lock(folder//'/lost', descriptor, status)
+    call check%that(status == error_is_link, 'nor made: '//error_text(status))
+    call check%that(file_length(folder//'/nowhere') < 0, 'nothing was made')
+    call open_for_reading(pipe, descriptor, status)
+    call check%that(status == error_not_regular, 'a pipe is not read: '//error_text(status))
+    call open_for_appending(pipe, descriptor, status)
+    call check%that(status /= 0, 'and not added to: '//error_text(status))
+    call open_to_lock(pipe, descriptor, status)
+    call check%that(status == error_not_regular, 'and not locked: '//error_text(status))
+    call open_for_reading(folder, descriptor, status)
+    call check%that(status == error_is_directory, 'a folder is not read: '//error_text(status))
+    call open_for_reading(link, descriptor, status)
+    call check%that(status == 0, 'reading follows a link')
+    if (status == 0) call close_file(descriptor, status)
+    call read_back(victim, text, status)
+    call check%equal_text(text, 'kept'//n, 'what the links lead to stays')
+    call synchronise_folder(victim, status)
+    call check%that(status == 0, 'a folder is brought to the disk: '//error_text(status))
+    was_there = .false.
+    call remove_result(folder//'/none', was_there, status)
+    call check%that(status == 0 .and. .not. was_there, 'nothing to remove')
+    call remove_result(folder//'/a.csv', was_there, status)
+    call check%that(file_length(folder//'/a.csv') < 0, 'a result is removed')
+    call check%that(status == 0 .and. was_there, 'and that is told')
+    call remove_file(victim, status)
+    call remove_file(link, status)
+    call remove_file(pipe, status)
+    call remove_file(folder//'/lost', status)
+  end subroutine test_planted
+
+  !> From here on no file may grow beyond so many bytes; below 0: beyond what was allowed at first.
+  subroutine limit_files(bytes, status)
+    integer, intent(in) :: bytes
+    integer, intent(out) :: status
+    integer(c_int), parameter :: largest_file = 1   ! RLIMIT_FSIZE of Linux
+    integer(c_long) :: limits(2)                    ! a struct rlimit: now, at most
+    call ignore_write_signals()
+    status = c_getrlimit(largest_file, limits)
+    limits(1) = bytes
+    if (bytes < 0) limits(1) = limits(2)
+    if (status == 0) status = c_setrlimit(largest_file, limits)
+  end subroutine limit_files
 
   subroutine expect(check, error, message)
     class(checks_t), intent(inout) :: check

@@ -1,8 +1,9 @@
 !> What the summary says besides figures.
 module test_summary
+  use, intrinsic :: iso_fortran_env, only: int64
   use kinds, only: dp
   use checks, only: checks_t
-  use summary, only: build_advice, summary_table
+  use summary, only: build_advice, summary_table, summary_value
   use case_definition, only: case_t
   use simulation, only: run_report_t
   use text_tools, only: integer_text
@@ -26,9 +27,15 @@ contains
     character(len=*), intent(in) :: status, field
     type(case_t) :: case
     type(run_report_t) :: report
+    character(len=:), allocatable :: table
     report%status = status
-    call check%that(index(summary_table(case, report, 0.0_dp), achar(10)//'status,'//field//','//achar(10)) > 0, &
-      'a status in a table: '//status)
+    table = summary_table(case, report, 0.0_dp, 'abc', 7000000000_int64, 0_int64)
+    call check%that(index(table, achar(10)//'status,'//field//','//achar(10)) > 0, 'a status in a table: '//status)
+    call check%equal_text(summary_value(table, 'status'), field, 'and back')
+    call check%equal_text(summary_value(table, 'identity'), 'abc', 'the identity of the run')
+    call check%equal_text(summary_value(table, 'trace_bytes'), '7000000000', 'the length of the trace')
+    call check%equal_text(summary_value(table, 'events_bytes'), '', 'no length of a file that is not there')
+    call check%equal_text(summary_value('', 'status'), '', 'no table')
   end subroutine a_status_is_one_field
 
   !> The line about a build for debugging: only after a while, only where the compiler has not optimised.

@@ -5,7 +5,6 @@ module test_trace_files
   use errors, only: error_t
   use columns, only: column_list_t
   use trace_files, only: trace_files_t
-  use row_queue, only: row_queue_t
   use trace_sink, only: trace_event_t
   use scene, only: event_contact_begins, event_contact_ends
   use posix, only: make_directory, remove_directory, remove_file
@@ -24,7 +23,6 @@ contains
     call make_directory(folder, status)
     call test_text(check)
     call test_exact(check)
-    call test_queue(check)
     call remove_file(folder//'/a.csv', status)
     call remove_file(folder//'/a.events.csv', status)
     call remove_directory(folder, status)
@@ -51,70 +49,6 @@ contains
     call expect_line(check, 'a.events.csv', 3, '5.00000000000E-01,-1.00000000000E+00,contact_ends,2.50000000000E-01,'// &
                      '9.00000000000E+00,9.00000000000E+00,9.00000000000E+00')
   end subroutine test_text
-
-  !> Rows that another thread writes, from some row on, are those that the finder would have written, in order; when they are
-  !> settled all are in the file.
-  subroutine test_queue(check)
-    class(checks_t), intent(inout) :: check
-    integer, parameter :: n_rows = 3000, served_from = 700
-    type(trace_files_t), target :: files
-    type(row_queue_t), target :: queue
-    type(error_t), allocatable :: error, settle_error
-    real(dp) :: back(2)
-    integer :: i, unit, wrong, settled, status
-    logical :: may_serve, is_served
-    call queue%begin()
-    call files%open(folder//'/a', column_list_t(id=[1, 23]), 17, .false., error)
-    call files%share_rows(queue, 2)
-    may_serve = .false.
-    settled = 0
-    !$omp parallel sections num_threads(2) default(shared) private(is_served, i)
-    !$omp section
-    do i = 1, n_rows
-      if (i == served_from) then
-        !$omp atomic write
-        may_serve = .true.
-        do   ! until the writer is there
-          call queue%offer([real(i, dp), 1/real(i, dp)], is_served)
-          if (is_served) exit
-        end do
-        cycle
-      end if
-      call files%take_row([real(i, dp), 1/real(i, dp)])
-      if (i /= 2000) cycle
-      call queue%settle()
-      call files%trace%synchronise(settle_error)
-      open (newunit=unit, file=folder//'/a.csv.part', action='read', status='old', recl=1000)
-      read (unit, *)
-      do
-        read (unit, *, iostat=status) back
-        if (status /= 0) exit
-        settled = settled + 1
-      end do
-      close (unit)
-    end do
-    call queue%end()
-    !$omp section
-    do
-      !$omp atomic read
-      is_served = may_serve
-      if (is_served) exit
-    end do
-    call queue%serve()
-    !$omp end parallel sections
-    call files%close(error)
-    call check%that(settled == 2000, 'rows that are settled are in the file')
-    wrong = 0
-    open (newunit=unit, file=folder//'/a.csv', action='read', status='old', recl=1000)
-    read (unit, *)
-    do i = 1, n_rows
-      read (unit, *, iostat=status) back
-      if (status /= 0 .or. abs(back(1) - i) > 0 .or. abs(back(2) - 1/real(i, dp)) > 0) wrong = wrong + 1
-    end do
-    read (unit, *, iostat=status) back
-    close (unit)
-    call check%that(wrong == 0 .and. status /= 0, 'rows by way of another thread')
-  end subroutine test_queue
 
   !> With 17 digits a trace reads back to the last bit.
   subroutine test_exact(check)

@@ -1,244 +1,240 @@
 !> One run of a case with its result files: of the scene itself, or of its ideal twin.
 module case_run
-  use, intrinsic :: iso_c_binding, only: c_f_pointer, c_funloc, c_funptr, c_loc, c_null_ptr, c_ptr
-  use errors, only: error_t
+  use, intrinsic :: iso_fortran_env, only: int64
+  use errors, only: error_t, fail, status_output
   use case_definition, only: case_t
   use columns, only: column_list_t
   use scene_builder, only: simulated_time
-  use simulation, only: simulate, run_report_t, interrupted_text
+  use simulation, only: simulate, run_report_t
   use trace_sink, only: trace_sink_t
   use trace_files, only: trace_files_t
-  use result_file, only: write_text
+  use result_file, only: result_file_t, remove_result
   use continuation, only: continuation_t
+  use run_identity, only: identity_of
   use archive, only: archive_t
   use summary, only: summary_table, summary_line
   use stability_advice, only: advice
+  use posix, only: synchronise_folder, error_text
   use text_tools, only: printable
-  use row_queue, only: row_queue_t
-  use thread, only: thread_t
   implicit none
   private
-  public :: case_run_t, go_beside, name_file
+  public :: case_run_t, name_file
 
-  !> A run is prepared, goes, alone or beside others, and is finished or given up. What goes wrong on the way is in `error`.
+  integer, parameter :: room_for_summary = 8192   !! bytes: twice what the longest have
+
+  !> A run is prepared, begins where `start` says, and goes. Its files are BASE.csv, with contacts BASE.events.csv, BASE.summary.csv
+  !> and BASE.checkpoint. What goes wrong on the way is in `error`.
   type :: case_run_t
     type(error_t), allocatable :: error
+    character(len=:), allocatable :: line, notice        !! for people: how it went, and what they should know besides
+    type(continuation_t) :: start
+    character(len=:), allocatable :: base                !! path of the results without their endings
     type(case_t), private :: case
     logical, private :: is_twin = .false.                !! the run of the ideal twin
-    type(continuation_t), private :: start               !! where it begins: a twin always at its beginning
     type(column_list_t), private :: list
-    character(len=:), allocatable, private :: base       !! path of the results without their endings
     logical, private :: show_progress = .false., quiet = .false.
-    integer, private :: takers = 0                       !! who have come to let it go: only the first does
-    type(thread_t), private :: thread                    !! in which it goes, if no other has taken it
-    logical, private :: is_kept = .false.                !! what it has written there is to stay
-    type(row_queue_t), pointer, private :: queue => null()   !! from a run to the thread of the one beside it
-    class(trace_sink_t), allocatable, private :: sink    !! while the files are open
+    type(result_file_t), private :: summary
     type(run_report_t), private :: report
   contains
     procedure :: prepare
+    procedure :: look_for_earlier
+    procedure :: disown
+    procedure :: clear
     procedure :: go
-    procedure :: let_end
-    procedure :: finish
-    procedure :: give_up
-    procedure :: was_interrupted
+    procedure, private :: has_events
+    procedure, private :: open_files
+    procedure, private :: put_summary
+    procedure, private :: collect_errors
   end type case_run_t
 
 contains
 
   !> What is to be run, and where its results go.
-  subroutine prepare(self, case, is_twin, start, list, base, show_progress, quiet)
+  subroutine prepare(self, case, case_text, is_twin, list, base, checkpoint_interval, show_progress, quiet)
     class(case_run_t), intent(inout) :: self
     type(case_t), intent(in) :: case
+    character(len=*), intent(in) :: case_text            !! the resolved case
     logical, intent(in) :: is_twin
-    type(continuation_t), intent(in) :: start
     type(column_list_t), intent(in) :: list
     character(len=*), intent(in) :: base
+    real(kind(self%start%interval)), intent(in) :: checkpoint_interval   !! [s]; 0: no checkpoints
     logical, intent(in) :: show_progress, quiet
+    self%line = case%file//': correct'
     self%case = case
     self%is_twin = is_twin
-    if (.not. is_twin) self%start = start
     self%list = list
     self%base = base
     self%show_progress = show_progress
     self%quiet = quiet
+    self%notice = ''
+    associate (start => self%start)
+      start%interval = checkpoint_interval
+      start%identity = identity_of(case_text, is_twin)
+      start%checkpoint%path = base//'.checkpoint'
+      start%checkpoint%identity = start%identity
+      start%checkpoint%case_text = case_text
+    end associate
   end subroutine prepare
 
-  !> Let a run go in a thread of its own, where the system gives one, beside another one that is still to go. When it has come
-  !> to its end it writes rows for the other, and waits with the last names of its files, until `let_end`. It must stay
-  !> where it is until it is finished or given up, and so must the other and the queue between them.
-  subroutine go_beside(run, other, queue)
-    type(case_run_t), intent(inout), target :: run
-    type(case_run_t), intent(inout) :: other
-    type(row_queue_t), intent(inout), target :: queue
-    type(c_funptr) :: routine
-    logical :: has_started
-    call queue%begin()
-    run%queue => queue
-    routine = c_funloc(run_in_thread)   ! gfortran 12.2, optimising across modules, loses it where it is not a variable
-    call run%thread%start(routine, c_loc(run), has_started)
-    if (has_started) then
-      other%queue => queue
-    else
-      run%queue => null()
-    end if
-  end subroutine go_beside
+  !> Take up what there is of the same run. Errors: see `look_for` of continuation_t.
+  subroutine look_for_earlier(self, error)
+    class(case_run_t), intent(inout) :: self
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: case_text
+    case_text = self%start%checkpoint%case_text
+    call self%start%look_for(self%base, self%case%file, case_text, .not. self%is_twin, self%has_events(), error)
+    if (self%start%is_done) self%line = self%case%file//': done already; '//self%base//'.csv'
+  end subroutine look_for_earlier
 
-  !> What the thread does.
-  function run_in_thread(argument) bind(c, name='gudgeon_run_in_thread') result(nothing)
-    type(c_ptr), value :: argument
-    type(c_ptr) :: nothing
-    type(case_run_t), pointer :: run
-    logical :: is_mine
-    call c_f_pointer(argument, run)
-    call take(run, is_mine)
-    if (is_mine) call integrate_into_files(run)
-    call run%queue%serve()
-    if (is_mine .and. run%is_kept) call conclude_files(run)
-    nothing = c_null_ptr
-  end function run_in_thread
+  !> Unless it goes on or is done, remove what would have other results under this name taken for done or for resumable: first
+  !> of all, so that it never stands beside new ones. This makes no text, and neither does `clear`.
+  subroutine disown(self, was_there, status)
+    class(case_run_t), intent(in) :: self
+    logical, intent(inout) :: was_there   !! turns true where something was removed
+    integer, intent(inout) :: status      !! becomes the number of the first error
+    if (self%start%goes_on) return
+    if (.not. self%start%is_done) call remove(self%base//'.summary.csv', was_there, status)
+    call remove(self%base//'.checkpoint', was_there, status)
+  end subroutine disown
 
-  !> Whether this thread is to let the run go.
-  subroutine take(run, is_mine)
-    type(case_run_t), intent(inout) :: run
-    logical, intent(out) :: is_mine
-    integer :: earlier
-    !$omp atomic capture
-    earlier = run%takers
-    run%takers = run%takers + 1
-    !$omp end atomic
-    is_mine = earlier == 0
-  end subroutine take
+  !> Unless it goes on or is done, remove the other results that have these names.
+  subroutine clear(self, was_there, status)
+    class(case_run_t), intent(in) :: self
+    logical, intent(inout) :: was_there
+    integer, intent(inout) :: status
+    if (self%start%goes_on .or. self%start%is_done) return
+    call remove(self%base//'.csv', was_there, status)
+    call remove(self%base//'.events.csv', was_there, status)
+  end subroutine clear
 
-  !> Integrate into BASE.csv and events, or BASE.ideal.csv; of a run that goes in a thread wait for the end. (The system may
-  !> start a thread so late that the run is taken before.)
+  subroutine remove(path, was_there, status)
+    character(len=*), intent(in) :: path
+    logical, intent(inout) :: was_there
+    integer, intent(inout) :: status
+    integer :: failed
+    call remove_result(path, was_there, failed)
+    if (status == 0) status = failed
+  end subroutine remove
+
+  !> Integrate into the files, and write the summary: down to the disk, in an order that leaves no results that are not whole
+  !> under their names without a summary that says so, whatever happens on the way.
   subroutine go(self)
     class(case_run_t), intent(inout) :: self
-    logical :: is_mine
-    call take(self, is_mine)
-    if (is_mine) call integrate_into_files(self)
-    call self%thread%join()
-  end subroutine go
-
-  !> The other one has come to its end, too: of a run that goes in a thread beside it. Afterwards all rows of the other are
-  !> written; the files of this one get their last names in its own time, if they are to be kept.
-  subroutine let_end(self, is_kept)
-    class(case_run_t), intent(inout) :: self
-    logical, intent(in) :: is_kept
-    if (.not. associated(self%queue)) return
-    self%is_kept = is_kept
-    call self%queue%end()
-  end subroutine let_end
-
-  subroutine integrate_into_files(self)
-    class(case_run_t), intent(inout) :: self
+    class(trace_sink_t), allocatable :: sink
+    type(trace_files_t), allocatable :: files
     type(archive_t) :: archive
+
+    if (self%start%is_done) return
     !$omp critical (texts)
-    call open_files(self)
+    call self%open_files(files)
     !$omp end critical (texts)
-    if (.not. allocated(self%sink)) return
+    if (allocated(self%error)) return
+    call move_alloc(files, sink)
     if (self%start%goes_on) then
       call archive%begin_reading(self%start%checkpoint%state)
-      call simulate(self%case, self%is_twin, self%list, self%sink, self%report, self%error, archive)
+      call simulate(self%case, self%is_twin, self%list, sink, self%report, self%error, archive)
     else
-      call simulate(self%case, self%is_twin, self%list, self%sink, self%report, self%error)
+      call simulate(self%case, self%is_twin, self%list, sink, self%report, self%error)
     end if
-  end subroutine integrate_into_files
+    if (.not. allocated(self%report%status)) self%report%status = self%error%message
+    select type (sink)
+    type is (trace_files_t)
+      call close_files(self, sink)
+    end select
+  end subroutine go
 
-  subroutine open_files(self)
+  !> Open the summary, with room on the disk, and the traces.
+  subroutine open_files(self, files)
     class(case_run_t), intent(inout) :: self
-    type(trace_files_t), allocatable, target :: files
+    type(trace_files_t), allocatable, intent(out) :: files
     allocate (files)
     associate (case => self%case, start => self%start, base => self%base, list => self%list)
-      if (self%is_twin) then
-        call files%open(base//'.ideal', list, case%output%digits, .false., self%error)
+      call self%summary%open(base//'.summary.csv', self%error)
+      if (.not. allocated(self%error)) call self%summary%reserve(room_for_summary, self%error)
+      if (allocated(self%error)) then
+        continue
       else if (start%goes_on) then
-        call files%reopen(base, list, case%output%digits, allocated(case%contact), start%checkpoint, self%error)
-        if (.not. allocated(self%error)) call write_text(base//'.resolved.nml', start%checkpoint%case_text, self%error)
+        call files%reopen(base, list, case%output%digits, self%has_events(), start%checkpoint, self%error)
       else
-        call files%open(base, list, case%output%digits, allocated(case%contact), self%error)
+        call files%open(base, list, case%output%digits, self%has_events(), self%error)
       end if
-      if (allocated(self%error)) return
-      if (associated(self%queue) .and. .not. self%is_twin) call files%share_rows(self%queue, size(list%id))
-      if (.not. self%is_twin) call files%keep_checkpoints(start%checkpoint%path, start%checkpoint%case_text, start%interval)
+      if (allocated(self%error)) then
+        call self%summary%abandon()
+        return
+      end if
+      call files%keep_checkpoints(start%checkpoint, start%interval)
       files%end_time = simulated_time(case)
       call files%progress%start(case%name, self%show_progress)
       if (.not. (self%is_twin .or. self%quiet)) files%advice%case = case
     end associate
-    call move_alloc(files, self%sink)
   end subroutine open_files
 
-  !> Give the files their last names. This makes no text.
-  subroutine conclude_files(self)
+  !> Close the files of a run that has ended. Of a run that is done the trace gets its name before the summary, which says so; of
+  !> any other the summary goes first, and without it the trace keeps its temporary name.
+  subroutine close_files(self, files)
     class(case_run_t), intent(inout) :: self
-    if (.not. allocated(self%sink)) return
-    select type (sink => self%sink)
-    type is (trace_files_t)
-      call sink%conclude()
-    end select
-  end subroutine conclude_files
-
-  !> Close the files; but for a twin, write the summary and tell it in `line` and `notice`. An error of the output goes
-  !> before one of the integration.
-  subroutine finish(self, line, notice)
-    class(case_run_t), intent(inout) :: self
-    character(len=:), allocatable, intent(inout) :: line, notice
-    if (.not. allocated(self%sink)) return
-    call conclude_files(self)
+    type(trace_files_t), intent(inout) :: files
+    logical :: is_whole
+    integer :: folder_status
+    call files%synchronise()
+    is_whole = self%report%status == 'done'
+    if (files%has_failed()) is_whole = .false.
+    if (is_whole) call files%conclude()
     !$omp critical (texts)
-    call close_files(self, self%case, self%base, line, notice)
+    call self%put_summary(files)
     !$omp end critical (texts)
-    deallocate (self%sink)
-  end subroutine finish
-
-  subroutine close_files(self, case, base, line, notice)
-    class(case_run_t), intent(inout) :: self
-    type(case_t), intent(in) :: case
-    character(len=*), intent(in) :: base
-    character(len=:), allocatable, intent(inout) :: line, notice
-    type(error_t), allocatable :: trace_error, summary_error
-
-    if (allocated(self%error)) call name_file(case%file, self%error)
-    select type (sink => self%sink)
-    type is (trace_files_t)
-      call sink%close(trace_error)
-      if (allocated(trace_error)) self%report%status = 'stopped: '//trace_error%message
-      if (.not. self%is_twin) then
-        line = summary_line(case, self%report, sink%wall_time(), base)
-        if (.not. sink%advice%was_given) notice = advice(self%report%auto_saves)
-        if (notice /= '') notice = printable(case%file, 200)//': '//notice
-        call write_text(base//'.summary.csv', summary_table(case, self%report, sink%wall_time()), summary_error)
-        if (.not. (self%report%can_go_on .or. allocated(trace_error) .or. allocated(summary_error))) call sink%checkpoint%remove()
-        if (allocated(self%error) .and. self%report%can_go_on) call tell_how_to_go_on(sink, self%error)
-      end if
-    end select
-    if (allocated(trace_error)) then
-      call move_alloc(trace_error, self%error)
-    else if (allocated(summary_error)) then
-      call move_alloc(summary_error, self%error)
-    end if
+    call self%summary%synchronise()
+    call self%summary%conclude(whole_only=.true.)
+    if (self%summary%has_failed()) call files%leave()   ! nothing, if they have their names
+    call files%conclude()
+    call synchronise_folder(self%base, folder_status)
+    !$omp critical (texts)
+    call self%collect_errors(files, folder_status)
+    !$omp end critical (texts)
   end subroutine close_files
 
-  !> Nothing stays of what the run has written, if it has gone.
-  subroutine give_up(self)
+  !> Put the summary into its file, and its line for people into `line` and `notice`.
+  subroutine put_summary(self, files)
     class(case_run_t), intent(inout) :: self
-    logical :: is_mine
-    call take(self, is_mine)
-    call self%thread%join()
-    if (.not. allocated(self%sink)) return
-    select type (sink => self%sink)
-    type is (trace_files_t)
-      call sink%abandon()
-    end select
-    deallocate (self%sink)
-  end subroutine give_up
+    type(trace_files_t), intent(inout) :: files
+    type(error_t), allocatable :: trace_error
+    type(case_t) :: case
+    call files%tell_error(trace_error)
+    if (allocated(trace_error)) self%report%status = 'stopped: '//trace_error%message
+    case = self%case
+    if (self%is_twin) case%joint%kind = 'ideal'
+    self%line = summary_line(case, self%report, files%wall_time(), self%base)
+    if (.not. files%advice%was_given) self%notice = advice(self%report%auto_saves)
+    if (self%notice /= '') self%notice = printable(case%file, 200)//': '//self%notice
+    call self%summary%put(summary_table(case, self%report, files%wall_time(), self%start%identity, &
+                                        int(files%trace%length(), int64), int(files%event_list%length(), int64)))
+  end subroutine put_summary
 
-  !> Whether the user has stopped the run.
-  pure logical function was_interrupted(self)
+  !> The error of the run: one of the output goes before one of the integration. The checkpoint goes where all is said and done.
+  subroutine collect_errors(self, files, folder_status)
+    class(case_run_t), intent(inout) :: self
+    type(trace_files_t), intent(inout) :: files
+    integer, intent(in) :: folder_status
+    type(error_t), allocatable :: output_error, summary_error
+    if (allocated(self%error)) then
+      if (self%report%can_go_on) call tell_how_to_go_on(files, self%error)
+      if (self%is_twin) self%error%message = 'ideal twin: '//self%error%message
+      call name_file(self%case%file, self%error)
+    end if
+    call files%close(output_error)
+    call self%summary%close(summary_error, whole_only=.true.)
+    if (.not. allocated(output_error)) call move_alloc(summary_error, output_error)
+    if (folder_status /= 0 .and. .not. allocated(output_error)) &
+      call fail(output_error, printable(self%base, 200)//'.csv: '//error_text(folder_status), status_output)
+    if (.not. (self%report%can_go_on .or. allocated(output_error))) call files%checkpoint%remove()
+    if (allocated(output_error)) call move_alloc(output_error, self%error)
+  end subroutine collect_errors
+
+  !> Whether the run has a list of events.
+  pure logical function has_events(self)
     class(case_run_t), intent(in) :: self
-    was_interrupted = .false.
-    if (allocated(self%error)) was_interrupted = index(self%error%message, interrupted_text) > 0
-  end function was_interrupted
+    has_events = allocated(self%case%contact) .and. .not. self%is_twin
+  end function has_events
 
   !> Add to the message of a run that was stopped how it can go on.
   subroutine tell_how_to_go_on(files, error)

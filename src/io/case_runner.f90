@@ -1,6 +1,6 @@
-!> A case from its file to its results.
+!> A case from its file to its results: a run of the scene and, where it is asked for, one of its ideal twin.
 module case_runner
-  use errors, only: error_t, fail, status_output
+  use errors, only: error_t, fail, status_output, status_integration
   use case_definition, only: case_t
   use accuracy_presets, only: with_preset
   use case_file, only: read_case_values, complete_case
@@ -11,108 +11,72 @@ module case_runner
   use columns, only: column_list_t, choose_columns
   use scene, only: scene_t
   use scene_builder, only: build_scene
-  use case_run, only: case_run_t, go_beside, name_file
-  use result_file, only: write_text, remove_unfinished
-  use row_queue, only: row_queue_t
+  use case_run, only: case_run_t, name_file
+  use result_file, only: result_file_t
   use case_lock, only: case_lock_t
-  use continuation, only: continuation_t
-  use posix, only: make_directory, error_text
+  use posix, only: make_directory, synchronise_folder, file_length, interrupted, error_text
   use progress, only: tell
   use text_tools, only: printable
   implicit none
   private
-  public :: run_case_file, tell_warning
+  public :: case_job_t, tell_warning
+
+  !> A case is prepared; then its two runs may go in any threads, in any order.
+  type :: case_job_t
+    type(error_t), allocatable :: error               !! what is wrong with the case, or with the place for its results
+    type(case_run_t) :: run, twin
+    character(len=:), allocatable, private :: path    !! of the case
+    logical, private :: has_twin = .false.            !! the twin is to run too
+    logical, private :: has_place = .false.           !! for the results, or an error
+    integer, private :: to_come = 2                   !! runs that have not ended
+    type(case_lock_t), private :: lock
+    type(result_file_t), private :: resolved          !! the resolved case
+    logical, private :: has_removed = .false.         !! earlier results
+  contains
+    procedure :: prepare
+    procedure :: go
+    procedure :: tell_outcome
+    procedure, private :: take_place
+    procedure, private :: secure_place
+    procedure, private :: make_room
+  end type case_job_t
 
 contains
 
-  !> Read a case, and unless only a check is asked for run it and write its results; with two threads the ideal twin goes
-  !> beside it. `line` is the summary for people, `notice` what they should know besides.
-  !> An error's message begins with the case file's name; a case that is wrong writes nothing.
-  subroutine run_case_file(path, options, show_progress, threads, line, notice, error)
+  !> Read and check a case. An error's message begins with the case file's name; a case that is wrong writes nothing.
+  subroutine prepare(self, path, options, show_progress)
+    class(case_job_t), intent(inout) :: self
     character(len=*), intent(in) :: path
     type(command_line_t), intent(in) :: options
     logical, intent(in) :: show_progress
-    integer, intent(in) :: threads   !! for this case
-    character(len=:), allocatable, intent(out) :: line, notice
-    type(error_t), allocatable, intent(out) :: error
     type(case_values_t) :: values
     type(case_t) :: case
     type(column_list_t) :: list, ideal_list
-    type(case_lock_t) :: lock
-    type(continuation_t) :: start
-    character(len=:), allocatable :: base
-
-    !$omp critical (texts)
-    line = ''
-    notice = ''
-    base = ''
-    call prepare(path, options, values, case, list, ideal_list, base, error)
-    if (.not. allocated(error) .and. .not. options%check) call take_place(path, options, values, base, lock, start, error)
-    if (.not. allocated(error)) then
-      if (options%check) line = path//': correct'
-      if (start%is_done) line = path//': done already; '//base//'.csv'
-    end if
-    !$omp end critical (texts)
-    if (.not. (allocated(error) .or. options%check)) &
-      call run_case(case, start, list, ideal_list, base, show_progress, options%quiet, threads, line, notice, error)
-    call lock%release()
-  end subroutine run_case_file
-
-  !> Run a case and then, or beside it, its ideal twin if it asks for one; of a run that was interrupted there is no twin. The
-  !> error is the first of the two.
-  subroutine run_case(case, start, list, ideal_list, base, show_progress, quiet, threads, line, notice, error)
-    type(case_t), intent(in) :: case
-    type(continuation_t), intent(in) :: start
-    type(column_list_t), intent(in) :: list, ideal_list
-    character(len=*), intent(in) :: base
-    logical, intent(in) :: show_progress, quiet
-    integer, intent(in) :: threads
-    character(len=:), allocatable, intent(inout) :: line, notice
-    type(error_t), allocatable, intent(out) :: error
-    type(case_run_t), target :: run, twin
-    type(row_queue_t), target :: queue
-    logical :: has_twin
-
-    has_twin = case%output%ideal_twin .and. case%has_clearance()
-    call run%prepare(case, .false., start, list, base, show_progress, quiet)
-    call twin%prepare(case, .true., start, ideal_list, base, show_progress .and. threads == 1, quiet)
-    if (has_twin .and. threads > 1) call go_beside(twin, run, queue)
-    if (.not. start%is_done) call run%go()
-    call twin%let_end(is_kept=.not. run%was_interrupted())
-    call run%finish(line, notice)
-    if (run%was_interrupted()) then
-      call twin%give_up()
-    else if (has_twin) then
-      call twin%go()
-      call twin%finish(line, notice)
-    end if
-    if (allocated(run%error)) then
-      call move_alloc(run%error, error)
-    else if (allocated(twin%error)) then
-      call move_alloc(twin%error, error)
-    end if
-  end subroutine run_case
-
-  !> Read and check a case. `base` is the path of its results without their endings.
-  subroutine prepare(path, options, values, case, list, ideal_list, base, error)
-    character(len=*), intent(in) :: path
-    type(command_line_t), intent(in) :: options
-    type(case_values_t), intent(out) :: values
-    type(case_t), intent(out) :: case
-    type(column_list_t), intent(out) :: list, ideal_list
-    character(len=:), allocatable, intent(inout) :: base
-    type(error_t), allocatable, intent(out) :: error
     class(scene_t), allocatable :: scene
+    character(len=:), allocatable :: base, text
 
-    call read_case_values(path, with_preset(options%accuracy, options%overrides), values, error)
-    if (.not. allocated(error)) call complete_case(values, path, case, error)
-    if (allocated(error)) return
+    self%path = path
+    if (interrupted()) then
+      call not_begun(path, '', self%error)
+      return
+    end if
+    call read_case_values(path, with_preset(options%accuracy, options%overrides), values, self%error)
+    if (.not. allocated(self%error)) call complete_case(values, path, case, self%error)
+    if (allocated(self%error)) return
+    call choose_columns(case, .false., list, self%error)
+    if (.not. allocated(self%error)) call choose_columns(case, .true., ideal_list, self%error)
+    if (.not. allocated(self%error)) call build_scene(case, .false., scene, self%error)
+    if (allocated(self%error)) then
+      call name_file(path, self%error)
+      return
+    end if
+    if (.not. options%quiet) call tell_warning(case)
     base = options%out//'/'//case%name
-    call choose_columns(case, .false., list, error)
-    if (.not. allocated(error)) call choose_columns(case, .true., ideal_list, error)
-    if (.not. allocated(error)) call build_scene(case, .false., scene, error)
-    if (allocated(error)) call name_file(path, error)
-    if (.not. (allocated(error) .or. options%quiet)) call tell_warning(case)
+    text = resolved_text(values)
+    self%has_twin = case%output%ideal_twin .and. case%has_clearance()
+    call self%run%prepare(case, text, .false., list, base, options%checkpoint_interval, show_progress, options%quiet)
+    call self%twin%prepare(case, text, .true., ideal_list, base//'.ideal', options%checkpoint_interval, &
+                           show_progress .and. options%jobs == 1, options%quiet)
   end subroutine prepare
 
   !> Tell what in a case is right but has no effect.
@@ -123,48 +87,119 @@ contains
     if (warning /= '') call tell(printable(case%file, 200)//': '//warning)
   end subroutine tell_warning
 
-  !> Make the folder for the results, lock them, look for what is there where the run is to go on, write the resolved case.
-  subroutine take_place(path, options, values, base, lock, start, error)
-    character(len=*), intent(in) :: path, base
+  !> Let one of the two go. The first to come takes the place for the results of both, the last leaves it.
+  subroutine go(self, is_twin, options, is_last)
+    class(case_job_t), intent(inout) :: self
+    logical, intent(in) :: is_twin
     type(command_line_t), intent(in) :: options
-    type(case_values_t), intent(in) :: values   !! of the case
-    type(case_lock_t), intent(inout) :: lock
-    type(continuation_t), intent(inout) :: start
+    logical, intent(out) :: is_last   !! both have ended
+    logical :: may_go, is_first, is_over
+    integer :: left
+
+    !$omp critical (texts)
+    is_over = interrupted()
+    if (is_over .and. .not. allocated(self%error)) then
+      if (is_twin .and. self%has_twin) call not_begun(self%path, 'ideal twin: ', self%twin%error)
+      if (.not. is_twin) call not_begun(self%path, '', self%run%error)
+    end if
+    may_go = .not. (allocated(self%error) .or. is_over) .and. (self%has_twin .or. .not. is_twin)
+    is_first = may_go .and. .not. self%has_place
+    if (is_first) call self%take_place(options)
+    !$omp end critical (texts)
+    if (is_first) call self%secure_place(may_go)
+    if (may_go .and. is_twin) then
+      call self%twin%go()
+    else if (may_go) then
+      call self%run%go()
+    end if
+    !$omp atomic capture
+    self%to_come = self%to_come - 1
+    left = self%to_come
+    !$omp end atomic
+    is_last = left == 0
+    if (is_last) call self%lock%release()
+  end subroutine go
+
+  !> The error of a run for which an interruption came too early.
+  subroutine not_begun(path, what, error)
+    character(len=*), intent(in) :: path, what
     type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: case_text
+    call fail(error, printable(path, 200)//': '//what//'interrupted before it began', status_integration)
+  end subroutine not_begun
+
+  !> Make the folder for the results, lock them, and look for what is there where the runs are to go on; remove what is there of
+  !> other runs, and begin the resolved case.
+  subroutine take_place(self, options)
+    class(case_job_t), intent(inout) :: self
+    type(command_line_t), intent(in) :: options
     integer :: status
 
+    self%has_place = .true.
     call make_directory(options%out, status)
     if (status /= 0) then
-      call fail(error, printable(options%out, 200)//': '//error_text(status), status_output)
+      call fail(self%error, printable(options%out, 200)//': '//error_text(status), status_output)
     else
-      call lock%take(base, error)
+      call self%lock%take(self%run%base, self%error)
     end if
-    if (allocated(error)) return
-    case_text = resolved_text(values)
-    start%checkpoint%path = base//'.checkpoint'
-    start%interval = options%checkpoint_interval
-    if (options%resume) then
-      call start%look_for(base, path, case_text, error)
-      if (allocated(error) .or. start%is_done) return
-      if (.not. start%goes_on .and. .not. options%quiet) &
-        call tell(printable(path, 200)//': no checkpoint in '//printable(options%out, 200)//': starts from the beginning')
+    if (options%resume .and. .not. allocated(self%error)) then
+      call self%run%look_for_earlier(self%error)
+      if (self%has_twin .and. .not. allocated(self%error)) call self%twin%look_for_earlier(self%error)
+      if (.not. (allocated(self%error) .or. self%run%start%is_done .or. self%run%start%goes_on .or. options%quiet)) call tell( &
+        printable(self%path, 200)//': no checkpoint in '//printable(options%out, 200)//': starts from the beginning')
     end if
-    start%checkpoint%case_text = case_text
-    if (start%goes_on) return
-    call start%checkpoint%remove()   ! the files that it belongs to are written anew
-    call remove_leftovers(base)
-    call write_text(base//'.resolved.nml', case_text, error)
+    if (.not. allocated(self%error)) call self%make_room()
+    if (allocated(self%error) .or. self%run%start%is_done) return
+    call self%resolved%open(self%run%base//'.resolved.nml', self%error)
+    call self%resolved%put(self%run%start%checkpoint%case_text)
   end subroutine take_place
 
-  !> Remove what a run that was killed has left under temporary names.
-  subroutine remove_leftovers(base)
-    character(len=*), intent(in) :: base
-    character(len=13), parameter :: endings(5) = [character(len=13) :: '.csv', '.events.csv', '.summary.csv', '.ideal.csv', &
-      '.resolved.nml']
-    integer :: i
-    do i = 1, size(endings)
-      call remove_unfinished(base//trim(endings(i)))
-    end do
-  end subroutine remove_leftovers
+  !> Wait until the disk has what `take_place` did. (Others may make texts meanwhile.)
+  subroutine secure_place(self, is_secure)
+    class(case_job_t), intent(inout) :: self
+    logical, intent(out) :: is_secure
+    integer :: ignored
+    if (self%has_removed) call synchronise_folder(self%run%base, ignored)
+    call self%resolved%synchronise()
+    call self%resolved%conclude(whole_only=.true.)
+    !$omp critical (texts)
+    if (self%resolved%has_failed()) call self%resolved%tell_error(self%error)
+    is_secure = .not. allocated(self%error)
+    !$omp end critical (texts)
+  end subroutine secure_place
+
+  !> Remove what is there of other runs: first all that would have them taken for done or for resumable, so that nothing of the
+  !> kind ever stands beside results of this one. What has the names of a twin but a resolved case of its own is no twin.
+  subroutine make_room(self)
+    class(case_job_t), intent(inout) :: self
+    logical :: may_clear_twin
+    integer :: status
+    may_clear_twin = file_length(self%twin%base//'.resolved.nml') < 0
+    if (self%has_twin) may_clear_twin = .true.
+    status = 0
+    call self%run%disown(self%has_removed, status)
+    if (may_clear_twin) call self%twin%disown(self%has_removed, status)
+    if (status == 0) call self%run%clear(self%has_removed, status)
+    if (status == 0 .and. may_clear_twin) call self%twin%clear(self%has_removed, status)
+    if (status /= 0) call fail(self%error, printable(self%run%base, 200)//': earlier results cannot be removed: '// &
+                               error_text(status), status_output)
+  end subroutine make_room
+
+  !> When both have ended, or after a check: what there is to say. The error is the first of the two.
+  subroutine tell_outcome(self, line, notice, error)
+    class(case_job_t), intent(inout) :: self
+    character(len=:), allocatable, intent(out) :: line, notice
+    type(error_t), allocatable, intent(out) :: error
+    line = ''
+    notice = ''
+    if (allocated(self%error)) then
+      call move_alloc(self%error, error)
+    else if (allocated(self%run%error)) then
+      call move_alloc(self%run%error, error)
+    else if (allocated(self%twin%error)) then
+      call move_alloc(self%twin%error, error)
+    else
+      line = self%run%line
+      notice = self%run%notice
+    end if
+  end subroutine tell_outcome
 end module case_runner

@@ -1,20 +1,24 @@
-!> What `--resume` finds of an earlier run of a case.
+!> What `--resume` finds of an earlier run: its results, if it is done, or its checkpoint.
 module continuation
+  use, intrinsic :: iso_fortran_env, only: int64
   use kinds, only: dp
   use errors, only: error_t, fail, status_case_file
-  use checkpoint, only: checkpoint_t, program_build, compare_cases, read_whole, restart_hint
+  use checkpoint, only: checkpoint_t, restart_hint
+  use posix, only: file_length
+  use run_identity, only: identity_length, compare_cases
+  use summary, only: summary_value
+  use text_file, only: read_whole
   use text_tools, only: printable
   implicit none
   private
   public :: continuation_t
-
-  character(len=*), parameter :: newline = achar(10)
 
   !> Where a run is to begin: at its beginning, unless one of these holds.
   type :: continuation_t
     logical :: goes_on = .false.     !! from the checkpoint
     logical :: is_done = .false.     !! nothing is left to do
     real(dp) :: interval = 0         !! between checkpoints [s]; 0: none
+    character(len=identity_length) :: identity = ''   !! of the run that is to begin
     type(checkpoint_t) :: checkpoint
   contains
     procedure :: look_for
@@ -22,28 +26,62 @@ module continuation
 
 contains
 
-  !> Look for the checkpoint of the results BASE, else for a run that is done. Errors: the checkpoint is damaged, or belongs
-  !> to another program or another case.
-  subroutine look_for(self, base, file, case_text, error)
+  !> Look for results of the same run under BASE, else for its checkpoint. Errors: the checkpoint is damaged, or belongs to
+  !> another case or program.
+  subroutine look_for(self, base, file, case_text, with_case, with_events, error)
     class(continuation_t), intent(inout) :: self
     character(len=*), intent(in) :: base, file   !! path of the results without their endings; of the case
     character(len=*), intent(in) :: case_text    !! the resolved case
+    logical, intent(in) :: with_case             !! the resolved case is among the results
+    logical, intent(in) :: with_events           !! a list of events is
     type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: difference, text
+    character(len=:), allocatable :: earlier, difference
+    logical :: found
     integer :: status
 
-    self%checkpoint%path = base//'.checkpoint'
-    call self%checkpoint%load(program_build(), self%goes_on, error)
-    if (allocated(error)) return
-    if (self%goes_on) then
-      call compare_cases(case_text, self%checkpoint%case_text, difference)
-      if (difference /= '') call fail(error, printable(file, 200)//': '//difference//restart_hint, status_case_file)
-    else
-      call read_whole(base//'.resolved.nml', text, status)
-      call compare_cases(case_text, text, difference)
-      if (status /= 0 .or. difference /= '') return
-      call read_whole(base//'.summary.csv', text, status)
-      self%is_done = index(text, newline//'status,"done",') > 0
+    self%is_done = are_whole(base, self%identity, with_events)
+    if (self%is_done .and. with_case) then
+      call read_whole(base//'.resolved.nml', earlier, status)
+      call compare_cases(case_text, earlier, difference)
+      self%is_done = status == 0 .and. difference == ''
+    end if
+    if (self%is_done) return
+    call self%checkpoint%load(found, error)
+    if (allocated(error) .or. .not. found) return
+    call compare_cases(case_text, self%checkpoint%case_text, difference)
+    self%goes_on = self%checkpoint%identity == self%identity
+    if (difference /= '') then
+      call fail(error, printable(file, 200)//': '//difference//restart_hint, status_case_file)
+    else if (.not. self%goes_on) then
+      call fail(error, printable(self%checkpoint%path, 200)//': written by another build of gudgeon, or on another kind of '// &
+                'processor: the rounding may differ'//restart_hint, status_case_file)
     end if
   end subroutine look_for
+
+  !> Whether the results BASE are all there and those of a run of this identity that is done: its summary says so, and the files
+  !> have the lengths that it tells.
+  function are_whole(base, identity, with_events) result(answer)
+    character(len=*), intent(in) :: base, identity
+    logical, intent(in) :: with_events
+    logical :: answer
+    character(len=:), allocatable :: table
+    integer :: status
+    call read_whole(base//'.summary.csv', table, status)
+    answer = status == 0
+    if (answer) answer = summary_value(table, 'identity') == identity
+    if (answer) answer = summary_value(table, 'status') == '"done"'
+    if (answer) answer = has_length(base//'.csv', summary_value(table, 'trace_bytes'))
+    if (answer .and. with_events) answer = has_length(base//'.events.csv', summary_value(table, 'events_bytes'))
+  end function are_whole
+
+  !> Whether a file has as many bytes as these digits say.
+  function has_length(path, digits) result(answer)
+    character(len=*), intent(in) :: path, digits
+    logical :: answer
+    integer(int64) :: length
+    integer :: iostat
+    read (digits, '(i20)', iostat=iostat) length
+    answer = iostat == 0
+    if (answer) answer = file_length(path) == length
+  end function has_length
 end module continuation

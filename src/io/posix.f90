@@ -276,7 +276,8 @@ contains
     if (status /= 0) return
     select case (kind_of_file(int(descriptor, c_int), '', at_empty_path))
     case (kind_regular)
-      if (through_link .or. is_file(path, descriptor)) return
+      if (through_link) return
+      if (is_file(path, descriptor)) return
       status = error_no_entry
       if (kind_of_file(at_working_folder, path, at_link_itself) == kind_link) status = error_is_link
     case (kind_folder)

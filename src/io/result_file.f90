@@ -6,10 +6,11 @@ module result_file
   use errors, only: error_t, fail, status_output
   use text_tools, only: printable
   use posix, only: hold_file, open_for_writing, open_for_appending, write_bytes, truncate_file, reserve_file, &
-    synchronise_file, close_file, rename_file, remove_file, error_text, error_interrupted
+    synchronise_file, close_file, rename_file, remove_file, error_text, error_interrupted, &
+    error_no_entry, error_is_directory
   implicit none
   private
-  public :: result_file_t, write_text, remove_unfinished
+  public :: result_file_t, write_text, remove_result
 
   integer, parameter :: buffer_size = 65536   !! bytes; larger ones take longer, by the first use of their pages
 
@@ -33,6 +34,7 @@ module result_file
     procedure :: synchronise
     procedure :: length
     procedure :: has_failed
+    procedure :: tell_error
     procedure :: conclude
     procedure :: close => close_result
     procedure :: leave
@@ -119,9 +121,9 @@ contains
   end subroutine flush_rows
 
   !> Write out what waits, down to the disk. A failure ends the writing: the system may have thrown away what it could not write.
-  subroutine synchronise(self, error)
+  !> `tell_error` says which. This makes no text.
+  subroutine synchronise(self)
     class(result_file_t), intent(inout) :: self
-    type(error_t), allocatable, intent(out) :: error
     integer :: status
     if (self%descriptor < 0) return
     call self%flush()
@@ -133,7 +135,6 @@ contains
       !$omp atomic write
       self%status = status
     end if
-    if (self%status /= 0) call report(self, self%status, error)
   end subroutine synchronise
 
   !> Bytes of whole rows that are in the file.
@@ -152,6 +153,13 @@ contains
     status = self%status
     failed = status /= 0
   end function has_failed
+
+  !> The first failure, if there was one.
+  subroutine tell_error(self, error)
+    class(result_file_t), intent(in) :: self
+    type(error_t), allocatable, intent(out) :: error
+    if (self%status /= 0) call report(self, self%status, error)
+  end subroutine tell_error
 
   !> Write out the rest and give the file its final name. After a failed write it holds the whole rows that fitted (there
   !> is no file if none did, or if it is of no use in part: `whole_only`). `close` reports the failure; this makes no text.
@@ -184,7 +192,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     logical, intent(in), optional :: whole_only
     call self%conclude(whole_only)
-    if (self%status /= 0) call report(self, self%status, error)
+    call self%tell_error(error)
   end subroutine close_result
 
   !> Leave what is written under the temporary name.
@@ -216,20 +224,24 @@ contains
     call file%open(path, error)
     if (allocated(error)) return
     call write_rows(file, text)
-    call file%synchronise(error)
-    if (allocated(error)) then
-      call file%abandon()
-    else
-      call file%close(error, whole_only=.true.)
-    end if
+    call file%synchronise()
+    call file%close(error, whole_only=.true.)
   end subroutine write_text
 
-  !> Remove what a killed program has left of a file under its temporary name.
-  subroutine remove_unfinished(path)
+  !> Remove a result, finished or not. `status` is 0 also where there was none, or where a folder has its name, else the error
+  !> number; `was_there` turns true where something was removed. This makes no text.
+  subroutine remove_result(path, was_there, status)
     character(len=*), intent(in) :: path
-    integer :: ignored
+    logical, intent(inout) :: was_there
+    integer, intent(out) :: status
+    integer :: ignored, earlier
     call remove_file(path//'.part', ignored)
-  end subroutine remove_unfinished
+    call hold_file(path, earlier)
+    call remove_file(path, status)
+    if (earlier >= 0) call close_file(earlier, ignored)
+    if (status == 0) was_there = .true.
+    if (status == error_no_entry .or. status == error_is_directory) status = 0
+  end subroutine remove_result
 
   !> All of `text`, in as many calls as it takes. When one fails the file is cut back to its last whole row.
   subroutine write_rows(self, text)

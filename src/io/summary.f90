@@ -1,6 +1,6 @@
 !> The summary of a run: NAME.summary.csv, and one line for people.
 module summary
-  use, intrinsic :: iso_fortran_env, only: compiler_version, compiler_options
+  use, intrinsic :: iso_fortran_env, only: int64, compiler_version, compiler_options
   use kinds, only: dp
   use ode_method, only: highest_order, with_adams, with_radau, n_limits, limit_names, limit_stability
   use simulation, only: run_report_t
@@ -11,17 +11,19 @@ module summary
   use version, only: program_version
   implicit none
   private
-  public :: summary_table, summary_line, build_advice, relative_residual
+  public :: summary_table, summary_value, summary_line, build_advice, relative_residual
 
   character(len=*), parameter :: newline = achar(10)
 
 contains
 
   !> The rows `quantity,value,unit`.
-  function summary_table(case, report, wall_time) result(text)
+  function summary_table(case, report, wall_time, identity, trace_length, events_length) result(text)
     type(case_t), intent(in) :: case
     type(run_report_t), intent(in) :: report
-    real(dp), intent(in) :: wall_time   !! [s]
+    real(dp), intent(in) :: wall_time                               !! [s]
+    character(len=*), intent(in) :: identity                        !! of the run
+    integer(int64), intent(in) :: trace_length, events_length       !! of the files [bytes]; 0: there is none
     character(len=:), allocatable :: text
     character(len=7), parameter :: phase_names(0:2) = ['free   ', 'film   ', 'contact']
     character(len=5), parameter :: method_names(2) = ['adams', 'radau']
@@ -83,6 +85,9 @@ contains
         call add('impacts_beyond_validity', integer_text(f%impacts_beyond_validity), '1')
       end if
     end associate
+    if (trace_length > 0) call add('trace_bytes', bytes_text(trace_length), 'B')
+    if (events_length > 0) call add('events_bytes', bytes_text(events_length), 'B')
+    call add('identity', identity, '')
     call add('version', program_version, '')
     call add('compiler', quoted(compiler_version(), '"'), '')
     call add('compiler_options', quoted(compiler_options(), '"'), '')
@@ -100,6 +105,28 @@ contains
       call table%append(newline)
     end subroutine add
   end function summary_table
+
+  !> The value of a quantity in such a table, as it stands there; empty where there is none.
+  function summary_value(table, quantity) result(text)
+    character(len=*), intent(in) :: table, quantity
+    character(len=:), allocatable :: text
+    integer :: first
+    text = ''
+    first = index(table, newline//quantity//',')
+    if (first == 0) return
+    first = first + len(newline//quantity//',')
+    text = table(first:first + index(table(first:)//newline, newline) - 2)
+    text = text(:index(text, ',', back=.true.) - 1)
+  end function summary_value
+
+  !> A length of a file.
+  function bytes_text(length) result(text)
+    integer(int64), intent(in) :: length
+    character(len=:), allocatable :: text
+    character(len=20) :: digits
+    write (digits, '(i0)') length
+    text = trim(digits)
+  end function bytes_text
 
   !> Largest energy residual over the largest energy [-]; 0 where there is no energy.
   pure real(dp) function relative_residual(report)

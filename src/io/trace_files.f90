@@ -13,9 +13,8 @@ module trace_files
   use result_file, only: result_file_t
   use file_mark, only: file_mark_t
   use growing_text, only: growing_text_t
-  use checkpoint, only: checkpoint_t, program_build, restart_hint
+  use checkpoint, only: checkpoint_t, restart_hint
   use number_writer, only: longest_number
-  use row_queue, only: row_queue_t
   use trace_table, only: trace_table_t
   use progress, only: progress_t
   use stability_advice, only: stability_advice_t
@@ -42,15 +41,16 @@ module trace_files
     real(dp), private :: earlier_time = 0                 !! wall time of the parts of the run before this one [s]
     integer(int64), private :: began = 0, saved = 0       !! ticks of the clock
     character(len=:), allocatable, private :: path        !! of the files, without their endings
-    type(row_queue_t), pointer, private :: queue => null()   !! to a thread that may write the rows
     integer, private :: rows = 0
     character(len=:), allocatable, private :: line   !! the row being written
   contains
     procedure :: open
+    procedure :: synchronise
+    procedure :: has_failed
+    procedure :: tell_error
     procedure :: conclude
+    procedure :: leave
     procedure :: close
-    procedure :: abandon
-    procedure :: share_rows
     procedure :: take_row
     procedure :: take_event
     procedure :: take_progress
@@ -151,13 +151,15 @@ contains
     call fail(error, printable(path, 200)//': not what the stopped run had written'//restart_hint, status_case_file)
   end subroutine find_marked
 
-  !> From now on write a checkpoint every `interval` seconds (0: never) and where the run stops before its end.
-  subroutine keep_checkpoints(self, path, case_text, interval)
+  !> From now on write a checkpoint every `interval` seconds (0: never) and where the run stops before its end. Path, identity and
+  !> case are those of `checkpoint`.
+  subroutine keep_checkpoints(self, checkpoint, interval)
     class(trace_files_t), intent(inout) :: self
-    character(len=*), intent(in) :: path, case_text
+    type(checkpoint_t), intent(in) :: checkpoint
     real(dp), intent(in) :: interval
-    self%checkpoint%path = path
-    self%checkpoint%case_text = case_text
+    self%checkpoint%path = checkpoint%path
+    self%checkpoint%identity = checkpoint%identity
+    self%checkpoint%case_text = checkpoint%case_text
     self%checkpoint_interval = interval
     self%keeps_archives = interval > 0
   end subroutine keep_checkpoints
@@ -169,12 +171,13 @@ contains
     logical :: is_there
     self%wants_archive = .false.
     call system_clock(self%saved)
-    if (associated(self%queue)) call self%queue%settle()
-    !$omp critical (texts)
-    call self%trace%synchronise(self%checkpoint_error)
-    if (.not. allocated(self%checkpoint_error)) call self%event_list%synchronise(self%checkpoint_error)
-    !$omp end critical (texts)
-    if (allocated(self%checkpoint_error)) return
+    call self%synchronise()
+    if (self%has_failed()) then
+      !$omp critical (texts)
+      call self%tell_error(self%checkpoint_error)
+      !$omp end critical (texts)
+      return
+    end if
     associate (checkpoint => self%checkpoint)
       call checkpoint%trace%move_to(self%path//'.csv.part', self%trace%length(), is_there)
       if (is_there .and. self%event_list%length() > 0) &
@@ -182,7 +185,6 @@ contains
       call archive%contents(checkpoint%state)
       checkpoint%wall_time = self%wall_time()
       !$omp critical (texts)
-      if (.not. allocated(checkpoint%build)) checkpoint%build = program_build()
       if (is_there) then
         call checkpoint%save(self%checkpoint_error)
       else
@@ -201,12 +203,41 @@ contains
     wall_time = self%earlier_time + real(now - self%began, dp)/real(rate, dp)
   end function wall_time
 
-  !> Give both files their final names. This makes no text: any thread may do it at any time.
+  !> Write out what waits in both files, down to the disk. This makes no text: any thread may do it at any time.
+  subroutine synchronise(self)
+    class(trace_files_t), intent(inout) :: self
+    call self%trace%synchronise()
+    call self%event_list%synchronise()
+  end subroutine synchronise
+
+  !> Whether one of the files could not be written.
+  logical function has_failed(self)
+    class(trace_files_t), intent(in) :: self
+    has_failed = self%trace%has_failed()
+    if (self%event_list%has_failed()) has_failed = .true.
+  end function has_failed
+
+  !> Why one of the files could not be written, if so.
+  subroutine tell_error(self, error)
+    class(trace_files_t), intent(in) :: self
+    type(error_t), allocatable, intent(out) :: error
+    call self%trace%tell_error(error)
+    if (.not. allocated(error)) call self%event_list%tell_error(error)
+  end subroutine tell_error
+
+  !> Give both files their final names. This makes no text.
   subroutine conclude(self)
     class(trace_files_t), intent(inout) :: self
     call self%trace%conclude()
     call self%event_list%conclude()
   end subroutine conclude
+
+  !> Leave both files under their temporary names. This makes no text.
+  subroutine leave(self)
+    class(trace_files_t), intent(inout) :: self
+    call self%trace%leave()
+    call self%event_list%leave()
+  end subroutine leave
 
   !> Conclude both files, if that is not done yet. The first error is told.
   subroutine close(self, error)
@@ -219,32 +250,11 @@ contains
     if (.not. allocated(error)) call move_alloc(second, error)
   end subroutine close
 
-  !> Nothing stays of either file.
-  subroutine abandon(self)
-    class(trace_files_t), intent(inout) :: self
-    call self%progress%finish()
-    call self%trace%abandon()
-    call self%event_list%abandon()
-  end subroutine abandon
-
-  !> From now on rows of so many values may be written by who serves the queue.
-  subroutine share_rows(self, queue, n_values)
-    class(trace_files_t), intent(inout), target :: self
-    type(row_queue_t), intent(inout), target :: queue
-    integer, intent(in) :: n_values
-    call queue%set_table(self%trace, n_values)
-    self%queue => queue
-  end subroutine share_rows
-
   subroutine take_row(self, values)
     class(trace_files_t), intent(inout) :: self
     real(dp), intent(in), contiguous :: values(:)
     integer, parameter :: rows_between_looks = 100
-    logical :: is_taken
-
-    is_taken = .false.
-    if (associated(self%queue)) call self%queue%offer(values, is_taken)
-    if (.not. is_taken) call self%trace%put_row(values)
+    call self%trace%put_row(values)
     self%rows = self%rows + 1
     if (mod(self%rows, rows_between_looks) == 0) call look(self)
   end subroutine take_row
@@ -305,8 +315,7 @@ contains
     class(trace_files_t), intent(inout) :: self
     integer(int64) :: now, rate
     if (interrupted()) self%wants_to_stop = .true.
-    if (self%trace%has_failed()) self%wants_to_stop = .true.
-    if (self%event_list%has_failed()) self%wants_to_stop = .true.
+    if (self%has_failed()) self%wants_to_stop = .true.
     if (.not. self%keeps_archives) return
     call system_clock(now, rate)
     if (real(now - self%saved, dp) >= self%checkpoint_interval*real(rate, dp)) self%wants_archive = .true.

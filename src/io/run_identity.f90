@@ -1,0 +1,123 @@
+!> The identity of a run: results, checkpoint and summary belong together, and to a case, where their identities agree.
+module run_identity
+  use, intrinsic :: iso_c_binding, only: c_long
+  use, intrinsic :: iso_fortran_env, only: compiler_version, compiler_options
+  use kinds, only: dp
+  use checksum, only: checksum_t
+  use posix, only: open_for_reading, read_at, close_file
+  use text_file, only: read_whole
+  use version, only: program_version
+  implicit none
+  private
+  public :: identity_length, identity_of, compare_cases
+
+  integer, parameter :: identity_length = 16   !! hexadecimal digits
+  character(len=*), parameter :: newline = achar(10)
+
+  !> Keys of a case that only say when a run gives up: they may change between a run and its continuation.
+  character(len=*), parameter :: free_keys(3) = [character(len=30) :: 'max_steps', 'max_evaluations', &
+    'max_evaluations_per_revolution']
+
+contains
+
+  !> A digest of all that the results of a run depend on: the resolved case without the keys that may change, whether the run is
+  !> that of the ideal twin, the program to the byte and how it rounds on this machine.
+  function identity_of(case_text, is_twin) result(identity)
+    character(len=*), intent(in) :: case_text   !! the resolved case
+    logical, intent(in) :: is_twin
+    character(len=identity_length) :: identity
+    type(checksum_t) :: sum
+    character(len=:), allocatable :: line
+    integer :: at
+    at = 1
+    do while (at <= len(case_text))
+      call next_line(case_text, at, line)
+      call sum%add(line//newline)
+    end do
+    if (is_twin) call sum%add('ideal twin'//newline)
+    call sum%add(program_version//newline//compiler_version()//newline//compiler_options()//newline)
+    call add_program(sum)
+    call add_functions(sum)
+    identity = sum%hexadecimal()
+  end function identity_of
+
+  !> The running program: the first page of its file, which holds the digest that linkers leave of the whole (the build id); of one
+  !> without it, all bytes.
+  subroutine add_program(sum)
+    type(checksum_t), intent(inout) :: sum
+    character(len=*), parameter :: file = '/proc/self/exe', build_id = achar(3)//repeat(achar(0), 3)//'GNU'//achar(0)
+    character(len=4096) :: page
+    character(len=:), allocatable :: bytes
+    integer :: descriptor, status, done, ignored
+    done = 0
+    call open_for_reading(file, descriptor, status)
+    if (status == 0) then
+      call read_at(descriptor, 0_c_long, page, done, status)
+      call close_file(descriptor, ignored)
+    end if
+    if (index(page(:max(0, done)), build_id) > 0) then
+      call sum%add(page(:done))
+    else
+      call read_whole(file, bytes, status)
+      call sum%add(bytes)
+    end if
+  end subroutine add_program
+
+  !> Elementary functions at some points: the C library has several of each, takes what the processor can, and they round
+  !> differently.
+  pure subroutine add_functions(sum)
+    type(checksum_t), intent(inout) :: sum
+    integer, parameter :: points = 300
+    real(dp) :: x, values(7)
+    character(len=8*size(values)) :: bytes
+    integer :: i
+    do i = 1, points
+      x = 0.0456_dp*i
+      values = [sin(x), cos(x), tan(x), exp(-x), log(x), x**1.5_dp, atan2(x, 3.0_dp)]
+      bytes = transfer(values, bytes)
+      call sum%add(bytes)
+    end do
+  end subroutine add_functions
+
+  !> Where two resolved cases differ, besides the keys that may: group and line of each. `difference` is empty where they do
+  !> not.
+  subroutine compare_cases(case_text, earlier, difference)
+    character(len=*), intent(in) :: case_text, earlier
+    character(len=:), allocatable, intent(out) :: difference
+    character(len=:), allocatable :: line, other, group
+    integer :: at, other_at
+    difference = ''
+    group = ''
+    at = 1
+    other_at = 1
+    do while (difference == '' .and. (at <= len(case_text) .or. other_at <= len(earlier)))
+      call next_line(case_text, at, line)
+      call next_line(earlier, other_at, other)
+      if (line == other) then
+        if (index(line, '&') == 1) group = line
+      else
+        difference = group//' '//trim(adjustl(line))//', where the run to go on with has '//trim(adjustl(other))
+        if (index(line//other, '&') > 0) difference = 'the groups '//line//' and '//other//' where the run to go on with differs'
+      end if
+    end do
+  end subroutine compare_cases
+
+  !> The next line from position `at` that is not one of a key that may change; `at` moves behind it.
+  subroutine next_line(text, at, line)
+    character(len=*), intent(in) :: text
+    integer, intent(inout) :: at
+    character(len=:), allocatable, intent(out) :: line
+    integer :: length, i
+    logical :: is_free
+    do
+      length = index(text(min(at, len(text) + 1):)//newline, newline) - 1
+      line = text(min(at, len(text) + 1):min(at + length - 1, len(text)))
+      at = at + length + 1
+      is_free = .false.
+      do i = 1, size(free_keys)
+        if (index(adjustl(line), trim(free_keys(i))//' =') == 1) is_free = .true.
+      end do
+      if (.not. is_free) return
+    end do
+  end subroutine next_line
+end module run_identity
