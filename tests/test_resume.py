@@ -3,8 +3,8 @@
 
     tests/test_resume.py [--kills N] [--seed N] [--program PATH]
 
-Stopped by a limit, by a signal, by kill -9 at random instants; checkpoints damaged, of another case, of another build; traces
-that were changed. Needs a release build (or makes one). Ends with the line "N passed, N failed".
+Stopped by a limit, by a signal, by kill -9 at random instants; run again with other values, killed and taken up; checkpoints
+damaged, of another case, of another build; results that were changed or removed. Needs a release build (or makes one). Ends with the line "N passed, N failed".
 """
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from test_faults import ROOT, Gudgeon, check, counts, program_built
 
 CASES = ROOT / "cases"
 SHORT = ("--set", "integrator.revolutions=0.5", "--set", "integrator.method=auto", "--set", "output.ideal_twin=F")
-RESULTS = (".csv", ".events.csv", ".summary.csv", ".resolved.nml")
+RESULTS = (".csv", ".events.csv", ".summary.csv", ".resolved.nml", ".ideal.csv", ".ideal.summary.csv")
 FREE = ("wall_time,", "  max_steps =")   # what may differ: a run that is done is left with the limits that it had
 
 
@@ -155,7 +155,10 @@ def refusals(gudgeon: Gudgeon, work: Path, chance: random.Random) -> None:
     events = "friction_100.events.csv"
     refused("events that are missing", change=lambda folder: (folder / events).unlink(), want=events)
     other = work / "other_build"
-    other.write_bytes(gudgeon.program.read_bytes() + b"\0")
+    program = gudgeon.program.read_bytes()
+    mark = program.find(b"\3\0\0\0GNU\0")   # of the build id, which the linker makes of the whole program
+    check(0 < mark < 4096, "the program has a build id")
+    other.write_bytes(program[:mark + 8] + bytes([program[mark + 8] ^ 1]) + program[mark + 9:])
     other.chmod(0o755)
     refused("another build", program=Gudgeon(other), want="another build")
     plain = {**os.environ, "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-FMA_Usable,-AVX2_Usable"}
@@ -192,6 +195,131 @@ def beginnings(gudgeon: Gudgeon, work: Path) -> None:
         check(status == 2 and "--checkpoint" in err, f"--checkpoint {value}: {status} {err}")
 
 
+def rerun_with_other_values(gudgeon: Gudgeon, work: Path, kills: int, chance: random.Random) -> None:
+    """Runs into a folder that holds the results of other values, killed at random instants: nothing of the other values ever stands
+    beside what the new run has written, and --resume ends with the rows of the values that it is given."""
+    name, folder = "sim_III", work / "again"
+    always = ("--set", "integrator.method=auto", "--set", "integrator.revolutions=12", "--checkpoint", 0.02, CASES / f"{name}.nml")
+    speeds = [1500, 1600, 1700, 1800]
+    expected, duration = {}, 0.0
+    for speed in speeds:
+        began = time.monotonic()
+        status, _, err = gudgeon.run("-o", work / str(speed), "--set", f"initial.crank_speed={speed}", *always)
+        duration = max(duration, time.monotonic() - began)
+        check(status == 0, f"whole run at {speed} rad/s: {status} {err}")
+        expected[speed] = {end: b"".join(contents(work / str(speed) / (name + end))) for end in RESULTS}
+    check(len({files[".csv"] for files in expected.values()}) == len(speeds), "each speed has its own rows")
+
+    def foreign(speed: int) -> str:
+        """Results in the folder that are of another speed, where the resolved case says this one."""
+        for end in (".csv", ".events.csv", ".ideal.csv"):
+            for path in (folder / (name + end), folder / (name + end + ".part")):
+                rows = path.read_bytes() if path.exists() else b""
+                if not expected[speed][end].startswith(rows[:rows.rfind(b"\n") + 1]):
+                    return f"{path.name} is not of {speed} rad/s"
+        for end in (".summary.csv", ".ideal.summary.csv"):
+            rows = contents(folder / (name + end))
+            if rows and next(row for row in rows if row.startswith(b"identity,")) not in expected[speed][end]:
+                return f"{name + end} is not of {speed} rad/s"
+        return ""
+
+    present, killed, early, done_before = None, 0, 0, 0
+    for i in range(kills):
+        speed = chance.choice([each for each in speeds if each != present])
+        words = ("-o", folder, "-j", chance.choice((1, 2)), *always, "--set")
+        process = gudgeon.start(*words, f"initial.crank_speed={speed}")
+        try:
+            process.wait(timeout=chance.choice((chance.uniform(0, 0.03), *2*[chance.uniform(0, 1.1*duration)])))
+        except subprocess.TimeoutExpired:
+            process.kill()
+            killed += 1
+        process.communicate()
+        resolved = folder / f"{name}.resolved.nml"
+        found = of_speed(resolved, speeds)
+        early += found != speed
+        if found is not None:
+            check(not foreign(found), f"kill {i}: {foreign(found)}")
+        wanted = speed if present is None or chance.random() < 0.7 else present   # with the new values, or the old ones again
+        status, out, err = gudgeon.run("--resume", *words, f"initial.crank_speed={wanted}")
+        if status == 3 and wanted != found and "where the run to go on with has" in err:   # the checkpoint of other values
+            status, out, err = gudgeon.run(*words, f"initial.crank_speed={wanted}")
+        done_before += "done already" in out
+        wrong = [end for end in RESULTS if b"".join(contents(folder / (name + end))) != expected[wanted][end]]
+        check(status == 0 and not wrong, f"kill {i}, then {wanted} rad/s: exit {status}, {err}{wrong} are not its results")
+        check(not leftovers(folder), f"kill {i}: left behind: {leftovers(folder)}")
+        present = wanted
+    print(f"{name} run again with other values: {killed} kills in {kills} runs, {early} before the new run had its place, "
+          f"{done_before} taken up that were done", flush=True)
+
+
+def of_speed(resolved: Path, speeds: list[int]) -> int | None:
+    """The speed in a resolved case."""
+    for line in resolved.read_text().splitlines() if resolved.exists() else []:
+        key, _, value = line.partition("=")
+        if key.strip() == "crank_speed":
+            return next(speed for speed in speeds if float(value.split("!")[0]) == speed)
+    return None
+
+
+def results_of_others(gudgeon: Gudgeon, work: Path) -> None:
+    """What is done is taken for done only where all of it is there and belongs to this case and program."""
+    file = CASES / "sim_I.nml"
+    words = ("--set", "integrator.revolutions=0.5", "--set", "integrator.method=auto", "--set", "output.ideal_twin=T", file)
+    whole, folder = work / "whole", work / "folder"
+    check(gudgeon.run("-o", whole, *words)[0] == 0, "whole run")
+
+    def taken_up(what: str, name: str, change, twin_only: bool = False) -> None:
+        shutil.rmtree(folder, ignore_errors=True)
+        shutil.copytree(whole, folder)
+        change(folder / name)
+        status, out, err = gudgeon.run("--resume", "-o", folder, *words)
+        check(status == 0 and ("done already" in out) == twin_only, f"{what}: run again: {status} {out}{err}")
+        check(not differing(whole, folder, "sim_I"), f"{what}: {differing(whole, folder, 'sim_I')} are not whole")
+
+    for end in RESULTS:
+        taken_up(f"without sim_I{end}", f"sim_I{end}", Path.unlink, end.startswith(".ideal"))
+    for end in (".csv", ".events.csv", ".ideal.csv"):
+        taken_up(f"sim_I{end} cut", f"sim_I{end}", lambda path: path.write_bytes(path.read_bytes()[:-1]), end.startswith(".ideal"))
+        taken_up(f"sim_I{end} longer", f"sim_I{end}", lambda path: path.write_bytes(path.read_bytes() + b"0\n"),
+                 end.startswith(".ideal"))
+
+    def of_another(path: Path) -> None:
+        text = path.read_text()
+        at = text.index("\nidentity,") + 10
+        path.write_text(text[:at] + ("0" if text[at] != "0" else "1") + text[at + 1:])
+    for end in (".summary.csv", ".ideal.summary.csv"):
+        taken_up(f"sim_I{end} of another run", f"sim_I{end}", of_another, end.startswith(".ideal"))
+    # a scene without contacts and without a twin leaves nothing of the scene that had them
+    plain = work / "sim_I.nml"
+    shutil.copy(CASES / "flores" / "ideal.nml", plain)
+    status, _, err = gudgeon.run("-o", folder, *words[:4], plain)
+    check(status == 0, f"a plain scene of the same name: {status} {err}")
+    left = sorted(path.name for path in folder.iterdir())
+    check(left == ["sim_I.csv", "sim_I.resolved.nml", "sim_I.summary.csv"], f"what is left: {left}")
+    # another case that happens to have the name of a twin is none
+    named = work / "sim_I.ideal.nml"
+    shutil.copy(CASES / "flores" / "ideal.nml", named)
+    gudgeon.run("-o", folder, "--set", "integrator.revolutions=0.1", named)
+    before = (folder / "sim_I.ideal.csv").read_bytes()
+    gudgeon.run("-o", folder, *words[:4], "--set", "output.ideal_twin=F", file)
+    check((folder / "sim_I.ideal.csv").read_bytes() == before, "results of a case with the name of a twin stay")
+
+
+def twin_taken_up(gudgeon: Gudgeon, work: Path) -> None:
+    """An ideal twin that was stopped goes on like any other run."""
+    file = CASES / "sim_I.nml"
+    words = ("--set", "integrator.revolutions=4", "--set", "integrator.method=auto", file)
+    check(gudgeon.run("-o", work / "whole", *words)[0] == 0, "whole run")
+    for limit in (20, 60, 100, 200):
+        status, _, err = gudgeon.run("--resume", "--set", f"integrator.max_steps={limit}", "-o", work / "parts", *words)
+        check(status == 4 and err.count("too many steps") == 1, f"stopped after {limit} steps: {status} {err}")
+    summary = (work / "parts" / "sim_I.ideal.summary.csv").read_text()
+    check('status,"done"' in summary or 'status,"too many steps' in summary, f"the twin has a summary: {summary[:200]}")
+    check(gudgeon.run("--resume", "-o", work / "parts", *words)[0] == 0, "and to the end")
+    check(not differing(work / "whole", work / "parts", "sim_I"), f"{differing(work / 'whole', work / 'parts', 'sim_I')} differ")
+    check(not leftovers(work / "parts"), f"left behind: {leftovers(work / 'parts')}")
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--kills", type=int, default=20, help="signals to each long run (default: %(default)s)")
@@ -205,6 +333,9 @@ def main() -> int:
         stopped_by_limits(gudgeon, work / "limits")
         stopped_by_signals(gudgeon, work / "film", CASES / "sim_V_oscillating.nml", "60", options.kills, chance)
         stopped_by_signals(gudgeon, work / "dry", CASES / "flores" / "friction_100.nml", "60", options.kills, chance)
+        rerun_with_other_values(gudgeon, work / "rerun", options.kills, chance)
+        results_of_others(gudgeon, work / "others")
+        twin_taken_up(gudgeon, work / "twin")
         stopped_by_full_disk(gudgeon, work / "disk")
         refusals(gudgeon, work / "refused", chance)
         beginnings(gudgeon, work / "begin")

@@ -105,6 +105,7 @@ contains
     if (self%start%goes_on .or. self%start%is_done) return
     call remove(self%base//'.csv', was_there, status)
     call remove(self%base//'.events.csv', was_there, status)
+    if (.not. self%is_twin) call remove(self%base//'.resolved.nml', was_there, status)
   end subroutine clear
 
   subroutine remove(path, was_there, status)
