@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""What the machine does to a run: kills, signals, full disks, folders that cannot be written, two runs in one place.
+"""What the machine does to a run: kills, signals, full disks, folders that cannot be written, two runs in one place, pipes and
+links where files should be, and what a power cut finds on the disk.
 
     tests/test_faults.py [--kills N] [--seed N] [--program PATH]
 
@@ -133,19 +134,28 @@ def test_signals(gudgeon: Gudgeon, work: Path) -> None:
         summary = (folder / "sim_I.summary.csv").read_text()
         check('status,"interrupted at t' in summary, f"{number.name}: the summary says so")
         whole(folder, number.name)
-    folder = work / "twin"   # of a run that is interrupted there is no twin, also where it went beside it; an earlier one stays
+    folder = work / "twin"   # goes beside its case, is stopped with it, and is a run of its own to take up; an earlier one goes
     folder.mkdir()
-    earlier = folder / "sim_I.ideal.csv"
-    earlier.write_text("time[s]\n0\n")
-    process = gudgeon.start("-o", folder, "-j", "2", *LONG, "--set", "output.ideal_twin=T", ROOT / "cases" / "sim_I.nml")
+    (folder / "sim_I.ideal.csv").write_text("time[s]\n0\n")
+    words = ("-o", folder, *LONG, "--set", "output.ideal_twin=T", ROOT / "cases" / "sim_I.nml")
+    process = gudgeon.start("-j", "2", *words)
     while not ((folder / "sim_I.csv.part").exists() and (folder / "sim_I.ideal.csv.part").exists()):
         time.sleep(0.01)
-    time.sleep(0.2)
+    check(not (folder / "sim_I.ideal.csv").exists(), "twin: the earlier one is gone")
     process.send_signal(signal.SIGINT)
     _, err = process.communicate(timeout=PATIENCE)
     check(process.returncode == 4 and err.decode().count("\n") == 1 and b"interrupted at t =" in err, f"twin: one line, not {err}")
-    check(earlier.read_text() == "time[s]\n0\n", "of an interrupted run there is no twin")
+    check('status,"interrupted at t' in (folder / "sim_I.ideal.summary.csv").read_text(), "twin: its summary says so")
     whole(folder, "twin")
+    folder = work / "later"   # the case is done, its twin is not
+    process = gudgeon.start("-o", folder, "-j", "1", *SHORT[:2], *SHORT[4:], "--set", "output.ideal_twin=T", "--set",
+                            "output.interval=1e-8", ROOT / "cases" / "sim_II.nml")
+    while not ((folder / "sim_II.ideal.csv.part").exists()):
+        time.sleep(0.001)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=PATIENCE)
+    check(process.returncode == 4 and b"sim_II.nml: ideal twin: interrupted" in err, f"a twin that is interrupted is named: {err}")
+    check('status,"done"' in (folder / "sim_II.summary.csv").read_text(), "and its case is done")
     folder = work / "nohup"
     process = gudgeon.start("-o", folder, *SHORT, FLORES / "dry_0100um.nml",
                             preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
@@ -189,6 +199,189 @@ def test_full_disk(gudgeon: Gudgeon, work: Path) -> None:
         full(gudgeon, work / f"twin{size}", f"files of {size} bytes at most, with a twin", "-j", "2", "--set", "output.ideal_twin=T",
              "--set", "output.samples_per_revolution=5000",
              preexec_fn=lambda size=size: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)))
+
+
+def test_full_disk_has_summary(gudgeon: Gudgeon, work: Path) -> None:
+    """A run that finds the disk full says so in its summary, for which there is room: no trace that is cut stands without one."""
+    case = FLORES / "friction_100.nml"
+    words = ("--set", "integrator.revolutions=30", "--set", "output.ideal_twin=F", case)
+    for size in (40, 60, 100, 500, 2000):
+        with disk(work / f"disk{size}", f"size={size}k") as mounted:
+            if not mounted:
+                print("skipped: the summary on a full disk (needs root and tmpfs)")
+                return
+            folder = work / f"disk{size}"
+            status, _, err = gudgeon.run("-o", folder, *words)
+            check(status == 5 and "No space left" in err, f"a disk of {size} kB: {status} {err}")
+            summary = folder / "friction_100.summary.csv"
+            check(summary.exists() or not (folder / "friction_100.csv").exists(), f"a disk of {size} kB: a trace without a summary")
+            if size >= 60:
+                check(summary.exists() and 'status,"stopped: ' in summary.read_text(), f"a disk of {size} kB: the summary tells")
+            whole(folder, f"a disk of {size} kB")
+
+
+def test_planted(gudgeon: Gudgeon, work: Path) -> None:
+    """Links, pipes and devices where files should be: nothing is written through them, nothing waits for them."""
+    case = FLORES / "ideal.nml"
+    folder = work / "links"
+    folder.mkdir()
+    victim = work / "victim"
+    victim.write_text("precious\n")
+    for name in ("csv", "summary.csv", "resolved.nml", "checkpoint", "events.csv"):
+        for ending in ("", ".part"):
+            (folder / f"ideal.{name}{ending}").symlink_to(victim)
+    (folder / "ideal.ideal.csv.part").hardlink_to(victim)
+    status, _, err = gudgeon.run("-o", folder, "--set", "integrator.max_steps=30", "--checkpoint", 0.0001, case)
+    check(status == 4, f"a run among links: {status} {err}")
+    check(victim.read_text() == "precious\n", "what the links lead to stays")
+    check(not any(path.is_symlink() for path in folder.iterdir()), f"the links are gone: {[p.name for p in folder.iterdir()]}")
+    status, _, err = gudgeon.run("-o", folder, "--resume", case)
+    check(status == 0 and not err, f"and goes on: {status} {err}")
+
+    pipe = work / "pipe.nml"
+    os.mkfifo(pipe)
+    for bad in (pipe, "/dev/zero", "/dev/null"):
+        for words in ((bad,), ("--check", bad)):
+            status, _, err = gudgeon.run("-o", folder, *words)
+            check(status == 3 and err == f"gudgeon: {bad}: not a regular file\n", f"{bad} as a case: {status} {err}")
+    for name, status_wanted, extra in (("lock", 5, ()), ("checkpoint", 3, ("--resume",))):
+        for make in (os.mkfifo, lambda path: path.symlink_to("/dev/zero")):
+            blocked = work / "blocked"
+            shutil.rmtree(blocked, ignore_errors=True)
+            blocked.mkdir()
+            make(blocked / f"ideal.{name}")
+            status, _, err = gudgeon.run("-o", blocked, *extra, *SHORT, case)
+            check(status == status_wanted and err.count("\n") == 1 and f"ideal.{name}: " in err, f"{name}: {status} {err}")
+            check(len(list(blocked.iterdir())) == 1, f"{name}: nothing is written")
+    (blocked / "ideal.checkpoint").unlink()
+    (blocked / "ideal.lock").symlink_to(victim)
+    status, _, err = gudgeon.run("-o", blocked, *SHORT, case)
+    check(status == 5 and err.endswith("ideal.lock: a symbolic link\n"), f"a link for a lock: {status} {err}")
+    for name in ("csv", "summary.csv", "resolved.nml"):   # pipes under the names of results are replaced
+        os.mkfifo(work / f"ideal.{name}")
+    status, _, err = gudgeon.run("-o", work, *SHORT, case)
+    check(status == 0 and not err, f"pipes for results: {status} {err}")
+
+
+def test_standard_input(gudgeon: Gudgeon, work: Path) -> None:
+    """A case may come through /dev/stdin, and while it is waited for a signal ends the program."""
+    case = FLORES / "ideal.nml"
+    with case.open("rb") as file:
+        status, _, err = gudgeon.run("-o", work / "file", *SHORT, "/dev/stdin", stdin=file)
+    check(status == 0, f"a case as a file on standard input: {status} {err}")
+    process = gudgeon.start("-o", work / "pipe", *SHORT, "/dev/stdin", stdin=subprocess.PIPE)
+    time.sleep(0.1)
+    _, err = process.communicate(case.read_bytes(), timeout=PATIENCE)
+    check(process.returncode == 0, f"through a pipe, after a while: {process.returncode} {err}")
+    same = [(work / name / "stdin.csv").read_bytes() for name in ("file", "pipe")]
+    check(same[0] == same[1], "with the same results")
+    for number in (signal.SIGINT, signal.SIGTERM):
+        process = gudgeon.start("-o", work / "none", "/dev/stdin", stdin=subprocess.PIPE)
+        time.sleep(0.3)
+        began = time.monotonic()
+        process.send_signal(number)
+        status = process.wait(timeout=PATIENCE)
+        err = process.stderr.read().decode()
+        process.stdin.close()
+        check(status == 4 and "interrupted before it began" in err, f"{number.name} while it waits: {status} {err}")
+        check(time.monotonic() - began < 2, f"{number.name} at once")
+    for delay in (0, 0.001, 0.002, 0.004, 0.008):   # from the first instant on: the system ends the program, or it ends itself
+        process = gudgeon.start("-o", work / "early", *LONG, FLORES / "dry_0500um.nml")
+        time.sleep(delay)
+        process.send_signal(signal.SIGTERM)
+        check(process.wait(timeout=5) in (4, -signal.SIGTERM), f"SIGTERM after {delay} s: {process.returncode}")
+        process.communicate()
+
+
+LIBRARY = r"""
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+static void tell(const char *what, const char *path, const char *other) {
+  char line[9000];
+  static int log = -1;
+  if (log < 0) log = open(getenv("CALLS"), O_WRONLY | O_APPEND | O_CREAT, 0666);
+  int n = snprintf(line, sizeof line, "%s\t%s\t%s\n", what, path, other);
+  ssize_t (*out)(int, const void *, size_t) = dlsym(RTLD_NEXT, "write");
+  if (out(log, line, n) != n) abort();
+}
+static const char *name_of(int file, char *name) {
+  char link[64];
+  snprintf(link, sizeof link, "/proc/self/fd/%d", file);
+  ssize_t n = readlink(link, name, 4000);
+  name[n < 0 ? 0 : n] = 0;
+  return name;
+}
+int rename(const char *from, const char *to) {
+  int (*real)(const char *, const char *) = dlsym(RTLD_NEXT, "rename");
+  int status = real(from, to);
+  if (!status) tell("rename", from, to);
+  return status;
+}
+int unlink(const char *path) {
+  int (*real)(const char *) = dlsym(RTLD_NEXT, "unlink");
+  int status = real(path);
+  if (!status) tell("remove", path, "");
+  return status;
+}
+int fsync(int file) {
+  char name[4096];
+  int (*real)(int) = dlsym(RTLD_NEXT, "fsync");
+  tell("disk", name_of(file, name), "");
+  return real(file);
+}
+ssize_t write(int file, const void *bytes, size_t n) {
+  char name[4096];
+  ssize_t (*real)(int, const void *, size_t) = dlsym(RTLD_NEXT, "write");
+  tell("write", name_of(file, name), "");
+  return real(file, bytes, n);
+}
+"""
+
+
+def test_power_cut(gudgeon: Gudgeon, work: Path) -> None:
+    """The order of what goes to the disk, from a library that notes the calls: a file is there before it has its name, the names
+    are there before the program ends, and nothing earlier that says "done" is left when the first name of the new run comes."""
+    source, library, calls = work / "calls.c", work / "calls.so", work / "calls"
+    source.write_text(LIBRARY)
+    built = subprocess.run(["gcc", "-shared", "-fPIC", "-o", library, source, "-ldl"], capture_output=True, text=True, check=False)
+    if built.returncode:
+        print(f"skipped: the order of what goes to the disk (gcc: {built.stderr[:100]})")
+        return
+    folder = (work / "results").resolve()
+    for i, words in enumerate((("-j", "1"), ("-j", "2", "--set", "initial.crank_speed=1010"), ("--set", "integrator.max_steps=12"))):
+        calls.unlink(missing_ok=True)
+        status, _, err = gudgeon.run("-o", folder, *SHORT[:2], *SHORT[4:], *words, ROOT / "cases" / "sim_III.nml",
+                                     env={**os.environ, "LD_PRELOAD": str(library), "CALLS": str(calls)})
+        check(status == (4 if i == 2 else 0), f"a run that is watched: {status} {err}")
+        unsafe: set[str] = set()    # files with bytes that the disk may not have
+        loose: list[str] = []       # changes of the folder that it may not have
+        done = 0
+        for line in calls.read_text().splitlines():
+            what, path, other = line.split("\t")
+            if what == "write":
+                unsafe.add(path)
+            elif what == "disk":
+                unsafe.discard(path)
+                if Path(path) == folder:
+                    loose = []
+            elif what == "remove":
+                loose.append(f"remove {path}")
+            else:
+                source_path = str(Path(path).resolve().parent / Path(path).name)
+                check(source_path not in unsafe, f"run {i}: {Path(other).name} has its name before the disk has its bytes")
+                check(not any("summary.csv" in each and "remove" in each and not each.endswith(".part") for each in loose),
+                      f"run {i}: {Path(other).name} comes while an earlier summary may come back")
+                loose.append(f"rename {other}")
+                done += 1
+        check(done >= 5, f"run {i}: {done} files get their names")
+        left = [each for each in loose if not each.endswith((".checkpoint", ".lock", ".part"))]
+        check(not left, f"run {i}: the disk may not have: {left}")
 
 
 def test_folders(gudgeon: Gudgeon, work: Path) -> None:
@@ -304,7 +497,8 @@ def main() -> int:
     signal.signal(signal.SIGINT, signal.default_int_handler)   # a background job, and all it starts, would ignore it
     gudgeon = Gudgeon(options.program or program_built())
     with tempfile.TemporaryDirectory(prefix="faults") as work:
-        for test in (test_signals, test_full_disk, test_folders, test_standard_output, test_two_runs, test_batch):
+        for test in (test_signals, test_full_disk, test_full_disk_has_summary, test_planted, test_standard_input, test_power_cut,
+                     test_folders, test_standard_output, test_two_runs, test_batch):
             folder = Path(work) / test.__name__
             folder.mkdir()
             test(gudgeon, folder)
