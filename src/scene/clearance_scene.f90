@@ -37,6 +37,8 @@ module clearance_scene
     procedure :: initial_state
     procedure :: prepare_start
     procedure :: is_singular
+    procedure :: has_clearance
+    procedure :: find_pin
     procedure :: claim
     procedure :: reported_event
     procedure :: events => all_events
@@ -409,6 +411,27 @@ contains
     y(self%pin%position:self%pin%position + 1) = self%start_eccentricity
     y(self%pin%rate:self%pin%rate + 1) = self%start_eccentricity_rate
   end function initial_state
+
+  pure logical function has_clearance(self)
+    class(clearance_scene_t), intent(in) :: self
+    associate (unused_self => self)
+    end associate
+    has_clearance = .true.
+  end function has_clearance
+
+  pure subroutine find_pin(self, t, y, joint, normal_force)
+    class(clearance_scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    type(joint_motion_t), intent(out) :: joint
+    real(dp), intent(out) :: normal_force
+    real(dp) :: crank_angle, crank_speed
+    call read_state(self, t, y, crank_angle, crank_speed, joint)
+    call find_joint_motion(self%joint, joint)
+    joint%sliding_speed = 0
+    normal_force = 0
+    if (self%phase == phase_contact) &
+      normal_force = self%contact%normal_force(joint%penetration, joint%penetration_rate, self%impact_speed)
+  end subroutine find_pin
 
   !> A film that grows without bound at the wall, and has next to no thickness.
   pure logical function is_singular(self, y)

@@ -5,8 +5,8 @@ module cycle_statistics
   private
   public :: cycle_t, cycle_statistics_t
 
-  !> One revolution. What belongs to a joint with clearance is 0 without one. Peaks are taken at accepted points of the
-  !> integration.
+  !> One revolution. What belongs to a joint with clearance is 0 without one. Peaks are searched between the accepted points of
+  !> the integration too.
   type :: cycle_t
     real(dp) :: duration = 0                          !! [s]
     real(dp) :: min_film_thickness = huge(1.0_dp)     !! c - |e| [m]

@@ -7,9 +7,9 @@ module cycle_watch
   use kinds, only: dp
   use constants, only: two_pi
   use ode_method, only: ode_method_t
-  use dynamics, only: pin_force_size
   use scene, only: scene_t, evaluation_t, phase_contact
   use roots, only: bracket_t, next_abscissa, narrow
+  use step_peaks, only: n_peaks, of_pin_force, of_penetration
   use columns, only: column_list_t, row_values
   use cycle_statistics, only: cycle_t, cycle_statistics_t
   implicit none
@@ -37,12 +37,15 @@ module cycle_watch
     real(dp), private :: t = 0                     !! of the last point [s]
     real(dp), private :: cycle_start = 0           !! [s]
     real(dp), private :: measures(2) = 0           !! at the start of the revolution
-    logical, private :: has_points = .false.       !! in the present revolution
     logical, private :: has_strobe = .false.
-    real(dp), allocatable, private :: y(:)
+    real(dp), allocatable :: y(:)                  !! state at the end of the present revolution, from `find_end`
   contains
     procedure :: begin
-    procedure :: take_step
+    procedure :: find_end
+    procedure :: end_cycle
+    procedure :: take_strobes
+    procedure :: lower_to_peaks
+    procedure :: take_peaks
     procedure :: take_point
     procedure :: take_impact
     procedure :: finish
@@ -69,7 +72,6 @@ contains
     self%start_angle = scene%start_angle
     self%initial_energy = initial_energy
     self%strobe_offset = two_pi - modulo(-self%direction*(self%strobe_angle - self%start_angle), two_pi)
-    self%has_points = .false.
     self%has_strobe = .false.
     if (allocated(self%strobe_list%id)) self%has_strobe = size(self%strobe_list%id) > 0
     if (.not. allocated(self%cycles)) allocate (self%cycles(16))
@@ -81,42 +83,65 @@ contains
     if (.not. allocated(self%y)) allocate (self%y(size(y)))
   end subroutine begin
 
-  !> The solution is final up to (t_to, y_to), inside the last step of the method: end what ends before. Call it before that
-  !> point is taken.
-  subroutine take_step(self, method, scene, t_to, y_to)
+  !> The solution is final up to (t_to, y_to), inside the last step of the method: whether the present revolution `ends` before, and
+  !> when. A step may pass several ends: take what is before this one, end the revolution, and ask again.
+  subroutine find_end(self, method, scene, t_to, y_to, t_end, ends)
+    class(cycle_watch_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t_to, y_to(:)
+    real(dp), intent(out) :: t_end   !! the state there is left in y
+    logical, intent(out) :: ends
+    real(dp) :: travel
+    travel = travel_at(self, scene, t_to, y_to)
+    ends = travel >= next_end(self)
+    t_end = t_to
+    if (ends) t_end = passage(self, method, scene, next_end(self), t_to, travel)
+  end subroutine find_end
+
+  !> The crank has passed the strobe angle before (t_to, y_to), perhaps several times.
+  subroutine take_strobes(self, method, scene, t_to, y_to)
     class(cycle_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     class(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t_to, y_to(:)
     real(dp) :: travel, t
-    travel = travel_at(self, scene, t_to, y_to)
-    do while (travel >= next_end(self))   ! a step may pass several angles
-      t = passage(self, method, scene, next_end(self), t_to, travel)
-      call end_cycle(self, scene, t, self%y)
-    end do
     if (.not. self%has_strobe) return
+    travel = travel_at(self, scene, t_to, y_to)
     do while (travel >= next_strobe(self))
       t = passage(self, method, scene, next_strobe(self), t_to, travel)
       call strobe(self, scene, t, self%y)
     end do
-  end subroutine take_step
+  end subroutine take_strobes
 
-  !> Peaks at the accepted point (t, evaluation), which is in the present revolution.
-  pure subroutine take_point(self, scene, t, now)
+  !> Values of interest are those above what is `known` of the run, or of the present revolution if that is to be counted.
+  pure subroutine lower_to_peaks(self, known)
+    class(cycle_watch_t), intent(in) :: self
+    real(dp), intent(inout) :: known(n_peaks)   !! huge: not of interest at all
+    if (self%ended < self%settle) return
+    known(of_pin_force) = min(known(of_pin_force), self%present%max_pin_force)
+    if (known(of_penetration) < huge(known)) known(of_penetration) = min(known(of_penetration), -self%present%min_film_thickness)
+  end subroutine lower_to_peaks
+
+  !> Values in the present revolution of the quantities that have peaks.
+  pure subroutine take_peaks(self, scene, values)
+    class(cycle_watch_t), intent(inout) :: self
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: values(n_peaks)
+    associate (c => self%present)
+      c%max_pin_force = max(c%max_pin_force, values(of_pin_force))
+      c%min_film_thickness = min(c%min_film_thickness, -values(of_penetration))
+      if (scene%phase == phase_contact) c%max_penetration = max(c%max_penetration, values(of_penetration))
+    end associate
+  end subroutine take_peaks
+
+  !> An accepted point at time t, in the present revolution.
+  pure subroutine take_point(self, scene, t)
     class(cycle_watch_t), intent(inout) :: self
     class(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
-    type(evaluation_t), intent(in) :: now
-    associate (c => self%present)
-      c%max_pin_force = max(c%max_pin_force, pin_force_size(now%loads))
-      c%min_film_thickness = min(c%min_film_thickness, -now%joint%penetration)
-      if (scene%phase == phase_contact) then
-        c%contact_time = c%contact_time + (t - self%t)
-        c%max_penetration = max(c%max_penetration, now%joint%penetration)
-      end if
-    end associate
+    if (scene%phase == phase_contact) self%present%contact_time = self%present%contact_time + (t - self%t)
     self%t = t
-    self%has_points = .true.
   end subroutine take_point
 
   !> A contact begins.
@@ -132,7 +157,10 @@ contains
     real(dp), intent(in) :: t, y(:)
     real(dp) :: travel
     travel = travel_at(self, scene, t, y)
-    if (abs(travel - next_end(self)) <= rounding*(1 + self%ended)) call end_cycle(self, scene, t, y)
+    if (abs(travel - next_end(self)) <= rounding*(1 + self%ended)) then
+      self%y = y
+      call self%end_cycle(scene, t)
+    end if
     if (.not. self%has_strobe) return
     if (abs(travel - next_strobe(self)) <= rounding*(1 + self%passed)) call strobe(self, scene, t, y)
   end subroutine finish
@@ -182,20 +210,14 @@ contains
     call method%interpolate(passage, self%y)
   end function passage
 
-  !> The present revolution ends at (t, y).
-  subroutine end_cycle(self, scene, t, y)
+  !> The present revolution ends at t with the state y.
+  subroutine end_cycle(self, scene, t)
     class(cycle_watch_t), intent(inout) :: self
     class(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(in) :: t
     type(cycle_t), allocatable :: more(:)
     real(dp) :: measures(2)
-    type(evaluation_t) :: now
-    logical :: inside
-    if (.not. self%has_points) then   ! a step longer than a revolution
-      call scene%evaluate(t, y, now, inside)
-      if (inside) call self%take_point(scene, t, now)
-    end if
-    measures = [y(scene%measures%first), scene%joint_loss(t, y)]
+    measures = [self%y(scene%measures%first), scene%joint_loss(t, self%y)]
     if (scene%phase == phase_contact) self%present%contact_time = self%present%contact_time + (t - self%t)
     self%present%duration = t - self%cycle_start
     self%present%pin_force_integral = measures(1) - self%measures(1)
@@ -215,7 +237,6 @@ contains
       end if
     end if
     self%present = cycle_t()
-    self%has_points = .false.
     self%cycle_start = t
     self%measures = measures
     self%t = t

@@ -1,15 +1,18 @@
 !> The observer of a run: samples on a fixed grid of time, events of contact, the figures of the summary and, where they are
-!> asked for, those of each revolution. Peaks are taken at accepted points and events only.
+!> asked for, those of each revolution.
+!>
+!> Peaks of the force on the pin, of the penetration, of the film thickness and of the normal force in a contact are searched between
+!> accepted points too (`step_peaks`), and none is below what a row says. The energy is looked at in accepted points.
 module recorder
   use kinds, only: dp
   use constants, only: two_pi
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t, limit_stability
   use solver, only: observer_t
-  use dynamics, only: pin_force_size
   use scene, only: scene_t, evaluation_t, phase_contact, event_none, event_contact_begins, event_contact_ends
   use columns, only: column_list_t, row_values
   use cycle_watch, only: cycle_watch_t
+  use step_peaks, only: peak_watch_t, of_pin_force, of_penetration, of_normal_force, n_peaks, peaks_of
   use trace_sink, only: trace_sink_t, trace_event_t
   use archive, only: archive_t
   implicit none
@@ -20,7 +23,8 @@ module recorder
   type :: run_figures_t
     integer :: contacts = 0                   !! contacts begun
     integer :: impacts_beyond_validity = 0    !! of them faster than the contact law is meant for
-    integer :: evaluations = 0                !! of the scene for rows, events and these figures
+    integer :: evaluations = 0                !! of the scene for rows, events and these figures; those between accepted points:
+    integer :: peak_evaluations = 0           !! of them for peaks between accepted points
     real(dp) :: contact_time = 0              !! [s]
     real(dp) :: max_penetration = 0           !! [m]
     real(dp) :: max_entry_penetration = 0     !! penetration at the beginning of a contact [m]
@@ -52,7 +56,7 @@ module recorder
     integer, private :: evaluations_then = 0        !! when the present revolution was begun, and then
     real(dp), private :: time_then = 0, angle_then = 0   !! [s], [rad]
     type(trace_event_t), private :: contact   !! the present contact
-    logical, private :: has_joint = .false.
+    type(peak_watch_t), private :: peaks
     real(dp), allocatable, private :: y(:), values(:)
   contains
     procedure :: prepare
@@ -62,7 +66,6 @@ module recorder
     procedure :: finish
     procedure :: exchange => exchange_recorder
     procedure :: take_archive
-    procedure, private :: take_point
     procedure, private :: write_row
   end type recorder_t
 
@@ -91,7 +94,8 @@ contains
     end if
     if (allocated(self%cycles)) call self%cycles%begin(scene, y, self%initial_energy)
     if (inside .and. scene%phase == phase_contact) call take_contact(self, event_contact_begins, 0.0_dp, now)
-    call self%take_point(scene, 0.0_dp, y, self%first_sample <= 0)
+    call self%peaks%begin(size(y), 0.0_dp, now)
+    call take_point(self, scene, 0.0_dp, y, now, inside, self%first_sample <= 0)
     if (self%first_sample <= 0) self%next_row = 1
   end subroutine begin
 
@@ -131,15 +135,77 @@ contains
     self%wants_archive = self%sink%wants_archive
   end subroutine step_taken
 
-  !> The end of a step, or of the part of it that stands.
+  !> The end of a step, or of the part of it that stands; before it, the ends of revolutions inside.
   subroutine take_end(self, method, scene, t, y)
     class(recorder_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     class(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
-    if (allocated(self%cycles)) call self%cycles%take_step(method, scene, t, y)
-    call self%take_point(scene, t, y, self%every_step .and. t >= self%first_sample)
+    type(evaluation_t) :: now
+    logical :: inside, ends
+    real(dp) :: t_cycle
+
+    if (allocated(self%cycles)) then
+      do
+        call self%cycles%find_end(method, scene, t, y, t_cycle, ends)
+        if (.not. ends) exit
+        call look_at(self, scene, t_cycle, self%cycles%y, now, inside)
+        if (inside) call search_peaks(self, method, scene, t_cycle, now)
+        if (inside) call take_peaks(self, scene, peaks_of(now), .true.)
+        call self%cycles%end_cycle(scene, t_cycle)
+      end do
+      call self%cycles%take_strobes(method, scene, t, y)
+    end if
+    call look_at(self, scene, t, y, now, inside)
+    if (inside) call search_peaks(self, method, scene, t, now)
+    call take_point(self, scene, t, y, now, inside, self%every_step .and. t >= self%first_sample)
   end subroutine take_end
+
+  !> Peaks between the last point looked at, or the beginning of a step after an event, and t, where the scene is evaluated.
+  subroutine search_peaks(self, method, scene, t, now)
+    class(recorder_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t
+    type(evaluation_t), intent(in) :: now
+    real(dp) :: known(n_peaks), largest(n_peaks)
+    integer :: before
+
+    known = huge(known)
+    associate (f => self%figures)
+      known(of_pin_force) = f%max_pin_force
+      if (scene%has_clearance()) known(of_penetration) = -f%min_film_thickness
+      if (allocated(self%cycles)) call self%cycles%lower_to_peaks(known)
+      if (scene%phase == phase_contact) then
+        known(of_penetration) = min(known(of_penetration), self%contact%max_penetration)
+        known(of_normal_force) = self%contact%max_normal_force
+      end if
+      before = self%peaks%evaluations
+      call self%peaks%search(method, scene, t, now, known, largest)
+      f%evaluations = f%evaluations + (self%peaks%evaluations - before)
+      f%peak_evaluations = self%peaks%evaluations
+    end associate
+    call take_peaks(self, scene, largest, .true.)
+  end subroutine search_peaks
+
+  !> Values of the quantities that have peaks, for the run, for the present contact and, if they are `of_cycle`, for the present
+  !> revolution. (Rows are not: a revolution must not depend on whether anybody wants them.)
+  subroutine take_peaks(self, scene, values, of_cycle)
+    class(recorder_t), intent(inout) :: self
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: values(n_peaks)
+    logical, intent(in) :: of_cycle
+    associate (f => self%figures, contact => self%contact)
+      f%max_pin_force = max(f%max_pin_force, values(of_pin_force))
+      f%min_film_thickness = min(f%min_film_thickness, -values(of_penetration))
+      if (scene%phase == phase_contact) then
+        f%max_penetration = max(f%max_penetration, values(of_penetration))
+        contact%max_penetration = max(contact%max_penetration, values(of_penetration))
+        contact%max_normal_force = max(contact%max_normal_force, values(of_normal_force))
+      end if
+    end associate
+    if (of_cycle .and. allocated(self%cycles)) call self%cycles%take_peaks(scene, values)
+  end subroutine take_peaks
 
   !> Whether the present revolution costs more than it may. One that takes longer than the first would have ends there: a crank
   !> at rest must not spend for ever.
@@ -168,34 +234,26 @@ contains
     call scene%evaluate(t, y, now, inside)
   end subroutine look_at
 
-  !> The figures of one accepted point, and its row where one is due.
-  subroutine take_point(self, scene, t, y, has_row)
+  !> The figures of one accepted point, evaluated before, and its row where one is due.
+  subroutine take_point(self, scene, t, y, now, inside, has_row)
     class(recorder_t), intent(inout) :: self
     class(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
-    logical, intent(in) :: has_row
-    type(evaluation_t) :: now
-    logical :: inside
+    type(evaluation_t), intent(in) :: now
+    logical, intent(in) :: inside, has_row
     real(dp) :: energy
 
-    call look_at(self, scene, t, y, now, inside)
     if (.not. inside) return
     energy = scene%energy(now%motion)
+    call take_peaks(self, scene, peaks_of(now), .true.)
     associate (f => self%figures)
-      f%max_pin_force = max(f%max_pin_force, pin_force_size(now%loads))
       f%max_energy = max(f%max_energy, abs(energy))
       f%max_energy_residual = max(f%max_energy_residual, abs(energy - self%initial_energy - scene%work(y)))
-      f%min_film_thickness = min(f%min_film_thickness, -now%joint%penetration)
       f%crank_travel = now%motion%crank_angle - self%start_angle
-      if (scene%phase == phase_contact) then
-        f%contact_time = f%contact_time + (t - f%time)
-        f%max_penetration = max(f%max_penetration, now%joint%penetration)
-        self%contact%max_penetration = max(self%contact%max_penetration, now%joint%penetration)
-        self%contact%max_normal_force = max(self%contact%max_normal_force, now%normal_force)
-      end if
+      if (scene%phase == phase_contact) f%contact_time = f%contact_time + (t - f%time)
       f%time = t
     end associate
-    if (allocated(self%cycles)) call self%cycles%take_point(scene, t, now)
+    if (allocated(self%cycles)) call self%cycles%take_point(scene, t)
     if (has_row) call put_row(self, scene, t, y, now)
   end subroutine take_point
 
@@ -209,6 +267,7 @@ contains
 
     select type (problem)
     class is (scene_t)
+      call self%peaks%change_phase()
       if (problem%reported_event(index) == event_none) return
       call look_at(self, problem, t, y, now, inside)
       call take_contact(self, problem%reported_event(index), t, now)
@@ -263,6 +322,7 @@ contains
     type(archive_t), intent(inout) :: archive
     call self%figures%exchange(archive)
     call self%contact%exchange(archive)
+    call self%peaks%exchange(size(self%y), archive)
     call archive%exchange(self%initial_energy)
     call archive%exchange(self%start_angle)
     call archive%exchange(self%next_row)
@@ -279,6 +339,7 @@ contains
     call archive%exchange(self%contacts)
     call archive%exchange(self%impacts_beyond_validity)
     call archive%exchange(self%evaluations)
+    call archive%exchange(self%peak_evaluations)
     call archive%exchange(self%contact_time)
     call archive%exchange(self%max_penetration)
     call archive%exchange(self%max_entry_penetration)
@@ -306,7 +367,9 @@ contains
     logical :: inside
     if (size(self%values) == 0) return
     call look_at(self, scene, t, y, now, inside)
-    if (inside) call put_row(self, scene, t, y, now)
+    if (.not. inside) return
+    call take_peaks(self, scene, peaks_of(now), .false.)
+    call put_row(self, scene, t, y, now)
   end subroutine write_row
 
   subroutine put_row(self, scene, t, y, now)

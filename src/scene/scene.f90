@@ -65,6 +65,8 @@ module scene
     procedure(reported_event), deferred :: reported_event
     procedure :: prepare_start
     procedure :: is_singular
+    procedure :: has_clearance
+    procedure :: find_pin
     procedure :: crank_angle
     procedure :: work
     procedure :: measure_joint
@@ -128,6 +130,27 @@ contains
     end associate
     is_singular = .false.
   end function is_singular
+
+  !> Whether the pin has play in its bearing. The default is that it has none.
+  pure logical function has_clearance(self)
+    class(scene_t), intent(in) :: self
+    associate (unused_self => self)
+    end associate
+    has_clearance = .false.
+  end function has_clearance
+
+  !> Where the pin is in its bearing at (t, y), without its sliding speed, and the normal force of the contact [N]: what takes no
+  !> evaluation of the scene. The default is a pin in the centre.
+  pure subroutine find_pin(self, t, y, joint, normal_force)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    type(joint_motion_t), intent(out) :: joint
+    real(dp), intent(out) :: normal_force
+    associate (unused_self => self, unused_t => t, unused_y => y)
+    end associate
+    joint = joint_motion_t([0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp], [1.0_dp, 0.0_dp], 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp)
+    normal_force = 0
+  end subroutine find_pin
 
   !> Find the discrete state at t = 0 when all else is set. The default has nothing to find.
   subroutine prepare_start(self)
