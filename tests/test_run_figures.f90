@@ -2,7 +2,16 @@
 module test_run_figures
   use kinds, only: dp
   use checks, only: checks_t
-  use collecting_sink, only: trace_t, run_case
+  use case_definition, only: case_t
+  use case_file, only: read_case
+  use columns, only: column_list_t
+  use constants, only: two_pi
+  use cycle_watch, only: cycle_watch_t
+  use errors, only: error_t
+  use peak_search, only: peak_search_t, sample_t
+  use simulation, only: simulate, run_report_t
+  use trace_sink, only: trace_sink_t
+  use collecting_sink, only: collecting_sink_t, trace_t, run_case, column
   implicit none
   private
   public :: run_test_run_figures
@@ -17,6 +26,10 @@ contains
     call all_time_is_counted_once(check, 'cases/sim_IV_oscillating.nml', '0.95')
     call all_time_is_counted_once(check, 'cases/wiebe/wiebe_320.nml', '1.9')
     call all_time_is_counted_once(check, 'cases/flores/dry_0500um.nml', '0.7')
+    call peaks_of_curves(check)
+    call hertz_in_closed_form(check)
+    call no_row_is_above_a_peak(check)
+    call revolutions_have_their_peaks(check)
   end subroutine run_test_run_figures
 
   !> Steps are cut by contacts, by bounds of the gas cycle and by the end of the run: the times by method, and those by what
@@ -40,4 +53,216 @@ contains
       call check%relative(sum(s%time_limited_by), time, rounding, file//': times by what limited the steps')
     end associate
   end subroutine all_time_is_counted_once
+
+  !> Curves with known peaks: smooth, lopsided, with a kink, nearly at one end; found to the accuracy asked, with few values.
+  subroutine peaks_of_curves(check)
+    class(checks_t), intent(inout) :: check
+    type(peak_search_t) :: search
+    character(len=14), parameter :: names(6) = [character(len=14) :: 'sine', 'steep pulse', 'kink', 'near an end', 'cubic', &
+      'quartic']
+    integer, parameter :: most(6) = [8, 14, 40, 9, 8, 30]
+    real(dp), parameter :: within(6) = [3e-12_dp, 3e-12_dp, 1e-6_dp, 3e-12_dp, 3e-12_dp, 1e-10_dp]
+    real(dp) :: t
+    integer :: i, values
+    logical :: is_done
+    do i = 1, size(names)
+      values = 0
+      call search%begin(sample(0.0_dp), sample(1.0_dp))
+      do
+        call search%next_time(t, is_done)
+        if (is_done) exit
+        values = values + 1
+        call check%that(t > 0 .and. t < 1, trim(names(i))//': inside')
+        call search%take(t, curve(t))
+      end do
+      call check%close_to(search%best%value, 2.0_dp, within(i), trim(names(i))//': the peak')
+      call check%that(values <= most(i), trim(names(i))//': few values')
+    end do
+
+  contains
+
+    type(sample_t) function sample(t)
+      real(dp), intent(in) :: t
+      real(dp), parameter :: h = 1e-5_dp
+      sample = sample_t(t, curve(t), (curve(t + h) - curve(t - h))/(2*h))
+    end function sample
+
+    !> All of them have the peak 2.
+    real(dp) function curve(t)
+      real(dp), intent(in) :: t
+      select case (i)
+      case (1)
+        curve = 1 + sin(1 + 2*t)
+      case (2)
+        curve = 2*exp(1 - 6*t)*6*t
+      case (3)
+        curve = 2 - abs(t - 0.37_dp)*merge(3.0_dp, 1.0_dp, t < 0.37_dp)
+      case (4)
+        curve = 2 - (t - 0.999_dp)**2*(1 + t)
+      case (5)
+        curve = 2 - (t - 0.2_dp)**2*(2 - t)
+      case default
+        curve = 2 - (t - 0.6_dp)**4
+      end select
+    end function curve
+  end subroutine peaks_of_curves
+
+  !> A pin that flies freely along the cylinder with the crank held in its dead centre: only the piston's mass takes part, and
+  !> nothing else acts. With the force K delta^1.5 the energy m v^2/2 = 2/5 K delta^2.5 gives the deepest penetration.
+  subroutine hertz_in_closed_form(check)
+    class(checks_t), intent(inout) :: check
+    character(len=6) :: speeds(5)
+    character(len=8), parameter :: methods(2) = [character(len=8) :: 'adams', 'radau']
+    real(dp), parameter :: stiffness = 1e10_dp, mass = 0.14_dp
+    character(len=long) :: overrides(13)
+    type(trace_t) :: trace
+    real(dp), parameter :: within = 1e-9_dp
+    real(dp) :: speed, depth
+    integer :: i, k
+    speeds = [character(len=6) :: '0.01', '-0.05', '0.2', '-1.0', '3.0']
+    do i = 1, size(speeds)
+      do k = 1, size(methods)
+        overrides = [character(len=long) :: 'drive.kind=constant_speed', 'initial.crank_speed=0', 'mechanism.gravity=0', &
+          'contact.law=hertz', 'contact.stiffness=1e10', 'integrator.revolutions=0', 'output.interval=1', &
+          'integrator.relative_tolerance=1e-12', 'mechanism.piston_mass=0.14', 'initial.eccentricity_rate='//speeds(i)//',0', &
+          'integrator.method='//methods(k), 'output.ideal_twin=F', 'integrator.end_time=']
+        read (speeds(i), *) speed
+        depth = (1.25_dp*mass*speed**2/stiffness)**0.4_dp
+        ! 1e-4 m of flight, then 2.95 depth/speed of contact
+        write (overrides(13)(21:), '(es12.5)') (1.5e-4_dp + 3.2_dp*depth)/abs(speed)
+        trace = run_case('cases/flores/dry_0100um.nml', overrides)
+        call check%that(.not. allocated(trace%error), 'a free impact runs')
+        if (size(trace%event) < 2) then
+          call check%that(.false., 'a free impact touches and leaves')
+          cycle
+        end if
+        associate (figures => trace%report%figures, contact => trace%event(2))
+          call check%relative(figures%max_penetration, depth, within, 'deepest penetration at '//speeds(i)//methods(k))
+          call check%relative(contact%max_penetration, depth, within, 'that of the contact at '//speeds(i)//methods(k))
+          call check%relative(-figures%min_film_thickness, depth, within, 'film thickness at '//speeds(i)//methods(k))
+          call check%relative(contact%max_normal_force, stiffness*depth*sqrt(depth), 1.5_dp*within, &
+            'largest normal force at '//speeds(i)//methods(k))
+          call check%relative(figures%max_pin_force, stiffness*depth*sqrt(depth), 1.5_dp*within, &
+            'largest force on the pin at '//speeds(i)//methods(k))
+        end associate
+      end do
+    end do
+  end subroutine hertz_in_closed_form
+
+  !> Between the rows too: figures and contacts of a run with next to no rows against close rows of another one with the same
+  !> steps. No row may be higher, and the parabola through the three highest is as high to a `resolution`.
+  subroutine no_row_is_above_a_peak(check)
+    class(checks_t), intent(inout) :: check
+    character(len=30), parameter :: files(8) = [character(len=30) :: 'flores/ideal', 'flores/dry_0500um', 'flores/friction_100', &
+      'flores/lubricated_400cP', 'wiebe/wiebe_340', 'sim_I', 'sim_III_oscillating', 'sim_IV_oscillating']
+    character(len=8), parameter :: methods(2) = [character(len=8) :: 'auto', 'adams']
+    real(dp), parameter :: rounding = 1e-12_dp
+    character(len=long) :: common(4)
+    type(trace_t) :: rows, plain
+    character(len=:), allocatable :: name
+    integer :: i, k
+    do i = 1, size(files)
+      do k = 1, size(methods)
+        if (files(i) == 'sim_I' .and. methods(k) == 'adams') cycle   ! 10^5 steps
+        common = [character(len=long) :: 'integrator.revolutions=1', 'integrator.method='//methods(k), 'output.ideal_twin=F', &
+          'output.samples_per_revolution=1']
+        name = trim(files(i))//' '//trim(methods(k))
+        plain = run_case('cases/'//trim(files(i))//'.nml', common)
+        common(4) = 'output.samples_per_revolution=200000'
+        rows = run_case('cases/'//trim(files(i))//'.nml', common)
+        call check%that(plain%report%statistics%evaluations == rows%report%statistics%evaluations, name//': the same steps')
+        associate (figures => plain%report%figures, force => hypot(rows%values(column(rows, 'pin_force_x[N]'), :), &
+                   rows%values(column(rows, 'pin_force_y[N]'), :)))
+          call is_peak_of(check, figures%max_pin_force, force, rounding, name//': force on the pin')
+          if (column(rows, 'film_thickness[m]') > 0) call is_peak_of(check, -figures%min_film_thickness, &
+            -rows%values(column(rows, 'film_thickness[m]'), :), rounding, name//': film thickness')
+          call check%that(100*figures%peak_evaluations <= 3*(plain%report%statistics%evaluations + 720) .or. i == 5, &
+            name//': peaks cost less than 3 % of the evaluations')
+        end associate
+        call check_contacts()
+      end do
+    end do
+
+  contains
+
+    !> Each contact against the rows between its ends.
+    subroutine check_contacts()
+      integer :: j
+      if (column(rows, 'normal_force[N]') == 0) return
+      call check%that(size(plain%event) == size(rows%event), name//': the same contacts')
+      do j = 2, min(size(plain%event), size(rows%event)), 2
+        associate (t => rows%values(1, :), e => plain%event(j))
+          if (count(t > e%time - e%duration .and. t < e%time) < 100) cycle
+          call is_peak_of(check, e%max_penetration, pack(-rows%values(column(rows, 'film_thickness[m]'), :), &
+            t > e%time - e%duration .and. t < e%time), rounding, name//': penetration in a contact')
+          call is_peak_of(check, e%max_normal_force, pack(rows%values(column(rows, 'normal_force[N]'), :), &
+            t > e%time - e%duration .and. t < e%time), rounding, name//': normal force in a contact')
+        end associate
+      end do
+    end subroutine check_contacts
+  end subroutine no_row_is_above_a_peak
+
+  !> The same of each revolution, by the crank angle, of a run without any rows.
+  subroutine revolutions_have_their_peaks(check)
+    class(checks_t), intent(inout) :: check
+    character(len=30), parameter :: files(5) = [character(len=30) :: 'flores/ideal', 'flores/dry_0500um', 'sim_I', &
+      'sim_II_oscillating', 'wiebe/wiebe_360']
+    real(dp) :: rounding
+    character(len=long) :: common(4)
+    type(cycle_watch_t), allocatable :: watch
+    type(trace_t) :: rows
+    type(case_t) :: case
+    type(column_list_t) :: no_rows
+    class(trace_sink_t), allocatable :: sink
+    type(run_report_t) :: report
+    type(error_t), allocatable :: error
+    real(dp), allocatable :: turned(:)
+    integer :: i, k
+    allocate (no_rows%id(0))
+    do i = 1, size(files)
+      common = [character(len=long) :: 'integrator.revolutions=3', 'integrator.method=auto', 'output.ideal_twin=F', &
+        'output.samples_per_revolution=50000']
+      rows = run_case('cases/'//trim(files(i))//'.nml', common)
+      call read_case('cases/'//trim(files(i))//'.nml', common, case, error)
+      allocate (watch)
+      watch%keeps_cycles = .true.
+      allocate (collecting_sink_t :: sink)
+      call simulate(case, .false., no_rows, sink, report, error, cycles=watch)
+      call check%that(watch%statistics%cycles >= 2, trim(files(i))//': revolutions')
+      allocate (turned(size(rows%values, 2)))
+      turned(:) = (rows%values(2, :) - rows%values(2, 1))/two_pi
+      rounding = 1e-12_dp
+      if (case%joint%kind == 'ideal') rounding = 1e-6_dp   ! the measures of an ideal joint make its steps others
+      do k = 1, watch%statistics%cycles
+        associate (c => watch%cycles(k), force => hypot(rows%values(column(rows, 'pin_force_x[N]'), :), &
+                   rows%values(column(rows, 'pin_force_y[N]'), :)))
+          call is_peak_of(check, c%max_pin_force, pack(force, turned >= k - 1 .and. turned <= k), rounding, &
+            trim(files(i))//': force on the pin in a revolution')
+          if (column(rows, 'film_thickness[m]') == 0) cycle
+          call is_peak_of(check, -c%min_film_thickness, pack(-rows%values(column(rows, 'film_thickness[m]'), :), &
+            turned >= k - 1 .and. turned <= k), rounding, trim(files(i))//': film thickness in a revolution')
+          call check%close_to(c%max_penetration, max(0.0_dp, -c%min_film_thickness), 0.0_dp, 'penetration')
+        end associate
+      end do
+      deallocate (watch, sink, turned)
+    end do
+  end subroutine revolutions_have_their_peaks
+
+  !> A peak is above all close rows but for rounding, and as high as the parabola through the three highest.
+  subroutine is_peak_of(check, peak, rows, rounding, what)
+    class(checks_t), intent(inout) :: check
+    real(dp), intent(in) :: peak, rows(:), rounding
+    character(len=*), intent(in) :: what
+    real(dp), parameter :: resolution = 1e-6_dp
+    real(dp) :: top
+    integer :: i
+    i = maxloc(rows, 1)
+    top = rows(i)
+    if (i > 1 .and. i < size(rows)) then
+      if (2*rows(i) > rows(i - 1) + rows(i + 1)) &
+        top = rows(i) + (rows(i + 1) - rows(i - 1))**2/(8*(2*rows(i) - rows(i - 1) - rows(i + 1)))
+    end if
+    call check%that(peak >= rows(i) - rounding*abs(rows(i)), what//': no row is above it')
+    call check%relative(peak, top, resolution, what)
+  end subroutine is_peak_of
 end module test_run_figures
