@@ -28,6 +28,7 @@ contains
     call all_time_is_counted_once(check, 'cases/flores/dry_0500um.nml', '0.7')
     call peaks_of_curves(check)
     call hertz_in_closed_form(check)
+    call a_film_begins_at_its_highest(check)
     call no_row_is_above_a_peak(check)
     call revolutions_have_their_peaks(check)
   end subroutine run_test_run_figures
@@ -148,6 +149,23 @@ contains
       end do
     end do
   end subroutine hertz_in_closed_form
+
+  !> A contact that ends at once, with the crank at 60 degrees: the force of the film falls from its first instant on. There it
+  !> is what the rows say on the straight line back to that instant.
+  subroutine a_film_begins_at_its_highest(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: interval = 1e-9_dp
+    type(trace_t) :: trace
+    real(dp) :: force(2:3), first
+    trace = run_case('cases/sim_I_oscillating.nml', [character(len=long) :: 'initial.crank_angle_deg=60', &
+      'initial.eccentricity=2.0000001e-5,0', 'initial.eccentricity_rate=-0.5,0', 'integrator.revolutions=0', &
+      'integrator.end_time=2e-5', 'output.interval=1e-9', 'output.ideal_twin=F'])
+    call check%that(size(trace%event) == 2 .and. trace%event(2)%time < interval, 'a contact that ends at once')
+    force = hypot(trace%values(column(trace, 'pin_force_x[N]'), 2:3), trace%values(column(trace, 'pin_force_y[N]'), 2:3))
+    call check%that(force(2) > force(3), 'the force of the film falls')
+    first = force(2) + (force(2) - force(3))*(interval - trace%event(2)%time)/interval
+    call check%relative(trace%report%figures%max_pin_force, first, 1e-9_dp, 'largest force, where the film begins')
+  end subroutine a_film_begins_at_its_highest
 
   !> Between the rows too: figures and contacts of a run with next to no rows against close rows of another one with the same
   !> steps. No row may be higher, and the parabola through the three highest is as high to a `resolution`.

@@ -1,6 +1,7 @@
 !> The largest value of a smooth quantity between two instants, by as few values as it takes.
 module peak_search
   use kinds, only: dp
+  use archive, only: archive_t
   implicit none
   private
   public :: sample_t, peak_search_t, most_between
@@ -12,6 +13,8 @@ module peak_search
   !> A quantity at one instant.
   type :: sample_t
     real(dp) :: t = 0, value = 0, slope = 0   !! slope: by the time
+  contains
+    procedure :: exchange
   end type sample_t
 
   !> A search for a peak. The caller evaluates the quantity where `next_time` says and hands the value to `take`, until the search
@@ -32,6 +35,15 @@ module peak_search
   end type peak_search_t
 
 contains
+
+  !> To or from an archive.
+  subroutine exchange(self, archive)
+    class(sample_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    call archive%exchange(self%t)
+    call archive%exchange(self%value)
+    call archive%exchange(self%slope)
+  end subroutine exchange
 
   !> No less than what the quantity reaches between two samples: of the cubic through them in Bernstein form, with its deviation
   !> from the straight line counted twice.

@@ -10,11 +10,15 @@ module number_text
 
 contains
 
-  !> A real for a summary: 10 significant digits, as 1.234567890E-05.
-  pure function real_text(value) result(text)
+  !> A real for a summary: 10 significant digits or as many as asked for, as 1.234567890E-05.
+  pure function real_text(value, digits) result(text)
     real(dp), intent(in) :: value
+    integer, intent(in), optional :: digits
     character(len=:), allocatable :: text
-    text = scientific(value, 10)
+    integer :: wanted
+    wanted = 10
+    if (present(digits)) wanted = digits
+    text = scientific(value, wanted)
   end function real_text
 
   !> A real that reads back as the same bits: 17 significant digits.

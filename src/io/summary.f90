@@ -17,7 +17,7 @@ module summary
 
 contains
 
-  !> The rows `quantity,value,unit`.
+  !> The rows `quantity,value,unit`. Peaks have as many digits as the trace, so that rounding lifts no row above them.
   function summary_table(case, report, wall_time, identity, trace_length, events_length) result(text)
     type(case_t), intent(in) :: case
     type(run_report_t), intent(in) :: report
@@ -72,15 +72,15 @@ contains
         end do
       end if
       if (report%auto_saves > 0) call add('evaluations_over_those_of_auto', real_text(report%auto_saves), '1')
-      call add('max_pin_force', real_text(f%max_pin_force), 'N')
+      call add('max_pin_force', real_text(f%max_pin_force, case%output%digits), 'N')
       if (f%time > 0) call add('mean_crank_speed', real_text(f%crank_travel/f%time), 'rad/s')
       call add('max_energy_residual', real_text(f%max_energy_residual), 'J')
       call add('max_energy_residual_relative', real_text(relative_residual(report)), '1')
       if (case%has_clearance()) then
-        call add('min_film_thickness', real_text(f%min_film_thickness), 'm')
+        call add('min_film_thickness', real_text(f%min_film_thickness, case%output%digits), 'm')
         call add('contacts', integer_text(f%contacts), '1')
         if (f%time > 0) call add('contact_time_fraction', real_text(f%contact_time/f%time), '1')
-        call add('max_penetration', real_text(f%max_penetration), 'm')
+        call add('max_penetration', real_text(f%max_penetration, case%output%digits), 'm')
         call add('max_entry_penetration', real_text(f%max_entry_penetration), 'm')
         call add('impacts_beyond_validity', integer_text(f%impacts_beyond_validity), '1')
       end if

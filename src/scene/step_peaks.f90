@@ -66,17 +66,16 @@ contains
     class(peak_watch_t), intent(inout) :: self
     integer, intent(in) :: n                   !! components of the state
     type(archive_t), intent(inout) :: archive
+    integer :: i
     if (.not. allocated(self%y)) allocate (self%y(n))
     call archive%exchange(self%evaluations)
     call archive%exchange(self%fresh)
     call archive%exchange(self%has_before)
-    call archive%exchange(self%left%t)
-    call archive%exchange(self%left%value)
-    call archive%exchange(self%left%slope)
-    call archive%exchange(self%before%t)
-    call archive%exchange(self%before%value)
-    call archive%exchange(self%before%slope)
     call archive%exchange(self%knows_slope)
+    do i = 1, n_peaks
+      call self%left(i)%exchange(archive)
+      call self%before(i)%exchange(archive)
+    end do
   end subroutine exchange
 
   !> Search the last step of the method from where the piece before ended, or from its beginning, to t_to, for values above
