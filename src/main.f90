@@ -3,7 +3,7 @@ program gudgeon
   use, intrinsic :: iso_fortran_env, only: int64, compiler_options
   use kinds, only: dp
   use omp_lib, only: omp_get_num_procs
-  use errors, only: error_t, status_ok, status_output
+  use errors, only: error_t, fail, status_ok, status_integration, status_output
   use command_line, only: command_line_t, parse_command_line, program_arguments, help_text
   use case_file, only: template
   use case_runner, only: case_job_t
@@ -11,8 +11,9 @@ program gudgeon
   use study_file, only: study_template
   use progress, only: progress_wanted, tell
   use summary, only: build_advice
-  use posix, only: fill_standard_descriptors, hold_interrupts, ignore_write_signals, write_bytes, error_text, &
-    error_interrupted, error_broken_pipe, quit
+  use text_tools, only: printable
+  use posix, only: fill_standard_descriptors, signal_set_t, hold_interrupts, interrupted, ignore_write_signals, write_bytes, &
+    error_text, error_interrupted, error_broken_pipe, quit
   use version, only: program_version
   implicit none
   type(command_line_t) :: options
@@ -83,13 +84,19 @@ contains
     integer, intent(out) :: status
     character(len=:), allocatable :: line
     type(error_t), allocatable :: error
+    type(signal_set_t) :: before
     logical :: show_progress
     integer :: i
-    call hold_interrupts()
+    call hold_interrupts(before)
     status = status_ok
     show_progress = progress_wanted(options%progress) .and. .not. options%quiet
     do i = 1, size(options%cases)
-      call run_study_file(trim(options%cases(i)), options, show_progress, line, error)
+      if (interrupted()) then
+        line = ''
+        call fail(error, printable(trim(options%cases(i)), 200)//': interrupted before it began', status_integration)
+      else
+        call run_study_file(trim(options%cases(i)), options, show_progress, before, line, error)
+      end if
       if (line /= '' .and. .not. options%quiet) call say(line, status)
       if (.not. allocated(error)) cycle
       call complain(error)

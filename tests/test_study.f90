@@ -192,17 +192,37 @@ contains
     class(checks_t), intent(inout) :: check
     type(study_table_t) :: table
     type(error_t), allocatable :: error
-    call parse_table(char(239)//char(187)//char(191)//'A.b,'//q//'c.d'//q//cr//n//cr//n//' 1e-5 ,'//q//'2,'//q//q//n//'3'//q// &
-      cr//n//',4', 't.csv', table, error)
+    character(len=:), allocatable :: text
+    integer :: i
+    text = char(239)//char(187)//char(191)//'A.b,'//q//'c.d'//q//cr//n//cr//n//' 1e-5 ,'//q//'2,'//q//q//n//'3'//q// &
+      cr//n//',4'
+    call parse_table(text, 't.csv', table, error)
     call check%that(.not. allocated(error), 'mark, CR LF, quotes, an empty line, no end of line')
     if (allocated(error)) return
-    call check%that(size(table%fields, 2) == 2, 'rows')
+    call check%that(table%rows == 2, 'rows')
     call check%equal_text(trim(table%keys(1))//' '//trim(table%keys(2)), 'a.b c.d', 'keys')
-    call check%equal_text(trim(table%fields(1, 1)), '1e-5', 'blanks around a field')
-    call check%equal_text(trim(table%fields(2, 1)), '2,'//q//n//'3', 'a quoted field')
-    call check%equal_text(trim(table%fields(1, 2)), '', 'an empty field')
-    call check%equal_text(trim(table%fields(2, 2)), '4', 'the last field')
-    call check%that(all(table%lines == [3, 5]), 'lines of the file')
+    call check%equal_text(table%field(1, 1), '1e-5', 'blanks around a field')
+    call check%equal_text(table%field(2, 1), '2,'//q//n//'3', 'a quoted field')
+    call check%equal_text(table%field(1, 2), '', 'an empty field')
+    call check%equal_text(table%field(2, 2), '4', 'the last field')
+    call check%that(all(table%lines(:2) == [3, 5]), 'lines of the file')
+    text = "a.b"//n//"'=1+1"//n//q//"'-2,x"//q//n//"'''-a"//n//"'a'"//n//"'"//n//'-1'//n
+    call parse_table(text, 't.csv', table, error)
+    call check%that(table%rows == 6 .and. .not. allocated(error), 'a table of texts')
+    call check%equal_text(table%field(1, 1), '=1+1', 'an apostrophe taken away')
+    call check%equal_text(table%field(1, 2), '-2,x', 'one in quotes')
+    call check%equal_text(table%field(1, 3), "''-a", 'one of three')
+    call check%equal_text(table%field(1, 4), "'a'", 'apostrophes that stay')
+    call check%equal_text(table%field(1, 5), "'", 'an apostrophe alone')
+    call check%equal_text(table%field(1, 6), '-1', 'a number')
+    text = 'a.b,c.d'//n
+    do i = 1, 1000
+      text = text//repeat('x', 5*mod(i, 7))//','//repeat('y', merge(20000, 1, i == 500))//n
+    end do
+    call parse_table(text, 't.csv', table, error)
+    call check%that(table%rows == 1000 .and. table%longest == 20000, 'a table with one long field')
+    call check%that(table%field(1, 499) == repeat('x', 10) .and. table%field(2, 500) == repeat('y', 20000) .and. &
+                    table%field(1, 1000) == repeat('x', 30) .and. table%field(2, 1000) == 'y', 'its fields')
     call refused(check, '', 't.csv: the table is empty: a header of GROUP.KEY and a row for each run are wanted')
     call refused(check, 'a.b'//n, 't.csv: the table has a header but no run')
     call refused(check, 'a.b,c.d'//n//'1,2'//n//'3'//n, 't.csv:3: column 1: the header has 2 fields, this row fewer')
@@ -220,7 +240,9 @@ contains
     character(len=*), intent(in) :: text, message
     type(study_table_t) :: table
     type(error_t), allocatable :: error
-    call parse_table(text, 't.csv', table, error)
+    character(len=:), allocatable :: used
+    used = text
+    call parse_table(used, 't.csv', table, error)
     call check%that(allocated(error), 'error: '//message)
     if (allocated(error)) call check%equal_text(error%message, message, 'table')
   end subroutine refused
@@ -238,46 +260,81 @@ contains
     call row%end_row()
     call row%add_whole(huge(0))
     call check%equal_text(row%text(:row%used), '0,-120,'//q//'a'//q//q//'b,c'//q//',,1.500000000E+00'//n//'2147483647', 'a row')
+    call row%clear()
+    call row%add_text('=1+1')
+    call row%add_text('+a')
+    call row%add_text('-2,x')
+    call row%add_text('@a')
+    call row%add_text(achar(9)//'a')
+    call row%add_text("''-a")
+    call row%add_text('-1.5e-5  ')
+    call row%add_text("'a=b'")
+    call row%add_text("'")
+    call check%equal_text(row%text(:row%used), "'=1+1,'+a,"//q//"'-2,x"//q//",'@a,'"//achar(9)//"a,'''-a,-1.5e-5,'a=b','", &
+      'texts that begin as formulas')
   end subroutine test_row_text
 
-  !> Rows in any order come out in the order of their runs; blocks of runs that are not kept, and torn ones, go.
+  !> Rows in any order come out in the order of their runs, torn ones and those of runs left out go, and what is counted of them
+  !> is what they say.
   subroutine test_row_file(check)
     class(checks_t), intent(inout) :: check
-    character(len=*), parameter :: path = 'build/test_rows.csv'
-    type(row_file_t) :: first, again, kept, renamed, shorter
+    character(len=*), parameter :: path = 'build/test_rows.csv', header = 'run,x,y'//n
+    integer, parameter :: none(0) = 0
+    type(row_file_t) :: first, again, renamed, shorter
     type(error_t), allocatable :: error
     integer :: unit, ignored
-    call first%open(path, 'run,x'//n, 3, 6, .false., error)
+    call remove_file(path, ignored)
+    call first%prepare(path, header, 3, 6, none)
+    call first%take_up(error)
+    call check%that(.not. allocated(error), 'no file is none to take up')
+    call first%begin(error)
     call check%that(.not. allocated(error), 'rows are begun')
-    call first%append(6, '6,a'//n//'6,b'//n, error)
-    call first%append(4, '4,c'//n, error)
-    call check%that(first%has(6) .and. .not. first%has(5), 'which runs are there')
+    call check%equal_text(content(path), header, 'a new file has its header')
+    call first%append(6, '6,a,1'//n//'6,b,2'//n)
+    call first%append(4, '4,"c,,""",7'//n)
+    call check%equal_text(content(path), header, 'rows wait')
+    call check%that(first%bytes_waiting() == 24, 'how many bytes wait')
+    call first%write(error)
+    call first%synchronise(error)
+    call check%that(.not. allocated(error), 'rows are written')
+    call check%equal_text(content(path), header//'6,a,1'//n//'6,b,2'//n//'4,"c,,""",7'//n, 'rows as they came')
+    call check%that(first%bytes_waiting() == 0, 'none waits')
     call first%finish(.false., error)
+    call again%prepare(path, header, 3, 6, [3, 2])
     open (newunit=unit, file=path, position='append', access='stream', form='unformatted')
-    write (unit) '5,d'//n//'3,torn'
+    write (unit) '5,d,5'//n//'3,e'//n//'3,'//achar(0)//',1'//n//achar(0)//achar(0)//n//'3,torn'
     close (unit)
-    call kept%open('build/test_kept.csv', 'run'//n, 3, 6, .false., error)
-    call kept%append(6, '6'//n, error)
-    call kept%append(5, '5'//n, error)
-    call again%open(path, 'run,x'//n, 3, 6, .true., error, kept=kept, mark=',a')
-    call check%that(again%has(6) .and. again%has(5) .and. .not. again%has(4) .and. .not. again%has(3), 'what is taken up')
-    call again%append(3, '3,e'//n, error)
-    call again%append(4, '4,f'//n, error)
+    call again%take_up(error)
+    call check%that(again%has(6) .and. again%has(5) .and. again%has(4) .and. .not. again%has(3), 'what is taken up')
+    call check%that(again%rows_of(6) == 2 .and. again%rows_of(5) == 1 .and. again%rows_of(3) == 0, 'rows of a run')
+    call check%that(again%number_of(1, 4) == 7 .and. again%number_of(2, 4) == 0 .and. again%number_of(1, 6) == 2, 'their numbers')
+    call again%drop(4)
+    call again%begin(error)
+    call check%equal_text(content(path), header//'5,d,5'//n//'6,a,1'//n//'6,b,2'//n, 'what does not fit is gone')
+    call again%append(4, '4,f,'//n)
+    call again%append(3, '3,g,'//n)
+    call again%write(error)
     call again%finish(.true., error)
     call check%that(.not. allocated(error), 'rows are finished')
-    open (newunit=unit, file=path, access='stream', form='unformatted', status='old')
-    block
-      character(len=26) :: text
-      read (unit) text
-      call check%equal_text(text, 'run,x'//n//'3,e'//n//'4,f'//n//'5,d'//n//'6,a'//n//'6,b'//n, 'rows in order')
-    end block
-    close (unit)
-    call renamed%open(path, 'run,y'//n, 3, 6, .true., error)
+    call check%equal_text(content(path), header//'3,g,'//n//'4,f,'//n//'5,d,5'//n//'6,a,1'//n//'6,b,2'//n, 'rows in order')
+    call renamed%prepare(path, 'run,x,z'//n, 3, 6, none)
+    call renamed%take_up(error)
     call check%that(allocated(error), 'another header is refused')
-    call shorter%open(path, 'run,x'//n, 3, 5, .true., error)
+    call shorter%prepare(path, header, 3, 5, none)
+    call shorter%take_up(error)
     call check%that(allocated(error), 'a run that there is not is refused')
-    call kept%finish(.true., error)
     call remove_file(path, ignored)
-    call remove_file('build/test_kept.csv', ignored)
   end subroutine test_row_file
+
+  !> All of a file.
+  function content(path) result(text)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: text
+    integer :: unit, length
+    open (newunit=unit, file=path, access='stream', form='unformatted', status='old', action='read')
+    inquire (unit=unit, size=length)
+    allocate (character(len=length) :: text)
+    read (unit) text
+    close (unit)
+  end function content
 end module test_study

@@ -20,7 +20,8 @@ run sweep -j 1 -o "$work/one" "$work/grid.nml"
 check "a grid runs, status $status" [ "$status" = 0 -a "$(wc -l <"$work/out")" = 1 -a ! -s "$work/err" ]
 check "a row for each run" [ "$(wc -l <"$work/one/grid.runs.csv")" = 13 ]
 check "the last parameter goes fastest" [ "$(awk -F, 'NR == 3 { print $2, $3 }' "$work/one/grid.runs.csv")" = "1.000000000E-05 200" ]
-check "every row has every column" [ "$(awk -F, '{print NF}' "$work/one/grid.runs.csv" | sort -u)" = 18 ]
+check "every row has every column" [ "$(awk -F, '{print NF}' "$work/one/grid.runs.csv" | sort -u)" = 19 ]
+check "strobes" [ "$(grep -c '^7,' "$work/one/grid.strobe.csv")" = "$(awk -F, '$1 == 7 { print $19 }' "$work/one/grid.runs.csv")" ]
 check "revolutions" [ "$(grep -c '^7,' "$work/one/grid.cycles.csv")" = "$(awk -F, '$1 == 7 { print $5 }' "$work/one/grid.runs.csv")" ]
 check "no file under a temporary name" [ -z "$(find "$work/one" -name '*.part')" ]
 run -o "$work/single" -s joint.clearance=1.000000000E-05 -s initial.crank_speed=200 "$work/base.nml"
@@ -68,9 +69,56 @@ run sweep -o "$work/torn" -s initial.crank_angle_deg=10 --fresh "$work/grid.nml"
 check "--fresh begins anew, status $status" [ "$status" = 0 ]
 check "with other results" [ "$(cmp -s "$work/torn/grid.runs.csv" "$work/one/grid.runs.csv"; echo $?)" = 1 ]
 
+# links under the temporary names are replaced, and what they point at stays
+mkdir "$work/linked"
+for kind in runs.csv cycles.csv strobe.csv study.nml; do
+  echo precious >"$work/precious.$kind"
+  ln -s "../precious.$kind" "$work/linked/grid.$kind.part"
+done
+run sweep -o "$work/linked" "$work/grid.nml"
+check "a sweep among links, status $status" [ "$status" = 0 ]
+same "among links" "$work/linked"
+for kind in runs.csv cycles.csv strobe.csv study.nml; do
+  check "what a link at grid.$kind.part points at stays" [ "$(cat "$work/precious.$kind")" = precious ]
+  check "grid.$kind is no link" [ ! -L "$work/linked/grid.$kind" ]
+done
+mkdir -p "$work/folder/grid.runs.csv.part"
+run sweep -o "$work/folder" "$work/grid.nml"
+check "a folder under a temporary name: status 5, got $status" [ "$status" = 5 ]
+check "and it is named" grep -q 'grid.runs.csv: Is a directory' "$work/err"
+
+# files that do not fit together: what is missing is run again
+fits() {   # fits NAME RUNS: the sweep in $work/broken runs that many again, and is as the whole one then
+  run sweep -o "$work/broken" "$work/grid.nml"
+  check "$1: $2 run again, got $(cat "$work/out")" grep -q " $2 not there whole and run again;" "$work/out"
+  same "$1" "$work/broken"
+}
+cp -R "$work/one" "$work/broken"
+head -c 700 "$work/one/grid.cycles.csv" >"$work/broken/grid.cycles.csv"
+fits "revolutions cut" 11
+tail -n 1 "$work/one/grid.strobe.csv" | cmp -s - "$work/one/grid.strobe.csv" && check "the last strobe is one of several" false
+head -n -1 "$work/one/grid.strobe.csv" >"$work/broken/grid.strobe.csv"
+fits "the last strobe cut" 1
+rm "$work/broken/grid.strobe.csv"
+fits "no strobes" 12
+sed '/^3,/{s/,done,.*//;q}' "$work/one/grid.runs.csv" >"$work/broken/grid.runs.csv"
+tail -n +5 "$work/one/grid.runs.csv" >>"$work/broken/grid.runs.csv"
+run sweep -o "$work/broken" "$work/grid.nml"
+check "a row cut is run again, got $(cat "$work/out")" grep -q '12 runs, 11 of them there already;' "$work/out"
+same "a row cut" "$work/broken"
+printf '4,\0\0\0\0\n' >>"$work/broken/grid.runs.csv"
+run sweep -o "$work/broken" "$work/grid.nml"
+same "zeros behind the rows" "$work/broken"
+sed "s/cycles = T/traces = 'all'/" "$work/grid.nml" >"$work/traced.nml"
+run sweep -o "$work/broken" "$work/traced.nml"
+rm "$work/broken/traced/5.csv"
+run sweep -o "$work/broken" "$work/traced.nml"
+check "a trace that has gone is written again" [ -s "$work/broken/traced/5.csv" ]
+check "and only its run is run" grep -q '11 of them there already, 1 not there whole' "$work/out"
+
 # a real kill, and an interrupt
 study long <<'END'
-&study case = 'base.nml', design = 'latin_hypercube', runs = 1000, seed = 3, cycles = T /
+&study case = 'base.nml', design = 'latin_hypercube', runs = 3000, seed = 3, cycles = T, strobe_columns = 'pin_force_x' /
 &parameter key = 'joint.clearance', from = 1e-5, to = 4e-5 /
 &parameter key = 'lubrication.viscosity', from = 0.005, to = 0.02 /
 END
@@ -87,14 +135,92 @@ for signal in KILL TERM; do
   wait $pid 2>/dev/null
   status=$?
   rows=$(wc -l <"$work/$signal/long.runs.csv")
-  check "$signal: stopped half way, $rows rows" [ "$rows" -ge 20 -a "$rows" -lt 1000 ]
+  check "$signal: stopped half way, $rows rows" [ "$rows" -ge 20 -a "$rows" -lt 3000 ]
   [ "$signal" = TERM ] && check "interrupted: exit status 4, got $status" [ "$status" = 4 ]
-  [ "$signal" = TERM ] && check "interrupted: says how to go on" grep -q 'interrupted after .* of 1000 runs; the same command' "$work/err"
+  [ "$signal" = TERM ] && check "interrupted: says how to go on" grep -q 'interrupted after .* of 3000 runs; the same command' "$work/err"
   run sweep -o "$work/$signal" "$work/long.nml"
   check "$signal: taken up" grep -q 'of them there already' "$work/out"
   check "$signal: the same runs" cmp -s "$work/whole/long.runs.csv" "$work/$signal/long.runs.csv"
   check "$signal: the same revolutions" cmp -s "$work/whole/long.cycles.csv" "$work/$signal/long.cycles.csv"
 done
+
+# power cuts: of every file only what was brought down to the disk is left; of the rows of runs all that was written
+if gcc -shared -fPIC -O1 -o "$work/power_cut.so" tests/power_cut.c; then
+  cut=1
+  status=137
+  while [ "$status" = 137 ]; do
+    rm -rf "$work/power"
+    : >"$work/power.log"
+    POWER_CUT=$cut POWER_CUT_LOG=$work/power.log LD_PRELOAD=$work/power_cut.so "$gudgeon" sweep -q -o "$work/power" "$work/long.nml"
+    status=$?
+    find "$work/power" -type f ! -name '*.runs.csv' | while read -r file; do
+      length=$(awk -v number="$(stat -c %i "$file")" '$1 == number { length_ = $2 } END { print length_ + 0 }' "$work/power.log")
+      truncate -s "$length" "$file"
+    done
+    rows=$(cat "$work/power/long.runs.csv" 2>/dev/null | wc -l)
+    run sweep -o "$work/power" "$work/long.nml"
+    check "cut at call $cut, $rows rows: taken up, status $status" [ "$status" = 0 ]
+    check "cut at call $cut: every row has its revolutions and strobes, $(cat "$work/out")" \
+      [ "$(grep -c 'not there whole' "$work/out")" = 0 ]
+    for kind in runs cycles strobe; do
+      check "cut at call $cut: $kind" cmp -s "$work/whole/long.$kind.csv" "$work/power/long.$kind.csv"
+    done
+    status=137
+    [ "$rows" = 3001 ] && break
+    cut=$((cut + 3))
+  done
+  check "cuts while the sweep was going on, $cut calls" [ "$cut" -gt 12 ]
+else
+  check "a compiler for power_cut.c" false
+fi
+
+# a large study: checked in no time, and no signal waits for it
+study large <<'END'
+&study case = 'base.nml', design = 'latin_hypercube', runs = 10000000 /
+&parameter key = 'joint.clearance', from = 1e-5, to = 4e-5 /
+&parameter key = 'lubrication.viscosity', from = 0.005, to = 0.02 /
+&parameter key = 'initial.crank_speed', from = 100, to = 200 /
+&parameter key = 'mechanism.piston_mass', from = 0.5, to = 1 /
+END
+for design in latin_hypercube sobol; do
+  sed "s/latin_hypercube/$design/" "$work/large.nml" >"$work/large_$design.nml"
+  timeout -s KILL 10 "$gudgeon" sweep --check "$work/large_$design.nml" >"$work/out"
+  check "a large $design is checked, status $?" [ "$(cat "$work/out")" = \
+    "$work/large_$design.nml: correct, 10000000 runs (100000 of them checked)" ]
+done
+study large_grid <<'END'
+&study case = 'base.nml' /
+&parameter key = 'joint.clearance', from = 1e-5, to = 4e-5, count = 3000 /
+&parameter key = 'lubrication.viscosity', from = 0.005, to = -1e-9, count = 3000 /
+END
+timeout -s KILL 10 "$gudgeon" sweep --check "$work/large_grid.nml" >"$work/out" 2>"$work/err"
+check "a large grid whose last value is wrong, status $?" grep -q 'run 3000: .*viscosity = -1.000000000E-09: must be > 0' "$work/err"
+for signal in INT TERM; do
+  timeout -k 10 -s $signal 0.3 "$gudgeon" sweep -o "$work/large" "$work/large.nml" 2>/dev/null
+  check "$signal at the start of a large sweep, status $?" [ $? != 137 ]
+done
+
+# one long field in a table
+awk 'BEGIN { print "case.title,joint.clearance"; for (i = 1; i < 20000; i++) print "a" i ",2e-5"
+  for (i = 0; i < 60000; i++) printf "0123456789"; print ",2e-5" }' >"$work/wide.csv"
+study wide <<'END'
+&study case = 'base.nml', table = 'wide.csv' /
+END
+( ulimit -v 1000000; "$gudgeon" sweep --check "$work/wide.nml" 2>"$work/err" )
+check "a table with one long field, status $?: $(cat "$work/err")" grep -q 'wide.csv:20001: column 1, .*must be at most 4000 bytes' "$work/err"
+
+# titles: what looks like done or like a formula
+printf 'case.title,joint.clearance,rod_com\n"a,done,b",-1e-5\n"=1+1, x",2e-5\n-a,2e-5\n-5,3e-5\n"\047=1",2e-5\n' | sed 's/,rod_com//' >"$work/titles.csv"
+study titles <<'END'
+&study case = 'base.nml', table = 'titles.csv' /
+END
+for time in first second; do
+  run sweep -o "$work/titles" "$work/titles.nml"
+  check "a title that holds done, $time time: status 4, got $status" [ "$status" = 4 ]
+  check "a title that holds done, $time time" grep -q 'titles.nml: 1 of 5 runs failed' "$work/err"
+done
+check "titles that begin as formulas" [ "$(tail -n +3 "$work/titles/titles.runs.csv" | sed 's/,[23]e-5,done.*//')" = \
+  "$(printf '2,"\047=1+1, x"\n3,\047-a\n4,-5\n5,\047=1')" ]
 
 # a table; runs that fail keep their reason and harm no other
 printf '\357\273\277joint.clearance,lubrication.law,lubrication.kinematic_viscosity,"integrator.max_evaluations"\r\n2e-5,pinkus_sternlicht,0,100000\r\n-1e-5,pinkus_sternlicht,0,100000\r\n2e-5,oscillating_film,1.38e-5,"100000"\r\n2e-5,oscillating_film,0,100000\r\n2e-5,pinkus_sternlicht,0,500\r\n' >"$work/table.csv"
@@ -161,7 +287,8 @@ refused "rows backwards" 2 "A:B" --rows 5:4 "$work/grid.nml"
 run sweep --check "$work/grid.nml"
 check "--check counts the runs" [ "$status" = 0 -a "$(cat "$work/out")" = "$work/grid.nml: correct, 12 runs" ]
 run sweep --check "$work/table.nml"
-check "--check does not call it correct" [ "$status" = 3 -a ! -s "$work/out" ]
+check "--check foretells the exit status, got $status" [ "$status" = 4 ]
+check "--check counts the runs that would fail" [ "$(cat "$work/out")" = "$work/table.nml: 5 runs, 2 would fail" ]
 check "--check finds the run that cannot be" grep -q 'table.nml: run 2: .*clearance = -1e-5: must be > 0' "$work/err"
 run sweep --template
 cp "$work/out" "$work/template.nml"

@@ -62,11 +62,12 @@ def check_rows(lines: Iterable[bytes], first: int, last: int, every: bool, path:
 
 
 def merge(chunks: list[Chunk], every: bool, target: Path) -> None:
-    """Write one file of all chunks, whole or not at all; `every`: with each run exactly once."""
+    """Write one file of all chunks, whole and on the disk or not at all; `every`: with each run exactly once."""
     check_order(chunks)
     partial = target.with_name(target.name + ".partial")
+    partial.unlink(missing_ok=True)
     header = None
-    with partial.open("wb") as out:
+    with partial.open("xb") as out:  # a new file: no link of that name is followed
         for first, last, path in chunks:
             with path.open("rb") as file:
                 head = file.readline()
@@ -77,6 +78,8 @@ def merge(chunks: list[Chunk], every: bool, target: Path) -> None:
                     raise BadChunks(f"{path}: its first line is not that of {chunks[0][2]}")
                 # rows hold no line breaks but their own
                 out.writelines(check_rows(file, first, last, every, path))
+        out.flush()
+        os.fsync(out.fileno())
     os.replace(partial, target)
 
 
@@ -92,7 +95,7 @@ def merge_all(prefix: Path, out: Path, ranges: Sequence[str]) -> None:
 
 
 def count_of(text: str) -> int:
-    """The number of runs that gudgeon sweep --check names."""
+    """The number of runs that gudgeon sweep --check names, also where some of them would fail."""
     found = re.findall(r"\b(\d+) runs?\b", text)
     if len(found) != 1:
         raise BadChunks(f"gudgeon sweep --check names no number of runs: {text.strip()!r}")

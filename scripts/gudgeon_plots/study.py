@@ -1,5 +1,6 @@
 """Parameter studies: their files, their sweeps, their results."""
 
+import re
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -100,6 +101,8 @@ class Runs:
         if not path.exists():
             raise MissingResult(f"no result {path}")
         table, units = read_table(path)
+        for name in table.select_dtypes(exclude="number").columns:
+            table[name] = table[name].map(_as_written)
         if list(table["run"]) != list(range(1, len(table) + 1)):
             raise MissingResult(f"{path}: runs are missing; the same sweep goes on from there")
         return cls(table, units)
@@ -114,6 +117,11 @@ class Runs:
     def failures(self) -> dict[str, int]:
         """How many runs failed for each reason."""
         return self.table.loc[~self.done, "status"].value_counts().to_dict()
+
+
+def _as_written(cell: object) -> object:
+    """A cell without the apostrophe that keeps spreadsheet programs from running a text as a formula."""
+    return cell[1:] if isinstance(cell, str) and re.match(r"'+[=+\-@\t\r]", cell) else cell
 
 
 def warn_of_failures(name: str, runs: Runs) -> None:

@@ -8,7 +8,8 @@ module posix
   public :: open_for_reading, open_standard_input, hold_file, open_for_writing, open_for_appending, open_to_lock, lock_file, &
     is_file, file_length, absolute_path, read_at, read_bytes, write_bytes, truncate_file, reserve_file, synchronise_file, &
     synchronise_folder, close_file, rename_file, remove_file, remove_directory, make_directory, is_terminal, wait_for_input, &
-    error_text, hold_interrupts, interrupted, fill_standard_descriptors, ignore_write_signals, quit
+    error_text, signal_set_t, hold_interrupts, restore_interrupts, interrupted, fill_standard_descriptors, &
+    ignore_write_signals, quit
   public :: error_no_entry, error_interrupted, error_locked, error_exists, error_is_directory, error_no_space, &
     error_broken_pipe, error_not_regular, error_is_link
 
@@ -30,7 +31,7 @@ module posix
   integer(c_int), parameter :: signal_hangup = 1, signal_interrupt = 2, signal_pipe = 13, signal_terminate = 15, &
     signal_file_size = 25
   integer(c_int), parameter :: held(3) = [signal_hangup, signal_interrupt, signal_terminate]
-  integer(c_int), parameter :: signal_block = 0
+  integer(c_int), parameter :: signal_block = 0, signal_set_mask = 2
   integer(c_intptr_t), parameter :: ignore_handler = 1, error_handler = -1
 
   !> Room for a sigset_t of Linux, 128 bytes.
@@ -487,8 +488,10 @@ contains
   end function error_text
 
   !> From here on SIGINT, SIGTERM and SIGHUP wait to be asked for by `interrupted` instead of ending the program;
-  !> one that the program was started to ignore stays ignored. Call it before any thread is started.
-  subroutine hold_interrupts()
+  !> one that the program was started to ignore stays ignored. Call it before any thread is started. `before` takes what was
+  !> held before, for `restore_interrupts`.
+  subroutine hold_interrupts(before)
+    type(signal_set_t), intent(out), optional :: before
     type(signal_set_t) :: set, old
     integer(c_intptr_t) :: handler, unused
     integer(c_int) :: status
@@ -500,7 +503,16 @@ contains
       status = c_sigaddset(set, held(i))
     end do
     status = c_sigmask(signal_block, set, old)
+    if (present(before)) before = old
   end subroutine hold_interrupts
+
+  !> Let signals through to this thread as before they were held. One that has come in meanwhile ends the program here.
+  subroutine restore_interrupts(before)
+    type(signal_set_t), intent(in) :: before
+    type(signal_set_t) :: unused
+    integer(c_int) :: status
+    status = c_sigmask(signal_set_mask, before, unused)
+  end subroutine restore_interrupts
 
   !> Whether a held signal has come in.
   function interrupted() result(answer)

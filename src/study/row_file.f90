@@ -1,73 +1,74 @@
-!> A results file of a study. While the study goes on, every run adds its rows in one piece, in the order in which runs end;
-!> what a killed program left can be taken up again; at the end the rows stand in the order of the runs.
+!> A results file of a study. While the study goes on the rows of each run are added in one piece, in the order in which runs
+!> end; at the end rows stand in the order of the runs. What a killed program or a power cut has left can be taken up again.
 !>
-!> The first field of a row is the number of its run. Only where each run's rows stand in the file is kept in memory.
+!> The first field of a row is the number of its run. Only where each run's rows stand in the file is kept in memory, and the
+!> rows that wait to be written: whoever has several files decides which is on the disk before another.
 module row_file
   use, intrinsic :: iso_fortran_env, only: int64
   use, intrinsic :: iso_c_binding, only: c_long
-  use errors, only: error_t, fail, status_output
-  use text_tools, only: printable
+  use errors, only: error_t, fail, status_output, status_integration
+  use text_tools, only: printable, whole_number
+  use growing_text, only: growing_text_t
   use result_file, only: result_file_t
-  use posix, only: open_for_reading, open_for_appending, read_at, read_bytes, write_bytes, truncate_file, close_file, &
-    error_text, error_interrupted, error_no_entry
+  use posix, only: open_for_reading, open_for_appending, read_at, read_bytes, write_bytes, truncate_file, synchronise_file, &
+    synchronise_folder, close_file, error_text, error_interrupted, error_no_entry, interrupted
   implicit none
   private
   public :: row_file_t
 
-  character(len=*), parameter :: newline = achar(10)
+  character(len=*), parameter :: newline = achar(10), fresh = '; --fresh begins anew'
 
   type :: row_file_t
     private
     character(len=:), allocatable :: path, header
+    integer, allocatable :: columns(:)             !! the first, and those whose whole numbers are kept
+    integer :: fields = 0                          !! of a row
     integer :: descriptor = -1
-    integer(int64) :: size = 0                     !! of the file [bytes]
+    integer :: status = 0                          !! error number of the first write that failed
+    integer(int64) :: size = 0                     !! of the file with the rows that wait [bytes]
+    integer(int64) :: written = 0                  !! of the file [bytes]
+    type(growing_text_t) :: waiting
     integer :: first = 1                           !! run
-    integer(int64), allocatable :: at(:), length(:) !! where the rows of each run begin, and their bytes
-    character(len=:), allocatable :: mark          !! text looked for in the rows taken up
-    logical, allocatable :: marked(:)              !! it was found
+    integer(int64), allocatable :: at(:)           !! where the rows of each run begin
+    integer, allocatable :: length(:), rows(:)     !! their bytes, and how many there are
+    integer, allocatable :: numbers(:, :)          !! (columns, runs) of the rows taken up
   contains
-    procedure :: open => open_rows
+    procedure :: prepare
+    procedure :: take_up
     procedure :: has
-    procedure :: is_marked
+    procedure :: rows_of
+    procedure :: number_of
+    procedure :: drop
+    procedure :: begin
     procedure :: append
+    procedure :: bytes_waiting
+    procedure :: write => write_waiting
+    procedure :: synchronise
     procedure :: finish
-    procedure, private :: take_up
     procedure, private :: take_line
+    procedure, private :: is_in_order
     procedure, private :: rewrite
   end type row_file_t
 
 contains
 
-  !> Begin the file of the runs first .. last, or take up what is there. `header` is its first row. Of what is there only
-  !> whole rows of runs in `kept` stay. `mark` is a text to look for in them.
-  subroutine open_rows(self, path, header, first, last, resumes, error, kept, mark)
+  !> The file at `path` of the runs first .. last. `header` is its first row. In rows taken up the whole numbers in these
+  !> columns are kept for `number_of`.
+  subroutine prepare(self, path, header, first, last, columns)
     class(row_file_t), intent(inout) :: self
     character(len=*), intent(in) :: path, header
-    integer, intent(in) :: first, last
-    logical, intent(in) :: resumes
-    type(error_t), allocatable, intent(out) :: error
-    class(row_file_t), intent(in), optional :: kept
-    character(len=*), intent(in), optional :: mark
-    integer :: status, run
+    integer, intent(in) :: first, last, columns(:)
     self%path = path
     self%header = header
     self%first = first
-    allocate (self%at(first:last), self%length(first:last), source=0_int64)
-    allocate (self%marked(first:last), source=.false.)
-    self%mark = ''
-    if (present(mark)) self%mark = mark
-    if (resumes) call self%take_up(error)
-    if (allocated(error)) return
-    if (present(kept)) then
-      do run = first, last
-        if (.not. kept%has(run)) self%length(run) = 0
-      end do
-    end if
-    call self%rewrite(error)
-    if (allocated(error)) return
-    call open_for_appending(path, self%descriptor, status)
-    if (status /= 0) call report(self, status, error)
-  end subroutine open_rows
+    allocate (self%columns(0:size(columns)))
+    self%columns = [1, columns]
+    allocate (self%at(first:last), source=0_int64)
+    allocate (self%length(first:last), self%rows(first:last), source=0)
+    allocate (self%numbers(size(columns), first:last), source=0)
+    call read_fields(header, self%columns(:0), self%rows(first:first), self%fields)
+    self%rows(first) = 0
+  end subroutine prepare
 
   !> Whether the rows of a run are there.
   pure logical function has(self, run)
@@ -76,35 +77,191 @@ contains
     has = self%length(run) > 0
   end function has
 
-  !> Whether the rows of a run that were taken up hold the mark.
-  pure logical function is_marked(self, run)
+  !> How many rows of a run were taken up.
+  pure integer function rows_of(self, run)
     class(row_file_t), intent(in) :: self
     integer, intent(in) :: run
-    is_marked = self%marked(run)
-  end function is_marked
+    rows_of = self%rows(run)
+  end function rows_of
 
-  !> Add all rows of a run. An error leaves the file as it was.
-  subroutine append(self, run, text, error)
+  !> The number in the i-th of the columns kept, in the last row of a run taken up; 0 where there was none.
+  pure integer function number_of(self, i, run)
+    class(row_file_t), intent(in) :: self
+    integer, intent(in) :: i, run
+    number_of = self%numbers(i, run)
+  end function number_of
+
+  !> Leave out the rows of a run that were taken up.
+  pure subroutine drop(self, run)
+    class(row_file_t), intent(inout) :: self
+    integer, intent(in) :: run
+    self%length(run) = 0
+    self%rows(run) = 0
+  end subroutine drop
+
+  !> Find the rows in the file, if there is one. A row that was not written to its end is passed over. Errors: the file cannot
+  !> be read, or is of another study; an interrupt.
+  subroutine take_up(self, error)
+    class(row_file_t), intent(inout) :: self
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: buffer, line
+    integer :: descriptor, status, done, ignored, first, next, previous
+    call open_for_reading(self%path, descriptor, status)
+    if (status == error_no_entry) return
+    if (status /= 0) then
+      call report(self, status, error)
+      return
+    end if
+    allocate (character(len=65536) :: buffer)
+    line = ''
+    previous = self%first - 1
+    do while (.not. allocated(error))
+      call read_bytes(descriptor, buffer, done, status)
+      if (status == error_interrupted) cycle
+      if (status /= 0 .or. done == 0) exit
+      first = 1
+      do
+        next = index(buffer(first:done), newline)
+        if (next == 0) exit
+        call self%take_line(line//buffer(first:first + next - 1), previous, error)
+        if (allocated(error)) exit
+        self%size = self%size + len(line) + next
+        line = ''
+        first = first + next
+      end do
+      line = line//buffer(first:done)
+      if (interrupted()) call fail(error, printable(self%path, 200)//': interrupted while it was read', status_integration)
+    end do
+    self%size = self%size + len(line)
+    self%written = self%size
+    call close_file(descriptor, ignored)
+    if (status /= 0) call report(self, status, error)
+  end subroutine take_up
+
+  !> One line, ended, at the end of what has been read. `previous` is the run of the line before.
+  subroutine take_line(self, line, previous, error)
+    class(row_file_t), intent(inout) :: self
+    character(len=*), intent(in) :: line
+    integer, intent(inout) :: previous
+    type(error_t), allocatable, intent(out) :: error
+    integer :: fields, numbers(0:ubound(self%columns, 1))
+    if (self%size == 0) then
+      if (line == self%header .and. len(line) == len(self%header)) return
+      call fail(error, printable(self%path, 200)//': its first row is not that of this study'//fresh, status_output)
+      return
+    end if
+    call read_fields(line, self%columns, numbers, fields)
+    associate (run => numbers(0))
+      if (fields /= self%fields .or. run == 0) then   ! what a power cut leaves
+        previous = self%first - 1
+        return
+      else if (run < self%first .or. run > ubound(self%at, 1)) then
+        call fail(error, printable(self%path, 200)//': holds a run that this study does not have'//fresh, status_output)
+        return
+      end if
+      if (run /= previous) then
+        self%at(run) = self%size
+        call self%drop(run)
+      end if
+      self%length(run) = self%length(run) + len(line)
+      self%rows(run) = self%rows(run) + 1
+      self%numbers(:, run) = numbers(1:)
+      previous = run
+    end associate
+  end subroutine take_line
+
+  !> The whole numbers in some columns of a row, 0 where there is none, and how many fields it has; none where it holds a
+  !> control character, which no row does.
+  pure subroutine read_fields(line, columns, numbers, fields)
+    character(len=*), intent(in) :: line   !! ends with an end of line
+    integer, intent(in) :: columns(:)
+    integer, intent(out) :: numbers(:), fields
+    logical :: is_quoted
+    integer :: i, k, from
+    is_quoted = .false.
+    fields = 0
+    from = 1
+    numbers = 0
+    do i = 1, len(line)
+      if (line(i:i) == '"') is_quoted = .not. is_quoted
+      if (iachar(line(i:i)) < 32 .and. i < len(line)) then
+        fields = 0
+        return
+      end if
+      if ((line(i:i) /= ',' .or. is_quoted) .and. i < len(line)) cycle
+      fields = fields + 1
+      do k = 1, size(columns)
+        if (columns(k) /= fields .or. i == from .or. i - from > 9 .or. verify(line(from:i - 1), '0123456789') > 0) cycle
+        numbers(k) = int(whole_number(line(from:i - 1)))
+      end do
+      from = i + 1
+    end do
+  end subroutine read_fields
+
+  !> Be ready to add rows: to the file as it is, where it holds the rows that were taken up and nothing else, or to one written
+  !> anew.
+  subroutine begin(self, error)
+    class(row_file_t), intent(inout) :: self
+    type(error_t), allocatable, intent(out) :: error
+    integer :: status
+    status = error_no_entry
+    if (self%size == len(self%header) + sum(int(self%length, int64))) &
+      call open_for_appending(self%path, self%descriptor, status)
+    if (status == 0) return
+    call self%rewrite(error)
+    if (allocated(error)) return
+    call open_for_appending(self%path, self%descriptor, status)
+    if (status /= 0) call report(self, status, error)
+  end subroutine begin
+
+  !> Add all rows of a run to those that wait.
+  subroutine append(self, run, text)
     class(row_file_t), intent(inout) :: self
     integer, intent(in) :: run
     character(len=*), intent(in) :: text   !! ends with an end of line
-    type(error_t), allocatable, intent(out) :: error
-    integer :: written, done, status, ignored
-    written = 0
-    do while (written < len(text))
-      call write_bytes(self%descriptor, text(written + 1:), done, status)
-      if (status == error_interrupted) cycle
-      if (status /= 0) then
-        call report(self, status, error)
-        call truncate_file(self%descriptor, int(self%size, c_long), ignored)
-        return
-      end if
-      written = written + done
-    end do
+    if (self%descriptor < 0 .or. len(text) == 0) return
+    call self%waiting%append(text)
     self%at(run) = self%size
     self%length(run) = len(text)
     self%size = self%size + len(text)
   end subroutine append
+
+  !> Bytes that wait to be written.
+  pure integer(int64) function bytes_waiting(self)
+    class(row_file_t), intent(in) :: self
+    bytes_waiting = self%size - self%written
+  end function bytes_waiting
+
+  !> Write the rows that wait. An error leaves the file as it was, and is given again at every call.
+  subroutine write_waiting(self, error)
+    class(row_file_t), intent(inout) :: self
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: text
+    integer :: at, done, ignored
+    if (self%descriptor < 0) return
+    call self%waiting%take(text)
+    at = 0
+    do while (at < len(text) .and. self%status == 0)
+      call write_bytes(self%descriptor, text(at + 1:), done, self%status)
+      if (self%status == error_interrupted) self%status = 0
+      if (self%status == 0) at = at + max(done, 0)
+    end do
+    if (self%status /= 0) then
+      if (at > 0) call truncate_file(self%descriptor, int(self%written, c_long), ignored)
+      call report(self, self%status, error)
+    else
+      self%written = self%written + at
+    end if
+  end subroutine write_waiting
+
+  !> Wait until what was written is on the disk.
+  subroutine synchronise(self, error)
+    class(row_file_t), intent(inout) :: self
+    type(error_t), allocatable, intent(out) :: error
+    if (self%descriptor < 0) return
+    if (self%status == 0) call synchronise_file(self%descriptor, self%status)
+    if (self%status /= 0) call report(self, self%status, error)
+  end subroutine synchronise
 
   !> Close the file; where the study is `complete`, with its rows in order.
   subroutine finish(self, complete, error)
@@ -117,83 +274,27 @@ contains
     self%descriptor = -1
     if (status /= 0 .and. status /= error_interrupted) then
       call report(self, status, error)
-    else if (complete) then
+    else if (complete .and. .not. self%is_in_order()) then
       call self%rewrite(error)
     end if
   end subroutine finish
 
-  !> Find the whole rows in the file, if there is one.
-  subroutine take_up(self, error)
-    class(row_file_t), intent(inout) :: self
-    type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: buffer, line
-    integer :: descriptor, status, done, ignored, first, next, previous
+  !> Whether the rows stand in the file in the order of the runs.
+  pure logical function is_in_order(self)
+    class(row_file_t), intent(in) :: self
     integer(int64) :: at
-    call open_for_reading(self%path, descriptor, status)
-    if (status == error_no_entry) return
-    if (status /= 0) then
-      call report(self, status, error)
-      return
-    end if
-    allocate (character(len=65536) :: buffer)
-    line = ''
-    at = 0
-    previous = self%first - 1
-    do
-      call read_bytes(descriptor, buffer, done, status)
-      if (status == error_interrupted) cycle
-      if (status /= 0 .or. done == 0) exit
-      first = 1
-      do
-        next = index(buffer(first:done), newline)
-        if (next == 0) exit
-        call self%take_line(line//buffer(first:first + next - 1), at, previous, error)
-        if (allocated(error)) exit
-        at = at + len(line) + next
-        line = ''
-        first = first + next
-      end do
-      if (allocated(error)) exit
-      line = line//buffer(first:done)
+    integer :: run
+    is_in_order = .false.
+    at = len(self%header)
+    do run = self%first, ubound(self%at, 1)
+      if (self%length(run) == 0) cycle
+      if (self%at(run) /= at) return
+      at = at + self%length(run)
     end do
-    call close_file(descriptor, ignored)
-    if (status /= 0 .and. .not. allocated(error)) call report(self, status, error)
-  end subroutine take_up
+    is_in_order = .true.
+  end function is_in_order
 
-  !> One whole line that begins at a place in the file. `previous` is the run of the line before.
-  subroutine take_line(self, line, at, previous, error)
-    class(row_file_t), intent(inout) :: self
-    character(len=*), intent(in) :: line
-    integer(int64), intent(in) :: at
-    integer, intent(inout) :: previous
-    type(error_t), allocatable, intent(out) :: error
-    integer :: run, iostat, comma
-    if (at == 0) then
-      if (line == self%header .and. len(line) == len(self%header)) return
-      call fail(error, printable(self%path, 200)//': its first row is not that of this study; --fresh begins anew', status_output)
-      return
-    end if
-    comma = index(line, ',')
-    run = self%first - 1
-    iostat = 1
-    if (comma > 1 .and. comma < 10) then
-      if (verify(line(:comma - 1), '0123456789') == 0) read (line(:comma - 1), *, iostat=iostat) run
-    end if
-    if (iostat /= 0 .or. run < self%first .or. run > ubound(self%at, 1)) then
-      call fail(error, printable(self%path, 200)//': a row does not begin with the number of a run; --fresh begins anew', &
-                status_output)
-      return
-    end if
-    if (run /= previous) then
-      self%at(run) = at
-      self%length(run) = 0
-    end if
-    self%length(run) = self%length(run) + len(line)
-    self%marked(run) = index(line, self%mark) > 0
-    previous = run
-  end subroutine take_line
-
-  !> The file anew, rows in the order of the runs, under its name when it is whole.
+  !> The file anew, rows in the order of the runs, under its name when it is whole and on the disk.
   subroutine rewrite(self, error)
     class(row_file_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
@@ -205,28 +306,38 @@ contains
     status = 0
     if (any(self%length > 0)) call open_for_reading(self%path, descriptor, status)
     if (status == 0) call file%open(self%path, error)
-    if (allocated(error)) return
-    call file%put(self%header)
+    if (status /= 0) call report(self, status, error)
+    if (.not. allocated(error)) call file%put(self%header)
     at = len(self%header)
-    allocate (character(len=max(1_int64, maxval(self%length))) :: buffer)
+    allocate (character(len=max(1, maxval(self%length))) :: buffer)
     do run = self%first, ubound(self%at, 1)
-      if (self%length(run) == 0 .or. status /= 0) cycle
+      if (allocated(error)) exit
+      if (self%length(run) == 0) cycle
       associate (rows => buffer(:self%length(run)))
         call read_at(descriptor, int(self%at(run), c_long), rows, done, status)
-        if (done < len(rows)) exit
-        call file%put(rows)
+        if (done == len(rows)) call file%put(rows)
+        if (done < len(rows)) call fail(error, printable(self%path, 200)//': changed while it was written', status_output)
+        if (status /= 0) call report(self, status, error)
       end associate
+      if (mod(run, 1000) == 0) then
+        if (interrupted()) call fail(error, printable(self%path, 200)//': interrupted while its rows were put in order; the '// &
+                                     'same command goes on from there', status_integration)
+      end if
+      if (allocated(error)) exit
       self%at(run) = at
       at = at + self%length(run)
     end do
     if (descriptor >= 0) call close_file(descriptor, ignored)
-    if (run <= ubound(self%at, 1)) then
+    if (allocated(error)) then
       call file%abandon()
-      call report(self, status, error)
     else
+      call file%synchronise()
       call file%close(error, whole_only=.true.)
+      call synchronise_folder(self%path, status)
+      if (status /= 0 .and. .not. allocated(error)) call report(self, status, error)
     end if
     self%size = at
+    self%written = at
   end subroutine rewrite
 
   !> The error for an error number of the system.

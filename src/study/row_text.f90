@@ -1,11 +1,16 @@
 !> Rows of a table being put together, in memory that is kept from one to the next. No text function is used: threads may
 !> work side by side.
+!>
+!> Spreadsheet programs run a field that begins with = + - @, a tab or a carriage return as a formula. A text that does gets an
+!> apostrophe in front, and so does one whose apostrophes stand before such a beginning: who reads a field takes one apostrophe
+!> away there. Numbers stay as they are.
 module row_text
   use kinds, only: dp
+  use value_reader, only: read_real
   use number_writer, only: number_writer_t, longest_number
   implicit none
   private
-  public :: row_text_t
+  public :: row_text_t, begins_formula
 
   type :: row_text_t
     character(len=:), allocatable :: text   !! its first `used` characters count
@@ -24,20 +29,39 @@ contains
 
   pure subroutine clear(self)
     class(row_text_t), intent(inout) :: self
+    call self%make_room(0)
     self%used = 0
     self%is_open = .false.
   end subroutine clear
 
-  !> A field; in quotes where it needs them (RFC 4180). Trailing blanks are left out.
+  !> Whether a field begins as a formula does, perhaps behind apostrophes.
+  pure logical function begins_formula(text)
+    character(len=*), intent(in) :: text
+    integer :: first
+    first = verify(text, "'")
+    begins_formula = first > 0
+    if (begins_formula) begins_formula = index('=+-@'//achar(9)//achar(13), text(first:first)) > 0
+  end function begins_formula
+
+  !> A field; in quotes where it needs them (RFC 4180), behind an apostrophe where it is a text that begins as a formula does.
+  !> Trailing blanks are left out.
   pure subroutine add_text(self, text)
     class(row_text_t), intent(inout) :: self
     character(len=*), intent(in) :: text
+    character(len=:), allocatable :: wanted
+    real(dp) :: unimportant
     integer :: i
-    logical :: needs_quotes
-    call self%make_room(2*len(text) + 3)
+    logical :: needs_quotes, needs_apostrophe
+    call self%make_room(2*len(text) + 4)
     needs_quotes = scan(text, '",'//achar(10)//achar(13)) > 0
+    needs_apostrophe = begins_formula(text)
+    if (needs_apostrophe) then
+      call read_real(trim(text), unimportant, wanted)
+      needs_apostrophe = allocated(wanted)
+    end if
     call append(self, ',', self%is_open)
     call append(self, '"', needs_quotes)
+    call append(self, "'", needs_apostrophe)
     do i = 1, len_trim(text)
       call append(self, '"', text(i:i) == '"')
       call append(self, text(i:i), .true.)

@@ -37,6 +37,7 @@ module study_design
     procedure :: get_values
     procedure :: set_whole
     procedure :: is_range
+    procedure :: outermost
   end type study_design_t
 
 contains
@@ -55,10 +56,9 @@ contains
       call read_table(study%table, design%table, error)
       if (allocated(error)) return
       design%has_table = .true.
-      design%runs = size(design%table%fields, 2)
-      design%text_length = len(design%table%fields)
-      allocate (character(len=len(design%table%keys)) :: design%keys(size(design%table%keys)))
-      design%keys(:) = design%table%keys
+      design%runs = design%table%rows
+      design%text_length = design%table%longest
+      allocate (design%keys, source=design%table%keys)
       return
     end if
     longest = maxval([(len(study%parameters(i)%key), i=1, size(study%parameters))])
@@ -151,6 +151,18 @@ contains
     if (is_range) is_range = size(self%axes(i)%range%list) == 0
   end function is_range
 
+  !> The run of a grid in which parameter i has its last value and all others have their first.
+  pure integer function outermost(self, i)
+    class(study_design_t), intent(in) :: self
+    integer, intent(in) :: i
+    integer :: k
+    outermost = self%axes(i)%levels - 1
+    do k = i + 1, size(self%axes)
+      outermost = outermost*self%axes(k)%levels
+    end do
+    outermost = outermost + 1
+  end function outermost
+
   !> The values of run 1 .. runs.
   pure subroutine get_values(self, run, values)
     class(study_design_t), intent(in) :: self
@@ -159,7 +171,9 @@ contains
     integer :: i, rest, level
     real(dp) :: fraction
     if (self%has_table) then
-      values(:) = self%table%fields(:, run)
+      do i = 1, size(values)
+        values(i) = self%table%field(i, run)
+      end do
       return
     end if
     rest = run - 1

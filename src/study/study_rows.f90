@@ -11,16 +11,19 @@ module study_rows
   use row_text, only: row_text_t
   implicit none
   private
-  public :: run_header, cycle_header, strobe_header, write_run, write_failure, write_cycles, write_strobes
+  public :: run_header, cycle_header, strobe_header, cycles_column, strobes_column
+  public :: write_run, write_failure, write_cycles, write_strobes
 
   character(len=*), parameter :: newline = achar(10)
   integer, parameter :: statistics_columns = 11   !! of a run, from the cycles to the dissipated energy
+  integer, parameter :: work_columns = 3          !! behind them
 
 contains
 
-  !> First row of NAME.runs.csv.
-  function run_header(keys) result(text)
+  !> First row of NAME.runs.csv. How many strobes were taken stands last, where there are any to take.
+  function run_header(keys, has_strobes) result(text)
     character(len=*), intent(in) :: keys(:)
+    logical, intent(in) :: has_strobes
     character(len=:), allocatable :: text
     type(row_text_t) :: row
     integer :: i
@@ -30,8 +33,22 @@ contains
     end do
     text = row%text(:row%used)//',status,cycles[-],min_film_thickness[m],min_film_thickness_mean[m],contact_time_fraction[-],'// &
       'impacts[-],max_penetration[m],max_pin_force[N],max_pin_force_mean[N],mean_pin_force[N],mean_crank_speed[rad/s],'// &
-      'dissipated_energy[J],energy_residual[-],rhs_evaluations[-],simulated_time[s]'//newline
+      'dissipated_energy[J],energy_residual[-],rhs_evaluations[-],simulated_time[s]'
+    if (has_strobes) text = text//',strobes[-]'
+    text = text//newline
   end function run_header
+
+  !> The column of cycles[-] in NAME.runs.csv: empty where a run has failed.
+  pure integer function cycles_column(keys)
+    character(len=*), intent(in) :: keys(:)
+    cycles_column = size(keys) + 3
+  end function cycles_column
+
+  !> The column of strobes[-], where there is one.
+  pure integer function strobes_column(keys)
+    character(len=*), intent(in) :: keys(:)
+    strobes_column = cycles_column(keys) + statistics_columns + work_columns
+  end function strobes_column
 
   !> First row of NAME.cycles.csv.
   function cycle_header() result(text)
@@ -77,16 +94,17 @@ contains
       call add(row, numbers, s%dissipated_energy_mean(), has_clearance)
     end associate
     call add_work(row, numbers, report)
+    if (size(watch%strobe_list%id) > 0) call row%add_whole(watch%strobes)
     call row%end_row()
   end subroutine write_run
 
   !> The row of a run that is not done: why, and what it came to if it began.
-  subroutine write_failure(row, numbers, run, values, reason, has_begun, report)
+  subroutine write_failure(row, numbers, run, values, reason, has_begun, has_strobes, report)
     type(row_text_t), intent(inout) :: row
     type(number_writer_t), intent(in) :: numbers
     integer, intent(in) :: run
     character(len=*), intent(in) :: values(:), reason
-    logical, intent(in) :: has_begun
+    logical, intent(in) :: has_begun, has_strobes
     type(run_report_t), intent(in) :: report
     integer :: i
     call begin_row(row, run, values)
@@ -97,10 +115,11 @@ contains
     if (has_begun) then
       call add_work(row, numbers, report)
     else
-      do i = 1, 3
+      do i = 1, work_columns
         call row%add_text('')
       end do
     end if
+    if (has_strobes) call row%add_text('')
     call row%end_row()
   end subroutine write_failure
 

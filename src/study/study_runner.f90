@@ -10,40 +10,47 @@ module study_runner
   use command_line, only: command_line_t
   use progress, only: rate_text
   use case_runner, only: tell_warning
-  use posix, only: make_directory, error_text, interrupted
+  use posix, only: make_directory, error_text, interrupted, signal_set_t, hold_interrupts, &
+    restore_interrupts
   use text_file, only: read_text_file
   use study_sweep, only: sweep_t, read_sweep, check_rows, study_checksum
   use study_worker, only: study_worker_t
-  use study_rows, only: run_header, cycle_header, strobe_header
+  use study_rows, only: run_header, cycle_header, strobe_header, cycles_column, strobes_column
   implicit none
   private
   public :: run_study_file
 
   character(len=*), parameter :: newline = achar(10), checksum_label = '! checksum '
 
+  !> Rows wait in memory so that writing them down to the disk takes little of the time: a fiftieth, as far as the longest
+  !> interval lets it.
+  real(dp), parameter :: least_interval = 0.25_dp, most_interval = 5   !! between two writes [s]
+  real(dp), parameter :: intervals = 50                                !! of the time that the last one took
+  integer(int64), parameter :: most_waiting = 16000000                 !! bytes of revolutions and strobes
+
 contains
 
   !> Read a study, and unless only a check is asked for run it. `line` is the summary for people; an error tells of a wrong
-  !> study, of results that could not be written, or that runs failed.
-  subroutine run_study_file(path, options, show_progress, line, error)
+  !> study, of results that could not be written, or that runs failed. While the study is read or checked signals go through
+  !> as `before`; they are held from the first result on.
+  subroutine run_study_file(path, options, show_progress, before, line, error)
     character(len=*), intent(in) :: path
     type(command_line_t), intent(in) :: options
     logical, intent(in) :: show_progress
+    type(signal_set_t), intent(in) :: before
     character(len=:), allocatable, intent(out) :: line
     type(error_t), allocatable, intent(out) :: error
     type(sweep_t), allocatable :: sweep
     integer(int64) :: began, ended, rate
 
+    call restore_interrupts(before)
     line = ''
     allocate (sweep)
     call read_sweep(path, options, sweep, error)
-    if (allocated(error)) return
-    if (.not. options%quiet) call tell_warning(sweep%base%case)
-    if (options%check) then
-      call check_rows(sweep, error)
-      if (.not. allocated(error)) line = path//': correct, '//integer_text(sweep%last - sweep%first + 1)//' runs'
-      return
-    end if
+    if (.not. (allocated(error) .or. options%quiet)) call tell_warning(sweep%base%case)
+    if (.not. allocated(error) .and. options%check) call check_rows(sweep, line, error)
+    call hold_interrupts()
+    if (allocated(error) .or. options%check) return
     call open_files(options, sweep, error)
     if (allocated(error)) then
       call sweep%lock%release()
@@ -67,7 +74,7 @@ contains
     character(len=:), allocatable :: label, before
     type(error_t), allocatable :: nothing_there
     logical :: resumes
-    integer :: status, run
+    integer :: status
 
     call make_directory(options%out, status)
     if (status == 0 .and. sweep%study%traces /= 'none') call make_directory(sweep%path, status)
@@ -85,21 +92,59 @@ contains
                 status_output)
       return
     end if
-    associate (first => sweep%first, last => sweep%last)
-      call sweep%runs%open(sweep%path//'.runs.csv', run_header(sweep%design%keys), first, last, resumes, error, mark=',done,')
-      if (allocated(error)) return
-      if (sweep%study%cycles) &
-        call sweep%cycles%open(sweep%path//'.cycles.csv', cycle_header(), first, last, resumes, error, kept=sweep%runs)
-      if (.not. allocated(error) .and. size(sweep%strobe_list%id) > 0) call sweep%strobes%open(sweep%path//'.strobe.csv', &
-        strobe_header(sweep%strobe_list), first, last, resumes, error, kept=sweep%runs)
-    end associate
+    call prepare_files(sweep)
+    if (resumes) call take_up(sweep, error)
+    if (.not. allocated(error)) call sweep%runs%begin(error)
+    if (.not. allocated(error) .and. sweep%study%cycles) call sweep%cycles%begin(error)
+    if (.not. allocated(error) .and. sweep%has_strobes) call sweep%strobes%begin(error)
     if (.not. allocated(error)) call write_text(sweep%path//'.study.nml', label//sweep%study%resolved, error)
+  end subroutine open_files
+
+  subroutine prepare_files(sweep)
+    type(sweep_t), intent(inout) :: sweep
+    integer, parameter :: none(0) = 0
+    associate (first => sweep%first, last => sweep%last, keys => sweep%design%keys)
+      call sweep%runs%prepare(sweep%path//'.runs.csv', run_header(keys, sweep%has_strobes), first, last, &
+        [cycles_column(keys), strobes_column(keys)])
+      if (sweep%study%cycles) call sweep%cycles%prepare(sweep%path//'.cycles.csv', cycle_header(), first, last, none)
+      if (sweep%has_strobes) &
+        call sweep%strobes%prepare(sweep%path//'.strobe.csv', strobe_header(sweep%strobe_list), first, last, none)
+    end associate
+  end subroutine prepare_files
+
+  !> Find the runs that are there: whose row is there, and whose revolutions, strobes and trace are those that the row counts.
+  !> What there is of other runs is left out, and they are run again.
+  subroutine take_up(sweep, error)
+    type(sweep_t), intent(inout) :: sweep
+    type(error_t), allocatable, intent(out) :: error
+    integer :: run, cycles, strobes
+    logical :: fits
+    call sweep%runs%take_up(error)
+    if (.not. allocated(error) .and. sweep%study%cycles) call sweep%cycles%take_up(error)
+    if (.not. allocated(error) .and. sweep%has_strobes) call sweep%strobes%take_up(error)
+    if (allocated(error)) return
     do run = sweep%first, sweep%last
-      if (sweep%runs%has(run)) sweep%began = sweep%began + 1
-      if (sweep%runs%has(run) .and. .not. sweep%runs%is_marked(run)) sweep%failed = sweep%failed + 1
+      fits = sweep%runs%has(run)
+      if (fits) then
+        cycles = sweep%runs%number_of(1, run)   ! none of a run that failed
+        strobes = sweep%runs%number_of(2, run)
+        if (sweep%study%cycles) fits = sweep%cycles%rows_of(run) == cycles
+        if (sweep%has_strobes) fits = fits .and. sweep%strobes%rows_of(run) == strobes
+        if (fits .and. cycles > 0 .and. sweep%study%traces == 'all') &
+          inquire (file=sweep%path//'/'//integer_text(run)//'.csv', exist=fits)
+        if (.not. fits) sweep%incomplete = sweep%incomplete + 1
+      end if
+      if (fits) then
+        sweep%began = sweep%began + 1
+        if (cycles == 0) sweep%failed = sweep%failed + 1
+      else
+        call sweep%runs%drop(run)
+        if (sweep%study%cycles) call sweep%cycles%drop(run)
+        if (sweep%has_strobes) call sweep%strobes%drop(run)
+      end if
     end do
     sweep%done = sweep%began
-  end subroutine open_files
+  end subroutine take_up
 
   !> All runs that have no row yet, by so many threads (0: as many as there are cores).
   subroutine run_rows(jobs, sweep)
@@ -109,12 +154,13 @@ contains
     threads = jobs
     if (threads == 0) threads = omp_get_num_procs()
     threads = max(1, min(threads, sweep%last - sweep%first + 1 - sweep%began))
+    sweep%next = sweep%first
     !$omp parallel num_threads(threads)
     call work(sweep)
     !$omp end parallel
   end subroutine run_rows
 
-  !> The share of one thread.
+  !> The share of one thread: whichever run is next, until there is none.
   subroutine work(sweep)
     type(sweep_t), intent(inout) :: sweep
     type(study_worker_t), allocatable :: worker
@@ -122,20 +168,23 @@ contains
     integer :: run
     allocate (worker)
     call worker%prepare(sweep%study, sweep%design, sweep%base, sweep%strobe_list, sweep%path)
-    !$omp do schedule(dynamic)
-    do run = sweep%first, sweep%last
+    do
+      !$omp atomic capture
+      run = sweep%next
+      sweep%next = sweep%next + 1
+      !$omp end atomic
       !$omp atomic read
       is_over = sweep%is_over
-      if (is_over .or. sweep%runs%has(run)) cycle
+      if (is_over .or. run > sweep%last) exit
+      if (sweep%runs%has(run)) cycle
       call worker%run(sweep%design, run)
       !$omp critical (study_results)
       call take_results(sweep, worker, run)
       !$omp end critical (study_results)
     end do
-    !$omp end do
   end subroutine work
 
-  !> Add the rows of a run to the files, its row among the runs last: with it the run is done.
+  !> Add the rows of a run to those that wait, and write them if it is time.
   subroutine take_results(sweep, worker, run)
     type(sweep_t), intent(inout) :: sweep
     type(study_worker_t), intent(inout) :: worker
@@ -146,14 +195,13 @@ contains
     if (allocated(worker%output_error) .and. .not. allocated(sweep%error)) call move_alloc(worker%output_error, sweep%error)
     if (.not. (worker%was_interrupted .or. allocated(sweep%error))) then
       !$omp critical (texts)
-      if (sweep%study%cycles .and. worker%cycle_rows%used > 0) &
-        call sweep%cycles%append(run, worker%cycle_rows%text(:worker%cycle_rows%used), sweep%error)
-      if (size(sweep%strobe_list%id) > 0 .and. worker%strobe_rows%used > 0 .and. .not. allocated(sweep%error)) &
-        call sweep%strobes%append(run, worker%strobe_rows%text(:worker%strobe_rows%used), sweep%error)
-      if (.not. allocated(sweep%error)) &
-        call sweep%runs%append(run, worker%run_row%text(:worker%run_row%used), sweep%error)
+      call sweep%cycles%append(run, worker%cycle_rows%text(:worker%cycle_rows%used))
+      call sweep%strobes%append(run, worker%strobe_rows%text(:worker%strobe_rows%used))
+      call sweep%runs%append(run, worker%run_row%text(:worker%run_row%used))
       sweep%done = sweep%done + 1
       if (.not. worker%is_done) sweep%failed = sweep%failed + 1
+      if (clock() > sweep%next_write .or. sweep%cycles%bytes_waiting() + sweep%strobes%bytes_waiting() > most_waiting) &
+        call write_rows(sweep, sweep%error)
       call sweep%progress%update_runs(sweep%done, sweep%last - sweep%first + 1, sweep%began)
       !$omp end critical (texts)
     end if
@@ -163,19 +211,50 @@ contains
     sweep%is_over = .true.
   end subroutine take_results
 
+  !> Write the rows that wait, a run's own row after its revolutions and strobes are on the disk: where it is, they are, also
+  !> after a power cut. When to do so next follows from the time that the disk takes.
+  subroutine write_rows(sweep, error)
+    type(sweep_t), intent(inout) :: sweep
+    type(error_t), allocatable, intent(inout) :: error
+    real(dp) :: began, ended
+    began = clock()
+    call sweep%cycles%write(error)
+    if (.not. allocated(error)) call sweep%strobes%write(error)
+    if (.not. allocated(error)) call sweep%cycles%synchronise(error)
+    if (.not. allocated(error)) call sweep%strobes%synchronise(error)
+    if (.not. allocated(error)) call sweep%runs%write(error)
+    if (.not. allocated(error)) call sweep%runs%synchronise(error)
+    ended = clock()
+    sweep%next_write = ended + min(most_interval, max(least_interval, intervals*(ended - began)))
+  end subroutine write_rows
+
+  !> Seconds from some instant on.
+  real(dp) function clock()
+    integer(int64) :: ticks, rate
+    call system_clock(ticks, rate)
+    clock = real(ticks, dp)/real(rate, dp)
+  end function clock
+
   !> Close the files, sorted if every run has its row. The first error counts.
   subroutine close_files(sweep)
     type(sweep_t), intent(inout) :: sweep
     type(error_t), allocatable :: error
     logical :: complete
+    call write_rows(sweep, error)
+    call keep_first(error, sweep%error)
     complete = sweep%done == sweep%last - sweep%first + 1 .and. .not. allocated(sweep%error)
     call sweep%cycles%finish(complete, error)
-    if (allocated(error) .and. .not. allocated(sweep%error)) call move_alloc(error, sweep%error)
+    call keep_first(error, sweep%error)
     call sweep%strobes%finish(complete, error)
-    if (allocated(error) .and. .not. allocated(sweep%error)) call move_alloc(error, sweep%error)
+    call keep_first(error, sweep%error)
     call sweep%runs%finish(complete, error)
-    if (allocated(error) .and. .not. allocated(sweep%error)) call move_alloc(error, sweep%error)
+    call keep_first(error, sweep%error)
   end subroutine close_files
+
+  subroutine keep_first(error, kept)
+    type(error_t), allocatable, intent(inout) :: error, kept
+    if (allocated(error) .and. .not. allocated(kept)) call move_alloc(error, kept)
+  end subroutine keep_first
 
   !> What there is to say at the end.
   subroutine conclude(sweep, wall_time, line, error)
@@ -187,6 +266,7 @@ contains
     total = sweep%last - sweep%first + 1
     line = sweep%study%name//': '//integer_text(total)//' runs'
     if (sweep%began > 0) line = line//', '//integer_text(sweep%began)//' of them there already'
+    if (sweep%incomplete > 0) line = line//', '//integer_text(sweep%incomplete)//' not there whole and run again'
     if (sweep%done > sweep%began) line = line//'; '//short_text(wall_time)//' s, '// &
       rate_text((sweep%done - sweep%began)/max(wall_time, 1e-6_dp))
     line = line//'; '//sweep%path//'.runs.csv'

@@ -1,6 +1,7 @@
 !> A study read and checked, and what its threads share while it is under way.
 module study_sweep
-  use errors, only: error_t, fail, status_case_file
+  use kinds, only: dp
+  use errors, only: error_t, fail, status_case_file, status_integration
   use text_tools, only: printable, integer_text
   use checksum, only: checksum_t
   use version, only: program_version
@@ -16,11 +17,14 @@ module study_sweep
   use study_file, only: read_study
   use study_design, only: study_design_t, new_design
   use study_case, only: study_case_t
+  use random_numbers, only: random_numbers_t
   use row_file, only: row_file_t
   use case_lock, only: case_lock_t
   implicit none
   private
   public :: sweep_t, read_sweep, check_rows, study_checksum
+
+  integer, parameter :: most_checked = 100000   !! runs of a design that a check looks at
 
   !> A study under way, shared by the threads that run it.
   type :: sweep_t
@@ -30,10 +34,15 @@ module study_sweep
     type(column_list_t) :: strobe_list
     character(len=:), allocatable :: path          !! of the results, without their endings
     integer :: first = 1, last = 0                 !! runs to run
+    logical :: is_drawn = .false.                  !! the design is a smaller one that stands for that of the study in a check
     type(row_file_t) :: runs, cycles, strobes
     type(progress_t) :: progress
     type(case_lock_t) :: lock
+    logical :: has_strobes = .false.
     integer :: began = 0, done = 0, failed = 0     !! rows: there at the start, there now; of them those that failed
+    integer :: incomplete = 0                      !! runs whose row was there, but not all that belongs to it
+    integer :: next = 1                            !! run that no thread has taken yet
+    real(dp) :: next_write = 0                     !! when rows are to be written [s]
     logical :: is_over = .false.                   !! interrupted, or nothing more can be written
     type(error_t), allocatable :: error
   end type sweep_t
@@ -57,6 +66,9 @@ contains
     if (allocated(error)) return
     sweep%path = options%out//'/'//sweep%study%name
     associate (study => sweep%study, design => sweep%design)
+      sweep%last = study%runs
+      sweep%is_drawn = options%check .and. study%design == 'latin_hypercube' .and. study%runs > most_checked
+      if (sweep%is_drawn) study%runs = most_checked
       call new_design(study, values%values(find_key(values%keys, 'output', 'digits'))%whole, design, error)
       if (allocated(error)) return
       at = printable(path, 200)//': '
@@ -71,14 +83,15 @@ contains
       end do
       call check_values(sweep, error)
       if (allocated(error)) return
-      sweep%last = design%runs
-      if (options%last_row > 0) then
+      if (.not. sweep%is_drawn) sweep%last = design%runs
+      if (options%last_row > sweep%last) then
+        call fail(error, at//'--rows '//integer_text(options%first_row)//':'//integer_text(options%last_row)// &
+                  ': the study has '//integer_text(sweep%last)//' runs', status_case_file)
+        return
+      else if (options%last_row > 0) then
         sweep%first = options%first_row
         sweep%last = options%last_row
         sweep%path = sweep%path//'.'//integer_text(sweep%first)//'-'//integer_text(sweep%last)
-        if (sweep%last > design%runs) call fail(error, at//'--rows '//integer_text(sweep%first)//':'// &
-          integer_text(sweep%last)//': the study has '//integer_text(design%runs)//' runs', status_case_file)
-        if (allocated(error)) return
       end if
       if (study%strobe_columns == '') then
         allocate (sweep%strobe_list%id(0))
@@ -88,6 +101,7 @@ contains
         call choose_columns(case, .false., sweep%strobe_list, error)
         if (allocated(error)) error%message = at//'strobe_columns: '//error%message
       end if
+      sweep%has_strobes = size(sweep%strobe_list%id) > 0
     end associate
   end subroutine read_sweep
 
@@ -100,10 +114,10 @@ contains
       do k = 1, sweep%design%runs
         if (study%table == '') exit
         do i = 1, size(table%keys)
-          call sweep%base%put_one(i, trim(table%fields(i, k)), error)
+          call sweep%base%put_one(i, table%field(i, k), error)
           if (.not. allocated(error)) cycle
           error%message = printable(study%table, 200)//':'//integer_text(table%lines(k))//': column '//integer_text(i)//', '// &
-            trim(table%keys(i))//' = '//printable(trim(table%fields(i, k)), 48)//': '//error%message
+            trim(table%keys(i))//' = '//printable(table%field(i, k), 48)//': '//error%message
           return
         end do
       end do
@@ -119,20 +133,64 @@ contains
     end associate
   end subroutine check_values
 
-  !> Whether every run can be, as far as its values tell.
-  subroutine check_rows(sweep, error)
+  !> Whether the runs can be, as far as their values tell: all of a table and of a design of moderate size. Of a larger design
+  !> runs are drawn, and those of a grid with the outermost value of each parameter are looked at too; a large Latin hypercube is
+  !> not made, a smaller one over the same ranges stands for it. `line` says how many runs there are. The error names the first
+  !> run that would fail, with the status of a sweep in which runs fail.
+  subroutine check_rows(sweep, line, error)
     type(sweep_t), intent(inout) :: sweep
+    character(len=:), allocatable, intent(out) :: line
     type(error_t), allocatable, intent(out) :: error
-    character(len=sweep%design%text_length) :: values(size(sweep%design%keys))
-    integer :: run
-    do run = sweep%first, sweep%last
+    type(random_numbers_t) :: random
+    integer :: i, drawn, total, failed
+    total = sweep%last - sweep%first + 1
+    failed = 0
+    line = printable(sweep%study%file, 200)//': '
+    if (sweep%is_drawn) then
+      do i = 1, sweep%design%runs
+        call check_run(i)
+      end do
+    else if (total <= most_checked .or. sweep%study%table /= '') then
+      do i = sweep%first, sweep%last
+        call check_run(i)
+      end do
+    else
+      do i = 1, size(sweep%design%keys)
+        if (sweep%study%design == 'grid') &
+          call check_run(min(sweep%last, max(sweep%first, sweep%design%outermost(i))))
+      end do
+      call check_run(sweep%first)
+      call check_run(sweep%last)
+      call random%begin(0)
+      do i = 1, most_checked
+        call random%below(total, drawn)
+        call check_run(sweep%first + drawn)
+      end do
+    end if
+    if (.not. allocated(error)) line = line//'correct, '
+    line = line//integer_text(total)//' runs'
+    if (total > most_checked .and. sweep%study%table == '') &
+      line = line//' ('//integer_text(most_checked)//' of them checked)'
+    if (failed > 0) line = line//', '//integer_text(failed)//' would fail'
+
+  contains
+
+    subroutine check_run(run)
+      integer, intent(in) :: run
+      character(len=sweep%design%text_length) :: values(size(sweep%design%keys))
+      type(error_t), allocatable :: problem
       call sweep%design%get_values(run, values)
-      call sweep%base%put(values, error)
-      if (.not. allocated(error)) call sweep%base%check(error)
-      if (.not. allocated(error)) cycle
-      error%message = printable(sweep%study%file, 200)//': run '//integer_text(run)//': '//error%message
-      return
-    end do
+      call sweep%base%put(values, problem)
+      if (.not. allocated(problem)) call sweep%base%check(problem)
+      if (.not. allocated(problem)) return
+      failed = failed + 1
+      if (allocated(error)) return
+      if (sweep%is_drawn) then
+        call fail(error, printable(sweep%study%file, 200)//': some runs: '//problem%message, status_integration)
+      else
+        call fail(error, printable(sweep%study%file, 200)//': run '//integer_text(run)//': '//problem%message, status_integration)
+      end if
+    end subroutine check_run
   end subroutine check_rows
 
   !> Tells apart studies whose rows would differ.
@@ -144,11 +202,11 @@ contains
     call checksum%add(program_version//achar(10)//sweep%base%resolved()//sweep%study%identity)
     if (sweep%study%table /= '') then
       do i = 1, size(sweep%design%keys)
-        call checksum%add(sweep%design%keys(i)//',')
+        call checksum%add(trim(sweep%design%keys(i))//',')
       end do
       do run = 1, sweep%design%runs
         do i = 1, size(sweep%design%keys)
-          call checksum%add(sweep%design%table%fields(i, run)//',')
+          call checksum%add(sweep%design%table%field(i, run)//',')
         end do
       end do
     end if

@@ -106,10 +106,11 @@ contains
     call self%strobe_rows%clear()
     associate (has_clearance => self%base%case%has_clearance())
       if (allocated(error)) then
-        call write_failure(self%run_row, self%numbers, number, self%values, reason_of(error%message), has_begun, report)
+        call write_failure(self%run_row, self%numbers, number, self%values, reason_of(error%message), has_begun, &
+          self%writes_strobes, report)
       else if (self%watch%statistics%cycles == 0) then
         call write_failure(self%run_row, self%numbers, number, self%values, 'no whole revolution after settle_cycles', &
-          has_begun, report)
+          has_begun, self%writes_strobes, report)
       else
         self%is_done = .true.
         call write_run(self%run_row, self%numbers, number, self%values, self%watch, report, has_clearance)
