@@ -144,8 +144,35 @@ for signal in KILL TERM; do
   check "$signal: the same revolutions" cmp -s "$work/whole/long.cycles.csv" "$work/$signal/long.cycles.csv"
 done
 
-# power cuts: of every file only what was brought down to the disk is left; of the rows of runs all that was written
-if gcc -shared -fPIC -O1 -o "$work/power_cut.so" tests/power_cut.c; then
+# power cuts: the program ends at the call of fsync number POWER_CUT, as if it had not happened; of every file only what was
+# brought down to the disk before is left, by its number and length in POWER_CUT_LOG, but of the rows of runs all that was written
+cat >"$work/power_cut.c" <<'END'
+#define _GNU_SOURCE
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+static int calls;
+
+int fsync(int descriptor)
+{
+    struct stat file;
+    int log, status;
+    if (__sync_add_and_fetch(&calls, 1) == atoi(getenv("POWER_CUT")))
+        _exit(137);
+    status = (int)syscall(SYS_fsync, descriptor);
+    if (status == 0 && fstat(descriptor, &file) == 0 && S_ISREG(file.st_mode)) {
+        log = open(getenv("POWER_CUT_LOG"), O_WRONLY | O_CREAT | O_APPEND, 0666);
+        dprintf(log, "%lu %lld\n", (unsigned long)file.st_ino, (long long)file.st_size);
+        close(log);
+    }
+    return status;
+}
+END
+if gcc -shared -fPIC -O1 -o "$work/power_cut.so" "$work/power_cut.c"; then
   cut=1
   status=137
   while [ "$status" = 137 ]; do
