@@ -10,7 +10,7 @@ module study_runner
   use command_line, only: command_line_t
   use progress, only: rate_text
   use case_runner, only: tell_warning
-  use posix, only: make_directory, error_text, interrupted, signal_set_t, hold_interrupts, &
+  use posix, only: make_directory, synchronise_folder, error_text, interrupted, signal_set_t, hold_interrupts, &
     restore_interrupts
   use text_file, only: read_text_file
   use study_sweep, only: sweep_t, read_sweep, check_rows, study_checksum
@@ -97,7 +97,9 @@ contains
     if (.not. allocated(error)) call sweep%runs%begin(error)
     if (.not. allocated(error) .and. sweep%study%cycles) call sweep%cycles%begin(error)
     if (.not. allocated(error) .and. sweep%has_strobes) call sweep%strobes%begin(error)
-    if (.not. allocated(error)) call write_text(sweep%path//'.study.nml', label//sweep%study%resolved, error)
+    if (allocated(error)) return
+    call write_text(sweep%path//'.study.nml', label//sweep%study%resolved, error)
+    if (.not. allocated(error)) call synchronise_folder(sweep%path, status)
   end subroutine open_files
 
   subroutine prepare_files(sweep)
@@ -211,13 +213,15 @@ contains
     sweep%is_over = .true.
   end subroutine take_results
 
-  !> Write the rows that wait, a run's own row after its revolutions and strobes are on the disk: where it is, they are, also
-  !> after a power cut. When to do so next follows from the time that the disk takes.
+  !> Write the rows that wait, a run's own row after its revolutions, strobes and trace are on the disk: where it is, they are,
+  !> also after a power cut. When to do so next follows from the time that the disk takes.
   subroutine write_rows(sweep, error)
     type(sweep_t), intent(inout) :: sweep
     type(error_t), allocatable, intent(inout) :: error
     real(dp) :: began, ended
+    integer :: unimportant
     began = clock()
+    if (sweep%study%traces /= 'none') call synchronise_folder(sweep%path//'/', unimportant)
     call sweep%cycles%write(error)
     if (.not. allocated(error)) call sweep%strobes%write(error)
     if (.not. allocated(error)) call sweep%cycles%synchronise(error)

@@ -140,12 +140,13 @@ contains
     if (allocated(error) .or. allocated(self%output_error)) return
     call move_alloc(files, sink)
     call simulate(self%base%case, .false., list, sink, report, error, cycles=self%watch)
-    !$omp critical (texts)
     select type (sink)
     type is (trace_files_t)
+      call sink%synchronise()   ! before the row that says that the run is done
+      !$omp critical (texts)
       call sink%close(self%output_error)
+      !$omp end critical (texts)
     end select
-    !$omp end critical (texts)
     if (allocated(error)) self%was_interrupted = index(error%message, interrupted_text) == 1
   end subroutine run_with_trace
 
