@@ -85,6 +85,15 @@ class Merge(InDirectory):
         self.refused("overlaps")
         self.assertEqual(self.merge("1-4").count("\n"), 5)
 
+    def test_a_link_under_the_temporary_name_is_not_followed(self) -> None:
+        self.chunk(1, 2)
+        precious = self.write("precious", "precious")
+        (self.work / "out").mkdir()
+        (self.work / "out" / "x.runs.csv.partial").symlink_to(precious)
+        self.assertEqual(self.merge().count("\n"), 3)
+        self.assertEqual(precious.read_text(encoding="utf-8"), "precious")
+        self.assertFalse((self.work / "out" / "x.runs.csv").is_symlink())
+
     def test_gaps_are_refused(self) -> None:
         self.refused("No such file")
         (self.work / "chunks").mkdir()
@@ -124,6 +133,8 @@ class Merge(InDirectory):
 
     def test_count(self) -> None:
         self.assertEqual(merge_runs.count_of("a 12.nml: correct, 1200 runs\n"), 1200)
+        self.assertEqual(merge_runs.count_of("a.nml: correct, 300000 runs (100000 of them checked)\n"), 300000)
+        self.assertEqual(merge_runs.count_of("a.nml: 5 runs, 2 would fail\n"), 5)
         with self.assertRaises(merge_runs.BadChunks):
             merge_runs.count_of("nothing")
 
@@ -239,6 +250,16 @@ class Files(InDirectory):
             with self.assertRaises(MissingResult):
                 study.read_study(self.write("s.nml", text + "\n"))
 
+    def test_apostrophes_before_formulas_are_taken_away(self) -> None:
+        path = self.write(
+            "s.runs.csv", "run,case.title,status,x[m]\n1,'=1+1,done,-1\n2,''-a,done,2\n3,'a',\"'@x, y\",\n4,,done,3\n"
+        )
+        runs = Runs.read(path)
+        self.assertEqual(list(runs.table["case.title"][:3]), ["=1+1", "'-a", "'a'"])
+        self.assertTrue(pd.isna(runs["case.title"][3]))
+        self.assertEqual(runs.table["status"][2], "@x, y")
+        np.testing.assert_array_equal(runs["x"], [-1.0, 2.0, np.nan, 3.0])
+
     def test_results_with_missing_runs_are_refused(self) -> None:
         path = self.write("s.runs.csv", "run,a.b,status,x[m]\n1,1,done,1\n3,1,done,1\n")
         with self.assertRaisesRegex(MissingResult, "missing"):
@@ -328,6 +349,28 @@ class Sweeps(InDirectory):
         self.assertGreater(len(studies), 8)
         outcome = self.run_program(self.program, "sweep", "--check", *studies)
         self.assertEqual(outcome.returncode, 0, outcome.stderr)
+
+    def test_texts_come_back_as_they_were_written(self) -> None:
+        titles = ["=1+1", "-a, b", "'=x", "''@y", "plain", "it's", "+", "-5"]
+        base = TOP / "cases" / "studies" / "base" / "sim_I_driven.nml"
+        study_file = self.write("titles.nml", f"&study case = '{base}', table = 'titles.csv' /\n")
+        table = pd.DataFrame({"case.title": titles, "integrator.revolutions": 2})
+        # a table is read as results are: what is to begin with an apostrophe before a formula has one more
+        table["case.title"] = [f"'{title}" if title.startswith("'") else title for title in titles]
+        table.to_csv(self.work / "titles.csv", index=False)
+        outcome = self.run_program(self.program, "sweep", "-q", "-o", self.work, study_file)
+        self.assertEqual(outcome.returncode, 0, outcome.stderr)
+        found = Runs.read(self.work / "titles.runs.csv")
+        self.assertEqual([str(title) for title in found["case.title"]], titles)
+        again = self.work / "again.csv"  # the column of the results, as it is, is a table again
+        pd.read_csv(self.work / "titles.runs.csv", dtype=str)[["case.title", "integrator.revolutions"]].to_csv(
+            again, index=False
+        )
+        study_file = self.write("again.nml", f"&study case = '{base}', table = 'again.csv' /\n")
+        outcome = self.run_program(self.program, "sweep", "-q", "-o", self.work, study_file)
+        self.assertEqual(outcome.returncode, 0, outcome.stderr)
+        one, other = ((self.work / f"{name}.runs.csv").read_bytes() for name in ("titles", "again"))
+        self.assertEqual(one, other)
 
     @unittest.skipIf(sys.version_info < (3, 11), "Snakemake needs Python 3.11")
     def test_snakemake_writes_what_one_process_writes(self) -> None:
