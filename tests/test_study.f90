@@ -118,7 +118,7 @@ contains
     character(len=40) :: values(3)
     call design_of("&study case = 'x.nml' / &parameter key = 'a.b', from = 1, to = 100, count = 3, scale = 'log' /"//n// &
       "&parameter key = 'C.D', values = 'closed_form', as_printed / &parameter key = 'e.f', from = 5, to = 1, count = 5 /", design)
-    call design%set_whole(3)
+    design%is_whole(3) = .true.
     call check%that(design%runs == 30, 'runs of a grid')
     call check%that(all(design%keys == ['a.b', 'c.d', 'e.f']), 'keys in lower case')
     call design%get_values(1, values)
@@ -306,8 +306,8 @@ contains
     close (unit)
     call again%take_up(error)
     call check%that(again%has(6) .and. again%has(5) .and. again%has(4) .and. .not. again%has(3), 'what is taken up')
-    call check%that(again%rows_of(6) == 2 .and. again%rows_of(5) == 1 .and. again%rows_of(3) == 0, 'rows of a run')
-    call check%that(again%number_of(1, 4) == 7 .and. again%number_of(2, 4) == 0 .and. again%number_of(1, 6) == 2, 'their numbers')
+    call check%that(again%rows(6) == 2 .and. again%rows(5) == 1 .and. again%rows(3) == 0, 'rows of a run')
+    call check%that(again%numbers(1, 4) == 7 .and. again%numbers(2, 4) == 0 .and. again%numbers(1, 6) == 2, 'their numbers')
     call again%drop(4)
     call again%begin(error)
     call check%equal_text(content(path), header//'5,d,5'//n//'6,a,1'//n//'6,b,2'//n, 'what does not fit is gone')

@@ -30,14 +30,13 @@ module row_file
     type(growing_text_t) :: waiting
     integer :: first = 1                           !! run
     integer(int64), allocatable :: at(:)           !! where the rows of each run begin
-    integer, allocatable :: length(:), rows(:)     !! their bytes, and how many there are
-    integer, allocatable :: numbers(:, :)          !! (columns, runs) of the rows taken up
+    integer, allocatable :: length(:)              !! their bytes
+    integer, allocatable, public :: rows(:)        !! how many of each run were taken up
+    integer, allocatable, public :: numbers(:, :)  !! (columns, runs) in its last row taken up; 0 where there is none
   contains
     procedure :: prepare
     procedure :: take_up
     procedure :: has
-    procedure :: rows_of
-    procedure :: number_of
     procedure :: drop
     procedure :: begin
     procedure :: append
@@ -52,8 +51,8 @@ module row_file
 
 contains
 
-  !> The file at `path` of the runs first .. last. `header` is its first row. In rows taken up the whole numbers in these
-  !> columns are kept for `number_of`.
+  !> The file at `path` of the runs first .. last. `header` is its first row. Of rows taken up the whole numbers in these
+  !> columns are kept.
   subroutine prepare(self, path, header, first, last, columns)
     class(row_file_t), intent(inout) :: self
     character(len=*), intent(in) :: path, header
@@ -76,20 +75,6 @@ contains
     integer, intent(in) :: run
     has = self%length(run) > 0
   end function has
-
-  !> How many rows of a run were taken up.
-  pure integer function rows_of(self, run)
-    class(row_file_t), intent(in) :: self
-    integer, intent(in) :: run
-    rows_of = self%rows(run)
-  end function rows_of
-
-  !> The number in the i-th of the columns kept, in the last row of a run taken up; 0 where there was none.
-  pure integer function number_of(self, i, run)
-    class(row_file_t), intent(in) :: self
-    integer, intent(in) :: i, run
-    number_of = self%numbers(i, run)
-  end function number_of
 
   !> Leave out the rows of a run that were taken up.
   pure subroutine drop(self, run)

@@ -74,18 +74,8 @@ contains
     class(row_text_t), intent(inout) :: self
     integer, intent(in) :: number
     character(len=11) :: digits
-    integer :: rest, place
-    place = len(digits)
-    rest = abs(number)
-    do   ! a formatted write takes 20 times as long
-      digits(place:place) = achar(iachar('0') + mod(rest, 10))
-      rest = rest/10
-      place = place - 1
-      if (rest == 0) exit
-    end do
-    if (number < 0) digits(place:place) = '-'
-    if (number < 0) place = place - 1
-    call self%add_text(digits(place + 1:))
+    write (digits, '(i0)') number
+    call self%add_text(digits)
   end subroutine add_whole
 
   pure subroutine add_number(self, numbers, value)

@@ -21,7 +21,8 @@ module study_case
     type(case_t) :: case                             !! the case of the present run
     type(case_values_t), private :: values
     integer, allocatable, private :: places(:)       !! of the parameters among the keys
-    logical, allocatable, private :: is_number(:)    !! a parameter is one number
+    logical, allocatable :: is_number(:)             !! a parameter is one number, real or whole
+    logical, allocatable :: is_whole(:)              !! it is one whole number
     logical, private :: varies_words = .false.       !! a parameter is a word: it may name a law, which has keys of its own
     type(error_t), allocatable, private :: wrong     !! parameters of the present run's laws that do not fit together
   contains
@@ -30,8 +31,6 @@ module study_case
     procedure :: put_one
     procedure :: check
     procedure :: resolved
-    procedure :: takes_numbers
-    procedure :: takes_whole_numbers
   end type study_case_t
 
 contains
@@ -49,7 +48,7 @@ contains
     self%values = values
     call complete_case(self%values, path, self%case, error)
     if (allocated(error)) return
-    allocate (self%places(size(keys)), self%is_number(size(keys)))
+    allocate (self%places(size(keys)), self%is_number(size(keys)), self%is_whole(size(keys)))
     self%values%values%is_override = .false.   ! to the parameters, all else is the file
     do i = 1, size(keys)
       key = trim(keys(i))
@@ -59,6 +58,7 @@ contains
       associate (schema => values%keys(self%places(i)))
         self%varies_words = self%varies_words .or. schema%kind == word_kind
         self%is_number(i) = schema%kind <= integer_kind .and. schema%count == 1
+        self%is_whole(i) = self%is_number(i) .and. schema%kind == integer_kind
         self%values%is_present(find_group(values%groups, trim(schema%group))) = .true.
         self%values%values(self%places(i))%given(1) = .true.
         self%values%values(self%places(i))%is_override = .true.
@@ -81,20 +81,6 @@ contains
       call load_case(self%values, self%case, self%wrong, trim(self%values%keys(self%places(i))%group))
     end do
   end subroutine take_families
-
-  !> Whether parameter i is one number, real or whole.
-  pure logical function takes_numbers(self, i)
-    class(study_case_t), intent(in) :: self
-    integer, intent(in) :: i
-    takes_numbers = self%is_number(i)
-  end function takes_numbers
-
-  !> Whether parameter i is one whole number.
-  pure logical function takes_whole_numbers(self, i)
-    class(study_case_t), intent(in) :: self
-    integer, intent(in) :: i
-    takes_whole_numbers = self%is_number(i) .and. self%values%keys(self%places(i))%kind == integer_kind
-  end function takes_whole_numbers
 
   !> Put the values of a run in, without any check of ranges.
   subroutine put(self, texts, error)

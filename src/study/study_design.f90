@@ -20,13 +20,13 @@ module study_design
   type :: axis_t
     type(parameter_t) :: range
     integer :: levels = 0             !! values on a grid
-    logical :: is_whole = .false.     !! values are whole numbers
   end type axis_t
 
   type :: study_design_t
     integer :: runs = 0
     integer :: text_length = 1                          !! of the longest value
     character(len=:), allocatable :: keys(:)            !! GROUP.KEY of each parameter
+    logical, allocatable :: is_whole(:)                 !! its ranges are of whole numbers; to be set before values are asked for
     type(study_table_t) :: table
     type(axis_t), allocatable, private :: axes(:)
     logical, private :: has_table = .false., has_sobol = .false.
@@ -35,8 +35,6 @@ module study_design
     type(number_writer_t), private :: numbers
   contains
     procedure :: get_values
-    procedure :: set_whole
-    procedure :: is_range
     procedure :: outermost
   end type study_design_t
 
@@ -64,6 +62,7 @@ contains
     longest = maxval([(len(study%parameters(i)%key), i=1, size(study%parameters))])
     allocate (character(len=longest) :: design%keys(size(study%parameters)))
     allocate (design%axes(size(study%parameters)))
+    allocate (design%is_whole(size(study%parameters)), source=.false.)
     design%text_length = longest_number
     runs = 1
     do i = 1, size(design%axes)
@@ -136,21 +135,6 @@ contains
     end do
   end subroutine begin_sobol
 
-  !> Parameter i takes whole numbers.
-  subroutine set_whole(self, i)
-    class(study_design_t), intent(inout) :: self
-    integer, intent(in) :: i
-    if (.not. self%has_table) self%axes(i)%is_whole = .true.
-  end subroutine set_whole
-
-  !> Whether parameter i is varied over a range of numbers.
-  pure logical function is_range(self, i)
-    class(study_design_t), intent(in) :: self
-    integer, intent(in) :: i
-    is_range = .not. self%has_table
-    if (is_range) is_range = size(self%axes(i)%range%list) == 0
-  end function is_range
-
   !> The run of a grid in which parameter i has its last value and all others have their first.
   pure integer function outermost(self, i)
     class(study_design_t), intent(in) :: self
@@ -193,30 +177,29 @@ contains
         if (size(axis%range%list) > 0) then
           values(i) = axis%range%list(level + 1)%text
         else
-          call put_number(self%numbers, axis, fraction, values(i))
+          call put_number(self%numbers, axis%range, self%is_whole(i), fraction, values(i))
         end if
       end associate
     end do
   end subroutine get_values
 
   !> The number at a fraction of a range.
-  pure subroutine put_number(numbers, axis, fraction, text)
+  pure subroutine put_number(numbers, p, is_whole, fraction, text)
     type(number_writer_t), intent(in) :: numbers
-    type(axis_t), intent(in) :: axis
+    type(parameter_t), intent(in) :: p
+    logical, intent(in) :: is_whole
     real(dp), intent(in) :: fraction
     character(len=*), intent(out) :: text
     real(dp) :: number
     integer :: used
-    associate (p => axis%range)
-      if (p%is_log) then
-        number = exp((1 - fraction)*log(p%from) + fraction*log(p%to))
-      else
-        number = (1 - fraction)*p%from + fraction*p%to
-      end if
-    end associate
+    if (p%is_log) then
+      number = exp((1 - fraction)*log(p%from) + fraction*log(p%to))
+    else
+      number = (1 - fraction)*p%from + fraction*p%to
+    end if
     text = ''
     used = 0
-    if (axis%is_whole) then
+    if (is_whole) then
       write (text, '(i0)') nint(number, int64)
     else
       call numbers%append(text, used, number)

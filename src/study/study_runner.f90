@@ -128,10 +128,10 @@ contains
     do run = sweep%first, sweep%last
       fits = sweep%runs%has(run)
       if (fits) then
-        cycles = sweep%runs%number_of(1, run)   ! none of a run that failed
-        strobes = sweep%runs%number_of(2, run)
-        if (sweep%study%cycles) fits = sweep%cycles%rows_of(run) == cycles
-        if (sweep%has_strobes) fits = fits .and. sweep%strobes%rows_of(run) == strobes
+        cycles = sweep%runs%numbers(1, run)   ! none of a run that failed
+        strobes = sweep%runs%numbers(2, run)
+        if (sweep%study%cycles) fits = sweep%cycles%rows(run) == cycles
+        if (sweep%has_strobes) fits = fits .and. sweep%strobes%rows(run) == strobes
         if (fits .and. cycles > 0 .and. sweep%study%traces == 'all') &
           inquire (file=sweep%path//'/'//integer_text(run)//'.csv', exist=fits)
         if (.not. fits) sweep%incomplete = sweep%incomplete + 1

@@ -75,9 +75,9 @@ contains
       if (study%table /= '') at = printable(study%table, 200)//':1: '
       call sweep%base%prepare(values, study%case, design%keys, at, error)
       if (allocated(error)) return
-      do i = 1, size(design%keys)
-        if (sweep%base%takes_whole_numbers(i)) call design%set_whole(i)
-        if (.not. design%is_range(i) .or. sweep%base%takes_numbers(i)) cycle
+      design%is_whole = sweep%base%is_whole
+      do i = 1, size(study%parameters)
+        if (size(study%parameters(i)%list) > 0 .or. sweep%base%is_number(i)) cycle
         call fail(error, at//'&parameter key = '''//trim(design%keys(i))//''': has no range; give values', status_case_file)
         return
       end do
@@ -101,7 +101,7 @@ contains
         call choose_columns(case, .false., sweep%strobe_list, error)
         if (allocated(error)) error%message = at//'strobe_columns: '//error%message
       end if
-      sweep%has_strobes = size(sweep%strobe_list%id) > 0
+      sweep%has_strobes = study%strobe_columns /= ''
     end associate
   end subroutine read_sweep
 
