@@ -66,7 +66,7 @@ contains
     if (options%check) return
     jobs = options%jobs
     if (jobs == 0) jobs = omp_get_num_procs()
-    jobs = min(jobs, 2*size(cases))
+    jobs = min(jobs, size(cases) + count(cases%has_twin))
     !$omp parallel do schedule(dynamic) num_threads(jobs) reduction(max: status) private(is_last)
     do run = 1, 2*size(cases)   ! each case, then its twin
       call cases((run + 1)/2)%go(mod(run, 2) == 0, options, is_last)

@@ -7,7 +7,7 @@ module test_checkpoint
   use checksum, only: checksum_t
   use file_mark, only: file_mark_t
   use checkpoint, only: checkpoint_t
-  use run_identity, only: identity_of, compare_cases
+  use run_identity, only: identity_of, twin_identity, compare_cases
   use text_file, only: read_whole
   use result_file, only: result_file_t
   use posix, only: make_directory, remove_directory, remove_file
@@ -192,13 +192,13 @@ contains
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: case = '&joint'//n//'  clearance = 1'//n//'/'//n//'&integrator'//n
     character(len=16) :: identity
-    identity = identity_of(case//'  max_steps = 0'//n//'/'//n, .false.)
+    identity = identity_of(case//'  max_steps = 0'//n//'/'//n)
     call check%that(verify(identity, '0123456789ABCDEF') == 0, 'an identity is 16 digits')
-    call check%equal_text(identity_of(case//'  max_steps = 700'//n//'/'//n, .false.), identity, 'a limit does not count')
-    call check%equal_text(identity_of(case//'/'//n, .false.), identity, 'also where it is left out')
-    call check%that(identity_of(case//'  max_step = 0'//n//'/'//n, .false.) /= identity, 'another key does')
-    call check%that(identity_of(case//'/'//n, .true.) /= identity, 'the twin is another run')
-    call check%that(identity_of('&joint'//n//'  clearance = 2'//n//'/'//n//'&integrator'//n//'/'//n, .false.) /= identity, &
+    call check%equal_text(identity_of(case//'  max_steps = 700'//n//'/'//n), identity, 'a limit does not count')
+    call check%equal_text(identity_of(case//'/'//n), identity, 'also where it is left out')
+    call check%that(identity_of(case//'  max_step = 0'//n//'/'//n) /= identity, 'another key does')
+    call check%that(twin_identity(identity) /= identity, 'the twin is another run')
+    call check%that(identity_of('&joint'//n//'  clearance = 2'//n//'/'//n//'&integrator'//n//'/'//n) /= identity, &
       'another value')
   end subroutine test_identity
 

@@ -10,7 +10,7 @@ module case_run
   use trace_files, only: trace_files_t
   use result_file, only: result_file_t, remove_result
   use continuation, only: continuation_t
-  use run_identity, only: identity_of
+  use run_identity, only: identity_length
   use archive, only: archive_t
   use summary, only: summary_table, summary_line
   use stability_advice, only: advice
@@ -50,10 +50,11 @@ module case_run
 contains
 
   !> What is to be run, and where its results go.
-  subroutine prepare(self, case, case_text, is_twin, list, base, checkpoint_interval, show_progress, quiet)
+  subroutine prepare(self, case, case_text, identity, is_twin, list, base, checkpoint_interval, show_progress, quiet)
     class(case_run_t), intent(inout) :: self
     type(case_t), intent(in) :: case
     character(len=*), intent(in) :: case_text            !! the resolved case
+    character(len=identity_length), intent(in) :: identity
     logical, intent(in) :: is_twin
     type(column_list_t), intent(in) :: list
     character(len=*), intent(in) :: base
@@ -69,9 +70,9 @@ contains
     self%notice = ''
     associate (start => self%start)
       start%interval = checkpoint_interval
-      start%identity = identity_of(case_text, is_twin)
+      start%identity = identity
       start%checkpoint%path = base//'.checkpoint'
-      start%checkpoint%identity = start%identity
+      start%checkpoint%identity = identity
       start%checkpoint%case_text = case_text
     end associate
   end subroutine prepare

@@ -13,6 +13,7 @@ module case_runner
   use scene_builder, only: build_scene
   use case_run, only: case_run_t, name_file
   use result_file, only: result_file_t
+  use run_identity, only: identity_length, identity_of, twin_identity
   use case_lock, only: case_lock_t
   use posix, only: make_directory, synchronise_folder, file_length, interrupted, error_text
   use progress, only: tell
@@ -26,7 +27,7 @@ module case_runner
     type(error_t), allocatable :: error               !! what is wrong with the case, or with the place for its results
     type(case_run_t) :: run, twin
     character(len=:), allocatable, private :: path    !! of the case
-    logical, private :: has_twin = .false.            !! the twin is to run too
+    logical :: has_twin = .false.                     !! the twin is to run too
     logical, private :: has_place = .false.           !! for the results, or an error
     integer, private :: to_come = 2                   !! runs that have not ended
     type(case_lock_t), private :: lock
@@ -54,6 +55,7 @@ contains
     type(column_list_t) :: list, ideal_list
     class(scene_t), allocatable :: scene
     character(len=:), allocatable :: base, text
+    character(len=identity_length) :: identity
 
     self%path = path
     if (interrupted()) then
@@ -74,9 +76,11 @@ contains
     base = options%out//'/'//case%name
     text = resolved_text(values)
     self%has_twin = case%output%ideal_twin .and. case%has_clearance()
-    call self%run%prepare(case, text, .false., list, base, options%checkpoint_interval, show_progress, options%quiet)
-    call self%twin%prepare(case, text, .true., ideal_list, base//'.ideal', options%checkpoint_interval, &
-                           show_progress .and. options%jobs == 1, options%quiet)
+    identity = identity_of(text)
+    call self%run%prepare(case, text, identity, .false., list, base, options%checkpoint_interval, show_progress, options%quiet)
+    self%twin%base = base//'.ideal'
+    if (self%has_twin) call self%twin%prepare(case, text, twin_identity(identity), .true., ideal_list, self%twin%base, &
+      options%checkpoint_interval, show_progress .and. options%jobs == 1, options%quiet)
   end subroutine prepare
 
   !> Tell what in a case is right but has no effect.
