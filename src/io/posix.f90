@@ -1,11 +1,15 @@
 !> The few calls of the C library that Fortran has no words for, as thin bindings for Linux. Numbers of errors are
 !> returned, never kept: two threads do not meet here.
 module posix
-  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_intptr_t, c_long, c_short, c_null_char, c_ptr, &
+  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_short, c_null_char, c_ptr, &
     c_size_t, c_loc, c_f_pointer, c_associated
+  use posix_calls, only: file_status_t, poll_t, c_open, c_read, c_pread, c_realpath, c_write, c_fsync, c_ftruncate, c_flock, &
+    c_fallocate, c_statx, c_poll, c_close, c_rename, c_unlink, c_rmdir, c_mkdir, c_isatty, c_errno_location, c_strerror_r, &
+    c_exit
+  use posix_signals, only: signal_set_t, hold_interrupts, restore_interrupts, interrupted, ignore_write_signals
   implicit none
   private
-  public :: open_for_reading, open_standard_input, hold_file, open_for_writing, open_for_appending, open_to_lock, lock_file, &
+  public :: open_for_reading, open_standard_input, open_for_writing, open_for_appending, open_to_lock, lock_file, &
     is_file, file_length, absolute_path, read_at, read_bytes, write_bytes, truncate_file, reserve_file, synchronise_file, &
     synchronise_folder, close_file, rename_file, remove_file, remove_directory, make_directory, is_terminal, wait_for_input, &
     error_text, signal_set_t, hold_interrupts, restore_interrupts, interrupted, fill_standard_descriptors, &
@@ -21,189 +25,13 @@ module posix
 
   !> Flags of open and statx, as far as they are the same on every processor.
   integer(c_int), parameter :: read_only = 0, write_only = 1, read_and_write = 2, o_creat = 64, o_excl = 128, o_append = 1024, &
-    o_nonblock = 2048, o_cloexec = 524288, o_path = 2097152
+    o_nonblock = 2048, o_cloexec = 524288
   integer(c_int), parameter :: at_working_folder = -100, at_link_itself = 256, at_empty_path = 4096, basic_status = 2047
 
   !> Kinds of files, as in their mode.
   integer, parameter :: kind_mask = 61440, kind_folder = 16384, kind_regular = 32768, kind_link = 40960
   integer(c_int), parameter :: lock_exclusive = 2, lock_without_waiting = 4
   integer(c_int), parameter :: file_mode = 438, folder_mode = 511   !! rw-rw-rw-, rwxrwxrwx, before the umask
-  integer(c_int), parameter :: signal_hangup = 1, signal_interrupt = 2, signal_pipe = 13, signal_terminate = 15, &
-    signal_file_size = 25
-  integer(c_int), parameter :: held(3) = [signal_hangup, signal_interrupt, signal_terminate]
-  integer(c_int), parameter :: signal_block = 0, signal_set_mask = 2
-  integer(c_intptr_t), parameter :: ignore_handler = 1, error_handler = -1
-
-  !> Room for a sigset_t of Linux, 128 bytes.
-  type, bind(c) :: signal_set_t
-    integer(c_long) :: words(16) = 0
-  end type signal_set_t
-
-  !> The struct statx of Linux, the same on every processor.
-  type, bind(c) :: file_status_t
-    integer(c_int) :: mask = 0, block_size = 0
-    integer(c_long) :: attributes = 0
-    integer(c_int) :: links = 0, user = 0, group = 0
-    integer(c_short) :: mode = 0, spare = 0
-    integer(c_long) :: number = 0, length = 0, blocks = 0, known_attributes = 0, times(8) = 0
-    integer(c_int) :: special(2) = 0, device(2) = 0
-    integer(c_long) :: rest(14) = 0
-  end type file_status_t
-
-  !> The struct pollfd of C.
-  type, bind(c) :: poll_t
-    integer(c_int) :: descriptor
-    integer(c_short) :: wanted, found
-  end type poll_t
-
-  interface
-    function c_open(path, flags, mode) bind(c, name='open') result(descriptor)
-      import :: c_char, c_int
-      character(kind=c_char), intent(in) :: path(*)
-      integer(c_int), value :: flags, mode
-      integer(c_int) :: descriptor
-    end function c_open
-    function c_read(descriptor, buffer, count) bind(c, name='read') result(done)
-      import :: c_int, c_ptr, c_size_t, c_long
-      integer(c_int), value :: descriptor
-      type(c_ptr), value :: buffer
-      integer(c_size_t), value :: count
-      integer(c_long) :: done
-    end function c_read
-    function c_pread(descriptor, buffer, count, offset) bind(c, name='pread') result(done)
-      import :: c_int, c_ptr, c_size_t, c_long
-      integer(c_int), value :: descriptor
-      type(c_ptr), value :: buffer
-      integer(c_size_t), value :: count
-      integer(c_long), value :: offset
-      integer(c_long) :: done
-    end function c_pread
-    function c_realpath(path, resolved) bind(c, name='realpath') result(answer)
-      import :: c_char, c_ptr
-      character(kind=c_char), intent(in) :: path(*)
-      character(kind=c_char), intent(out) :: resolved(*)
-      type(c_ptr) :: answer
-    end function c_realpath
-    function c_write(descriptor, buffer, count) bind(c, name='write') result(done)
-      import :: c_int, c_ptr, c_size_t, c_long
-      integer(c_int), value :: descriptor
-      type(c_ptr), value :: buffer
-      integer(c_size_t), value :: count
-      integer(c_long) :: done
-    end function c_write
-    function c_fsync(descriptor) bind(c, name='fsync') result(status)
-      import :: c_int
-      integer(c_int), value :: descriptor
-      integer(c_int) :: status
-    end function c_fsync
-    function c_ftruncate(descriptor, length) bind(c, name='ftruncate') result(status)
-      import :: c_int, c_long
-      integer(c_int), value :: descriptor
-      integer(c_long), value :: length
-      integer(c_int) :: status
-    end function c_ftruncate
-    function c_flock(descriptor, operation) bind(c, name='flock') result(status)
-      import :: c_int
-      integer(c_int), value :: descriptor, operation
-      integer(c_int) :: status
-    end function c_flock
-    function c_fallocate(descriptor, mode, offset, length) bind(c, name='fallocate') result(status)
-      import :: c_int, c_long
-      integer(c_int), value :: descriptor, mode
-      integer(c_long), value :: offset, length
-      integer(c_int) :: status
-    end function c_fallocate
-    function c_statx(folder, path, flags, mask, file) bind(c, name='statx') result(status)
-      import :: c_char, c_int, file_status_t
-      integer(c_int), value :: folder, flags, mask
-      character(kind=c_char), intent(in) :: path(*)
-      type(file_status_t), intent(inout) :: file
-      integer(c_int) :: status
-    end function c_statx
-    function c_poll(files, number, milliseconds) bind(c, name='poll') result(ready)
-      import :: c_int, c_long, poll_t
-      type(poll_t), intent(inout) :: files
-      integer(c_long), value :: number
-      integer(c_int), value :: milliseconds
-      integer(c_int) :: ready
-    end function c_poll
-    function c_close(descriptor) bind(c, name='close') result(status)
-      import :: c_int
-      integer(c_int), value :: descriptor
-      integer(c_int) :: status
-    end function c_close
-    function c_rename(from, to) bind(c, name='rename') result(status)
-      import :: c_char, c_int
-      character(kind=c_char), intent(in) :: from(*), to(*)
-      integer(c_int) :: status
-    end function c_rename
-    function c_unlink(path) bind(c, name='unlink') result(status)
-      import :: c_char, c_int
-      character(kind=c_char), intent(in) :: path(*)
-      integer(c_int) :: status
-    end function c_unlink
-    function c_rmdir(path) bind(c, name='rmdir') result(status)
-      import :: c_char, c_int
-      character(kind=c_char), intent(in) :: path(*)
-      integer(c_int) :: status
-    end function c_rmdir
-    function c_mkdir(path, mode) bind(c, name='mkdir') result(status)
-      import :: c_char, c_int
-      character(kind=c_char), intent(in) :: path(*)
-      integer(c_int), value :: mode
-      integer(c_int) :: status
-    end function c_mkdir
-    function c_isatty(descriptor) bind(c, name='isatty') result(answer)
-      import :: c_int
-      integer(c_int), value :: descriptor
-      integer(c_int) :: answer
-    end function c_isatty
-    function c_errno_location() bind(c, name='__errno_location') result(location)
-      import :: c_ptr
-      type(c_ptr) :: location
-    end function c_errno_location
-    function c_strerror_r(number, buffer, length) bind(c, name='__xpg_strerror_r') result(status)
-      import :: c_int, c_char, c_size_t
-      integer(c_int), value :: number
-      character(kind=c_char), intent(out) :: buffer(*)
-      integer(c_size_t), value :: length
-      integer(c_int) :: status
-    end function c_strerror_r
-    function c_sigaddset(set, number) bind(c, name='sigaddset') result(status)
-      import :: signal_set_t, c_int
-      type(signal_set_t), intent(inout) :: set
-      integer(c_int), value :: number
-      integer(c_int) :: status
-    end function c_sigaddset
-    function c_sigismember(set, number) bind(c, name='sigismember') result(answer)
-      import :: signal_set_t, c_int
-      type(signal_set_t), intent(in) :: set
-      integer(c_int), value :: number
-      integer(c_int) :: answer
-    end function c_sigismember
-    function c_sigpending(set) bind(c, name='sigpending') result(status)
-      import :: signal_set_t, c_int
-      type(signal_set_t), intent(inout) :: set
-      integer(c_int) :: status
-    end function c_sigpending
-    function c_sigmask(how, set, old) bind(c, name='pthread_sigmask') result(status)
-      import :: signal_set_t, c_int
-      integer(c_int), value :: how
-      type(signal_set_t), intent(in) :: set
-      type(signal_set_t), intent(inout) :: old
-      integer(c_int) :: status
-    end function c_sigmask
-    function c_signal(number, handler) bind(c, name='signal') result(old)
-      import :: c_int, c_intptr_t
-      integer(c_int), value :: number
-      integer(c_intptr_t), value :: handler
-      integer(c_intptr_t) :: old
-    end function c_signal
-    subroutine c_exit(status) bind(c, name='exit')
-      import :: c_int
-      integer(c_int), value :: status
-    end subroutine c_exit
-  end interface
 
 contains
 
@@ -220,14 +48,6 @@ contains
     descriptor = c_open('/dev/stdin'//c_null_char, ior(read_only, o_cloexec), 0_c_int)
     status = outcome(descriptor)
   end subroutine open_standard_input
-
-  !> Hold on to a file, whatever it is, without opening it: it goes on to be there without a name too until it is closed.
-  !> `descriptor` is below 0 where there is none.
-  subroutine hold_file(path, descriptor)
-    character(len=*), intent(in) :: path
-    integer, intent(out) :: descriptor
-    descriptor = c_open(path//c_null_char, ior(o_path, o_cloexec), 0_c_int)
-  end subroutine hold_file
 
   !> Create a file to be written, always a new one: what had its name is removed before. (To follow a link that stands there would
   !> let who can write into the folder have any file of the user overwritten.) `status` is 0 or the error number.
@@ -487,45 +307,6 @@ contains
     if (text == '') text = 'unknown error'
   end function error_text
 
-  !> From here on SIGINT, SIGTERM and SIGHUP wait to be asked for by `interrupted` instead of ending the program;
-  !> one that the program was started to ignore stays ignored. Call it before any thread is started. `before` takes what was
-  !> held before, for `restore_interrupts`.
-  subroutine hold_interrupts(before)
-    type(signal_set_t), intent(out), optional :: before
-    type(signal_set_t) :: set, old
-    integer(c_intptr_t) :: handler, unused
-    integer(c_int) :: status
-    integer :: i
-    do i = 1, size(held)
-      handler = c_signal(held(i), ignore_handler)
-      if (handler == ignore_handler) cycle
-      if (handler /= error_handler) unused = c_signal(held(i), handler)
-      status = c_sigaddset(set, held(i))
-    end do
-    status = c_sigmask(signal_block, set, old)
-    if (present(before)) before = old
-  end subroutine hold_interrupts
-
-  !> Let signals through to this thread as before they were held. One that has come in meanwhile ends the program here.
-  subroutine restore_interrupts(before)
-    type(signal_set_t), intent(in) :: before
-    type(signal_set_t) :: unused
-    integer(c_int) :: status
-    status = c_sigmask(signal_set_mask, before, unused)
-  end subroutine restore_interrupts
-
-  !> Whether a held signal has come in.
-  function interrupted() result(answer)
-    logical :: answer
-    type(signal_set_t) :: pending
-    integer :: i
-    answer = .false.
-    if (c_sigpending(pending) /= 0) return
-    do i = 1, size(held)
-      if (c_sigismember(pending, held(i)) == 1) answer = .true.
-    end do
-  end function interrupted
-
   !> Where the program was started without standard input, output or error, nothing takes their places: else the first
   !> result file would, and what goes to standard output would go into it.
   subroutine fill_standard_descriptors()
@@ -538,14 +319,6 @@ contains
     end do
     if (descriptor > last_standard) unused = c_close(int(descriptor, c_int))
   end subroutine fill_standard_descriptors
-
-  !> Writing to a reader that has gone, or past the largest file allowed, then gives an error number instead of ending
-  !> the program.
-  subroutine ignore_write_signals()
-    integer(c_intptr_t) :: unused
-    unused = c_signal(signal_pipe, ignore_handler)
-    unused = c_signal(signal_file_size, ignore_handler)
-  end subroutine ignore_write_signals
 
   !> End the program with an exit status, without a word.
   subroutine quit(status)

@@ -5,7 +5,7 @@ module result_file
   use, intrinsic :: iso_c_binding, only: c_long
   use errors, only: error_t, fail, status_output
   use text_tools, only: printable
-  use posix, only: hold_file, open_for_writing, open_for_appending, write_bytes, truncate_file, reserve_file, &
+  use posix, only: open_for_writing, open_for_appending, write_bytes, truncate_file, reserve_file, &
     synchronise_file, close_file, rename_file, remove_file, error_text, error_interrupted, &
     error_no_entry, error_is_directory
   implicit none
@@ -166,7 +166,7 @@ contains
   subroutine conclude(self, whole_only)
     class(result_file_t), intent(inout) :: self
     logical, intent(in), optional :: whole_only
-    integer :: status, ignored, earlier
+    integer :: status, ignored
     logical :: needs_all
     needs_all = .false.
     if (present(whole_only)) needs_all = whole_only
@@ -176,9 +176,7 @@ contains
     self%descriptor = -1
     if (self%status == 0 .and. status /= error_interrupted) self%status = status
     if (self%status == 0 .or. self%written > 0 .and. .not. needs_all) then
-      call hold_file(self%path, earlier)   ! to let go what it holds takes long, and would stop all others in the folder
       call rename_file(self%path//'.part', self%path, status)
-      if (earlier >= 0) call close_file(earlier, ignored)
       if (self%status == 0) self%status = status
       if (status /= 0 .and. needs_all) call remove_file(self%path//'.part', ignored)
     else
@@ -234,11 +232,9 @@ contains
     character(len=*), intent(in) :: path
     logical, intent(inout) :: was_there
     integer, intent(out) :: status
-    integer :: ignored, earlier
+    integer :: ignored
     call remove_file(path//'.part', ignored)
-    call hold_file(path, earlier)
     call remove_file(path, status)
-    if (earlier >= 0) call close_file(earlier, ignored)
     if (status == 0) was_there = .true.
     if (status == error_no_entry .or. status == error_is_directory) status = 0
   end subroutine remove_result

@@ -1,0 +1,100 @@
+!> Signals of the system, as thin bindings for Linux: those that end a program wait until they are asked for.
+module posix_signals
+  use, intrinsic :: iso_c_binding, only: c_int, c_intptr_t, c_long
+  implicit none
+  private
+  public :: signal_set_t, hold_interrupts, restore_interrupts, interrupted, ignore_write_signals
+
+  integer(c_int), parameter :: signal_hangup = 1, signal_interrupt = 2, signal_pipe = 13, signal_terminate = 15, &
+    signal_file_size = 25
+  integer(c_int), parameter :: held(3) = [signal_hangup, signal_interrupt, signal_terminate]
+  integer(c_int), parameter :: signal_block = 0, signal_set_mask = 2
+  integer(c_intptr_t), parameter :: ignore_handler = 1, error_handler = -1
+
+  !> Room for a sigset_t of Linux, 128 bytes.
+  type, bind(c) :: signal_set_t
+    integer(c_long) :: words(16) = 0
+  end type signal_set_t
+
+  interface
+    function c_sigaddset(set, number) bind(c, name='sigaddset') result(status)
+      import :: signal_set_t, c_int
+      type(signal_set_t), intent(inout) :: set
+      integer(c_int), value :: number
+      integer(c_int) :: status
+    end function c_sigaddset
+    function c_sigismember(set, number) bind(c, name='sigismember') result(answer)
+      import :: signal_set_t, c_int
+      type(signal_set_t), intent(in) :: set
+      integer(c_int), value :: number
+      integer(c_int) :: answer
+    end function c_sigismember
+    function c_sigpending(set) bind(c, name='sigpending') result(status)
+      import :: signal_set_t, c_int
+      type(signal_set_t), intent(inout) :: set
+      integer(c_int) :: status
+    end function c_sigpending
+    function c_sigmask(how, set, old) bind(c, name='pthread_sigmask') result(status)
+      import :: signal_set_t, c_int
+      integer(c_int), value :: how
+      type(signal_set_t), intent(in) :: set
+      type(signal_set_t), intent(inout) :: old
+      integer(c_int) :: status
+    end function c_sigmask
+    function c_signal(number, handler) bind(c, name='signal') result(old)
+      import :: c_int, c_intptr_t
+      integer(c_int), value :: number
+      integer(c_intptr_t), value :: handler
+      integer(c_intptr_t) :: old
+    end function c_signal
+  end interface
+
+contains
+
+  !> From here on SIGINT, SIGTERM and SIGHUP wait to be asked for by `interrupted` instead of ending the program;
+  !> one that the program was started to ignore stays ignored. Call it before any thread is started. `before` takes what was
+  !> held before, for `restore_interrupts`.
+  subroutine hold_interrupts(before)
+    type(signal_set_t), intent(out), optional :: before
+    type(signal_set_t) :: set, old
+    integer(c_intptr_t) :: handler, unused
+    integer(c_int) :: status
+    integer :: i
+    do i = 1, size(held)
+      handler = c_signal(held(i), ignore_handler)
+      if (handler == ignore_handler) cycle
+      if (handler /= error_handler) unused = c_signal(held(i), handler)
+      status = c_sigaddset(set, held(i))
+    end do
+    status = c_sigmask(signal_block, set, old)
+    if (present(before)) before = old
+  end subroutine hold_interrupts
+
+  !> Let signals through to this thread as before they were held. One that has come in meanwhile ends the program here.
+  subroutine restore_interrupts(before)
+    type(signal_set_t), intent(in) :: before
+    type(signal_set_t) :: unused
+    integer(c_int) :: status
+    status = c_sigmask(signal_set_mask, before, unused)
+  end subroutine restore_interrupts
+
+  !> Whether a held signal has come in.
+  function interrupted() result(answer)
+    logical :: answer
+    type(signal_set_t) :: pending
+    integer :: i
+    answer = .false.
+    if (c_sigpending(pending) /= 0) return
+    do i = 1, size(held)
+      if (c_sigismember(pending, held(i)) == 1) answer = .true.
+    end do
+  end function interrupted
+
+  !> Writing to a reader that has gone, or past the largest file allowed, then gives an error number instead of ending
+  !> the program.
+  subroutine ignore_write_signals()
+    integer(c_intptr_t) :: unused
+    unused = c_signal(signal_pipe, ignore_handler)
+    unused = c_signal(signal_file_size, ignore_handler)
+  end subroutine ignore_write_signals
+end module posix_signals
