@@ -12,6 +12,7 @@ program gudgeon
   use progress, only: progress_wanted, tell
   use summary, only: build_advice
   use text_tools, only: printable
+  use run_identity, only: identity_length, program_identity
   use posix, only: fill_standard_descriptors, signal_set_t, hold_interrupts, interrupted, ignore_write_signals, write_bytes, &
     error_text, error_interrupted, error_broken_pipe, quit
   use version, only: program_version
@@ -49,6 +50,7 @@ contains
     type(command_line_t), intent(in) :: options
     integer, intent(out) :: status
     type(case_job_t), allocatable :: cases(:)
+    character(len=identity_length) :: program
     logical :: show_progress, is_last
     character(len=:), allocatable :: advice
     integer(int64) :: began, ended, rate
@@ -58,9 +60,10 @@ contains
     call system_clock(began, rate)
     status = status_ok
     show_progress = progress_wanted(options%progress) .and. .not. options%quiet
+    program = program_identity()
     allocate (cases(size(options%cases)))
     do i = 1, size(cases)
-      call cases(i)%prepare(trim(options%cases(i)), options, show_progress)
+      call cases(i)%prepare(trim(options%cases(i)), options, program, show_progress)
       if (options%check) call say_outcome(cases(i), options, status)
     end do
     if (options%check) return

@@ -7,7 +7,7 @@ module test_checkpoint
   use checksum, only: checksum_t
   use file_mark, only: file_mark_t
   use checkpoint, only: checkpoint_t
-  use run_identity, only: identity_of, twin_identity, compare_cases
+  use run_identity, only: program_identity, identity_of, twin_identity, compare_cases
   use text_file, only: read_whole
   use result_file, only: result_file_t
   use posix, only: make_directory, remove_directory, remove_file
@@ -191,15 +191,19 @@ contains
   subroutine test_identity(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: case = '&joint'//n//'  clearance = 1'//n//'/'//n//'&integrator'//n
-    character(len=16) :: identity
-    identity = identity_of(case//'  max_steps = 0'//n//'/'//n)
+    character(len=16) :: identity, program
+    program = program_identity()
+    call check%equal_text(program_identity(), program, 'a program is known')
+    identity = identity_of(case//'  max_steps = 0'//n//'/'//n, program)
     call check%that(verify(identity, '0123456789ABCDEF') == 0, 'an identity is 16 digits')
-    call check%equal_text(identity_of(case//'  max_steps = 700'//n//'/'//n), identity, 'a limit does not count')
-    call check%equal_text(identity_of(case//'/'//n), identity, 'also where it is left out')
-    call check%that(identity_of(case//'  max_step = 0'//n//'/'//n) /= identity, 'another key does')
+    call check%equal_text(identity_of(case//'  max_steps = 700'//n//'/'//n, program), identity, 'a limit does not count')
+    call check%equal_text(identity_of(case//'/'//n, program), identity, 'also where it is left out')
+    call check%that(identity_of(case//'  max_step = 0'//n//'/'//n, program) /= identity, 'another key does')
     call check%that(twin_identity(identity) /= identity, 'the twin is another run')
-    call check%that(identity_of('&joint'//n//'  clearance = 2'//n//'/'//n//'&integrator'//n//'/'//n) /= identity, &
+    call check%that(identity_of('&joint'//n//'  clearance = 2'//n//'/'//n//'&integrator'//n//'/'//n, program) /= identity, &
       'another value')
+    program = 'another program '
+    call check%that(identity_of(case//'/'//n, program) /= identity, 'another program')
   end subroutine test_identity
 
   !> Cases are compared without the limits, and a difference is named.

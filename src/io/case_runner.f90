@@ -45,10 +45,11 @@ module case_runner
 contains
 
   !> Read and check a case. An error's message begins with the case file's name; a case that is wrong writes nothing.
-  subroutine prepare(self, path, options, show_progress)
+  subroutine prepare(self, path, options, program, show_progress)
     class(case_job_t), intent(inout) :: self
     character(len=*), intent(in) :: path
     type(command_line_t), intent(in) :: options
+    character(len=identity_length), intent(in) :: program   !! identity of the running program
     logical, intent(in) :: show_progress
     type(case_values_t) :: values
     type(case_t) :: case
@@ -76,7 +77,7 @@ contains
     base = options%out//'/'//case%name
     text = resolved_text(values)
     self%has_twin = case%output%ideal_twin .and. case%has_clearance()
-    identity = identity_of(text)
+    identity = identity_of(text, program)
     call self%run%prepare(case, text, identity, .false., list, base, options%checkpoint_interval, show_progress, options%quiet)
     self%twin%base = base//'.ideal'
     if (self%has_twin) call self%twin%prepare(case, text, twin_identity(identity), .true., ideal_list, self%twin%base, &
