@@ -236,6 +236,15 @@ END
 ( ulimit -v 1000000; "$gudgeon" sweep --check "$work/wide.nml" 2>"$work/err" )
 check "a table with one long field, status $?: $(cat "$work/err")" grep -q 'wide.csv:20001: column 1, .*must be at most 4000 bytes' "$work/err"
 
+# long titles, one after the other
+awk 'BEGIN { print "case.title,joint.clearance"; for (i = 0; i < 3; i++) { for (k = 0; k < 400; k++) printf "0123456789"; print ",2e-5" } }' \
+  >"$work/long_titles.csv"
+study long_titles <<'END'
+&study case = 'base.nml', table = 'long_titles.csv' /
+END
+run sweep --check "$work/long_titles.nml"
+check "titles of 4000 bytes, status $status: $(cat "$work/err")" [ "$status" = 0 ]
+
 # titles: what looks like done or like a formula
 printf 'case.title,joint.clearance,rod_com\n"a,done,b",-1e-5\n"=1+1, x",2e-5\n-a,2e-5\n-5,3e-5\n"\047=1",2e-5\n' | sed 's/,rod_com//' >"$work/titles.csv"
 study titles <<'END'

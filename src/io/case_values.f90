@@ -315,12 +315,12 @@ contains
         key%words
     case default
       if (.not. is_clean(token%text)) wanted = 'must not hold control characters or bytes that are not UTF-8'
-      if (len(token%text) + len(value%text) > longest_text) wanted = 'must be at most 4000 bytes'
       if (element > 1 .and. key%count > 1 .and. token%quoted) then
         value%text = value%text//','//token%text
       else
         value%text = token%text
       end if
+      if (len(value%text) > longest_text) wanted = 'must be at most 4000 bytes'
     end select
   end subroutine convert
 
