@@ -97,7 +97,9 @@ contains
     call expect('9007199254740993', 9007199254740992.0_dp)
     call expect('-0.0', 0.0_dp)
     call expect('999999999999999e15', 0.999999999999999e30_dp)
-    do i = 1, 9
+    call expect('99999.9999999999999E+24', 0.999999999999999999e29_dp)
+    call expect('0.0001e-26', 1e-30_dp)
+    do i = 1, 11
       call read_real(trim(adjustl(wrong_text(i))), value, wanted)
       call check%that(allocated(wanted), 'no real, or too large: '//wrong_text(i))
     end do
@@ -118,7 +120,8 @@ contains
     function wrong_text(i) result(text)
       integer, intent(in) :: i
       character(len=8) :: text
-      character(len=8), parameter :: texts(9) = [character(len=8) :: '.', '-', '1e', '1e+', '1.2.3', '1e5.', '1-5', '1e30', '2 3']
+      character(len=8), parameter :: texts(11) = [character(len=8) :: '.', '-', '1e', '1e+', '1.2.3', '1e5.', '1-5', '1e30', &
+        '2 3', '.01e32', '9e-31']
       text = texts(i)
     end function wrong_text
   end subroutine test_reading

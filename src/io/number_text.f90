@@ -2,7 +2,7 @@
 module number_text
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: dp
-  use number_writer, only: number_writer_t, longest_number
+  use number_writer, only: append_formatted, longest_number
   use text_tools, only: whole_number
   implicit none
   private
@@ -65,20 +65,12 @@ contains
     real(dp), intent(in) :: value
     integer, intent(in) :: digits   !! significant ones
     character(len=:), allocatable :: text
-    type(number_writer_t) :: writer
-    character(len=longest_number + 1) :: line
+    character(len=longest_number) :: line
     integer :: used
-    if (ieee_is_nan(value)) then
-      text = 'nan'
-    else if (abs(value) > huge(value)) then
-      text = merge('-inf', 'inf ', value < 0)
-      text = trim(text)
-    else
-      call writer%prepare_for_few(digits)
-      line = '-'
-      used = merge(1, 0, .not. abs(value) > 0 .and. sign(1.0_dp, value) < 0)   ! the writer gives a zero no sign
-      call writer%append(line, used, value)
-      text = line(:used)
-    end if
+    used = 0
+    call append_formatted(line, used, value, digits)
+    text = line(:used)
+    if (ieee_is_nan(value)) text = 'nan'
+    if (abs(value) > huge(value)) text = trim(merge('-inf', 'inf ', value < 0))
   end function scientific
 end module number_text

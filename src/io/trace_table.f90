@@ -4,7 +4,6 @@ module trace_table
   use columns, only: column_list_t, column_name
   use number_writer, only: number_writer_t, longest_number
   use result_file, only: result_file_t
-  use ten_digits, only: digit
   implicit none
   private
   public :: trace_table_t
@@ -40,7 +39,7 @@ contains
     associate (text => self%buffer, used => self%used, phase => self%phase_column)
       call self%numbers%append_list(text, used, values(:phase - 1))
       if (phase <= size(values)) then
-        text(used + 1:used + 1) = digit(int(values(phase)))
+        text(used + 1:used + 1) = achar(iachar('0') + int(values(phase)))
         text(used + 2:used + 2) = ','
         used = used + 2
         call self%numbers%append_list(text, used, values(phase + 1:))

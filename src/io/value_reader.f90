@@ -20,9 +20,6 @@ contains
     character(len=:), allocatable, intent(out) :: wanted
     character(len=:), allocatable :: mantissa
     integer :: letter, exponent, whole, first, iostat
-    logical :: is_read
-    call read_short_real(text, value, is_read)
-    if (is_read) return
     value = 0
     mantissa = lowercase(text)
     letter = scan(mantissa, 'edq')
@@ -44,7 +41,7 @@ contains
     end if
     first = scan(mantissa, '123456789')
     if (first == 0) return
-    exponent = exponent + whole - first + merge(0, 1, first > whole)
+    exponent = exponent + whole - first + merge(1, 0, first > whole)   ! of the first digit that is not 0
     if (len(text) > 100 .or. exponent >= largest_exponent .or. exponent < -largest_exponent) then
       wanted = out_of_reach()
       return
@@ -54,52 +51,6 @@ contains
     read (mantissa, *, iostat=iostat) value
     if (iostat /= 0) wanted = 'must be a number'
   end subroutine read_real
-
-  !> The real that a text of few digits says, as nearly all are: both its significand and the power of ten are exact numbers, so
-  !> their product or quotient is rounded as it should be (Clinger 1990). `is_read` is false of every other text.
-  pure subroutine read_short_real(text, value, is_read)
-    character(len=*), intent(in) :: text
-    real(dp), intent(out) :: value
-    logical, intent(out) :: is_read
-    integer(int64), parameter :: fifteen_digits = 10_int64**14   !! the least number that has them
-    integer, parameter :: largest_power = 22                     !! 5**22 < 2**53
-    real(dp), parameter :: too_large = 10.0_dp**largest_exponent
-    integer(int64) :: significand
-    integer :: i, at, digit, behind_point, power
-    real(dp), parameter :: powers(0:largest_power) = [(10.0_dp**i, i=0, largest_power)]
-    logical :: has_digits, has_point, has_sign
-
-    value = 0
-    is_read = .false.
-    has_digits = .false.
-    has_point = .false.
-    behind_point = 0
-    power = 0
-    significand = 0
-    has_sign = scan(text, '+-') == 1
-    do at = merge(2, 1, has_sign), len(text)
-      digit = iachar(text(at:at)) - iachar('0')
-      if (digit >= 0 .and. digit <= 9) then
-        if (significand >= fifteen_digits) return
-        significand = 10*significand + digit
-        has_digits = .true.
-        if (has_point) behind_point = behind_point + 1
-      else if (text(at:at) == '.' .and. .not. has_point) then
-        has_point = .true.
-      else
-        if (index('edqEDQ', text(at:at)) == 0 .or. len(text) - at > 8) return
-        if (.not. is_whole(text(at + 1:))) return
-        power = int(whole_number(text(at + 1:)))
-        exit
-      end if
-    end do
-    power = power - behind_point
-    if (.not. has_digits .or. abs(power) > largest_power) return
-    value = real(significand, dp)*powers(max(power, 0))/powers(max(-power, 0))
-    if (value >= too_large) return
-    if (has_sign .and. text(1:1) == '-' .and. significand > 0) value = -value
-    is_read = .true.
-  end subroutine read_short_real
 
   pure function out_of_reach() result(wanted)
     character(len=:), allocatable :: wanted
