@@ -29,6 +29,7 @@ contains
     type(run_report_t) :: report
     character(len=:), allocatable :: table
     report%status = status
+    case%output%digits = 10
     table = summary_table(case, report, 0.0_dp, 'abc', 7000000000_int64, 0_int64)
     call check%that(index(table, achar(10)//'status,'//field//','//achar(10)) > 0, 'a status in a table: '//status)
     call check%equal_text(summary_value(table, 'status'), field, 'and back')
