@@ -127,14 +127,16 @@ module adams
       real(dp), intent(in) :: dt
     end function clock_step
 
-    !> Put phi and psi back to the beginning of the step and shorten it. On the third failure in a row by error
-    !> the order falls to one.
+    !> Put phi and psi back to the beginning of the step and shorten it. On the third failure in a row by error, or because the
+    !> state leaves the model, the order falls to one: beside a step cut that short the points before it are far away, so
+    !> that formulas of neighbouring orders are all next to the trapezoidal rule and their difference tells no error (a film
+    !> that collapses: steps 10^4 tolerances off were accepted).
     pure module subroutine retreat(self, errors, outcome, fraction, failures)
       class(adams_t), intent(inout) :: self
       type(error_estimates_t), intent(in) :: errors
       integer, intent(in) :: outcome
       real(dp), intent(in) :: fraction
-      integer, intent(inout) :: failures    !! failures by error so far in this step
+      integer, intent(inout) :: failures    !! such failures so far in this step
     end subroutine retreat
 
     !> Errors at orders k, k-1, k-2 and whether the order should fall (Shampine & Gordon, ch. 6).

@@ -69,6 +69,8 @@ contains
     case default
       self%limit = limit_refusal
       self%statistics%rejected_domain = self%statistics%rejected_domain + 1
+      failures = failures + 1
+      if (failures >= 3) self%k = 1
     end select
     self%h = factor*self%h
   end procedure retreat

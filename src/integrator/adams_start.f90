@@ -107,7 +107,7 @@ contains
     logical :: inside
     integer :: tries
 
-    longest = min(self%settings%max_step, self%settings%span)
+    longest = min(self%settings%max_step, self%settings%first_step, self%settings%span)
     if (self%settings%fixed_step > 0) then
       self%h = self%settings%fixed_step
       return

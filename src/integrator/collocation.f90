@@ -61,6 +61,7 @@ module collocation
     procedure :: prepare
     procedure :: stages
     procedure :: solve_stages
+    procedure :: settle_quadratures
     procedure :: keep
     procedure :: filtered_error
     procedure :: polynomial
@@ -102,6 +103,15 @@ module collocation
       class(ode_problem_t), intent(in) :: problem
       integer, intent(out) :: outcome
     end subroutine iterate
+
+    !> The increments of quadratures come from rates before the last Newton step, which moves the rest of its iteration only. Where
+    !> their rate at the end of the step, now known in `f_end`, shows that this moves them by more than a share of the inner
+    !> tolerance (a film so thin that its force doubles within the tolerance of the eccentricity), they are found once more.
+    module subroutine settle_quadratures(self, problem, f_end)
+      class(collocation_t), intent(inout) :: self
+      class(ode_problem_t), intent(in) :: problem
+      real(dp), intent(in) :: f_end(:)   !! (n)
+    end subroutine settle_quadratures
 
     !> y(:, i) = factor sum_j matrix(i, j) x(:, j) over the stages, for the first `rows` rows.
     pure module subroutine combine(rows, stages, factor, matrix, x, first_x, y, first_y)

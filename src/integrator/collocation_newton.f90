@@ -157,6 +157,21 @@ contains
     end associate
   end subroutine expand_stages
 
+  module procedure settle_quadratures
+    real(dp), parameter :: most_rest = 0.03_dp
+    real(dp) :: rest
+    integer :: i, s
+    logical :: inside
+    s = self%stages()
+    rest = 0
+    do i = self%m + self%k + 1, self%n
+      rest = rest + (self%h*(f_end(i) - self%f_stage(i, s))*self%inverse_weight(i))**2
+    end do
+    if (rest <= most_rest**2) return
+    call evaluate_stages(self, problem, inside)
+    if (inside) call expand_stages(self, .true.)
+  end procedure settle_quadratures
+
   module procedure combine
     real(dp) :: total
     integer :: i, j, r

@@ -39,6 +39,7 @@ module ode_method
     real(dp), allocatable :: relative(:)  !! relative tolerance of each component, (n)
     real(dp), allocatable :: absolute(:)  !! absolute tolerance of each component, in its own unit, (n)
     real(dp) :: max_step = huge(1.0_dp)   !! longest step
+    real(dp) :: first_step = huge(1.0_dp) !! longest first step: a part of the problem's own time scale, where that is known
     real(dp) :: span = 1                  !! length of the whole integration: the scale of the shortest step
     real(dp) :: stop_time = huge(1.0_dp)  !! where the integration ends: a one-step method lands there
     integer :: max_order = highest_order  !! highest order, 1..highest_order

@@ -231,7 +231,13 @@ contains
     end if
     self%statistics%evaluations = self%statistics%evaluations + 1
     call problem%derivatives(self%t + self%h, self%y_new, self%f_new, inside)
-    if (.not. inside) outcome = try_outside
+    if (.not. inside) then
+      outcome = try_outside
+      return
+    end if
+    call self%stages%settle_quadratures(problem, self%f_new)
+    call collect(self)
+    self%y_new = self%y + self%stages%z_new(:, self%stages%stages())
   end subroutine attempt
 
   !> Newton's method diverged: the force may be far stiffer where it went than where its Jacobian is from (a film that the pin
@@ -298,6 +304,7 @@ contains
     real(dp), intent(in) :: t
     real(dp), intent(inout) :: y(:)
     integer :: outcome, level
+    logical :: inside
 
     call self%interpolate(t, y)
     if (self%stages%stages_done == 0 .or. .not. t > self%t_old) return
@@ -307,6 +314,11 @@ contains
     call self%stages%solve_stages(problem, .false., outcome)
     call collect(self)
     if (outcome == newton_converged) then
+      self%y_try = self%y_old + self%stages%z_new(:, self%stages%stages_done)
+      self%statistics%evaluations = self%statistics%evaluations + 1
+      call problem%derivatives(t, self%y_try, self%f_new, inside)
+      if (inside) call self%stages%settle_quadratures(problem, self%f_new)
+      call collect(self)
       call self%stages%keep()
       y = self%y_old + self%stages%z(:, self%stages%stages_done)
       self%t = t

@@ -97,7 +97,7 @@ contains
     integer :: tries, order
 
     order = self%stages%stages()
-    longest = min(self%settings%max_step, self%settings%span)
+    longest = min(self%settings%max_step, self%settings%first_step, self%settings%span)
     size_y = scaled_norm(self, self%y)
     slope = scaled_norm(self, self%f(:size(self%y)))
     h = 1e-6_dp*longest

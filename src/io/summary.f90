@@ -11,7 +11,7 @@ module summary
   use version, only: program_version
   implicit none
   private
-  public :: summary_table, summary_value, summary_line, build_advice, relative_residual
+  public :: summary_table, summary_value, summary_line, energy_warning, build_advice, relative_residual
 
   character(len=*), parameter :: newline = achar(10)
 
@@ -76,6 +76,7 @@ contains
       if (f%time > 0) call add('mean_crank_speed', real_text(f%crank_travel/f%time), 'rad/s')
       call add('max_energy_residual', real_text(f%max_energy_residual), 'J')
       call add('max_energy_residual_relative', real_text(relative_residual(report)), '1')
+      if (report%energy_is_poor) call add('energy_warning', quoted(energy_warning(case, report), '"'), '')
       if (case%has_clearance()) then
         call add('min_film_thickness', real_text(f%min_film_thickness, case%output%digits), 'm')
         call add('contacts', integer_text(f%contacts), '1')
@@ -151,6 +152,16 @@ contains
     text = 'this is a build for debugging, several times slower than the fast one: fpm @release -- ...'
   end function build_advice
 
+  !> What to say of a run that is done with a large energy residual.
+  function energy_warning(case, report) result(text)
+    type(case_t), intent(in) :: case
+    type(run_report_t), intent(in) :: report
+    character(len=:), allocatable :: text
+    text = 'the energy is kept no better than to '//short_text(relative_residual(report))//', which is '// &
+      short_text(relative_residual(report)/case%integrator%relative_tolerance)// &
+      ' relative tolerances: compare with a run at a tenth of &integrator relative_tolerance'
+  end function energy_warning
+
   !> One line for people.
   function summary_line(case, report, wall_time, path) result(text)
     type(case_t), intent(in) :: case
@@ -166,7 +177,9 @@ contains
         text = text//'film at least '//short_text(f%min_film_thickness)//' m, '
       end if
       text = text//'pin force up to '//short_text(f%max_pin_force)//' N, energy residual '// &
-        short_text(relative_residual(report))//'; '//path//'.csv'
+        short_text(relative_residual(report))
+      if (report%energy_is_poor) text = text//' ('//energy_warning(case, report)//')'
+      text = text//'; '//path//'.csv'
     end associate
   end function summary_line
 end module summary

@@ -446,11 +446,16 @@ contains
   !> The eccentricity is measured by the clearance, its rate by the clearance in the time of one radian. Measured
   !> (scripts/compare_adams.sh, simulation IV, c = 20 um): at the relative tolerance 1e-4 the pin is off by 4e-5 c at the
   !> end, at 1e-6 by 4e-9 c, at 1e-12 by 1e-14 c; in (q, A, x) rounding alone makes 4e-12 c.
+  !>
+  !> A pin may have a speed of its own where the crank hardly turns: the one that it starts with, or that in which it crosses the
+  !> clearance in the time simulated (of a time so short that this is more than `most_crossing_speed` nothing can be said).
   subroutine claim(self)
     class(clearance_scene_t), intent(inout) :: self
+    real(dp), parameter :: most_crossing_speed = 1   !! [m/s]
+    self%pin_speed = max(norm2(self%start_eccentricity_rate), min(self%joint%clearance/self%span, most_crossing_speed))
     call self%claim_crank()
-    call self%layout%claim_positions(2, self%joint%clearance, self%joint%clearance*self%speed_scale(self%span), self%pin, &
-      grows=.false.)
+    call self%layout%claim_positions(2, self%joint%clearance, max(self%joint%clearance*self%speed_scale(self%span), &
+      self%pin_speed), self%pin, grows=.false.)
     call self%layout%settle(self%pin)
     call self%claim_work()
   end subroutine claim

@@ -51,6 +51,7 @@ module scene
     real(dp) :: start_speed = 0     !! crank speed at t = 0, and always if it is held [rad/s]
     integer :: phase = phase_free
     real(dp) :: span = 1            !! of the simulation [s]
+    real(dp) :: pin_speed = 0       !! natural size of the pin's speed in its bearing, where the crank does not give it [m/s]
     type(layout_t) :: layout        !! of the state
     type(coordinates_t) :: crank    !! where the crank angle stands in it
     integer :: work_at = 0          !! where the work of the forces stands
@@ -255,13 +256,15 @@ contains
     if (.not. speed_scale > 0) speed_scale = 1/span
   end function speed_scale
 
-  !> Size of the energy [J]: the bodies at the speed scale, and the weights lifted by a crank length.
+  !> Size of the energy [J]: the bodies at the speed scale, the weights lifted by a crank length, and rod and piston at the pin's
+  !> own speed.
   pure real(dp) function energy_scale(self, span)
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: span
     associate (m => self%mechanism)
       energy_scale = 0.5_dp*(m%crank_term + m%piston_mass*m%crank_length**2)*self%speed_scale(span)**2 &
-        + (m%crank_mass + m%rod_mass + m%piston_mass)*m%gravity*m%crank_length
+        + (m%crank_mass + m%rod_mass + m%piston_mass)*m%gravity*m%crank_length &
+        + 0.5_dp*(m%rod_mass + m%piston_mass)*self%pin_speed**2
     end associate
   end function energy_scale
 

@@ -21,6 +21,21 @@ module scene_builder
   real(dp), parameter :: loosest_tolerance = 1e-3_dp
 
   real(dp), parameter :: gas_margin = 0.1_dp   !! error of the gas cycle over the run's tolerance
+
+  !> What the crank and the work of the forces gain or lose by the error of a step stays with them, and so with the energy: these
+  !> errors add up over thousands of steps, where those of the pin die out in its film or its contacts. So they are held to
+  !> a smaller share of the tolerance, but not below the rounding. Measured without it: the ideal twin of simulation VI,
+  !> whose steps are the longest, loses 1375 tolerances of its energy in 100 revolutions, all of it in smooth steps of full
+  !> size, 0.2 % where gas events cut them; with it 0.7, for 47 % more of its evaluations. Scenes with clearance, whose steps
+  !> the pin makes short, cost the same.
+  real(dp), parameter :: lasting_share = 0.01_dp   !! of crank speed and work
+  real(dp), parameter :: angle_share = 0.1_dp      !! of the crank angle, whose errors stay too, but weigh less in the energy
+  real(dp), parameter :: finest_tolerance = 1e-13_dp
+
+  !> What grows without bound is held no closer than this share of itself, its rounding.
+  real(dp), parameter :: rounding_share = 1e-14_dp
+
+  real(dp), parameter :: first_angle = 0.1_dp   !! most that the crank may turn in the first step, which could else be revolutions [rad]
   real(dp), parameter :: longest_chatter = 1e-8_dp   !! [s]; a crank that hardly turns has no time scale for its pin
 
 contains
@@ -111,8 +126,8 @@ contains
   end function sample_interval
 
   !> Settings of the integrator for a scene of the case. Component i is held to relative_tolerance*|y_i| (unless it grows
-  !> without bound) + a*scale_i, a = absolute_tolerance or, where that is 0, relative_tolerance. A hundred events within
-  !> 1e-6 of a revolution, 1e-8 s at most, are chatter.
+  !> without bound) + a*scale_i, a = absolute_tolerance or, where that is 0, relative_tolerance; crank and work closer. A hundred
+  !> events within 1e-6 of a revolution, 1e-8 s at most, are chatter.
   pure function settings_for(case, scene) result(settings)
     type(case_t), intent(in) :: case
     class(scene_t), intent(in) :: scene
@@ -128,9 +143,27 @@ contains
     if (.not. factor > 0) factor = tolerance
     settings%relative = merge(0.0_dp, tolerance, growing)
     settings%absolute = factor*scales
+    call tighten(settings, scene%work_at, lasting_share)
+    if (scene%drive%free_crank) then
+      call tighten(settings, scene%crank%rate, lasting_share)
+      call tighten(settings, scene%crank%position, angle_share)
+    end if
+    where (growing .and. scales > 0) settings%relative = rounding_share
+    settings%first_step = first_angle/scene%speed_scale(settings%span)
     if (case%integrator%max_step > 0) settings%max_step = case%integrator%max_step
     settings%max_order = case%integrator%max_order
     settings%max_evaluations = case%integrator%max_evaluations
     settings%chatter_time = min(1e-6_dp*two_pi/scene%speed_scale(settings%span), longest_chatter)
   end function settings_for
+
+  !> Hold one component to a share of its tolerance, but not below the rounding.
+  pure subroutine tighten(settings, i, share)
+    type(ode_settings_t), intent(inout) :: settings
+    integer, intent(in) :: i
+    real(dp), intent(in) :: share
+    real(dp) :: factor
+    factor = min(1.0_dp, max(share, finest_tolerance/settings%tolerance))
+    settings%relative(i) = factor*settings%relative(i)
+    settings%absolute(i) = factor*settings%absolute(i)
+  end subroutine tighten
 end module scene_builder
