@@ -15,6 +15,7 @@ program gudgeon_tests
   use test_contact, only: run_test_contact
   use test_cycle_watch, only: run_test_cycle_watch
   use test_coordinates, only: run_test_coordinates
+  use test_energy_kept, only: run_test_energy_kept
   use test_error_growth, only: run_test_error_growth
   use test_event_proof, only: run_test_event_proof
   use test_events, only: run_test_events
@@ -59,6 +60,7 @@ program gudgeon_tests
   call run('contact', run_test_contact)
   call run('cycle_watch', run_test_cycle_watch)
   call run('coordinates', run_test_coordinates)
+  call run('energy_kept', run_test_energy_kept)
   call run('error_growth', run_test_error_growth)
   call run('event_proof', run_test_event_proof)
   call run('events', run_test_events)

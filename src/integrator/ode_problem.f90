@@ -70,7 +70,8 @@ module ode_problem
 contains
 
   !> Derivatives of the accelerations: with m positions, k rates and y = (positions, rates, quadratures), dydt(m+1:m+k) by
-  !> the positions, a_p (k, m), and by the rates, a_v (k, k). The default is one-sided differences.
+  !> the positions, a_p (k, m), and by the rates, a_v (k, k). The default is one-sided differences, and 0 where f is not defined at
+  !> the state or beside it.
   subroutine difference_jacobian(self, t, y, a_p, a_v)
     class(ode_problem_t), intent(in) :: self
     real(dp), intent(in) :: t, y(:)
@@ -81,7 +82,10 @@ contains
 
     m = size(a_p, 2)
     k = size(a_v, 1)
+    a_p = 0
+    a_v = 0
     call self%derivatives(t, y, f, inside)
+    if (.not. inside) return
     do i = 1, m + k
       step = sqrt(epsilon(1.0_dp))*max(abs(y(i)), 1e-5_dp)
       state = y
@@ -92,6 +96,7 @@ contains
         state(i) = y(i) + step
         call self%derivatives(t, state, moved, inside)
       end if
+      if (.not. inside) cycle
       moved(m + 1:m + k) = (moved(m + 1:m + k) - f(m + 1:m + k))/step
       if (i <= m) then
         a_p(:, i) = moved(m + 1:m + k)

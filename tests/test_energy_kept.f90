@@ -1,0 +1,151 @@
+!> What long, loose and odd runs make of the energy: errors that stay in the crank or in the work of the forces.
+module test_energy_kept
+  use kinds, only: dp
+  use checks, only: checks_t
+  use ode_problem, only: ode_problem_t
+  use radau, only: radau_t
+  use solver, only: integrate, silent_observer_t, integration_done
+  use case_definition, only: case_t
+  use summary, only: energy_warning
+  use collecting_sink, only: trace_t, run_case, column
+  implicit none
+  private
+  public :: run_test_energy_kept
+
+  integer, parameter :: long = 60
+
+  !> v follows cos t, the faster the farther it is off, and w is the integral of -v': w + v = const, exactly.
+  type, extends(ode_problem_t) :: stiff_follower_t
+  contains
+    procedure :: derivatives
+  end type stiff_follower_t
+
+contains
+
+  subroutine run_test_energy_kept(check)
+    class(checks_t), intent(inout) :: check
+    call a_long_ideal_run_ends_where_it_should(check)
+    call a_film_that_collapses(check)
+    call quadratures_belong_to_their_stages(check)
+    call a_thrown_pin_where_the_crank_hardly_turns(check)
+    call no_step_over_revolutions(check)
+    call poor_energy_is_told(check)
+  end subroutine run_test_energy_kept
+
+  !> The ideal twin of simulation VI after 100 revolutions, against another method at a hundredth of the tolerance.
+  subroutine a_long_ideal_run_ends_where_it_should(check)
+    class(checks_t), intent(inout) :: check
+    character(len=long), parameter :: span(4) = [character(len=long) :: 'integrator.revolutions=100', &
+      'output.samples_per_revolution=2', 'integrator.method=adams', 'integrator.relative_tolerance=1e-6']
+    character(len=long) :: finer(4)
+    type(trace_t) :: trace, fine
+    real(dp), allocatable :: speed(:), fine_speed(:)
+    finer = span
+    finer(3:4) = [character(len=long) :: 'integrator.method=radau', 'integrator.relative_tolerance=1e-8']
+    trace = run_case('cases/sim_VI.nml', span, .true.)
+    fine = run_case('cases/sim_VI.nml', finer, .true.)
+    call check%equal_text(trace%report%status, 'done', 'the ideal twin of simulation VI runs 100 revolutions')
+    speed = trace%values(column(trace, 'crank_speed[rad/s]'), :)
+    fine_speed = fine%values(column(fine, 'crank_speed[rad/s]'), :)
+    call check%that(size(speed) == 201, 'a row each half revolution')
+    call check%that(maxval(abs(speed - fine_speed)/fine_speed) < 3e-5_dp, 'its crank keeps its speed')
+  end subroutine a_long_ideal_run_ends_where_it_should
+
+  !> In a bearing with 1.7 mm of clearance the pin falls on its film until that is a millionth of it thick. Steps are cut because
+  !> trial states lie beyond the wall, where there is no film; what is left of them must not be taken for accurate.
+  subroutine a_film_that_collapses(check)
+    class(checks_t), intent(inout) :: check
+    character(len=long), parameter :: collapse(8) = [character(len=long) :: 'joint.clearance=0.0017', &
+      'integrator.revolutions=0', 'integrator.end_time=1.2e-3', 'output.interval=1.2e-3', 'integrator.relative_tolerance=1e-4', &
+      'integrator.method=adams', 'combustion.heat=165', 'output.ideal_twin=F']
+    type(trace_t) :: trace
+    trace = run_case('cases/sim_V.nml', collapse)
+    call check%equal_text(trace%report%status, 'done', 'a film that collapses')
+    call check%that(trace%report%figures%max_energy_residual < 3e-3_dp*trace%report%figures%max_energy, &
+      'its energy is that of the work done on it')
+  end subroutine a_film_that_collapses
+
+  !> A quadrature must be that of the stages at which Newton's method has ended, not of those one step before.
+  subroutine quadratures_belong_to_their_stages(check)
+    class(checks_t), intent(inout) :: check
+    type(stiff_follower_t) :: problem
+    type(radau_t) :: method
+    type(silent_observer_t) :: observer
+    real(dp) :: t, y(3)
+    integer :: status
+    real(dp), parameter :: tolerance = 1e-5_dp
+    problem%n = 3
+    problem%n_positions = 1
+    problem%n_quadratures = 1
+    problem%refuses_steps = .false.
+    method%settings%relative = [tolerance, tolerance, 0.0_dp]
+    method%settings%absolute = [tolerance, tolerance, tolerance]
+    method%settings%span = 20
+    t = 0
+    y = [0.0_dp, 1.0_dp, 0.0_dp]
+    call integrate(problem, method, t, y, 20.0_dp, 10000, observer, status)
+    call check%that(status == integration_done, 'a stiff follower is integrated')
+    call check%that(abs(y(3) + y(2) - 1) < 20*tolerance, 'its quadrature belongs to its stages')
+  end subroutine quadratures_belong_to_their_stages
+
+  pure subroutine derivatives(self, t, y, dydt, inside)
+    class(stiff_follower_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: dydt(self%n)
+    logical, intent(out) :: inside
+    real(dp) :: behind
+    inside = .true.
+    behind = y(2) - cos(t)
+    dydt(1) = y(2)
+    dydt(2) = -1e4_dp*(behind + 1e3_dp*behind**3)
+    dydt(3) = -dydt(2)
+  end subroutine derivatives
+
+  !> The pin thrown at 0.5 m/s across 0.1 mm, the crank all but at rest: it flies straight and touches after 0.2 ms. The scales
+  !> of its speed and of its energy are its own.
+  subroutine a_thrown_pin_where_the_crank_hardly_turns(check)
+    class(checks_t), intent(inout) :: check
+    character(len=long) :: thrown(7)
+    character(len=5), parameter :: speeds(3) = ['1e-3 ', '1e-5 ', '1e-12']
+    character(len=5), parameter :: tolerances(2) = ['1e-6 ', '1e-10']
+    type(trace_t) :: trace
+    integer :: i, k
+    thrown = [character(len=long) :: 'initial.eccentricity_rate=0.5,0', 'integrator.revolutions=0', &
+      'integrator.end_time=5e-4', 'output.interval=1e-4', '', '', '']
+    do i = 1, size(speeds)
+      do k = 1, size(tolerances)
+        thrown(5) = 'initial.crank_speed='//speeds(i)
+        thrown(6) = 'integrator.relative_tolerance='//tolerances(k)
+        thrown(7) = 'integrator.method=auto'
+        trace = run_case('cases/flores/dry_0100um.nml', thrown)
+        call check%equal_text(trace%report%status, 'done', 'a thrown pin: '//speeds(i)//' rad/s, tolerance '//tolerances(k))
+        if (size(trace%event) > 0) call check%relative(trace%event(1)%time, 2e-4_dp, 1e-5_dp, 'it touches when it should')
+      end do
+    end do
+  end subroutine a_thrown_pin_where_the_crank_hardly_turns
+
+  !> The first step looks a thousandth of the run ahead, here one revolution, where all forces are the same again.
+  subroutine no_step_over_revolutions(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    trace = run_case('cases/flores/ideal.nml', [character(len=long) :: 'integrator.revolutions=1000', &
+      'integrator.relative_tolerance=1e-4', 'output.samples_per_revolution=1'])
+    call check%that(trace%report%statistics%accepted > 10000, 'a thousand revolutions take more than ten steps each')
+  end subroutine no_step_over_revolutions
+
+  !> A residual of more than a hundred tolerances, since an absolute tolerance is given that is far looser than the relative one.
+  subroutine poor_energy_is_told(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    type(case_t) :: case
+    character(len=long) :: loose(2)
+    loose = [character(len=long) :: 'integrator.relative_tolerance=1e-7', 'integrator.absolute_tolerance=3e-3']
+    trace = run_case('cases/flores/ideal.nml', loose)
+    call check%equal_text(trace%report%status, 'done', 'a run with a large residual is done')
+    call check%that(trace%report%energy_is_poor, 'and says that its energy is poor')
+    case%integrator%relative_tolerance = 1e-7_dp
+    call check%that(index(energy_warning(case, trace%report), 'relative tolerances') > 0, 'in words')
+    trace = run_case('cases/flores/ideal.nml', loose(:1))
+    call check%that(.not. trace%report%energy_is_poor, 'a run at its tolerance does not')
+  end subroutine poor_energy_is_told
+end module test_energy_kept
