@@ -276,7 +276,7 @@ contains
       'and says that it left the model')
     trace = run_case('cases/sim_I.nml', [character(len=long) :: 'integrator.relative_tolerance=1e-16'])
     call check%that(allocated(trace%error), 'a tolerance below rounding is refused')
-    call ends_with(check, 'cases/sim_I_oscillating.nml', [character(len=long) :: 'integrator.relative_tolerance=1e-14', &
+    call ends_with(check, 'cases/sim_I_oscillating.nml', [character(len=long) :: 'integrator.relative_tolerance=1e-15', &
       'integrator.method=auto'], 'tolerance below the rounding of the')
     call ends_with(check, 'cases/sim_I.nml', [character(len=long) :: 'initial.eccentricity=-2.02e-5,0', &
       'integrator.method=auto'], 'ill-posed: a film')
