@@ -448,14 +448,18 @@ contains
   !> end, at 1e-6 by 4e-9 c, at 1e-12 by 1e-14 c; in (q, A, x) rounding alone makes 4e-12 c.
   !>
   !> A pin may have a speed of its own where the crank hardly turns: the one that it starts with, or that in which it crosses the
-  !> clearance in the time simulated (of a time so short that this is more than `most_crossing_speed` nothing can be said).
+  !> clearance in the time simulated (where this time is so short that it is more than `most_crossing_speed`, that). The rate is
+  !> measured by a hundredth of the latter: at first a pin at rest is slow, and it may stay so.
   subroutine claim(self)
     class(clearance_scene_t), intent(inout) :: self
     real(dp), parameter :: most_crossing_speed = 1   !! [m/s]
-    self%pin_speed = max(norm2(self%start_eccentricity_rate), min(self%joint%clearance/self%span, most_crossing_speed))
+    real(dp) :: thrown, crossing
+    thrown = norm2(self%start_eccentricity_rate)
+    crossing = min(self%joint%clearance/self%span, most_crossing_speed)
+    self%pin_speed = max(thrown, crossing)
     call self%claim_crank()
     call self%layout%claim_positions(2, self%joint%clearance, max(self%joint%clearance*self%speed_scale(self%span), &
-      self%pin_speed), self%pin, grows=.false.)
+      thrown, 0.01_dp*crossing), self%pin, grows=.false.)
     call self%layout%settle(self%pin)
     call self%claim_work()
   end subroutine claim
