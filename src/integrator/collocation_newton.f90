@@ -2,6 +2,10 @@
 submodule (collocation) collocation_newton
   use small_lu, only: decompose
   implicit none
+
+  !> A Newton step so large, in tolerances, leads nowhere: what lies there is not evaluated, since forces and their squares may be
+  !> beyond all numbers.
+  real(dp), parameter :: farthest = 1e30_dp
 contains
 
   module procedure decompose_matrices
@@ -47,7 +51,7 @@ contains
       call newton_step(self)
       change = change_norm(self)
       outcome = newton_diverged
-      if (.not. change < huge(change)) return
+      if (.not. change < farthest) return
       if (last_change > 0) then
         ratio = change/last_change
         self%contraction = ratio
@@ -118,6 +122,10 @@ contains
     real(dp) :: total, weight
     integer :: i, s
     s = self%formula(self%level)%stages
+    change_norm = huge(change_norm)
+    do i = 1, self%k
+      if (.not. maxval(abs(self%dw(i, :s)))*self%inverse_weight(self%m + i) < farthest) return
+    end do
     total = 0
     do i = 1, self%k
       weight = self%inverse_weight(self%m + i)

@@ -28,11 +28,12 @@ contains
   end procedure newton_goal
 
   module procedure estimate_error
+    real(dp), parameter :: farthest = 1e30_dp   !! of states that are worth an evaluation, in tolerances
     logical :: inside
 
     call self%stages%filtered_error(self%f, self%error)
     error = scaled_norm(self, self%error)
-    if (error < 1 .or. .not. (self%first .or. self%failed)) return
+    if (error < 1 .or. .not. (self%first .or. self%failed) .or. .not. error < farthest) return
     self%y_try = self%y + self%error
     self%statistics%evaluations = self%statistics%evaluations + 1
     call problem%derivatives(self%t, self%y_try, self%f_new, inside)
