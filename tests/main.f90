@@ -17,7 +17,6 @@ program gudgeon_tests
   use test_coordinates, only: run_test_coordinates
   use test_energy_kept, only: run_test_energy_kept
   use test_error_growth, only: run_test_error_growth
-  use test_event_proof, only: run_test_event_proof
   use test_events, only: run_test_events
   use test_findings, only: run_test_findings
   use test_friction, only: run_test_friction
@@ -62,7 +61,6 @@ program gudgeon_tests
   call run('coordinates', run_test_coordinates)
   call run('energy_kept', run_test_energy_kept)
   call run('error_growth', run_test_error_growth)
-  call run('event_proof', run_test_event_proof)
   call run('events', run_test_events)
   call run('findings', run_test_findings)
   call run('friction', run_test_friction)

@@ -44,6 +44,7 @@ contains
     call film_derivatives_by_complex_step(check)
     call contact_slopes_by_complex_step(check)
     call jacobians_of_scenes(check)
+    call no_jacobian_outside(check)
     call radau_agrees_with_adams(check)
     call loose_tolerances_survive(check)
     call impacts_with_radau(check)
@@ -282,6 +283,28 @@ contains
       deallocate (a_p, a_v, b_p, b_v, scale)
     end do
   end subroutine jacobians_of_scenes
+
+  !> Where a film has no force, with the pin on the wall and beyond it, it has no derivatives: zeros, found without a force that
+  !> nobody has set.
+  subroutine no_jacobian_outside(check)
+    class(checks_t), intent(inout) :: check
+    type(case_t) :: case
+    type(error_t), allocatable :: error
+    class(scene_t), allocatable :: scene
+    real(dp), allocatable :: y(:)
+    real(dp) :: a_p(3, 3), a_v(3, 3)
+    character(len=1) :: none(0)
+    integer :: i
+    call read_case('cases/sim_I.nml', none, case, error)
+    call build_scene(case, .false., scene, error)
+    allocate (y(scene%n), source=0.0_dp)
+    call put_crank(scene, y, 0.4_dp, 250.0_dp)
+    do i = 0, 1
+      call put_pin(scene, y, [2e-5_dp + i*1e-7_dp, 0.0_dp], [0.0_dp, 0.0_dp])
+      call scene%jacobian(0.0_dp, y, a_p, a_v)
+      call check%that(.not. any(abs(a_p) > 0) .and. .not. any(abs(a_v) > 0), 'no derivatives outside the film')
+    end do
+  end subroutine no_jacobian_outside
 
   !> Two methods that share nothing but the scene.
   subroutine radau_agrees_with_adams(check)

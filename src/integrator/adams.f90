@@ -78,9 +78,6 @@ module adams
     procedure :: start
     procedure :: step
     procedure :: interpolate
-    procedure :: find_straying
-    procedure :: bernstein_form
-    procedure :: time_at_share
     procedure :: start_with_history
     procedure :: exchange
   end type adams_t
@@ -183,29 +180,6 @@ module adams
       real(dp), intent(in) :: t
       real(dp), intent(out) :: y(:)
     end subroutine interpolate
-
-    !> The interpolant's derivative is the sum of phi_i N_i. At the share x of the step the Newton polynomial N_2 is x - 1, and all
-    !> higher ones are of one sign and no larger than x (1 - x): their integrals stray by 1/2 x (1 - x) and by at most
-    !> 3/16 x (1 - x). What closes the polynomial makes good the last correction, d = h g_k+1 (f_n+1 - f_predicted), by d q(x): q
-    !> falls from 1 to 0 with a rate in proportion to N_k+2, and strays by less than 4 x (1 - x), the most, 3.9 x (1 - x), at
-    !> order 12 after much shorter steps.
-    pure module subroutine find_straying(self, first, straying)
-      class(adams_t), intent(in) :: self
-      integer, intent(in) :: first
-      real(dp), intent(out) :: straying(2)
-    end subroutine find_straying
-
-    pure module subroutine bernstein_form(self, component, coefficients, degree)
-      class(adams_t), intent(inout) :: self
-      integer, intent(in) :: component
-      real(dp), intent(out) :: coefficients(0:)
-      integer, intent(out) :: degree
-    end subroutine bernstein_form
-
-    pure real(dp) module function time_at_share(self, share)
-      class(adams_t), intent(in) :: self
-      real(dp), intent(in) :: share
-    end function time_at_share
   end interface
 
 contains

@@ -2,7 +2,6 @@
 submodule (adams) adams_interpolant
   use adams_coefficients, only: interpolation_weights
   use adams_differences, only: add_weighted
-  use bernstein, only: from_newton, integrate_polynomial
   implicit none
 contains
 
@@ -44,44 +43,4 @@ contains
       self%closed = .true.
     end associate
   end subroutine close_polynomial
-
-  module procedure find_straying
-    real(dp) :: owed(2), sums(2), correction(2)
-    integer :: j, last
-    last = first + 1
-    owed = self%owed(first:last)
-    sums = 0
-    do j = 3, self%k_old + 1
-      sums = sums + abs(self%phi(first:last, j) + owed)
-    end do
-    sums = abs(self%phi(first:last, 2) + owed)/8 + (3/64.0_dp)*sums
-    correction = self%coefficients%g(self%k_old + 1)*((self%phi(first:last, 1) + owed) - self%f_predicted(first:last))
-    straying = (self%x - self%x_old)*(sums + abs(correction))
-  end procedure find_straying
-
-  module procedure bernstein_form
-    real(dp) :: low(highest_order + 1), high(highest_order + 1), rates(highest_order + 2), form(0:highest_order + 1), h
-    integer :: j, k
-
-    if (.not. self%closed) call close_polynomial(self)
-    k = self%k_old
-    h = self%x - self%x_old
-    high(1) = 0   ! factors of the Newton polynomials: (x - x_n+2-j)/psi_j
-    low(1) = -h/self%coefficients%psi(1)
-    do j = 2, k + 1
-      associate (psi => self%coefficients%psi)
-        high(j) = psi(j - 1)/psi(min(j, k))
-        low(j) = (psi(j - 1) - h)/psi(min(j, k))
-      end associate
-    end do
-    degree = k + 2
-    rates(:k + 1) = self%phi(component, :k + 1) + self%owed(component)
-    rates(k + 2) = self%closing(component)
-    call from_newton(rates(:k + 2), low(:k + 1), high(:k + 1), form(:k + 1))
-    call integrate_polynomial(self%y_old(component), h, form(:k + 1), coefficients(:degree))
-  end procedure bernstein_form
-
-  module procedure time_at_share
-    time_at_share = time_at(self, self%x_old + share*(self%x - self%x_old))
-  end procedure time_at_share
 end submodule adams_interpolant

@@ -49,9 +49,6 @@ module auto_method
     procedure :: step
     procedure :: interpolate
     procedure :: land_on
-    procedure :: find_straying
-    procedure :: bernstein_form
-    procedure :: time_at_share
     procedure :: count_time
     procedure :: totals
     procedure :: exchange
@@ -274,39 +271,6 @@ contains
       call self%adams%land_on(problem, t, y)
     end if
   end subroutine land_on
-
-  pure subroutine find_straying(self, first, straying)
-    class(auto_t), intent(in) :: self
-    integer, intent(in) :: first
-    real(dp), intent(out) :: straying(2)
-    if (self%stiff) then
-      call self%radau%find_straying(first, straying)
-    else
-      call self%adams%find_straying(first, straying)
-    end if
-  end subroutine find_straying
-
-  pure subroutine bernstein_form(self, component, coefficients, degree)
-    class(auto_t), intent(inout) :: self
-    integer, intent(in) :: component
-    real(dp), intent(out) :: coefficients(0:)
-    integer, intent(out) :: degree
-    if (self%stiff) then
-      call self%radau%bernstein_form(component, coefficients, degree)
-    else
-      call self%adams%bernstein_form(component, coefficients, degree)
-    end if
-  end subroutine bernstein_form
-
-  pure real(dp) function time_at_share(self, share)
-    class(auto_t), intent(in) :: self
-    real(dp), intent(in) :: share
-    if (self%stiff) then
-      time_at_share = self%radau%time_at_share(share)
-    else
-      time_at_share = self%adams%time_at_share(share)
-    end if
-  end function time_at_share
 
   !> The time of the last step goes to the method that took it, in the mode in which it was taken.
   subroutine count_time(self, t_to)

@@ -65,7 +65,6 @@ module collocation
     procedure :: keep
     procedure :: filtered_error
     procedure :: polynomial
-    procedure :: bernstein_form
     procedure :: jacobian_norms
     procedure :: exchange
   end type collocation_t
@@ -77,13 +76,6 @@ module collocation
       real(dp), intent(in) :: x
       real(dp), intent(out) :: change(:)   !! (n)
     end subroutine polynomial
-
-    !> The same for one component, in Bernstein form on 0..1, of the degree stages_done.
-    pure module subroutine bernstein_form(self, component, coefficients)
-      class(collocation_t), intent(in) :: self
-      integer, intent(in) :: component
-      real(dp), intent(out) :: coefficients(0:)
-    end subroutine bernstein_form
 
     !> The matrices of Newton's equations for the present step size.
     pure module subroutine decompose_matrices(self, singular)

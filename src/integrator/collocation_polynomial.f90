@@ -1,6 +1,5 @@
 !> The polynomial through the stages of a Radau step.
 submodule (collocation) collocation_polynomial
-  use bernstein, only: from_newton
   implicit none
 contains
 
@@ -13,24 +12,6 @@ contains
       change = change + weights(j)*self%z(:, j)
     end do
   end procedure polynomial
-
-  module procedure bernstein_form
-    real(dp) :: a(0:most_stages), node(0:most_stages), low(most_stages), high(most_stages)   ! factors x - node
-    integer :: i, j, s
-    s = self%stages_done
-    node(0) = 0
-    node(1:s) = self%formula(s/2)%c(:s)
-    a(0) = 0
-    a(1:s) = self%z(component, :s)
-    do j = 1, s   ! divided differences
-      do i = s, j, -1
-        a(i) = (a(i) - a(i - 1))/(node(i) - node(i - j))
-      end do
-    end do
-    low(:s) = -node(:s - 1)
-    high(:s) = 1 - node(:s - 1)
-    call from_newton(a(:s), low(:s), high(:s), coefficients(:s))
-  end procedure bernstein_form
 
   module procedure guess_stages
     real(dp) :: weights(0:most_stages)

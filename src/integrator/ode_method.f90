@@ -91,9 +91,6 @@ module ode_method
     procedure(step), deferred :: step
     procedure(interpolate), deferred :: interpolate
     procedure :: land_on
-    procedure :: find_straying
-    procedure :: bernstein_form
-    procedure :: time_at_share
     procedure, non_overridable :: exchange_solution
     procedure(exchange), deferred :: exchange
   end type ode_method_t
@@ -194,35 +191,6 @@ contains
     call archive%exchange(self%time_with)
     call archive%exchange(self%stiffness)
   end subroutine exchange_statistics
-
-  !> Bounds s of how far two neighbouring components stray, within the last step, from the straight lines between their values
-  !> at both ends: at the share x of the step by the method's clock less than 4 s x (1 - x). The default knows none.
-  pure subroutine find_straying(self, first, straying)
-    class(ode_method_t), intent(in) :: self
-    integer, intent(in) :: first
-    real(dp), intent(out) :: straying(2)
-    associate (unused_self => self, unused_first => first)
-    end associate
-    straying = huge(straying)
-  end subroutine find_straying
-
-  !> The polynomial with which the method interpolates a component over the last step, by its clock, in Bernstein form:
-  !> coefficients(0:degree) on the share 0..1 of the step. The default knows none: degree 0.
-  pure subroutine bernstein_form(self, component, coefficients, degree)
-    class(ode_method_t), intent(inout) :: self
-    integer, intent(in) :: component
-    real(dp), intent(out) :: coefficients(0:)
-    integer, intent(out) :: degree
-    degree = 0
-    coefficients = self%y(component)
-  end subroutine bernstein_form
-
-  !> The time at a share 0..1 of the last step by the method's clock, which by default is the time itself.
-  pure real(dp) function time_at_share(self, share)
-    class(ode_method_t), intent(in) :: self
-    real(dp), intent(in) :: share
-    time_at_share = self%t_old + share*(self%t - self%t_old)
-  end function time_at_share
 
   !> Count the time of the last accepted step, once, when it is known how far it stands: up to t_to, which is self%t or where
   !> an event or the end of the integration cuts the step.

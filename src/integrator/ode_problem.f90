@@ -8,7 +8,7 @@ module ode_problem
   use archive, only: archive_t
   implicit none
   private
-  public :: ode_problem_t, event_form_t, difference_jacobian
+  public :: ode_problem_t, difference_jacobian
   public :: step_admitted, step_too_deep, step_outside
   public :: event_continue, event_stop, max_events, max_modes
 
@@ -23,14 +23,6 @@ module ode_problem
   !> What is to be done after an event.
   integer, parameter :: event_continue = 0  !! restart the method at the event
   integer, parameter :: event_stop = 1      !! end the integration at the event
-
-  !> An event function as a polynomial in two neighbouring components of the state: it has the sign of constant + sum over j of
-  !> (linear_j + square_j y_c) y_c, c = first - 1 + j. A negative constant without components is not watched.
-  type :: event_form_t
-    logical :: known = .false.       !! else there is no such polynomial
-    integer :: first = 0             !! of the components, 0: none
-    real(dp) :: constant = -1, linear(2) = 0, square(2) = 0
-  end type event_form_t
 
   !> A system of ordinary differential equations.
   type, abstract :: ode_problem_t
@@ -49,7 +41,6 @@ module ode_problem
     procedure :: handle_event => stop_at_event
     procedure :: lands_on_step_end => never_on_step_end
     procedure :: rough_time => never_rough
-    procedure :: event_form => unknown_form
     procedure, non_overridable :: exchange_mode
     procedure :: exchange => exchange_mode
   end type ode_problem_t
@@ -161,17 +152,6 @@ contains
     end associate
     never_on_step_end = .false.
   end function never_on_step_end
-
-  !> Event function `index` in the present discrete state as a polynomial in the state. Where it is known, no passage inside a
-  !> step can be missed. The default is that it is not.
-  pure function unknown_form(self, index) result(form)
-    class(ode_problem_t), intent(in) :: self
-    integer, intent(in) :: index
-    type(event_form_t) :: form
-    associate (unused_self => self, unused_index => index)
-    end associate
-    form%known = .false.
-  end function unknown_form
 
   !> When an event is to be expected, by the tangent of its function at (t, y), that f does not approach smoothly but like a
   !> broken power of the distance: steps are shortened on the way there. The default is never: the largest number.

@@ -45,7 +45,6 @@ module radau
     procedure :: start
     procedure :: step
     procedure :: interpolate
-    procedure :: bernstein_form
     procedure :: land_on
     procedure :: exchange
   end type radau_t
@@ -339,17 +338,4 @@ contains
     call self%stages%polynomial((t - self%t_old)/(self%t - self%t_old), y)
     y = self%y_old + y
   end subroutine interpolate
-
-  !> From the increments at the stages, by divided differences.
-  pure subroutine bernstein_form(self, component, coefficients, degree)
-    class(radau_t), intent(inout) :: self
-    integer, intent(in) :: component
-    real(dp), intent(out) :: coefficients(0:)
-    integer, intent(out) :: degree
-    degree = self%stages%stages_done
-    coefficients(0) = self%y(component)
-    if (degree == 0) return
-    call self%stages%bernstein_form(component, coefficients(:degree))
-    coefficients(:degree) = self%y_old(component) + coefficients(:degree)
-  end subroutine bernstein_form
 end module radau

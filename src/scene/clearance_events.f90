@@ -127,22 +127,6 @@ contains
     lands_on_step_end = self%refuses_steps .and. index == begins .and. index <= self%n_joint_events
   end procedure lands_on_step_end
 
-  module procedure event_form
-    real(dp) :: outwards
-    logical :: touches
-    if (index > self%n_joint_events) then
-      form = self%gas_event_form(index - self%n_joint_events)
-      return
-    end if
-    touches = self%phase == phase_contact
-    form%known = .not. (index == sliding_changes .and. touches)
-    if (.not. form%known .or. index /= merge(ends, begins, touches)) return
-    outwards = merge(-1.0_dp, 1.0_dp, touches)
-    form%first = self%pin%position
-    form%constant = -outwards*self%joint%clearance**2
-    form%square = outwards
-  end procedure event_form
-
   module procedure rough_time
     real(dp) :: distance, product
     rough_time = huge(rough_time)

@@ -1,7 +1,7 @@
 !> The scene with clearance in the pin joint: free flight or film while apart, contact while touching.
 module clearance_scene
   use kinds, only: dp
-  use ode_problem, only: event_form_t, difference_jacobian
+  use ode_problem, only: difference_jacobian
   use mechanism, only: motion_t, turn_crank
   use dynamics, only: loads_t, pin_force_size, accelerations_under
   use ideal_joint, only: follow_crank, ideal_rod_acceleration
@@ -46,7 +46,6 @@ module clearance_scene
     procedure :: handle_event
     procedure :: lands_on_step_end
     procedure :: rough_time
-    procedure :: event_form
     procedure :: exchange
     procedure :: measure_joint
     procedure :: joint_loss
@@ -73,13 +72,6 @@ module clearance_scene
       class(clearance_scene_t), intent(in) :: self
       integer, intent(in) :: index
     end function lands_on_step_end
-
-    !> Contact begins and ends where e_x^2 + e_y^2 passes c^2. Functions of the other phase are constant.
-    pure module function event_form(self, index) result(form)
-      class(clearance_scene_t), intent(in) :: self
-      integer, intent(in) :: index
-      type(event_form_t) :: form
-    end function event_form
 
     !> When the contact ends, where the pin is on its way there: the force ends with the power 1.5 of the penetration.
     pure real(dp) module function rough_time(self, t, y)

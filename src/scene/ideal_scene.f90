@@ -1,7 +1,7 @@
 !> The scene with an ideal pin joint.
 module ideal_scene
   use kinds, only: dp
-  use ode_problem, only: event_continue, event_form_t
+  use ode_problem, only: event_continue
   use mechanism, only: turn_crank
   use dynamics, only: pin_force_size
   use ideal_joint, only: follow_crank, ideal_accelerations
@@ -24,7 +24,6 @@ module ideal_scene
     procedure :: claim
     procedure :: reported_event
     procedure :: events => crank_events
-    procedure :: event_form => crank_event_form
     procedure :: handle_event
   end type ideal_scene_t
 
@@ -106,13 +105,6 @@ contains
       call self%gas_events(self%start_angle + self%start_speed*t, self%start_speed, g, g_rate)
     end if
   end subroutine crank_events
-
-  pure function crank_event_form(self, index) result(form)
-    class(ideal_scene_t), intent(in) :: self
-    integer, intent(in) :: index
-    type(event_form_t) :: form
-    form = self%gas_event_form(index)
-  end function crank_event_form
 
   subroutine handle_event(self, index, t, y, action)
     class(ideal_scene_t), intent(inout) :: self

@@ -4,7 +4,7 @@
 !> one evaluation that feeds both the equations and the trace.
 module scene
   use kinds, only: dp
-  use ode_problem, only: ode_problem_t, event_form_t
+  use ode_problem, only: ode_problem_t
   use mechanism, only: mechanism_t, motion_t, accelerations_t
   use dynamics, only: drive_t, loads_t
   use clearance_joint, only: joint_motion_t
@@ -83,7 +83,6 @@ module scene
     procedure, non_overridable :: add_gas
     procedure :: gas_force_slope
     procedure :: gas_events
-    procedure :: gas_event_form
     procedure :: pass_gas_bound
     procedure, non_overridable :: exchange_phase
     procedure :: exchange => exchange_phase
@@ -301,18 +300,6 @@ contains
     g = [angle - self%gas%bound(self%gas_part), self%gas%bound(self%gas_part - 1) - angle]
     g_rate = [crank_speed, -crank_speed]
   end subroutine gas_events
-
-  !> Their form: linear in the first component, where that is the crank angle.
-  pure function gas_event_form(self, direction) result(form)
-    class(scene_t), intent(in) :: self
-    integer, intent(in) :: direction   !! forwards (1) or backwards (2)
-    type(event_form_t) :: form
-    form%known = self%drive%free_crank
-    if (.not. form%known) return
-    form%first = self%crank%position
-    form%linear(1) = merge(1, -1, direction == 1)
-    form%constant = -form%linear(1)*(self%gas_cycle_start + self%gas%bound(self%gas_part + 1 - direction))
-  end function gas_event_form
 
   !> Enter the next part of the gas cycle that is not empty, forwards (1) or backwards (2).
   subroutine pass_gas_bound(self, direction)
