@@ -14,8 +14,7 @@ program measure_costs
   use case_file, only: read_case
   use adams, only: adams_t
   use solver, only: integrate, observer_t, silent_observer_t, integration_done, step_limit_reached
-  use scene, only: scene_t, evaluation_t, phase_contact
-  use clearance_scene, only: clearance_scene_t
+  use gudgeon_scene, only: scene_t, evaluation_t, phase_contact
   use scene_builder, only: build_scene, settings_for, simulated_time
   use columns, only: column_list_t, choose_columns, row_values
   use ode_method, only: ode_method_t, step_done
@@ -64,7 +63,7 @@ contains
   subroutine make(name, quantity, case, scene)
     character(len=*), intent(in) :: name, quantity
     type(case_t), intent(out) :: case
-    class(scene_t), allocatable, intent(out) :: scene
+    type(scene_t), allocatable, intent(out) :: scene
     type(error_t), allocatable :: error
     character(len=*), parameter :: oscillating(2) = [character(len=40) :: 'lubrication.law=oscillating_film', &
       'lubrication.kinematic_viscosity=1.38e-5']
@@ -98,33 +97,30 @@ contains
   !> States along one compression stroke, the pin in the film, or touching where the scene does.
   subroutine make_states(name, scene, y)
     character(len=*), intent(in) :: name
-    class(scene_t), intent(inout) :: scene
+    type(scene_t), intent(inout) :: scene
     real(dp), allocatable, intent(out) :: y(:, :)
     real(dp) :: part, turn, reach
     integer :: i
 
-    if (allocated(scene%gas)) call scene%set_gas_part(1.5_dp*pi, 250.0_dp)
-    select type (scene)
-    class is (clearance_scene_t)
-      if (index(name, 'contact') == 1) then
-        scene%phase = phase_contact
-        scene%impact_speed = 0.1_dp
-        scene%sliding = 1
-      end if
-    end select
+    if (allocated(scene%gas)) call scene%gas%find_part(1.5_dp*pi, 250.0_dp)
+    if (index(name, 'contact') == 1) then
+      scene%joints(1)%phase = phase_contact
+      scene%joints(1)%impact_speed = 0.1_dp
+      scene%joints(1)%sliding = 1
+    end if
     allocate (y(scene%n, n_states), source=0.0_dp)
     do i = 1, n_states
       part = (i - 0.5_dp)/n_states
       y(scene%crank%position, i) = pi*(1.05_dp + 0.8_dp*part)
       y(scene%crank%rate, i) = 250
+      if (size(scene%joints) == 0) cycle
       turn = 40*part
       reach = 20e-6_dp*(0.1_dp + 0.8_dp*part)
-      if (scene%phase == phase_contact) reach = 20e-6_dp + 1e-6_dp*part
-      select type (scene)
-      class is (clearance_scene_t)
-        y(scene%pin%position:scene%pin%position + 1, i) = reach*[cos(turn), sin(turn)]
-        y(scene%pin%rate:scene%pin%rate + 1, i) = 2e-3_dp*[cos(3*turn), sin(5*turn)]
-      end select
+      if (scene%joints(1)%phase == phase_contact) reach = 20e-6_dp + 1e-6_dp*part
+      associate (at => scene%joints(1)%at)
+        y(at%position:at%position + 1, i) = reach*[cos(turn), sin(turn)]
+        y(at%rate:at%rate + 1, i) = 2e-3_dp*[cos(3*turn), sin(5*turn)]
+      end associate
     end do
   end subroutine make_states
 
@@ -132,7 +128,7 @@ contains
   subroutine measure(name, quantity)
     character(len=*), intent(in) :: name, quantity
     type(case_t) :: case
-    class(scene_t), allocatable :: scene
+    type(scene_t), allocatable :: scene
     real(dp), allocatable :: y(:, :)
     real(dp) :: ns(blocks), pair(blocks), evaluations
     integer :: i
@@ -195,7 +191,7 @@ contains
   !> Evaluations of the right-hand side, independent of each other or, as in an integration, `in_turn`: each at a state that waits
   !> for all results of the one before.
   real(dp) function time_of_evaluations(scene, y, count, in_turn) result(ns)
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: y(:, :)
     integer, intent(in) :: count
     logical, intent(in) :: in_turn
@@ -226,7 +222,7 @@ contains
   !> An evaluation for the trace and the values of its row, without their conversion to text.
   real(dp) function time_of_rows(case, scene, y, quantity, count) result(ns)
     type(case_t), intent(in) :: case
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: y(:, :)
     character(len=*), intent(in) :: quantity
     integer, intent(in) :: count
@@ -266,11 +262,11 @@ contains
   !> included.
   subroutine run_steps(case, template, with_figures, count, ns, evaluations)
     type(case_t), intent(in) :: case
-    class(scene_t), intent(in) :: template
+    type(scene_t), intent(in) :: template
     logical, intent(in) :: with_figures
     integer, intent(in) :: count
     real(dp), intent(out) :: ns, evaluations
-    class(scene_t), allocatable :: scene
+    type(scene_t), allocatable :: scene
     type(adams_t) :: method
     type(silent_observer_t) :: nobody
     type(recorder_t) :: recorder
@@ -310,7 +306,7 @@ contains
   !> events are sought twice.
   real(dp) function time_of_events(case, template, count) result(ns)
     type(case_t), intent(in) :: case
-    class(scene_t), intent(in) :: template
+    type(scene_t), intent(in) :: template
     integer, intent(in) :: count
     ns = time_of_searching(case, template, count, 2) - time_of_searching(case, template, count, 1)
   end function time_of_events
@@ -318,9 +314,9 @@ contains
   !> Nanoseconds of a step as `integrate` makes it, nobody looking on, whose events are sought `searches` times.
   real(dp) function time_of_searching(case, template, count, searches) result(ns)
     type(case_t), intent(in) :: case
-    class(scene_t), intent(in) :: template
+    type(scene_t), intent(in) :: template
     integer, intent(in) :: count, searches
-    class(scene_t), allocatable :: scene
+    type(scene_t), allocatable :: scene
     type(adams_t) :: method
     type(event_watch_t) :: watches(searches)
     integer(int64) :: before, after, rate
@@ -362,7 +358,7 @@ contains
 
   subroutine begin_all(watches, scene, t, y, just_taken)
     type(event_watch_t), intent(inout) :: watches(:)
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     integer, intent(in) :: just_taken
     integer :: i
@@ -404,7 +400,7 @@ contains
     character(len=*), intent(in) :: name, quantity
     integer, intent(in) :: count
     type(case_t) :: case
-    class(scene_t), allocatable :: scene
+    type(scene_t), allocatable :: scene
     real(dp), allocatable :: y(:, :)
     real(dp) :: ns, evaluations
 
@@ -447,7 +443,7 @@ contains
   real(dp) function time_of_integration(case, ideal_joint) result(ms)
     type(case_t), intent(in) :: case
     logical, intent(in) :: ideal_joint
-    class(scene_t), allocatable :: scene
+    type(scene_t), allocatable :: scene
     class(ode_method_t), allocatable :: method
     type(error_t), allocatable :: error
     type(silent_observer_t) :: nobody

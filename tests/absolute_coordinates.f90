@@ -3,8 +3,7 @@
 module absolute_coordinates
   use kinds, only: dp
   use ode_problem, only: ode_problem_t
-  use clearance_scene, only: clearance_scene_t
-  use scene, only: evaluation_t
+  use gudgeon_scene, only: scene_t, evaluation_t
   use state_making, only: put_crank, put_pin
   implicit none
   private
@@ -12,7 +11,7 @@ module absolute_coordinates
 
   !> y = (q, A, x, q', A', x'). The scene within is that of a free crank without quadratures of the joint.
   type, extends(ode_problem_t) :: absolute_coordinates_t
-    type(clearance_scene_t) :: scene
+    type(scene_t) :: scene
   contains
     procedure :: derivatives
     procedure :: eccentricity
@@ -22,7 +21,7 @@ contains
 
   !> A scene in these coordinates, and its initial state.
   subroutine in_absolute_coordinates(scene, problem, y)
-    type(clearance_scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     type(absolute_coordinates_t), intent(out) :: problem
     real(dp), intent(out) :: y(6)
     type(evaluation_t) :: now
@@ -40,7 +39,7 @@ contains
     class(absolute_coordinates_t), intent(in) :: self
     real(dp), intent(in) :: y(:)
     real(dp), intent(out) :: e(2), rate(2)
-    associate (r => self%scene%mechanism%crank_length, l => self%scene%mechanism%rod_length)
+    associate (r => self%scene%chain%bodies%crank%length, l => self%scene%chain%bodies%rod%length)
       e = [r*cos(y(1)) + l*cos(y(2)) - y(3), r*sin(y(1)) - l*sin(y(2))]
       rate = [-r*sin(y(1))*y(4) - l*sin(y(2))*y(5) - y(6), r*cos(y(1))*y(4) - l*cos(y(2))*y(5)]
     end associate

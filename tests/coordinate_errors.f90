@@ -7,9 +7,8 @@ module coordinate_errors
   use ode_problem, only: ode_problem_t
   use adams, only: adams_t
   use solver, only: integrate, integration_done
-  use scene, only: scene_t
+  use gudgeon_scene, only: scene_t
   use scene_builder, only: build_scene
-  use clearance_scene, only: clearance_scene_t
   use state_making, only: pin_of
   use absolute_coordinates, only: absolute_coordinates_t, in_absolute_coordinates
   use sampler, only: sampler_t
@@ -53,7 +52,7 @@ contains
     logical, intent(out) :: done
     type(case_t) :: case
     type(error_t), allocatable :: error
-    class(scene_t), allocatable :: scene
+    type(scene_t), allocatable :: scene
     type(absolute_coordinates_t) :: absolute
     type(adams_t) :: method
     type(sampler_t) :: sampler
@@ -69,35 +68,32 @@ contains
     span = revolutions*8*atan(1.0_dp)/case%initial%crank_speed
     sampler%interval = span/samples
     method%settings%span = span
-    select type (scene)
-    type is (clearance_scene_t)
-      if (way == own_coordinates) then
-        allocate (method%settings%absolute(scene%n), method%settings%relative(scene%n), source=tolerance)
-        call scene%layout%natural_scales(method%settings%absolute, growing(:scene%n))
-        method%settings%absolute = tolerance*method%settings%absolute
-        allocate (sampler%y(scene%n, samples))
-        call run(scene, method, scene%initial_state(), span, sampler, status)
-        do i = 1, samples
-          e(:, i) = pin_of(scene, sampler%y(:, i))
-        end do
-      else
-        call in_absolute_coordinates(scene, absolute, start)
-        allocate (method%settings%absolute(6), method%settings%relative(6), source=tolerance)
-        method%settings%absolute = tolerance*[0.1_dp, 0.1_dp, 1e-4_dp, 100.0_dp, 100.0_dp, 1.0_dp]
-        if (way == absolute_by_clearance) then
-          method%settings%relative = 0
-          method%settings%absolute(:3) = tolerance*scene%joint%clearance &
-            /[scene%mechanism%crank_length, scene%mechanism%rod_length, 1.0_dp]
-          method%settings%absolute(4:) = method%settings%absolute(:3)*case%initial%crank_speed
-        end if
-        allocate (sampler%y(6, samples))
-        call run(absolute, method, start, span, sampler, status)
-        do i = 1, samples
-          call absolute%eccentricity(sampler%y(:, i), e(:, i), rate)
-        end do
+    if (way == own_coordinates) then
+      allocate (method%settings%absolute(scene%n), method%settings%relative(scene%n), source=tolerance)
+      call scene%layout%natural_scales(method%settings%absolute, growing(:scene%n))
+      method%settings%absolute = tolerance*method%settings%absolute
+      allocate (sampler%y(scene%n, samples))
+      call run(scene, method, scene%initial_state(), span, sampler, status)
+      do i = 1, samples
+        e(:, i) = pin_of(scene, sampler%y(:, i))
+      end do
+    else
+      call in_absolute_coordinates(scene, absolute, start)
+      allocate (method%settings%absolute(6), method%settings%relative(6), source=tolerance)
+      method%settings%absolute = tolerance*[0.1_dp, 0.1_dp, 1e-4_dp, 100.0_dp, 100.0_dp, 1.0_dp]
+      if (way == absolute_by_clearance) then
+        method%settings%relative = 0
+        method%settings%absolute(:3) = tolerance*scene%joints(1)%bearing%clearance &
+          /[scene%chain%bodies%crank%length, scene%chain%bodies%rod%length, 1.0_dp]
+        method%settings%absolute(4:) = method%settings%absolute(:3)*case%initial%crank_speed
       end if
-      e = e/scene%joint%clearance
-    end select
+      allocate (sampler%y(6, samples))
+      call run(absolute, method, start, span, sampler, status)
+      do i = 1, samples
+        call absolute%eccentricity(sampler%y(:, i), e(:, i), rate)
+      end do
+    end if
+    e = e/scene%joints(1)%bearing%clearance
     evaluations = method%statistics%evaluations
     done = status == integration_done
   end subroutine places

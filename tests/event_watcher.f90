@@ -4,7 +4,7 @@ module event_watcher
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t
   use solver, only: observer_t
-  use scene, only: scene_t, event_none
+  use gudgeon_scene, only: scene_t, event_none
   implicit none
   private
   public :: event_watcher_t, most_instants

@@ -13,7 +13,7 @@ program integrator_battery
   use case_definition, only: case_t
   use case_file, only: read_case
   use errors, only: error_t
-  use scene, only: scene_t
+  use gudgeon_scene, only: scene_t
   use scene_builder, only: build_scene, settings_for
   use standard_problems, only: standard_problem_t, new_standard_problem, standard_settings, n_standard_problems, names
   use conditioning, only: condition_of
@@ -72,7 +72,7 @@ contains
     type(result_t), intent(out) :: got
     type(case_t) :: case
     type(error_t), allocatable :: error
-    class(scene_t), allocatable :: scene
+    type(scene_t), allocatable :: scene
     type(state_watcher_t) :: watcher
     character(len=60) :: overrides(3)
     real(dp), allocatable :: y(:)

@@ -14,7 +14,7 @@ program integrator_comparison
   use ode_method, only: ode_method_t, step_statistics_t
   use methods, only: new_method
   use solver, only: integrate, silent_observer_t
-  use scene, only: scene_t
+  use gudgeon_scene, only: scene_t
   use scene_builder, only: build_scene, settings_for, simulated_time
   use state_watcher, only: state_watcher_t, watched
   use event_watcher, only: event_watcher_t, most_instants
@@ -88,7 +88,7 @@ contains
     real(dp), intent(in) :: tolerance
     logical, intent(in) :: by_events, watches
     type(outcome_t), intent(out) :: got
-    class(scene_t), allocatable :: scene
+    type(scene_t), allocatable :: scene
     class(ode_method_t), allocatable :: method
     type(error_t), allocatable :: error
     type(state_watcher_t) :: states

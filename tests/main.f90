@@ -20,7 +20,7 @@ program gudgeon_tests
   use test_events, only: run_test_events
   use test_findings, only: run_test_findings
   use test_friction, only: run_test_friction
-  use test_mechanism, only: run_test_mechanism
+  use test_joint, only: run_test_joint
   use test_number_text, only: run_test_number_text
   use test_number_writer, only: run_test_number_writer
   use test_oscillating_film, only: run_test_oscillating_film
@@ -64,7 +64,7 @@ program gudgeon_tests
   call run('events', run_test_events)
   call run('findings', run_test_findings)
   call run('friction', run_test_friction)
-  call run('mechanism', run_test_mechanism)
+  call run('joint', run_test_joint)
   call run('number_text', run_test_number_text)
   call run('number_writer', run_test_number_writer)
   call run('oscillating_film', run_test_oscillating_film)

@@ -1,8 +1,8 @@
 !> States of a scene made by hand.
 module state_making
   use kinds, only: dp
-  use scene, only: scene_t
-  use clearance_scene, only: clearance_scene_t
+  use gudgeon_scene, only: scene_t
+  use chain_motion, only: piston_pin
   implicit none
   private
   public :: put_crank, put_pin, pin_of
@@ -11,35 +11,32 @@ contains
 
   !> Set the crank angle [rad] and speed [rad/s] in a state, where they are unknowns.
   pure subroutine put_crank(scene, y, angle, speed)
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(inout) :: y(:)
     real(dp), intent(in) :: angle, speed
-    if (.not. scene%drive%free_crank) return
+    if (.not. scene%chain%drive%free_crank) return
     y(scene%crank%position) = angle
     y(scene%crank%rate) = speed
   end subroutine put_crank
 
-  !> Set the eccentricity [m] and its rate [m/s] in a state.
+  !> Set the eccentricity [m] of the piston pin and its rate [m/s] in a state.
   pure subroutine put_pin(scene, y, eccentricity, rate)
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(inout) :: y(:)
     real(dp), intent(in) :: eccentricity(2), rate(2)
-    select type (scene)
-    class is (clearance_scene_t)
-      y(scene%pin%position:scene%pin%position + 1) = eccentricity
-      y(scene%pin%rate:scene%pin%rate + 1) = rate
-    end select
+    associate (at => scene%joints(scene%joint_at(piston_pin))%at)
+      y(at%position:at%position + 1) = eccentricity
+      y(at%rate:at%rate + 1) = rate
+    end associate
   end subroutine put_pin
 
-  !> The eccentricity in a state [m].
+  !> The eccentricity of the piston pin in a state [m].
   pure function pin_of(scene, y) result(eccentricity)
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: y(:)
     real(dp) :: eccentricity(2)
-    eccentricity = 0
-    select type (scene)
-    class is (clearance_scene_t)
-      eccentricity = y(scene%pin%position:scene%pin%position + 1)
-    end select
+    associate (at => scene%joints(scene%joint_at(piston_pin))%at)
+      eccentricity = y(at%position:at%position + 1)
+    end associate
   end function pin_of
 end module state_making

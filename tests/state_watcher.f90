@@ -4,7 +4,7 @@ module state_watcher
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t
   use solver, only: observer_t
-  use scene, only: scene_t, evaluation_t
+  use gudgeon_scene, only: scene_t, evaluation_t
   implicit none
   private
   public :: state_watcher_t, watched
@@ -45,10 +45,10 @@ contains
       call problem%evaluate(t, y, now, inside)
       associate (m => now%motion)
         self%values = [m%crank_angle, atan2(m%sin_rod, m%cos_rod), m%piston_position, m%crank_speed, m%rod_speed, &
-          m%piston_velocity, now%joint%eccentricity]
+          m%piston_velocity, now%relative(1)%eccentricity]
       end associate
       self%largest = max(self%largest, abs(self%values))
-      associate (r => problem%mechanism%crank_length, l => problem%mechanism%rod_length, v => self%values)
+      associate (r => problem%chain%bodies%crank%length, l => problem%chain%bodies%rod%length, v => self%values)
         self%rebuilt = max(self%rebuilt, abs(r*cos(v(1)) + l*cos(v(2)) - v(3) - v(7)), abs(r*sin(v(1)) - l*sin(v(2)) - v(8)))
       end associate
     end select

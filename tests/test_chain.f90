@@ -89,13 +89,14 @@ contains
     real(dp), intent(in) :: z(5), z_rate(5)
     type(motion_t), intent(out) :: motion
     logical, intent(out) :: reachable
-    associate (r => chain%bodies%crank%length, l => chain%bodies%rod%length, o => z(2:3) + z(4:5), &
-               o_rate => z_rate(2:3) + z_rate(4:5))
+    associate (r => chain%bodies%crank%length, l => chain%bodies%rod%length)
       call turn_crank(motion, z(1), z_rate(1))
       motion%crank_pin = z(2:3)
       motion%crank_pin_rate = z_rate(2:3)
-      call follow_rod(r, 1/l, o, o_rate, motion, reachable)
-      if (reachable) call follow_piston(r, l, o, o_rate, motion)
+      motion%offset = z(2:3) + z(4:5)
+      motion%offset_rate = z_rate(2:3) + z_rate(4:5)
+      call follow_rod(r, 1/l, motion, reachable)
+      if (reachable) call follow_piston(r, l, motion)
     end associate
   end subroutine move
 
@@ -218,13 +219,14 @@ contains
     type(motion_t) :: motion
     type(loads_t) :: loads, more, added, completed
     type(accelerations_t) :: a, b, difference
-    real(dp) :: z(5), z_rate(5), moment, worst, worst_load
+    real(dp) :: z(5), z_rate(5), moment, same, change, worst, worst_load, worst_moment
     integer :: piece, i
 
     call random%begin(19)
     do piece = 0, 3
       worst = 0
       worst_load = 0
+      worst_moment = 0
       do i = 1, trials
         call draw(random, piece, chain, motion, loads, z, z_rate)
         added%gas_force = 700
@@ -232,17 +234,19 @@ contains
         added%moment = merge(1, 0, chain%is_loose)*[3.0_dp, -2.0_dp]
         more = loads_t(loads%force + added%force, loads%moment + added%moment, loads%gas_force + added%gas_force)
         call chain%accelerate(motion, loads, a, moment)
-        call chain%accelerate(motion, more, b, moment)
-        call chain%response(motion, added, difference)
+        call chain%accelerate(motion, more, b, same)
+        call chain%response(motion, added, difference, change)
         worst = max(worst, maxval(abs(in_common_units(chain, b) - in_common_units(chain, a) &
           - in_common_units(chain, difference))) &
           /maxval(abs(in_common_units(chain, b))))
+        worst_moment = max(worst_moment, abs(same - moment - change)/(abs(moment) + abs(same) + 1))
         completed = more
         call chain%complete_loads(motion, b, completed)
         worst_load = max(worst_load, maxval(abs(completed%force(:, piston_pin) - more%force(:, piston_pin))) &
           /maxval(abs(completed%force)))
       end do
       call check%close_to(worst, 0.0_dp, 1e-11_dp, trim(pieces(piece))//': response to a load')
+      call check%close_to(worst_moment, 0.0_dp, 1e-10_dp, trim(pieces(piece))//': response of the moment on the crank')
       call check%close_to(worst_load, 0.0_dp, 1e-11_dp, trim(pieces(piece))//': load of the piston pin')
     end do
   end subroutine loads_respond_linearly

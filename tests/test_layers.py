@@ -16,7 +16,7 @@ SRC = Path(__file__).resolve().parent.parent / "src"
 LAYERS = [
     ["base"],
     ["ode", "model", "integrator"],
-    ["chain", "mechanism", "contact", "friction", "film", "gas"],
+    ["chain", "contact", "friction", "film", "gas"],
     ["joint"],
     ["scene"],
     ["io"],

@@ -14,8 +14,7 @@ module test_radau
   use pinkus_sternlicht, only: pinkus_sternlicht_t
   use bearing, only: bearing_t
   use lankarani_nikravesh, only: lankarani_nikravesh_t
-  use scene, only: scene_t, phase_contact, phase_film
-  use clearance_scene, only: clearance_scene_t
+  use gudgeon_scene, only: scene_t, phase_contact, phase_film
   use state_making, only: put_crank, put_pin
   use scene_builder, only: build_scene
   use solver, only: integrate, silent_observer_t, integration_done
@@ -252,7 +251,7 @@ contains
     logical, parameter :: touches(5) = [.false., .false., .true., .true., .false.]
     type(case_t) :: case
     type(error_t), allocatable :: error
-    class(scene_t), allocatable :: scene
+    type(scene_t), allocatable :: scene
     real(dp), allocatable :: y(:), a_p(:, :), a_v(:, :), b_p(:, :), b_v(:, :), scale(:, :)
     real(dp) :: c
     integer :: i, m, trial
@@ -264,11 +263,8 @@ contains
       c = case%joint%clearance
       y = scene%initial_state()
       allocate (a_p(m, m), a_v(m, m), b_p(m, m), b_v(m, m), scale(m, m))
-      select type (scene)
-      type is (clearance_scene_t)
-        if (touches(i)) scene%phase = phase_contact
-        scene%impact_speed = 0.8_dp
-      end select
+      if (touches(i)) scene%joints(1)%phase = phase_contact
+      scene%joints(1)%impact_speed = 0.8_dp
       do trial = 1, 6
         call put_pin(scene, y, merge(1.1_dp, 0.55_dp, touches(i))*c*[cos(1.0_dp*trial), sin(1.0_dp*trial)], &
           [0.03_dp*cos(2.3_dp*trial), 0.02_dp*sin(3.1_dp*trial)])

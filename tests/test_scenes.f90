@@ -5,8 +5,7 @@ module test_scenes
   use errors, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
-  use scene, only: scene_t, evaluation_t, phase_contact, event_contact_begins, event_contact_ends
-  use clearance_scene, only: clearance_scene_t
+  use gudgeon_scene, only: scene_t, evaluation_t, phase_contact, event_contact_begins, event_contact_ends
   use state_making, only: put_crank, put_pin
   use ode_method, only: ode_settings_t, step_too_small
   use scene_builder, only: build_scene, settings_for
@@ -125,7 +124,7 @@ contains
     class(checks_t), intent(inout) :: check
     type(case_t) :: case
     type(error_t), allocatable :: error
-    class(scene_t), allocatable :: scene
+    type(scene_t), allocatable :: scene
     type(evaluation_t) :: now, ahead, behind
     real(dp), allocatable :: y(:), f(:)
     real(dp) :: t, dt
@@ -144,19 +143,16 @@ contains
       y = scene%initial_state()
       call put_pin(scene, y, 1.02_dp*case%joint%clearance*[cos(1.3_dp*i), sin(1.3_dp*i)], &
         [0.4_dp*cos(2.1_dp*i), 0.3_dp*sin(1.7_dp*i)])
-      select type (scene)
-      type is (clearance_scene_t)
-        scene%phase = phase_contact
-        scene%impact_speed = 1
-        scene%sliding = 0
-      end select
+      scene%joints(1)%phase = phase_contact
+      scene%joints(1)%impact_speed = 1
+      scene%joints(1)%sliding = 0
       t = 1e-3_dp*i
       call scene%derivatives(t, y, f, inside)
       call scene%evaluate(t, y, now, inside)
       call scene%evaluate(t + dt, y + dt*f(:scene%n), ahead, inside)
       call scene%evaluate(t - dt, y - dt*f(:scene%n), behind, inside)
-      call check%that(abs(now%friction_force) > 1, 'it takes a force to stick')
-      call check%close_to((ahead%joint%sliding_speed - behind%joint%sliding_speed)/(2*dt), 0.0_dp, 1e-2_dp, &
+      call check%that(abs(now%joint(1)%friction_force) > 1, 'it takes a force to stick')
+      call check%close_to((ahead%relative(1)%sliding_speed - behind%relative(1)%sliding_speed)/(2*dt), 0.0_dp, 1e-2_dp, &
         'the sliding speed of a pin that sticks does not change [m/s2]')
       deallocate (y, f)
     end do
@@ -167,7 +163,7 @@ contains
     class(checks_t), intent(inout) :: check
     type(case_t) :: case
     type(error_t), allocatable :: error
-    class(scene_t), allocatable :: scene
+    type(scene_t), allocatable :: scene
     type(evaluation_t) :: now
     real(dp), allocatable :: y(:)
     logical :: inside
@@ -180,8 +176,8 @@ contains
     call scene%evaluate(0.0_dp, y, now, inside)
     call check%that(.not. inside, 'the film is not defined beyond the wall')
     call check%relative(now%motion%crank_angle, 0.4_dp, 1e-15_dp, 'but the crank angle is')
-    call check%relative(now%joint%penetration, 5e-5_dp - case%joint%clearance, 1e-12_dp, 'and the penetration')
-    call check%relative(now%joint%penetration_rate, 0.5_dp, 1e-12_dp, 'and its rate')
+    call check%relative(now%relative(1)%penetration, 5e-5_dp - case%joint%clearance, 1e-12_dp, 'and the penetration')
+    call check%relative(now%relative(1)%penetration_rate, 0.5_dp, 1e-12_dp, 'and its rate')
     call put_pin(scene, y, [0.0_dp, -1.0_dp], [0.0_dp, 0.0_dp])
     call scene%evaluate(0.0_dp, y, now, inside)
     call check%that(.not. inside, 'the rod cannot reach')
@@ -288,12 +284,12 @@ contains
     class(checks_t), intent(inout) :: check
     type(case_t) :: case
     type(error_t), allocatable :: error
-    class(scene_t), allocatable :: scene
+    type(scene_t), allocatable :: scene
     type(ode_settings_t) :: settings
     real(dp), allocatable :: y(:)
     call read_case('cases/flores/dry_0100um.nml', [character(len=long) :: 'initial.eccentricity=1e-3,0'], case, error)
     call build_scene(case, .false., scene, error)
-    call check%that(scene%phase == phase_contact, 'the pin starts in contact')
+    call check%that(scene%joints(1)%phase == phase_contact, 'the pin starts in contact')
     settings = settings_for(case, scene)
     allocate (y(scene%n))
     y = scene%initial_state()

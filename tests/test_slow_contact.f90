@@ -5,7 +5,7 @@ module test_slow_contact
   use checks, only: checks_t
   use contact_stiffness, only: hertz_stiffness
   use lankarani_nikravesh, only: lankarani_nikravesh_t
-  use scene, only: event_contact_begins
+  use gudgeon_scene, only: event_contact_begins
   use free_impact, only: speed_given_back, exact_restitution
   use collecting_sink, only: trace_t, run_case, column
   implicit none

@@ -6,7 +6,7 @@ module test_trace_files
   use columns, only: column_list_t
   use trace_files, only: trace_files_t
   use trace_sink, only: trace_event_t
-  use scene, only: event_contact_begins, event_contact_ends
+  use gudgeon_scene, only: event_contact_begins, event_contact_ends
   use posix, only: make_directory, remove_directory, remove_file
   use checks, only: checks_t
   implicit none

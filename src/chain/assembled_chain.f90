@@ -47,8 +47,8 @@ contains
       acting%force(:, pin) = 0
       acting%moment(pin) = 0
     end do
-    equations%n = at%n
-    call make_crank(bodies, drive, acting, motion, crank)
+    call equations%begin(at%n)
+    call make_crank(bodies, drive, acting, motion, at, crank)
     call make_rod(bodies, acting, motion, at, rod)
     call make_piston(bodies, acting, motion, at, rod, piston)
     call equations%add(crank)
@@ -66,15 +66,16 @@ contains
   end subroutine accelerate_assembled
 
   !> The crank: q'.
-  pure subroutine make_crank(bodies, drive, loads, motion, body)
+  pure subroutine make_crank(bodies, drive, loads, motion, at, body)
     type(bodies_t), intent(in) :: bodies
     type(drive_t), intent(in) :: drive
     type(loads_t), intent(in) :: loads
     type(motion_t), intent(in) :: motion
+    type(coordinates_t), intent(in) :: at
     type(body_t), intent(out) :: body
     real(dp) :: com_by_angle(2), pin_by_angle(2)
     associate (crank => bodies%crank, s => motion%sin_crank, c => motion%cos_crank)
-      body%n = 1
+      call body%begin(1, at%n)
       body%map(1, 1) = 1
       body%mass(1, 1) = crank%inertia + crank%mass*(crank%com(1)**2 + crank%com(2)**2)
       com_by_angle = [-crank%com(1)*s - crank%com(2)*c, crank%com(1)*c - crank%com(2)*s]
@@ -98,7 +99,7 @@ contains
     a_rate = motion%rod_speed
     associate (r => bodies%crank%length, rod => bodies%rod, sq => motion%sin_crank, cq => motion%cos_crank, &
                sa => motion%sin_rod, ca => motion%cos_rod)
-      body%n = 3
+      call body%begin(3, at%n)
       ! A by L sin A = R sin q - o_y
       per_arm = 1/(rod%length*ca)
       body%map(:3, 1) = [-r*sq, r*cq, r*cq*per_arm]
@@ -136,7 +137,7 @@ contains
     real(dp) :: across, along
     along = bodies%rod%length*motion%cos_rod
     across = bodies%rod%length*motion%sin_rod
-    body%n = 1
+    call body%begin(1, at%n)
     body%map(1, :at%n) = rod%map(1, :at%n) - across*rod%map(3, :at%n)
     body%bias(1) = rod%bias(1) - across*rod%bias(3) - along*motion%rod_speed**2
     if (at%pin(piston_pin) > 0) body%map(1, at%pin(piston_pin)) = body%map(1, at%pin(piston_pin)) - 1

@@ -18,26 +18,49 @@ module assembly
   integer, parameter :: most_coordinates = 24   !! of a chain
   integer, parameter :: most_velocities = 20    !! of a body
 
-  !> One body, as the chain moves it.
+  !> One body, as the chain moves it. `begin` sets as many numbers to 0 as it has.
   type :: body_t
-    integer :: n = 0                                              !! velocities
-    real(dp) :: map(most_velocities, most_coordinates) = 0        !! J: velocities by the rates of the coordinates
-    real(dp) :: bias(most_velocities) = 0                         !! b: accelerations where those of the coordinates vanish
-    real(dp) :: mass(most_velocities, most_velocities) = 0        !! M
-    real(dp) :: load(most_velocities) = 0                         !! Q
+    integer :: n = 0                                          !! velocities
+    real(dp) :: map(most_velocities, most_coordinates)        !! J: velocities by the rates of the coordinates
+    real(dp) :: bias(most_velocities)                         !! b: accelerations where those of the coordinates vanish
+    real(dp) :: mass(most_velocities, most_velocities)        !! M
+    real(dp) :: load(most_velocities)                         !! Q
+  contains
+    procedure :: begin => begin_body
   end type body_t
 
-  !> mass z'' = force.
+  !> mass z'' = force, for n coordinates.
   type :: equations_t
     integer :: n = 0
-    real(dp) :: mass(most_coordinates, most_coordinates) = 0
-    real(dp) :: force(most_coordinates) = 0
+    real(dp) :: mass(most_coordinates, most_coordinates)
+    real(dp) :: force(most_coordinates)
   contains
+    procedure :: begin
     procedure :: add
     procedure :: solve
   end type equations_t
 
 contains
+
+  pure subroutine begin_body(self, n, n_coordinates)
+    class(body_t), intent(inout) :: self
+    integer, intent(in) :: n               !! velocities
+    integer, intent(in) :: n_coordinates   !! of the chain
+    self%n = n
+    self%map(:n, :n_coordinates) = 0
+    self%bias(:n) = 0
+    self%mass(:n, :n) = 0
+    self%load(:n) = 0
+  end subroutine begin_body
+
+  !> No bodies yet.
+  pure subroutine begin(self, n)
+    class(equations_t), intent(inout) :: self
+    integer, intent(in) :: n   !! coordinates
+    self%n = n
+    self%mass(:n, :n) = 0
+    self%force(:n) = 0
+  end subroutine begin
 
   !> Add a body.
   pure subroutine add(self, body)

@@ -2,14 +2,15 @@
 !> a closed form on one page.
 module gudgeon_chain
   use kinds, only: dp
-  use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, n_pins
+  use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, n_pins, follow_rod, follow_piston
   use chain_bodies, only: bodies_t, drive_t, weightless
   use chain_loads, only: loads_t
   use chain_reactions, only: reactions_t, reactions_of
   use ideal_chain, only: accelerate_ideal_chain
-  use crank_rod, only: accelerate_crank_rod
+  use crank_rod, only: accelerate_crank_rod, respond_crank_rod
   use rod_piston, only: accelerate_rod_piston
   use free_rod, only: accelerate_free_rod
+  use assembled_chain, only: accelerate_assembled
   implicit none
   private
   public :: chain_t
@@ -20,6 +21,8 @@ module gudgeon_chain
     logical :: is_loose(n_pins) = .false.   !! pins with clearance
   contains
     procedure, non_overridable :: accelerate
+    procedure, non_overridable :: move_rod
+    procedure, non_overridable :: move_piston
     procedure :: response
     procedure :: complete_loads
     procedure :: reactions
@@ -49,24 +52,39 @@ contains
     end if
   end subroutine accelerate
 
-  !> What a load adds to the accelerations, in which all loads are linear: the bodies at rest, nothing else acting.
-  pure subroutine response(self, motion, loads, accelerations)
+  !> The rod of a motion whose crank and offset are known. `reachable` is false where it cannot be.
+  pure subroutine move_rod(self, motion, reachable)
+    class(chain_t), intent(in) :: self
+    type(motion_t), intent(inout) :: motion
+    logical, intent(out) :: reachable
+    call follow_rod(self%bodies%crank%length, self%bodies%per_rod_length, motion, reachable)
+  end subroutine move_rod
+
+  !> The piston of a motion whose crank and rod are known.
+  pure subroutine move_piston(self, motion)
+    class(chain_t), intent(in) :: self
+    type(motion_t), intent(inout) :: motion
+    call follow_piston(self%bodies%crank%length, self%bodies%rod%length, motion)
+  end subroutine move_piston
+
+  !> What a load of loose pins or of the gas adds to the accelerations and to the moment on the crank, in which all loads are linear:
+  !> the bodies at rest, nothing else acting. By the general assembly, but for the piece that scenes of one joint have.
+  pure subroutine response(self, motion, loads, accelerations, crank_moment)
     class(chain_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
     type(loads_t), intent(in) :: loads
     type(accelerations_t), intent(out) :: accelerations
-    type(chain_t) :: bare
+    real(dp), intent(out) :: crank_moment
     type(motion_t) :: rest
-    type(loads_t) :: acting
-    real(dp) :: unused_moment
-    bare = self
-    bare%bodies = weightless(self%bodies)
-    bare%drive%torque = 0
+    if (self%is_loose(piston_pin) .and. .not. self%is_loose(crank_pin)) then
+      call respond_crank_rod(self%bodies, self%drive, loads, motion, accelerations, crank_moment)
+      return
+    end if
     rest = motion
     rest%crank_speed = 0
     rest%rod_speed = 0
-    acting = loads
-    call bare%accelerate(rest, acting, accelerations, unused_moment)
+    call accelerate_assembled(weightless(self%bodies), drive_t(self%drive%free_crank), self%is_loose, loads, rest, accelerations, &
+      crank_moment)
   end subroutine response
 
   !> The loads of ideal pins, from the bodies' accelerations.

@@ -128,8 +128,9 @@ contains
     call self%coupling(motion, m12, slope)
     kinetic_energy = 0.5_dp*(self%crank_term*motion%crank_speed**2 + self%rod_term*motion%rod_speed**2 &
       + self%piston%mass*motion%piston_velocity**2) + m12*motion%crank_speed*motion%rod_speed
-    ! a big end that does not move with the crank pin
     slip = -motion%crank_pin_rate
+    if (abs(slip(1)) + abs(slip(2)) <= 0) return
+    ! a big end that does not move with the crank pin
     turned = [-self%rod%com(1)*motion%sin_rod + self%rod%com(2)*motion%cos_rod, &
       -self%rod%com(1)*motion%cos_rod - self%rod%com(2)*motion%sin_rod]
     kinetic_energy = kinetic_energy + self%rod%mass*dot_product(slip, 0.5_dp*slip &

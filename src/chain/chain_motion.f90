@@ -14,7 +14,7 @@ module chain_motion
   implicit none
   private
   public :: motion_t, accelerations_t, crank_pin, piston_pin, n_pins
-  public :: turn_crank, follow_rod, follow_piston, rod_angle_acceleration
+  public :: turn_crank, follow_rod, follow_piston
 
   !> The pins of the chain.
   integer, parameter :: crank_pin = 1    !! journal on the crank, bearing in the rod
@@ -32,6 +32,8 @@ module chain_motion
     real(dp) :: piston_velocity     !! [m/s]
     real(dp) :: crank_pin(2)        !! c, eccentricity at the crank pin [m], 0 where it is ideal
     real(dp) :: crank_pin_rate(2)   !! [m/s]
+    real(dp) :: offset(2)           !! o = c + e [m]
+    real(dp) :: offset_rate(2)      !! [m/s]
   end type motion_t
 
   !> Accelerations of the three bodies.
@@ -54,38 +56,29 @@ contains
     motion%crank_speed = crank_speed
   end subroutine turn_crank
 
-  !> The rod of a motion whose crank is known, at an offset o [m] and its rate. `reachable` is false where the piston pin cannot
-  !> be, |R sin q - o_y| >= L.
-  pure subroutine follow_rod(crank_length, per_rod_length, offset, offset_rate, motion, reachable)
+  !> The rod of a motion whose crank and offset are known. `reachable` is false where the piston pin cannot be,
+  !> |R sin q - o_y| >= L.
+  pure subroutine follow_rod(crank_length, per_rod_length, motion, reachable)
     real(dp), intent(in) :: crank_length, per_rod_length   !! R [m], 1/L [1/m]
-    real(dp), intent(in) :: offset(2), offset_rate(2)
     type(motion_t), intent(inout) :: motion
     logical, intent(out) :: reachable
     real(dp) :: gap
-    motion%sin_rod = (crank_length*motion%sin_crank - offset(2))*per_rod_length
+    motion%sin_rod = (crank_length*motion%sin_crank - motion%offset(2))*per_rod_length
     gap = (1 - motion%sin_rod)*(1 + motion%sin_rod)
     reachable = gap > 0
     if (.not. reachable) return
     motion%cos_rod = sqrt(gap)
     ! over cos A = cos A/gap: the division need not wait for the root
-    motion%rod_speed = (crank_length*motion%cos_crank*motion%crank_speed - offset_rate(2))*per_rod_length/gap*motion%cos_rod
+    motion%rod_speed = (crank_length*motion%cos_crank*motion%crank_speed - motion%offset_rate(2))*per_rod_length/gap &
+      *motion%cos_rod
   end subroutine follow_rod
 
   !> The piston of a motion whose crank and rod are known.
-  pure subroutine follow_piston(crank_length, rod_length, offset, offset_rate, motion)
+  pure subroutine follow_piston(crank_length, rod_length, motion)
     real(dp), intent(in) :: crank_length, rod_length       !! R, L [m]
-    real(dp), intent(in) :: offset(2), offset_rate(2)      !! o [m] and its rate
     type(motion_t), intent(inout) :: motion
-    motion%piston_position = crank_length*motion%cos_crank + rod_length*motion%cos_rod - offset(1)
+    motion%piston_position = crank_length*motion%cos_crank + rod_length*motion%cos_rod - motion%offset(1)
     motion%piston_velocity = -crank_length*motion%sin_crank*motion%crank_speed - rod_length*motion%sin_rod*motion%rod_speed &
-      - offset_rate(1)
+      - motion%offset_rate(1)
   end subroutine follow_piston
-
-  !> A'' where q'' and o'' vanish [rad/s^2].
-  pure real(dp) function rod_angle_acceleration(crank_length, rod_length, motion)
-    real(dp), intent(in) :: crank_length, rod_length       !! R, L [m]
-    type(motion_t), intent(in) :: motion
-    rod_angle_acceleration = (rod_length*motion%sin_rod*motion%rod_speed**2 &
-      - crank_length*motion%sin_crank*motion%crank_speed**2)/(rod_length*motion%cos_rod)
-  end function rod_angle_acceleration
 end module chain_motion

@@ -13,7 +13,7 @@ module crank_rod
   use chain_loads, only: loads_t
   implicit none
   private
-  public :: accelerate_crank_rod
+  public :: accelerate_crank_rod, respond_crank_rod
 
 contains
 
@@ -57,4 +57,32 @@ contains
         + (crank(1)*accelerations%crank - rod(1)*accelerations%rod)
     end associate
   end subroutine accelerate_crank_rod
+
+  !> What a load of the piston pin and of the gas adds to the accelerations and to the moment on the crank.
+  pure subroutine respond_crank_rod(bodies, drive, loads, motion, accelerations, crank_moment)
+    type(bodies_t), intent(in) :: bodies
+    type(drive_t), intent(in) :: drive
+    type(loads_t), intent(in) :: loads
+    type(motion_t), intent(in) :: motion
+    type(accelerations_t), intent(out) :: accelerations
+    real(dp), intent(out) :: crank_moment
+    real(dp) :: m12, slope, on_crank, on_rod, crank(2), rod(2)
+
+    call bodies%coupling(motion, m12, slope)
+    crank = bodies%crank%length*[motion%cos_crank, motion%sin_crank]
+    rod = bodies%rod%length*[motion%cos_rod, motion%sin_rod]
+    associate (f => loads%force(:, piston_pin))
+      on_crank = f(2)*crank(1) - f(1)*crank(2)
+      on_rod = -(loads%moment(piston_pin) + f(1)*rod(2) + f(2)*rod(1))
+      accelerations%crank = 0
+      crank_moment = 0
+      if (drive%free_crank) accelerations%crank = (on_crank*bodies%rod_term - on_rod*m12)/(bodies%inertia_product - m12**2)
+      accelerations%rod = (on_rod - m12*accelerations%crank)/bodies%rod_term
+      if (.not. drive%free_crank) crank_moment = m12*accelerations%rod - on_crank
+      accelerations%piston = -(loads%gas_force + f(1))*bodies%per_piston_mass
+      accelerations%pin(:, crank_pin) = 0
+      accelerations%pin(1, piston_pin) = -(crank(2)*accelerations%crank + rod(2)*accelerations%rod) - accelerations%piston
+      accelerations%pin(2, piston_pin) = crank(1)*accelerations%crank - rod(1)*accelerations%rod
+    end associate
+  end subroutine respond_crank_rod
 end module crank_rod

@@ -6,7 +6,7 @@ module ideal_chain
   use chain_loads, only: loads_t
   implicit none
   private
-  public :: accelerate_ideal_chain, ideal_motion
+  public :: accelerate_ideal_chain, ideal_motion, ideal_rod
 
 contains
 
@@ -15,14 +15,29 @@ contains
     type(bodies_t), intent(in) :: bodies
     real(dp), intent(in) :: q, crank_speed
     type(motion_t) :: motion
-    real(dp), parameter :: none(2) = 0
     logical :: reachable
     call turn_crank(motion, q, crank_speed)
-    call follow_rod(bodies%crank%length, bodies%per_rod_length, none, none, motion, reachable)
-    call follow_piston(bodies%crank%length, bodies%rod%length, none, none, motion)
     motion%crank_pin = 0
     motion%crank_pin_rate = 0
+    motion%offset = 0
+    motion%offset_rate = 0
+    call follow_rod(bodies%crank%length, bodies%per_rod_length, motion, reachable)
+    call follow_piston(bodies%crank%length, bodies%rod%length, motion)
   end function ideal_motion
+
+  !> A' [rad/s] of a rod with ideal pins, and its A'' [rad/s^2] at constant crank speed, where the crank is that of `motion`.
+  pure subroutine ideal_rod(bodies, motion, speed, acceleration)
+    type(bodies_t), intent(in) :: bodies
+    type(motion_t), intent(in) :: motion
+    real(dp), intent(out) :: speed, acceleration
+    real(dp) :: sine, gap, per_arm, ratio
+    sine = bodies%crank%length*motion%sin_crank*bodies%per_rod_length
+    gap = (1 - sine)*(1 + sine)
+    per_arm = bodies%per_rod_length/gap*sqrt(gap)
+    ratio = bodies%crank%length*motion%cos_crank*per_arm
+    speed = ratio*motion%crank_speed
+    acceleration = bodies%rod%length*sine*per_arm*((ratio - 1)*(ratio + 1))*motion%crank_speed**2
+  end subroutine ideal_rod
 
   !> Accelerations from the one equation in q that remains (virtual work of the three bodies: the pins do none), the force of the
   !> piston pin's joint from the piston equation and (3.80), and the moment on the crank (see `accelerate_crank_rod`).

@@ -9,7 +9,7 @@ module case_runner
   use case_rules, only: case_warning
   use command_line, only: command_line_t
   use columns, only: column_list_t, choose_columns
-  use scene, only: scene_t
+  use gudgeon_scene, only: scene_t
   use scene_builder, only: build_scene
   use case_run, only: case_run_t, name_file
   use result_file, only: result_file_t
@@ -54,7 +54,7 @@ contains
     type(case_values_t) :: values
     type(case_t) :: case
     type(column_list_t) :: list, ideal_list
-    class(scene_t), allocatable :: scene
+    type(scene_t), allocatable :: scene
     character(len=:), allocatable :: base, text
     character(len=identity_length) :: identity
 

@@ -1,10 +1,11 @@
 !> The columns of a trace: their names with units, which of them a scene has, and their values.
 module columns
   use kinds, only: dp
-  use scene, only: scene_t, evaluation_t, phase_film
+  use gudgeon_scene, only: scene_t, evaluation_t
   use case_definition, only: case_t
   use errors, only: error_t, fail, status_case_file
-  use reactions, only: reactions_t, reactions_of
+  use chain_motion, only: piston_pin
+  use chain_reactions, only: reactions_t
   implicit none
   private
   public :: column_list_t, choose_columns, row_values, column_name
@@ -113,7 +114,7 @@ contains
   !> What takes work and is not in the list is left out.
   pure subroutine row_values(list, scene, t, now, work, initial_energy, values)
     type(column_list_t), intent(in) :: list
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t                !! [s]
     type(evaluation_t), intent(in) :: now
     real(dp), intent(in) :: work             !! [J]
@@ -123,7 +124,7 @@ contains
     type(reactions_t) :: reaction
     integer :: i
 
-    associate (m => now%motion, a => now%accelerations, joint => now%joint, v => all_values)
+    associate (m => now%motion, a => now%accelerations, v => all_values)
       v(1) = t
       v(2) = m%crank_angle
       v(3) = 0
@@ -136,9 +137,9 @@ contains
       v(9) = a%rod
       v(10) = a%piston
       v(11) = now%crank_moment
-      v(12:13) = now%loads%pin_force
+      v(12:13) = now%loads%force(:, piston_pin)
       if (list%needs_reactions) then
-        reaction = reactions_of(scene%mechanism, now%loads, m, a)
+        reaction = scene%chain%reactions(m, a, now%loads)
         v(14:15) = reaction%crankpin
         v(16:17) = reaction%crank_bearing
         v(18) = reaction%guide
@@ -147,18 +148,20 @@ contains
       v(21) = 0
       if (list%needs_energy) v(21) = scene%energy(m)
       v(22) = v(21) - initial_energy - work
-      v(23:24) = joint%eccentricity
-      v(25) = joint%distance/list%clearance
-      v(26) = -joint%penetration
-      v(27) = scene%phase
-      v(28) = now%normal_force
-      v(29) = now%friction_force
-      v(30) = joint%sliding_speed
-      v(31:32) = 0
-      if (scene%phase == phase_film) v(31:32) = now%loads%pin_force
+      i = scene%joint_at(piston_pin)
+      if (i > 0) then
+        v(23:24) = now%relative(i)%eccentricity
+        v(25) = now%relative(i)%distance/list%clearance
+        v(26) = -now%relative(i)%penetration
+        v(27) = scene%joints(i)%phase
+        v(28) = now%joint(i)%normal_force
+        v(29) = now%joint(i)%friction_force
+        v(30) = now%relative(i)%sliding_speed
+        v(31:32) = now%joint(i)%film
+      end if
       if (allocated(scene%gas)) then
         v(33) = now%cylinder_pressure
-        v(34) = scene%gas%cylinder%volume_at(m%sin_crank, m%cos_crank)
+        v(34) = scene%gas%cycle%cylinder%volume_at(m%sin_crank, m%cos_crank)
         v(35) = now%loads%gas_force
       end if
     end associate

@@ -7,7 +7,8 @@ module cycle_watch
   use kinds, only: dp
   use constants, only: two_pi
   use ode_method, only: ode_method_t
-  use scene, only: scene_t, evaluation_t, phase_contact
+  use chain_motion, only: piston_pin
+  use gudgeon_scene, only: scene_t, evaluation_t, phase_contact
   use roots, only: bracket_t, next_abscissa, narrow
   use step_peaks, only: n_peaks, of_pin_force, of_penetration
   use columns, only: column_list_t, row_values
@@ -56,7 +57,7 @@ contains
   !> Begin a run.
   subroutine begin(self, scene, y, initial_energy)
     class(cycle_watch_t), intent(inout) :: self
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: y(:)
     real(dp), intent(in) :: initial_energy   !! [J]
     self%statistics = cycle_statistics_t()
@@ -67,7 +68,7 @@ contains
     self%t = 0
     self%cycle_start = 0
     self%measures = 0
-    self%direction = sign(1.0_dp, scene%drive%torque)
+    self%direction = sign(1.0_dp, scene%chain%drive%torque)
     if (abs(scene%start_speed) > 0) self%direction = sign(1.0_dp, scene%start_speed)
     self%start_angle = scene%start_angle
     self%initial_energy = initial_energy
@@ -88,7 +89,7 @@ contains
   subroutine find_end(self, method, scene, t_to, y_to, t_end, ends)
     class(cycle_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t_to, y_to(:)
     real(dp), intent(out) :: t_end   !! the state there is left in y
     logical, intent(out) :: ends
@@ -103,7 +104,7 @@ contains
   subroutine take_strobes(self, method, scene, t_to, y_to)
     class(cycle_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t_to, y_to(:)
     real(dp) :: travel, t
     if (.not. self%has_strobe) return
@@ -126,21 +127,21 @@ contains
   !> Values in the present revolution of the quantities that have peaks.
   pure subroutine take_peaks(self, scene, values)
     class(cycle_watch_t), intent(inout) :: self
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: values(n_peaks)
     associate (c => self%present)
       c%max_pin_force = max(c%max_pin_force, values(of_pin_force))
       c%min_film_thickness = min(c%min_film_thickness, -values(of_penetration))
-      if (scene%phase == phase_contact) c%max_penetration = max(c%max_penetration, values(of_penetration))
+      if (scene%phase_at(piston_pin) == phase_contact) c%max_penetration = max(c%max_penetration, values(of_penetration))
     end associate
   end subroutine take_peaks
 
   !> An accepted point at time t, in the present revolution.
   pure subroutine take_point(self, scene, t)
     class(cycle_watch_t), intent(inout) :: self
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
-    if (scene%phase == phase_contact) self%present%contact_time = self%present%contact_time + (t - self%t)
+    if (scene%phase_at(piston_pin) == phase_contact) self%present%contact_time = self%present%contact_time + (t - self%t)
     self%t = t
   end subroutine take_point
 
@@ -153,7 +154,7 @@ contains
   !> The run ended at (t, y): a revolution that rounding left open is whole.
   subroutine finish(self, scene, t, y)
     class(cycle_watch_t), intent(inout) :: self
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     real(dp) :: travel
     travel = travel_at(self, scene, t, y)
@@ -168,7 +169,7 @@ contains
   !> Angle turned through since the start, in the sense of the revolutions [rad].
   pure real(dp) function travel_at(self, scene, t, y)
     class(cycle_watch_t), intent(in) :: self
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     travel_at = self%direction*(scene%crank_angle(t, y) - self%start_angle)
   end function travel_at
@@ -191,7 +192,7 @@ contains
   real(dp) function passage(self, method, scene, target, t_to, travel)
     class(cycle_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: target, t_to, travel
     type(bracket_t) :: bracket
     real(dp) :: t
@@ -213,12 +214,12 @@ contains
   !> The present revolution ends at t with the state y.
   subroutine end_cycle(self, scene, t)
     class(cycle_watch_t), intent(inout) :: self
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
     type(cycle_t), allocatable :: more(:)
     real(dp) :: measures(2)
     measures = [self%y(scene%measures%first), scene%joint_loss(t, self%y)]
-    if (scene%phase == phase_contact) self%present%contact_time = self%present%contact_time + (t - self%t)
+    if (scene%phase_at(piston_pin) == phase_contact) self%present%contact_time = self%present%contact_time + (t - self%t)
     self%present%duration = t - self%cycle_start
     self%present%pin_force_integral = measures(1) - self%measures(1)
     self%present%dissipated_energy = measures(2) - self%measures(2)
@@ -245,7 +246,7 @@ contains
   !> The crank passes the strobe angle at (t, y).
   subroutine strobe(self, scene, t, y)
     class(cycle_watch_t), intent(inout) :: self
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     real(dp), allocatable :: more(:, :)
     type(evaluation_t) :: now

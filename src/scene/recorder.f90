@@ -9,7 +9,8 @@ module recorder
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t, limit_stability
   use solver, only: observer_t
-  use scene, only: scene_t, evaluation_t, phase_contact, event_none, event_contact_begins, event_contact_ends
+  use chain_motion, only: piston_pin
+  use gudgeon_scene, only: scene_t, evaluation_t, phase_contact, event_none, event_contact_begins, event_contact_ends
   use columns, only: column_list_t, row_values
   use cycle_watch, only: cycle_watch_t
   use step_peaks, only: peak_watch_t, of_pin_force, of_penetration, of_normal_force, n_peaks, peaks_of
@@ -82,7 +83,7 @@ contains
   !> Look at the initial state, and write the first row if it is due.
   subroutine begin(self, scene, y)
     class(recorder_t), intent(inout) :: self
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: y(:)
     type(evaluation_t) :: now
     logical :: inside
@@ -93,7 +94,7 @@ contains
       self%start_angle = now%motion%crank_angle
     end if
     if (allocated(self%cycles)) call self%cycles%begin(scene, y, self%initial_energy)
-    if (inside .and. scene%phase == phase_contact) call take_contact(self, event_contact_begins, 0.0_dp, now)
+    if (inside .and. scene%phase_at(piston_pin) == phase_contact) call take_contact(self, event_contact_begins, 0.0_dp, now)
     call self%peaks%begin(size(y), 0.0_dp, now)
     call take_point(self, scene, 0.0_dp, y, now, inside, self%first_sample <= 0)
     if (self%first_sample <= 0) self%next_row = 1
@@ -139,7 +140,7 @@ contains
   subroutine take_end(self, method, scene, t, y)
     class(recorder_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     type(evaluation_t) :: now
     logical :: inside, ends
@@ -165,7 +166,7 @@ contains
   subroutine search_peaks(self, method, scene, t, now)
     class(recorder_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
     real(dp) :: known(n_peaks), largest(n_peaks)
@@ -174,9 +175,9 @@ contains
     known = huge(known)
     associate (f => self%figures)
       known(of_pin_force) = f%max_pin_force
-      if (scene%has_clearance()) known(of_penetration) = -f%min_film_thickness
+      if (scene%joint_at(piston_pin) > 0) known(of_penetration) = -f%min_film_thickness
       if (allocated(self%cycles)) call self%cycles%lower_to_peaks(known)
-      if (scene%phase == phase_contact) then
+      if (scene%phase_at(piston_pin) == phase_contact) then
         known(of_penetration) = min(known(of_penetration), self%contact%max_penetration)
         known(of_normal_force) = self%contact%max_normal_force
       end if
@@ -192,13 +193,13 @@ contains
   !> revolution. (Rows are not: a revolution must not depend on whether anybody wants them.)
   subroutine take_peaks(self, scene, values, of_cycle)
     class(recorder_t), intent(inout) :: self
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: values(n_peaks)
     logical, intent(in) :: of_cycle
     associate (f => self%figures, contact => self%contact)
       f%max_pin_force = max(f%max_pin_force, values(of_pin_force))
       f%min_film_thickness = min(f%min_film_thickness, -values(of_penetration))
-      if (scene%phase == phase_contact) then
+      if (scene%phase_at(piston_pin) == phase_contact) then
         f%max_penetration = max(f%max_penetration, values(of_penetration))
         contact%max_penetration = max(contact%max_penetration, values(of_penetration))
         contact%max_normal_force = max(contact%max_normal_force, values(of_normal_force))
@@ -226,7 +227,7 @@ contains
   !> Evaluate the scene for the trace or the figures, which is counted.
   subroutine look_at(self, scene, t, y, now, inside)
     class(recorder_t), intent(inout) :: self
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     type(evaluation_t), intent(out) :: now
     logical, intent(out) :: inside
@@ -237,7 +238,7 @@ contains
   !> The figures of one accepted point, evaluated before, and its row where one is due.
   subroutine take_point(self, scene, t, y, now, inside, has_row)
     class(recorder_t), intent(inout) :: self
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     type(evaluation_t), intent(in) :: now
     logical, intent(in) :: inside, has_row
@@ -250,7 +251,7 @@ contains
       f%max_energy = max(f%max_energy, abs(energy))
       f%max_energy_residual = max(f%max_energy_residual, abs(energy - self%initial_energy - scene%work(y)))
       f%crank_travel = now%motion%crank_angle - self%start_angle
-      if (scene%phase == phase_contact) f%contact_time = f%contact_time + (t - f%time)
+      if (scene%phase_at(piston_pin) == phase_contact) f%contact_time = f%contact_time + (t - f%time)
       f%time = t
     end associate
     if (allocated(self%cycles)) call self%cycles%take_point(scene, t)
@@ -286,8 +287,8 @@ contains
       if (contact%kind == event_contact_begins) then
         figures%contacts = figures%contacts + 1
         if (allocated(self%cycles)) call self%cycles%take_impact()
-        figures%max_entry_penetration = max(figures%max_entry_penetration, now%joint%penetration)
-        if (now%joint%penetration_rate > self%validity_limit) &
+        figures%max_entry_penetration = max(figures%max_entry_penetration, now%relative(1)%penetration)
+        if (now%relative(1)%penetration_rate > self%validity_limit) &
           figures%impacts_beyond_validity = figures%impacts_beyond_validity + 1
         contact%duration = 0
         contact%max_penetration = 0
@@ -298,7 +299,7 @@ contains
         contact%time = t
       end if
       contact%crank_angle = now%motion%crank_angle
-      contact%normal_speed = now%joint%penetration_rate
+      contact%normal_speed = now%relative(1)%penetration_rate
       call self%sink%take_event(contact)
     end associate
   end subroutine take_contact
@@ -306,7 +307,7 @@ contains
   !> The run ended at (t, y): with a row at every step, and for the last of a grid that rounding left out.
   subroutine finish(self, scene, t, y)
     class(recorder_t), intent(inout) :: self
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     real(dp) :: due
     if (allocated(self%cycles)) call self%cycles%finish(scene, t, y)
@@ -361,7 +362,7 @@ contains
   !> The row at a time where nothing else is looked at.
   subroutine write_row(self, scene, t, y)
     class(recorder_t), intent(inout) :: self
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     type(evaluation_t) :: now
     logical :: inside
@@ -374,7 +375,7 @@ contains
 
   subroutine put_row(self, scene, t, y, now)
     class(recorder_t), intent(inout) :: self
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     type(evaluation_t), intent(in) :: now
     if (size(self%values) == 0) return

@@ -1,236 +1,313 @@
-!> A scene: the mechanism with the models that its case asks for, as a system of differential equations.
-!>
-!> What is common to scenes with an ideal joint and with clearance: bodies, drive, gas, the layout of the state and the
-!> one evaluation that feeds both the equations and the trace.
-module scene
+!> A scene: the chain with the joints and the gas that its case asks for, as a system of differential equations.
+module gudgeon_scene
   use kinds, only: dp
-  use ode_problem, only: ode_problem_t
-  use mechanism, only: mechanism_t, motion_t, accelerations_t
-  use dynamics, only: drive_t, loads_t
-  use clearance_joint, only: joint_motion_t
   use archive, only: archive_t
+  use ode_problem, only: ode_problem_t, max_events
   use state_layout, only: layout_t, coordinates_t, slice_t
-  use gas_cycle, only: gas_cycle_t, cycle_angle, n_parts
+  use chain_motion, only: motion_t, accelerations_t, piston_pin, turn_crank
+  use chain_loads, only: loads_t, force_size
+  use gudgeon_chain, only: chain_t
+  use joint_motion, only: joint_motion_t
+  use clearance_joint, only: clearance_joint_t, joint_loads_t, most_joints, n_phases, phase_free, phase_film, phase_contact
+  use joint_events, only: penetration_and_rate
+  use sticking, only: hold_surfaces
+  use working_gas, only: working_gas_t
   implicit none
   private
   public :: scene_t, evaluation_t
   public :: phase_free, phase_film, phase_contact
-  public :: event_none, event_contact_begins, event_contact_ends, n_gas_events
-
-  !> What the pin is doing: the values of the column `phase`.
-  integer, parameter :: phase_free = 0, phase_film = 1, phase_contact = 2
+  public :: event_none, event_contact_begins, event_contact_ends
 
   !> Events that a trace tells of.
   integer, parameter :: event_none = 0, event_contact_begins = 1, event_contact_ends = 2
 
-  !> Passages of the crank from one part of the gas cycle to the next: forwards, backwards. Where there is gas they are
-  !> the last event functions of a scene.
-  integer, parameter :: n_gas_events = 2
+  !> An ideal pin, in the terms of a joint with clearance.
+  type(joint_motion_t), parameter :: centred_pin = joint_motion_t([0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp], 0.0_dp, 0.0_dp, &
+    [1.0_dp, 0.0_dp], 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp)
+  type(joint_loads_t), parameter :: no_loads = joint_loads_t([0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp], 0.0_dp, 0.0_dp, 0.0_dp, &
+    0.0_dp, .false.)
 
-  !> Everything that one evaluation of a scene finds. Fields of models that the scene does not have are 0 in what `evaluate`
-  !> gives; a right-hand side does not set what it does not need.
+  !> Everything that one evaluation of a scene finds: of each of its joints, or of one centred pin without loads where it has none. A
+  !> right-hand side does not set what it does not need.
   type :: evaluation_t
     type(motion_t) :: motion
     type(accelerations_t) :: accelerations
     type(loads_t) :: loads
-    type(joint_motion_t) :: joint
+    type(joint_motion_t) :: relative(most_joints)
+    type(joint_loads_t) :: joint(most_joints)
     real(dp) :: crank_moment        !! moment of the drive on the crank [N m]
-    real(dp) :: normal_force        !! of the contact, pressing [N]
-    real(dp) :: friction_force      !! on the pin along t [N]
     real(dp) :: cylinder_pressure   !! [Pa]
     real(dp) :: power               !! of all non-conservative forces and the drive [W]
   end type evaluation_t
 
-  !> A scene as an ode_problem. Of the state it claims the crank angle, unless the crank speed is held, and as quadratures
-  !> the work of all non-conservative forces and the drive [J] and, where somebody asks for them, the measures of the joint: the
-  !> integral of the size of its force [N s] and, where the work does not tell it, what it takes from the bodies [J].
-  type, abstract, extends(ode_problem_t) :: scene_t
-    type(mechanism_t) :: mechanism
-    type(drive_t) :: drive
+  !> Whose event an event function of the integrator is.
+  type :: event_owner_t
+    integer :: joint = 0            !! 0: the gas's
+    integer :: event = 0            !! by the owner's own count
+  end type event_owner_t
+
+  !> A scene as an ode_problem. Of the state it claims the crank angle, unless the crank speed is held; the joints claim their
+  !> eccentricities; quadratures are the work of all non-conservative forces and the drive [J] and, where somebody asks for them,
+  !> the measures of the joints: the integral of the size of the force on the piston pin [N s] and, where the work does not tell
+  !> it, what the joints take from the bodies [J].
+  type, extends(ode_problem_t) :: scene_t
+    type(chain_t) :: chain
+    integer :: n_joints = 0         !! with clearance: 0, 1 or 2
+    type(clearance_joint_t), allocatable :: joints(:)
+    type(working_gas_t), allocatable :: gas
     real(dp) :: start_angle = 0     !! crank angle at t = 0 [rad]
     real(dp) :: start_speed = 0     !! crank speed at t = 0, and always if it is held [rad/s]
-    integer :: phase = phase_free
     real(dp) :: span = 1            !! of the simulation [s]
-    real(dp) :: pin_speed = 0       !! natural size of the pin's speed in its bearing, where the crank does not give it [m/s]
     type(layout_t) :: layout        !! of the state
     type(coordinates_t) :: crank    !! where the crank angle stands in it
     integer :: work_at = 0          !! where the work of the forces stands
-    type(slice_t) :: measures       !! quadratures of the joint
-    type(gas_cycle_t), allocatable :: gas
-    integer :: gas_part = 0            !! part of the gas cycle that acts
-    real(dp) :: gas_cycle_start = 0    !! crank angle at which its cycle began [rad]
+    type(slice_t) :: measures       !! quadratures of the joints
+    logical :: may_stick = .false.  !! a joint has set-valued friction
+    real(dp) :: entry_time = -huge(1.0_dp)          !! when a joint has begun to touch last [s]
+    type(event_owner_t) :: event_of(max_events)     !! owners of the event functions
   contains
-    procedure(evaluate), deferred :: evaluate
-    procedure(initial_state), deferred :: initial_state
-    procedure(claim), deferred :: claim
-    procedure(reported_event), deferred :: reported_event
+    procedure :: claim
+    procedure :: derivatives
+    procedure :: evaluate
+    procedure :: jacobian
+    procedure :: initial_state
     procedure :: prepare_start
+    procedure :: events => all_events
+    procedure :: handle_event
+    procedure :: reported_event
+    procedure :: judge_step
+    procedure :: lands_on_step_end
+    procedure :: rough_time
     procedure :: is_singular
-    procedure :: has_clearance
-    procedure :: find_pin
     procedure :: crank_angle
+    procedure :: crank_speed
     procedure :: work
     procedure :: measure_joint
     procedure :: joint_loss
-    procedure :: claim_crank
-    procedure :: claim_work
-    procedure :: claim_measures
-    procedure, private :: take_layout
     procedure :: energy
     procedure :: energy_scale
     procedure :: speed_scale
-    procedure :: set_gas_part
-    procedure, non_overridable :: add_gas
-    procedure :: gas_force_slope
-    procedure :: gas_events
-    procedure :: pass_gas_bound
-    procedure, non_overridable :: exchange_phase
-    procedure :: exchange => exchange_phase
+    procedure :: joint_at
+    procedure :: phase_at
+    procedure :: exchange
   end type scene_t
 
-  abstract interface
-    !> Everything at (t, y). `inside` is false where a model is not defined: then there are only the crank angle and the joint
-    !> without its sliding speed.
-    pure subroutine evaluate(self, t, y, evaluation, inside)
-      import :: scene_t, evaluation_t, dp
+  interface
+    !> Derivatives of the accelerations by positions and rates: in closed form where the piston pin alone has clearance and does not
+    !> stick.
+    module subroutine jacobian(self, t, y, a_p, a_v)
       class(scene_t), intent(in) :: self
-      real(dp), intent(in) :: t, y(self%n)
-      type(evaluation_t), intent(out) :: evaluation
-      logical, intent(out) :: inside
-    end subroutine evaluate
+      real(dp), intent(in) :: t, y(:)
+      real(dp), intent(out) :: a_p(:, :), a_v(:, :)
+    end subroutine jacobian
 
-    !> State at t = 0.
-    pure function initial_state(self) result(y)
-      import :: scene_t, dp
+    !> Those of the joints one by one, then those of the gas.
+    pure module subroutine all_events(self, t, y, g, g_rate)
       class(scene_t), intent(in) :: self
-      real(dp) :: y(self%n)
-    end function initial_state
+      real(dp), intent(in) :: t, y(:)
+      real(dp), intent(out) :: g(:), g_rate(:)
+    end subroutine all_events
 
-    !> Claim the components of the state, when all else is set.
-    subroutine claim(self)
-      import :: scene_t
+    module subroutine handle_event(self, index, t, y, action)
       class(scene_t), intent(inout) :: self
-    end subroutine claim
+      integer, intent(in) :: index
+      real(dp), intent(in) :: t
+      real(dp), intent(inout) :: y(:)
+      integer, intent(out) :: action
+    end subroutine handle_event
 
     !> Which event of the trace event `index` of the integrator is.
-    pure integer function reported_event(self, index)
-      import :: scene_t
+    pure integer module function reported_event(self, index)
       class(scene_t), intent(in) :: self
       integer, intent(in) :: index
     end function reported_event
+
+    !> A step goes no deeper into contact than each joint allows.
+    pure module subroutine judge_step(self, t_old, y_old, t, y, verdict, fraction)
+      class(scene_t), intent(in) :: self
+      real(dp), intent(in) :: t_old, y_old(:), t, y(:)
+      integer, intent(out) :: verdict
+      real(dp), intent(out) :: fraction
+    end subroutine judge_step
+
+    pure logical module function lands_on_step_end(self, index)
+      class(scene_t), intent(in) :: self
+      integer, intent(in) :: index
+    end function lands_on_step_end
+
+    !> When the next contact ends.
+    pure real(dp) module function rough_time(self, t, y)
+      class(scene_t), intent(in) :: self
+      real(dp), intent(in) :: t, y(:)
+    end function rough_time
+
+    !> Find the discrete state at t = 0 when all else is set. A journal touches where it is beyond the clearance; exactly there it
+    !> does if it goes on outwards, or, at rest, is pressed outwards.
+    module subroutine prepare_start(self)
+      class(scene_t), intent(inout) :: self
+    end subroutine prepare_start
   end interface
 
 contains
 
-  !> Whether the forces of the present phase have no bound next to this state. The default is a scene that has none such.
-  pure logical function is_singular(self, y)
+  pure subroutine derivatives(self, t, y, dydt, inside)
     class(scene_t), intent(in) :: self
-    real(dp), intent(in) :: y(:)
-    associate (unused_self => self, unused_y => y)
-    end associate
-    is_singular = .false.
-  end function is_singular
-
-  !> Whether the pin has play in its bearing. The default is that it has none.
-  pure logical function has_clearance(self)
-    class(scene_t), intent(in) :: self
-    associate (unused_self => self)
-    end associate
-    has_clearance = .false.
-  end function has_clearance
-
-  !> Where the pin is in its bearing at (t, y), without its sliding speed, and the normal force of the contact [N]: what takes no
-  !> evaluation of the scene. The default is a pin in the centre.
-  pure subroutine find_pin(self, t, y, joint, normal_force)
-    class(scene_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    type(joint_motion_t), intent(out) :: joint
-    real(dp), intent(out) :: normal_force
-    associate (unused_self => self, unused_t => t, unused_y => y)
-    end associate
-    joint = joint_motion_t([0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp], [1.0_dp, 0.0_dp], 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp)
-    normal_force = 0
-  end subroutine find_pin
-
-  !> Find the discrete state at t = 0 when all else is set. The default has nothing to find.
-  subroutine prepare_start(self)
-    class(scene_t), intent(inout) :: self
-    associate (unused_self => self)
-    end associate
-  end subroutine prepare_start
-
-  !> The discrete state that every scene has, to or from an archive.
-  subroutine exchange_phase(self, archive)
-    class(scene_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    call self%exchange_mode(archive)
-    call archive%exchange(self%phase)
-    call archive%exchange(self%gas_part)
-    call archive%exchange(self%gas_cycle_start)
-  end subroutine exchange_phase
-
-  !> Crank angle at (t, y) [rad].
-  pure real(dp) function crank_angle(self, t, y)
-    class(scene_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    if (self%drive%free_crank) then
-      crank_angle = y(self%crank%position)
-    else
-      crank_angle = self%start_angle + self%start_speed*t
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: dydt(self%n)
+    logical, intent(out) :: inside
+    type(evaluation_t) :: now
+    call find_accelerations(self, self%n_joints, self%joints, t, y, now, inside)
+    if (.not. inside) return
+    if (self%chain%drive%free_crank) then
+      dydt(self%crank%position) = now%motion%crank_speed
+      dydt(self%crank%rate) = now%accelerations%crank
     end if
-  end function crank_angle
+    call put_rates(self%n_joints, self%joints, now, dydt)
+    dydt(self%work_at) = now%power
+    if (self%measures%last < self%measures%first) return
+    dydt(self%measures%first) = force_size(now%loads%force(:, piston_pin))
+    if (self%measures%last > self%measures%first) dydt(self%measures%last) = -sum(now%joint(:self%n_joints)%power)
+  end subroutine derivatives
 
-  !> Work of all non-conservative forces and the drive so far [J].
-  pure real(dp) function work(self, y)
+  !> Rates of what the joints claimed.
+  pure subroutine put_rates(n, joints, now, dydt)
+    integer, intent(in) :: n
+    type(clearance_joint_t), intent(in) :: joints(n)
+    type(evaluation_t), intent(in) :: now
+    real(dp), intent(inout) :: dydt(*)
+    integer :: i
+    do i = 1, n
+      associate (at => joints(i)%at, place => joints(i)%place)
+        dydt(at%position) = now%relative(i)%eccentricity_rate(1)
+        dydt(at%position + 1) = now%relative(i)%eccentricity_rate(2)
+        dydt(at%rate) = now%accelerations%pin(1, place)
+        dydt(at%rate + 1) = now%accelerations%pin(2, place)
+      end associate
+    end do
+  end subroutine put_rates
+
+  !> Everything at (t, y). `inside` is false where a model is not defined: then there are only the crank angle and how the joints
+  !> move, without their sliding speeds.
+  pure subroutine evaluate(self, t, y, evaluation, inside)
     class(scene_t), intent(in) :: self
-    real(dp), intent(in) :: y(:)
-    work = y(self%work_at)
-  end function work
+    real(dp), intent(in) :: t, y(self%n)
+    type(evaluation_t), intent(out) :: evaluation
+    logical, intent(out) :: inside
+    integer :: i
+    evaluation%cylinder_pressure = 0
+    evaluation%loads%force = 0
+    evaluation%loads%moment = 0
+    evaluation%motion%crank_pin = 0
+    evaluation%motion%crank_pin_rate = 0
+    if (self%n_joints == 0) then
+      evaluation%relative(1) = centred_pin
+      evaluation%joint(1) = no_loads
+    end if
+    call find_accelerations(self, self%n_joints, self%joints, t, y, evaluation, inside)
+    if (inside) call self%chain%move_piston(evaluation%motion)
+    do i = 1, self%n_joints
+      call self%joints(i)%complete(evaluation%motion, inside, evaluation%relative(i), evaluation%joint(i))
+    end do
+  end subroutine evaluate
 
-  !> Integrate the measures of the joint too; before the run. They do not change its steps where the joint has clearance. One
-  !> without has one measure, the integral of the force's size.
-  subroutine measure_joint(self)
-    class(scene_t), intent(inout) :: self
-    ! the measured force has part in the error control: nothing else here makes steps short enough for it
-    call self%claim_measures(1, self%energy_scale(self%span)/(self%mechanism%crank_length*self%speed_scale(self%span)))
-  end subroutine measure_joint
-
-  !> Energy that the joint has taken from the bodies, in a scene that measures it [J]: none without clearance.
-  pure real(dp) function joint_loss(self, t, y)
+  !> Motion, loads, accelerations and power. `inside` is false where a journal cannot be. (The joints are handed on by themselves,
+  !> which spares looking up their bounds and stride.)
+  pure subroutine find_accelerations(self, n, joints, t, y, now, inside)
     class(scene_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    associate (unused_self => self, unused_t => t, unused_y => y)
+    integer, intent(in) :: n
+    type(clearance_joint_t), intent(in) :: joints(n)
+    real(dp), intent(in) :: t, y(self%n)
+    type(evaluation_t), intent(inout) :: now
+    logical, intent(out) :: inside
+    integer :: i
+
+    call read_crank(self, t, y, now%motion)
+    call place_journals(n, joints, y, now, inside)
+    if (.not. inside) return
+    call self%chain%move_rod(now%motion, inside)
+    if (.not. inside) return
+    now%power = 0
+    do i = 1, n
+      call joints(i)%loads(self%chain%bodies, now%motion, now%relative(i), now%joint(i), now%loads)
+      now%power = now%power + now%joint(i)%power
+    end do
+    now%loads%gas_force = 0
+    if (allocated(self%gas)) then
+      now%cylinder_pressure = self%gas%pressure(now%motion%crank_angle)
+      now%loads%gas_force = self%gas%force(now%cylinder_pressure)
+    end if
+    call self%chain%accelerate(now%motion, now%loads, now%accelerations, now%crank_moment)
+    if (self%may_stick) call hold_surfaces(self%chain, joints, now%motion, now%relative, now%joint, now%loads, &
+      now%accelerations, now%crank_moment, now%power)
+    associate (crank_speed => now%motion%crank_speed)
+      now%power = (now%crank_moment - self%chain%drive%damping*crank_speed)*crank_speed + now%power
     end associate
-    joint_loss = 0
-  end function joint_loss
+    if (.not. allocated(self%gas)) return
+    call self%chain%move_piston(now%motion)
+    now%power = now%power - now%loads%gas_force*now%motion%piston_velocity
+  end subroutine find_accelerations
 
-  !> The crank angle, where it is an unknown. It is the first owner's, before those of the joint.
-  subroutine claim_crank(self)
+  !> The crank.
+  pure subroutine read_crank(self, t, y, motion)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(self%n)
+    type(motion_t), intent(inout) :: motion
+    if (self%chain%drive%free_crank) then
+      call turn_crank(motion, y(self%crank%position), y(self%crank%rate))
+    else
+      call turn_crank(motion, self%start_angle + self%start_speed*t, self%start_speed)
+    end if
+  end subroutine read_crank
+
+  !> The eccentricities of the joints, and what they are for the chain. `inside` is false where a joint does not admit its own.
+  pure subroutine place_journals(n, joints, y, now, inside)
+    integer, intent(in) :: n
+    type(clearance_joint_t), intent(in) :: joints(n)
+    real(dp), intent(in) :: y(*)
+    type(evaluation_t), intent(inout) :: now
+    logical, intent(out) :: inside
+    real(dp) :: offset(2), offset_rate(2)
+    logical :: admitted
+    integer :: i
+    admitted = .true.
+    offset = 0
+    offset_rate = 0
+    do i = 1, n
+      associate (joint => joints(i), relative => now%relative(i))
+        call joint%read_state(y, relative)
+        admitted = admitted .and. joint%admits(relative%eccentricity)
+        offset = offset + relative%eccentricity
+        offset_rate = offset_rate + relative%eccentricity_rate
+        if (joint%place == piston_pin) cycle
+        now%motion%crank_pin = relative%eccentricity
+        now%motion%crank_pin_rate = relative%eccentricity_rate
+      end associate
+    end do
+    now%motion%offset = offset
+    now%motion%offset_rate = offset_rate
+    inside = admitted
+  end subroutine place_journals
+
+  !> Let everybody claim their part of the state and find it, when all else is set; and number the events.
+  subroutine claim(self)
     class(scene_t), intent(inout) :: self
-    if (self%drive%free_crank) &
+    type(slice_t) :: work
+    integer :: i
+    self%n_joints = size(self%joints)
+    if (self%chain%drive%free_crank) &
       call self%layout%claim_positions(1, 1.0_dp, self%speed_scale(self%span), self%crank, grows=.true.)
-  end subroutine claim_crank
-
-  !> The work of the forces, after all positions.
-  subroutine claim_work(self)
-    class(scene_t), intent(inout) :: self
-    type(slice_t) :: at
+    do i = 1, self%n_joints
+      call self%joints(i)%claim(self%layout, self%speed_scale(self%span), self%span)
+    end do
+    call self%layout%claim_quadratures(1, self%energy_scale(self%span), work)
     call self%layout%settle(self%crank)
-    call self%layout%claim_quadratures(1, self%energy_scale(self%span), at)
-    call self%layout%settle(at)
-    self%work_at = at%first
-    call self%take_layout()
-  end subroutine claim_work
-
-  !> So many measures of the joint, each of this natural size, after all else.
-  subroutine claim_measures(self, n_measures, scale)
-    class(scene_t), intent(inout) :: self
-    integer, intent(in) :: n_measures
-    real(dp), intent(in) :: scale
-    call self%layout%claim_quadratures(n_measures, scale, self%measures)
-    call self%layout%settle(self%measures)
-    call self%take_layout()
-  end subroutine claim_measures
+    do i = 1, self%n_joints
+      call self%joints(i)%settle(self%layout)
+    end do
+    call self%layout%settle(work)
+    self%work_at = work%first
+    call take_layout(self)
+  end subroutine claim
 
   !> What the integrator needs to know of the layout.
   subroutine take_layout(self)
@@ -240,11 +317,105 @@ contains
     self%n_quadratures = self%layout%n_quadratures
   end subroutine take_layout
 
+  !> Integrate the measures of the joints too; before the run. They do not change its steps where there is clearance. A scene without
+  !> has one measure, the integral of the force's size, and it has part in the control of the error: nothing else makes steps
+  !> short enough for it.
+  subroutine measure_joint(self)
+    class(scene_t), intent(inout) :: self
+    integer :: n
+    real(dp) :: scale
+    n = 1
+    scale = 0
+    if (self%n_joints > 0) then
+      if (.not. work_tells(self)) n = 2
+    else
+      scale = self%energy_scale(self%span)/(self%chain%bodies%crank%length*self%speed_scale(self%span))
+    end if
+    call self%layout%claim_quadratures(n, scale, self%measures)
+    call self%layout%settle(self%measures)
+    call take_layout(self)
+  end subroutine measure_joint
+
+  !> Whether the work of all forces tells what the joints take: nothing else but a constant torque does work.
+  pure logical function work_tells(self)
+    class(scene_t), intent(in) :: self
+    work_tells = self%chain%drive%free_crank .and. .not. (self%chain%drive%damping > 0 .or. allocated(self%gas))
+  end function work_tells
+
+  !> Energy that the joints have taken from the bodies, in a scene that measures it [J]; where it is not integrated itself, the work of
+  !> the drive's torque less that of all forces.
+  pure real(dp) function joint_loss(self, t, y)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    joint_loss = 0
+    if (self%n_joints == 0) return
+    if (self%measures%last > self%measures%first) then
+      joint_loss = y(self%measures%last)
+    else
+      joint_loss = self%chain%drive%torque*(self%crank_angle(t, y) - self%start_angle) - self%work(y)
+    end if
+  end function joint_loss
+
+  !> State at t = 0.
+  pure function initial_state(self) result(y)
+    class(scene_t), intent(in) :: self
+    real(dp) :: y(self%n)
+    integer :: i
+    y = 0
+    if (self%chain%drive%free_crank) then
+      y(self%crank%position) = self%start_angle
+      y(self%crank%rate) = self%start_speed
+    end if
+    do i = 1, self%n_joints
+      call self%joints(i)%put_start(y)
+    end do
+  end function initial_state
+
+  !> Whether the forces of a film have no bound next to this state.
+  pure logical function is_singular(self, y)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: y(:)
+    integer :: i
+    is_singular = .false.
+    do i = 1, self%n_joints
+      is_singular = is_singular .or. self%joints(i)%is_singular(y)
+    end do
+  end function is_singular
+
+  !> Crank angle at (t, y) [rad].
+  pure real(dp) function crank_angle(self, t, y)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    if (self%chain%drive%free_crank) then
+      crank_angle = y(self%crank%position)
+    else
+      crank_angle = self%start_angle + self%start_speed*t
+    end if
+  end function crank_angle
+
+  !> Crank speed in a state [rad/s].
+  pure real(dp) function crank_speed(self, y)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: y(:)
+    if (self%chain%drive%free_crank) then
+      crank_speed = y(self%crank%rate)
+    else
+      crank_speed = self%start_speed
+    end if
+  end function crank_speed
+
+  !> Work of all non-conservative forces and the drive so far [J].
+  pure real(dp) function work(self, y)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: y(:)
+    work = y(self%work_at)
+  end function work
+
   !> Kinetic and potential energy of the bodies [J].
   pure real(dp) function energy(self, motion)
     class(scene_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
-    energy = self%mechanism%kinetic_energy(motion) + self%mechanism%potential_energy(motion)
+    energy = self%chain%energy(motion)
   end function energy
 
   !> Size of the crank speed [rad/s]: the start speed; from rest, one radian in the time simulated.
@@ -255,65 +426,52 @@ contains
     if (.not. speed_scale > 0) speed_scale = 1/span
   end function speed_scale
 
-  !> Size of the energy [J]: the bodies at the speed scale, the weights lifted by a crank length, and rod and piston at the pin's
-  !> own speed.
+  !> Size of the energy [J]: the bodies at the speed scale, the weights lifted by a crank length, and rod and piston at the joints'
+  !> own speeds.
   pure real(dp) function energy_scale(self, span)
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: span
-    associate (m => self%mechanism)
-      energy_scale = 0.5_dp*(m%crank_term + m%piston_mass*m%crank_length**2)*self%speed_scale(span)**2 &
-        + (m%crank_mass + m%rod_mass + m%piston_mass)*m%gravity*m%crank_length &
-        + 0.5_dp*(m%rod_mass + m%piston_mass)*self%pin_speed**2
+    integer :: i
+    associate (b => self%chain%bodies)
+      energy_scale = 0.5_dp*(b%crank_term + b%piston%mass*b%crank%length**2)*self%speed_scale(span)**2 &
+        + (b%crank%mass + b%rod%mass + b%piston%mass)*norm2(b%gravity)*b%crank%length
+      do i = 1, self%n_joints
+        energy_scale = energy_scale + 0.5_dp*(b%rod%mass + b%piston%mass)*self%joints(i)%own_speed(span)**2
+      end do
     end associate
   end function energy_scale
 
-  !> Find the part of the gas cycle that the crank is in, or about to enter.
-  subroutine set_gas_part(self, crank_angle, crank_speed)
-    class(scene_t), intent(inout) :: self
-    real(dp), intent(in) :: crank_angle, crank_speed
-    call self%gas%part_at(crank_angle, crank_speed < 0, self%gas_part, self%gas_cycle_start)
-  end subroutine set_gas_part
-
-  !> Pressure and force of the gas at a crank angle [rad], in a scene with gas.
-  pure subroutine add_gas(self, crank_angle, now)
+  !> Which of the joints is at a pin; 0: it is ideal.
+  pure integer function joint_at(self, place)
     class(scene_t), intent(in) :: self
-    real(dp), value, intent(in) :: crank_angle
-    type(evaluation_t), intent(inout) :: now
-    now%cylinder_pressure = self%gas%pressure(crank_angle, self%gas_part, self%gas_cycle_start)
-    now%loads%gas_force = self%gas%gas_force(now%cylinder_pressure)
-  end subroutine add_gas
-
-  !> Derivative of the gas force by the crank angle [N/rad].
-  pure real(dp) function gas_force_slope(self, crank_angle)
-    class(scene_t), intent(in) :: self
-    real(dp), intent(in) :: crank_angle
-    gas_force_slope = self%gas%cylinder%area*self%gas%pressure_slope(crank_angle, self%gas_part, self%gas_cycle_start)
-  end function gas_force_slope
-
-  !> Event functions of the bounds of the present part of the gas cycle, over the crank angle.
-  pure subroutine gas_events(self, crank_angle, crank_speed, g, g_rate)
-    class(scene_t), intent(in) :: self
-    real(dp), intent(in) :: crank_angle, crank_speed
-    real(dp), intent(out) :: g(n_gas_events), g_rate(n_gas_events)
-    real(dp) :: angle
-    angle = crank_angle - self%gas_cycle_start
-    g = [angle - self%gas%bound(self%gas_part), self%gas%bound(self%gas_part - 1) - angle]
-    g_rate = [crank_speed, -crank_speed]
-  end subroutine gas_events
-
-  !> Enter the next part of the gas cycle that is not empty, forwards (1) or backwards (2).
-  subroutine pass_gas_bound(self, direction)
-    class(scene_t), intent(inout) :: self
-    integer, intent(in) :: direction
-    integer :: way
-    way = merge(1, -1, direction == 1)
-    do
-      self%gas_part = self%gas_part + way
-      if (self%gas_part > n_parts .or. self%gas_part < 1) then
-        self%gas_part = merge(1, n_parts, way > 0)
-        self%gas_cycle_start = self%gas_cycle_start + way*cycle_angle
-      end if
-      if (self%gas%bound(self%gas_part) > self%gas%bound(self%gas_part - 1)) exit
+    integer, intent(in) :: place
+    integer :: i
+    joint_at = 0
+    do i = 1, self%n_joints
+      if (self%joints(i)%place == place) joint_at = i
     end do
-  end subroutine pass_gas_bound
-end module scene
+  end function joint_at
+
+  !> What the joint at a pin is doing; an ideal pin is free.
+  pure integer function phase_at(self, place)
+    class(scene_t), intent(in) :: self
+    integer, intent(in) :: place
+    integer :: i
+    i = self%joint_at(place)
+    phase_at = phase_free
+    if (i > 0) phase_at = self%joints(i)%phase
+  end function phase_at
+
+  !> The discrete state, to or from an archive.
+  subroutine exchange(self, archive)
+    class(scene_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    integer :: i
+    call self%exchange_mode(archive)
+    call archive%exchange(self%entry_time)
+    do i = 1, self%n_joints
+      call self%joints(i)%exchange(archive)
+    end do
+    if (allocated(self%gas)) call self%gas%exchange(archive)
+  end subroutine exchange
+end module gudgeon_scene

@@ -2,16 +2,13 @@
 module scene_builder
   use kinds, only: dp
   use constants, only: two_pi, degree
-  use bearing, only: bearing_t
   use errors, only: error_t
   use case_definition, only: case_t
-  use mechanism, only: mechanism_t
-  use dynamics, only: drive_t
-  use clearance_joint, only: joint_geometry_t
   use ode_method, only: ode_settings_t
-  use scene, only: scene_t, phase_free, phase_film, n_gas_events
-  use ideal_scene, only: ideal_scene_t
-  use clearance_scene, only: clearance_scene_t
+  use chain_motion, only: piston_pin
+  use chain_bodies, only: crank_t, rod_t, piston_t, drive_t, new_bodies
+  use clearance_joint, only: clearance_joint_t
+  use gudgeon_scene, only: scene_t
   implicit none
   private
   public :: build_scene, simulated_time, sample_interval, settings_for
@@ -45,69 +42,62 @@ contains
   subroutine build_scene(case, ideal_joint, scene, error)
     type(case_t), intent(in) :: case
     logical, intent(in) :: ideal_joint
-    class(scene_t), allocatable, intent(out) :: scene
+    type(scene_t), allocatable, intent(out) :: scene
     type(error_t), allocatable, intent(out) :: error
-    type(ideal_scene_t), allocatable :: ideal
-    type(clearance_scene_t), allocatable :: clearance
 
+    allocate (scene)
+    scene%refuses_steps = .false.
     if (ideal_joint .or. .not. case%has_clearance()) then
-      allocate (ideal)
-      ideal%refuses_steps = .false.
-      call move_alloc(ideal, scene)
+      allocate (scene%joints(0))
     else
-      allocate (clearance)
-      call build_joint(case, clearance)
-      call move_alloc(clearance, scene)
+      allocate (scene%joints(1))
+      call build_joint(case, scene%joints(1))
+      scene%chain%is_loose(piston_pin) = .true.
+      scene%refuses_steps = case%integrator%contact_entry == 'step_rejection' .and. allocated(case%contact)
     end if
     associate (m => case%mechanism)
-      scene%mechanism = mechanism_t(m%crank_length, m%crank_mass, m%crank_inertia, m%crank_com, m%rod_length, m%rod_mass, &
-        m%rod_inertia, m%rod_com, m%piston_mass, m%gravity)
+      scene%chain%bodies = new_bodies(crank_t(m%crank_length, m%crank_mass, m%crank_inertia, m%crank_com), &
+        rod_t(m%rod_length, m%rod_mass, m%rod_inertia, m%rod_com), piston_t(m%piston_mass), [-m%gravity, 0.0_dp])
     end associate
-    scene%drive = drive_t(case%drive%kind == 'free', case%drive%torque, case%drive%damping)
+    scene%chain%drive = drive_t(case%drive%kind == 'free', case%drive%torque, case%drive%damping)
     scene%start_angle = case%initial%crank_angle_deg*degree
     scene%start_speed = case%initial%crank_speed
     scene%span = simulated_time(case)
     call scene%claim()
     if (allocated(case%combustion)) then
-      allocate (scene%gas, source=case%combustion)
-      call scene%gas%prepare(case%mechanism%crank_length, case%mechanism%rod_length, &
+      allocate (scene%gas)
+      scene%gas%cycle = case%combustion
+      call scene%gas%cycle%prepare(case%mechanism%crank_length, case%mechanism%rod_length, &
         gas_margin*case%integrator%relative_tolerance, error)
       if (allocated(error)) return
-      call scene%set_gas_part(scene%start_angle, scene%start_speed)
-      scene%n_events = scene%n_events + n_gas_events
+      call scene%gas%find_part(scene%start_angle, scene%start_speed)
     end if
     call scene%prepare_start()
   end subroutine build_scene
 
-  !> The joint's laws, only those that the case asks for.
-  subroutine build_joint(case, scene)
+  !> The joint at the piston pin with its laws, only those that the case asks for.
+  subroutine build_joint(case, joint)
     type(case_t), intent(in) :: case
-    type(clearance_scene_t), intent(inout) :: scene
-    type(bearing_t) :: bearing
+    type(clearance_joint_t), intent(out) :: joint
 
-    scene%start_eccentricity = case%initial%eccentricity
-    scene%start_eccentricity_rate = case%initial%eccentricity_rate
-    bearing = case%bearing()
-    scene%joint = joint_geometry_t(bearing%clearance, bearing%radius, bearing%pin_radius())
+    joint%place = piston_pin
+    joint%start_eccentricity = case%initial%eccentricity
+    joint%start_rate = case%initial%eccentricity_rate
+    joint%bearing = case%bearing()
+    joint%pin_radius = joint%bearing%pin_radius()
+    joint%max_penetration = case%integrator%max_penetration
     if (allocated(case%contact)) then
-      allocate (scene%contact, source=case%contact)
-      call scene%contact%prepare(bearing)
-      scene%n_joint_events = 2
+      allocate (joint%contact, source=case%contact)
+      call joint%contact%prepare(joint%bearing)
     end if
     if (allocated(case%friction)) then
-      allocate (scene%friction, source=case%friction)
-      call scene%friction%prepare()
-      if (scene%friction%set_valued) scene%n_joint_events = 3
+      allocate (joint%friction, source=case%friction)
+      call joint%friction%prepare()
     end if
     if (allocated(case%film)) then
-      allocate (scene%film, source=case%film)
-      call scene%film%prepare(bearing, case%integrator%relative_tolerance)
+      allocate (joint%film, source=case%film)
+      call joint%film%prepare(joint%bearing, case%integrator%relative_tolerance)
     end if
-    scene%phase = merge(phase_film, phase_free, allocated(scene%film))
-    scene%mode = scene%phase
-    scene%refuses_steps = case%integrator%contact_entry == 'step_rejection' .and. allocated(scene%contact)
-    scene%max_penetration = case%integrator%max_penetration
-    scene%n_events = scene%n_joint_events
   end subroutine build_joint
 
   !> Time to simulate [s]: revolutions are counted at the initial crank speed.
@@ -130,7 +120,7 @@ contains
   !> events within 1e-6 of a revolution, 1e-8 s at most, are chatter.
   pure function settings_for(case, scene) result(settings)
     type(case_t), intent(in) :: case
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     type(ode_settings_t) :: settings
     real(dp) :: scales(scene%n), factor, tolerance
     logical :: growing(scene%n)
@@ -144,7 +134,7 @@ contains
     settings%relative = merge(0.0_dp, tolerance, growing)
     settings%absolute = factor*scales
     call tighten(settings, scene%work_at, lasting_share)
-    if (scene%drive%free_crank) then
+    if (scene%chain%drive%free_crank) then
       call tighten(settings, scene%crank%rate, lasting_share)
       call tighten(settings, scene%crank%position, angle_share)
     end if

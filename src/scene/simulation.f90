@@ -7,7 +7,7 @@ module simulation
   use methods, only: new_method
   use solver, only: integrate, silent_observer_t, integration_done, integration_interrupted, step_limit_reached, &
     evaluation_limit_reached, unreadable_archive
-  use scene, only: scene_t
+  use gudgeon_scene, only: scene_t
   use stop_reason, only: reason, place, interrupted_text, revolution_budget_spent
   use scene_builder, only: build_scene, simulated_time, sample_interval, settings_for
   use columns, only: choose_columns, column_list_t
@@ -45,7 +45,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(archive_t), intent(inout), optional :: archive
     type(cycle_watch_t), allocatable, intent(inout), optional :: cycles
-    class(scene_t), allocatable :: scene
+    type(scene_t), allocatable :: scene
     class(ode_method_t), allocatable :: method
     type(recorder_t) :: recorder
     real(dp), allocatable :: y(:)
@@ -135,7 +135,7 @@ contains
     real(dp), intent(in) :: time
     integer, intent(in) :: max_steps
     integer, intent(out) :: evaluations
-    class(scene_t), allocatable :: scene
+    type(scene_t), allocatable :: scene
     class(ode_method_t), allocatable :: method
     type(error_t), allocatable :: error
     type(silent_observer_t) :: observer

@@ -6,9 +6,10 @@
 module step_peaks
   use kinds, only: dp
   use ode_method, only: ode_method_t
-  use dynamics, only: pin_force_size
-  use clearance_joint, only: joint_motion_t
-  use scene, only: scene_t, evaluation_t, phase_free, phase_contact
+  use chain_loads, only: force_size
+  use joint_motion, only: joint_motion_t
+  use chain_motion, only: piston_pin
+  use gudgeon_scene, only: scene_t, evaluation_t, phase_free, phase_contact
   use peak_search, only: sample_t, peak_search_t, most_between
   use archive, only: archive_t
   implicit none
@@ -83,7 +84,7 @@ contains
   subroutine search(self, method, scene, t_to, now, known, largest)
     class(peak_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t_to               !! inside the last step
     type(evaluation_t), intent(in) :: now      !! there
     real(dp), intent(in) :: known(n_peaks)     !! huge: not of interest
@@ -115,9 +116,9 @@ contains
   pure function peaks_of(now) result(values)
     type(evaluation_t), intent(in) :: now
     real(dp) :: values(n_peaks)
-    values(of_pin_force) = pin_force_size(now%loads)
-    values(of_penetration) = now%joint%penetration
-    values(of_normal_force) = now%normal_force
+    values(of_pin_force) = force_size(now%loads%force(:, piston_pin))
+    values(of_penetration) = now%relative(1)%penetration
+    values(of_normal_force) = now%joint(1)%normal_force
   end function peaks_of
 
   !> They at one instant, as samples; of the penetration the slope is known.
@@ -128,7 +129,7 @@ contains
     samples%t = t
     samples%value = peaks_of(now)
     samples%slope = 0
-    samples(of_penetration)%slope = now%joint%penetration_rate
+    samples(of_penetration)%slope = now%relative(1)%penetration_rate
   end function samples_of
 
   !> The quantities at the beginning of the step, after a change of phase. In free flight there is no force, and at the beginning
@@ -136,7 +137,7 @@ contains
   subroutine meet_beginning(self, method, scene, later_force)
     class(peak_watch_t), intent(inout) :: self
     class(ode_method_t), intent(in) :: method
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: later_force   !! normal force at the end of the piece [N]
     real(dp), parameter :: next_to_none = 1e-9_dp
     type(evaluation_t) :: now
@@ -145,13 +146,13 @@ contains
     logical :: inside
 
     self%knows_slope = [.false., .true., .false.]
-    if (scene%has_clearance()) then
-      call scene%find_pin(method%t_old, method%y_old, joint, normal_force)
+    if (scene%joint_at(piston_pin) > 0) then
+      call scene%joints(1)%look(method%y_old, joint, normal_force)
       self%left(of_penetration) = sample_t(method%t_old, joint%penetration, joint%penetration_rate)
       self%left(of_normal_force) = sample_t(method%t_old, normal_force, 0.0_dp)
       self%left(of_pin_force) = self%left(of_normal_force)
-      if (scene%phase == phase_free) return
-      if (scene%phase == phase_contact .and. normal_force <= next_to_none*later_force) return
+      if (scene%phase_at(piston_pin) == phase_free) return
+      if (scene%phase_at(piston_pin) == phase_contact .and. normal_force <= next_to_none*later_force) return
     end if
     self%evaluations = self%evaluations + 1
     call scene%evaluate(method%t_old, method%y_old, now, inside)
@@ -162,7 +163,7 @@ contains
   subroutine search_one(self, method, scene, quantity, right, knows_right, known, largest)
     class(peak_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     integer, intent(in) :: quantity
     type(sample_t), intent(inout) :: right
     logical, intent(inout) :: knows_right      !! its slope is known; it may be found
@@ -218,9 +219,9 @@ contains
         self%evaluations = self%evaluations + 1
         call scene%evaluate(t, self%y, now, inside)
         value_at = no_peak
-        if (inside) value_at = pin_force_size(now%loads)
+        if (inside) value_at = force_size(now%loads%force(:, piston_pin))
       else
-        call scene%find_pin(t, self%y, joint, normal_force)
+        call scene%joints(1)%look(self%y, joint, normal_force)
         value_at = merge(joint%penetration, normal_force, quantity == of_penetration)
       end if
     end function value_at

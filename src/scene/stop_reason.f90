@@ -4,7 +4,8 @@ module stop_reason
   use constants, only: degree
   use ode_method, only: ode_settings_t, step_too_small, tolerance_too_small, start_outside, left_domain
   use solver, only: step_limit_reached, integration_interrupted, chattering, evaluation_limit_reached, unreadable_archive
-  use scene, only: scene_t, evaluation_t
+  use gudgeon_scene, only: scene_t, evaluation_t
+  use chain_motion, only: piston_pin
   implicit none
   private
   public :: reason, place, interrupted_text, revolution_budget_spent
@@ -19,7 +20,7 @@ contains
   !> Why an integration with these settings ended at (t, y).
   function reason(status, scene, settings, t, y) result(text)
     integer, intent(in) :: status
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     type(ode_settings_t), intent(in) :: settings
     real(dp), intent(in) :: t, y(:)
     character(len=:), allocatable :: text
@@ -55,7 +56,7 @@ contains
 
   !> Why no step was short enough.
   function small_step_reason(scene, settings, t, y) result(text)
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     type(ode_settings_t), intent(in) :: settings
     real(dp), intent(in) :: t, y(:)
     character(len=:), allocatable :: text
@@ -73,7 +74,7 @@ contains
 
   !> How far the state goes in the shortest step that the time resolves, in tolerances.
   real(dp) function change_in_rounding(scene, settings, t, y)
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     type(ode_settings_t), intent(in) :: settings
     real(dp), intent(in) :: t, y(:)
     real(dp) :: rates(size(y)), weight, step
@@ -91,7 +92,7 @@ contains
 
   !> Where a run stands: time, crank angle and phase.
   function place(scene, t, y) result(text)
-    class(scene_t), intent(in) :: scene
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     character(len=:), allocatable :: text
     character(len=*), parameter :: phase_names(0:2) = [character(len=13) :: 'free flight', 'film', 'contact']
@@ -100,6 +101,6 @@ contains
     logical :: inside
     call scene%evaluate(t, y, now, inside)
     write (figures, '(a,es15.8,a,f0.4,a)') 't =', t, ' s, crank angle ', now%motion%crank_angle/degree, ' deg'
-    text = trim(figures)//', phase '//trim(phase_names(scene%phase))
+    text = trim(figures)//', phase '//trim(phase_names(scene%phase_at(piston_pin)))
   end function place
 end module stop_reason

@@ -1,0 +1,315 @@
+!> A joint with clearance: its laws, its discrete state, its loads, its events.
+!>
+!> While journal and bearing are apart the joint is free, or a film carries it; while they touch, the contact does (Reis 2013, fig. 3.9).
+!> A law that the case does not ask for is not allocated.
+module clearance_joint
+  use kinds, only: dp
+  use archive, only: archive_t
+  use bearing, only: bearing_t
+  use state_layout, only: layout_t, coordinates_t
+  use chain_motion, only: motion_t, piston_pin
+  use chain_bodies, only: bodies_t
+  use ideal_chain, only: ideal_rod
+  use chain_loads, only: loads_t, bearing_moment
+  use contact_law, only: contact_law_t
+  use friction_law, only: friction_law_t
+  use film_law, only: film_law_t, film_motion_t
+  use joint_motion, only: joint_motion_t, find_polar, find_speeds, find_sliding
+  implicit none
+  private
+  public :: clearance_joint_t, joint_loads_t, most_joints
+  public :: phase_free, phase_film, phase_contact, n_phases
+
+  integer, parameter :: most_joints = 2
+
+  !> What the joint is doing: the values of the column `phase`.
+  integer, parameter :: phase_free = 0, phase_film = 1, phase_contact = 2
+  integer, parameter :: n_phases = 3
+
+  !> What a joint does to its journal. The bearing receives the opposite forces.
+  type :: joint_loads_t
+    real(dp) :: contact(2)        !! of contact and friction [N]
+    real(dp) :: film(2)           !! of the film [N]
+    real(dp) :: moment            !! of all about the journal's centre, from x to y [N m]
+    real(dp) :: normal_force      !! of the contact, pressing [N]
+    real(dp) :: friction_force    !! along t [N]
+    real(dp) :: power             !! of all on the bodies [W]
+    logical :: sticks             !! set-valued friction holds the surfaces: its force is found with the accelerations
+  end type joint_loads_t
+
+  type :: clearance_joint_t
+    integer :: place = piston_pin           !! pin of the chain
+    type(bearing_t) :: bearing
+    real(dp) :: pin_radius = 0              !! of the journal [m]
+    class(contact_law_t), allocatable :: contact
+    class(friction_law_t), allocatable :: friction
+    class(film_law_t), allocatable :: film
+    type(coordinates_t) :: at               !! where the eccentricity stands in the state
+    integer :: phase = phase_free
+    integer :: sliding = 0                  !! set-valued friction: sign of sliding, 0 sticking
+    real(dp) :: impact_speed = 0            !! penetration rate at which the present contact began [m/s]
+    real(dp) :: max_penetration = 0         !! deepest entry where steps are refused: contact begins at the end of a step [m]
+    real(dp) :: start_eccentricity(2) = 0   !! at t = 0 [m]
+    real(dp) :: start_rate(2) = 0           !! [m/s]
+  contains
+    procedure :: claim
+    procedure :: own_speed
+    procedure :: settle
+    procedure :: put_start
+    procedure, non_overridable :: read_state
+    procedure, non_overridable :: admits
+    procedure, non_overridable :: loads
+    procedure :: complete
+    procedure :: look
+    procedure :: slopes
+    procedure :: is_singular
+    procedure :: phase_apart
+    procedure :: exchange
+  end type clearance_joint_t
+
+contains
+
+  !> Claim the eccentricity. It is measured by the clearance, its rate by the clearance in the time of one radian. Measured
+  !> (scripts/compare_adams.sh, simulation IV, c = 20 um): at the relative tolerance 1e-4 the pin is off by 4e-5 c at the
+  !> end, at 1e-6 by 4e-9 c, at 1e-12 by 1e-14 c; in (q, A, x) rounding alone makes 4e-12 c.
+  !>
+  !> A journal may have a speed of its own where the crank hardly turns: see `own_speed`. The rate is measured by a hundredth of that
+  !> in which it crosses the clearance: at first a journal at rest is slow, and it may stay so.
+  subroutine claim(self, layout, crank_speed, span)
+    class(clearance_joint_t), intent(inout) :: self
+    type(layout_t), intent(inout) :: layout
+    real(dp), intent(in) :: crank_speed   !! natural size of it [rad/s]
+    real(dp), intent(in) :: span          !! of the simulation [s]
+    call layout%claim_positions(2, self%bearing%clearance, max(self%bearing%clearance*crank_speed, norm2(self%start_rate), &
+      0.01_dp*crossing_speed(self, span)), self%at, grows=.false.)
+  end subroutine claim
+
+  !> Natural size of the journal's speed in its bearing where the crank does not give it [m/s]: the one that it starts with, or that in
+  !> which it crosses the clearance in the time simulated.
+  pure real(dp) function own_speed(self, span)
+    class(clearance_joint_t), intent(in) :: self
+    real(dp), intent(in) :: span   !! [s]
+    own_speed = max(norm2(self%start_rate), crossing_speed(self, span))
+  end function own_speed
+
+  !> Speed that crosses the clearance in the time simulated; where this time is short, `most_crossing_speed` [m/s].
+  pure real(dp) function crossing_speed(joint, span)
+    type(clearance_joint_t), intent(in) :: joint
+    real(dp), intent(in) :: span   !! [s]
+    real(dp), parameter :: most_crossing_speed = 1
+    crossing_speed = min(joint%bearing%clearance/span, most_crossing_speed)
+  end function crossing_speed
+
+  subroutine settle(self, layout)
+    class(clearance_joint_t), intent(inout) :: self
+    type(layout_t), intent(in) :: layout
+    call layout%settle(self%at)
+  end subroutine settle
+
+  !> Its part of the state at t = 0.
+  pure subroutine put_start(self, y)
+    class(clearance_joint_t), intent(in) :: self
+    real(dp), intent(inout) :: y(:)
+    y(self%at%position:self%at%position + 1) = self%start_eccentricity
+    y(self%at%rate:self%at%rate + 1) = self%start_rate
+  end subroutine put_start
+
+  !> The eccentricity and its rate.
+  pure subroutine read_state(self, y, joint)
+    class(clearance_joint_t), intent(in) :: self
+    real(dp), intent(in) :: y(*)
+    type(joint_motion_t), intent(inout) :: joint
+    joint%eccentricity(1) = y(self%at%position)
+    joint%eccentricity(2) = y(self%at%position + 1)
+    joint%eccentricity_rate(1) = y(self%at%rate)
+    joint%eccentricity_rate(2) = y(self%at%rate + 1)
+  end subroutine read_state
+
+  !> Whether the journal may be there: inside the bearing's wall and, where a film is singular, inside the clearance.
+  pure logical function admits(self, e)
+    class(clearance_joint_t), intent(in) :: self
+    real(dp), intent(in) :: e(2)
+    real(dp) :: distance_squared
+    distance_squared = e(1)**2 + e(2)**2
+    admits = distance_squared < self%bearing%radius**2
+    if (self%phase == phase_film) &
+      admits = admits .and. (distance_squared < self%bearing%clearance**2 .or. .not. self%film%singular_at_wall)
+  end function admits
+
+  !> The loads of the present phase, also among those of the chain, and their power on the bodies. What the phase does not have is
+  !> left as it is.
+  pure subroutine loads(self, bodies, motion, joint, own, all)
+    class(clearance_joint_t), intent(in) :: self
+    type(bodies_t), intent(in) :: bodies
+    type(motion_t), intent(in) :: motion
+    type(joint_motion_t), intent(inout) :: joint
+    type(joint_loads_t), intent(inout) :: own
+    type(loads_t), intent(inout) :: all
+    real(dp) :: force(2)
+
+    own%sticks = .false.
+    own%moment = 0
+    own%power = 0
+    force = 0
+    if (self%phase /= phase_free) then
+      call find_speeds(self%place, motion, joint)
+      if (self%phase == phase_contact) then
+        call find_contact(self, joint, own)
+        force = own%contact
+      else
+        call self%film%film_force(film_motion(self, bodies, motion, joint), own%film, own%moment)
+        force = own%film
+      end if
+      own%power = (force(1)*joint%eccentricity_rate(1) + force(2)*joint%eccentricity_rate(2)) + own%moment*joint%journal_speed
+      if (self%place /= piston_pin) &
+        own%power = own%power + bearing_moment(joint%eccentricity, force, own%moment)*joint%bearing_speed
+    end if
+    all%force(1, self%place) = force(1)
+    all%force(2, self%place) = force(2)
+    all%moment(self%place) = own%moment
+  end subroutine loads
+
+  !> Contact and friction: -F_N n + F_T t on the journal, and the moment F_T R. Where the surfaces stick there is no friction yet: it is
+  !> found with the accelerations.
+  pure subroutine find_contact(self, joint, own)
+    type(clearance_joint_t), intent(in) :: self
+    type(joint_motion_t), intent(inout) :: joint
+    type(joint_loads_t), intent(inout) :: own
+    call find_polar(self%bearing%clearance, joint)
+    own%normal_force = self%contact%normal_force(joint%penetration, joint%penetration_rate, self%impact_speed)
+    own%friction_force = 0
+    if (allocated(self%friction)) then
+      call find_sliding(self%pin_radius, joint)
+      own%sticks = self%friction%set_valued .and. self%sliding == 0
+      if (.not. own%sticks) own%friction_force = own%normal_force*self%friction%friction_ratio(joint%sliding_speed, self%sliding)
+    end if
+    associate (n => joint%normal, pressing => own%normal_force, friction => own%friction_force)
+      own%contact(1) = -pressing*n(1) - friction*n(2)
+      own%contact(2) = friction*n(1) - pressing*n(2)
+      own%moment = friction*self%pin_radius
+    end associate
+  end subroutine find_contact
+
+  !> What `loads` has left: how journal and bearing move against each other, whatever the phase asks for, and loads that the phase does
+  !> not have. Where the motion of the bodies is not known there are no turning and sliding speeds.
+  pure subroutine complete(self, motion, is_known, joint, own)
+    class(clearance_joint_t), intent(in) :: self
+    type(motion_t), intent(in) :: motion
+    logical, intent(in) :: is_known
+    type(joint_motion_t), intent(inout) :: joint
+    type(joint_loads_t), intent(inout) :: own
+    if (self%phase /= phase_film) own%film = 0
+    if (self%phase /= phase_contact) then
+      own%contact = 0
+      own%normal_force = 0
+      own%friction_force = 0
+    end if
+    call find_polar(self%bearing%clearance, joint)
+    if (.not. is_known) return
+    call find_speeds(self%place, motion, joint)
+    call find_sliding(self%pin_radius, joint)
+  end subroutine complete
+
+  !> Where the journal is and how it moves there, without turning and sliding speeds, and the normal force: all that a state tells without
+  !> the motion of the bodies.
+  pure subroutine look(self, y, joint, normal_force)
+    class(clearance_joint_t), intent(in) :: self
+    real(dp), intent(in) :: y(:)
+    type(joint_motion_t), intent(inout) :: joint
+    real(dp), intent(out) :: normal_force
+    call self%read_state(y, joint)
+    call find_polar(self%bearing%clearance, joint)
+    normal_force = 0
+    if (self%phase == phase_contact) &
+      normal_force = self%contact%normal_force(joint%penetration, joint%penetration_rate, self%impact_speed)
+  end subroutine look
+
+  !> The motion as a film sees it. Where both bodies turn the film is drawn along by the sum of their speeds.
+  pure function film_motion(self, bodies, motion, joint) result(film)
+    type(clearance_joint_t), intent(in) :: self
+    type(bodies_t), intent(in) :: bodies
+    type(motion_t), intent(in) :: motion
+    type(joint_motion_t), intent(in) :: joint
+    type(film_motion_t) :: film
+    real(dp) :: rod_speed, rod_acceleration
+    film%eccentricity = joint%eccentricity
+    film%eccentricity_rate = joint%eccentricity_rate
+    film%pin_speed = joint%journal_speed + joint%bearing_speed
+    if (self%film%needs_ideal_motion) then
+      call ideal_rod(bodies, motion, rod_speed, rod_acceleration)
+      film%ideal_pin_speed = -rod_speed
+      film%ideal_pin_acceleration = -rod_acceleration
+      film%frequency = abs(motion%crank_speed)
+      if (self%place /= piston_pin) film%ideal_pin_speed = motion%crank_speed - rod_speed
+    end if
+  end function film_motion
+
+  !> Derivatives of the force and the moment on the journal (rows F_x, F_y, moment) by e_x, e_y, e_x', e_y' and the journal's speed
+  !> (columns), for implicit integration. Surfaces that stick have none.
+  pure subroutine slopes(self, bodies, motion, joint, own, derivatives)
+    class(clearance_joint_t), intent(in) :: self
+    type(bodies_t), intent(in) :: bodies
+    type(motion_t), intent(in) :: motion
+    type(joint_motion_t), intent(in) :: joint
+    type(joint_loads_t), intent(in) :: own
+    real(dp), intent(out) :: derivatives(3, 5)
+    derivatives = 0
+    if (self%phase == phase_contact) call contact_slopes(self, joint, own, derivatives)
+    if (self%phase == phase_film) call self%film%force_derivatives(film_motion(self, bodies, motion, joint), derivatives)
+  end subroutine slopes
+
+  pure subroutine contact_slopes(self, joint, own, derivatives)
+    class(clearance_joint_t), intent(in) :: self
+    type(joint_motion_t), intent(in) :: joint
+    type(joint_loads_t), intent(in) :: own
+    real(dp), intent(out) :: derivatives(3, 5)
+    real(dp) :: stiffness, damping, ratio, ratio_slope, turn(5), depth(5), rate(5), sliding(5), normal(5), friction(5)
+    integer :: i
+
+    associate (n => joint%normal)
+      call self%contact%normal_force_slopes(joint%penetration, joint%penetration_rate, self%impact_speed, stiffness, damping)
+      ratio = 0
+      ratio_slope = 0
+      if (allocated(self%friction)) then
+        ratio = self%friction%friction_ratio(joint%sliding_speed, self%sliding)
+        ratio_slope = self%friction%friction_ratio_slope(joint%sliding_speed)
+      end if
+      turn = [-n(2), n(1), 0.0_dp, 0.0_dp, 0.0_dp]/joint%distance
+      depth = [n(1), n(2), 0.0_dp, 0.0_dp, 0.0_dp]
+      rate = turn*joint%tangential_rate + [0.0_dp, 0.0_dp, n(1), n(2), 0.0_dp]
+      sliding = -turn*joint%penetration_rate + [0.0_dp, 0.0_dp, -n(2), n(1), self%pin_radius]
+      normal = stiffness*depth + damping*rate
+      friction = ratio*normal + ratio_slope*own%normal_force*sliding
+      do i = 1, 5
+        associate (along => -normal(i) - own%friction_force*turn(i), across => friction(i) - own%normal_force*turn(i))
+          derivatives(:, i) = [along*n(1) - across*n(2), along*n(2) + across*n(1), self%pin_radius*friction(i)]
+        end associate
+      end do
+    end associate
+  end subroutine contact_slopes
+
+  !> The phase while journal and bearing are apart.
+  pure integer function phase_apart(self)
+    class(clearance_joint_t), intent(in) :: self
+    phase_apart = merge(phase_film, phase_free, allocated(self%film))
+  end function phase_apart
+
+  !> Whether the film grows without bound at the wall, and has next to no thickness.
+  pure logical function is_singular(self, y)
+    class(clearance_joint_t), intent(in) :: self
+    real(dp), intent(in) :: y(:)
+    real(dp), parameter :: thin = 1e-6_dp   !! of the clearance
+    is_singular = .false.
+    if (self%phase == phase_film) is_singular = self%film%singular_at_wall .and. &
+      norm2(y(self%at%position:self%at%position + 1)) > (1 - thin)*self%bearing%clearance
+  end function is_singular
+
+  !> The discrete state, to or from an archive.
+  subroutine exchange(self, archive)
+    class(clearance_joint_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    call archive%exchange(self%phase)
+    call archive%exchange(self%impact_speed)
+    call archive%exchange(self%sliding)
+  end subroutine exchange
+end module clearance_joint

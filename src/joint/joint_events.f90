@@ -1,0 +1,171 @@
+!> Events of a joint with clearance: contact begins and ends, set-valued friction changes.
+module joint_events
+  use kinds, only: dp
+  use ode_problem, only: step_admitted, step_too_deep
+  use chain_motion, only: accelerations_t
+  use clearance_joint, only: clearance_joint_t, joint_loads_t, phase_contact
+  use joint_motion, only: joint_motion_t, sliding_acceleration
+  implicit none
+  private
+  public :: n_events, contact_begins, contact_ends, sliding_changes
+  public :: contact_events, sliding_event, judge_entry, rough_end, begin_contact, end_contact, choose_sliding
+  public :: penetration_and_rate
+
+  !> The events of a joint, in this order. One without contact has none, and only set-valued friction has the third.
+  integer, parameter :: contact_begins = 1, contact_ends = 2, sliding_changes = 3
+
+contains
+
+  pure integer function n_events(joint)
+    type(clearance_joint_t), intent(in) :: joint
+    n_events = 0
+    if (allocated(joint%contact)) n_events = contact_ends
+    if (allocated(joint%friction)) then
+      if (joint%friction%set_valued) n_events = sliding_changes
+    end if
+  end function n_events
+
+  !> Penetration [m] and its rate [m/s].
+  pure function penetration_and_rate(joint, y) result(values)
+    type(clearance_joint_t), intent(in) :: joint
+    real(dp), intent(in) :: y(:)
+    real(dp) :: values(2), distance
+    associate (x => y(joint%at%position), x_rate => y(joint%at%rate), &
+               across => y(joint%at%position + 1), across_rate => y(joint%at%rate + 1))
+      distance = sqrt(x**2 + across**2)
+      values(1) = distance - joint%bearing%clearance
+      values(2) = 0
+      if (distance > 0) values(2) = (x*x_rate + across*across_rate)/distance
+    end associate
+  end function penetration_and_rate
+
+  !> Event functions and rates of the beginning and the end of a contact. That of the other phase is constant.
+  pure subroutine contact_events(joint, y, g, g_rate)
+    type(clearance_joint_t), intent(in) :: joint
+    real(dp), intent(in) :: y(:)
+    real(dp), intent(out) :: g(2), g_rate(2)
+    real(dp) :: contact(2)
+    contact = penetration_and_rate(joint, y)
+    g = -1
+    g_rate = 0
+    if (joint%phase == phase_contact) then
+      g(contact_ends) = -contact(1)
+      g_rate(contact_ends) = -contact(2)
+    else
+      g(contact_begins) = contact(1)
+      g_rate(contact_begins) = contact(2)
+    end if
+  end subroutine contact_events
+
+  !> Event function of set-valued friction in contact: surfaces slip that stuck, or the sliding speed passes zero.
+  pure subroutine sliding_event(joint, motion, own, accelerations, g, g_rate)
+    type(clearance_joint_t), intent(in) :: joint
+    type(joint_motion_t), intent(in) :: motion
+    type(joint_loads_t), intent(in) :: own
+    type(accelerations_t), intent(in) :: accelerations
+    real(dp), intent(out) :: g, g_rate
+    if (joint%sliding == 0) then
+      g = abs(own%friction_force) - sticking_limit(joint, own%normal_force)
+      g_rate = 0
+    else
+      g = -joint%sliding*motion%sliding_speed
+      g_rate = -joint%sliding*sliding_acceleration(joint%place, joint%pin_radius, motion, accelerations, at_rest=.false.)
+    end if
+  end subroutine sliding_event
+
+  !> Largest friction force that a set-valued law can give [N].
+  pure real(dp) function sticking_limit(joint, normal_force)
+    type(clearance_joint_t), intent(in) :: joint
+    real(dp), intent(in) :: normal_force
+    sticking_limit = abs(joint%friction%friction_ratio(0.0_dp, 1))*normal_force
+  end function sticking_limit
+
+  !> A step that begins apart may go no deeper into contact than `max_penetration` (4.12-4.13), nor pass through it. The
+  !> penetration inside the step is taken as the cubic through its values and rates at both ends. Where the step goes too deep
+  !> `fraction` of it lands half way into the allowed depth.
+  pure subroutine judge_entry(joint, t_old, y_old, t, y, verdict, fraction)
+    type(clearance_joint_t), intent(in) :: joint
+    real(dp), intent(in) :: t_old, y_old(:), t, y(:)
+    integer, intent(out) :: verdict
+    real(dp), intent(out) :: fraction
+    real(dp) :: left(2), right(2), lower, upper, middle
+    integer :: i
+    integer, parameter :: scan = 16
+
+    verdict = step_admitted
+    fraction = 1
+    if (joint%phase == phase_contact .or. .not. allocated(joint%contact)) return
+    left = penetration_and_rate(joint, y_old)
+    right = penetration_and_rate(joint, y)
+    left(2) = left(2)*(t - t_old)
+    right(2) = right(2)*(t - t_old)
+    if (right(1) >= 0 .and. right(1) <= joint%max_penetration) return
+    lower = 0
+    do i = 1, scan
+      upper = real(i, dp)/scan
+      if (hermite(left, right, upper) > merge(0.0_dp, joint%max_penetration, right(1) < 0 .and. i < scan)) exit
+      lower = upper
+    end do
+    if (i > scan) return
+    verdict = step_too_deep
+    do i = 1, 40
+      middle = 0.5_dp*(lower + upper)
+      if (hermite(left, right, middle) < 0.5_dp*joint%max_penetration) then
+        lower = middle
+      else
+        upper = middle
+      end if
+    end do
+    fraction = max(upper, 1e-3_dp)
+  end subroutine judge_entry
+
+  !> The cubic on [0, 1] with given values and slopes at the ends.
+  pure real(dp) function hermite(left, right, s)
+    real(dp), intent(in) :: left(2), right(2), s
+    hermite = (1 + 2*s)*(1 - s)**2*left(1) + s*(1 - s)**2*left(2) + s**2*(3 - 2*s)*right(1) - s**2*(1 - s)*right(2)
+  end function hermite
+
+  !> When a contact ends, where the journal is on its way there: the force ends with the power 1.5 of the penetration. Else the
+  !> largest number.
+  pure real(dp) function rough_end(joint, t, y)
+    type(clearance_joint_t), intent(in) :: joint
+    real(dp), intent(in) :: t, y(:)
+    real(dp) :: distance, product
+    rough_end = huge(rough_end)
+    associate (x => y(joint%at%position), x_rate => y(joint%at%rate), &
+               across => y(joint%at%position + 1), across_rate => y(joint%at%rate + 1))
+      product = x*x_rate + across*across_rate   ! e . e' = |e| |e|'
+      if (.not. product < 0) return
+      distance = sqrt(x**2 + across**2)
+      if (distance > joint%bearing%clearance) rough_end = t - (distance - joint%bearing%clearance)*distance/product
+    end associate
+  end function rough_end
+
+  !> The journal touches, at a penetration rate [m/s].
+  pure subroutine begin_contact(joint, rate)
+    type(clearance_joint_t), intent(inout) :: joint
+    real(dp), intent(in) :: rate
+    joint%phase = phase_contact
+    joint%impact_speed = max(rate, 0.0_dp)
+  end subroutine begin_contact
+
+  pure subroutine end_contact(joint)
+    type(clearance_joint_t), intent(inout) :: joint
+    joint%phase = joint%phase_apart()
+  end subroutine end_contact
+
+  !> Set-valued friction, from an evaluation as if the surfaces stuck: where the sliding speed is not zero it tells the direction. At zero
+  !> (where it `may_slide` at the beginning of a contact it is taken as it is) the surfaces stick if friction can hold them and
+  !> slide against it if not.
+  pure subroutine choose_sliding(joint, motion, own, was_sliding, may_slide)
+    type(clearance_joint_t), intent(inout) :: joint
+    type(joint_motion_t), intent(in) :: motion
+    type(joint_loads_t), intent(in) :: own
+    logical, intent(in) :: was_sliding, may_slide
+    if (may_slide .and. abs(motion%sliding_speed) > 0) then
+      joint%sliding = nint(sign(1.0_dp, motion%sliding_speed))
+    else if (abs(own%friction_force) > sticking_limit(joint, own%normal_force) .or. .not. (may_slide .or. was_sliding)) then
+      joint%sliding = -nint(sign(1.0_dp, own%friction_force))
+    end if
+  end subroutine choose_sliding
+end module joint_events

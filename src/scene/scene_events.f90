@@ -1,0 +1,180 @@
+!> Events of a scene: each is its owner's, a joint's or the gas's.
+submodule (gudgeon_scene) scene_events
+  use ode_problem, only: step_admitted, event_continue
+  use joint_events, only: n_events, contact_begins, contact_ends, sliding_changes, contact_events, &
+    sliding_event, judge_entry, rough_end, begin_contact, end_contact, choose_sliding
+  use joint_motion, only: outward_acceleration
+  use working_gas, only: n_gas_events
+  implicit none
+
+contains
+
+  !> Number the events.
+  subroutine number_events(scene)
+    class(scene_t), intent(inout) :: scene
+    integer :: i, k
+    scene%n_events = 0
+    scene%may_stick = .false.
+    do i = 1, size(scene%joints)
+      scene%may_stick = scene%may_stick .or. n_events(scene%joints(i)) >= sliding_changes
+      do k = 1, n_events(scene%joints(i))
+        scene%n_events = scene%n_events + 1
+        scene%event_of(scene%n_events) = event_owner_t(i, k)
+      end do
+    end do
+    if (.not. allocated(scene%gas)) return
+    do k = 1, n_gas_events
+      scene%n_events = scene%n_events + 1
+      scene%event_of(scene%n_events) = event_owner_t(0, k)
+    end do
+  end subroutine number_events
+
+  module procedure all_events
+    real(dp) :: own(2), own_rate(2)
+    integer :: k, i
+    k = 0
+    do while (k < self%n_events)
+      k = k + 1
+      i = self%event_of(k)%joint
+      if (i == 0) then
+        call self%gas%events(self%crank_angle(t, y), self%crank_speed(y), own, own_rate)
+      else if (self%event_of(k)%event == sliding_changes) then
+        call find_sliding_event(self, t, y, i, g(k), g_rate(k))
+        cycle
+      else
+        call contact_events(self%joints(i), y, own, own_rate)
+      end if
+      g(k) = own(1)
+      g_rate(k) = own_rate(1)
+      k = k + 1
+      g(k) = own(2)
+      g_rate(k) = own_rate(2)
+    end do
+  end procedure all_events
+
+  !> That of set-valued friction, which hangs on the accelerations.
+  pure subroutine find_sliding_event(scene, t, y, i, g, g_rate)
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(:)
+    integer, intent(in) :: i
+    real(dp), intent(out) :: g, g_rate
+    type(evaluation_t) :: now
+    logical :: inside
+    g = -1
+    g_rate = 0
+    if (scene%joints(i)%phase /= phase_contact) return
+    call scene%evaluate(t, y, now, inside)
+    if (inside) call sliding_event(scene%joints(i), now%relative(i), now%joint(i), now%accelerations, g, g_rate)
+  end subroutine find_sliding_event
+
+  module procedure handle_event
+    real(dp) :: contact(2)
+    action = event_continue
+    associate (i => self%event_of(index)%joint, event => self%event_of(index)%event)
+      if (i == 0) then
+        call self%gas%pass_bound(event)
+      else
+        select case (event)
+        case (contact_begins)
+          contact = penetration_and_rate(self%joints(i), y)
+          call begin_contact(self%joints(i), contact(2))
+          self%entry_time = t
+          call find_sliding_direction(self, i, t, y, .true.)
+        case (contact_ends)
+          call end_contact(self%joints(i))
+        case (sliding_changes)
+          call find_sliding_direction(self, i, t, y, .false.)
+        end select
+      end if
+    end associate
+    self%smooth_in_root = .not. t > self%entry_time   ! penetration grows like t, the force like its power 1.5
+    self%mode = mode_of(self)
+  end procedure handle_event
+
+  !> The discrete state as the choice of a method sees it.
+  pure integer function mode_of(scene)
+    class(scene_t), intent(in) :: scene
+    integer :: i
+    mode_of = 0
+    do i = 1, size(scene%joints)
+      mode_of = mode_of + scene%joints(i)%phase*n_phases**(i - 1)
+    end do
+  end function mode_of
+
+  !> Set-valued friction of one joint: which way it slides, or that it sticks.
+  subroutine find_sliding_direction(scene, i, t, y, may_slide)
+    class(scene_t), intent(inout) :: scene
+    integer, intent(in) :: i
+    real(dp), intent(in) :: t, y(:)
+    logical, intent(in) :: may_slide
+    type(evaluation_t) :: now
+    logical :: inside, was_sliding
+    if (n_events(scene%joints(i)) < sliding_changes) return
+    was_sliding = scene%joints(i)%sliding /= 0
+    scene%joints(i)%sliding = 0
+    call scene%evaluate(t, y, now, inside)
+    if (inside) call choose_sliding(scene%joints(i), now%relative(i), now%joint(i), was_sliding, may_slide)
+  end subroutine find_sliding_direction
+
+  module procedure reported_event
+    reported_event = event_none
+    if (self%event_of(index)%joint == 0) return
+    if (self%event_of(index)%event == contact_begins) reported_event = event_contact_begins
+    if (self%event_of(index)%event == contact_ends) reported_event = event_contact_ends
+  end procedure reported_event
+
+  module procedure judge_step
+    integer :: i, judged
+    real(dp) :: part
+    verdict = step_admitted
+    fraction = 1
+    do i = 1, self%n_joints
+      call judge_entry(self%joints(i), t_old, y_old, t, y, judged, part)
+      if (judged == step_admitted) cycle
+      verdict = judged
+      fraction = min(fraction, part)
+    end do
+  end procedure judge_step
+
+  module procedure lands_on_step_end
+    lands_on_step_end = self%refuses_steps .and. self%event_of(index)%joint > 0 .and. self%event_of(index)%event == contact_begins
+  end procedure lands_on_step_end
+
+  module procedure rough_time
+    integer :: i
+    rough_time = huge(rough_time)
+    do i = 1, self%n_joints
+      if (self%joints(i)%phase == phase_contact) rough_time = min(rough_time, rough_end(self%joints(i), t, y))
+    end do
+  end procedure rough_time
+
+  module procedure prepare_start
+    real(dp) :: y(self%n), contact(2), onwards
+    type(evaluation_t) :: now
+    logical :: inside
+    integer :: i
+
+    call number_events(self)
+    y = self%initial_state()
+    do i = 1, self%n_joints
+      self%joints(i)%phase = self%joints(i)%phase_apart()
+      contact = penetration_and_rate(self%joints(i), y)
+      if (allocated(self%joints(i)%contact) .and. contact(1) >= 0) call begin_contact(self%joints(i), contact(2))
+    end do
+    do i = 1, self%n_joints   ! exactly at the wall
+      contact = penetration_and_rate(self%joints(i), y)
+      if (self%joints(i)%phase /= phase_contact .or. contact(1) > 0) cycle
+      onwards = contact(2)
+      call self%evaluate(0.0_dp, y, now, inside)
+      if (inside .and. .not. abs(onwards) > 0) &
+        onwards = outward_acceleration(self%joints(i)%place, now%relative(i), now%accelerations)
+      if (onwards < 0) call end_contact(self%joints(i))
+      if (contact(2) > 0) self%entry_time = 0
+    end do
+    self%smooth_in_root = .not. self%entry_time < 0
+    self%mode = mode_of(self)
+    do i = 1, self%n_joints
+      if (self%joints(i)%phase == phase_contact) call find_sliding_direction(self, i, 0.0_dp, y, .true.)
+    end do
+  end procedure prepare_start
+end submodule scene_events

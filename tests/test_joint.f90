@@ -1,0 +1,92 @@
+!> Motion in a joint with clearance, and scenes whose joints are ideal.
+module test_joint
+  use kinds, only: dp
+  use checks, only: checks_t
+  use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin
+  use joint_motion, only: joint_motion_t, find_polar, find_speeds, find_sliding, sliding_acceleration, outward_acceleration
+  use collecting_sink, only: trace_t, run_case, column
+  implicit none
+  private
+  public :: run_test_joint
+
+contains
+
+  subroutine run_test_joint(check)
+    class(checks_t), intent(inout) :: check
+    call polar_terms(check)
+    call accelerations_in_the_joint(check)
+    call ideal_scene_runs(check)
+  end subroutine run_test_joint
+
+  subroutine polar_terms(check)
+    class(checks_t), intent(inout) :: check
+    type(joint_motion_t) :: joint
+    joint%eccentricity = [3e-5_dp, -4e-5_dp]
+    joint%eccentricity_rate = [0.2_dp, 0.1_dp]
+    joint%journal_speed = 10
+    joint%bearing_speed = 0
+    call find_polar(1e-4_dp, joint)
+    call find_sliding(0.0099_dp, joint)
+    call check%close_to(joint%distance, 5e-5_dp, 1e-19_dp, 'eccentricity')
+    call check%close_to(joint%penetration, -5e-5_dp, 1e-19_dp, 'penetration')
+    call check%close_to(joint%penetration_rate, 0.2_dp*0.6_dp - 0.1_dp*0.8_dp, 1e-15_dp, 'normal rate')
+    call check%close_to(joint%sliding_speed, 0.2_dp*0.8_dp + 0.1_dp*0.6_dp + 10*0.0099_dp, 1e-15_dp, 'sliding speed')
+    joint%bearing_speed = -30
+    call find_sliding(0.0099_dp, joint)
+    call check%close_to(joint%sliding_speed, 0.2_dp*0.8_dp + 0.1_dp*0.6_dp + 10*0.0099_dp + 30*(0.0099_dp + 5e-5_dp), 1e-15_dp, &
+      'sliding speed where the bearing turns too')
+    joint%eccentricity = 0
+    call find_polar(1e-4_dp, joint)
+    call check%close_to(norm2(joint%normal), 1.0_dp, 0.0_dp, 'a direction at the centre too')
+  end subroutine polar_terms
+
+  !> Rates of the sliding speed and of the penetration rate, at both pins, against their central differences along a motion.
+  subroutine accelerations_in_the_joint(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: dt = 1e-7_dp, radius = 0.0099_dp
+    type(joint_motion_t) :: before, now, after
+    type(accelerations_t) :: a
+    integer :: place
+    a = accelerations_t(300.0_dp, -700.0_dp, 50.0_dp, reshape([4.0_dp, -7.0_dp, 9.0_dp, 3.0_dp], [2, 2]))
+    do place = crank_pin, piston_pin
+      before = joint_after(-dt)
+      now = joint_after(0.0_dp)
+      after = joint_after(dt)
+      call check%close_to((after%sliding_speed - before%sliding_speed)/(2*dt), &
+        sliding_acceleration(place, radius, now, a, at_rest=.false.), 1e-3_dp, 'sliding acceleration [m/s2]')
+      call check%close_to((after%penetration_rate - before%penetration_rate)/(2*dt), outward_acceleration(place, now, a), 1e-3_dp, &
+        'outward acceleration [m/s2]')
+    end do
+
+  contains
+
+    type(joint_motion_t) function joint_after(t)
+      real(dp), intent(in) :: t
+      type(motion_t) :: motion
+      motion%crank_speed = 20 + a%crank*t
+      motion%rod_speed = 40 + a%rod*t
+      joint_after%eccentricity = [3e-4_dp, -4e-4_dp] + [0.02_dp, 0.01_dp]*t + 0.5_dp*a%pin(:, place)*t**2
+      joint_after%eccentricity_rate = [0.02_dp, 0.01_dp] + a%pin(:, place)*t
+      call find_speeds(place, motion, joint_after)
+      call find_polar(1e-4_dp, joint_after)
+      call find_sliding(radius, joint_after)
+    end function joint_after
+  end subroutine accelerations_in_the_joint
+
+  !> A free ideal mechanism without losses keeps its energy; the held one's work is that of the moment.
+  subroutine ideal_scene_runs(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    trace = run_case('cases/sim_I.nml', [character(len=40) :: 'integrator.relative_tolerance=1e-10'], .true.)
+    call check%that(.not. allocated(trace%error), 'the ideal twin of simulation I runs')
+    associate (e => trace%values(column(trace, 'energy[J]'), :), r => trace%values(column(trace, 'energy_residual[J]'), :))
+      call check%close_to(maxval(abs(r))/e(1), 0.0_dp, 1e-8_dp, 'its energy is conserved')
+    end associate
+    call check%that(column(trace, 'film_thickness[m]') == 0, 'an ideal joint has no film column')
+    trace = run_case('cases/flores/ideal.nml', [character(len=40) :: ])
+    associate (r => trace%values(column(trace, 'energy_residual[J]'), :), e => trace%values(column(trace, 'energy[J]'), :))
+      call check%close_to(maxval(abs(r))/maxval(e), 0.0_dp, 1e-5_dp, 'work of the holding moment')
+      call check%that(maxval(e) - minval(e) > 0.1_dp*maxval(e), 'which is not nothing')
+    end associate
+  end subroutine ideal_scene_runs
+end module test_joint
