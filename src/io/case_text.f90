@@ -1,7 +1,6 @@
 !> Cases as text: the template with every key and its default, and the resolved case.
 module case_text
   use text_tools, only: integer_text, quoted
-  use growing_text, only: growing_text_t
   use number_text, only: exact_text
   use parameters, only: key_t, real_kind, integer_kind, logical_kind
   use case_schema, only: group_definition_t, find_key
@@ -58,49 +57,39 @@ contains
   function resolved_text(values) result(text)
     type(case_values_t), intent(in) :: values
     character(len=:), allocatable :: text
-    type(growing_text_t) :: growing
     integer :: group, i
+    text = ''
     do group = 1, size(values%groups)
       if (values%groups(group)%is_model .and. .not. values%is_present(group)) cycle
-      call growing%append('&')
-      call growing%append(trim(values%groups(group)%name))
-      call growing%append(newline)
+      text = text//'&'//trim(values%groups(group)%name)//newline
       do i = 1, size(values%keys)
         if (values%keys(i)%group == values%groups(group)%name .and. values%is_used(i)) &
-          call append_line(growing, values%keys(i), values%values(i))
+          text = text//resolved_line(values%keys(i), values%values(i))//newline
       end do
-      call growing%append('/'//newline)
+      text = text//'/'//newline
     end do
-    call growing%take(text)
   end function resolved_text
 
   !> `  key = value  ! unit`
-  subroutine append_line(text, key, value)
-    type(growing_text_t), intent(inout) :: text
+  function resolved_line(key, value) result(line)
     type(key_t), intent(in) :: key
     type(value_t), intent(in) :: value
+    character(len=:), allocatable :: line
     integer :: element
-    call text%append('  ')
-    call text%append(trim(key%name))
-    call text%append(' = ')
+    line = '  '//trim(key%name)//' = '
     select case (key%kind)
     case (real_kind)
-      call text%append(exact_text(value%reals(1)))
+      line = line//exact_text(value%reals(1))
       do element = 2, key%count
-        call text%append(', ')
-        call text%append(exact_text(value%reals(element)))
+        line = line//', '//exact_text(value%reals(element))
       end do
     case (integer_kind)
-      call text%append(integer_text(value%whole))
+      line = line//integer_text(value%whole)
     case (logical_kind)
-      call text%append(trim(merge('.true. ', '.false.', value%switch)))
+      line = line//trim(merge('.true. ', '.false.', value%switch))
     case default
-      call text%append(quoted(value%text, ''''))
+      line = line//quoted(value%text, '''')
     end select
-    if (key%unit /= '') then
-      call text%append('  ! ')
-      call text%append(trim(key%unit))
-    end if
-    call text%append(newline)
-  end subroutine append_line
+    if (key%unit /= '') line = line//'  ! '//trim(key%unit)
+  end function resolved_line
 end module case_text

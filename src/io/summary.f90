@@ -7,7 +7,6 @@ module summary
   use case_definition, only: case_t
   use number_text, only: real_text, short_text
   use text_tools, only: integer_text, quoted
-  use growing_text, only: growing_text_t
   use version, only: program_version
   implicit none
   private
@@ -27,10 +26,9 @@ contains
     character(len=:), allocatable :: text
     character(len=7), parameter :: phase_names(0:2) = ['free   ', 'film   ', 'contact']
     character(len=5), parameter :: method_names(2) = ['adams', 'radau']
-    type(growing_text_t) :: table
     integer :: order, limit, mode, method
 
-    call table%append('quantity,value,unit'//newline)
+    text = 'quantity,value,unit'//newline
     call add('status', quoted(report%status, '"'), '')
     associate (s => report%statistics, f => report%figures)
       call add('simulated_time', real_text(f%time), 's')
@@ -92,18 +90,12 @@ contains
     call add('version', program_version, '')
     call add('compiler', quoted(compiler_version(), '"'), '')
     call add('compiler_options', quoted(compiler_options(), '"'), '')
-    call table%take(text)
 
   contains
 
     subroutine add(quantity, value, unit)
       character(len=*), intent(in) :: quantity, value, unit
-      call table%append(quantity)
-      call table%append(',')
-      call table%append(value)
-      call table%append(',')
-      call table%append(unit)
-      call table%append(newline)
+      text = text//quantity//','//value//','//unit//newline
     end subroutine add
   end function summary_table
 

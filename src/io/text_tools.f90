@@ -22,17 +22,8 @@ contains
     integer, intent(in) :: number
     character(len=:), allocatable :: text
     character(len=11) :: digits
-    integer :: rest, first
-    rest = merge(number, -max(number, 0), number < 0)   ! not positive: of those there is one less
-    first = len(digits) + 1
-    do
-      first = first - 1
-      digits(first:first) = achar(iachar('0') - mod(rest, 10))
-      rest = rest/10
-      if (rest == 0) exit
-    end do
-    text = digits(first:)
-    if (number < 0) text = '-'//text
+    write (digits, '(i0)') number
+    text = trim(digits)
   end function integer_text
 
   !> The number that a text says: digits, 18 at most, perhaps behind a sign.

@@ -12,7 +12,6 @@ module trace_files
   use trace_sink, only: trace_sink_t, trace_event_t
   use result_file, only: result_file_t
   use file_mark, only: file_mark_t
-  use growing_text, only: growing_text_t
   use checkpoint, only: checkpoint_t, restart_hint
   use number_writer, only: longest_number
   use trace_table, only: trace_table_t
@@ -71,20 +70,16 @@ contains
     integer, intent(in) :: digits
     logical, intent(in) :: with_events
     type(error_t), allocatable, intent(out) :: error
-    type(growing_text_t) :: header
-    character(len=:), allocatable :: line
     integer :: i
 
     call prepare(self, path, list, digits)
     call self%trace%open(path//'.csv', error)
     if (allocated(error)) return
     do i = 1, size(list%id)
-      if (i > 1) call header%append(',')
-      call header%append(column_name(list, i))
+      if (i > 1) call self%trace%put(',')
+      call self%trace%put(column_name(list, i))
     end do
-    call header%append(newline)
-    call header%take(line)
-    call self%trace%put(line)
+    call self%trace%put(newline)
     if (.not. with_events) return
     call self%event_list%open(path//'.events.csv', error)
     if (allocated(error)) then
