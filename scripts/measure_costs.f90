@@ -85,9 +85,11 @@ contains
     end if
     if (allocated(error)) error stop 'measure_costs: run it from the top of the checkout'
     if (index(name, '+gas') == 0 .and. allocated(case%combustion)) deallocate (case%combustion)
-    if (index(name, 'ambrosio') + index(name, 'coulomb') == 0) deallocate (case%friction)
-    if ((dry .or. index(name, 'free') == 1 .or. index(name, 'ideal') == 1) .and. allocated(case%film)) deallocate (case%film)
-    if (index(name, 'ideal') == 1 .or. index(name, 'free') == 1) deallocate (case%contact)
+    if (index(name, 'ambrosio') + index(name, 'coulomb') == 0) deallocate (case%joint%friction)
+    if (dry .or. index(name, 'free') == 1 .or. index(name, 'ideal') == 1) then
+      if (allocated(case%joint%film)) deallocate (case%joint%film)
+    end if
+    if (index(name, 'ideal') == 1 .or. index(name, 'free') == 1) deallocate (case%joint%contact)
     if (index(name, 'ideal') == 1) case%joint%kind = 'ideal'
     call build_scene(case, .false., scene, error)
     if (allocated(error)) error stop 'measure_costs: no such scene'

@@ -36,8 +36,8 @@ contains
     type(case_t) :: case
     call read_keys('&contact '//keys//' /', case, error)
     if (allocated(error)) return
-    allocate (law, source=case%contact)
-    call law%prepare(case%bearing())
+    allocate (law, source=case%joint%contact)
+    call law%prepare(case%joint%bearing(case%mechanism%rod_length))
   end subroutine contact_law_of
 
   !> The friction law of a group &friction with these keys.
@@ -48,7 +48,7 @@ contains
     type(case_t) :: case
     call read_keys('&contact / &friction '//keys//' /', case, error)
     if (allocated(error)) return
-    allocate (law, source=case%friction)
+    allocate (law, source=case%joint%friction)
     call law%prepare()
   end subroutine friction_law_of
 
@@ -61,8 +61,8 @@ contains
     type(case_t) :: case
     call read_keys('&lubrication '//keys//' /', case, error)
     if (allocated(error)) return
-    allocate (law, source=case%film)
-    call law%prepare(case%bearing(), tolerance)
+    allocate (law, source=case%joint%film)
+    call law%prepare(case%joint%bearing(case%mechanism%rod_length), tolerance)
   end subroutine film_law_of
 
   subroutine read_keys(groups, case, error)

@@ -39,6 +39,7 @@ contains
     call test_bodies(check)
     call test_joint(check)
     call test_films(check)
+    call test_places(check)
     call test_runs(check)
     call test_ends_of_runs(check)
     call test_groups_taken_out(check)
@@ -68,17 +69,17 @@ contains
     call check%equal_text(c%file, 'folder/x.nml', 'file as given')
     call check%relative(c%mechanism%crank_inertia, 1e-5_dp, 0.0_dp, 'd exponent')
     call check%relative(c%mechanism%gravity, 9.80665_dp, 0.0_dp, 'gravity by default')
-    call check%that(allocated(c%contact) .and. .not. allocated(c%friction), 'presence of models')
-    call check%that(c%contact%name() == 'lankarani_nikravesh', 'law by default')
+    call check%that(allocated(c%joint%contact) .and. .not. allocated(c%joint%friction), 'presence of models')
+    call check%that(c%joint%contact%name() == 'lankarani_nikravesh', 'law by default')
     call check%that(c%output%samples_per_revolution == 720 .and. c%output%columns == 'standard', 'output by default')
     call check%that(c%integrator%max_order == 12 .and. c%integrator%method == 'auto', 'integrator by default')
     call parse_case(whole, 'x.nml', [character(len=40) :: 'friction.coefficient=.1', 'friction.law=coulomb', &
                                      'contact.youngs_modulus=1e11,2e11', 'case.title=A, b ''c''', &
                                      'friction.coefficient=0.2'], c, error)
     call check%that(.not. allocated(error), 'overrides are taken')
-    call check%that(allocated(c%friction), 'an override makes its group present')
-    call check%relative(element(parameter_of(c%friction, 'coefficient'), 1), 0.2_dp, 0.0_dp, 'the last override counts')
-    call check%relative(element(parameter_of(c%contact, 'youngs_modulus'), 2), 2e11_dp, 0.0_dp, 'override of an array')
+    call check%that(allocated(c%joint%friction), 'an override makes its group present')
+    call check%relative(element(parameter_of(c%joint%friction, 'coefficient'), 1), 0.2_dp, 0.0_dp, 'the last override counts')
+    call check%relative(element(parameter_of(c%joint%contact, 'youngs_modulus'), 2), 2e11_dp, 0.0_dp, 'override of an array')
     call check%equal_text(c%title, 'A, b ''c''', 'text of an override without quotes')
   end subroutine test_values
 
@@ -97,10 +98,10 @@ contains
     call check%that(.not. allocated(error), 'forms of namelists')
     if (allocated(error)) call check%equal_text(error%message, '', 'forms')
     call check%equal_text(c%title, 'it''s "so" ! / &', 'quotes, and what is no comment inside them')
-    call check%relative(element(parameter_of(c%contact, 'poissons_ratio'), 2), 0.25_dp, 0.0_dp, 'repeat count')
-    call check%relative(element(parameter_of(c%contact, 'youngs_modulus'), 1), 207e9_dp, 0.0_dp, 'element by default')
-    call check%relative(element(parameter_of(c%contact, 'youngs_modulus'), 2), 1.5e11_dp, 0.0_dp, 'element by index')
-    call check%that(c%contact%name() == 'hertz', 'words in any case')
+    call check%relative(element(parameter_of(c%joint%contact, 'poissons_ratio'), 2), 0.25_dp, 0.0_dp, 'repeat count')
+    call check%relative(element(parameter_of(c%joint%contact, 'youngs_modulus'), 1), 207e9_dp, 0.0_dp, 'element by default')
+    call check%relative(element(parameter_of(c%joint%contact, 'youngs_modulus'), 2), 1.5e11_dp, 0.0_dp, 'element by index')
+    call check%that(c%joint%contact%name() == 'hertz', 'words in any case')
     call check%that(c%output%every_step .and. c%output%ideal_twin, 'logicals')
     call check%equal_text(c%output%columns, 'time,rod_angle', 'list of texts')
     call parse_case(whole//'&case title='''//repeat('x', 3000)//''' /', 'x', none, c, error)
@@ -128,7 +129,7 @@ contains
     call check%that(.not. allocated(error), 'the template is a case')
     call parse_case(text, 'x', none, back, error, again)
     call check%equal_text(again, text, 'the template resolved again')
-    call check%that(allocated(c%combustion) .and. allocated(c%film), 'the template has all models')
+    call check%that(allocated(c%combustion) .and. allocated(c%joint%film), 'the template has all models')
     call parse_case(bodies//run, 'x', none, c, error, text)
     call parse_case(text, 'x', none, back, error, again)
     call check%that(.not. allocated(error), 'a resolved case with an ideal joint is read')
@@ -323,6 +324,57 @@ contains
                     'x.nml: &lubrication variant = half_film: must be one of bearing_frame, as_printed for oscillating_film')
   end subroutine test_films
 
+  !> Groups for the crank pin: read, chosen, resolved, refused.
+  subroutine test_places(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: second = '&joint place=''crank_pin'' kind=''clearance'' clearance=1e-4 '// &
+      'bearing_radius=0.012 /'//n
+    type(case_t) :: c
+    type(error_t), allocatable :: error
+    character(len=40) :: none(0)
+    character(len=:), allocatable :: text, again
+    call parse_case(whole//second, 'x.nml', none, c, error, text)
+    call check%that(.not. allocated(error), 'a second joint')
+    if (allocated(error)) return
+    call check%that(c%joint%has_clearance() .and. c%crank_pin%has_clearance(), 'both have clearance')
+    call check%relative(c%joint%clearance, 5e-4_dp, 0.0_dp, 'clearance of the piston pin')
+    call check%relative(c%crank_pin%clearance, 1e-4_dp, 0.0_dp, 'clearance of the crank pin')
+    call check%equal_text(c%crank_pin%contact%name(), 'lankarani_nikravesh', 'a law without a place is every joint''s')
+    call parse_case(text, 'x.nml', none, c, error, again)
+    call check%equal_text(again, text, 'two joints resolved again')
+    call parse_case(whole//second//'&contact place=''CRANK_PIN'' law=''hertz'' /', 'x.nml', none, c, error, text)
+    call check%that(.not. allocated(error), 'a law of one joint')
+    if (allocated(error)) return
+    call check%equal_text(c%crank_pin%contact%name(), 'hertz', 'is that joint''s')
+    call check%equal_text(c%joint%contact%name(), 'lankarani_nikravesh', 'and not the other''s')
+    call parse_case(text, 'x.nml', none, c, error, again)
+    call check%equal_text(again, text, 'two joints and laws resolved again')
+    call parse_case(whole, 'x.nml', [character(len=40) :: 'crank_pin.joint.kind=clearance', &
+                                     'crank_pin.joint.clearance=2e-5', 'crank_pin.joint.bearing_radius=0.01', &
+                                     'crank_pin.contact.law=hertz'], c, error)
+    call check%that(.not. allocated(error), 'a second joint by overrides')
+    call check%relative(c%crank_pin%clearance, 2e-5_dp, 0.0_dp, 'clearance by an override')
+    call parse_case(whole//second, 'x.nml', [character(len=40) :: 'crank_pin.joint=none'], c, error)
+    call check%that(.not. allocated(error) .and. .not. c%crank_pin%has_clearance(), 'the second joint taken out')
+    call check%that(.not. allocated(c%crank_pin%contact), 'an ideal joint has no laws')
+    call parse_case(whole//second, 'x.nml', [character(len=40) :: 'joint=none'], c, error)
+    call check%that(.not. allocated(error) .and. .not. allocated(c%joint%contact), 'the crank pin alone')
+    call refused(check, whole//second//second, 'x.nml:9: &joint of crank_pin: this group stands here twice')
+    call refused(check, whole//'&joint place=''piston_pin'' kind=''ideal'' /', 'x.nml:8: &joint: this group stands here twice')
+    call refused(check, '&joint place=''wrist'' /', 'x.nml:1: &joint place = wrist: must be one of piston_pin, crank_pin')
+    call refused(check, '&joint place=''crank_pin'' place=''crank_pin'' /', 'x.nml:1: &joint place = crank_pin: given twice')
+    call refused(check, '&drive place=''crank_pin'' /', 'x.nml:1: &drive place: unknown key (allowed: kind, torque, damping)')
+    call refused(check, whole//'&contact place=''crank_pin'' /', 'x.nml: &joint of crank_pin kind: must be clearance with '// &
+                 'contact, friction or lubrication: an ideal joint has no play for them; leave those groups out, as '// &
+                 '--set contact=none does')
+    call refused(check, whole//'&joint place=''crank_pin'' kind=''clearance'' clearance=1e-4 /', &
+                 'x.nml: &joint of crank_pin bearing_radius: required with kind = ''clearance'' (m)')
+    call refused_on(check, whole//second, ['crank_pin.joint.clearance=0.2'], &
+                    'x.nml: &mechanism rod_length = 0.12: must be > crank_length + clearance (m)')
+    call refused_on(check, whole//second, ['mechanism.rod_inertia=0'], &
+                    'x.nml: &mechanism rod_inertia = 0: must be > 0 with clearance at the crank pin (kg m^2)')
+  end subroutine test_places
+
   subroutine test_runs(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: still = 'initial.crank_speed=0   ', ends = 'integrator.end_time=1   '
@@ -395,13 +447,14 @@ contains
     character(len=:), allocatable :: resolved
     call parse_case(whole//film, 'x.nml', [character(len=30) :: 'Lubrication = NONE', 'drive=none'], c, error, resolved)
     call check%that(.not. allocated(error), 'groups are taken out')
-    call check%that(.not. allocated(c%film) .and. allocated(c%friction) .and. allocated(c%contact), 'these and no other')
+    call check%that(.not. allocated(c%joint%film), 'the film')
+    call check%that(allocated(c%joint%friction) .and. allocated(c%joint%contact), 'and no other')
     call check%equal_text(trim(c%drive%kind), 'free', 'a group that is always there goes back to its defaults')
     call check%that(index(resolved, 'lubrication') == 0, 'nothing of it in the resolved case')
     call parse_case(whole//film, 'x.nml', [character(len=30) :: long, 'lubrication.variant=as_printed', 'lubrication=none', &
                                            'lubrication.viscosity=0.02'], c, error, resolved)
     call check%that(.not. allocated(error), 'a later key brings the group back')
-    call check%relative(element(parameter_of(c%film, 'viscosity'), 1), 0.02_dp, 1e-15_dp, 'with that key')
+    call check%relative(element(parameter_of(c%joint%film, 'viscosity'), 1), 0.02_dp, 1e-15_dp, 'with that key')
     call check%that(index(resolved, 'variant = ''closed_form''') > 0, 'and with nothing from before')
     call parse_case(whole//film, 'x.nml', [character(len=30) :: 'joint=none', 'contact=none', 'friction=none', &
                                            'lubrication=none'], c, error)

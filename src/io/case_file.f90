@@ -4,8 +4,8 @@ module case_file
   use errors, only: error_t, fail, status_case_file
   use text_tools, only: lowercase, printable, integer_text, case_name
   use text_file, only: read_text_file
-  use case_definition, only: case_t
-  use case_schema, only: key_t, group_definition_t, case_schema_of, find_group
+  use case_definition, only: case_t, piston_pin_place, crank_pin_place
+  use case_schema, only: key_t, group_definition_t, case_schema_of, find_group, is_listed, shown_group
   use case_values, only: case_values_t
   use case_loader, only: load_case
   use case_rules, only: check_rules
@@ -111,6 +111,8 @@ contains
       return
     end if
     do i = 1, size(list%groups)
+      call name_place(values, list, i, error)
+      if (allocated(error)) return
       group = find_group(values%groups, list%groups(i)%name)
       if (list%groups(i)%name == 'study' .or. list%groups(i)%name == 'parameter') then
         call fail(error, at_line(values, list%groups(i)%line)//'&'//list%groups(i)%name//': a study, not a case: run it with '// &
@@ -121,8 +123,8 @@ contains
         return
       end if
       if (values%is_present(group)) then
-        call fail(error, at_line(values, list%groups(i)%line)//'&'//list%groups(i)%name//': this group stands here twice', &
-                  status_case_file)
+        call fail(error, at_line(values, list%groups(i)%line)//shown_group(list%groups(i)%name)// &
+                  ': this group stands here twice', status_case_file)
         return
       end if
       values%is_present(group) = .true.
@@ -130,13 +132,58 @@ contains
     do i = 1, size(list%entries)
       associate (entry => list%entries(i))
         at = at_line(values, entry%line)
-        call values%find(entry%group, entry%key, at, place, error)
+        if (entry%key == 'place' .and. has_places(values, entry%group)) cycle
+        call values%find(list%groups(entry%group_number)%name, entry%key, at, place, error)
         if (allocated(error)) return
         call values%assign(place, entry%index, entry%tokens, at, .false., error)
         if (allocated(error)) return
       end associate
     end do
   end subroutine take_file
+
+  !> Put the place that a group of the file names in front of its name: crank_pin.joint.
+  subroutine name_place(values, list, number, error)
+    type(case_values_t), intent(in) :: values
+    type(namelist_t), intent(inout) :: list
+    integer, intent(in) :: number   !! of the group
+    type(error_t), allocatable, intent(out) :: error
+    character(len=*), parameter :: places = piston_pin_place//', '//crank_pin_place
+    character(len=:), allocatable :: wanted, place
+    logical :: is_given
+    integer :: i
+    if (.not. has_places(values, list%groups(number)%name)) return
+    is_given = .false.
+    do i = 1, size(list%entries)
+      associate (entry => list%entries(i))
+        if (entry%group_number /= number .or. entry%key /= 'place') cycle
+        wanted = ''
+        place = ''
+        if (size(entry%tokens) /= 1 .or. entry%index > 0) then
+          wanted = 'takes 1 value'
+        else
+          place = lowercase(entry%tokens(1)%text)
+          if (is_given) wanted = 'given twice'
+          if (.not. is_listed(place, places)) wanted = 'must be one of '//places
+        end if
+        if (wanted /= '') then
+          call fail(error, at_line(values, entry%line)//'&'//entry%group//' place = '//printable(place, 48)//': '//wanted, &
+                    status_case_file)
+          return
+        end if
+        is_given = .true.
+      end associate
+    end do
+    if (.not. is_given) return
+    if (place == piston_pin_place .and. list%groups(number)%name == 'joint') return
+    list%groups(number)%name = place//'.'//list%groups(number)%name
+  end subroutine name_place
+
+  !> Whether a group may stand once for each joint.
+  pure logical function has_places(values, name)
+    type(case_values_t), intent(in) :: values
+    character(len=*), intent(in) :: name
+    has_places = find_group(values%groups, crank_pin_place//'.'//name) > 0
+  end function has_places
 
   !> GROUP.KEY=VALUE into the values; a text needs no quotes here. GROUP=none takes out what the file and the overrides before
   !> this one say of a group.
@@ -149,10 +196,11 @@ contains
     integer :: dot, equals, place
     at = values%file//': --set '//printable(override, 60)//': '
     equals = index(override, '=')
-    dot = index(override(:max(0, equals - 1)), '.')
+    dot = index(override(:max(0, equals - 1)), '.', back=.true.)
     text = lowercase(trim(adjustl(override(equals + 1:))))
-    if (dot == 0 .and. equals > 1 .and. text == 'none') then
-      call values%take_out(trim(adjustl(lowercase(override(:equals - 1)))), at, error)
+    group = trim(adjustl(lowercase(override(:max(0, equals - 1)))))
+    if (equals > 1 .and. text == 'none' .and. (dot == 0 .or. find_group(values%groups, group) > 0)) then
+      call values%take_out(group, at, error)
       return
     else if (dot == 0) then
       call fail(error, at//'must have the form GROUP.KEY=VALUE or GROUP=none', status_case_file)

@@ -3,7 +3,7 @@ module case_loader
   use kinds, only: dp
   use errors, only: error_t
   use parameters, only: parameter_list_t, law_t, key_t, word_kind
-  use case_definition, only: case_t, visit_case
+  use case_definition, only: case_t, visit_case, piston_pin_place
   use case_schema, only: find_key, find_group, is_listed
   use case_values, only: case_values_t
   implicit none
@@ -42,18 +42,39 @@ contains
     if (allocated(loader%error)) call move_alloc(loader%error, error)
   end subroutine load_case
 
-  subroutine load_group(self, name, says, is_model)
+  !> A group: of a joint's place that of this place, or else, for laws, that of every place. A law of a joint that is ideal is
+  !> not set.
+  subroutine load_group(self, name, says, is_model, place)
     class(loader_t), intent(inout) :: self
     character(len=*), intent(in) :: name, says
     logical, intent(in) :: is_model
-    associate (unused => says, unused_too => is_model)
+    character(len=*), intent(in), optional :: place
+    integer :: group
+    associate (unused => says)
     end associate
     self%group_name = name
+    if (present(place)) then
+      if (.not. is_model .and. place /= piston_pin_place) self%group_name = place//'.'//name
+      if (is_model) then
+        group = find_group(self%values%groups, place//'.'//name)
+        if (self%values%is_present(group)) self%group_name = place//'.'//name
+      end if
+    end if
     self%law_name = ''
     self%sets = self%only == '' .or. self%only == name
-    self%is_present = self%values%is_present(find_group(self%values%groups, name))
+    if (present(place)) self%sets = self%sets .or. is_of_joint(self)
+    self%is_present = self%values%is_present(find_group(self%values%groups, self%group_name))
     if (allocated(self%chosen)) deallocate (self%chosen)
   end subroutine load_group
+
+  !> Whether the one group to set is a joint's: what one says may change which laws act in the other.
+  pure logical function is_of_joint(self)
+    class(loader_t), intent(in) :: self
+    integer :: group
+    is_of_joint = .false.
+    group = find_group(self%values%groups, self%only)
+    if (group > 0) is_of_joint = self%values%groups(group)%place /= '' .or. self%values%groups(group)%is_law
+  end function is_of_joint
 
   subroutine load_choice(self, key, default, says)
     class(loader_t), intent(inout) :: self

@@ -3,7 +3,8 @@ module case_rules
   use kinds, only: dp
   use constants, only: two_pi
   use errors, only: error_t
-  use case_definition, only: case_t
+  use case_definition, only: case_t, joint_case_t, piston_pin_place, crank_pin_place
+  use case_schema, only: find_group
   use case_values, only: case_values_t
   implicit none
   private
@@ -20,11 +21,11 @@ contains
     type(error_t), allocatable, intent(out) :: error
     call check_bodies(c, values, error)
     if (allocated(error)) return
-    call check_joint(c, values, error)
+    call check_joint(c%joint, 'joint', piston_pin_place, values, error)
+    if (allocated(error)) return
+    call check_joint(c%crank_pin, crank_pin_place//'.joint', crank_pin_place, values, error)
     if (allocated(error)) return
     call check_start(c, values, error)
-    if (allocated(error)) return
-    call check_models(c, values, error)
     if (allocated(error)) return
     call check_combustion(c, values, error)
     if (allocated(error)) return
@@ -51,9 +52,10 @@ contains
     real(dp) :: reach, crank, rod
     associate (m => c%mechanism)
       reach = m%crank_length
-      if (c%has_clearance()) reach = reach + c%joint%clearance
+      if (c%joint%has_clearance()) reach = reach + c%joint%clearance
+      if (c%crank_pin%has_clearance()) reach = reach + c%crank_pin%clearance
       if (m%rod_length <= reach) then
-        if (c%has_clearance()) then
+        if (reach > m%crank_length) then
           call values%refuse('mechanism', 'rod_length', 'must be > crank_length + clearance', error)
         else
           call values%refuse('mechanism', 'rod_length', 'must be > crank_length', error)
@@ -62,7 +64,15 @@ contains
       end if
       crank = m%crank_inertia + m%crank_mass*sum(m%crank_com**2)
       rod = m%rod_inertia + m%rod_mass*sum(m%rod_com**2)
-      if (c%has_clearance()) then
+      if (c%crank_pin%has_clearance()) then
+        if (crank <= 0) then
+          call values%refuse('mechanism', 'crank_inertia', 'must be > 0 unless crank_mass is > 0 away from the axis', error)
+        else if (m%rod_mass <= 0) then
+          call values%refuse('mechanism', 'rod_mass', 'must be > 0 with clearance at the crank pin', error)
+        else if (m%rod_inertia <= 0) then
+          call values%refuse('mechanism', 'rod_inertia', 'must be > 0 with clearance at the crank pin', error)
+        end if
+      else if (c%joint%has_clearance()) then
         if (rod <= 0) then
           call values%refuse('mechanism', 'rod_inertia', 'must be > 0 unless rod_mass is > 0 away from the crank pin', error)
         else if (crank*rod + m%rod_mass*m%crank_length**2*m%rod_inertia <= 0) then
@@ -77,31 +87,53 @@ contains
   end subroutine check_bodies
 
   !> An ideal joint has no room for contact or film; a joint with clearance needs one of them to hold the pin.
-  subroutine check_joint(c, values, error)
-    type(case_t), intent(in) :: c
+  subroutine check_joint(joint, group, place, values, error)
+    type(joint_case_t), intent(in) :: joint
+    character(len=*), intent(in) :: group   !! of the joint
+    character(len=*), intent(in) :: place
     type(case_values_t), intent(in) :: values
     type(error_t), allocatable, intent(out) :: error
-    if (.not. c%has_clearance()) then
-      if (allocated(c%contact) .or. allocated(c%friction) .or. allocated(c%film)) then
-        call values%refuse('joint', 'kind', 'must be clearance with contact, friction or lubrication: an ideal joint '// &
+    if (.not. joint%has_clearance()) then
+      if (allocated(joint%contact) .or. allocated(joint%friction) .or. allocated(joint%film) .or. has_own_law(values, place)) then
+        call values%refuse(group, 'kind', 'must be clearance with contact, friction or lubrication: an ideal joint '// &
                            'has no play for them; leave those groups out, as --set contact=none does', error)
-      else if (c%joint%clearance > 0 .and. .not. values%is_given('joint', 'kind')) then
-        call values%refuse('joint', 'clearance', 'needs kind = ''clearance''; the default is ideal', error)
+      else if (joint%clearance > 0 .and. .not. values%is_given(group, 'kind')) then
+        call values%refuse(group, 'clearance', 'needs kind = ''clearance''; the default is ideal', error)
       end if
       return
     end if
-    if (c%joint%clearance <= 0) then
-      call values%refuse('joint', 'clearance', needed('clearance', values, 'with kind = ''clearance'''), error)
-    else if (c%joint%bearing_radius <= 0) then
-      call values%refuse('joint', 'bearing_radius', needed('bearing_radius', values, 'with kind = ''clearance'''), error)
-    else if (c%joint%bearing_radius <= c%joint%clearance) then
-      call values%refuse('joint', 'bearing_radius', 'must be > clearance: the pin''s radius is the difference', error)
-    else if (allocated(c%film) .and. c%joint%bearing_length <= 0) then
-      call values%refuse('joint', 'bearing_length', needed('bearing_length', values, 'with lubrication'), error)
-    else if (.not. allocated(c%contact) .and. .not. allocated(c%film)) then
-      call values%refuse('joint', 'kind', 'needs contact or lubrication: nothing would hold the pin', error)
+    if (joint%clearance <= 0) then
+      call values%refuse(group, 'clearance', needed(group, 'clearance', values, 'with kind = ''clearance'''), error)
+    else if (joint%bearing_radius <= 0) then
+      call values%refuse(group, 'bearing_radius', needed(group, 'bearing_radius', values, 'with kind = ''clearance'''), error)
+    else if (joint%bearing_radius <= joint%clearance) then
+      call values%refuse(group, 'bearing_radius', 'must be > clearance: the pin''s radius is the difference', error)
+    else if (allocated(joint%film) .and. joint%bearing_length <= 0) then
+      call values%refuse(group, 'bearing_length', needed(group, 'bearing_length', values, 'with lubrication'), error)
+    else if (.not. allocated(joint%contact) .and. .not. allocated(joint%film)) then
+      call values%refuse(group, 'kind', 'needs contact or lubrication: nothing would hold the pin', error)
+    else if (allocated(joint%friction) .and. .not. allocated(joint%contact)) then
+      call values%refuse(law_group(values, 'friction', place), 'law', &
+                         'needs the group contact: dry friction follows the normal force', error)
     end if
   end subroutine check_joint
+
+  !> Whether the case has a law for the joint of this place alone.
+  logical function has_own_law(values, place)
+    type(case_values_t), intent(in) :: values
+    character(len=*), intent(in) :: place
+    has_own_law = any(values%is_present .and. index(values%groups%name, place//'.') == 1 .and. &
+                      values%groups%name /= place//'.joint')
+  end function has_own_law
+
+  !> The group that the law of a joint comes from.
+  function law_group(values, name, place) result(group)
+    type(case_values_t), intent(in) :: values
+    character(len=*), intent(in) :: name, place
+    character(len=:), allocatable :: group
+    group = place//'.'//name
+    if (.not. values%is_present(find_group(values%groups, group))) group = name
+  end function law_group
 
   !> The pin starts where it can be: in its bearing, or where there is contact pressed into it, but not through.
   subroutine check_start(c, values, error)
@@ -110,13 +142,13 @@ contains
     type(error_t), allocatable, intent(out) :: error
     real(dp) :: distance
     distance = norm2(c%initial%eccentricity)
-    if (.not. c%has_clearance()) then
+    if (.not. c%joint%has_clearance()) then
       if (distance > 0) then
         call values%refuse('initial', 'eccentricity', 'must be 0 in an ideal joint', error)
       else if (norm2(c%initial%eccentricity_rate) > 0) then
         call values%refuse('initial', 'eccentricity_rate', 'must be 0 in an ideal joint', error)
       end if
-    else if (.not. allocated(c%contact) .and. distance >= c%joint%clearance) then
+    else if (.not. allocated(c%joint%contact) .and. distance >= c%joint%clearance) then
       call values%refuse('initial', 'eccentricity', 'must be shorter than the clearance where there is no contact', error)
     else if (distance >= c%joint%bearing_radius) then
       call values%refuse('initial', 'eccentricity', 'must be shorter than bearing_radius: the pin would be through its bearing', &
@@ -127,22 +159,13 @@ contains
   end subroutine check_start
 
   !> What to say of a length of the joint that is missing, or given as 0.
-  function needed(name, values, why) result(wanted)
-    character(len=*), intent(in) :: name, why
+  function needed(group, name, values, why) result(wanted)
+    character(len=*), intent(in) :: group, name, why
     type(case_values_t), intent(in) :: values
     character(len=:), allocatable :: wanted
     wanted = 'required '//why
-    if (values%is_given('joint', name)) wanted = 'must be > 0'
+    if (values%is_given(group, name)) wanted = 'must be > 0'
   end function needed
-
-  !> Models that need another one.
-  subroutine check_models(c, values, error)
-    type(case_t), intent(in) :: c
-    type(case_values_t), intent(in) :: values
-    type(error_t), allocatable, intent(out) :: error
-    if (allocated(c%friction) .and. .not. allocated(c%contact)) call values%refuse( &
-      'friction', 'law', 'needs the group contact: dry friction follows the normal force', error)
-  end subroutine check_models
 
   subroutine check_combustion(c, values, error)
     type(case_t), intent(in) :: c

@@ -235,7 +235,7 @@ contains
   !> Whether the run has a list of events.
   pure logical function has_events(self)
     class(case_run_t), intent(in) :: self
-    has_events = allocated(self%case%contact) .and. .not. self%is_twin
+    has_events = allocated(self%case%joint%contact) .and. .not. self%is_twin
   end function has_events
 
   !> Add to the message of a run that was stopped how it can go on.

@@ -5,15 +5,17 @@
 module case_schema
   use kinds, only: dp
   use parameters, only: parameter_list_t, law_t, key_t, real_kind, integer_kind, logical_kind, word_kind, text_kind
-  use case_definition, only: case_t, visit_case
+  use case_definition, only: case_t, visit_case, piston_pin_place
   implicit none
   private
-  public :: key_t, group_definition_t, case_schema_of, find_key, find_group, is_listed, is_group_of_cases
+  public :: key_t, group_definition_t, case_schema_of, find_key, find_group, is_listed, is_group_of_cases, shown_group
   public :: real_kind, integer_kind, logical_kind, word_kind, text_kind, shared_keys_differ
 
   !> A group. One that stands for a model may be absent from a case, and so the model from its scene.
   type :: group_definition_t
-    character(len=12) :: name = ''
+    character(len=24) :: name = ''        !! with its place in front where it is not the first: crank_pin.contact
+    character(len=12) :: place = ''       !! of the joint that it belongs to
+    logical :: is_law = .false.           !! of a law for every joint that has none of its own
     logical :: is_model = .false.
     character(len=100) :: description = ''
   end type group_definition_t
@@ -69,14 +71,59 @@ contains
     schema%law_name = ''
     schema%difference = ''
     call visit_case(case, schema)
+    call add_laws_of_one_joint(schema)
   end subroutine collect_case
 
-  subroutine collect_group(self, name, says, is_model)
+  !> The groups of laws that are for the first joint alone: copies of those that are for every joint.
+  subroutine add_laws_of_one_joint(schema)
+    type(schema_t), intent(inout) :: schema
+    integer :: i, j, n_groups, n_keys
+    n_groups = schema%n_groups
+    n_keys = schema%n_keys
+    do i = 1, n_groups
+      if (schema%groups(i)%place /= piston_pin_place .or. .not. schema%groups(i)%is_model) cycle
+      schema%n_groups = schema%n_groups + 1
+      schema%groups(schema%n_groups) = schema%groups(i)
+      schema%groups(schema%n_groups)%name = piston_pin_place//'.'//trim(schema%groups(i)%name)
+      schema%groups(i)%place = ''
+      schema%groups(i)%is_law = .true.
+      do j = 1, n_keys
+        if (schema%keys(j)%group /= schema%groups(i)%name) cycle
+        if (schema%n_keys == size(schema%keys)) call make_room(schema%keys)
+        schema%n_keys = schema%n_keys + 1
+        schema%keys(schema%n_keys) = schema%keys(j)
+        schema%keys(schema%n_keys)%group = schema%groups(schema%n_groups)%name
+      end do
+    end do
+  end subroutine add_laws_of_one_joint
+
+  !> A group as a message names it: &contact, or &contact of crank_pin.
+  pure function shown_group(name) result(text)
+    character(len=*), intent(in) :: name   !! as in the table
+    character(len=:), allocatable :: text
+    integer :: dot
+    dot = index(name, '.')
+    text = '&'//trim(name(dot + 1:))
+    if (dot > 0) text = text//' of '//name(:dot - 1)
+  end function shown_group
+
+  !> A group; those of the second joint are groups of their own, and may all be left out.
+  subroutine collect_group(self, name, says, is_model, place)
     class(schema_t), intent(inout) :: self
     character(len=*), intent(in) :: name, says
     logical, intent(in) :: is_model
+    character(len=*), intent(in), optional :: place
     self%n_groups = self%n_groups + 1
-    self%groups(self%n_groups) = group_definition_t(name, is_model, says)
+    associate (group => self%groups(self%n_groups))
+      group = group_definition_t(name=name, is_model=is_model, description=says)
+      if (present(place)) then
+        group%place = place
+        if (place /= piston_pin_place) then
+          group%name = place//'.'//name
+          group%is_model = .true.
+        end if
+      end if
+    end associate
     self%present_choice = 0
     self%law_name = ''
   end subroutine collect_group

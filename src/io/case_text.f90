@@ -22,7 +22,11 @@ contains
     integer :: group, i
     text = '! '//first_line//newline
     do group = 1, size(groups)
+      if (index(groups(group)%name, '.') > 0) cycle   ! the same once more, for another joint
       text = text//newline//'! '//trim(groups(group)%description)//newline//'&'//trim(groups(group)%name)//newline
+      if (groups(group)%place /= '' .or. groups(group)%is_law) text = text//'  ! place = ''crank_pin''                   '// &
+        'in a second group of this name: '//trim(merge('the joint of crank and rod', 'laws for that joint alone ', &
+        groups(group)%place /= ''))//newline
       do i = 1, size(keys)
         if (keys(i)%group == groups(group)%name) text = text//template_line(keys, keys(i))//newline
       end do
@@ -57,11 +61,13 @@ contains
   function resolved_text(values) result(text)
     type(case_values_t), intent(in) :: values
     character(len=:), allocatable :: text
-    integer :: group, i
+    integer :: group, i, dot
     text = ''
     do group = 1, size(values%groups)
       if (values%groups(group)%is_model .and. .not. values%is_present(group)) cycle
-      text = text//'&'//trim(values%groups(group)%name)//newline
+      dot = index(values%groups(group)%name, '.')
+      text = text//'&'//trim(values%groups(group)%name(dot + 1:))//newline
+      if (dot > 0) text = text//'  place = '''//values%groups(group)%name(:dot - 1)//''''//newline
       do i = 1, size(values%keys)
         if (values%keys(i)%group == values%groups(group)%name .and. values%is_used(i)) &
           text = text//resolved_line(values%keys(i), values%values(i))//newline

@@ -3,7 +3,7 @@
 module case_values
   use errors, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text, nearest_word
-  use case_schema, only: key_t, group_definition_t, case_schema_of, find_key, find_group, is_listed, &
+  use case_schema, only: key_t, group_definition_t, case_schema_of, find_key, find_group, is_listed, shown_group, &
     real_kind, integer_kind, text_kind
   use namelist_reader, only: token_t
   use case_value, only: value_t, set_to_default, convert, find_decimal_comma, is_default, element_is_within, unit_of, most_reals
@@ -119,8 +119,9 @@ contains
       if (.not. is_said(self, i)) cycle
       if (first > 0) then
         earlier = trim(self%keys(first)%name)
-        call fail(error, self%file//': &'//group//' '//trim(self%keys(i)%name)//' = '//trim(self%values(i)%written(1))// &
-          ': must not be given together with '//earlier//' = '//trim(self%values(first)%written(1))//'; '//group//'.'// &
+        call fail(error, self%file//': '//shown_group(group)//' '//trim(self%keys(i)%name)//' = '// &
+          trim(self%values(i)%written(1))//': must not be given together with '//earlier//' = '// &
+          trim(self%values(first)%written(1))//'; '//group//'.'// &
           earlier//'=0 takes that back', status_case_file)
         return
       end if
@@ -155,9 +156,12 @@ contains
     place = find_key(self%keys, group, key)
     if (place > 0) return
     if (find_group(self%groups, group) == 0) then
-      allocate (allowed(size(self%groups)))
+      allocate (allowed(count([(index(self%groups(i)%name, '.') == 0, i=1, size(self%groups))])))
+      shown = 0
       do i = 1, size(self%groups)
-        allowed(i) = self%groups(i)%name
+        if (index(self%groups(i)%name, '.') > 0) cycle
+        shown = shown + 1
+        allowed(shown) = self%groups(i)%name
       end do
       text = '&'//printable(group, 40)//': unknown group'
       call fail(error, at//text//suggestion(group, allowed), status_case_file)
@@ -170,9 +174,9 @@ contains
       shown = shown + 1
       allowed(shown) = self%keys(i)%name
     end do
-    text = '&'//group//' '//printable(key, 40)//': unknown key'
+    text = shown_group(group)//' '//printable(key, 40)//': unknown key'
     do i = 1, size(self%keys)
-      if (self%keys(i)%name == key) text = text//' of this group; it belongs to &'//trim(self%keys(i)%group)
+      if (self%keys(i)%name == key) text = text//' of this group; it belongs to '//shown_group(trim(self%keys(i)%group))
       if (self%keys(i)%name == key) exit
     end do
     call fail(error, at//text//suggestion(key, allowed), status_case_file)
@@ -205,7 +209,7 @@ contains
     integer :: i, k, element, total, first
     first = max(1, index)
     associate (key => self%keys(place), value => self%values(place))
-      name = at//'&'//trim(key%group)//' '//trim(key%name)
+      name = at//shown_group(trim(key%group))//' '//trim(key%name)
       total = sum([(tokens(i)%repeat, i=1, size(tokens))]) + first - 1
       if (total > key%count) wanted = 'takes '//integer_text(key%count)//' value'//trim(merge('s', ' ', key%count > 1))// &
         ', not '//integer_text(total)
@@ -264,10 +268,10 @@ contains
       if (.not. key%required .or. self%values(place)%given(1)) return
       group = find_group(self%groups, trim(key%group))
       if (self%is_present(group)) then
-        call fail(error, self%file//': &'//trim(key%group)//' '//trim(key%name)//': required'//by_law(self, key)// &
+        call fail(error, self%file//': '//shown_group(trim(key%group))//' '//trim(key%name)//': required'//by_law(self, key)// &
                   unit_of(key), status_case_file)
       else if (.not. self%groups(group)%is_model) then
-        call fail(error, self%file//': &'//trim(key%group)//': this group is required', status_case_file)
+        call fail(error, self%file//': '//shown_group(trim(key%group))//': this group is required', status_case_file)
       end if
     end associate
   end subroutine check_required
@@ -334,7 +338,7 @@ contains
     place = find_key(self%keys, group, name)
     shown = 1
     if (present(element)) shown = element
-    text = self%file//': &'//group//' '//name
+    text = self%file//': '//shown_group(group)//' '//name
     if (self%keys(place)%count > 1 .and. self%keys(place)%kind == real_kind) text = text//'('//integer_text(shown)//')'
     if (self%values(place)%given(shown)) text = text//' = '//trim(self%values(place)%written(shown))
     call fail(error, text//': '//wanted//unit_of(self%keys(place)), status_case_file)

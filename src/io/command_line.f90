@@ -234,7 +234,7 @@ contains
     character(len=*), intent(in) :: text
     integer :: dot, equals
     equals = index(text, '=')
-    dot = index(text(:max(0, equals - 1)), '.')
+    dot = index(text(:max(0, equals - 1)), '.', back=.true.)
     is_override = dot > 1 .and. equals > dot + 1
     if (equals > 1 .and. dot == 0) is_override = lowercase(trim(adjustl(text(equals + 1:)))) == 'none'
   end function is_override

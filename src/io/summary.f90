@@ -75,7 +75,7 @@ contains
       call add('max_energy_residual', real_text(f%max_energy_residual), 'J')
       call add('max_energy_residual_relative', real_text(relative_residual(report)), '1')
       if (report%energy_is_poor) call add('energy_warning', quoted(energy_warning(case, report), '"'), '')
-      if (case%has_clearance()) then
+      if (case%joint%has_clearance()) then
         call add('min_film_thickness', real_text(f%min_film_thickness, case%output%digits), 'm')
         call add('contacts', integer_text(f%contacts), '1')
         if (f%time > 0) call add('contact_time_fraction', real_text(f%contact_time/f%time), '1')
@@ -164,8 +164,8 @@ contains
     associate (s => report%statistics, f => report%figures)
       text = case%name//': '//report%status//'; '//short_text(f%time)//' s in '//short_text(wall_time)//' s, '// &
         integer_text(s%accepted)//' steps, '//integer_text(s%evaluations)//' evaluations; '
-      if (case%has_clearance()) then
-        if (allocated(case%contact)) text = text//integer_text(f%contacts)//' contacts, '
+      if (case%joint%has_clearance()) then
+        if (allocated(case%joint%contact)) text = text//integer_text(f%contacts)//' contacts, '
         text = text//'film at least '//short_text(f%min_film_thickness)//' m, '
       end if
       text = text//'pin force up to '//short_text(f%max_pin_force)//' N, energy residual '// &

@@ -15,7 +15,7 @@ module parameters
   !> What is known of a parameter. Ranges and words are texts, shown to the user as they stand here; a default is allowed even
   !> outside its range and then means "not given".
   type :: key_t
-    character(len=12) :: group = ''          !! of the case file
+    character(len=24) :: group = ''          !! of the case file, with its place in front: crank_pin.contact
     character(len=32) :: name = ''
     integer :: kind = real_kind
     integer :: count = 1                     !! values
@@ -89,11 +89,13 @@ module parameters
 contains
 
   !> What follows belongs to this group. A model's group may be left out of a case, and the model is then absent from its scene.
-  subroutine pass_group(self, name, says, is_model)
+  !> A group with a place may stand in a case once for each place.
+  subroutine pass_group(self, name, says, is_model, place)
     class(parameter_list_t), intent(inout) :: self
     character(len=*), intent(in) :: name, says
     logical, intent(in) :: is_model
-    associate (unused => self, unused_name => name, unused_text => says, unused_switch => is_model)
+    character(len=*), intent(in), optional :: place
+    associate (unused => self, unused_name => name, unused_text => says, unused_switch => is_model, unused_place => present(place))
     end associate
   end subroutine pass_group
 

@@ -15,7 +15,7 @@ module case_definition
   use gas_cycle, only: gas_cycle_t
   implicit none
   private
-  public :: case_t, visit_case
+  public :: case_t, joint_case_t, visit_case, piston_pin_place, crank_pin_place
 
   type, extends(has_parameters_t) :: mechanism_case_t
     real(dp) :: crank_length = 0, crank_mass = 0, crank_inertia = 0, crank_com(2) = 0
@@ -39,11 +39,17 @@ module case_definition
     procedure :: parameters => initial_parameters
   end type initial_case_t
 
+  !> A joint with the laws that act in it. An ideal one has none.
   type, extends(has_parameters_t) :: joint_case_t
     character(len=:), allocatable :: kind
     real(dp) :: clearance = 0, bearing_radius = 0, bearing_length = 0
+    class(contact_law_t), allocatable :: contact
+    class(friction_law_t), allocatable :: friction
+    class(film_law_t), allocatable :: film
   contains
     procedure :: parameters => joint_parameters
+    procedure :: has_clearance
+    procedure :: bearing => bearing_of
   end type joint_case_t
 
   type, extends(has_parameters_t) :: integrator_case_t
@@ -74,32 +80,31 @@ module case_definition
     type(mechanism_case_t) :: mechanism
     type(drive_case_t) :: drive
     type(initial_case_t) :: initial
-    type(joint_case_t) :: joint
-    class(contact_law_t), allocatable :: contact
-    class(friction_law_t), allocatable :: friction
-    class(film_law_t), allocatable :: film
+    type(joint_case_t) :: joint        !! of rod and piston, at the piston pin
+    type(joint_case_t) :: crank_pin    !! of crank and rod
     type(gas_cycle_t), allocatable :: combustion
     type(integrator_case_t) :: integrator
     type(output_case_t) :: output
-  contains
-    procedure :: has_clearance
-    procedure :: bearing => bearing_of
   end type case_t
+
+  !> The places of joints, as a case names them. A group &joint without a place is the first's, a law's group without one is for
+  !> every joint with clearance that has none of its own.
+  character(len=*), parameter :: piston_pin_place = 'piston_pin', crank_pin_place = 'crank_pin'
 
 contains
 
   !> Whether the joint has clearance.
   pure logical function has_clearance(self)
-    class(case_t), intent(in) :: self
-    has_clearance = self%joint%kind == 'clearance'
+    class(joint_case_t), intent(in) :: self
+    has_clearance = .false.
+    if (allocated(self%kind)) has_clearance = self%kind == 'clearance'
   end function has_clearance
 
-  !> The bearing of the joint.
-  pure type(bearing_t) function bearing_of(self)
-    class(case_t), intent(in) :: self
-    associate (j => self%joint)
-      bearing_of = bearing_t(j%bearing_radius, j%bearing_length, j%clearance, self%mechanism%rod_length)
-    end associate
+  !> The bearing of the joint, whose pin a rod of this length [m] carries.
+  pure type(bearing_t) function bearing_of(self, rod_length)
+    class(joint_case_t), intent(in) :: self
+    real(dp), intent(in) :: rod_length
+    bearing_of = bearing_t(self%bearing_radius, self%bearing_length, self%clearance, rod_length)
   end function bearing_of
 
   !> Hand every group, key and law of a case to a visitor, in the order of the template and of the resolved case.
@@ -115,11 +120,12 @@ contains
     call case%drive%parameters(list)
     call list%group('initial', 'start: velocities as with an ideal joint, but for those of the pin in its bearing', .false.)
     call case%initial%parameters(list)
-    call list%group('joint', 'piston-pin joint', .false.)
-    call case%joint%parameters(list)
-    call visit_contact(case%contact, list)
-    call visit_friction(case%friction, list)
-    call visit_film(case%film, list)
+    call visit_joint(case%joint, piston_pin_place, list)
+    call visit_joint(case%crank_pin, crank_pin_place, list)
+    if (list%sets) then
+      call drop_laws(case%joint, case%crank_pin)
+      call drop_laws(case%crank_pin, case%joint)
+    end if
     call visit_gas(case%combustion, list)
     call list%group('integrator', 'how it is integrated; the run''s end by revolutions or end_time, not both', .false.)
     call case%integrator%parameters(list)
@@ -127,10 +133,33 @@ contains
     call case%output%parameters(list)
   end subroutine visit_case
 
-  subroutine visit_contact(law, list)
-    class(contact_law_t), allocatable, intent(inout) :: law
+  !> A joint and its laws.
+  subroutine visit_joint(joint, place, list)
+    type(joint_case_t), intent(inout) :: joint
+    character(len=*), intent(in) :: place
     class(parameter_list_t), intent(inout) :: list
-    call list%group('contact', 'pin against bearing: leave the group out for no contact', .true.)
+    call list%group('joint', 'piston-pin joint', .false., place)
+    call joint%parameters(list)
+    call visit_contact(joint%contact, place, list)
+    call visit_friction(joint%friction, place, list)
+    call visit_film(joint%film, place, list)
+  end subroutine visit_joint
+
+  !> Of laws for every joint an ideal one has none, if the other joint has clearance.
+  subroutine drop_laws(joint, other)
+    type(joint_case_t), intent(inout) :: joint
+    type(joint_case_t), intent(in) :: other
+    if (joint%has_clearance() .or. .not. other%has_clearance()) return
+    if (allocated(joint%contact)) deallocate (joint%contact)
+    if (allocated(joint%friction)) deallocate (joint%friction)
+    if (allocated(joint%film)) deallocate (joint%film)
+  end subroutine drop_laws
+
+  subroutine visit_contact(law, place, list)
+    class(contact_law_t), allocatable, intent(inout) :: law
+    character(len=*), intent(in) :: place
+    class(parameter_list_t), intent(inout) :: list
+    call list%group('contact', 'pin against bearing: leave the group out for no contact', .true., place)
     call list%choice('law', 'lankarani_nikravesh', 'hertz: without dissipation')
     call offer_contact_laws(list)
     if (.not. list%sets) return
@@ -142,10 +171,11 @@ contains
     end select
   end subroutine visit_contact
 
-  subroutine visit_friction(law, list)
+  subroutine visit_friction(law, place, list)
     class(friction_law_t), allocatable, intent(inout) :: law
+    character(len=*), intent(in) :: place
     class(parameter_list_t), intent(inout) :: list
-    call list%group('friction', 'dry friction of the contact: leave the group out for none', .true.)
+    call list%group('friction', 'dry friction of the contact: leave the group out for none', .true., place)
     call list%choice('law', 'ambrosio', 'ambrosio: grows from 0 at v0 to full at v1')
     call offer_friction_laws(list)
     if (.not. list%sets) return
@@ -157,10 +187,11 @@ contains
     end select
   end subroutine visit_friction
 
-  subroutine visit_film(law, list)
+  subroutine visit_film(law, place, list)
     class(film_law_t), allocatable, intent(inout) :: law
+    character(len=*), intent(in) :: place
     class(parameter_list_t), intent(inout) :: list
-    call list%group('lubrication', 'oil film in the clearance: leave the group out for a dry joint', .true.)
+    call list%group('lubrication', 'oil film in the clearance: leave the group out for a dry joint', .true., place)
     call list%choice('law', 'pinkus_sternlicht', 'journal bearing or oscillating film')
     call offer_film_laws(list)
     if (.not. list%sets) return

@@ -50,11 +50,11 @@ contains
 
     has = .false.
     has(always(1):always(2)) = .true.
-    if (case%has_clearance() .and. .not. ideal_joint) then
+    if (case%joint%has_clearance() .and. .not. ideal_joint) then
       list%clearance = case%joint%clearance
       has(clearance(1):clearance(2)) = .true.
-      has(contact(1):contact(2)) = allocated(case%contact)
-      has(film(1):film(2)) = allocated(case%film)
+      has(contact(1):contact(2)) = allocated(case%joint%contact)
+      has(film(1):film(2)) = allocated(case%joint%film)
     end if
     has(gas(1):gas(2)) = allocated(case%combustion)
     wanted = .true.

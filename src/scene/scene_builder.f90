@@ -3,9 +3,9 @@ module scene_builder
   use kinds, only: dp
   use constants, only: two_pi, degree
   use errors, only: error_t
-  use case_definition, only: case_t
+  use case_definition, only: case_t, joint_case_t
   use ode_method, only: ode_settings_t
-  use chain_motion, only: piston_pin
+  use chain_motion, only: piston_pin, crank_pin
   use chain_bodies, only: crank_t, rod_t, piston_t, drive_t, new_bodies
   use clearance_joint, only: clearance_joint_t
   use gudgeon_scene, only: scene_t
@@ -46,15 +46,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     allocate (scene)
-    scene%refuses_steps = .false.
-    if (ideal_joint .or. .not. case%has_clearance()) then
-      allocate (scene%joints(0))
-    else
-      allocate (scene%joints(1))
-      call build_joint(case, scene%joints(1))
-      scene%chain%is_loose(piston_pin) = .true.
-      scene%refuses_steps = case%integrator%contact_entry == 'step_rejection' .and. allocated(case%contact)
-    end if
+    call build_joints(case, ideal_joint, scene)
     associate (m => case%mechanism)
       scene%chain%bodies = new_bodies(crank_t(m%crank_length, m%crank_mass, m%crank_inertia, m%crank_com), &
         rod_t(m%rod_length, m%rod_mass, m%rod_inertia, m%rod_com), piston_t(m%piston_mass), [-m%gravity, 0.0_dp])
@@ -75,27 +67,54 @@ contains
     call scene%prepare_start()
   end subroutine build_scene
 
-  !> The joint at the piston pin with its laws, only those that the case asks for.
-  subroutine build_joint(case, joint)
+  !> The joints with clearance; none in the ideal twin.
+  subroutine build_joints(case, ideal, scene)
     type(case_t), intent(in) :: case
+    logical, intent(in) :: ideal
+    type(scene_t), intent(inout) :: scene
+    logical :: is_loose(2)
+    integer :: n
+
+    is_loose = [case%joint%has_clearance(), case%crank_pin%has_clearance()] .and. .not. ideal
+    allocate (scene%joints(count(is_loose)))
+    n = 0
+    if (is_loose(1)) then
+      n = n + 1
+      call build_joint(case, case%joint, piston_pin, scene%joints(n))
+      scene%joints(n)%start_eccentricity = case%initial%eccentricity
+      scene%joints(n)%start_rate = case%initial%eccentricity_rate
+    end if
+    if (is_loose(2)) call build_joint(case, case%crank_pin, crank_pin, scene%joints(n + 1))
+    scene%chain%is_loose(piston_pin) = is_loose(1)
+    scene%chain%is_loose(crank_pin) = is_loose(2)
+    scene%refuses_steps = .false.
+    if (case%integrator%contact_entry /= 'step_rejection') return
+    do n = 1, size(scene%joints)
+      scene%refuses_steps = scene%refuses_steps .or. allocated(scene%joints(n)%contact)
+    end do
+  end subroutine build_joints
+
+  !> A joint with its laws, only those that the case asks for.
+  subroutine build_joint(case, wanted, place, joint)
+    type(case_t), intent(in) :: case
+    type(joint_case_t), intent(in) :: wanted
+    integer, intent(in) :: place   !! pin of the chain
     type(clearance_joint_t), intent(out) :: joint
 
-    joint%place = piston_pin
-    joint%start_eccentricity = case%initial%eccentricity
-    joint%start_rate = case%initial%eccentricity_rate
-    joint%bearing = case%bearing()
+    joint%place = place
+    joint%bearing = wanted%bearing(case%mechanism%rod_length)
     joint%pin_radius = joint%bearing%pin_radius()
     joint%max_penetration = case%integrator%max_penetration
-    if (allocated(case%contact)) then
-      allocate (joint%contact, source=case%contact)
+    if (allocated(wanted%contact)) then
+      allocate (joint%contact, source=wanted%contact)
       call joint%contact%prepare(joint%bearing)
     end if
-    if (allocated(case%friction)) then
-      allocate (joint%friction, source=case%friction)
+    if (allocated(wanted%friction)) then
+      allocate (joint%friction, source=wanted%friction)
       call joint%friction%prepare()
     end if
-    if (allocated(case%film)) then
-      allocate (joint%film, source=case%film)
+    if (allocated(wanted%film)) then
+      allocate (joint%film, source=wanted%film)
       call joint%film%prepare(joint%bearing, case%integrator%relative_tolerance)
     end if
   end subroutine build_joint

@@ -62,7 +62,7 @@ contains
     recorder%every_step = case%output%every_step
     recorder%max_evaluations_per_revolution = case%integrator%max_evaluations_per_revolution
     recorder%revolution_time = two_pi/scene%speed_scale(recorder%end_time)
-    if (allocated(case%contact)) recorder%validity_limit = case%contact%fastest_impact()
+    if (allocated(case%joint%contact)) recorder%validity_limit = case%joint%contact%fastest_impact()
     call move_alloc(sink, recorder%sink)
     if (present(cycles)) then
       call scene%measure_joint()

@@ -52,7 +52,7 @@ contains
     self%values%values%is_override = .false.   ! to the parameters, all else is the file
     do i = 1, size(keys)
       key = trim(keys(i))
-      dot = index(key, '.')
+      dot = index(key, '.', back=.true.)
       call values%find(key(:dot - 1), key(dot + 1:), at, self%places(i), error)
       if (allocated(error)) return
       associate (schema => values%keys(self%places(i)))

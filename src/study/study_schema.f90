@@ -10,8 +10,10 @@ contains
   pure function study_groups() result(groups)
     type(group_definition_t) :: groups(2)
     groups = [ &
-      group_definition_t('study', .true., 'a base case run many times; its case must be correct by itself'), &
-      group_definition_t('parameter', .true., 'one key that is varied; the group stands here once for each')]
+      group_definition_t(name='study', is_model=.true., &
+                         description='a base case run many times; its case must be correct by itself'), &
+      group_definition_t(name='parameter', is_model=.true., &
+                         description='one key that is varied; the group stands here once for each')]
   end function study_groups
 
   pure function study_keys() result(keys)

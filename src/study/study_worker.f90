@@ -104,7 +104,7 @@ contains
     if (self%was_interrupted .or. allocated(self%output_error)) return
     call self%cycle_rows%clear()
     call self%strobe_rows%clear()
-    associate (has_clearance => self%base%case%has_clearance())
+    associate (has_clearance => self%base%case%joint%has_clearance())
       if (allocated(error)) then
         call write_failure(self%run_row, self%numbers, number, self%values, reason_of(error%message), has_begun, &
           self%writes_strobes, report)
@@ -135,7 +135,7 @@ contains
     allocate (files)
     call choose_columns(self%base%case, .false., list, error)
     if (.not. allocated(error)) call files%open(self%trace_folder//'/'//trim(name), list, self%base%case%output%digits, &
-      allocated(self%base%case%contact), self%output_error)
+      allocated(self%base%case%joint%contact), self%output_error)
     !$omp end critical (texts)
     if (allocated(error) .or. allocated(self%output_error)) return
     call move_alloc(files, sink)
