@@ -16,7 +16,7 @@ program measure_costs
   use solver, only: integrate, observer_t, silent_observer_t, integration_done, step_limit_reached
   use gudgeon_scene, only: scene_t, evaluation_t, phase_contact
   use scene_builder, only: build_scene, settings_for, simulated_time
-  use columns, only: column_list_t, choose_columns, row_values
+  use gudgeon_columns, only: column_list_t, choose_columns, row_values
   use ode_method, only: ode_method_t, step_done
   use events, only: event_watch_t
   use methods, only: new_method

@@ -8,7 +8,7 @@ program measure_runs
   use case_definition, only: case_t
   use case_values, only: case_values_t
   use case_file, only: read_case_values
-  use columns, only: column_list_t
+  use gudgeon_columns, only: column_list_t
   use cycle_watch, only: cycle_watch_t
   use simulation, only: simulate, run_report_t
   use trace_sink, only: trace_sink_t

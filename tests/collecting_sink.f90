@@ -4,7 +4,7 @@ module collecting_sink
   use errors, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
-  use columns, only: column_list_t, choose_columns, column_name
+  use gudgeon_columns, only: column_list_t, choose_columns, column_name
   use simulation, only: simulate, run_report_t
   use trace_sink, only: trace_sink_t, trace_event_t
   implicit none

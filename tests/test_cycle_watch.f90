@@ -6,7 +6,7 @@ module test_cycle_watch
   use errors, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
-  use columns, only: column_list_t, choose_columns
+  use gudgeon_columns, only: column_list_t, choose_columns
   use cycle_watch, only: cycle_watch_t
   use simulation, only: simulate, run_report_t
   use trace_sink, only: trace_sink_t

@@ -6,7 +6,7 @@ module test_resume
   use archive, only: archive_t
   use case_definition, only: case_t
   use case_file, only: read_case
-  use columns, only: column_list_t, choose_columns
+  use gudgeon_columns, only: column_list_t, choose_columns
   use simulation, only: simulate, run_report_t
   use trace_sink, only: trace_sink_t
   use collecting_sink, only: collecting_sink_t

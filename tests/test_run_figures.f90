@@ -4,7 +4,7 @@ module test_run_figures
   use checks, only: checks_t
   use case_definition, only: case_t
   use case_file, only: read_case
-  use columns, only: column_list_t
+  use gudgeon_columns, only: column_list_t
   use constants, only: two_pi
   use cycle_watch, only: cycle_watch_t
   use errors, only: error_t

@@ -3,7 +3,7 @@ module test_trace_files
   use, intrinsic :: iso_fortran_env, only: int64
   use kinds, only: dp
   use errors, only: error_t
-  use columns, only: column_list_t
+  use trace_row, only: column_list_t, name_length
   use trace_files, only: trace_files_t
   use trace_sink, only: trace_event_t
   use gudgeon_scene, only: event_contact_begins, event_contact_ends
@@ -14,6 +14,10 @@ module test_trace_files
   public :: run_test_trace_files
 
   character(len=*), parameter :: folder = 'build/test_trace_files'
+
+
+  character(len=name_length), parameter :: names(4) = [character(len=name_length) :: 'time[s]', 'phase[-]', 'energy[J]', &
+    'gas_force[N]']
 
 contains
 
@@ -34,7 +38,7 @@ contains
     type(trace_files_t) :: files
     type(error_t), allocatable :: error
     type(trace_event_t) :: event
-    call files%open(folder//'/a', column_list_t(id=[1, 27, 35]), 12, .true., error)
+    call files%open(folder//'/a', column_list_t(id=[1, 2, 4], names=names), 12, .true., error)
     call check%that(.not. allocated(error), 'a trace is opened')
     call files%take_row([1e-3_dp, 2.0_dp, -0.0_dp])
     event = trace_event_t(event_contact_begins, 0.5_dp, -1.0_dp, 0.25_dp, 9.0_dp, 9.0_dp, 9.0_dp)
@@ -63,7 +67,7 @@ contains
         values(j, i) = sin(real(i*j, dp))*10.0_dp**(3*(j - 11))
       end do
     end do
-    call files%open(folder//'/a', column_list_t(id=[(j, j=1, fields)]), 17, .false., error)
+    call files%open(folder//'/a', column_list_t(id=[(j, j=1, fields)], names=[(names(1), j=1, fields)]), 17, .false., error)
     do i = 1, rows
       call files%take_row(values(:, i))
     end do

@@ -2,6 +2,7 @@
 module working_gas
   use kinds, only: dp
   use archive, only: archive_t
+  use trace_row, only: trace_row_t
   use gas_cycle, only: gas_cycle_t, cycle_angle, n_parts
   implicit none
   private
@@ -21,6 +22,7 @@ module working_gas
     procedure :: force_slope
     procedure :: events
     procedure :: pass_bound
+    procedure :: put_columns
     procedure :: exchange
   end type working_gas_t
 
@@ -46,6 +48,19 @@ contains
     real(dp), value, intent(in) :: pressure
     force = self%cycle%gas_force(pressure)
   end function force
+
+  !> Pressure [Pa] and force [N], and the volume at a crank angle of this sine and cosine.
+  pure subroutine put_columns(self, sin_crank, cos_crank, pressure, force, row)
+    class(working_gas_t), intent(in) :: self
+    real(dp), intent(in) :: sin_crank, cos_crank, pressure, force
+    type(trace_row_t), intent(inout) :: row
+    real(dp) :: volume
+    call row%put('cylinder_pressure[Pa]', pressure)
+    volume = 0
+    if (row%wants(1)) volume = self%cycle%cylinder%volume_at(sin_crank, cos_crank)
+    call row%put('cylinder_volume[m3]', volume)
+    call row%put('gas_force[N]', force)
+  end subroutine put_columns
 
   !> Derivative of the force by the crank angle [N/rad].
   pure real(dp) function force_slope(self, crank_angle)

@@ -3,7 +3,7 @@ module case_run
   use, intrinsic :: iso_fortran_env, only: int64
   use errors, only: error_t, fail, status_output
   use case_definition, only: case_t
-  use columns, only: column_list_t
+  use gudgeon_columns, only: column_list_t
   use scene_builder, only: simulated_time
   use simulation, only: simulate, run_report_t
   use trace_sink, only: trace_sink_t

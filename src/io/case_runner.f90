@@ -8,7 +8,7 @@ module case_runner
   use case_values, only: case_values_t
   use case_rules, only: case_warning
   use command_line, only: command_line_t
-  use columns, only: column_list_t, choose_columns
+  use gudgeon_columns, only: column_list_t, choose_columns
   use gudgeon_scene, only: scene_t
   use scene_builder, only: build_scene
   use case_run, only: case_run_t, name_file

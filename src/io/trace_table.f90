@@ -1,7 +1,7 @@
 !> The file NAME.csv of a trace: rows of numbers, the phase as one digit.
 module trace_table
   use kinds, only: dp
-  use columns, only: column_list_t, column_name
+  use gudgeon_columns, only: column_list_t, column_name
   use number_writer, only: number_writer_t, longest_number
   use result_file, only: result_file_t
   implicit none

@@ -1,77 +1,47 @@
-!> The columns of a trace: their names with units, which of them a scene has, and their values.
-module columns
+!> The columns of a trace: which of them a scene has, which the case wants, and the values of a row.
+module gudgeon_columns
   use kinds, only: dp
-  use gudgeon_scene, only: scene_t, evaluation_t
-  use case_definition, only: case_t
   use errors, only: error_t, fail, status_case_file
-  use chain_motion, only: piston_pin
+  use trace_row, only: trace_row_t, column_list_t, name_length
+  use chain_motion, only: motion_t, accelerations_t, piston_pin
   use chain_reactions, only: reactions_t
+  use joint_columns, only: put_joint_columns
+  use case_definition, only: case_t
+  use gudgeon_scene, only: scene_t, evaluation_t
+  use scene_builder, only: assemble_scene
   implicit none
   private
   public :: column_list_t, choose_columns, row_values, column_name
-
-  integer, parameter :: n_columns = 35
-  integer, parameter :: name_length = 32
-
-  !> Names of all columns, in the order of a row.
-  character(len=name_length), parameter :: names(n_columns) = [character(len=name_length) :: &
-    'time[s]', 'crank_angle[rad]', 'rod_angle[rad]', 'piston_position[m]', 'crank_speed[rad/s]', 'rod_speed[rad/s]', &
-    'piston_velocity[m/s]', 'crank_acceleration[rad/s2]', 'rod_acceleration[rad/s2]', 'piston_acceleration[m/s2]', &
-    'crank_moment[N.m]', 'pin_force_x[N]', 'pin_force_y[N]', 'crankpin_force_x[N]', 'crankpin_force_y[N]', &
-    'crank_bearing_force_x[N]', 'crank_bearing_force_y[N]', 'guide_force[N]', 'frame_force_x[N]', 'frame_force_y[N]', &
-    'energy[J]', 'energy_residual[J]', &
-    'eccentricity_x[m]', 'eccentricity_y[m]', 'eccentricity_ratio[-]', 'film_thickness[m]', 'phase[-]', &
-    'normal_force[N]', 'friction_force[N]', 'sliding_speed[m/s]', 'film_force_x[N]', 'film_force_y[N]', &
-    'cylinder_pressure[Pa]', 'cylinder_volume[m3]', 'gas_force[N]']
-
-  !> Groups of columns: the first and last of each.
-  integer, parameter :: always(2) = [1, 22], clearance(2) = [23, 27], contact(2) = [28, 30], film(2) = [31, 32], &
-    gas(2) = [33, 35]
-
-  !> The columns of one trace.
-  type :: column_list_t
-    integer, allocatable :: id(:)       !! positions in `names`
-    real(dp) :: clearance = 1           !! of the joint [m], for the eccentricity ratio
-    logical :: needs_rod_angle = .false.
-    logical :: needs_reactions = .false.
-    logical :: needs_energy = .false.
-  end type column_list_t
 
 contains
 
   !> The columns that the case asks for, of those that its scene has. Error: a name that the scene does not have.
   subroutine choose_columns(case, ideal_joint, list, error)
     type(case_t), intent(in) :: case
-    logical, intent(in) :: ideal_joint   !! of the ideal twin: it has what an ideal joint has, and ignores other names
+    logical, intent(in) :: ideal_joint   !! of the ideal twin: it has what ideal joints have, and ignores other names
     type(column_list_t), intent(out) :: list
     type(error_t), allocatable, intent(out) :: error
-    logical :: has(n_columns), wanted(n_columns)
+    type(scene_t), allocatable :: scene
+    type(trace_row_t) :: row
+    type(evaluation_t) :: nothing
+    logical, allocatable :: wanted(:)
     integer :: i
 
-    has = .false.
-    has(always(1):always(2)) = .true.
-    if (case%joint%has_clearance() .and. .not. ideal_joint) then
-      list%clearance = case%joint%clearance
-      has(clearance(1):clearance(2)) = .true.
-      has(contact(1):contact(2)) = allocated(case%joint%contact)
-      has(film(1):film(2)) = allocated(case%joint%film)
-    end if
-    has(gas(1):gas(2)) = allocated(case%combustion)
-    wanted = .true.
-    if (allocated(case%output%columns)) then
-      if (case%output%columns /= 'standard') call read_names(case%output%columns, has, ideal_joint, wanted, error)
-      if (allocated(error)) return
-    end if
-    list%id = pack([(i, i=1, n_columns)], has .and. wanted)
-    list%needs_rod_angle = any(list%id == 3)
-    list%needs_reactions = any(list%id >= 14 .and. list%id <= 20)
-    list%needs_energy = any(list%id == 21 .or. list%id == 22)
+    call assemble_scene(case, ideal_joint, scene)
+    nothing = transfer([(0.0_dp, i=1, storage_size(nothing)/storage_size(0.0_dp) + 1)], nothing)
+    call row%collect_names()
+    call put_columns(scene, 0.0_dp, nothing, 0.0_dp, 0.0_dp, row)
+    list%names = row%names(:row%n)
+    allocate (wanted(row%n), source=.true.)
+    if (case%output%columns /= 'standard') call read_names(case%output%columns, list%names, ideal_joint, wanted, error)
+    list%id = pack([(i, i=1, row%n)], wanted)
   end subroutine choose_columns
 
   !> Mark the columns named in a text such as 'time, crank_angle'.
-  subroutine read_names(text, has, ignores_missing, wanted, error)
+  subroutine read_names(text, names, ignores_missing, wanted, error)
     character(len=*), intent(in) :: text
-    logical, intent(in) :: has(:), ignores_missing
+    character(len=name_length), intent(in) :: names(:)   !! of the scene
+    logical, intent(in) :: ignores_missing
     logical, intent(out) :: wanted(:)
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: rest, name, known
@@ -85,16 +55,16 @@ contains
       if (comma == 0) exit
       name = trim(adjustl(rest(:comma - 1)))
       rest = rest(comma + 1:)
-      found = .false.
-      do i = 1, n_columns
+      found = ignores_missing
+      do i = 1, size(names)
         if (name /= names(i) .and. name /= names(i)(:scan(names(i), '[') - 1)) cycle
-        found = has(i) .or. ignores_missing
+        found = .true.
         wanted(i) = .true.
       end do
       if (.not. found) then
         known = ''
-        do i = 1, n_columns
-          if (has(i)) known = known//' '//names(i)(:scan(names(i), '[') - 1)
+        do i = 1, size(names)
+          known = known//' '//names(i)(:scan(names(i), '[') - 1)
         end do
         call fail(error, "&output columns = '"//name//"': no such column in this scene; it has:"//known, status_case_file)
         return
@@ -107,11 +77,10 @@ contains
     type(column_list_t), intent(in) :: list
     integer, intent(in) :: i
     character(len=:), allocatable :: name
-    name = trim(names(list%id(i)))
+    name = trim(list%names(list%id(i)))
   end function column_name
 
   !> The values of a row from one evaluation of the scene at time t, with the work of the non-conservative forces so far.
-  !> What takes work and is not in the list is left out.
   pure subroutine row_values(list, scene, t, now, work, initial_energy, values)
     type(column_list_t), intent(in) :: list
     type(scene_t), intent(in) :: scene
@@ -120,53 +89,71 @@ contains
     real(dp), intent(in) :: work             !! [J]
     real(dp), intent(in) :: initial_energy   !! [J]
     real(dp), intent(out) :: values(:)       !! (size(list%id))
-    real(dp) :: all_values(n_columns)   !! undefined for columns that the scene does not have
-    type(reactions_t) :: reaction
+    type(trace_row_t) :: row
     integer :: i
-
-    associate (m => now%motion, a => now%accelerations, v => all_values)
-      v(1) = t
-      v(2) = m%crank_angle
-      v(3) = 0
-      if (list%needs_rod_angle) v(3) = atan2(m%sin_rod, m%cos_rod)
-      v(4) = m%piston_position
-      v(5) = m%crank_speed
-      v(6) = m%rod_speed
-      v(7) = m%piston_velocity
-      v(8) = a%crank
-      v(9) = a%rod
-      v(10) = a%piston
-      v(11) = now%crank_moment
-      v(12:13) = now%loads%force(:, piston_pin)
-      if (list%needs_reactions) then
-        reaction = scene%chain%reactions(m, a, now%loads)
-        v(14:15) = reaction%crankpin
-        v(16:17) = reaction%crank_bearing
-        v(18) = reaction%guide
-        v(19:20) = reaction%frame
-      end if
-      v(21) = 0
-      if (list%needs_energy) v(21) = scene%energy(m)
-      v(22) = v(21) - initial_energy - work
-      i = scene%joint_at(piston_pin)
-      if (i > 0) then
-        v(23:24) = now%relative(i)%eccentricity
-        v(25) = now%relative(i)%distance/list%clearance
-        v(26) = -now%relative(i)%penetration
-        v(27) = scene%joints(i)%phase
-        v(28) = now%joint(i)%normal_force
-        v(29) = now%joint(i)%friction_force
-        v(30) = now%relative(i)%sliding_speed
-        v(31:32) = now%joint(i)%film
-      end if
-      if (allocated(scene%gas)) then
-        v(33) = now%cylinder_pressure
-        v(34) = scene%gas%cycle%cylinder%volume_at(m%sin_crank, m%cos_crank)
-        v(35) = now%loads%gas_force
-      end if
-    end associate
-    do i = 1, size(values)   ! all_values(list%id) would allocate a copy of the subscripts
-      values(i) = all_values(list%id(i))
+    call row%choose(list)
+    call put_columns(scene, t, now, work, initial_energy, row)
+    do i = 1, size(values)   ! row%values(list%id) would allocate a copy of the subscripts
+      values(i) = row%values(list%id(i))
     end do
   end subroutine row_values
-end module columns
+
+  !> Every column of a scene, in their order.
+  pure subroutine put_columns(scene, t, now, work, initial_energy, row)
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, work, initial_energy
+    type(evaluation_t), intent(in) :: now
+    type(trace_row_t), intent(inout) :: row
+    real(dp) :: energy
+    integer :: i
+    call row%put('time[s]', t)
+    call put_motion(now%motion, now%accelerations, row)
+    call row%put('crank_moment[N.m]', now%crank_moment)
+    call put_forces(scene, now, row)
+    energy = 0
+    if (row%wants(2)) energy = scene%energy(now%motion)
+    call row%put('energy[J]', energy)
+    call row%put('energy_residual[J]', energy - initial_energy - work)
+    do i = 1, scene%n_joints
+      call put_joint_columns(scene%joints(i), now%relative(i), now%joint(i), row)
+    end do
+    if (allocated(scene%gas)) call scene%gas%put_columns(now%motion%sin_crank, now%motion%cos_crank, now%cylinder_pressure, &
+      now%loads%gas_force, row)
+  end subroutine put_columns
+
+  pure subroutine put_motion(m, a, row)
+    type(motion_t), intent(in) :: m
+    type(accelerations_t), intent(in) :: a
+    type(trace_row_t), intent(inout) :: row
+    real(dp) :: rod_angle
+    call row%put('crank_angle[rad]', m%crank_angle)
+    rod_angle = 0
+    if (row%wants(1)) rod_angle = atan2(m%sin_rod, m%cos_rod)
+    call row%put('rod_angle[rad]', rod_angle)
+    call row%put('piston_position[m]', m%piston_position)
+    call row%put('crank_speed[rad/s]', m%crank_speed)
+    call row%put('rod_speed[rad/s]', m%rod_speed)
+    call row%put('piston_velocity[m/s]', m%piston_velocity)
+    call row%put('crank_acceleration[rad/s2]', a%crank)
+    call row%put('rod_acceleration[rad/s2]', a%rod)
+    call row%put('piston_acceleration[m/s2]', a%piston)
+  end subroutine put_motion
+
+  !> The forces between the bodies.
+  pure subroutine put_forces(scene, now, row)
+    type(scene_t), intent(in) :: scene
+    type(evaluation_t), intent(in) :: now
+    type(trace_row_t), intent(inout) :: row
+    type(reactions_t) :: reaction
+    call row%put('pin_force_x[N]', now%loads%force(1, piston_pin))
+    call row%put('pin_force_y[N]', now%loads%force(2, piston_pin))
+    if (row%wants(7)) reaction = scene%chain%reactions(now%motion, now%accelerations, now%loads)
+    call row%put('crankpin_force_x[N]', reaction%crankpin(1))
+    call row%put('crankpin_force_y[N]', reaction%crankpin(2))
+    call row%put('crank_bearing_force_x[N]', reaction%crank_bearing(1))
+    call row%put('crank_bearing_force_y[N]', reaction%crank_bearing(2))
+    call row%put('guide_force[N]', reaction%guide)
+    call row%put('frame_force_x[N]', reaction%frame(1))
+    call row%put('frame_force_y[N]', reaction%frame(2))
+  end subroutine put_forces
+end module gudgeon_columns

@@ -11,7 +11,7 @@ module recorder
   use solver, only: observer_t
   use chain_motion, only: piston_pin
   use gudgeon_scene, only: scene_t, evaluation_t, phase_contact, event_none, event_contact_begins, event_contact_ends
-  use columns, only: column_list_t, row_values
+  use gudgeon_columns, only: column_list_t, row_values
   use cycle_watch, only: cycle_watch_t
   use step_peaks, only: peak_watch_t, of_pin_force, of_penetration, of_normal_force, n_peaks, peaks_of
   use trace_sink, only: trace_sink_t, trace_event_t

@@ -2,7 +2,7 @@
 module scene_builder
   use kinds, only: dp
   use constants, only: two_pi, degree
-  use errors, only: error_t
+  use errors, only: error_t, fail, status_case_file
   use case_definition, only: case_t, joint_case_t
   use ode_method, only: ode_settings_t
   use chain_motion, only: piston_pin, crank_pin
@@ -11,7 +11,7 @@ module scene_builder
   use gudgeon_scene, only: scene_t
   implicit none
   private
-  public :: build_scene, simulated_time, sample_interval, settings_for
+  public :: build_scene, assemble_scene, simulated_time, sample_interval, settings_for
 
   !> A looser tolerance is taken as this one: it would save next to nothing, and the errors of its steps add up to more than
   !> a result may miss (the ideal twin of simulation IV loses 18 % of its energy at 1e-2, 2 % at 1e-3).
@@ -38,15 +38,20 @@ module scene_builder
 contains
 
   !> Build the scene of a case; with `ideal_joint` its twin without clearance. The case has been validated by its
-  !> reader. Error: the gas cycle cannot be integrated.
+  !> reader. Errors: the gas cycle cannot be integrated; the crank pin has clearance.
   subroutine build_scene(case, ideal_joint, scene, error)
     type(case_t), intent(in) :: case
     logical, intent(in) :: ideal_joint
     type(scene_t), allocatable, intent(out) :: scene
     type(error_t), allocatable, intent(out) :: error
 
-    allocate (scene)
-    call build_joints(case, ideal_joint, scene)
+    if (case%crank_pin%has_clearance()) then   ! the scene can, events and figures cannot
+      call fail(error, '&joint of crank_pin kind = clearance: cannot be run yet: events and figures know the piston pin alone', &
+        status_case_file)
+      return
+    end if
+    call assemble_scene(case, ideal_joint, scene)
+    call prepare_joints(case, scene)
     associate (m => case%mechanism)
       scene%chain%bodies = new_bodies(crank_t(m%crank_length, m%crank_mass, m%crank_inertia, m%crank_com), &
         rod_t(m%rod_length, m%rod_mass, m%rod_inertia, m%rod_com), piston_t(m%piston_mass), [-m%gravity, 0.0_dp])
@@ -56,9 +61,7 @@ contains
     scene%start_speed = case%initial%crank_speed
     scene%span = simulated_time(case)
     call scene%claim()
-    if (allocated(case%combustion)) then
-      allocate (scene%gas)
-      scene%gas%cycle = case%combustion
+    if (allocated(scene%gas)) then
       call scene%gas%cycle%prepare(case%mechanism%crank_length, case%mechanism%rod_length, &
         gas_margin*case%integrator%relative_tolerance, error)
       if (allocated(error)) return
@@ -67,15 +70,17 @@ contains
     call scene%prepare_start()
   end subroutine build_scene
 
-  !> The joints with clearance; none in the ideal twin.
-  subroutine build_joints(case, ideal, scene)
+  !> The parts of a scene as the case gives them: which joints have clearance and which laws act in them, and the gas. Nothing is
+  !> prepared for a run.
+  subroutine assemble_scene(case, ideal_joint, scene)
     type(case_t), intent(in) :: case
-    logical, intent(in) :: ideal
-    type(scene_t), intent(inout) :: scene
+    logical, intent(in) :: ideal_joint
+    type(scene_t), allocatable, intent(out) :: scene
     logical :: is_loose(2)
     integer :: n
 
-    is_loose = [case%joint%has_clearance(), case%crank_pin%has_clearance()] .and. .not. ideal
+    allocate (scene)
+    is_loose = [case%joint%has_clearance(), case%crank_pin%has_clearance()] .and. .not. ideal_joint
     allocate (scene%joints(count(is_loose)))
     n = 0
     if (is_loose(1)) then
@@ -87,12 +92,28 @@ contains
     if (is_loose(2)) call build_joint(case, case%crank_pin, crank_pin, scene%joints(n + 1))
     scene%chain%is_loose(piston_pin) = is_loose(1)
     scene%chain%is_loose(crank_pin) = is_loose(2)
+    scene%n_joints = size(scene%joints)
+    if (.not. allocated(case%combustion)) return
+    allocate (scene%gas)
+    scene%gas%cycle = case%combustion
+  end subroutine assemble_scene
+
+  !> Find what the laws need to know of their bearings.
+  subroutine prepare_joints(case, scene)
+    type(case_t), intent(in) :: case
+    type(scene_t), intent(inout) :: scene
+    integer :: i
     scene%refuses_steps = .false.
-    if (case%integrator%contact_entry /= 'step_rejection') return
-    do n = 1, size(scene%joints)
-      scene%refuses_steps = scene%refuses_steps .or. allocated(scene%joints(n)%contact)
+    do i = 1, size(scene%joints)
+      associate (joint => scene%joints(i))
+        joint%max_penetration = case%integrator%max_penetration
+        if (allocated(joint%contact)) call joint%contact%prepare(joint%bearing)
+        if (allocated(joint%friction)) call joint%friction%prepare()
+        if (allocated(joint%film)) call joint%film%prepare(joint%bearing, case%integrator%relative_tolerance)
+        if (allocated(joint%contact) .and. case%integrator%contact_entry == 'step_rejection') scene%refuses_steps = .true.
+      end associate
     end do
-  end subroutine build_joints
+  end subroutine prepare_joints
 
   !> A joint with its laws, only those that the case asks for.
   subroutine build_joint(case, wanted, place, joint)
@@ -104,19 +125,9 @@ contains
     joint%place = place
     joint%bearing = wanted%bearing(case%mechanism%rod_length)
     joint%pin_radius = joint%bearing%pin_radius()
-    joint%max_penetration = case%integrator%max_penetration
-    if (allocated(wanted%contact)) then
-      allocate (joint%contact, source=wanted%contact)
-      call joint%contact%prepare(joint%bearing)
-    end if
-    if (allocated(wanted%friction)) then
-      allocate (joint%friction, source=wanted%friction)
-      call joint%friction%prepare()
-    end if
-    if (allocated(wanted%film)) then
-      allocate (joint%film, source=wanted%film)
-      call joint%film%prepare(joint%bearing, case%integrator%relative_tolerance)
-    end if
+    if (allocated(wanted%contact)) allocate (joint%contact, source=wanted%contact)
+    if (allocated(wanted%friction)) allocate (joint%friction, source=wanted%friction)
+    if (allocated(wanted%film)) allocate (joint%film, source=wanted%film)
   end subroutine build_joint
 
   !> Time to simulate [s]: revolutions are counted at the initial crank speed.

@@ -10,7 +10,7 @@ module simulation
   use gudgeon_scene, only: scene_t
   use stop_reason, only: reason, place, interrupted_text, revolution_budget_spent
   use scene_builder, only: build_scene, simulated_time, sample_interval, settings_for
-  use columns, only: choose_columns, column_list_t
+  use gudgeon_columns, only: choose_columns, column_list_t
   use cycle_watch, only: cycle_watch_t
   use recorder, only: recorder_t, run_figures_t
   use trace_sink, only: trace_sink_t

@@ -2,7 +2,7 @@
 module study_rows
   use kinds, only: dp
   use constants, only: two_pi
-  use columns, only: column_list_t, column_name
+  use gudgeon_columns, only: column_list_t, column_name
   use cycle_statistics, only: cycle_t
   use cycle_watch, only: cycle_watch_t
   use simulation, only: run_report_t

@@ -5,7 +5,7 @@ module study_sweep
   use text_tools, only: printable, integer_text
   use checksum, only: checksum_t
   use version, only: program_version
-  use columns, only: column_list_t, choose_columns
+  use gudgeon_columns, only: column_list_t, choose_columns
   use case_definition, only: case_t
   use case_file, only: read_case_values
   use case_values, only: case_values_t

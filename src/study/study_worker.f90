@@ -3,7 +3,7 @@
 module study_worker
   use errors, only: error_t
   use constants, only: degree
-  use columns, only: column_list_t, choose_columns
+  use gudgeon_columns, only: column_list_t, choose_columns
   use cycle_watch, only: cycle_watch_t
   use simulation, only: simulate, run_report_t, interrupted_text
   use trace_sink, only: trace_sink_t, trace_event_t

@@ -1,0 +1,37 @@
+!> The columns of a joint with clearance. Those of the piston pin have plain names, others the place in front.
+module joint_columns
+  use kinds, only: dp
+  use trace_row, only: trace_row_t
+  use chain_motion, only: piston_pin
+  use joint_motion, only: joint_motion_t
+  use clearance_joint, only: clearance_joint_t, joint_loads_t
+  implicit none
+  private
+  public :: put_joint_columns
+
+contains
+
+  !> Of what the case asks for: with a contact law its forces, with a film the film's.
+  pure subroutine put_joint_columns(joint, motion, loads, row)
+    type(clearance_joint_t), intent(in) :: joint
+    type(joint_motion_t), intent(in) :: motion
+    type(joint_loads_t), intent(in) :: loads
+    type(trace_row_t), intent(inout) :: row
+    if (joint%place /= piston_pin) row%place = 'crank_pin_'
+    call row%put('eccentricity_x[m]', motion%eccentricity(1))
+    call row%put('eccentricity_y[m]', motion%eccentricity(2))
+    call row%put('eccentricity_ratio[-]', motion%distance/joint%bearing%clearance)
+    call row%put('film_thickness[m]', -motion%penetration)
+    call row%put('phase[-]', real(joint%phase, dp))
+    if (allocated(joint%contact)) then
+      call row%put('normal_force[N]', loads%normal_force)
+      call row%put('friction_force[N]', loads%friction_force)
+      call row%put('sliding_speed[m/s]', motion%sliding_speed)
+    end if
+    if (allocated(joint%film)) then
+      call row%put('film_force_x[N]', loads%film(1))
+      call row%put('film_force_y[N]', loads%film(2))
+    end if
+    row%place = ''
+  end subroutine put_joint_columns
+end module joint_columns

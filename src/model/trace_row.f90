@@ -1,0 +1,74 @@
+!> A row of a trace: who has a quantity gives its column, name and value, in one line.
+!>
+!> The same calls serve two passes. Before a run they collect the names of the columns that a scene has; in every row they give the
+!> values. What takes work is asked for only where a column that needs it is wanted (`wants`).
+module trace_row
+  use kinds, only: dp
+  implicit none
+  private
+  public :: trace_row_t, column_list_t, name_length, most_columns
+
+  integer, parameter :: name_length = 40
+  integer, parameter :: most_columns = 100
+
+  !> The columns of one trace.
+  type :: column_list_t
+    character(len=name_length), allocatable :: names(:)   !! of all that the scene has, with their units
+    integer, allocatable :: id(:)                         !! those of the trace, as positions among the names
+  end type column_list_t
+
+  type :: trace_row_t
+    integer :: n = 0                            !! columns so far
+    logical :: is_naming = .false.              !! this pass collects names
+    character(len=12) :: place = ''             !! in front of the names that follow, with an underscore behind
+    logical :: wanted(most_columns) = .false.   !! columns whose values the trace has
+    real(dp) :: values(most_columns) = 0
+    character(len=name_length), allocatable :: names(:)   !! in the pass that collects them
+  contains
+    procedure, non_overridable :: put
+    procedure, non_overridable :: wants
+    procedure, non_overridable :: collect_names
+    procedure, non_overridable :: choose
+  end type trace_row_t
+
+contains
+
+  !> Begin the pass that collects names.
+  subroutine collect_names(self)
+    class(trace_row_t), intent(inout) :: self
+    self%n = 0
+    self%is_naming = .true.
+    allocate (self%names(most_columns))
+  end subroutine collect_names
+
+  !> Begin a row of the trace.
+  pure subroutine choose(self, list)
+    class(trace_row_t), intent(inout) :: self
+    type(column_list_t), intent(in) :: list
+    integer :: i
+    self%n = 0
+    do i = 1, size(list%id)
+      self%wanted(list%id(i)) = .true.
+    end do
+  end subroutine choose
+
+  !> The next column.
+  pure subroutine put(self, name, value)
+    class(trace_row_t), intent(inout) :: self
+    character(len=*), intent(in) :: name    !! with its unit: normal_force[N]
+    real(dp), intent(in) :: value
+    self%n = self%n + 1
+    if (self%is_naming) then
+      self%names(self%n) = trim(self%place)//name
+    else
+      self%values(self%n) = value
+    end if
+  end subroutine put
+
+  !> Whether one of the next `count` columns is in the trace. While names are collected none is.
+  pure logical function wants(self, count)
+    class(trace_row_t), intent(in) :: self
+    integer, intent(in) :: count
+    wants = any(self%wanted(self%n + 1:self%n + count))
+  end function wants
+end module trace_row
