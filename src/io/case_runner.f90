@@ -76,19 +76,12 @@ contains
     if (.not. options%quiet) call tell_warning(case)
     base = options%out//'/'//case%name
     text = resolved_text(values)
-<<<<<<< HEAD
-    self%has_twin = case%output%ideal_twin .and. case%has_clearance()
+    self%has_twin = case%output%ideal_twin .and. (case%joint%has_clearance() .or. case%crank_pin%has_clearance())
     identity = identity_of(text, program)
     call self%run%prepare(case, text, identity, .false., list, base, options%checkpoint_interval, show_progress, options%quiet)
     self%twin%base = base//'.ideal'
     if (self%has_twin) call self%twin%prepare(case, text, twin_identity(identity), .true., ideal_list, self%twin%base, &
       options%checkpoint_interval, show_progress .and. options%jobs == 1, options%quiet)
-=======
-    self%has_twin = case%output%ideal_twin .and. case%joint%has_clearance()
-    call self%run%prepare(case, text, .false., list, base, options%checkpoint_interval, show_progress, options%quiet)
-    call self%twin%prepare(case, text, .true., ideal_list, base//'.ideal', options%checkpoint_interval, &
-                           show_progress .and. options%jobs == 1, options%quiet)
->>>>>>> ca788f7 (Joints by their place: a second &joint and laws of its own for the crank pin, read, checked, resolved)
   end subroutine prepare
 
   !> Tell what in a case is right but has no effect.

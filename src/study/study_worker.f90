@@ -91,7 +91,6 @@ contains
     if (.not. allocated(error)) call self%base%check(error)
     if (.not. allocated(error)) then
       has_begun = .true.
-      self%watch%strobe_list%clearance = self%base%case%joint%clearance
       if (self%traces_all) then
         call self%run_with_trace(number, report, error)
       else
