@@ -37,6 +37,7 @@ program gudgeon_tests
   use test_study, only: run_test_study
   use test_summary, only: run_test_summary
   use test_trace_files, only: run_test_trace_files
+  use test_two_joints, only: run_test_two_joints
   implicit none
   type(checks_t) :: check
   character(len=80), allocatable :: wanted(:)   !! names of suites, none: all of them
@@ -81,6 +82,7 @@ program gudgeon_tests
   call run('study', run_test_study)
   call run('summary', run_test_summary)
   call run('trace_files', run_test_trace_files)
+  call run('two_joints', run_test_two_joints)
 
   write (output_unit, '(i0,a,i0,a)') check%passed, ' passed, ', check%failed, ' failed'
   do i = 1, size(wanted)

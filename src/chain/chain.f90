@@ -67,8 +67,8 @@ contains
     call follow_piston(self%bodies%crank%length, self%bodies%rod%length, motion)
   end subroutine move_piston
 
-  !> What a load of loose pins or of the gas adds to the accelerations and to the moment on the crank, in which all loads are linear:
-  !> the bodies at rest, nothing else acting. By the general assembly, but for the piece that scenes of one joint have.
+  !> What a load of loose pins or of the gas adds to the accelerations and to the moment on the crank, in which all loads are
+  !> linear: the bodies at rest, nothing else acting. By the general assembly, but for the piece that scenes of one joint have.
   pure subroutine response(self, motion, loads, accelerations, crank_moment)
     class(chain_t), intent(in) :: self
     type(motion_t), intent(in) :: motion

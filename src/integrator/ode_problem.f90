@@ -12,7 +12,7 @@ module ode_problem
   public :: step_admitted, step_too_deep, step_outside
   public :: event_continue, event_stop, max_events, max_modes
 
-  integer, parameter :: max_modes = 3      !! highest mode
+  integer, parameter :: max_modes = 8      !! highest mode
   integer, parameter :: max_events = 16   !! most event functions that a problem may have at one time
 
   !> Verdicts of `judge_step`.

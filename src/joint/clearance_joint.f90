@@ -1,7 +1,7 @@
 !> A joint with clearance: its laws, its discrete state, its loads, its events.
 !>
-!> While journal and bearing are apart the joint is free, or a film carries it; while they touch, the contact does (Reis 2013, fig. 3.9).
-!> A law that the case does not ask for is not allocated.
+!> While journal and bearing are apart the joint is free, or a film carries it; while they touch, the contact does (Reis 2013,
+!> fig. 3.9). A law that the case does not ask for is not allocated.
 module clearance_joint
   use kinds, only: dp
   use archive, only: archive_t
@@ -73,8 +73,8 @@ contains
   !> (scripts/compare_adams.sh, simulation IV, c = 20 um): at the relative tolerance 1e-4 the pin is off by 4e-5 c at the
   !> end, at 1e-6 by 4e-9 c, at 1e-12 by 1e-14 c; in (q, A, x) rounding alone makes 4e-12 c.
   !>
-  !> A journal may have a speed of its own where the crank hardly turns: see `own_speed`. The rate is measured by a hundredth of that
-  !> in which it crosses the clearance: at first a journal at rest is slow, and it may stay so.
+  !> A journal may have a speed of its own where the crank hardly turns: see `own_speed`. The rate is measured by a hundredth of
+  !> that in which it crosses the clearance: at first a journal at rest is slow, and it may stay so.
   subroutine claim(self, layout, crank_speed, span)
     class(clearance_joint_t), intent(inout) :: self
     type(layout_t), intent(inout) :: layout
@@ -84,8 +84,8 @@ contains
       0.01_dp*crossing_speed(self, span)), self%at, grows=.false.)
   end subroutine claim
 
-  !> Natural size of the journal's speed in its bearing where the crank does not give it [m/s]: the one that it starts with, or that in
-  !> which it crosses the clearance in the time simulated.
+  !> Natural size of the journal's speed in its bearing where the crank does not give it [m/s]: the one that it starts with, or that
+  !> in which it crosses the clearance in the time simulated.
   pure real(dp) function own_speed(self, span)
     class(clearance_joint_t), intent(in) :: self
     real(dp), intent(in) :: span   !! [s]
@@ -169,8 +169,8 @@ contains
     all%moment(self%place) = own%moment
   end subroutine loads
 
-  !> Contact and friction: -F_N n + F_T t on the journal, and the moment F_T R. Where the surfaces stick there is no friction yet: it is
-  !> found with the accelerations.
+  !> Contact and friction: -F_N n + F_T t on the journal, and the moment F_T R. Where the surfaces stick there is no friction yet:
+  !> it is found with the accelerations.
   pure subroutine find_contact(self, joint, own)
     type(clearance_joint_t), intent(in) :: self
     type(joint_motion_t), intent(inout) :: joint
@@ -190,8 +190,8 @@ contains
     end associate
   end subroutine find_contact
 
-  !> What `loads` has left: how journal and bearing move against each other, whatever the phase asks for, and loads that the phase does
-  !> not have. Where the motion of the bodies is not known there are no turning and sliding speeds.
+  !> What `loads` has left: how journal and bearing move against each other, whatever the phase asks for, and loads that the phase
+  !> does not have. Where the motion of the bodies is not known there are no turning and sliding speeds.
   pure subroutine complete(self, motion, is_known, joint, own)
     class(clearance_joint_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
@@ -210,8 +210,8 @@ contains
     call find_sliding(self%pin_radius, joint)
   end subroutine complete
 
-  !> Where the journal is and how it moves there, without turning and sliding speeds, and the normal force: all that a state tells without
-  !> the motion of the bodies.
+  !> Where the journal is and how it moves there, without turning and sliding speeds, and the normal force: all that a state tells
+  !> without the motion of the bodies.
   pure subroutine look(self, y, joint, normal_force)
     class(clearance_joint_t), intent(in) :: self
     real(dp), intent(in) :: y(:)

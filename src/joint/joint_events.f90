@@ -154,9 +154,9 @@ contains
     joint%phase = joint%phase_apart()
   end subroutine end_contact
 
-  !> Set-valued friction, from an evaluation as if the surfaces stuck: where the sliding speed is not zero it tells the direction. At zero
-  !> (where it `may_slide` at the beginning of a contact it is taken as it is) the surfaces stick if friction can hold them and
-  !> slide against it if not.
+  !> Set-valued friction, from an evaluation as if the surfaces stuck: where the sliding speed is not zero it tells the direction. At
+  !> zero (where it `may_slide` at the beginning of a contact it is taken as it is) the surfaces stick if friction can hold them
+  !> and slide against it if not.
   pure subroutine choose_sliding(joint, motion, own, was_sliding, may_slide)
     type(clearance_joint_t), intent(inout) :: joint
     type(joint_motion_t), intent(in) :: motion

@@ -53,8 +53,8 @@ contains
     end if
   end subroutine find_speeds
 
-  !> v_T = t . e' + omega_journal R - omega_bearing (|e| + R), R of the journal: the material one, at the point of contact. (3.74)-(3.76)
-  !> as printed turn the contact points with the eccentricity, which leaves no sliding.
+  !> v_T = t . e' + omega_journal R - omega_bearing (|e| + R), R of the journal: the material one, at the point of contact.
+  !> (3.74)-(3.76) as printed turn the contact points with the eccentricity, which leaves no sliding.
   pure subroutine find_sliding(pin_radius, joint)
     real(dp), intent(in) :: pin_radius   !! [m]
     type(joint_motion_t), intent(inout) :: joint
@@ -62,8 +62,8 @@ contains
       - joint%bearing_speed*(joint%distance + pin_radius)
   end subroutine find_sliding
 
-  !> v_T' [m/s^2] = t . e'' - gamma' n . e' + omega_journal' R - omega_bearing' (|e| + R) - omega_bearing |e|', with gamma' = t . e'/|e|;
-  !> without `joint`'s own motion what accelerations alone make of it.
+  !> v_T' [m/s^2] = t . e'' - gamma' n . e' + omega_journal' R - omega_bearing' (|e| + R) - omega_bearing |e|', with
+  !> gamma' = t . e'/|e|; `at_rest` what the accelerations alone make of it.
   pure real(dp) function sliding_acceleration(place, pin_radius, joint, accelerations, at_rest) result(a)
     integer, intent(in) :: place
     real(dp), intent(in) :: pin_radius

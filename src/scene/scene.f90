@@ -27,8 +27,8 @@ module gudgeon_scene
   type(joint_loads_t), parameter :: no_loads = joint_loads_t([0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp], 0.0_dp, 0.0_dp, 0.0_dp, &
     0.0_dp, .false.)
 
-  !> Everything that one evaluation of a scene finds: of each of its joints, or of one centred pin without loads where it has none. A
-  !> right-hand side does not set what it does not need.
+  !> Everything that one evaluation of a scene finds: of each of its joints, or of one centred pin without loads where it has none.
+  !> A right-hand side does not set what it does not need.
   type :: evaluation_t
     type(motion_t) :: motion
     type(accelerations_t) :: accelerations
@@ -317,9 +317,9 @@ contains
     self%n_quadratures = self%layout%n_quadratures
   end subroutine take_layout
 
-  !> Integrate the measures of the joints too; before the run. They do not change its steps where there is clearance. A scene without
-  !> has one measure, the integral of the force's size, and it has part in the control of the error: nothing else makes steps
-  !> short enough for it.
+  !> Integrate the measures of the joints too; before the run. They do not change its steps where there is clearance. A scene
+  !> without has one measure, the integral of the force's size, and it has part in the control of the error: nothing else makes
+  !> steps short enough for it.
   subroutine measure_joint(self)
     class(scene_t), intent(inout) :: self
     integer :: n
@@ -342,8 +342,8 @@ contains
     work_tells = self%chain%drive%free_crank .and. .not. (self%chain%drive%damping > 0 .or. allocated(self%gas))
   end function work_tells
 
-  !> Energy that the joints have taken from the bodies, in a scene that measures it [J]; where it is not integrated itself, the work of
-  !> the drive's torque less that of all forces.
+  !> Energy that the joints have taken from the bodies, in a scene that measures it [J]; where it is not integrated itself, the
+  !> work of the drive's torque less that of all forces.
   pure real(dp) function joint_loss(self, t, y)
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: t, y(:)

@@ -1,0 +1,52 @@
+!> An observer that counts the contacts of each joint.
+module joint_watcher
+  use kinds, only: dp
+  use ode_problem, only: ode_problem_t
+  use ode_method, only: ode_method_t
+  use solver, only: observer_t
+  use clearance_joint, only: most_joints
+  use gudgeon_scene, only: scene_t, event_none, event_contact_begins
+  implicit none
+  private
+  public :: joint_watcher_t
+
+  type, extends(observer_t) :: joint_watcher_t
+    integer :: begun(most_joints) = 0, ended(most_joints) = 0
+    real(dp) :: first_begin(most_joints) = huge(1.0_dp)   !! [s]
+  contains
+    procedure :: step_taken
+    procedure :: event_taken
+  end type joint_watcher_t
+
+contains
+
+  subroutine step_taken(self, method, problem, t_to)
+    class(joint_watcher_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    class(ode_problem_t), intent(in) :: problem
+    real(dp), intent(in) :: t_to
+    associate (unused_self => self, unused_method => method, unused_problem => problem, unused_t => t_to)
+    end associate
+  end subroutine step_taken
+
+  subroutine event_taken(self, problem, index, t, y)
+    class(joint_watcher_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    integer, intent(in) :: index
+    real(dp), intent(in) :: t, y(:)
+    integer :: joint
+    associate (unused_y => y)
+    end associate
+    select type (problem)
+    class is (scene_t)
+      if (problem%reported_event(index) == event_none) return
+      joint = problem%event_of(index)%joint
+      if (problem%reported_event(index) == event_contact_begins) then
+        self%begun(joint) = self%begun(joint) + 1
+        self%first_begin(joint) = min(self%first_begin(joint), t)
+      else
+        self%ended(joint) = self%ended(joint) + 1
+      end if
+    end select
+  end subroutine event_taken
+end module joint_watcher
