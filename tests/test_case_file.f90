@@ -379,7 +379,7 @@ contains
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: still = 'initial.crank_speed=0   ', ends = 'integrator.end_time=1   '
     call refused_with(check, 'integrator.revolutions=0', &
-                      'x.nml: &integrator revolutions = 0: this or end_time is required, > 0')
+                      'x.nml: &integrator revolutions = 0: this or crank_revolutions or end_time is required, > 0')
     call refused_with(check, 'integrator.revolutions=-1', 'x.nml: &integrator revolutions = -1: must be > 0')
     call refused_with(check, still, 'x.nml: &integrator revolutions = 2: needs crank_speed other than 0; give end_time')
     call refused_on(check, bodies, [still, ends], 'x.nml: &output interval: required with crank_speed = 0 (s)')
@@ -417,8 +417,39 @@ contains
     call refused(check, bodies//'&integrator revolutions=2.0 end_time=1 /', both//'2.0'//remedy)
     call refused_with(check, 'integrator.end_time=-1', 'x.nml: &integrator end_time = -1: must be > 0 (s)')
     call refused_on(check, timed, [character(len=30) :: 'integrator.end_time=0'], &
-                    'x.nml: &integrator revolutions: this or end_time is required, > 0')
+                    'x.nml: &integrator revolutions: this or crank_revolutions or end_time is required, > 0')
+    call test_turns(check)
   end subroutine test_ends_of_runs
+
+  !> Turns counted by the crank: end_time may stand beside them, revolutions not; the file's other end goes, but not where the file
+  !> gives both.
+  subroutine test_turns(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: turned = bodies//'&integrator crank_revolutions=4 /', &
+      bounded = bodies//'&integrator crank_revolutions=4 end_time=0.5 /', timed = bodies//'&integrator end_time=0.5 /', &
+      still = 'initial.crank_speed=0', held = 'drive.kind=constant_speed'
+    call resolves(check, whole, ['integrator.crank_revolutions=3'], 'revolutions = 0.0', 'crank_revolutions = 3.0')
+    call resolves(check, turned, ['integrator.revolutions=3'], 'revolutions = 3.0', 'crank_revolutions = 0.0')
+    call resolves(check, turned, ['integrator.end_time=2'], 'crank_revolutions = 0.0', 'end_time = 2.0')
+    call resolves(check, timed, ['integrator.crank_revolutions=3'], 'crank_revolutions = 3.0', 'end_time = 0.0')
+    call resolves(check, bounded, ['integrator.end_time=2'], 'crank_revolutions = 4.0', 'end_time = 2.0')
+    call resolves(check, bounded, ['integrator.crank_revolutions=3'], 'crank_revolutions = 3.0', 'end_time = 5.0')
+    call resolves(check, bounded, ['integrator.revolutions=3'], 'crank_revolutions = 0.0', 'end_time = 0.0')
+    call resolves(check, timed, [character(len=40) :: 'integrator.crank_revolutions=3', 'integrator.end_time=1'], &
+                  'crank_revolutions = 3.0', 'end_time = 1.0')
+    call refused(check, bodies//'&integrator crank_revolutions=4 revolutions=4 /', 'x.nml: &integrator crank_revolutions = 4: '// &
+                 'must not be given together with revolutions = 4; integrator.revolutions=0 takes that back')
+    call refused_on(check, turned, [character(len=40) :: still], 'x.nml: &integrator crank_revolutions = 4: needs end_time '// &
+                    'beside it with crank_speed = 0: the latest end, should the crank not make them')
+    call refused_on(check, bounded, [character(len=40) :: still, held], 'x.nml: &integrator crank_revolutions = 4: needs '// &
+                    'crank_speed other than 0: the crank is held at rest')
+    call refused_on(check, bounded, [character(len=40) :: held, 'initial.crank_speed=-10'], &
+                    'x.nml: &integrator end_time = 0.5: must be >= 2.51327 s, when the held crank has made crank_revolutions (s)')
+    call accepted(check, bounded, 'a free crank with the latest end before its turns', [character(len=40) :: &
+                  'initial.crank_speed=10'])
+    call refused_on(check, turned, [character(len=40) :: 'output.interval=1e-20'], 'x.nml: &output interval = 1e-20: asks for '// &
+                    'more than 1e9 rows (s)')
+  end subroutine test_turns
 
   !> A case with overrides is accepted, and resolved these two lines begin as told.
   subroutine resolves(check, text, overrides, first, second)
@@ -467,7 +498,8 @@ contains
     call refused_on(check, whole//film, [character(len=40) :: long, 'friction.coefficient=0.1', 'friction=none', &
                                          'friction.v0=1'], 'x.nml: &friction coefficient: required')
     call refused_with(check, 'mechanism=none', 'x.nml: &mechanism: this group is required')
-    call refused_with(check, 'integrator=none', 'x.nml: &integrator revolutions: this or end_time is required, > 0')
+    call refused_with(check, 'integrator=none', &
+                      'x.nml: &integrator revolutions: this or crank_revolutions or end_time is required, > 0')
     call refused_with(check, 'contakt=none', &
                       'x.nml: --set contakt=none: &contakt: unknown group; did you mean contact?'//unknown)
     call refused_with(check, 'contact=off', 'x.nml: --set contact=off: must have the form GROUP.KEY=VALUE or GROUP=none')

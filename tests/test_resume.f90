@@ -45,20 +45,23 @@ contains
     call split(check, 'cases/sim_IV.nml', 'revolutions=0.2', 'auto', 'initial.crank_angle_deg=330')
     call split(check, 'cases/sim_IV.nml', 'revolutions=2', 'adams', 'initial.crank_angle_deg=10', .true.)
     call split(check, 'cases/flores/ideal.nml', 'revolutions=1', 'auto', 'drive.kind=constant_speed', .true.)
+    call split(check, 'cases/flores/ideal.nml', 'crank_revolutions=1', 'adams', 'drive.damping=0.1', .true.)
+    call split(check, 'cases/sim_IV.nml', 'crank_revolutions=1', 'auto', 'initial.crank_angle_deg=330')
+    call split(check, 'cases/sim_I.nml', 'crank_revolutions=0.1', 'auto', 'drive.torque=100', from_rest=.true.)
     call split(check, 'cases/flores/ideal.nml', 'revolutions=4', 'adams', 'integrator.max_evaluations_per_revolution=200', .true.)
   end subroutine run_test_resume
 
   !> One scene: whole, stopped and taken up after every step, and after every few.
-  subroutine split(check, file, revolutions, method, change, ideal_joint)
+  subroutine split(check, file, revolutions, method, change, ideal_joint, from_rest)
     class(checks_t), intent(inout) :: check
     character(len=*), intent(in) :: file, revolutions, method, change
-    logical, intent(in), optional :: ideal_joint
+    logical, intent(in), optional :: ideal_joint, from_rest
     type(case_t) :: case
     type(column_list_t) :: list
     type(error_t), allocatable :: error
     type(keeping_sink_t) :: whole, parts
     type(run_report_t) :: report, other
-    character(len=long) :: overrides(4)
+    character(len=long) :: overrides(7)
     character(len=:), allocatable :: what
     integer :: stride, pieces
     logical :: ideal
@@ -67,7 +70,9 @@ contains
     overrides(1) = 'integrator.'//revolutions
     overrides(2) = 'integrator.method='//method
     overrides(3) = change
-    overrides(4) = 'integrator.max_penetration=1e-8'
+    overrides(4:) = 'integrator.max_penetration=1e-8'
+    if (present(from_rest)) overrides(5:) = [character(len=long) :: 'initial.crank_speed=0', 'integrator.end_time=1', &
+                                             'output.interval=1e-4']
     call read_case(file, overrides, case, error)
     if (.not. allocated(error)) call choose_columns(case, ideal, list, error)
     what = file//', '//method//', '//change//': '

@@ -3,6 +3,7 @@ module case_rules
   use kinds, only: dp
   use constants, only: two_pi
   use errors, only: error_t
+  use number_text, only: short_text
   use case_definition, only: case_t, joint_case_t, piston_pin_place, crank_pin_place
   use case_schema, only: find_group
   use case_values, only: case_values_t
@@ -186,6 +187,15 @@ contains
       if (allocated(error)) return
       if (run%revolutions > 0 .and. .not. turns(c)) then
         call values%refuse('integrator', 'revolutions', 'needs crank_speed other than 0; give end_time', error)
+      else if (run%crank_revolutions > 0 .and. .not. turns(c) .and. c%drive%kind == 'constant_speed') then
+        call values%refuse('integrator', 'crank_revolutions', 'needs crank_speed other than 0: the crank is held at rest', error)
+      else if (run%crank_revolutions > 0 .and. .not. turns(c) .and. run%end_time <= 0) then
+        call values%refuse('integrator', 'crank_revolutions', 'needs end_time beside it with crank_speed = 0: the latest '// &
+                           'end, should the crank not make them', error)
+      else if (c%drive%kind == 'constant_speed' .and. run%end_time > 0 .and. &
+               run%end_time < run%crank_revolutions*two_pi/max(abs(c%initial%crank_speed), tiny(1.0_dp))) then
+        call values%refuse('integrator', 'end_time', 'must be >= '//short_text(run%crank_revolutions*two_pi/ &
+                           abs(c%initial%crank_speed))//' s, when the held crank has made crank_revolutions', error)
       else if (run%contact_entry == 'step_rejection' .and. run%max_penetration <= 0) then
         call values%refuse('integrator', 'max_penetration', 'must be > 0 for contact_entry = ''step_rejection''', error)
       end if
@@ -213,7 +223,7 @@ contains
     end if
     speed = abs(c%initial%crank_speed)
     end_time = c%integrator%end_time
-    if (c%integrator%revolutions > 0) end_time = c%integrator%revolutions*two_pi/speed
+    if (turns(c)) end_time = max(end_time, max(c%integrator%revolutions, c%integrator%crank_revolutions)*two_pi/speed)
     if (c%output%interval > 0) then
       samples = end_time/c%output%interval
       if (samples > most_samples) call values%refuse('output', 'interval', 'asks for more than 1e9 rows', error)

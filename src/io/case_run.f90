@@ -4,7 +4,6 @@ module case_run
   use errors, only: error_t, fail, status_output
   use case_definition, only: case_t
   use gudgeon_columns, only: column_list_t
-  use scene_builder, only: simulated_time
   use simulation, only: simulate, run_report_t
   use trace_sink, only: trace_sink_t
   use trace_files, only: trace_files_t
@@ -165,7 +164,6 @@ contains
         return
       end if
       call files%keep_checkpoints(start%checkpoint, start%interval)
-      files%end_time = simulated_time(case)
       call files%progress%start(case%name, self%show_progress)
       if (.not. (self%is_twin .or. self%quiet)) files%advice%case = case
     end associate

@@ -16,6 +16,7 @@ module case_value
   type :: value_t
     logical :: given(most_reals) = .false.   !! in the file or by an override, not by default
     logical :: is_override = .false.         !! given by an override
+    logical :: replaces = .false.            !! and the file gives another value
     real(dp) :: reals(most_reals) = 0
     integer :: whole = 0
     logical :: switch = .false.

@@ -26,6 +26,7 @@ module case_values
     procedure :: prefer_overrides   !! to other keys of their families
     procedure :: prefer
     procedure :: check_family
+    procedure :: is_said      !! a number that is not its default
     procedure :: check        !! required keys and ranges
     procedure :: check_required
     procedure :: is_used      !! the law that the case names has this key
@@ -88,46 +89,51 @@ contains
     integer :: i
     do i = 1, size(self%keys)
       if (self%keys(i)%family == '' .or. .not. self%values(i)%is_override) cycle
-      if (is_said(self, i)) call self%prefer(i)
+      if (self%is_said(i)) call self%prefer(i)
     end do
   end subroutine prefer_overrides
 
-  !> Let the key at `place` stand instead of those of its family that no override gives.
+  !> Let the key at `place` stand instead of those of its family that no override gives. One that may stand beside it stays where
+  !> the file gives both.
   subroutine prefer(self, place)
     class(case_values_t), intent(inout) :: self
     integer, intent(in) :: place
     integer :: i
     do i = 1, size(self%keys)
       if (i == place .or. self%values(i)%is_override .or. .not. is_relative(self%keys(i), self%keys(place))) cycle
+      if (self%values(place)%replaces .and. may_stand_beside(self%keys(i), self%keys(place))) cycle
       call set_to_default(self%keys(i), self%values(i))
     end do
   end subroutine prefer
 
-  !> One key of the family to which this key belongs is given, and only one. To give its default, 0, is to take it back.
+  !> One key of the family to which this key belongs is given, and only one, or two that may stand together. To give its default,
+  !> 0, is to take it back.
   subroutine check_family(self, group, name, error)
     class(case_values_t), intent(in) :: self
     character(len=*), intent(in) :: group, name
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: others, earlier
-    integer :: place, first, i
+    integer :: place, i, k
+    logical :: is_ended
     place = find_key(self%keys, group, name)
-    first = 0
+    is_ended = .false.
     others = 'this'
     do i = 1, size(self%keys)
       if (.not. is_relative(self%keys(i), self%keys(place))) cycle
       if (i /= place) others = others//' or '//trim(self%keys(i)%name)
-      if (.not. is_said(self, i)) cycle
-      if (first > 0) then
-        earlier = trim(self%keys(first)%name)
+      if (.not. self%is_said(i)) cycle
+      is_ended = .true.
+      do k = 1, i - 1
+        if (.not. is_relative(self%keys(k), self%keys(i)) .or. may_stand_beside(self%keys(k), self%keys(i))) cycle
+        if (.not. self%is_said(k)) cycle
+        earlier = trim(self%keys(k)%name)
         call fail(error, self%file//': '//shown_group(group)//' '//trim(self%keys(i)%name)//' = '// &
           trim(self%values(i)%written(1))//': must not be given together with '//earlier//' = '// &
-          trim(self%values(first)%written(1))//'; '//group//'.'// &
-          earlier//'=0 takes that back', status_case_file)
+          trim(self%values(k)%written(1))//'; '//group//'.'//earlier//'=0 takes that back', status_case_file)
         return
-      end if
-      first = i
+      end do
     end do
-    if (first == 0) call self%refuse(group, name, others//' is required, > 0', error)
+    if (.not. is_ended) call self%refuse(group, name, others//' is required, > 0', error)
   end subroutine check_family
 
   !> Whether two keys are of one family, or are the same key.
@@ -135,6 +141,12 @@ contains
     type(key_t), intent(in) :: key, other
     is_relative = key%family == other%family .and. key%family /= '' .and. key%group == other%group
   end function is_relative
+
+  !> Whether one of two keys of a family may stand beside the other.
+  pure logical function may_stand_beside(key, other)
+    type(key_t), intent(in) :: key, other
+    may_stand_beside = key%beside == other%name .or. other%beside == key%name
+  end function may_stand_beside
 
   !> Whether a number has been given that is not the default of its key.
   logical function is_said(self, place)
@@ -223,6 +235,7 @@ contains
         return
       end if
       element = first
+      if (is_override .and. .not. value%is_override) value%replaces = self%is_said(place)
       if (key%count > most_reals) value%text = ''
       do i = 1, size(tokens)
         do k = 1, tokens(i)%repeat

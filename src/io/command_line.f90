@@ -311,7 +311,7 @@ contains
       'Dynamics of the slider-crank mechanism with clearance in its piston-pin joint.'//n//n// &
       '  -o, --out DIR             where results go (default: results)'//n// &
       '  -s, --set GROUP.KEY=VALUE give a key another value; repeatable, the last one counts, and one way to say where the'//n// &
-      '                            run ends (revolutions, end_time) takes the file''s other away'//n// &
+      '                            run ends (revolutions, crank_revolutions, end_time) takes the file''s other away'//n// &
       '      --set GROUP=none      take a group out, as if the file did not have it; a later --set of one of its keys'//n// &
       '                            brings it back with nothing but that'//n// &
       '  -a, --accuracy LEVEL      draft, standard or reference: some 3, 5 or 8 digits of a motion without impacts;'//n// &

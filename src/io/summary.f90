@@ -2,6 +2,7 @@
 module summary
   use, intrinsic :: iso_fortran_env, only: int64, compiler_version, compiler_options
   use kinds, only: dp
+  use constants, only: two_pi
   use ode_method, only: highest_order, with_adams, with_radau, n_limits, limit_names, limit_stability
   use simulation, only: run_report_t
   use case_definition, only: case_t
@@ -71,6 +72,7 @@ contains
       end if
       if (report%auto_saves > 0) call add('evaluations_over_those_of_auto', real_text(report%auto_saves), '1')
       call add('max_pin_force', real_text(f%max_pin_force, case%output%digits), 'N')
+      call add('crank_revolutions', real_text(f%crank_travel/two_pi), '1')
       if (f%time > 0) call add('mean_crank_speed', real_text(f%crank_travel/f%time), 'rad/s')
       call add('max_energy_residual', real_text(f%max_energy_residual), 'J')
       call add('max_energy_residual_relative', real_text(relative_residual(report)), '1')

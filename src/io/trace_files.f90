@@ -33,7 +33,6 @@ module trace_files
     type(result_file_t) :: event_list
     type(progress_t) :: progress
     type(stability_advice_t) :: advice
-    real(dp) :: end_time = 1            !! of the run, for the progress [s]
     type(checkpoint_t) :: checkpoint    !! of the run: path and case; the rest is filled in when it is written
     type(error_t), allocatable :: checkpoint_error        !! why the last one could not be written
     real(dp), private :: checkpoint_interval = 0          !! [s]
@@ -293,7 +292,7 @@ contains
     class(trace_files_t), intent(inout) :: self
     real(dp), intent(in) :: time
     !$omp critical (texts)
-    call self%progress%update(time/self%end_time, time)
+    call self%progress%update(time/self%expected_end, time)
     !$omp end critical (texts)
     call look(self)
   end subroutine take_progress
@@ -302,7 +301,7 @@ contains
     class(trace_files_t), intent(inout) :: self
     real(dp), intent(in) :: time
     type(step_statistics_t), intent(in) :: statistics
-    call self%advice%consider(time, self%end_time, self%wall_time(), statistics, self%progress)
+    call self%advice%consider(time, self%expected_end, self%wall_time(), statistics, self%progress)
   end subroutine take_cost
 
   !> Whether there is a reason to stop, or to write a checkpoint.

@@ -29,6 +29,7 @@ module parameters
     character(len=:), allocatable :: laws    !! those laws, separated by a comma and a blank
     character(len=100) :: description = ''
     character(len=12) :: family = ''         !! of the keys of its group that say one thing in different ways: one alone may be given
+    character(len=32) :: beside = ''         !! the one of them that may stand beside this one, as a bound
   end type key_t
 
   !> A visitor of parameters. A model calls `add`, `word` and `text`; a visitor has to answer `visit`, and whatever else it
@@ -116,17 +117,19 @@ contains
   end subroutine pass_law
 
   !> A number. Without a default it is required.
-  subroutine add_real(self, key, value, says, unit, range, default, example, family)
+  subroutine add_real(self, key, value, says, unit, range, default, example, family, beside)
     class(parameter_list_t), intent(inout) :: self
     character(len=*), intent(in) :: key, says                               !! its meaning in a few words
     real(dp), intent(inout) :: value
     character(len=*), intent(in), optional :: unit, range, default, example
     character(len=*), intent(in), optional :: family   !! of keys of which one alone may be given
+    character(len=*), intent(in), optional :: beside   !! but this key
     type(key_t) :: new
     real(dp) :: values(1)
     values = value
     new = described(key, real_kind, says, unit, range, default, example)
     if (present(family)) new%family = family
+    if (present(beside)) new%beside = beside
     call self%visit(new, reals=values)
     value = values(1)
   end subroutine add_real

@@ -54,7 +54,7 @@ module case_definition
 
   type, extends(has_parameters_t) :: integrator_case_t
     character(len=:), allocatable :: method, contact_entry
-    real(dp) :: revolutions = 0, end_time = 0   !! exactly one is given; the other is 0
+    real(dp) :: revolutions = 0, crank_revolutions = 0, end_time = 0   !! one is given, the others are 0; or the last two are
     real(dp) :: relative_tolerance = 0, absolute_tolerance = 0, max_step = 0
     integer :: max_order = 0, max_steps = 0, max_evaluations = 0, max_evaluations_per_revolution = 0
     real(dp) :: max_penetration = 0
@@ -127,7 +127,7 @@ contains
       call drop_laws(case%crank_pin, case%joint)
     end if
     call visit_gas(case%combustion, list)
-    call list%group('integrator', 'how it is integrated; the run''s end by revolutions or end_time, not both', .false.)
+    call list%group('integrator', 'how it is integrated; the run''s end by revolutions, crank_revolutions or end_time', .false.)
     call case%integrator%parameters(list)
     call list%group('output', 'what is written', .false.)
     call case%output%parameters(list)
@@ -270,9 +270,14 @@ contains
     class(parameter_list_t), intent(inout) :: list
     call list%word('method', self%method, 'auto, adams, radau', 'auto', &
       'adams: Shampine and Gordon; radau: implicit; auto: as the phase needs')
-    call list%add('revolutions', self%revolutions, '0: end_time is given', range='> 0', default='0.0', example='4.0', &
+    call list%add('revolutions', self%revolutions, &
+      'ends when so many would be made at crank_speed: a crank that slows makes fewer', range='> 0', default='0.0', &
+      example='4.0', family='end')
+    call list%add('crank_revolutions', self%crank_revolutions, &
+      'ends when the crank itself has made so many; one that stops or turns back: exit status 4', range='> 0', default='0.0', &
+      family='end', beside='end_time')
+    call list%add('end_time', self%end_time, 'or then; beside crank_revolutions at the latest', 's', '> 0', default='0.0', &
       family='end')
-    call list%add('end_time', self%end_time, '0: revolutions is given', 's', '> 0', default='0.0', family='end')
     call list%add('relative_tolerance', self%relative_tolerance, 'of each step; above 1e-3 it counts as 1e-3', &
       range='> 0 and <= 0.1', default='1.0e-6')
     call list%add('absolute_tolerance', self%absolute_tolerance, '0: relative_tolerance by the natural scales', &

@@ -1,8 +1,8 @@
 !> The observer of a run: samples on a fixed grid of time, events of contact, the figures of the summary and, where they are
 !> asked for, those of each revolution.
 !>
-!> Peaks of the force on the pin, of the penetration, of the film thickness and of the normal force in a contact are searched between
-!> accepted points too (`step_peaks`), and none is below what a row says. The energy is looked at in accepted points.
+!> Peaks of the force on the pin, of the penetration, of the film thickness and of the normal force in a contact are searched
+!> between accepted points too (`step_peaks`), and none is below what a row says. The energy is looked at in accepted points.
 module recorder
   use kinds, only: dp
   use constants, only: two_pi
@@ -15,29 +15,11 @@ module recorder
   use cycle_watch, only: cycle_watch_t
   use step_peaks, only: peak_watch_t, of_pin_force, of_penetration, of_normal_force, n_peaks, peaks_of
   use trace_sink, only: trace_sink_t, trace_event_t
+  use run_figures, only: run_figures_t
   use archive, only: archive_t
   implicit none
   private
-  public :: recorder_t, run_figures_t
-
-  !> The figures of a run. Those of a joint with clearance are 0 without one.
-  type :: run_figures_t
-    integer :: contacts = 0                   !! contacts begun
-    integer :: impacts_beyond_validity = 0    !! of them faster than the contact law is meant for
-    integer :: evaluations = 0                !! of the scene for rows, events and these figures; those between accepted points:
-    integer :: peak_evaluations = 0           !! of them for peaks between accepted points
-    real(dp) :: contact_time = 0              !! [s]
-    real(dp) :: max_penetration = 0           !! [m]
-    real(dp) :: max_entry_penetration = 0     !! penetration at the beginning of a contact [m]
-    real(dp) :: max_pin_force = 0             !! [N]
-    real(dp) :: min_film_thickness = huge(1.0_dp)  !! c - |e| [m]
-    real(dp) :: max_energy = 0                !! largest |kinetic + potential energy| [J]
-    real(dp) :: max_energy_residual = 0       !! largest |energy residual| [J]
-    real(dp) :: crank_travel = 0              !! crank angle turned through, signed [rad]
-    real(dp) :: time = 0                      !! simulated [s]
-  contains
-    procedure :: exchange => exchange_figures
-  end type run_figures_t
+  public :: recorder_t
 
   type, extends(observer_t) :: recorder_t
     type(column_list_t) :: list       !! of a row; empty: no rows
@@ -46,7 +28,8 @@ module recorder
     type(cycle_watch_t), allocatable :: cycles   !! revolution by revolution
     real(dp) :: first_sample = 0      !! time of the first row [s]
     real(dp) :: interval = 0          !! from row to row [s]
-    real(dp) :: end_time = 0          !! [s]
+    real(dp) :: end_time = 0          !! at the latest [s]
+    real(dp) :: expected_end = 0      !! [s]
     logical :: every_step = .false.   !! a row at every accepted step instead
     integer :: max_evaluations_per_revolution = 0   !! budget for one revolution, or the time it takes at first; 0: none
     real(dp) :: revolution_time = huge(1.0_dp)      !! that time [s]
@@ -128,13 +111,28 @@ contains
     end select
     self%steps = self%steps + 1
     if (mod(self%steps, steps_between_reports) == 0) then
-      call self%sink%take_progress(t_to)
+      call tell_progress(self, problem, t_to)
       if (method%statistics%time_limited_by(limit_stability) > 0.5_dp*t_to) call self%sink%take_cost(t_to, method%statistics)
     end if
     call keep_budget(self, method%statistics%evaluations)
     self%wants_to_stop = self%sink%wants_to_stop .or. self%over_budget
     self%wants_archive = self%sink%wants_archive
   end subroutine step_taken
+
+  !> Tell the sink how far the run is. Where the turns of the crank end it, that is expected to be when it has made them at its mean
+  !> speed so far.
+  subroutine tell_progress(self, problem, t)
+    class(recorder_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    real(dp), intent(in) :: t
+    self%sink%expected_end = self%expected_end
+    select type (problem)
+    class is (scene_t)
+      if (allocated(problem%turns) .and. abs(self%figures%crank_travel) > 0) self%sink%expected_end = &
+        min(self%end_time, t*problem%turns%wanted*two_pi/abs(self%figures%crank_travel))
+    end select
+    call self%sink%take_progress(t)
+  end subroutine tell_progress
 
   !> The end of a step, or of the part of it that stands; before it, the ends of revolutions inside.
   subroutine take_end(self, method, scene, t, y)
@@ -314,6 +312,7 @@ contains
     if (self%every_step) return
     due = self%first_sample + self%next_row*self%interval
     if (abs(due - t) <= 1e-9_dp*self%interval) call self%write_row(scene, t, y)
+    self%sink%expected_end = t
     call self%sink%take_progress(t)
   end subroutine finish
 
@@ -332,25 +331,6 @@ contains
     call archive%exchange(self%time_then)
     call archive%exchange(self%angle_then)
   end subroutine exchange_recorder
-
-  !> The figures to or from an archive.
-  subroutine exchange_figures(self, archive)
-    class(run_figures_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    call archive%exchange(self%contacts)
-    call archive%exchange(self%impacts_beyond_validity)
-    call archive%exchange(self%evaluations)
-    call archive%exchange(self%peak_evaluations)
-    call archive%exchange(self%contact_time)
-    call archive%exchange(self%max_penetration)
-    call archive%exchange(self%max_entry_penetration)
-    call archive%exchange(self%max_pin_force)
-    call archive%exchange(self%min_film_thickness)
-    call archive%exchange(self%max_energy)
-    call archive%exchange(self%max_energy_residual)
-    call archive%exchange(self%crank_travel)
-    call archive%exchange(self%time)
-  end subroutine exchange_figures
 
   !> The sink keeps the state of the run.
   subroutine take_archive(self, archive)

@@ -12,6 +12,7 @@ module gudgeon_scene
   use joint_events, only: penetration_and_rate
   use sticking, only: hold_surfaces
   use working_gas, only: working_gas_t
+  use crank_turns, only: crank_turns_t
   implicit none
   private
   public :: scene_t, evaluation_t
@@ -42,7 +43,7 @@ module gudgeon_scene
 
   !> Whose event an event function of the integrator is.
   type :: event_owner_t
-    integer :: joint = 0            !! 0: the gas's
+    integer :: joint = 0            !! 0: the gas's, -1: that of the crank's turns
     integer :: event = 0            !! by the owner's own count
   end type event_owner_t
 
@@ -55,6 +56,7 @@ module gudgeon_scene
     integer :: n_joints = 0         !! with clearance: 0, 1 or 2
     type(clearance_joint_t), allocatable :: joints(:)
     type(working_gas_t), allocatable :: gas
+    type(crank_turns_t), allocatable :: turns   !! of a free crank, where they end the run
     real(dp) :: start_angle = 0     !! crank angle at t = 0 [rad]
     real(dp) :: start_speed = 0     !! crank speed at t = 0, and always if it is held [rad/s]
     real(dp) :: span = 1            !! of the simulation [s]
@@ -101,7 +103,7 @@ module gudgeon_scene
       real(dp), intent(out) :: a_p(:, :), a_v(:, :)
     end subroutine jacobian
 
-    !> Those of the joints one by one, then those of the gas.
+    !> Those of the joints one by one, then those of the gas and of the crank's turns.
     pure module subroutine all_events(self, t, y, g, g_rate)
       class(scene_t), intent(in) :: self
       real(dp), intent(in) :: t, y(:)
@@ -473,5 +475,6 @@ contains
       call self%joints(i)%exchange(archive)
     end do
     if (allocated(self%gas)) call self%gas%exchange(archive)
+    if (allocated(self%turns)) call self%turns%exchange(archive)
   end subroutine exchange
 end module gudgeon_scene

@@ -9,9 +9,10 @@ module scene_builder
   use chain_bodies, only: crank_t, rod_t, piston_t, drive_t, new_bodies
   use clearance_joint, only: clearance_joint_t
   use gudgeon_scene, only: scene_t
+  use crank_turns, only: new_crank_turns
   implicit none
   private
-  public :: build_scene, assemble_scene, simulated_time, sample_interval, settings_for
+  public :: build_scene, assemble_scene, simulated_time, latest_end, sample_interval, settings_for
 
   !> A looser tolerance is taken as this one: it would save next to nothing, and the errors of its steps add up to more than
   !> a result may miss (the ideal twin of simulation IV loses 18 % of its energy at 1e-2, 2 % at 1e-3).
@@ -33,6 +34,7 @@ module scene_builder
   real(dp), parameter :: rounding_share = 1e-14_dp
 
   real(dp), parameter :: first_angle = 0.1_dp   !! most that the crank may turn in the first step, which could else be revolutions [rad]
+  real(dp), parameter :: most_patience = 100   !! with a crank that slows
   real(dp), parameter :: longest_chatter = 1e-8_dp   !! [s]; a crank that hardly turns has no time scale for its pin
 
 contains
@@ -67,6 +69,8 @@ contains
       if (allocated(error)) return
       call scene%gas%find_part(scene%start_angle, scene%start_speed)
     end if
+    if (case%integrator%crank_revolutions > 0 .and. scene%chain%drive%free_crank) &
+      allocate (scene%turns, source=new_crank_turns(case%integrator%crank_revolutions, scene%start_angle, scene%start_speed))
     call scene%prepare_start()
   end subroutine build_scene
 
@@ -130,12 +134,25 @@ contains
     if (allocated(wanted%film)) allocate (joint%film, source=wanted%film)
   end subroutine build_joint
 
-  !> Time to simulate [s]: revolutions are counted at the initial crank speed.
+  !> Time to simulate [s], as far as the case tells: revolutions take what they do at the starting speed, and so, for the time
+  !> being, do those that are counted by the crank itself.
   pure real(dp) function simulated_time(case)
     type(case_t), intent(in) :: case
+    real(dp) :: revolutions
     simulated_time = case%integrator%end_time
-    if (case%integrator%revolutions > 0) simulated_time = case%integrator%revolutions*two_pi/abs(case%initial%crank_speed)
+    revolutions = max(case%integrator%revolutions, case%integrator%crank_revolutions)   ! one of them alone is given
+    if (revolutions > 0 .and. abs(case%initial%crank_speed) > 0) simulated_time = revolutions*two_pi/abs(case%initial%crank_speed)
   end function simulated_time
+
+  !> When the run ends at the latest [s]. A free crank that has to make so many revolutions has until end_time for them, or, where
+  !> that is not given, `most_patience` times as long as they take at the starting speed.
+  pure real(dp) function latest_end(case)
+    type(case_t), intent(in) :: case
+    latest_end = simulated_time(case)
+    if (.not. case%integrator%crank_revolutions > 0 .or. case%drive%kind == 'constant_speed') return
+    latest_end = most_patience*latest_end
+    if (case%integrator%end_time > 0) latest_end = case%integrator%end_time
+  end function latest_end
 
   !> Time from sample to sample [s].
   pure real(dp) function sample_interval(case)

@@ -1,32 +1,41 @@
-!> Events of a scene: each is its owner's, a joint's or the gas's.
+!> Events of a scene: each is its owner's, a joint's, the gas's or that of the crank's turns.
 submodule (gudgeon_scene) scene_events
   use ode_problem, only: step_admitted, event_continue
   use joint_events, only: n_events, contact_begins, contact_ends, sliding_changes, contact_events, &
     sliding_event, judge_entry, rough_end, begin_contact, end_contact, choose_sliding
   use joint_motion, only: outward_acceleration
   use working_gas, only: n_gas_events
+  use crank_turns, only: n_turn_events
   implicit none
+
+  integer, parameter :: of_gas = 0, of_turns = -1   !! owners that are no joint
 
 contains
 
   !> Number the events.
   subroutine number_events(scene)
     class(scene_t), intent(inout) :: scene
-    integer :: i, k
+    integer :: i
     scene%n_events = 0
     scene%may_stick = .false.
     do i = 1, size(scene%joints)
       scene%may_stick = scene%may_stick .or. n_events(scene%joints(i)) >= sliding_changes
-      do k = 1, n_events(scene%joints(i))
+      call number(i, n_events(scene%joints(i)))
+    end do
+    if (allocated(scene%gas)) call number(of_gas, n_gas_events)
+    if (allocated(scene%turns)) call number(of_turns, n_turn_events)
+
+  contains
+
+    !> Those of one owner.
+    subroutine number(owner, n)
+      integer, intent(in) :: owner, n
+      integer :: j
+      do j = 1, n
         scene%n_events = scene%n_events + 1
-        scene%event_of(scene%n_events) = event_owner_t(i, k)
+        scene%event_of(scene%n_events) = event_owner_t(owner, j)
       end do
-    end do
-    if (.not. allocated(scene%gas)) return
-    do k = 1, n_gas_events
-      scene%n_events = scene%n_events + 1
-      scene%event_of(scene%n_events) = event_owner_t(0, k)
-    end do
+    end subroutine number
   end subroutine number_events
 
   module procedure all_events
@@ -36,8 +45,10 @@ contains
     do while (k < self%n_events)
       k = k + 1
       i = self%event_of(k)%joint
-      if (i == 0) then
+      if (i == of_gas) then
         call self%gas%events(self%crank_angle(t, y), self%crank_speed(y), own, own_rate)
+      else if (i == of_turns) then
+        call self%turns%events(self%crank_angle(t, y), self%crank_speed(y), own, own_rate)
       else if (self%event_of(k)%event == sliding_changes) then
         call find_sliding_event(self, t, y, i, g(k), g_rate(k))
         cycle
@@ -71,8 +82,10 @@ contains
     real(dp) :: contact(2)
     action = event_continue
     associate (i => self%event_of(index)%joint, event => self%event_of(index)%event)
-      if (i == 0) then
+      if (i == of_gas) then
         call self%gas%pass_bound(event)
+      else if (i == of_turns) then
+        call self%turns%pass(event, self%crank_angle(t, y), action)
       else
         select case (event)
         case (contact_begins)
@@ -118,7 +131,7 @@ contains
 
   module procedure reported_event
     reported_event = event_none
-    if (self%event_of(index)%joint == 0) return
+    if (self%event_of(index)%joint <= 0) return
     if (self%event_of(index)%event == contact_begins) reported_event = event_contact_begins
     if (self%event_of(index)%event == contact_ends) reported_event = event_contact_ends
   end procedure reported_event

@@ -5,14 +5,16 @@ module simulation
   use case_definition, only: case_t
   use ode_method, only: ode_method_t, step_statistics_t, limit_stability
   use methods, only: new_method
-  use solver, only: integrate, silent_observer_t, integration_done, integration_interrupted, step_limit_reached, &
-    evaluation_limit_reached, unreadable_archive
+  use solver, only: integrate, silent_observer_t, integration_done, integration_stopped, integration_interrupted, &
+    step_limit_reached, evaluation_limit_reached, unreadable_archive
   use gudgeon_scene, only: scene_t
-  use stop_reason, only: reason, place, interrupted_text, revolution_budget_spent
-  use scene_builder, only: build_scene, simulated_time, sample_interval, settings_for
+  use stop_reason, only: reason, place, interrupted_text, revolution_budget_spent, crank_turned_back, turns_not_made
+  use scene_builder, only: build_scene, simulated_time, latest_end, sample_interval, settings_for
+  use crank_turns, only: all_made, turned_back
   use gudgeon_columns, only: choose_columns, column_list_t
   use cycle_watch, only: cycle_watch_t
-  use recorder, only: recorder_t, run_figures_t
+  use recorder, only: recorder_t
+  use run_figures, only: run_figures_t
   use trace_sink, only: trace_sink_t
   use constants, only: two_pi
   use archive, only: archive_t
@@ -58,10 +60,11 @@ contains
     recorder%list = list
     recorder%interval = sample_interval(case)
     recorder%first_sample = case%output%start_time
-    recorder%end_time = simulated_time(case)
+    recorder%end_time = latest_end(case)
+    recorder%expected_end = simulated_time(case)
     recorder%every_step = case%output%every_step
     recorder%max_evaluations_per_revolution = case%integrator%max_evaluations_per_revolution
-    recorder%revolution_time = two_pi/scene%speed_scale(recorder%end_time)
+    recorder%revolution_time = two_pi/scene%speed_scale(recorder%expected_end)
     if (allocated(case%joint%contact)) recorder%validity_limit = case%joint%contact%fastest_impact()
     call move_alloc(sink, recorder%sink)
     if (present(cycles)) then
@@ -76,6 +79,7 @@ contains
     if (.not. present(archive)) call recorder%begin(scene, y)
     call integrate(scene, method, t, y, recorder%end_time, case%integrator%max_steps, recorder, status, archive)
     if (status == integration_interrupted .and. recorder%over_budget) status = revolution_budget_spent
+    call judge_turns(scene, t, y, status)
     if (status /= unreadable_archive) call recorder%finish(scene, t, y)
     call move_alloc(recorder%sink, sink)
     if (present(cycles)) call move_alloc(recorder%cycles, cycles)
@@ -108,6 +112,22 @@ contains
     remarkable_residual = max(1e-10_dp, min(1e-3_dp, 100*tolerance))
   end function remarkable_residual
 
+  !> Whether a crank that ends the run by its turns has made them.
+  subroutine judge_turns(scene, t, y, status)
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(:)
+    integer, intent(inout) :: status
+    real(dp), parameter :: rounding = 1e-12_dp   !! the latest end may be that instant
+    if (.not. allocated(scene%turns)) return
+    select case (status)
+    case (integration_stopped)
+      if (scene%turns%outcome == all_made) status = integration_done
+      if (scene%turns%outcome == turned_back) status = crank_turned_back
+    case (integration_done)
+      if (scene%turns%made(scene%crank_angle(t, y)) < scene%turns%wanted*(1 - rounding)) status = turns_not_made
+    end select
+  end subroutine judge_turns
+
   !> Largest energy residual of a run that is done, relative to the largest energy: ten tolerances a revolution, since local
   !> errors add up, and a thousand at least. Of 1767 extreme scenes that ended, half stay below 0.003 tolerances and 99.5 %
   !> below 46; 10^4 revolutions of simulation V come to 1250 (tests/README.md). A residual of 5 % is no result at any
@@ -124,7 +144,7 @@ contains
     type(run_report_t), intent(inout) :: report
     integer :: needed
     if (report%statistics%time_limited_by(limit_stability) < 0.5_dp*report%figures%time) return
-    call try_auto(case, simulated_time(case), report%statistics%accepted/10 + 1, needed)
+    call try_auto(case, latest_end(case), report%statistics%accepted/10 + 1, needed)
     if (needed > 0) report%auto_saves = real(report%statistics%evaluations, dp)/needed
   end subroutine measure_auto
 
@@ -153,6 +173,6 @@ contains
     t = 0
     call integrate(scene, method, t, y, time, max_steps, observer, status)
     needed = method%totals()
-    if (status == integration_done) evaluations = needed%evaluations
+    if (status == integration_done .or. status == integration_stopped) evaluations = needed%evaluations
   end subroutine try_auto
 end module simulation

@@ -8,10 +8,14 @@ module stop_reason
   use chain_motion, only: piston_pin
   implicit none
   private
-  public :: reason, place, interrupted_text, revolution_budget_spent
+  public :: reason, place, interrupted_text, revolution_budget_spent, crank_turned_back, turns_not_made
 
   character(len=*), parameter :: interrupted_text = 'interrupted'
-  integer, parameter :: revolution_budget_spent = 21   !! besides the status codes of `solver` and `ode_method`
+
+  !> Besides the status codes of `solver` and `ode_method`.
+  integer, parameter :: revolution_budget_spent = 21
+  integer, parameter :: crank_turned_back = 22         !! or stopped, before it had made the turns that end the run
+  integer, parameter :: turns_not_made = 23            !! at the latest end
 
   real(dp), parameter :: tight_tolerance = 1e-12_dp    !! from here on the forces' own rounding counts
 
@@ -38,6 +42,10 @@ contains
       text = 'too much work (&integrator max_evaluations)'
     case (revolution_budget_spent)
       text = 'too much work in one revolution (&integrator max_evaluations_per_revolution)'
+    case (crank_turned_back)
+      text = 'the crank stops, or turns back, after '//turns_text(scene, t, y)
+    case (turns_not_made)
+      text = 'the crank has made only '//turns_text(scene, t, y)//' by the latest end (&integrator end_time)'
     case (integration_interrupted)
       text = interrupted_text
     case (unreadable_archive)
@@ -48,6 +56,28 @@ contains
       text = 'stopped'
     end select
   end function reason
+
+  !> How many of its turns the crank has made, in a scene that counts them.
+  function turns_text(scene, t, y) result(text)
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(:)
+    character(len=:), allocatable :: text
+    text = decimal_text(scene%turns%made(scene%crank_angle(t, y)))//' of '//decimal_text(scene%turns%wanted)// &
+      ' revolutions (&integrator crank_revolutions)'
+  end function turns_text
+
+  !> A number from 0 on with four decimals at most.
+  function decimal_text(number) result(text)
+    real(dp), intent(in) :: number
+    character(len=:), allocatable :: text
+    character(len=60) :: digits
+    integer :: last
+    write (digits, '(f0.4)') number
+    last = verify(trim(digits), '0', back=.true.)
+    if (digits(last:last) == '.') last = last - 1
+    text = digits(:last)
+    if (index(digits, '.') == 1) text = '0'//text
+  end function decimal_text
 
   function ill_posed_text() result(text)
     character(len=:), allocatable :: text

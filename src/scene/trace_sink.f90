@@ -25,6 +25,7 @@ module trace_sink
     logical :: wants_to_stop = .false.   !! set where the run should end (interrupted, cannot write)
     logical :: wants_archive = .false.   !! set where the state of the run is to be handed over
     logical :: keeps_archives = .false.  !! the state is wanted too where the run stops before its end
+    real(dp) :: expected_end = 1         !! when the run will end, set before `take_progress` [s]
   contains
     procedure :: take_archive => ignore_archive
     procedure :: take_cost => ignore_cost

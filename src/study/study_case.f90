@@ -60,6 +60,7 @@ contains
         self%is_number(i) = schema%kind <= integer_kind .and. schema%count == 1
         self%is_whole(i) = self%is_number(i) .and. schema%kind == integer_kind
         self%values%is_present(find_group(values%groups, trim(schema%group))) = .true.
+        self%values%values(self%places(i))%replaces = self%values%is_said(self%places(i))
         self%values%values(self%places(i))%given(1) = .true.
         self%values%values(self%places(i))%is_override = .true.
       end associate

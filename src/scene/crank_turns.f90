@@ -1,0 +1,96 @@
+!> A run that ends when the crank has turned by itself so many times, wherever that is: counted by its angle, not by the time.
+!>
+!> The crank must not stop or turn back on its way. Its sense is that of its start speed; of a crank that starts from rest, the sense in
+!> which it has left its start by one degree (by half of what is wanted, where that is less).
+module crank_turns
+  use kinds, only: dp
+  use constants, only: two_pi, degree
+  use ode_problem, only: event_continue, event_stop
+  use archive, only: archive_t
+  implicit none
+  private
+  public :: crank_turns_t, new_crank_turns, n_turn_events, on_the_way, all_made, turned_back
+
+  integer, parameter :: n_turn_events = 2   !! event functions: where the crank has to come to, and its speed against its sense
+
+  !> What has become of the turns.
+  integer, parameter :: on_the_way = 0, all_made = 1, turned_back = 2
+
+  type :: crank_turns_t
+    real(dp) :: wanted = 0         !! turns
+    integer :: outcome = on_the_way
+    real(dp), private :: start_angle = 0
+    integer, private :: sense = 0  !! in which the crank turns: 1, -1 or, of a crank that has not left its start yet, 0
+  contains
+    procedure :: made
+    procedure :: events
+    procedure :: pass
+    procedure :: exchange
+  end type crank_turns_t
+
+contains
+
+  !> To be counted from here on.
+  pure function new_crank_turns(wanted, start_angle, start_speed) result(turns)
+    real(dp), intent(in) :: wanted        !! > 0
+    real(dp), intent(in) :: start_angle   !! [rad]
+    real(dp), intent(in) :: start_speed   !! [rad/s]
+    type(crank_turns_t) :: turns
+    turns%wanted = wanted
+    turns%start_angle = start_angle
+    if (abs(start_speed) > 0) turns%sense = nint(sign(1.0_dp, start_speed))
+  end function new_crank_turns
+
+  !> Turns that the crank is away from its start.
+  pure real(dp) function made(self, crank_angle)
+    class(crank_turns_t), intent(in) :: self
+    real(dp), intent(in) :: crank_angle   !! [rad]
+    made = abs(crank_angle - self%start_angle)/two_pi
+  end function made
+
+  !> How far from its start a crank at rest must come before it has a sense [rad].
+  pure real(dp) function way_out(self)
+    class(crank_turns_t), intent(in) :: self
+    way_out = min(degree, 0.5_dp*two_pi*self%wanted)
+  end function way_out
+
+  !> Event functions of a free crank: it has come to its end (has left its start), and it turns back. The rate of the second
+  !> would take an evaluation; without it the search for events samples a step in which the speed falls to a third or less.
+  pure subroutine events(self, crank_angle, crank_speed, g, g_rate)
+    class(crank_turns_t), intent(in) :: self
+    real(dp), intent(in) :: crank_angle, crank_speed   !! [rad], [rad/s]
+    real(dp), intent(out) :: g(n_turn_events), g_rate(n_turn_events)
+    real(dp) :: travel
+    travel = crank_angle - self%start_angle
+    g_rate(2) = 0
+    if (self%sense == 0) then
+      g = [travel**2 - way_out(self)**2, -1.0_dp]
+      g_rate(1) = 2*travel*crank_speed
+    else
+      g = [self%sense*travel - two_pi*self%wanted, -self%sense*crank_speed]
+      g_rate(1) = self%sense*crank_speed
+    end if
+  end subroutine events
+
+  !> The event happened.
+  pure subroutine pass(self, index, crank_angle, action)
+    class(crank_turns_t), intent(inout) :: self
+    integer, intent(in) :: index
+    real(dp), intent(in) :: crank_angle   !! [rad]
+    integer, intent(out) :: action
+    action = event_stop
+    if (self%sense == 0) then
+      self%sense = nint(sign(1.0_dp, crank_angle - self%start_angle))
+      action = event_continue
+    else
+      self%outcome = merge(all_made, turned_back, index == 1)
+    end if
+  end subroutine pass
+
+  !> What changes on the way, to or from an archive.
+  subroutine exchange(self, archive)
+    class(crank_turns_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    call archive%exchange(self%sense)
+  end subroutine exchange
+end module crank_turns
