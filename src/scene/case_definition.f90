@@ -271,13 +271,14 @@ contains
     call list%word('method', self%method, 'auto, adams, radau', 'auto', &
       'adams: Shampine and Gordon; radau: implicit; auto: as the phase needs')
     call list%add('revolutions', self%revolutions, &
-      'ends when so many would be made at crank_speed: a crank that slows makes fewer', range='> 0', default='0.0', &
+      'the run ends when so many would be made at crank_speed: a crank that slows makes fewer', range='> 0', default='0.0', &
       example='4.0', family='end')
     call list%add('crank_revolutions', self%crank_revolutions, &
-      'ends when the crank itself has made so many; one that stops or turns back: exit status 4', range='> 0', default='0.0', &
+      'the run ends when the crank itself has made so many; if it stops or turns back: exit status 4', range='> 0', default='0.0', &
       family='end', beside='end_time')
-    call list%add('end_time', self%end_time, 'or then; beside crank_revolutions at the latest', 's', '> 0', default='0.0', &
-      family='end')
+    call list%add('end_time', self%end_time, &
+      'of the run; with crank_revolutions its latest end, or else 100 times what they take at crank_speed', 's', '> 0', &
+      default='0.0', family='end')
     call list%add('relative_tolerance', self%relative_tolerance, 'of each step; above 1e-3 it counts as 1e-3', &
       range='> 0 and <= 0.1', default='1.0e-6')
     call list%add('absolute_tolerance', self%absolute_tolerance, '0: relative_tolerance by the natural scales', &
