@@ -55,7 +55,7 @@ contains
   end function way_out
 
   !> Event functions of a free crank: it has come to its end (has left its start), and it turns back. The rate of the second
-  !> would take an evaluation; without it the search for events samples a step in which the speed falls to a third or less.
+  !> would take an evaluation; without it the search for events samples steps in which the speed changes fourfold.
   pure subroutine events(self, crank_angle, crank_speed, g, g_rate)
     class(crank_turns_t), intent(in) :: self
     real(dp), intent(in) :: crank_angle, crank_speed   !! [rad], [rad/s]
