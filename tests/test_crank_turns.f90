@@ -5,7 +5,7 @@ module test_crank_turns
   use checks, only: checks_t
   use case_definition, only: case_t
   use case_file, only: read_case
-  use columns, only: column_list_t
+  use gudgeon_columns, only: column_list_t
   use cycle_watch, only: cycle_watch_t
   use errors, only: error_t, status_integration
   use simulation, only: simulate, run_report_t
