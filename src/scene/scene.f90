@@ -4,7 +4,7 @@ module gudgeon_scene
   use archive, only: archive_t
   use ode_problem, only: ode_problem_t, max_events
   use state_layout, only: layout_t, coordinates_t, slice_t
-  use chain_motion, only: motion_t, accelerations_t, piston_pin, turn_crank
+  use chain_motion, only: motion_t, accelerations_t, piston_pin, n_pins, turn_crank
   use chain_loads, only: loads_t, force_size
   use gudgeon_chain, only: chain_t
   use joint_motion, only: joint_motion_t
@@ -55,6 +55,7 @@ module gudgeon_scene
     type(chain_t) :: chain
     integer :: n_joints = 0         !! with clearance: 0, 1 or 2
     type(clearance_joint_t), allocatable :: joints(:)
+    integer :: joint_of_pin(n_pins) = 0   !! which of them is at each pin; 0: it is ideal
     type(working_gas_t), allocatable :: gas
     type(crank_turns_t), allocatable :: turns   !! of a free crank, where they end the run
     real(dp) :: start_angle = 0     !! crank angle at t = 0 [rad]
@@ -296,6 +297,10 @@ contains
     type(slice_t) :: work
     integer :: i
     self%n_joints = size(self%joints)
+    self%joint_of_pin = 0
+    do i = 1, self%n_joints
+      self%joint_of_pin(self%joints(i)%place) = i
+    end do
     if (self%chain%drive%free_crank) &
       call self%layout%claim_positions(1, 1.0_dp, self%speed_scale(self%span), self%crank, grows=.true.)
     do i = 1, self%n_joints
@@ -447,11 +452,7 @@ contains
   pure integer function joint_at(self, place)
     class(scene_t), intent(in) :: self
     integer, intent(in) :: place
-    integer :: i
-    joint_at = 0
-    do i = 1, self%n_joints
-      if (self%joints(i)%place == place) joint_at = i
-    end do
+    joint_at = self%joint_of_pin(place)
   end function joint_at
 
   !> What the joint at a pin is doing; an ideal pin is free.
