@@ -35,6 +35,7 @@ program gudgeon_tests
   use test_slow_contact, only: run_test_slow_contact
   use test_standard_problems, only: run_test_standard_problems
   use test_state_layout, only: run_test_state_layout
+  use test_states, only: run_test_states
   use test_study, only: run_test_study
   use test_summary, only: run_test_summary
   use test_trace_files, only: run_test_trace_files
@@ -81,6 +82,7 @@ program gudgeon_tests
   call run('slow_contact', run_test_slow_contact)
   call run('standard_problems', run_test_standard_problems)
   call run('state_layout', run_test_state_layout)
+  call run('states', run_test_states)
   call run('study', run_test_study)
   call run('summary', run_test_summary)
   call run('trace_files', run_test_trace_files)

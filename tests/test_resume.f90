@@ -182,6 +182,7 @@ contains
     type(run_report_t), intent(in) :: report
     character(len=4000) :: text
     write (text, *) report%statistics, report%figures
+    if (allocated(report%time_with)) write (text(3000:), *) report%time_with
   end function text_of
 
   subroutine archives_give_back_what_they_took(check)

@@ -44,9 +44,9 @@ contains
     call check%that(.not. allocated(trace%error), file//' runs with auto')
     associate (s => trace%report%statistics, time => trace%report%figures%time)
       call check%that(s%restarts > 0, file//': some steps are cut by events')
-      call check%relative(sum(s%time_with), time, rounding, file//': times by method and phase')
-      call check%that(sum(s%time_with/time) <= 1 + rounding, file//': their fractions sum to no more than 1')
-      call check%that(all(s%time_with >= 0), file//': and none is negative')
+      call check%relative(sum(trace%report%time_with), time, rounding, file//': times by method and phase')
+      call check%that(sum(trace%report%time_with/time) <= 1 + rounding, file//': their fractions sum to no more than 1')
+      call check%that(all(trace%report%time_with >= 0), file//': and none is negative')
     end associate
     if (index(file, 'sim_IV.nml') > 0) return   ! 10^6 steps of Adams
     trace = run_case(file, [character(len=long) :: 'integrator.method=adams', 'integrator.revolutions='//revolutions])

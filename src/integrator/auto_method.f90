@@ -8,7 +8,7 @@
 !> patience the next time.
 module auto_method
   use kinds, only: dp
-  use ode_problem, only: ode_problem_t, max_modes
+  use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t, step_statistics_t, step_done, limit_stability, with_adams, with_radau
   use adams, only: adams_t
   use radau, only: radau_t
@@ -32,18 +32,18 @@ module auto_method
     type(adams_t) :: adams
     type(radau_t) :: radau
     logical :: stiff = .false.                 !! Radau is at work
-    logical :: stiff_in(0:max_modes) = .false. !! the mode ended with Radau
-    logical :: known(0:max_modes) = .false.    !! the mode has begun before
+    logical, allocatable :: stiff_in(:)        !! the mode ended with Radau; this and what follows (0:highest mode)
+    logical, allocatable :: known(:)           !! the mode has begun before
     integer :: mode = 0                        !! of the present phase
     integer :: bound = 0                       !! steps of Adams bound by stability, more than not
-    integer :: patience(0:max_modes) = first_patience
+    integer, allocatable :: patience(:)
     real(dp) :: adams_price = 0                !! evaluations per time of Adams while it was bound
     real(dp) :: stiffness_then = 0             !! bound of the fastest mode's rate at that time; the price goes with it
     integer :: evaluations_then = 0            !! evaluations when Adams came to be bound, and
     real(dp) :: time_then = 0                  !! when that was
-    integer :: trial(0:max_modes) = 0          !! steps of Radau in each mode since it took over
-    real(dp) :: spent(0:max_modes) = 0         !! what it has cost in each mode, in evaluations
-    real(dp) :: saved(0:max_modes) = 0         !! what Adams would have cost instead
+    integer, allocatable :: trial(:)           !! steps of Radau in each mode since it took over
+    real(dp), allocatable :: spent(:)          !! what it has cost in each mode, in evaluations
+    real(dp), allocatable :: saved(:)          !! what Adams would have cost instead
   contains
     procedure :: start
     procedure :: step
@@ -65,12 +65,7 @@ contains
 
     if (first) then
       self%statistics = step_statistics_t()
-      self%stiff_in = .false.
-      self%known = .false.
-      self%patience = first_patience
-      self%trial = 0
-      self%spent = 0
-      self%saved = 0
+      call forget_modes(self, problem%highest_mode)
       self%stiff = .false.
       self%adams%settings = self%settings
       self%radau%settings = self%settings
@@ -82,6 +77,19 @@ contains
     call begin_with(self, problem, self%stiff_in(self%mode), t, y, first, status)
   end subroutine start
 
+  !> Nothing is known of any mode.
+  pure subroutine forget_modes(self, highest)
+    class(auto_t), intent(inout) :: self
+    integer, intent(in) :: highest
+    if (allocated(self%known)) deallocate (self%stiff_in, self%known, self%patience, self%trial, self%spent, self%saved, &
+      self%time_with)
+    allocate (self%stiff_in(0:highest), self%known(0:highest), source=.false.)
+    allocate (self%patience(0:highest), source=first_patience)
+    allocate (self%trial(0:highest), source=0)
+    allocate (self%spent(0:highest), self%saved(0:highest), source=0.0_dp)
+    allocate (self%time_with(2, 0:highest), source=0.0_dp)
+  end subroutine forget_modes
+
   !> Both methods and the account that is kept of them.
   subroutine exchange(self, problem, archive)
     class(auto_t), intent(inout) :: self
@@ -89,6 +97,7 @@ contains
     type(archive_t), intent(inout) :: archive
     self%adams%settings = self%settings
     self%radau%settings = self%settings
+    if (archive%is_reading) call forget_modes(self, problem%highest_mode)
     call self%exchange_solution(problem, archive)
     call self%adams%exchange(problem, archive)
     call self%radau%exchange(problem, archive)
@@ -105,6 +114,7 @@ contains
     call archive%exchange(self%trial)
     call archive%exchange(self%spent)
     call archive%exchange(self%saved)
+    call archive%exchange(self%time_with)
   end subroutine exchange
 
   !> A mode that begins for the first time: whether it is stiff beyond doubt.
@@ -114,7 +124,7 @@ contains
     real(dp), intent(in) :: t, y(:)
     real(dp) :: rate
     self%known(self%mode) = .true.
-    if (problem%n_positions == 0) return
+    if (problem%n_positions + problem%n_states() == 0) return
     call self%radau%damping_rate(problem, t, y, rate)
     self%stiff_in(self%mode) = rate*self%settings%span > stiff_start
     self%adams_price = start_price*rate
@@ -276,14 +286,13 @@ contains
   subroutine count_time(self, t_to)
     class(auto_t), intent(inout) :: self
     real(dp), intent(in) :: t_to
-    real(dp) :: time
-    time = t_to - self%t_old
+    integer :: which
+    which = merge(with_radau, with_adams, self%stiff)
+    self%time_with(which, self%mode) = self%time_with(which, self%mode) + (t_to - self%t_old)
     if (self%stiff) then
       call self%radau%count_time(t_to)
-      self%radau%statistics%time_with(with_radau, self%mode) = self%radau%statistics%time_with(with_radau, self%mode) + time
     else
       call self%adams%count_time(t_to)
-      self%adams%statistics%time_with(with_adams, self%mode) = self%adams%statistics%time_with(with_adams, self%mode) + time
     end if
   end subroutine count_time
 

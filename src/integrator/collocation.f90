@@ -1,8 +1,8 @@
 !> One step of a Radau IIA formula: the collocation stages, Newton's method for them, the filtered error estimate, and the
 !> polynomial through the stages of the last step.
 !>
-!> The system has the structure p' = v, v' = a(t, p, v), w' = P(t, p, v): positions are eliminated from Newton's
-!> equations, and quadratures w take no part in them. The unknowns are the stage increments of v; in the basis that
+!> The system has the structure p' = v, v' = a(t, p, v), w' = P(t, p, v): positions p are eliminated from Newton's
+!> equations, and quadratures w take no part in them. v are the rates of the positions and, behind them, first-order states. The unknowns are the stage increments of v; in the basis that
 !> diagonalises A^-1 each real eigenvalue g needs (g/h - a_v - (h/g) a_p) and each complex pair one such complex matrix,
 !> all of the size of v (Hairer & Wanner 1996, IV.8).
 !>
@@ -35,7 +35,7 @@ module collocation
     integer :: level = 1                   !! formula in use
     integer :: n = 0                       !! equations
     integer :: m = 0                       !! positions: y(1:m)
-    integer :: k = 0                       !! rates: y(m+1:m+k); the first m are those of the positions
+    integer :: k = 0                       !! rates and first-order states: y(m+1:m+k); the first m are the positions' rates
     real(dp) :: t = 0                      !! beginning of the step
     real(dp) :: h = 0                      !! its size
     real(dp) :: goal = 0                   !! how small the rest of Newton's iteration must be, in the weights
@@ -123,7 +123,7 @@ contains
 
     n = problem%n
     m = problem%n_positions
-    k = n - m - problem%n_quadratures
+    k = m + problem%n_states()
     self%n = n
     self%m = m
     self%k = k

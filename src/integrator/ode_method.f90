@@ -1,7 +1,7 @@
 !> What every integration method offers, its settings, its statistics and its status codes.
 module ode_method
   use kinds, only: dp
-  use ode_problem, only: ode_problem_t, max_modes
+  use ode_problem, only: ode_problem_t
   use archive, only: archive_t
   implicit none
   private
@@ -65,7 +65,6 @@ module ode_method
     integer :: limited_by(n_limits) = 0         !! accepted steps by what limited them
     real(dp) :: time_limited_by(n_limits) = 0   !! time that went by in them
     integer :: switches = 0                     !! changes between Adams and Radau
-    real(dp) :: time_with(2, 0:max_modes) = 0   !! method auto: time that went by with each method in each mode
     real(dp) :: stiffness = 0     !! integral of rho dt, rho the estimated rate of the fastest mode; 0: not estimated
   contains
     procedure :: exchange => exchange_statistics
@@ -75,6 +74,7 @@ module ode_method
   type, abstract :: ode_method_t
     type(ode_settings_t) :: settings
     type(step_statistics_t) :: statistics
+    real(dp), allocatable :: time_with(:, :)   !! method auto: time that went by with each method in each mode, (2, 0:highest mode)
     real(dp) :: t_old = 0                 !! beginning of the last accepted step
     real(dp) :: t = 0                     !! its end
     integer :: order = 0                  !! order of the last accepted step
@@ -188,7 +188,6 @@ contains
     call archive%exchange(self%limited_by)
     call archive%exchange(self%time_limited_by)
     call archive%exchange(self%switches)
-    call archive%exchange(self%time_with)
     call archive%exchange(self%stiffness)
   end subroutine exchange_statistics
 

@@ -10,9 +10,8 @@ module ode_problem
   private
   public :: ode_problem_t, difference_jacobian
   public :: step_admitted, step_too_deep, step_outside
-  public :: event_continue, event_stop, max_events, max_modes
+  public :: event_continue, event_stop, max_events
 
-  integer, parameter :: max_modes = 8      !! highest mode
   integer, parameter :: max_events = 16   !! most event functions that a problem may have at one time
 
   !> Verdicts of `judge_step`.
@@ -24,16 +23,19 @@ module ode_problem
   integer, parameter :: event_continue = 0  !! restart the method at the event
   integer, parameter :: event_stop = 1      !! end the integration at the event
 
-  !> A system of ordinary differential equations.
+  !> A system of ordinary differential equations. y = (positions | their rates, in the same order | first-order states | quadratures).
+  !> A problem that tells no positions has first-order states only.
   type, abstract :: ode_problem_t
-    integer :: n = 0          !! number of equations
-    integer :: n_positions = 0   !! the first components are positions, whose rates follow them in the same order
-    integer :: n_quadratures = 0 !! the last components are quadratures: nothing depends on them
-    integer :: mode = 0          !! the present discrete state as far as the choice of a method cares, 0..max_modes
+    integer :: n = 0             !! number of equations
+    integer :: n_positions = 0   !! their derivatives are the rates, which is not looked up in f
+    integer :: n_quadratures = 0 !! nothing depends on them
+    integer :: mode = 0          !! the present discrete state as far as the choice of a method cares, 0..highest_mode
+    integer :: highest_mode = 0  !! set before the integration
     integer :: n_events = 0   !! number of event functions in the present discrete state
     logical :: refuses_steps = .true.   !! `judge_step` may do so: else it is not asked
     logical :: smooth_in_root = .false. !! from the last (re)start on f is smooth in sqrt(t - t_start), not in t
   contains
+    procedure, non_overridable :: n_states
     procedure(derivatives), deferred :: derivatives
     procedure :: jacobian => difference_jacobian
     procedure :: events => no_events
@@ -60,8 +62,14 @@ module ode_problem
 
 contains
 
-  !> Derivatives of the accelerations: with m positions, k rates and y = (positions, rates, quadratures), dydt(m+1:m+k) by
-  !> the positions, a_p (k, m), and by the rates, a_v (k, k). The default is one-sided differences, and 0 where f is not defined at
+  !> Number of first-order states.
+  pure integer function n_states(self)
+    class(ode_problem_t), intent(in) :: self
+    n_states = self%n - 2*self%n_positions - self%n_quadratures
+  end function n_states
+
+  !> Derivatives of the rates of what Newton's method solves for: with m positions and k rates and first-order states,
+  !> dydt(m+1:m+k) by the positions, a_p (k, m), and by rates and states, a_v (k, k). The default is one-sided differences, and 0 where f is not defined at
   !> the state or beside it.
   subroutine difference_jacobian(self, t, y, a_p, a_v)
     class(ode_problem_t), intent(in) :: self

@@ -25,7 +25,6 @@ contains
     character(len=*), intent(in) :: identity                        !! of the run
     integer(int64), intent(in) :: trace_length, events_length       !! of the files [bytes]; 0: there is none
     character(len=:), allocatable :: text
-    character(len=7), parameter :: phase_names(0:2) = ['free   ', 'film   ', 'contact']
     character(len=5), parameter :: method_names(2) = ['adams', 'radau']
     integer :: order, limit, mode, method
 
@@ -54,12 +53,12 @@ contains
         end do
         call add('stiffness_integral', real_text(s%stiffness), '1')
       end if
-      if (case%integrator%method == 'auto') then
+      if (allocated(report%time_with)) then
         call add('method_switches', integer_text(s%switches), '1')
-        do mode = 0, 2
+        do mode = 1, size(report%time_with, 2)
           do method = with_adams, with_radau
-            if (s%time_with(method, mode) > 0) call add(trim(phase_names(mode))//'_time_fraction_with_'// &
-              trim(method_names(method)), real_text(s%time_with(method, mode)/f%time), '1')
+            if (report%time_with(method, mode) > 0) call add(phases_of(mode - 1, size(report%time_with, 2))// &
+              '_time_fraction_with_'//trim(method_names(method)), real_text(report%time_with(method, mode)/f%time), '1')
           end do
         end do
       end if
@@ -100,6 +99,15 @@ contains
       text = text//quantity//','//value//','//unit//newline
     end subroutine add
   end function summary_table
+
+  !> The phases of the joints in a mode, the piston pin's first: its digits to the base of three.
+  function phases_of(mode, modes) result(text)
+    integer, intent(in) :: mode, modes   !! from 0 on, of so many
+    character(len=:), allocatable :: text
+    character(len=7), parameter :: names(0:2) = ['free   ', 'film   ', 'contact']
+    text = trim(names(mod(mode, 3)))
+    if (modes > size(names)) text = text//'_'//trim(names(mode/3))
+  end function phases_of
 
   !> The value of a quantity in such a table, as it stands there; empty where there is none.
   function summary_value(table, quantity) result(text)

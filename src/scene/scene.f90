@@ -301,6 +301,7 @@ contains
     do i = 1, self%n_joints
       self%joint_of_pin(self%joints(i)%place) = i
     end do
+    self%highest_mode = n_phases**self%n_joints - 1
     if (self%chain%drive%free_crank) &
       call self%layout%claim_positions(1, 1.0_dp, self%speed_scale(self%span), self%crank, grows=.true.)
     do i = 1, self%n_joints
