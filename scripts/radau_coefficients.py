@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Write src/integrator/radau_coefficients.f90: the Radau IIA formulas of 3, 5 and 7 stages.
+"""Write src/ode/radau/radau_coefficients.f90: the Radau IIA formulas of 3, 5 and 7 stages.
 
 Nodes are the roots of the right Radau polynomial, A the collocation matrix, and T the real matrix that brings A^-1 to
 block-diagonal form (Hairer & Wanner 1996, IV.8), all computed in 60-digit arithmetic. Needs mpmath (PyPI).
 
-    python3 scripts/radau_coefficients.py > src/integrator/radau_coefficients.f90
+    python3 scripts/radau_coefficients.py > src/ode/radau/radau_coefficients.f90
 """
 from mpmath import mp, mpf, matrix, polyroots, eig, lu_solve, inverse, re, im, nstr
 

@@ -2,7 +2,7 @@
 module conditioning
   use kinds, only: dp
   use adams, only: adams_t
-  use solver, only: integrate, silent_observer_t, integration_done
+  use gudgeon_solver, only: integrate, silent_observer_t, integration_done
   use standard_problems, only: standard_problem_t, new_standard_problem, standard_settings
   use sampler, only: sampler_t
   implicit none

@@ -6,7 +6,7 @@ module coordinate_errors
   use case_file, only: read_case
   use ode_problem, only: ode_problem_t
   use adams, only: adams_t
-  use solver, only: integrate, integration_done
+  use gudgeon_solver, only: integrate, integration_done
   use gudgeon_scene, only: scene_t
   use scene_builder, only: build_scene
   use state_making, only: pin_of

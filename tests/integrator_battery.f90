@@ -9,7 +9,7 @@ program integrator_battery
   use kinds, only: dp
   use ode_method, only: step_statistics_t, limit_stability
   use adams, only: adams_t
-  use solver, only: integrate, integration_done, observer_t
+  use gudgeon_solver, only: integrate, integration_done, observer_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use errors, only: error_t

@@ -12,8 +12,8 @@ program integrator_comparison
   use case_definition, only: case_t
   use case_file, only: read_case
   use ode_method, only: ode_method_t, step_statistics_t
-  use methods, only: new_method
-  use solver, only: integrate, silent_observer_t
+  use gudgeon_methods, only: new_method
+  use gudgeon_solver, only: integrate, silent_observer_t
   use gudgeon_scene, only: scene_t
   use scene_builder, only: build_scene, settings_for, simulated_time
   use state_watcher, only: state_watcher_t, watched

@@ -3,7 +3,7 @@ module joint_watcher
   use kinds, only: dp
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t
-  use solver, only: observer_t
+  use gudgeon_solver, only: observer_t
   use clearance_joint, only: most_joints
   use gudgeon_scene, only: scene_t, event_none, event_contact_begins
   implicit none

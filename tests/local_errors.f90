@@ -4,7 +4,7 @@ module local_errors
   use kinds, only: dp
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t
-  use solver, only: silent_observer_t
+  use gudgeon_solver, only: silent_observer_t
   implicit none
   private
   public :: local_error_watcher_t, local_solution

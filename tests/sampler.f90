@@ -3,7 +3,7 @@ module sampler
   use kinds, only: dp
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t
-  use solver, only: silent_observer_t
+  use gudgeon_solver, only: silent_observer_t
   implicit none
   private
   public :: sampler_t

@@ -6,7 +6,7 @@ module test_adams
   use ode_method, only: ode_settings_t, step_done
   use adams_coefficients, only: moulton_constants
   use adams, only: adams_t
-  use solver, only: integrate, silent_observer_t, integration_done
+  use gudgeon_solver, only: integrate, silent_observer_t, integration_done
   use standard_problems, only: number_of
   use conditioning, only: condition_of
   use test_problems, only: oscillator_t, two_body_t, bouncing_ball_t, hopper_t, root_t

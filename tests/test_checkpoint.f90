@@ -3,7 +3,7 @@ module test_checkpoint
   use, intrinsic :: iso_fortran_env, only: int64
   use kinds, only: dp
   use errors, only: error_t, status_case_file
-  use archive, only: archive_t
+  use gudgeon_archive, only: archive_t
   use checksum, only: checksum_t
   use file_mark, only: file_mark_t
   use checkpoint, only: checkpoint_t

@@ -4,7 +4,7 @@ module test_energy_kept
   use checks, only: checks_t
   use ode_problem, only: ode_problem_t
   use radau, only: radau_t
-  use solver, only: integrate, silent_observer_t, integration_done
+  use gudgeon_solver, only: integrate, silent_observer_t, integration_done
   use case_definition, only: case_t
   use summary, only: energy_warning
   use collecting_sink, only: trace_t, run_case, column

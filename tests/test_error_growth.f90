@@ -4,7 +4,7 @@ module test_error_growth
   use kinds, only: dp
   use checks, only: checks_t
   use adams, only: adams_t
-  use solver, only: integrate, integration_done, observer_t
+  use gudgeon_solver, only: integrate, integration_done, observer_t
   use standard_problems, only: standard_problem_t, new_standard_problem, standard_settings, number_of, names, n_standard_problems
   use conditioning, only: condition_of
   use local_errors, only: local_error_watcher_t

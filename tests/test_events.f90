@@ -7,7 +7,7 @@ module test_events
   use ode_problem, only: ode_problem_t, event_continue, step_admitted, step_too_deep
   use ode_method, only: ode_method_t
   use adams, only: adams_t
-  use solver, only: integrate, observer_t, silent_observer_t, integration_done, chattering
+  use gudgeon_solver, only: integrate, observer_t, silent_observer_t, integration_done, chattering
   use test_problems, only: hopper_t
   implicit none
   private

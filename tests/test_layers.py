@@ -15,7 +15,7 @@ SRC = Path(__file__).resolve().parent.parent / "src"
 #: From the ground up; folders of one row do not know each other.
 LAYERS = [
     ["base"],
-    ["ode", "model", "integrator"],
+    ["ode", "model"],
     ["chain", "contact", "friction", "film", "gas"],
     ["joint"],
     ["scene"],

@@ -17,7 +17,7 @@ module test_radau
   use gudgeon_scene, only: scene_t, phase_contact, phase_film
   use state_making, only: put_crank, put_pin
   use scene_builder, only: build_scene
-  use solver, only: integrate, silent_observer_t, integration_done
+  use gudgeon_solver, only: integrate, silent_observer_t, integration_done
   use test_problems, only: oscillator_t, bouncing_ball_t
   use collecting_sink, only: trace_t, run_case, column
   implicit none

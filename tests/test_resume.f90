@@ -3,7 +3,7 @@ module test_resume
   use, intrinsic :: iso_fortran_env, only: int64
   use kinds, only: dp
   use errors, only: error_t
-  use archive, only: archive_t
+  use gudgeon_archive, only: archive_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use gudgeon_columns, only: column_list_t, choose_columns

@@ -7,7 +7,7 @@ module test_standard_problems
   use ode_method, only: step_done, limit_stability
   use ode_problem, only: ode_problem_t, step_admitted, step_too_deep
   use adams, only: adams_t
-  use solver, only: integrate, silent_observer_t, integration_done
+  use gudgeon_solver, only: integrate, silent_observer_t, integration_done
   use standard_problems, only: standard_problem_t, new_standard_problem, standard_settings, number_of
   implicit none
   private

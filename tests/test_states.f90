@@ -3,12 +3,12 @@ module test_states
   use kinds, only: dp
   use checks, only: checks_t
   use errors, only: error_t
-  use archive, only: archive_t
+  use gudgeon_archive, only: archive_t
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t
   use adams, only: adams_t
-  use methods, only: new_method
-  use solver, only: integrate, silent_observer_t, integration_done, integration_interrupted
+  use gudgeon_methods, only: new_method
+  use gudgeon_solver, only: integrate, silent_observer_t, integration_done, integration_interrupted
   implicit none
   private
   public :: run_test_states

@@ -12,8 +12,8 @@ module test_two_joints
   use chain_reactions, only: reactions_t
   use gudgeon_scene, only: scene_t, evaluation_t, phase_contact
   use ode_method, only: ode_method_t
-  use methods, only: new_method
-  use solver, only: integrate, integration_done
+  use gudgeon_methods, only: new_method
+  use gudgeon_solver, only: integrate, integration_done
   use scene_builder, only: build_scene, settings_for
   use joint_watcher, only: joint_watcher_t
   implicit none

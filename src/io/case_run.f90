@@ -10,7 +10,7 @@ module case_run
   use result_file, only: result_file_t, remove_result
   use continuation, only: continuation_t
   use run_identity, only: identity_length
-  use archive, only: archive_t
+  use gudgeon_archive, only: archive_t
   use summary, only: summary_table, summary_line
   use stability_advice, only: advice
   use posix, only: synchronise_folder, error_text

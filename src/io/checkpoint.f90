@@ -5,7 +5,7 @@
 module checkpoint
   use kinds, only: dp
   use errors, only: error_t, fail, status_case_file
-  use archive, only: archive_t
+  use gudgeon_archive, only: archive_t
   use checksum, only: checksum_t
   use file_mark, only: file_mark_t
   use posix, only: remove_file, synchronise_folder, error_text, error_no_entry

@@ -1,7 +1,7 @@
 !> How far a file has come: its length and a checksum of all bytes up to there.
 module file_mark
   use, intrinsic :: iso_fortran_env, only: int64
-  use archive, only: archive_t
+  use gudgeon_archive, only: archive_t
   use checksum, only: checksum_t
   use posix, only: open_for_reading, read_at, close_file, error_interrupted
   implicit none

@@ -6,7 +6,7 @@ module trace_files
   use, intrinsic :: iso_fortran_env, only: int64
   use kinds, only: dp
   use errors, only: error_t, fail, status_case_file, status_output
-  use archive, only: archive_t
+  use gudgeon_archive, only: archive_t
   use gudgeon_columns, only: column_list_t, column_name
   use gudgeon_scene, only: event_contact_begins
   use trace_sink, only: trace_sink_t, trace_event_t

@@ -4,7 +4,7 @@
 !> fig. 3.9). A law that the case does not ask for is not allocated.
 module clearance_joint
   use kinds, only: dp
-  use archive, only: archive_t
+  use gudgeon_archive, only: archive_t
   use bearing, only: bearing_t
   use state_layout, only: layout_t, coordinates_t
   use chain_motion, only: motion_t, piston_pin

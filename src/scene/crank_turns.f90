@@ -6,7 +6,7 @@ module crank_turns
   use kinds, only: dp
   use constants, only: two_pi, degree
   use ode_problem, only: event_continue, event_stop
-  use archive, only: archive_t
+  use gudgeon_archive, only: archive_t
   implicit none
   private
   public :: crank_turns_t, new_crank_turns, n_turn_events, on_the_way, all_made, turned_back

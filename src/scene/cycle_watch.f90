@@ -9,7 +9,7 @@ module cycle_watch
   use ode_method, only: ode_method_t
   use chain_motion, only: piston_pin
   use gudgeon_scene, only: scene_t, evaluation_t, phase_contact
-  use roots, only: bracket_t, next_abscissa, narrow
+  use gudgeon_roots, only: bracket_t, next_abscissa, narrow
   use step_peaks, only: n_peaks, of_pin_force, of_penetration
   use gudgeon_columns, only: column_list_t, row_values
   use cycle_statistics, only: cycle_t, cycle_statistics_t

@@ -8,7 +8,7 @@ module recorder
   use constants, only: two_pi
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t, limit_stability
-  use solver, only: observer_t
+  use gudgeon_solver, only: observer_t
   use chain_motion, only: piston_pin
   use gudgeon_scene, only: scene_t, evaluation_t, phase_contact, event_none, event_contact_begins, event_contact_ends
   use gudgeon_columns, only: column_list_t, row_values
@@ -16,7 +16,7 @@ module recorder
   use step_peaks, only: peak_watch_t, of_pin_force, of_penetration, of_normal_force, n_peaks, peaks_of
   use trace_sink, only: trace_sink_t, trace_event_t
   use run_figures, only: run_figures_t
-  use archive, only: archive_t
+  use gudgeon_archive, only: archive_t
   implicit none
   private
   public :: recorder_t

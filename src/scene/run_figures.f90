@@ -1,7 +1,7 @@
 !> The figures of a run, most of them for its summary.
 module run_figures
   use kinds, only: dp
-  use archive, only: archive_t
+  use gudgeon_archive, only: archive_t
   implicit none
   private
   public :: run_figures_t

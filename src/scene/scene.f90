@@ -1,7 +1,7 @@
 !> A scene: the chain with the joints and the gas that its case asks for, as a system of differential equations.
 module gudgeon_scene
   use kinds, only: dp
-  use archive, only: archive_t
+  use gudgeon_archive, only: archive_t
   use ode_problem, only: ode_problem_t, max_events
   use state_layout, only: layout_t, coordinates_t, slice_t
   use chain_motion, only: motion_t, accelerations_t, piston_pin, n_pins, turn_crank

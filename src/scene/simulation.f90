@@ -4,8 +4,8 @@ module simulation
   use errors, only: error_t, fail, status_integration, status_internal
   use case_definition, only: case_t
   use ode_method, only: ode_method_t, step_statistics_t, limit_stability
-  use methods, only: new_method
-  use solver, only: integrate, silent_observer_t, integration_done, integration_stopped, integration_interrupted, &
+  use gudgeon_methods, only: new_method
+  use gudgeon_solver, only: integrate, silent_observer_t, integration_done, integration_stopped, integration_interrupted, &
     step_limit_reached, evaluation_limit_reached, unreadable_archive
   use gudgeon_scene, only: scene_t
   use stop_reason, only: reason, place, interrupted_text, revolution_budget_spent, crank_turned_back, turns_not_made
@@ -17,7 +17,7 @@ module simulation
   use run_figures, only: run_figures_t
   use trace_sink, only: trace_sink_t
   use constants, only: two_pi
-  use archive, only: archive_t
+  use gudgeon_archive, only: archive_t
   implicit none
   private
   public :: simulate, try_auto, run_report_t, interrupted_text

@@ -11,7 +11,7 @@ module step_peaks
   use chain_motion, only: piston_pin
   use gudgeon_scene, only: scene_t, evaluation_t, phase_free, phase_contact
   use peak_search, only: sample_t, peak_search_t, most_between
-  use archive, only: archive_t
+  use gudgeon_archive, only: archive_t
   implicit none
   private
   public :: peak_watch_t, of_pin_force, of_penetration, of_normal_force, n_peaks, peaks_of

@@ -2,9 +2,9 @@
 !> polynomial through the stages of the last step.
 !>
 !> The system has the structure p' = v, v' = a(t, p, v), w' = P(t, p, v): positions p are eliminated from Newton's
-!> equations, and quadratures w take no part in them. v are the rates of the positions and, behind them, first-order states. The unknowns are the stage increments of v; in the basis that
-!> diagonalises A^-1 each real eigenvalue g needs (g/h - a_v - (h/g) a_p) and each complex pair one such complex matrix,
-!> all of the size of v (Hairer & Wanner 1996, IV.8).
+!> equations, and quadratures w take no part in them. v are the rates of the positions and, behind them, first-order states. The
+!> unknowns are the stage increments of v; in the basis that diagonalises A^-1 each real eigenvalue g needs
+!> (g/h - a_v - (h/g) a_p) and each complex pair one such complex matrix, all of the size of v (Hairer & Wanner 1996, IV.8).
 !>
 !> Where a trial state leaves the model, Newton's step is halved until it stays inside.
 module collocation
@@ -12,7 +12,7 @@ module collocation
   use ode_problem, only: ode_problem_t
   use radau_coefficients, only: radau_formula_t, radau_formula, most_stages
   use small_lu, only: solve
-  use archive, only: archive_t
+  use gudgeon_archive, only: archive_t
   implicit none
   private
   public :: collocation_t, most_iterations, n_formulas

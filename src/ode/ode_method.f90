@@ -2,7 +2,7 @@
 module ode_method
   use kinds, only: dp
   use ode_problem, only: ode_problem_t
-  use archive, only: archive_t
+  use gudgeon_archive, only: archive_t
   implicit none
   private
   public :: ode_method_t, ode_settings_t, step_statistics_t

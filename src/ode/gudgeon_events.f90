@@ -4,12 +4,12 @@
 !> its own curvature, tells the steps in which nothing is to be expected; the rest is sampled on the interpolant, so that a
 !> function that passes zero and comes back within one step is found in general. So it is, for any function, in the first step
 !> after a restart until it has become negative.
-module events
+module gudgeon_events
   use kinds, only: dp
   use ode_problem, only: ode_problem_t, max_events
   use ode_method, only: ode_method_t
-  use archive, only: archive_t
-  use roots, only: bracket_t, next_abscissa, narrow
+  use gudgeon_archive, only: archive_t
+  use gudgeon_roots, only: bracket_t, next_abscissa, narrow
   implicit none
   private
   public :: event_watch_t
@@ -280,4 +280,4 @@ contains
     call problem%events(t, self%y, g(:problem%n_events), rate(:problem%n_events))
     sample = sample_t(t, g(index), rate(index))
   end function sample
-end module events
+end module gudgeon_events

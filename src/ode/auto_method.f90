@@ -12,7 +12,7 @@ module auto_method
   use ode_method, only: ode_method_t, step_statistics_t, step_done, limit_stability, with_adams, with_radau
   use adams, only: adams_t
   use radau, only: radau_t
-  use archive, only: archive_t
+  use gudgeon_archive, only: archive_t
   implicit none
   private
   public :: auto_t

@@ -1,11 +1,11 @@
 !> Integration from one time to another through events: step, search the step for events, show it to the observer,
 !> take the event, restart.
-module solver
+module gudgeon_solver
   use kinds, only: dp
   use ode_problem, only: ode_problem_t, event_stop, max_events
   use ode_method, only: ode_method_t, step_done
-  use events, only: event_watch_t
-  use archive, only: archive_t
+  use gudgeon_events, only: event_watch_t
+  use gudgeon_archive, only: archive_t
   implicit none
   private
   public :: integrate, observer_t, silent_observer_t
@@ -277,4 +277,4 @@ contains
     associate (unused_self => self, unused_problem => problem, unused_index => index, unused_t => t, unused_y => y)
     end associate
   end subroutine ignore_event
-end module solver
+end module gudgeon_solver

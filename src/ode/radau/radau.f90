@@ -6,7 +6,7 @@ module radau
   use kinds, only: dp
   use ode_problem, only: ode_problem_t, step_admitted, step_too_deep
   use ode_method, only: ode_method_t, step_done, step_too_small, tolerance_too_small, left_domain
-  use archive, only: archive_t
+  use gudgeon_archive, only: archive_t
   use collocation, only: collocation_t, n_formulas, newton_converged, newton_diverged, newton_outside
   implicit none
   private

@@ -2,7 +2,7 @@
 !>
 !> Every type with a state has one procedure `exchange` that names its components once; the archive either takes them or
 !> gives them back, so that both directions cannot disagree.
-module archive
+module gudgeon_archive
   use, intrinsic :: iso_fortran_env, only: int64
   use kinds, only: dp
   implicit none
@@ -195,4 +195,4 @@ contains
     end if
     call exchange_block(self, 'c', length, text)
   end subroutine exchange_text
-end module archive
+end module gudgeon_archive

@@ -5,7 +5,7 @@
 !> a rejected step leaves no trace in the problem.
 module ode_problem
   use kinds, only: dp
-  use archive, only: archive_t
+  use gudgeon_archive, only: archive_t
   implicit none
   private
   public :: ode_problem_t, difference_jacobian
@@ -23,8 +23,8 @@ module ode_problem
   integer, parameter :: event_continue = 0  !! restart the method at the event
   integer, parameter :: event_stop = 1      !! end the integration at the event
 
-  !> A system of ordinary differential equations. y = (positions | their rates, in the same order | first-order states | quadratures).
-  !> A problem that tells no positions has first-order states only.
+  !> A system of ordinary differential equations. y = (positions | their rates, in the same order | first-order states |
+  !> quadratures). A problem that tells no positions has first-order states only.
   type, abstract :: ode_problem_t
     integer :: n = 0             !! number of equations
     integer :: n_positions = 0   !! their derivatives are the rates, which is not looked up in f
@@ -69,8 +69,8 @@ contains
   end function n_states
 
   !> Derivatives of the rates of what Newton's method solves for: with m positions and k rates and first-order states,
-  !> dydt(m+1:m+k) by the positions, a_p (k, m), and by rates and states, a_v (k, k). The default is one-sided differences, and 0 where f is not defined at
-  !> the state or beside it.
+  !> dydt(m+1:m+k) by the positions, a_p (k, m), and by rates and states, a_v (k, k). The default is one-sided differences, and
+  !> 0 where f is not defined at the state or beside it.
   subroutine difference_jacobian(self, t, y, a_p, a_v)
     class(ode_problem_t), intent(in) :: self
     real(dp), intent(in) :: t, y(:)

@@ -1,7 +1,7 @@
 !> The largest value of a smooth quantity between two instants, by as few values as it takes.
 module peak_search
   use kinds, only: dp
-  use archive, only: archive_t
+  use gudgeon_archive, only: archive_t
   implicit none
   private
   public :: sample_t, peak_search_t, most_between

@@ -1,5 +1,5 @@
 !> The root of an event function on the interpolant of a step.
-module roots
+module gudgeon_roots
   use kinds, only: dp
   implicit none
   private
@@ -55,4 +55,4 @@ contains
       bracket%fb = value
     end if
   end subroutine narrow
-end module roots
+end module gudgeon_roots

@@ -2,7 +2,7 @@
 module adams_coefficients
   use kinds, only: dp
   use ode_method, only: highest_order
-  use archive, only: archive_t
+  use gudgeon_archive, only: archive_t
   implicit none
   private
   public :: adams_coefficients_t, moulton_constants, interpolation_weights, stability_limit

@@ -1,5 +1,5 @@
 !> The integration methods by name.
-module methods
+module gudgeon_methods
   use errors, only: error_t, fail, status_case_file
   use ode_method, only: ode_method_t
   use adams, only: adams_t
@@ -27,4 +27,4 @@ contains
       call fail(error, "&integrator method = '"//name//"': must be 'auto', 'adams' or 'radau'", status_case_file)
     end select
   end subroutine new_method
-end module methods
+end module gudgeon_methods
