@@ -1,34 +1,81 @@
-!> The test harness: named checks, counted, failures printed as they happen.
+!> The test harness: named assertions, failures printed as they happen.
+!>
+!> An assertion is a suite and a name without figures: one that a loop makes a thousand times, or at several tolerances, counts
+!> once. It has passed if every one of its turns has.
 module checks
-  use, intrinsic :: iso_fortran_env, only: output_unit
+  use, intrinsic :: iso_fortran_env, only: output_unit, int64
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: dp
   implicit none
   private
-  public :: checks_t
+  public :: checks_t, without_figures
 
-  !> Counts of one test run. A check prints only when it fails.
+  integer, parameter :: most_printed = 5   !! failing turns of one assertion that are printed
+  character(len=*), parameter :: letters = 'ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz'
+
+  !> One assertion, and how often it was made.
+  type :: assertion_t
+    character(len=:), allocatable :: name   !! suite: name without figures
+    integer :: turns = 0
+    integer :: failures = 0                 !! of these turns
+  end type assertion_t
+
+  !> The assertions of one test run. A check prints only when it fails.
   type :: checks_t
-    integer :: passed = 0
-    integer :: failed = 0
+    logical :: is_silent = .false.     !! print nothing: failures are meant
+    character(len=:), allocatable, private :: suite
+    type(assertion_t), allocatable, private :: assertion(:)
+    integer, allocatable, private :: place(:)   !! of assertions by their names' hashes, 0: none; twice as many as assertions
+    integer, private :: n = 0                   !! assertions
   contains
+    procedure :: begin_suite   !! what follows belongs to this suite
+    procedure :: passed        !! assertions none of whose turns has failed
+    procedure :: failed        !! assertions of which a turn has failed
+    procedure :: say_unprinted !! print how many failing turns were not
     procedure :: that          !! a condition holds
     procedure :: close_to      !! |got - want| <= tolerance
     procedure :: relative      !! |got - want| <= tolerance*|want|
     procedure :: equal_text    !! two texts are the same
+    procedure, private :: take
+    procedure, private :: find
+    procedure, private :: make_room
   end type checks_t
 
 contains
+
+  subroutine begin_suite(self, name)
+    class(checks_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    self%suite = name
+  end subroutine begin_suite
+
+  pure integer function passed(self)
+    class(checks_t), intent(in) :: self
+    passed = self%n - self%failed()
+  end function passed
+
+  pure integer function failed(self)
+    class(checks_t), intent(in) :: self
+    failed = 0
+    if (self%n > 0) failed = count(self%assertion(:self%n)%failures > 0)
+  end function failed
+
+  subroutine say_unprinted(self)
+    class(checks_t), intent(in) :: self
+    integer :: i
+    do i = 1, self%n
+      associate (one => self%assertion(i))
+        if (one%failures > most_printed) write (output_unit, '(3a,i0,a,i0,a)') 'FAILED: ', one%name, ': ', one%failures, ' of ', &
+          one%turns, ' turns'
+      end associate
+    end do
+  end subroutine say_unprinted
 
   subroutine that(self, condition, name)
     class(checks_t), intent(inout) :: self
     logical, intent(in) :: condition
     character(len=*), intent(in) :: name
-    if (condition) then
-      self%passed = self%passed + 1
-    else
-      self%failed = self%failed + 1
-      write (output_unit, '(2a)') 'FAILED: ', name
-    end if
+    call self%take(condition, name, '')
   end subroutine that
 
   !> A NaN never passes.
@@ -37,8 +84,11 @@ contains
     real(dp), intent(in) :: got, want, tolerance
     character(len=*), intent(in) :: name
     character(len=120) :: figures
+    logical :: is_close
+    is_close = .false.   ! comparing a NaN traps where traps are set
+    if (.not. ieee_is_nan(got - want)) is_close = abs(got - want) <= tolerance
     write (figures, '(a,es23.16,a,es23.16,a,es8.1)') ': got ', got, ', want ', want, ' within ', tolerance
-    call self%that(abs(got - want) <= tolerance, name//trim(figures))
+    call self%take(is_close, name, trim(figures))
   end subroutine close_to
 
   subroutine relative(self, got, want, tolerance, name)
@@ -51,6 +101,120 @@ contains
   subroutine equal_text(self, got, want, name)
     class(checks_t), intent(inout) :: self
     character(len=*), intent(in) :: got, want, name
-    call self%that(got == want .and. len(got) == len(want), name//': got "'//got//'", want "'//want//'"')
+    call self%take(got == want .and. len(got) == len(want), name, ': got "'//got//'", want "'//want//'"')
   end subroutine equal_text
+
+  !> One turn of the assertion `name`, with what was found.
+  subroutine take(self, condition, name, found)
+    class(checks_t), intent(inout) :: self
+    logical, intent(in) :: condition
+    character(len=*), intent(in) :: name, found
+    integer :: i
+    i = self%find(name)
+    associate (one => self%assertion(i))
+      one%turns = one%turns + 1
+      if (condition) return
+      one%failures = one%failures + 1
+      if (one%failures <= most_printed .and. .not. self%is_silent) &
+        write (output_unit, '(5a)') 'FAILED: ', self%suite, ': ', name, found
+    end associate
+  end subroutine take
+
+  !> The place of an assertion of the present suite, new where it has not been made before.
+  integer function find(self, name)
+    class(checks_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable :: full
+    integer :: slot
+    if (.not. allocated(self%suite)) self%suite = 'tests'
+    call self%make_room()
+    full = self%suite//': '//without_figures(trim(name))
+    slot = 1 + int(modulo(hash(full), int(size(self%place), int64)))
+    do
+      find = self%place(slot)
+      if (find == 0) exit
+      if (self%assertion(find)%name == full) return
+      slot = 1 + modulo(slot, size(self%place))
+    end do
+    self%n = self%n + 1
+    find = self%n
+    self%assertion(find)%name = full
+    self%place(slot) = find
+  end function find
+
+  !> Room for one more assertion.
+  subroutine make_room(self)
+    class(checks_t), intent(inout) :: self
+    type(assertion_t), allocatable :: larger(:)
+    integer :: i, slot
+    if (allocated(self%assertion)) then
+      if (self%n < size(self%assertion)) return
+    end if
+    allocate (larger(max(512, 2*self%n)))
+    if (self%n > 0) larger(:self%n) = self%assertion(:self%n)
+    call move_alloc(larger, self%assertion)
+    if (allocated(self%place)) deallocate (self%place)
+    allocate (self%place(2*size(self%assertion)))
+    self%place = 0
+    do i = 1, self%n
+      slot = 1 + int(modulo(hash(self%assertion(i)%name), int(size(self%place), int64)))
+      do while (self%place(slot) > 0)
+        slot = 1 + modulo(slot, size(self%place))
+      end do
+      self%place(slot) = i
+    end do
+  end subroutine make_room
+
+  !> A number that differs for most texts.
+  pure integer(int64) function hash(text)
+    character(len=*), intent(in) :: text
+    integer(int64), parameter :: modulus = 2147483647_int64
+    integer :: i
+    hash = 1
+    do i = 1, len(text)
+      hash = modulo(257*hash + iachar(text(i:i)), modulus)
+    end do
+  end function hash
+
+  !> A name in which every number is '#': a run of digits, points, signs and exponents that begins where a word may begin.
+  !> Digits inside a word, as in `dry_0100um`, stay.
+  pure function without_figures(name) result(text)
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable :: text
+    integer :: i, j
+    text = ''
+    i = 1
+    do while (i <= len(name))
+      j = i
+      if (begins_word(name, i)) j = i + number_length(name(i:))
+      if (j > i) then
+        text = text//'#'
+        i = j
+      else
+        text = text//name(i:i)
+        i = i + 1
+      end if
+    end do
+  end function without_figures
+
+  !> Whether no letter, digit or underscore stands before character i.
+  pure logical function begins_word(name, i)
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: i
+    begins_word = i == 1
+    if (i > 1) begins_word = scan(name(i - 1:i - 1), letters//'_0123456789') == 0
+  end function begins_word
+
+  !> Length of the number that a text begins with, 0 if none.
+  pure integer function number_length(text)
+    character(len=*), intent(in) :: text
+    integer :: first
+    number_length = 0
+    first = verify(text, '+-.')
+    if (first == 0) return
+    if (scan(text(first:first), '0123456789') == 0) return
+    number_length = verify(text(first:), '0123456789.+-eEdD') - 1
+    if (number_length < 0) number_length = len(text) - first + 1
+    number_length = number_length + first - 1
+  end function number_length
 end module checks

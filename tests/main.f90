@@ -1,10 +1,12 @@
-!> Runs every test, or the suites named on the command line, and prints `N passed, N failed` as its last line.
+!> Runs every test, or the suites named on the command line, and prints `N passed, N failed` as its last line: assertions that
+!> differ, whatever the number of turns in which they are made.
 !>
 !>     fpm test                          every suite
 !>     fpm test -- contact friction      the suites test_contact and test_friction
 program gudgeon_tests
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use checks, only: checks_t
+  use test_checks, only: run_test_checks
   use test_adams, only: run_test_adams
   use test_adams_order, only: run_test_adams_order
   use test_case_file, only: run_test_case_file
@@ -52,6 +54,7 @@ program gudgeon_tests
     call get_command_argument(i, wanted(i))
   end do
 
+  call run('checks', run_test_checks)
   call run('adams', run_test_adams)
   call run('adams_order', run_test_adams_order)
   call run('case_file', run_test_case_file)
@@ -88,11 +91,12 @@ program gudgeon_tests
   call run('trace_files', run_test_trace_files)
   call run('two_joints', run_test_two_joints)
 
-  write (output_unit, '(i0,a,i0,a)') check%passed, ' passed, ', check%failed, ' failed'
+  call check%say_unprinted()
+  write (output_unit, '(i0,a,i0,a)') check%passed(), ' passed, ', check%failed(), ' failed'
   do i = 1, size(wanted)
     if (.not. found(i)) write (error_unit, '(3a)') 'no suite of the name ', trim(wanted(i)), ': see tests/main.f90'
   end do
-  if (check%failed > 0 .or. check%passed == 0 .or. .not. all(found)) error stop 1
+  if (check%failed() > 0 .or. check%passed() == 0 .or. .not. all(found)) error stop 1
 
 contains
 
@@ -106,6 +110,8 @@ contains
       end subroutine suite
     end interface
     where (wanted == name) found = .true.
-    if (size(wanted) == 0 .or. any(wanted == name)) call suite(check)
+    if (size(wanted) > 0 .and. .not. any(wanted == name)) return
+    call check%begin_suite(name)
+    call suite(check)
   end subroutine run
 end program gudgeon_tests
