@@ -4,6 +4,7 @@
 #   . scripts/setup.sh         from the top of the checkout: also puts fpm on the PATH of the calling shell
 #   scripts/setup.sh           the same for scripts and for later shells
 #   scripts/setup.sh --python  also what scripts/plot.py and scripts/report.py need, in .venv
+#   scripts/setup.sh --browser the same, and Chromium (Debian packages) for tests/test_report.py
 #   scripts/setup.sh --studies also what scripts/sensitivity.py, scripts/run_studies.sh and scripts/cluster need
 #
 # Needs root or sudo only to install Debian packages. An fpm that is installed here lives in .venv, with a link in
@@ -75,9 +76,15 @@ case "${0##*/} $#" in
   setup.sh*)
     case "$*" in
       --python) gudgeon_packages= ;;
+      --browser)
+        gudgeon_packages=
+        if ! { command -v chromium && command -v chromedriver; } >/dev/null 2>&1; then
+          gudgeon_apt chromium chromium-driver || gudgeon_status=1
+        fi
+        ;;
       --studies) gudgeon_packages="-r scripts/requirements-studies.txt" ;;
       *)
-        echo "setup: usage: scripts/setup.sh [--python | --studies]" >&2
+        echo "setup: usage: scripts/setup.sh [--python | --browser | --studies]" >&2
         gudgeon_status=2
         ;;
     esac

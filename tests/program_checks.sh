@@ -1,5 +1,6 @@
-# Checks of the program from the shell, for tests that source this from the top of the checkout. They
-# count in $passed and $failed; $work is a folder that goes with them; $subcommand is what `refused` asks the program for.
+# Checks of the program from the shell, for tests that source this from the top of the checkout. They count in $passed and
+# $failed as tests/checks.f90 does: a name without figures is one assertion, which has passed if every turn of it has. $work is
+# a folder that goes with them; $subcommand is what `refused` asks the program for.
 subcommand=
 passed=0
 failed=0
@@ -10,7 +11,12 @@ gudgeon=$(scripts/build.sh) || { echo "0 passed, 1 failed"; exit 1; }
 check() {   # check NAME CONDITION...: a test command
   name=$1
   shift
-  if "$@"; then passed=$((passed + 1)); else failed=$((failed + 1)); echo "FAILED: $name"; fi
+  if "$@"; then turn=passed; else turn=failed; echo "FAILED: $name"; fi
+  printf '%s\n' "$turn $name" | tr '\n' ' ' | sed -E 's/(^|[^A-Za-z_0-9])[-+.]*[0-9][-0-9.+eEdD]*/\1#/g' >>"$work/assertions"
+  echo >>"$work/assertions"
+  passed=$(cut -d ' ' -f 2- "$work/assertions" | sort -u | wc -l)
+  failed=$(grep '^failed ' "$work/assertions" | sort -u | wc -l)
+  passed=$((passed - failed))
 }
 
 run() {   # run ARGUMENTS...: sets status, $work/out and $work/err

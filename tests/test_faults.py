@@ -23,18 +23,15 @@ import tempfile
 import time
 from pathlib import Path
 
+from assertions import Assertions
+
 ROOT = Path(__file__).resolve().parent.parent
 FLORES = ROOT / "cases" / "flores"
 LONG = ("--set", "integrator.revolutions=400")          # many seconds
 SHORT = ("--set", "integrator.revolutions=0.2", "--set", "output.ideal_twin=F", "--set", "integrator.method=auto")
 PATIENCE = 60                                           # seconds for anything: a hang otherwise
-counts = {"passed": 0, "failed": 0}
-
-
-def check(condition: object, what: str) -> None:
-    counts["passed" if condition else "failed"] += 1
-    if not condition:
-        print(f"FAILED: {what}", flush=True)
+assertions = Assertions()
+check = assertions.check
 
 
 class Gudgeon:
@@ -503,8 +500,7 @@ def main() -> int:
             folder.mkdir()
             test(gudgeon, folder)
         test_kills(gudgeon, Path(work), options.kills, random.Random(options.seed))
-    print(f"{counts['passed']} passed, {counts['failed']} failed")
-    return 1 if counts["failed"] else 0
+    return assertions.report()
 
 
 if __name__ == "__main__":

@@ -23,10 +23,12 @@ from typing import Callable
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "scripts"))
+from assertions import Assertions  # noqa: E402
 from scene_judge.trace import Run, merged, run_case  # noqa: E402
 from scene_judge.verdict import judge_files, judge_scene, summary_of  # noqa: E402
 
-counts = {"passed": 0, "failed": 0}
+assertions = Assertions()
+check = assertions.check
 
 #: Runs by name: the case, and settings that keep it short. Between them they have every law and both joints.
 SCENES = {
@@ -35,6 +37,8 @@ SCENES = {
     "contact": ("sim_V_oscillating", {"integrator.method": "'auto'", "integrator.revolutions": "0.25", "initial.crank_angle_deg": "340"}),
     "ideal": ("flores/ideal", {"drive.kind": "'free'", "drive.damping": "0.03", "mechanism.gravity": "9.8", "initial.crank_angle_deg": "20"}),
 }
+
+PHASES = {"dry": {0, 2}, "film": {1}, "contact": {1, 2}, "ideal": {0}}   # 0 free flight, 1 film, 2 contact
 
 #: (what is changed, scene, column, change of (value, row), what the verdict must say)
 CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
@@ -88,12 +92,6 @@ MUTANTS = [
 ]
 
 
-def check(name: str, condition: bool, said: str = "") -> None:
-    counts["passed" if condition else "failed"] += 1
-    if not condition:
-        print(f"FAILED: {name}" + (f": {said}" if said else ""))
-
-
 def traced(program: Path, scene: str) -> Run:
     """A run with rows at every step and on a grid."""
     name, settings = SCENES[scene]
@@ -115,14 +113,13 @@ def test_corruptions(program: Path) -> None:
     runs = {scene: traced(program, scene) for scene in SCENES}
     for scene, run in runs.items():
         verdict = judge_files(copy.deepcopy(run))
-        check(f"{scene}: sound", not verdict.faults, "; ".join(verdict.faults))
-        check(f"{scene}: checked", verdict.checks > 10 and verdict.energy is not None, "; ".join(summary_of(verdict)))
+        check(not verdict.faults, f"{scene}: sound", "; ".join(verdict.faults))
+        check(verdict.checks > 10 and verdict.energy is not None, f"{scene}: checked", "; ".join(summary_of(verdict)))
         phases = set(run.columns.get("phase", [0.0]))
-        check(f"{scene}: has the phases that it is there for", phases == {"dry": {0, 2}, "contact": {1, 2}, "film": {1}, "ideal": {0}}[scene],
-              str(phases))
+        check(phases == PHASES[scene], f"{scene}: has the phases that it is there for", str(phases))
     for what, scene, column, change, says in CORRUPTIONS:
         faults = judge_files(changed(runs[scene], column, change)).faults
-        check(f"{what}: not seen", any(says in fault for fault in faults), "; ".join(faults) or "no fault found")
+        check(any(says in fault for fault in faults), f"{what}: seen", "; ".join(faults) or "no fault found")
 
 
 LIAR = """#!/usr/bin/env python3
@@ -156,7 +153,7 @@ def test_liars(program: Path, folder: Path) -> None:
         case = ROOT / "cases" / f"{name}.nml"
         said = run_case(program, case, {**settings, "output.ideal_twin": ".false."}).number(key)
         verdict = judge_scene(liar(folder, program, key, value, said, once="tolerance" in what or "alone" in what), case, settings)
-        check(f"a program with {what}: not seen", any(says in fault for fault in verdict.faults), "; ".join(summary_of(verdict)))
+        check(any(says in fault for fault in verdict.faults), f"a program with {what}: seen", "; ".join(summary_of(verdict)))
 
 
 def test_mutants(folder: Path) -> None:
@@ -166,16 +163,16 @@ def test_mutants(folder: Path) -> None:
         shutil.rmtree(tree, ignore_errors=True)
         shutil.copytree(ROOT, tree, ignore=shutil.ignore_patterns("build", ".git", ".venv", "results"))
         text = (tree / file).read_text()
-        check(f"mutant ({what}): the line is there", text.count(old) == 1, file)
+        check(text.count(old) == 1, f"mutant ({what}): the line is there", file)
         (tree / file).write_text(text.replace(old, new))
         path = {**os.environ, "PATH": f"{ROOT / '.venv' / 'bin'}:{os.environ['PATH']}"}
         built = subprocess.run(["fpm", "build", "--profile", "release"], cwd=tree, env=path, capture_output=True, text=True, check=False)
         programs = [one for one in tree.glob("build/*/app/gudgeon") if one.is_file()]
         if built.returncode or not programs:
-            check(f"mutant ({what}): built", False, built.stderr[-300:])
+            check(False, f"mutant ({what}): built", built.stderr[-300:])
             continue
         faults = judge_files(traced(programs[0], scene)).faults
-        check(f"mutant ({what}): not seen", any(says in fault for fault in faults), "; ".join(faults) or "no fault found")
+        check(any(says in fault for fault in faults), f"mutant ({what}): seen", "; ".join(faults) or "no fault found")
 
 
 def main() -> int:
@@ -194,8 +191,7 @@ def main() -> int:
         test_liars(program, Path(folder))
         if options.mutants:
             test_mutants(Path(folder))
-    print(f"{counts['passed']} passed, {counts['failed']} failed")
-    return 1 if counts["failed"] else 0
+    return assertions.report()
 
 
 if __name__ == "__main__":

@@ -3,8 +3,8 @@
 
     tests/test_report.py [PAGE.html...]     default: pages made for the test of one run of each kind
 
---screenshots DIR keeps pictures of what the browser showed. Needs Debian's packages chromium and chromium-driver; says
-so and leaves with 0 where they are missing. Ends with the line "N passed, N failed".
+--screenshots DIR keeps pictures of what the browser showed. Needs Debian's packages chromium and chromium-driver, which
+scripts/setup.sh --browser installs; fails without them. Ends with the line "N passed, N failed".
 """
 
 import argparse
@@ -19,6 +19,8 @@ import time
 import urllib.error
 import urllib.request
 from pathlib import Path
+
+from assertions import Assertions
 
 TOP = Path(__file__).resolve().parents[1]
 
@@ -119,35 +121,21 @@ class Browser:
         self.process.wait(10)
 
 
-class Checks:
-    """Counts what held and prints what did not."""
-
-    def __init__(self) -> None:
-        self.passed = self.failed = 0
-
-    def that(self, held: bool, what: str) -> None:
-        if held:
-            self.passed += 1
-        else:
-            self.failed += 1
-            print(f"FAILED: {what}")
-
-
-def check_page(browser: Browser, page: Path, checks: Checks, pictures: Path | None) -> None:
+def check_page(browser: Browser, page: Path, checks: Assertions, pictures: Path | None) -> None:
     """One page as a reader meets it."""
     name = page.stem
-    checks.that(page.stat().st_size < LARGEST_PAGE, f"{name}: {page.stat().st_size} bytes")
+    checks.check(page.stat().st_size < LARGEST_PAGE, f"{name}: {page.stat().st_size} bytes")
     text = page.read_text(encoding="utf-8")
-    checks.that(
+    checks.check(
         'src="http' not in text and "{{" not in text.split("<script", 1)[0], f"{name}: loads nothing, all filled in"
     )
     browser.open(page)
-    checks.that(browser.wait("window.gudgeon && window.gudgeon.ready"), f"{name}: gets ready")
-    checks.that(browser.run("return document.getElementById('failure').hidden"), f"{name}: tells no failure")
+    checks.check(browser.wait("window.gudgeon && window.gudgeon.ready"), f"{name}: gets ready")
+    checks.check(browser.run("return document.getElementById('failure').hidden"), f"{name}: tells no failure")
     clearance = browser.run("return gudgeon.scene.clearance > 0")
     canvases = ["mechanism", "timeline"] + (["joint", "orbit"] if clearance else [])
     plots = browser.run("return gudgeon.scene.plots.length")
-    checks.that(
+    checks.check(
         plots >= 5 and browser.run("return document.querySelectorAll('#plots .main-svg').length") >= plots,
         f"{name}: every plot is drawn",
     )
@@ -155,34 +143,34 @@ def check_page(browser: Browser, page: Path, checks: Checks, pictures: Path | No
         "return gudgeon.charts.filter(c => ![...c.div.querySelectorAll('.scatterlayer path.js-line')]"
         ".some(p => (p.getAttribute('d') || '').length > 20)).map(c => c.div.layout.title.text)"
     )
-    checks.that(not empty, f"{name}: no curve in {empty}")
+    checks.check(not empty, f"{name}: no curve in {empty}")
 
     before = {canvas: browser.run(IMAGE, canvas) for canvas in canvases}
     browser.run(MOVE, "scrub", 0.37)
-    checks.that(browser.run("return gudgeon.now") > 0, f"{name}: scrubs")
+    checks.check(browser.run("return gudgeon.now") > 0, f"{name}: scrubs")
     for canvas in canvases:
-        checks.that(browser.run(PAINTED, canvas), f"{name}: {canvas} is painted")
-        checks.that(browser.run(IMAGE, canvas) != before[canvas], f"{name}: {canvas} moves")
+        checks.check(browser.run(PAINTED, canvas), f"{name}: {canvas} is painted")
+        checks.check(browser.run(IMAGE, canvas) != before[canvas], f"{name}: {canvas} moves")
     if clearance:
         image = browser.run(IMAGE, "joint")
         browser.run(MOVE, "magnification", 0.3)
-        checks.that(browser.run(IMAGE, "joint") != image, f"{name}: the clearance is magnified")
+        checks.check(browser.run(IMAGE, "joint") != image, f"{name}: the clearance is magnified")
         browser.run(MOVE, "magnification", 1)
     if browser.run("return gudgeon.scene.contacts.length"):
         browser.run("gudgeon.seek(0); document.getElementById('next').click()")
         inside = browser.run("return gudgeon.scene.contacts.some(c => gudgeon.now >= c.begin && gudgeon.now <= c.end)")
-        checks.that(inside, f"{name}: the next contact is found")
+        checks.check(inside, f"{name}: the next contact is found")
         if pictures:
             browser.run("gudgeon.seek(0.3 * gudgeon.scene.contacts[0].begin + 0.7 * gudgeon.scene.contacts[0].end)")
             browser.screenshot(pictures / f"{name}_contact.png")
 
     browser.run("gudgeon.seek(0); document.getElementById('play').click()")
     time.sleep(1.0)
-    checks.that(browser.run("return gudgeon.playing && gudgeon.now > 0"), f"{name}: plays")
+    checks.check(browser.run("return gudgeon.playing && gudgeon.now > 0"), f"{name}: plays")
     browser.run("document.getElementById('play').click()")
     stopped = browser.run("return gudgeon.now")
     time.sleep(0.3)
-    checks.that(browser.run("return gudgeon.now") == stopped, f"{name}: pauses")
+    checks.check(browser.run("return gudgeon.now") == stopped, f"{name}: pauses")
 
     browser.run(
         "const t = gudgeon.charts.filter(c => c.timed); Plotly.relayout(t[0].div,"
@@ -191,9 +179,9 @@ def check_page(browser: Browser, page: Path, checks: Checks, pictures: Path | No
     linked = browser.wait(
         "gudgeon.charts.filter(c => c.timed).every(c => Math.abs(c.div.layout.xaxis.range[1] - 2) < 1e-9)", 10
     )
-    checks.that(linked, f"{name}: time axes zoom together")
+    checks.check(linked, f"{name}: time axes zoom together")
     messages = browser.messages()
-    checks.that(not messages, f"{name}: console: {messages}")
+    checks.check(not messages, f"{name}: console: {messages}")
     if pictures:
         browser.run("Plotly.relayout(gudgeon.charts.find(c => c.timed).div, {'xaxis.autorange': true})")
         browser.run(MOVE, "scrub", 0.62)
@@ -213,11 +201,11 @@ def main() -> int:
     chromium = shutil.which("chromium") or shutil.which("chromium-browser")
     driver = shutil.which("chromedriver")
     if not chromium or not driver:
-        print("skipped: no Chromium here (apt-get install chromium chromium-driver)\n0 passed, 0 failed")
-        return 0
+        print("no Chromium here: scripts/setup.sh --browser (or apt-get install chromium chromium-driver)\n0 passed, 1 failed")
+        return 1
     if options.screenshots:
         options.screenshots.mkdir(parents=True, exist_ok=True)
-    checks = Checks()
+    checks = Assertions()
     with tempfile.TemporaryDirectory() as work:
         pages = options.page
         for case in CASES if not pages else ():
@@ -226,7 +214,7 @@ def main() -> int:
                 [sys.executable, str(TOP / "scripts" / "report.py"), case, "--results", work, "-o", str(page)],
                 check=False,
             )
-            checks.that(made.returncode == 0, f"{case}: the page is made")
+            checks.check(made.returncode == 0, f"{case}: the page is made")
             if made.returncode == 0:
                 pages = [*pages, page]
         browser = Browser(chromium, driver, str(Path(work) / "profile"))
@@ -235,8 +223,7 @@ def main() -> int:
                 check_page(browser, page, checks, options.screenshots)
         finally:
             browser.close()
-    print(f"{checks.passed} passed, {checks.failed} failed")
-    return 1 if checks.failed else 0
+    return checks.report()
 
 
 if __name__ == "__main__":

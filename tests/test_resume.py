@@ -20,7 +20,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from test_faults import ROOT, Gudgeon, check, counts, program_built
+from test_faults import ROOT, Gudgeon, assertions, check, program_built
 
 CASES = ROOT / "cases"
 SHORT = ("--set", "integrator.revolutions=0.5", "--set", "integrator.method=auto", "--set", "output.ideal_twin=F")
@@ -341,8 +341,7 @@ def main() -> int:
         beginnings(gudgeon, work / "begin")
     finally:
         shutil.rmtree(work, ignore_errors=True)
-    print(f"{counts['passed']} passed, {counts['failed']} failed")
-    return counts["failed"] > 0
+    return assertions.report()
 
 
 if __name__ == "__main__":

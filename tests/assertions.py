@@ -1,0 +1,50 @@
+"""Named assertions of the tests in Python, counted as tests/checks.f90 counts them.
+
+An assertion is a name without figures: one that is made for many files, kills or rows counts once, and has passed if every turn has.
+"""
+from __future__ import annotations
+
+import collections
+import re
+
+MOST_PRINTED = 5   # failing turns of one assertion that are printed
+NUMBER = re.compile(r"(?<![A-Za-z_0-9])[-+.]*\d[\d.+\-eEdD]*")
+
+
+def without_figures(name: str) -> str:
+    """A name in which every number is '#'; digits inside a word, as in dry_0100um, stay."""
+    return NUMBER.sub("#", name)
+
+
+class Assertions:
+    """The assertions of one test run. Only failures are printed."""
+
+    def __init__(self) -> None:
+        self.turns: collections.Counter = collections.Counter()
+        self.failures: collections.Counter = collections.Counter()
+
+    def check(self, held: object, name: str, found: str = "") -> None:
+        """One turn of the assertion `name`; `found` says what was there instead, and is no part of the name."""
+        key = without_figures(name)
+        self.turns[key] += 1
+        if held:
+            return
+        self.failures[key] += 1
+        if self.failures[key] <= MOST_PRINTED:
+            print(f"FAILED: {name}" + (f": {found}" if found else ""), flush=True)
+
+    @property
+    def failed(self) -> int:
+        return sum(number > 0 for number in self.failures.values())
+
+    @property
+    def passed(self) -> int:
+        return len(self.turns) - self.failed
+
+    def report(self) -> int:
+        """Print the last line; the exit status, 1 where anything failed or nothing was asserted."""
+        for name, number in self.failures.items():
+            if number > MOST_PRINTED:
+                print(f"FAILED: {name}: {number} of {self.turns[name]} turns")
+        print(f"{self.passed} passed, {self.failed} failed")
+        return 0 if self.passed and not self.failed else 1
