@@ -33,11 +33,13 @@ check = assertions.check
 #: Runs by name: the case, and settings that keep it short. Between them they have every law and both joints.
 SCENES = {
     "dry": ("flores/friction_050", {"integrator.revolutions": "0.3"}),
-    "film": ("sim_V", {"integrator.method": "'auto'", "integrator.revolutions": "1.2", "initial.crank_angle_deg": "170"}),
+    "film": ("sim_V", {"integrator.method": "'auto'", "integrator.revolutions": "1.2", "initial.crank_angle_deg": "170",
+                       "integrator.max_step": "5e-5"}),
     "contact": ("sim_V_oscillating", {"integrator.method": "'auto'", "integrator.revolutions": "0.25", "initial.crank_angle_deg": "340"}),
     "ideal": ("flores/ideal", {"drive.kind": "'free'", "drive.damping": "0.03", "mechanism.gravity": "9.8", "initial.crank_angle_deg": "20"}),
 }
 
+LONG_STEPS = ("sim_V", {"integrator.method": "'auto'", "integrator.revolutions": "1.2", "initial.crank_angle_deg": "170"})
 PHASES = {"dry": {0, 2}, "film": {1}, "contact": {1, 2}, "ideal": {0}}   # 0 free flight, 1 film, 2 contact
 
 #: (what is changed, scene, column, change of (value, row), what the verdict must say)
@@ -77,9 +79,8 @@ LIARS = [
     ("thicker oil", "film", "lubrication.viscosity", "0.0118", "film law"),
     ("a heavier piston", "ideal", "mechanism.piston_mass", "0.92", "Newton, piston"),
     ("less gravity", "film", "mechanism.gravity", "9.8", "Newton, piston"),
-    ("a looser tolerance than asked for, smooth", "ideal", "integrator.relative_tolerance", "1e-3", "grown tolerances off"),
     ("a looser tolerance than asked for, in contact", "contact", "integrator.relative_tolerance", "1e-4", "grown tolerances off"),
-    ("a looser tolerance than asked for, film", "film", "integrator.relative_tolerance", "1e-3", "energy not kept"),
+    ("a looser tolerance than asked for, in a film", "long steps", "integrator.relative_tolerance", "1e-3", "grown tolerances off"),
     ("a heavier piston in one method alone", "dry", "mechanism.piston_mass", "0.25", "beyond the horizon"),
 ]
 
@@ -149,7 +150,7 @@ def liar(folder: Path, program: Path, key: str, value: str, said: float, once: b
 def test_liars(program: Path, folder: Path) -> None:
     """A program with other physics than it says."""
     for what, scene, key, value, says in LIARS:
-        name, settings = SCENES[scene]
+        name, settings = LONG_STEPS if scene == "long steps" else SCENES[scene]
         case = ROOT / "cases" / f"{name}.nml"
         said = run_case(program, case, {**settings, "output.ideal_twin": ".false."}).number(key)
         verdict = judge_scene(liar(folder, program, key, value, said, once="tolerance" in what or "alone" in what), case, settings)

@@ -11,6 +11,7 @@ import math
 from .trace import Run
 
 Vector = tuple[float, float]
+LAST_DIGITS = 1e-13   # of the forces that a force is the difference of
 
 
 def cross(a: Vector, b: Vector) -> float:
@@ -33,10 +34,12 @@ def acceleration(origin: Vector, arm: Vector, turn: float, turn_rate: float) -> 
 
 @dataclasses.dataclass
 class Balance:
-    """A sum that must vanish, and the sum of its terms' sizes, against which rounding is measured."""
+    """A sum that must vanish, and the sum of its terms' sizes, against which rounding is measured; `noise` is rounding that the
+    terms bring along."""
 
     miss: float
     size: float
+    noise: float = 0.0
 
 
 def balance(*terms: float) -> Balance:
@@ -118,6 +121,14 @@ class Row:
         return [self.bodies.inertia[1] * self.rod_turn_rate, -to_crank[0] * at_crank[1], to_crank[1] * at_crank[0],
                 -to_pin[0] * self.force[1], to_pin[1] * self.force[0]]
 
+    def noise(self) -> float:
+        """Rounding that any force of the row may carry: of weights, of what the motion takes and of the gas, to the last digits [N]."""
+        b = self.bodies
+        speeds = (b.crank_length + b.rod_length) * (self.turn**2 + self.rod_turn**2)
+        size = sum(b.mass) * (abs(b.gravity) + speeds) + abs(self.gas) + math.hypot(*self.force)
+        size += b.inertia[1] * (self.turn**2 + self.rod_turn**2 + abs(self.rod_turn_rate)) / b.rod_length
+        return LAST_DIGITS * size * b.rod_length / abs(self.rod[0])   # the guide's force has the rod's slope in it
+
     def joint_moment(self) -> float:
         return math.fsum(self.rod_moment_terms())
 
@@ -158,4 +169,10 @@ class Row:
             found["pin speed, y"] = balance(self.crankpin_velocity[1], self.rod_turn * self.rod[0])
             found["pin acceleration, x"] = Balance(abs(at_end[0] - self.ax), abs(at_end[0]) + abs(at_pin[0]))
             found["pin acceleration, y"] = Balance(abs(at_end[1]), abs(at_pin[1]) + abs(self.rod_turn_rate * self.rod[0]))
+        noise = self.noise()
+        for name, one in found.items():
+            if name.startswith(("Newton", "guide", "force")):
+                one.noise = noise
+            elif name.startswith("Euler"):
+                one.noise = noise * (b.crank_length + b.rod_length)
         return found

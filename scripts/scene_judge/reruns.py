@@ -1,7 +1,8 @@
 """A run against the same scene by the other method at a hundredth of its tolerance: states up to the horizon, statistics beyond.
 
 How far two runs may lie apart is measured, not assumed: two further runs, at the hundredth too, start as far off as the tolerance
-means (the relative tolerance times the size of each coordinate). What they have moved apart from the reference by some time is
+means (the relative tolerance times the size of each coordinate), and one of them has constants of its laws that far off besides,
+since errors are made all along. What they have moved apart from the reference by some time is
 what one error of the size of the tolerance becomes by then. A run makes such an error in every step at most, so its distance is
 judged in these units, and beyond the time at which they are of order one, not at all: there the motion has forgotten its start,
 and only statistics can agree.
@@ -25,7 +26,9 @@ FINEST = 1e-13        # tolerance of a reference
 MOST_EVALUATIONS = 2_000_000_000   # that a case may ask for
 BLOCKS = 10           # revolutions for the statistics
 LEAST_BLOCKS = 4      # of them beyond the horizon
-SPREAD = 5.0          # standard errors between means that agree
+STEADY = 0.7          # least over largest crank speed where statistics of revolutions mean something
+SPREAD = 5.0          # standard errors between means that agree, by the scatter of many blocks
+FEW = 14.0            # the same by the scatter of three runs: Student's distribution, as rare
 SLACK = 0.02          # and this part of the mean: errors of order one do not stop at the horizon
 
 
@@ -116,9 +119,9 @@ class Reruns:
         settings.update({key.replace("__", "."): value for key, value in more.items()})
         return run_case(self.program, self.case, settings, self.limit)
 
-    def reference(self, span: float, rows: int, start: dict[str, str]) -> Run:
+    def reference(self, span: float, rows: int, change: dict[str, str]) -> Run:
         return self.run(span, rows, integrator__method=f"'{self.other}'",
-                        integrator__relative_tolerance=repr(max(self.tolerance / 100, FINEST)), **start)
+                        integrator__relative_tolerance=repr(max(self.tolerance / 100, FINEST)), **change)
 
     def neighbour_start(self, scales: Scales, off: float) -> dict[str, str]:
         """The start, off by so much of its size in every coordinate that is integrated."""
@@ -134,6 +137,15 @@ class Reruns:
             for key, size in (("eccentricity", scales.eccentricity), ("eccentricity_rate", scales.rate)):
                 start[f"initial__{key}"] = ",".join(repr(value + sign() * size) for value in run.pair(f"initial.{key}"))
         return start
+
+    def neighbour_laws(self, off: float) -> dict[str, str]:
+        """Constants of the laws, off by so much: an error that goes on being made, as that of the steps does."""
+        changed = {}
+        for key in ("joint.clearance", "contact.youngs_modulus", "lubrication.viscosity", "mechanism.piston_mass", "mechanism.crank_inertia"):
+            if self.judged.number(key) > 0:
+                changed[key.replace(".", "__")] = ",".join(repr(value * (1 + self.random.choice((-1.0, 1.0)) * off))
+                                                           for value in self.judged.case[key])
+        return changed
 
     def compare(self) -> Comparison:
         """States up to the horizon; where that comes before the end of the run, statistics over ten revolutions."""
@@ -155,7 +167,8 @@ class Reruns:
             if run.status or len(run.times) < 10:
                 return f"{name}: {run.summary.get('status', run.message)[:120]}"
         scales = scales_of(reference, states(reference))
-        neighbours = [self.reference(span, rows, self.neighbour_start(scales, off)) for _ in range(2)]
+        changes = self.neighbour_start(scales, off), {**self.neighbour_start(scales, off), **self.neighbour_laws(off)}
+        neighbours = [self.reference(span, rows, change) for change in changes]
         for run in neighbours:
             if run.status == 3:
                 raise ValueError(f"a scene to compare with is refused: {run.message}")
@@ -178,6 +191,10 @@ class Reruns:
             found.no_statistics = runs
             return
         run, reference, neighbours = runs
+        late = [abs(turn) for turn, t in zip(reference.columns["crank_speed"], reference.times) if t >= first * block]
+        if min(late) < STEADY * max(late):
+            found.no_statistics = "the crank does not keep its speed"
+            return
         for name, figure in FIGURES.items():
             by_run = [[figure(one, k * block, (k + 1) * block) for k in range(first, BLOCKS)] for one in (run, reference, *neighbours)]
             # the energy itself is kept to its tolerance only
@@ -265,7 +282,7 @@ def mean_share(ours: list[float], theirs: list[list[float]], known: float) -> fl
     mean = sum(means) / blocks
     by_block = sum((one[k] - means[k])**2 for one in theirs for k in range(blocks)) / ((n - 1) * blocks * blocks)
     by_run = sum((sum(one) / blocks - mean)**2 for one in theirs) / (n - 1)   # larger where blocks follow from one another
-    error = math.sqrt(max(by_block, by_run) * (1 + 1 / n))
-    allowed = SPREAD * error + SLACK * max(abs(value) for value in means) + known
+    chance = max(SPREAD * math.sqrt(by_block), FEW * math.sqrt(by_run)) * math.sqrt(1 + 1 / n)
+    allowed = chance + SLACK * max(abs(value) for value in means) + known
     apart = abs(sum(ours) / blocks - mean)
     return apart / allowed if allowed > 0 else (0.0 if apart == 0 else math.inf)

@@ -73,7 +73,7 @@ class RowChecks:
             row = self.row(i)
             t = row.get["time"]
             for name, found in row.balances(self.joint_moment(row) if self.has_joint else 0.0).items():
-                self.take(name, found.miss, SUM * found.size + 1e-300, t)
+                self.take(name, found.miss, SUM * found.size + found.noise + 1e-300, t)
             if self.has_joint:
                 self.check_joint(row, t)
             if self.gas:

@@ -110,9 +110,8 @@ def run_case(program: Path, case: Path, settings: dict[str, str], limit: float =
 
 
 def merged(one: Run, other: Run) -> Run:
-    """The rows of two runs of the same motion in the order of time; of rows at the same time the first run's stays."""
-    times, more = one.times, other.times
-    taken = set(times)
-    order = sorted([(t, 0, i) for i, t in enumerate(times)] + [(t, 1, i) for i, t in enumerate(more) if t not in taken])
+    """The rows of two runs of the same motion in the order of time; of rows at the same time the first stays."""
+    order = sorted([(t, 0, i) for i, t in enumerate(one.times)] + [(t, 1, i) for i, t in enumerate(other.times)])
+    order = [here for k, here in enumerate(order) if k == 0 or here[0] > order[k - 1][0]]
     sources = (one.columns, other.columns)
     return dataclasses.replace(one, columns={name: [sources[k][name][i] for _, k, i in order] for name in one.columns})
