@@ -18,6 +18,7 @@ contains
     call a_status_is_one_field(check, 'done', '"done"')
     call a_status_is_one_field(check, '"a","b', '"""a"",""b"')
     call a_status_is_one_field(check, 'a""', '"a"""""')
+    call times_by_method_stand_under_their_phases(check)
     call slow_builds_are_told(check)
   end subroutine run_test_summary
 
@@ -38,6 +39,39 @@ contains
     call check%equal_text(summary_value(table, 'events_bytes'), '', 'no length of a file that is not there')
     call check%equal_text(summary_value('', 'status'), '', 'no table')
   end subroutine a_status_is_one_field
+
+  !> A tenth of the time in a film with Radau, the rest in contact with Adams; with two joints, both phases.
+  subroutine times_by_method_stand_under_their_phases(check)
+    class(checks_t), intent(inout) :: check
+    type(case_t) :: case
+    type(run_report_t) :: report
+    report%status = 'done'
+    report%figures%time = 2
+    report%figures%min_film_thickness = 0
+    case%output%digits = 10
+    allocate (report%time_with(2, 0:2), source=0.0_dp)
+    report%time_with(2, 1) = 0.2_dp
+    report%time_with(1, 2) = 1.8_dp
+    call has(case, report, 'film_time_fraction_with_radau,1.000000000E-01,1')
+    call has(case, report, 'contact_time_fraction_with_adams,9.000000000E-01,1')
+    deallocate (report%time_with)
+    allocate (report%time_with(2, 0:8), source=0.0_dp)
+    report%time_with(1, 2 + 3*1) = 1
+    call has(case, report, 'contact_film_time_fraction_with_adams,5.000000000E-01,1')
+
+  contains
+
+    subroutine has(case, report, row)
+      type(case_t), intent(in) :: case
+      type(run_report_t), intent(in) :: report
+      character(len=*), intent(in) :: row
+      character(len=:), allocatable :: table
+      table = summary_table(case, report, 0.0_dp, '0', 0_int64, 0_int64)
+      call check%that(index(table, achar(10)//row//achar(10)) > 0, 'a time by method: '//row)
+      call check%that(index(table(index(table, row) + len(row):), '_time_fraction_with_') == 0 .or. &
+        index(row, 'film_') == 1, 'and no other')
+    end subroutine has
+  end subroutine times_by_method_stand_under_their_phases
 
   !> The line about a build for debugging: only after a while, only where the compiler has not optimised.
   subroutine slow_builds_are_told(check)

@@ -55,9 +55,9 @@ contains
       end if
       if (allocated(report%time_with)) then
         call add('method_switches', integer_text(s%switches), '1')
-        do mode = 1, size(report%time_with, 2)
+        do mode = lbound(report%time_with, 2), ubound(report%time_with, 2)
           do method = with_adams, with_radau
-            if (report%time_with(method, mode) > 0) call add(phases_of(mode - 1, size(report%time_with, 2))// &
+            if (report%time_with(method, mode) > 0) call add(phases_of(mode, size(report%time_with, 2))// &
               '_time_fraction_with_'//trim(method_names(method)), real_text(report%time_with(method, mode)/f%time), '1')
           end do
         end do

@@ -27,7 +27,7 @@ module simulation
     character(len=:), allocatable :: status      !! 'done', or in words why and where it ended
     type(step_statistics_t) :: statistics
     type(run_figures_t) :: figures
-    real(dp), allocatable :: time_with(:, :)     !! by method auto: time with Adams and with Radau, (2), in each mode of the scene [s]
+    real(dp), allocatable :: time_with(:, :)     !! by method auto: time with Adams and with Radau in each mode, (2, 0:highest mode) [s]
     logical :: can_go_on = .false.               !! stopped from outside or by a limit: the sink was given its state
     logical :: energy_is_poor = .false.          !! done, but with a residual that somebody should know of
     real(dp) :: auto_saves = 0                   !! > 0: evaluations of this run over those that method auto needs, measured

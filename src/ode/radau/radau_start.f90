@@ -98,7 +98,7 @@ contains
 
     order = self%stages%stages()
     longest = min(self%settings%max_step, self%settings%first_step, self%settings%span)
-    size_y = scaled_norm(self, self%y)
+    size_y = min(scaled_norm(self, self%y), 1/inner_tolerance(working_tolerance(self), order))   ! of what does not grow
     slope = scaled_norm(self, self%f(:size(self%y)))
     h = 1e-6_dp*longest
     if (slope > 0 .and. size_y > 0) h = min(0.01_dp*size_y/slope, longest)
