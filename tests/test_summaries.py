@@ -14,7 +14,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from test_faults import ROOT, Gudgeon, check, counts, program_built
+from test_faults import ROOT, Gudgeon, assertions, check, program_built
 
 LONG = {"sim_IV", "sim_V"}   # with the method of their files: 4 and 11 million steps
 
@@ -67,8 +67,7 @@ def main() -> int:
             check(status == 0, f"cases run: {status} {err}")
             for file in chosen:
                 judge(Path(work), file.stem, slack)
-    print(f"{counts['passed']} passed, {counts['failed']} failed")
-    return int(counts["failed"] > 0)
+    return assertions.report()
 
 
 if __name__ == "__main__":
