@@ -85,7 +85,7 @@ contains
     call move_alloc(recorder%sink, sink)
     if (present(cycles)) call move_alloc(recorder%cycles, cycles)
     report%statistics = method%totals()
-    if (allocated(method%time_with)) report%time_with = method%time_with(:, :)   ! modes from 1 on
+    if (allocated(method%time_with)) report%time_with = method%time_with
     report%figures = recorder%figures
     report%can_go_on = any(status == [integration_interrupted, step_limit_reached, evaluation_limit_reached, &
       revolution_budget_spent])
