@@ -8,7 +8,7 @@ set -e
 copy=build/extended_precision
 mkdir -p "$copy"
 cp -rp fpm.toml fpm.rsp src tests cases scripts "$copy"
-sed -i 's/dp = real64 .*/dp = selected_real_kind(18)/' "$copy/src/base/kinds.f90"
+sed -i 's/dp = real64 .*/dp = selected_real_kind(18)/' "$copy/src/base/gudgeon_kinds.f90"
 reference() {   # reference WHAT FILE
   "$copy/$("$copy/scripts/build.sh" integrator_battery)" "$1" | grep '^[0-9]* .*E' >"$2"
 }

@@ -7,9 +7,9 @@
 !>                                         its scene, and its ideal twin if it asks for one
 program measure_costs
   use, intrinsic :: iso_fortran_env, only: int64
-  use kinds, only: dp
-  use constants, only: pi
-  use errors, only: error_t
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: pi
+  use gudgeon_errors, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use adams, only: adams_t
@@ -20,7 +20,7 @@ program measure_costs
   use ode_method, only: ode_method_t, step_done
   use gudgeon_events, only: event_watch_t
   use gudgeon_methods, only: new_method
-  use recorder, only: recorder_t
+  use gudgeon_recorder, only: recorder_t
   use trace_sink, only: trace_sink_t
   use silent_sink, only: silent_sink_t
   implicit none

@@ -3,14 +3,14 @@
 !> runs, the evaluations and the seconds of processor and clock.
 program measure_runs
   use, intrinsic :: iso_fortran_env, only: int64
-  use kinds, only: dp
-  use errors, only: error_t
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t
   use case_definition, only: case_t
   use case_values, only: case_values_t
   use case_file, only: read_case_values
   use gudgeon_columns, only: column_list_t
   use cycle_watch, only: cycle_watch_t
-  use simulation, only: simulate, run_report_t
+  use gudgeon_simulation, only: simulate, run_report_t
   use trace_sink, only: trace_sink_t
   use silent_sink, only: silent_sink_t
   use study_definition, only: study_t

@@ -1,6 +1,6 @@
 !> A sink that throws everything away, for measuring what a recorder costs.
 module silent_sink
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use trace_sink, only: trace_sink_t, trace_event_t
   implicit none
   private

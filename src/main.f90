@@ -1,21 +1,21 @@
 !> gudgeon: the slider-crank mechanism with clearance in its piston-pin joint. Reads the command line and runs the cases.
 program gudgeon
   use, intrinsic :: iso_fortran_env, only: int64, compiler_options
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use omp_lib, only: omp_get_num_procs
-  use errors, only: error_t, fail, status_ok, status_integration, status_output
+  use gudgeon_errors, only: error_t, fail, status_ok, status_integration, status_output
   use command_line, only: command_line_t, parse_command_line, program_arguments, help_text
   use case_file, only: template
   use case_runner, only: case_job_t
   use study_runner, only: run_study_file
   use study_file, only: study_template
-  use progress, only: progress_wanted, tell
-  use summary, only: build_advice
+  use gudgeon_progress, only: progress_wanted, tell
+  use gudgeon_summary, only: build_advice
   use text_tools, only: printable
   use run_identity, only: identity_length, program_identity
-  use posix, only: fill_standard_descriptors, signal_set_t, hold_interrupts, interrupted, ignore_write_signals, write_bytes, &
-    error_text, error_interrupted, error_broken_pipe, quit
-  use version, only: program_version
+  use gudgeon_posix, only: fill_standard_descriptors, signal_set_t, hold_interrupts, interrupted, ignore_write_signals, &
+    write_bytes, error_text, error_interrupted, error_broken_pipe, quit
+  use gudgeon_version, only: program_version
   implicit none
   type(command_line_t) :: options
   type(error_t), allocatable :: error

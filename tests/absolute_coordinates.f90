@@ -1,7 +1,7 @@
 !> A scene with clearance in the coordinates (q, A, x) of its bodies, in which the eccentricity is a difference of numbers ten
 !> thousand times larger: what the scenes' own coordinates are measured against.
 module absolute_coordinates
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t
   use gudgeon_scene, only: scene_t, evaluation_t
   use state_making, only: put_crank, put_pin

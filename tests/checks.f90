@@ -5,7 +5,7 @@
 module checks
   use, intrinsic :: iso_fortran_env, only: output_unit, int64
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   implicit none
   private
   public :: checks_t, without_figures

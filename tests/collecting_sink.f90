@@ -1,11 +1,11 @@
 !> A sink that keeps rows and events in memory, and one call to run a case file into it.
 module collecting_sink
-  use kinds, only: dp
-  use errors, only: error_t
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use gudgeon_columns, only: column_list_t, choose_columns, column_name
-  use simulation, only: simulate, run_report_t
+  use gudgeon_simulation, only: simulate, run_report_t
   use trace_sink, only: trace_sink_t, trace_event_t
   implicit none
   private

@@ -1,6 +1,6 @@
 !> How far a problem of the standard battery carries a change of its state: what no integrator can do better than.
 module conditioning
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use adams, only: adams_t
   use gudgeon_solver, only: integrate, silent_observer_t, integration_done
   use standard_problems, only: standard_problem_t, new_standard_problem, standard_settings

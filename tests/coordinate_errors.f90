@@ -1,7 +1,7 @@
 !> How well the pin's place in its bearing is known, by coordinates and tolerances.
 module coordinate_errors
-  use kinds, only: dp
-  use errors, only: error_t
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use ode_problem, only: ode_problem_t

@@ -1,7 +1,7 @@
 !> How the energy of crank, rod and piston changes along a motion, from where their centres of mass are and nothing else: velocities
 !> are complex-step derivatives of the positions, in quadruple precision, and so exact to what a double can tell.
 module energy_of_bodies
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use chain_bodies, only: bodies_t
   implicit none
   private

@@ -7,8 +7,8 @@
 !> and the largest time error among the first `compared` of them over the time of one radian.
 program integrator_comparison
   use, intrinsic :: iso_fortran_env, only: int64
-  use kinds, only: dp
-  use errors, only: error_t
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use ode_method, only: ode_method_t, step_statistics_t

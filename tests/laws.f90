@@ -1,14 +1,14 @@
 !> Laws for tests, made as a case makes them: read, checked and prepared for a bearing.
 module laws
-  use kinds, only: dp
-  use errors, only: error_t
-  use bearing, only: bearing_t
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t
+  use gudgeon_bearing, only: bearing_t
   use case_definition, only: case_t
   use case_file, only: parse_case
   use contact_law, only: contact_law_t
   use friction_law, only: friction_law_t
   use film_law, only: film_law_t
-  use parameters, only: has_parameters_t, parameter_list_t, key_t
+  use gudgeon_parameters, only: has_parameters_t, parameter_list_t, key_t
   implicit none
   private
   public :: contact_law_of, friction_law_of, film_law_of, parameter_of

@@ -1,7 +1,7 @@
 !> An observer that measures the error that each accepted step makes by itself, as DETEST does (Enright & Pryce 1987): against
 !> the local solution, which passes through the step's own beginning, integrated by an independent method.
 module local_errors
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t
   use gudgeon_solver, only: silent_observer_t

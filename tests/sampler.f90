@@ -1,6 +1,6 @@
 !> An observer that samples the solution at equal distances through the interpolant.
 module sampler
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t
   use gudgeon_solver, only: silent_observer_t

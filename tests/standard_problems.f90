@@ -4,8 +4,8 @@
 !>
 !> The discontinuities of class F are events: f changes its branch only there.
 module standard_problems
-  use kinds, only: dp
-  use constants, only: pi
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: pi
   use ode_problem, only: ode_problem_t, event_continue
   use ode_method, only: ode_settings_t
   implicit none

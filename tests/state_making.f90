@@ -1,6 +1,6 @@
 !> States of a scene made by hand.
 module state_making
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use gudgeon_scene, only: scene_t
   use chain_motion, only: piston_pin
   implicit none

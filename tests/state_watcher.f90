@@ -1,6 +1,6 @@
 !> An observer that keeps the states q, A, x, their rates and the eccentricity, and the largest sizes that they took.
 module state_watcher
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t
   use gudgeon_solver, only: observer_t

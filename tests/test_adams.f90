@@ -1,7 +1,7 @@
 !> The Adams method: coefficients, accuracy, order, interpolant, events, restarts.
 module test_adams
-  use kinds, only: dp
-  use constants, only: pi
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: pi
   use checks, only: checks_t
   use ode_method, only: ode_settings_t, step_done
   use adams_coefficients, only: moulton_constants

@@ -1,6 +1,6 @@
 !> Coefficients against exact values, the order of the formulas, their stability limits.
 module test_adams_order
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use checks, only: checks_t
   use adams_coefficients, only: adams_coefficients_t, stability_limit
   use adams_differences, only: lanes, extrapolate, restore_differences

@@ -1,13 +1,13 @@
 !> Case files: what is read, what is refused and with which words, and that a resolved case is the same case.
 module test_case_file
-  use kinds, only: dp
-  use errors, only: error_t, status_case_file
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t, status_case_file
   use case_definition, only: case_t
   use case_rules, only: case_warning
   use case_file, only: read_case, parse_case, template
   use case_schema, only: shared_keys_differ
   use text_file, only: read_text_file
-  use posix, only: make_directory, remove_directory, remove_file
+  use gudgeon_posix, only: make_directory, remove_directory, remove_file
   use result_file, only: result_file_t
   use checks, only: checks_t
   use laws, only: parameter_of

@@ -1,8 +1,8 @@
 !> The chain and its pieces: closed forms against the general assembly, and both against the energy of bodies whose velocities
 !> come from their positions alone.
 module test_chain
-  use kinds, only: dp
-  use constants, only: pi, degree
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: pi, degree
   use checks, only: checks_t
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, turn_crank, follow_rod, follow_piston
   use chain_bodies, only: bodies_t, crank_t, rod_t, piston_t, drive_t, new_bodies

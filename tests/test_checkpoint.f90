@@ -1,16 +1,16 @@
 !> Checkpoints: what comes back, what is refused, the checksum that tells, and the identity of a run.
 module test_checkpoint
   use, intrinsic :: iso_fortran_env, only: int64
-  use kinds, only: dp
-  use errors, only: error_t, status_case_file
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t, status_case_file
   use gudgeon_archive, only: archive_t
-  use checksum, only: checksum_t
+  use gudgeon_checksum, only: checksum_t
   use file_mark, only: file_mark_t
-  use checkpoint, only: checkpoint_t
+  use gudgeon_checkpoint, only: checkpoint_t
   use run_identity, only: program_identity, identity_of, twin_identity, compare_cases
   use text_file, only: read_whole
   use result_file, only: result_file_t
-  use posix, only: make_directory, remove_directory, remove_file
+  use gudgeon_posix, only: make_directory, remove_directory, remove_file
   use checks, only: checks_t
   implicit none
   private

@@ -1,7 +1,7 @@
 !> The contact laws: stiffness, restitution, loss, limits, factory.
 module test_contact
-  use kinds, only: dp
-  use errors, only: error_t, status_case_file
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t, status_case_file
   use checks, only: checks_t
   use contact_law, only: contact_law_t
   use laws, only: contact_law_of

@@ -1,6 +1,6 @@
 !> Where the pin is in its bearing: the scenes' coordinates (q, e) against (q, A, x), with the pin in a film of 20 and 40 um.
 module test_coordinates
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use checks, only: checks_t
   use coordinate_errors, only: eccentricity_error, own_coordinates, absolute_by_size, absolute_by_clearance
   implicit none

@@ -1,14 +1,14 @@
 !> Runs that end when the crank has made so many turns by itself: closed forms, every kind of scene, cranks that do not get there.
 module test_crank_turns
-  use kinds, only: dp
-  use constants, only: two_pi
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: two_pi
   use checks, only: checks_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use gudgeon_columns, only: column_list_t
   use cycle_watch, only: cycle_watch_t
-  use errors, only: error_t, status_integration
-  use simulation, only: simulate, run_report_t
+  use gudgeon_errors, only: error_t, status_integration
+  use gudgeon_simulation, only: simulate, run_report_t
   use trace_sink, only: trace_sink_t
   use collecting_sink, only: collecting_sink_t, trace_t, run_case, column
   implicit none

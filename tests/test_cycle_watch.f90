@@ -1,14 +1,14 @@
 !> Statistics of revolutions: they do not change a run, and they agree with fine quadratures of its trace.
 module test_cycle_watch
-  use kinds, only: dp
-  use constants, only: two_pi
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: two_pi
   use checks, only: checks_t
-  use errors, only: error_t
+  use gudgeon_errors, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use gudgeon_columns, only: column_list_t, choose_columns
   use cycle_watch, only: cycle_watch_t
-  use simulation, only: simulate, run_report_t
+  use gudgeon_simulation, only: simulate, run_report_t
   use trace_sink, only: trace_sink_t
   use collecting_sink, only: collecting_sink_t, trace_t, run_case
   implicit none

@@ -1,12 +1,12 @@
 !> What long, loose and odd runs make of the energy: errors that stay in the crank or in the work of the forces.
 module test_energy_kept
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use checks, only: checks_t
   use ode_problem, only: ode_problem_t
   use radau, only: radau_t
   use gudgeon_solver, only: integrate, silent_observer_t, integration_done
   use case_definition, only: case_t
-  use summary, only: energy_warning
+  use gudgeon_summary, only: energy_warning
   use collecting_sink, only: trace_t, run_case, column
   implicit none
   private

@@ -1,7 +1,7 @@
 !> Error against tolerance on the standard battery: each step by itself keeps the tolerance, and over a whole problem the error
 !> is what the problem's condition makes of it.
 module test_error_growth
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use checks, only: checks_t
   use adams, only: adams_t
   use gudgeon_solver, only: integrate, integration_done, observer_t

@@ -1,7 +1,7 @@
 !> Events: several functions and directions, roots to the last bits, double passages, grazing, chatter, rejected steps.
 module test_events
-  use kinds, only: dp
-  use constants, only: pi
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: pi
   use checks, only: checks_t
   use test_problems, only: oscillator_t
   use ode_problem, only: ode_problem_t, event_continue, step_admitted, step_too_deep

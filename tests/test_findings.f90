@@ -1,6 +1,6 @@
 !> What the dissertation found in its chapter 6 (Reis 2013), on the shipped cases.
 module test_findings
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use checks, only: checks_t
   use collecting_sink, only: trace_t, run_case, column
   implicit none

@@ -1,7 +1,7 @@
 !> The friction laws: values, continuity, signs, factory.
 module test_friction
-  use kinds, only: dp
-  use errors, only: error_t, status_case_file
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t, status_case_file
   use checks, only: checks_t
   use friction_law, only: friction_law_t
   use laws, only: friction_law_of

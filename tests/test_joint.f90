@@ -1,6 +1,6 @@
 !> Motion in a joint with clearance, and scenes whose joints are ideal.
 module test_joint
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use checks, only: checks_t
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin
   use joint_motion, only: joint_motion_t, find_polar, find_speeds, find_sliding, sliding_acceleration, outward_acceleration

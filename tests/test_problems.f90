@@ -1,6 +1,6 @@
 !> Small problems with known solutions for the tests of the integrator.
 module test_problems
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t, event_continue
   implicit none
   private

@@ -1,9 +1,9 @@
 !> The Radau method, its Jacobians and the automatic choice.
 module test_radau
-  use kinds, only: dp
-  use constants, only: pi
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: pi
   use checks, only: checks_t
-  use errors, only: error_t
+  use gudgeon_errors, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use ode_problem, only: ode_problem_t, difference_jacobian
@@ -12,7 +12,7 @@ module test_radau
   use radau, only: radau_t
   use film_law, only: film_law_t, film_motion_t, difference_derivatives
   use pinkus_sternlicht, only: pinkus_sternlicht_t
-  use bearing, only: bearing_t
+  use gudgeon_bearing, only: bearing_t
   use lankarani_nikravesh, only: lankarani_nikravesh_t
   use gudgeon_scene, only: scene_t, phase_contact, phase_film
   use state_making, only: put_crank, put_pin

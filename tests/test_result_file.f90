@@ -1,9 +1,9 @@
 !> Result files, and the calls of the system under them.
 module test_result_file
   use, intrinsic :: iso_c_binding, only: c_int, c_long
-  use kinds, only: dp
-  use errors, only: error_t, status_output
-  use posix, only: make_directory, remove_directory, remove_file, open_for_reading, read_bytes, close_file, error_text, &
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t, status_output
+  use gudgeon_posix, only: make_directory, remove_directory, remove_file, open_for_reading, read_bytes, close_file, error_text, &
     ignore_write_signals, synchronise_folder, file_length, open_for_appending, open_to_lock, error_no_entry, error_no_space, &
     error_is_directory, error_is_link, error_not_regular
   use result_file, only: result_file_t, remove_result

@@ -1,13 +1,13 @@
 !> A run put away and taken up again, between any two steps, ends bit for bit as one that was not.
 module test_resume
   use, intrinsic :: iso_fortran_env, only: int64
-  use kinds, only: dp
-  use errors, only: error_t
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t
   use gudgeon_archive, only: archive_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use gudgeon_columns, only: column_list_t, choose_columns
-  use simulation, only: simulate, run_report_t
+  use gudgeon_simulation, only: simulate, run_report_t
   use trace_sink, only: trace_sink_t
   use collecting_sink, only: collecting_sink_t
   use checks, only: checks_t

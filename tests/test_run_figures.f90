@@ -1,15 +1,15 @@
 !> The figures of a run: the time that each method has, and peaks between the steps.
 module test_run_figures
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use checks, only: checks_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use gudgeon_columns, only: column_list_t
-  use constants, only: two_pi
+  use gudgeon_constants, only: two_pi
   use cycle_watch, only: cycle_watch_t
-  use errors, only: error_t
+  use gudgeon_errors, only: error_t
   use peak_search, only: peak_search_t, sample_t
-  use simulation, only: simulate, run_report_t
+  use gudgeon_simulation, only: simulate, run_report_t
   use trace_sink, only: trace_sink_t
   use collecting_sink, only: collecting_sink_t, trace_t, run_case, column
   implicit none

@@ -1,8 +1,8 @@
 !> Contact and friction inside whole scenes: entry by step rejection, sticking, energy, what a run leaves out.
 module test_scenes
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use checks, only: checks_t
-  use errors, only: error_t
+  use gudgeon_errors, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use gudgeon_scene, only: scene_t, evaluation_t, phase_contact, event_contact_begins, event_contact_ends

@@ -1,7 +1,7 @@
 !> Contacts that begin slowly, or before the run does: what a vanishing impact gives back, a pin that rests on its bearing, the
 !> start inside a contact and on the wall.
 module test_slow_contact
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use checks, only: checks_t
   use contact_stiffness, only: hertz_stiffness
   use lankarani_nikravesh, only: lankarani_nikravesh_t

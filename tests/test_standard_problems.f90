@@ -2,7 +2,7 @@
 !> to the last bit; refused steps leave no trace; the interpolant is as good as the steps. (The whole battery:
 !> scripts/compare_adams.sh.)
 module test_standard_problems
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use checks, only: checks_t
   use ode_method, only: step_done, limit_stability
   use ode_problem, only: ode_problem_t, step_admitted, step_too_deep

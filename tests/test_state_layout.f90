@@ -1,6 +1,6 @@
 !> Where owners find their numbers in a state.
 module test_state_layout
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use checks, only: checks_t
   use state_layout, only: layout_t, coordinates_t, slice_t
   implicit none

@@ -1,8 +1,8 @@
 !> First-order states beside positions, by every method.
 module test_states
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use checks, only: checks_t
-  use errors, only: error_t
+  use gudgeon_errors, only: error_t
   use gudgeon_archive, only: archive_t
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t

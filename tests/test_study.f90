@@ -1,11 +1,11 @@
 !> The parts of parameter studies: random numbers, Sobol's points, designs, tables, rows, files of rows, checksums.
 module test_study
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use checks, only: checks_t
-  use errors, only: error_t
-  use checksum, only: checksum_t
+  use gudgeon_errors, only: error_t
+  use gudgeon_checksum, only: checksum_t
   use number_writer, only: number_writer_t
-  use posix, only: remove_file
+  use gudgeon_posix, only: remove_file
   use random_numbers, only: random_numbers_t
   use sobol_points, only: sobol_points_t, most_dimensions
   use study_definition, only: study_t

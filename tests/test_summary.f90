@@ -1,11 +1,11 @@
 !> What the summary says besides figures.
 module test_summary
   use, intrinsic :: iso_fortran_env, only: int64
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use checks, only: checks_t
-  use summary, only: build_advice, summary_table, summary_value
+  use gudgeon_summary, only: build_advice, summary_table, summary_value
   use case_definition, only: case_t
-  use simulation, only: run_report_t
+  use gudgeon_simulation, only: run_report_t
   use text_tools, only: integer_text
   implicit none
   private

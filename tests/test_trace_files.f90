@@ -1,13 +1,13 @@
 !> The files of a running case: what is written is what was handed over.
 module test_trace_files
   use, intrinsic :: iso_fortran_env, only: int64
-  use kinds, only: dp
-  use errors, only: error_t
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t
   use trace_row, only: column_list_t, name_length
   use trace_files, only: trace_files_t
   use trace_sink, only: trace_event_t
   use gudgeon_scene, only: event_contact_begins, event_contact_ends
-  use posix, only: make_directory, remove_directory, remove_file
+  use gudgeon_posix, only: make_directory, remove_directory, remove_file
   use checks, only: checks_t
   implicit none
   private

@@ -1,8 +1,8 @@
 !> Scenes with clearance at both pins, built by hand.
 module test_two_joints
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use checks, only: checks_t
-  use errors, only: error_t
+  use gudgeon_errors, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use chain_motion, only: crank_pin, piston_pin

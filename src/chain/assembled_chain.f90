@@ -2,11 +2,11 @@
 !> none. What a body adds to the state (modes of an elastic rod, the flywheel's angle, a piston that moves across its bore) is
 !> one more coordinate and one more column of the maps below.
 module assembled_chain
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, n_pins
   use chain_bodies, only: bodies_t, drive_t
   use chain_loads, only: loads_t, bearing_moment
-  use assembly, only: equations_t, body_t
+  use gudgeon_assembly, only: equations_t, body_t
   implicit none
   private
   public :: accelerate_assembled

@@ -3,7 +3,7 @@
 !> x is vertical, up, along the cylinder axis; y is horizontal; angles are positive from x towards y. q is the crank angle from +x.
 !> A is the rod angle, measured the other way: the rod turns with -dA/dt.
 module chain_bodies
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use chain_motion, only: motion_t
   implicit none
   private

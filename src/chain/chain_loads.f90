@@ -1,6 +1,6 @@
 !> What acts on the bodies of the chain besides gravity and the drive.
 module chain_loads
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use chain_motion, only: n_pins
   implicit none
   private

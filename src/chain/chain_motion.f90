@@ -10,7 +10,7 @@
 !>
 !> In (q, A, x) an eccentricity is a difference of numbers 10^4 times larger; here it is known to full precision.
 module chain_motion
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   implicit none
   private
   public :: motion_t, accelerations_t, crank_pin, piston_pin, n_pins

@@ -1,7 +1,7 @@
 !> How the equations of motion of crank with rod and piston change with their state: the tangent of `follow_rod` and of
 !> `accelerate_crank_rod`, one direction at a time, for implicit integration.
 module crank_rod_tangent
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, piston_pin
   use chain_bodies, only: bodies_t, drive_t
   use chain_loads, only: loads_t

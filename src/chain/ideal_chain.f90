@@ -1,6 +1,6 @@
 !> The chain with two ideal pins, crank with rod and piston: one degree of freedom.
 module ideal_chain
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, turn_crank, follow_rod, follow_piston
   use chain_bodies, only: bodies_t, drive_t
   use chain_loads, only: loads_t

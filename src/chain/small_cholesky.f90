@@ -1,6 +1,6 @@
 !> Small symmetric positive definite systems by Cholesky's method, without pivoting.
 module small_cholesky
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   implicit none
   private
   public :: factorise_cholesky, solve_cholesky

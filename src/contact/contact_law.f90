@@ -1,8 +1,8 @@
 !> What every normal contact law answers.
 module contact_law
-  use kinds, only: dp
-  use parameters, only: law_t
-  use bearing, only: bearing_t
+  use gudgeon_kinds, only: dp
+  use gudgeon_parameters, only: law_t
+  use gudgeon_bearing, only: bearing_t
   implicit none
   private
   public :: contact_law_t

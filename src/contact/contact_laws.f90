@@ -1,6 +1,6 @@
 !> The contact laws that a case can name. A new law takes its `use` line and its line here.
 module contact_laws
-  use parameters, only: parameter_list_t
+  use gudgeon_parameters, only: parameter_list_t
   use hertz, only: hertz_t
   use lankarani_nikravesh, only: lankarani_nikravesh_t
   use hunt_crossley, only: hunt_crossley_t

@@ -1,7 +1,7 @@
 !> What the materials and radii of pin and bearing make of a contact: its stiffness, and the fastest impact for
 !> which an elastic law of this kind is meant.
 module contact_stiffness
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   implicit none
   private
   public :: hertz_stiffness, valid_impact_speed

@@ -1,8 +1,8 @@
 !> Hertz contact (4.1): an elastic force, without loss.
 module hertz
-  use kinds, only: dp
-  use parameters, only: parameter_list_t
-  use bearing, only: bearing_t
+  use gudgeon_kinds, only: dp
+  use gudgeon_parameters, only: parameter_list_t
+  use gudgeon_bearing, only: bearing_t
   use contact_law, only: contact_law_t
   use contact_stiffness, only: hertz_stiffness, valid_impact_speed
   implicit none

@@ -1,6 +1,6 @@
 !> Hunt and Crossley's contact (1975): that of Lankarani and Nikravesh with another relation between loss and restitution.
 module hunt_crossley
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use lankarani_nikravesh, only: lankarani_nikravesh_t
   implicit none
   private

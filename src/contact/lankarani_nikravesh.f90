@@ -1,8 +1,8 @@
 !> Lankarani-Nikravesh contact (4.7): Hertz contact with a hysteresis loss set by the restitution and the impact speed.
 module lankarani_nikravesh
-  use kinds, only: dp
-  use parameters, only: parameter_list_t
-  use bearing, only: bearing_t
+  use gudgeon_kinds, only: dp
+  use gudgeon_parameters, only: parameter_list_t
+  use gudgeon_bearing, only: bearing_t
   use hertz, only: hertz_t
   implicit none
   private

@@ -1,6 +1,6 @@
 !> The lubricating films that a case can name. A new law takes its `use` line and its line here.
 module films
-  use parameters, only: parameter_list_t
+  use gudgeon_parameters, only: parameter_list_t
   use pinkus_sternlicht, only: pinkus_sternlicht_t
   use half_film, only: half_film_t
   use oscillating_film, only: oscillating_film_t

@@ -2,10 +2,10 @@
 !> inertia, no squeeze. The pin's surface moves with the real part of a phasor U that turns at the crank's frequency w.
 !> It carries no load along the line of centres: only forces along the tangent, and the shear's moment.
 module oscillating_film
-  use kinds, only: dp
-  use constants, only: pi, two_pi
-  use parameters, only: parameter_list_t
-  use bearing, only: bearing_t
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: pi, two_pi
+  use gudgeon_parameters, only: parameter_list_t
+  use gudgeon_bearing, only: bearing_t
   use film_law, only: film_law_t, film_motion_t
   use oscillating_response, only: oscillating_response_t, film_phasors_t, new_oscillating_response, inertia_function, &
     max_eccentricity_ratio

@@ -16,8 +16,8 @@
 !> over points, whose number does not depend on the eccentricity. P*' and t* are even in th: pressure and shear have no
 !> resultant along the line of centres, and half the circle is enough.
 module oscillating_response
-  use kinds, only: dp
-  use constants, only: pi, two_pi
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: pi, two_pi
   use inertia_series, only: inertia_series_t, remainder_t, new_inertia_series
   implicit none
   private

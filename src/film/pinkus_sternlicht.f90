@@ -1,9 +1,9 @@
 !> The Pinkus-Sternlicht film (5.10-5.37): a long bearing, of whose pressure only the positive part acts.
 module pinkus_sternlicht
-  use kinds, only: dp
-  use constants, only: pi
-  use parameters, only: parameter_list_t
-  use bearing, only: bearing_t
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: pi
+  use gudgeon_parameters, only: parameter_list_t
+  use gudgeon_bearing, only: bearing_t
   use film_law, only: film_law_t, film_motion_t, difference_derivatives
   implicit none
   private

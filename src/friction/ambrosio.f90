@@ -1,7 +1,7 @@
 !> Coulomb friction eased in over small sliding speeds, after Ambrosio (4.9, 4.10).
 module ambrosio
-  use kinds, only: dp
-  use parameters, only: parameter_list_t
+  use gudgeon_kinds, only: dp
+  use gudgeon_parameters, only: parameter_list_t
   use friction_law, only: friction_law_t
   implicit none
   private

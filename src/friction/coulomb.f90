@@ -1,7 +1,7 @@
 !> Coulomb friction (4.8).
 module coulomb
-  use kinds, only: dp
-  use parameters, only: parameter_list_t
+  use gudgeon_kinds, only: dp
+  use gudgeon_parameters, only: parameter_list_t
   use friction_law, only: friction_law_t
   implicit none
   private

@@ -1,7 +1,7 @@
 !> What every dry friction law answers.
 module friction_law
-  use kinds, only: dp
-  use parameters, only: law_t
+  use gudgeon_kinds, only: dp
+  use gudgeon_parameters, only: law_t
   implicit none
   private
   public :: friction_law_t

@@ -1,6 +1,6 @@
 !> The friction laws that a case can name. A new law takes its `use` line and its line here.
 module friction_laws
-  use parameters, only: parameter_list_t
+  use gudgeon_parameters, only: parameter_list_t
   use ambrosio, only: ambrosio_t
   use coulomb, only: coulomb_t
   implicit none

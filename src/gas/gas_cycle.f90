@@ -6,14 +6,14 @@
 !> alone, so it is integrated once, when the scene is built, and then interpolated: as a state it would cost a
 !> power function and a stiffer error control in every evaluation.
 module gas_cycle
-  use kinds, only: dp
-  use constants, only: pi, two_pi, degree
-  use errors, only: error_t, fail, status_case_file
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: pi, two_pi, degree
+  use gudgeon_errors, only: error_t, fail, status_case_file
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t
   use adams, only: adams_t
   use gudgeon_solver, only: integrate, silent_observer_t, integration_done
-  use parameters, only: has_parameters_t, parameter_list_t
+  use gudgeon_parameters, only: has_parameters_t, parameter_list_t
   use cylinder, only: cylinder_t, new_cylinder
   use hermite_table, only: hermite_table_t, new_hermite_table
   implicit none

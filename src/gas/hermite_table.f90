@@ -1,6 +1,6 @@
 !> A function of [0, 1] as quintic polynomials between equidistant points, from values and two derivatives there.
 module hermite_table
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   implicit none
   private
   public :: hermite_table_t, new_hermite_table

@@ -1,6 +1,6 @@
 !> The gas in the cylinder of a running engine: its cycle, and the part of it that acts.
 module working_gas
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
   use trace_row, only: trace_row_t
   use gas_cycle, only: gas_cycle_t, cycle_angle, n_parts

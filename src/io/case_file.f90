@@ -1,7 +1,7 @@
 !> Case files: reading one into a case, and writing cases as text. Every error has the exit status of case files and is
 !> one line: file, line or group and key, value as written, what is wanted.
 module case_file
-  use errors, only: error_t, fail, status_case_file
+  use gudgeon_errors, only: error_t, fail, status_case_file
   use text_tools, only: lowercase, printable, integer_text, case_name
   use text_file, only: read_text_file
   use case_definition, only: case_t, piston_pin_place, crank_pin_place

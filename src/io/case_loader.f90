@@ -1,8 +1,8 @@
 !> From the values of a case file to the case: the visitor that sets every parameter, and chooses the laws that the case names.
 module case_loader
-  use kinds, only: dp
-  use errors, only: error_t
-  use parameters, only: parameter_list_t, law_t, key_t, word_kind
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t
+  use gudgeon_parameters, only: parameter_list_t, law_t, key_t, word_kind
   use case_definition, only: case_t, visit_case, piston_pin_place
   use case_schema, only: find_key, find_group, is_listed
   use case_values, only: case_values_t

@@ -1,8 +1,8 @@
 !> One run at a time for the results of a name: two programs that wrote into the same files would mix their rows.
 module case_lock
-  use errors, only: error_t, fail, status_output
+  use gudgeon_errors, only: error_t, fail, status_output
   use text_tools, only: printable
-  use posix, only: open_to_lock, lock_file, is_file, close_file, remove_file, error_text, error_interrupted, error_locked, &
+  use gudgeon_posix, only: open_to_lock, lock_file, is_file, close_file, remove_file, error_text, error_interrupted, error_locked, &
     error_exists, error_no_entry
   implicit none
   private

@@ -1,8 +1,8 @@
 !> What must hold between the values of a case: bodies that have inertia, models that fit their joint, a run that ends.
 module case_rules
-  use kinds, only: dp
-  use constants, only: two_pi
-  use errors, only: error_t
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: two_pi
+  use gudgeon_errors, only: error_t
   use number_text, only: short_text
   use case_definition, only: case_t, joint_case_t, piston_pin_place, crank_pin_place
   use case_schema, only: find_group

@@ -1,19 +1,19 @@
 !> One run of a case with its result files: of the scene itself, or of its ideal twin.
 module case_run
   use, intrinsic :: iso_fortran_env, only: int64
-  use errors, only: error_t, fail, status_output
+  use gudgeon_errors, only: error_t, fail, status_output
   use case_definition, only: case_t
   use gudgeon_columns, only: column_list_t
-  use simulation, only: simulate, run_report_t
+  use gudgeon_simulation, only: simulate, run_report_t
   use trace_sink, only: trace_sink_t
   use trace_files, only: trace_files_t
   use result_file, only: result_file_t, remove_result
   use continuation, only: continuation_t
   use run_identity, only: identity_length
   use gudgeon_archive, only: archive_t
-  use summary, only: summary_table, summary_line
+  use gudgeon_summary, only: summary_table, summary_line
   use stability_advice, only: advice
-  use posix, only: synchronise_folder, error_text
+  use gudgeon_posix, only: synchronise_folder, error_text
   use text_tools, only: printable
   implicit none
   private

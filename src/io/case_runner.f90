@@ -1,6 +1,6 @@
 !> A case from its file to its results: a run of the scene and, where it is asked for, one of its ideal twin.
 module case_runner
-  use errors, only: error_t, fail, status_output, status_integration
+  use gudgeon_errors, only: error_t, fail, status_output, status_integration
   use case_definition, only: case_t
   use accuracy_presets, only: with_preset
   use case_file, only: read_case_values, complete_case
@@ -15,8 +15,8 @@ module case_runner
   use result_file, only: result_file_t
   use run_identity, only: identity_length, identity_of, twin_identity
   use case_lock, only: case_lock_t
-  use posix, only: make_directory, synchronise_folder, file_length, interrupted, error_text
-  use progress, only: tell
+  use gudgeon_posix, only: make_directory, synchronise_folder, file_length, interrupted, error_text
+  use gudgeon_progress, only: tell
   use text_tools, only: printable
   implicit none
   private

@@ -3,8 +3,8 @@
 !> are texts, shown to the user as they stand there; a key's own default is allowed even outside its range and then means
 !> "not given".
 module case_schema
-  use kinds, only: dp
-  use parameters, only: parameter_list_t, law_t, key_t, real_kind, integer_kind, logical_kind, word_kind, text_kind
+  use gudgeon_kinds, only: dp
+  use gudgeon_parameters, only: parameter_list_t, law_t, key_t, real_kind, integer_kind, logical_kind, word_kind, text_kind
   use case_definition, only: case_t, visit_case, piston_pin_place
   implicit none
   private

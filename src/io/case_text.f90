@@ -2,7 +2,7 @@
 module case_text
   use text_tools, only: integer_text, quoted
   use number_text, only: exact_text
-  use parameters, only: key_t, real_kind, integer_kind, logical_kind
+  use gudgeon_parameters, only: key_t, real_kind, integer_kind, logical_kind
   use case_schema, only: group_definition_t, find_key
   use case_values, only: case_values_t, value_t
   implicit none

@@ -1,6 +1,6 @@
 !> The value of one key of a case: from what is written for it, and against its default and its range.
 module case_value
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use text_tools, only: lowercase, printable, is_clean
   use case_schema, only: key_t, is_listed, real_kind, integer_kind, logical_kind, word_kind
   use namelist_reader, only: token_t

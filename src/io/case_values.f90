@@ -1,7 +1,7 @@
 !> The values of one case, key by key as the schema lists them: taken from a file or an override, checked against kind,
 !> count, words and range.
 module case_values
-  use errors, only: error_t, fail, status_case_file
+  use gudgeon_errors, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text, nearest_word
   use case_schema, only: key_t, group_definition_t, case_schema_of, find_key, find_group, is_listed, shown_group, &
     real_kind, integer_kind, text_kind

@@ -1,7 +1,7 @@
 !> The command line: options, values and case files, from arguments given as an array so that it can be tested.
 module command_line
-  use kinds, only: dp
-  use errors, only: error_t, fail, status_command_line
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t, fail, status_command_line
   use text_tools, only: printable, lowercase, nearest_word, case_name
   implicit none
   private

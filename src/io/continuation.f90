@@ -1,12 +1,12 @@
 !> What `--resume` finds of an earlier run: its results, if it is done, or its checkpoint.
 module continuation
   use, intrinsic :: iso_fortran_env, only: int64
-  use kinds, only: dp
-  use errors, only: error_t, fail, status_case_file
-  use checkpoint, only: checkpoint_t, restart_hint
-  use posix, only: file_length
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t, fail, status_case_file
+  use gudgeon_checkpoint, only: checkpoint_t, restart_hint
+  use gudgeon_posix, only: file_length
   use run_identity, only: identity_length, compare_cases
-  use summary, only: summary_value
+  use gudgeon_summary, only: summary_value
   use text_file, only: read_whole
   use text_tools, only: printable
   implicit none

@@ -2,8 +2,8 @@
 module file_mark
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_archive, only: archive_t
-  use checksum, only: checksum_t
-  use posix, only: open_for_reading, read_at, close_file, error_interrupted
+  use gudgeon_checksum, only: checksum_t
+  use gudgeon_posix, only: open_for_reading, read_at, close_file, error_interrupted
   implicit none
   private
   public :: file_mark_t

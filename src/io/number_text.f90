@@ -1,7 +1,7 @@
 !> Single numbers as text. Tables of results are made by `number_writer`.
 module number_text
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use number_writer, only: append_formatted, longest_number
   use text_tools, only: whole_number
   implicit none

@@ -7,7 +7,7 @@
 !> 10**(-307) and what is not finite.
 module number_writer
   use, intrinsic :: iso_fortran_env, only: int64
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   implicit none
   private
   public :: number_writer_t, append_formatted, longest_number, fewest_digits, most_digits

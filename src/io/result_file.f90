@@ -3,9 +3,9 @@
 !> the last row of NAME.part.)
 module result_file
   use, intrinsic :: iso_c_binding, only: c_long
-  use errors, only: error_t, fail, status_output
+  use gudgeon_errors, only: error_t, fail, status_output
   use text_tools, only: printable
-  use posix, only: open_for_writing, open_for_appending, write_bytes, truncate_file, reserve_file, &
+  use gudgeon_posix, only: open_for_writing, open_for_appending, write_bytes, truncate_file, reserve_file, &
     synchronise_file, close_file, rename_file, remove_file, error_text, error_interrupted, &
     error_no_entry, error_is_directory
   implicit none

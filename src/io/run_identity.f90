@@ -2,11 +2,11 @@
 module run_identity
   use, intrinsic :: iso_c_binding, only: c_long
   use, intrinsic :: iso_fortran_env, only: compiler_version, compiler_options
-  use kinds, only: dp
-  use checksum, only: checksum_t
-  use posix, only: open_for_reading, read_at, close_file
+  use gudgeon_kinds, only: dp
+  use gudgeon_checksum, only: checksum_t
+  use gudgeon_posix, only: open_for_reading, read_at, close_file
   use text_file, only: read_whole
-  use version, only: program_version
+  use gudgeon_version, only: program_version
   implicit none
   private
   public :: identity_length, program_identity, identity_of, twin_identity, compare_cases

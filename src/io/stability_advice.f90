@@ -1,11 +1,11 @@
 !> What a run should be told that the stability of Adams bounds, not its accuracy: while it goes, as soon as it is plain that it will
 !> take long, or else when it has ended.
 module stability_advice
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use ode_method, only: step_statistics_t
   use case_definition, only: case_t
-  use simulation, only: try_auto
-  use progress, only: progress_t, duration_text
+  use gudgeon_simulation, only: try_auto
+  use gudgeon_progress, only: progress_t, duration_text
   use text_tools, only: integer_text, printable
   implicit none
   private

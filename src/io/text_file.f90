@@ -1,8 +1,8 @@
 !> Files read whole.
 module text_file
-  use errors, only: error_t, fail, status_case_file, status_integration
+  use gudgeon_errors, only: error_t, fail, status_case_file, status_integration
   use text_tools, only: printable, integer_text
-  use posix, only: open_for_reading, open_standard_input, wait_for_input, interrupted, read_bytes, close_file, error_text, &
+  use gudgeon_posix, only: open_for_reading, open_standard_input, wait_for_input, interrupted, read_bytes, close_file, error_text, &
     error_interrupted
   implicit none
   private

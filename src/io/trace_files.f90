@@ -4,21 +4,21 @@
 !> storage: what runs during a case makes its text by subroutines, or inside the critical section `texts`.
 module trace_files
   use, intrinsic :: iso_fortran_env, only: int64
-  use kinds, only: dp
-  use errors, only: error_t, fail, status_case_file, status_output
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t, fail, status_case_file, status_output
   use gudgeon_archive, only: archive_t
   use gudgeon_columns, only: column_list_t, column_name
   use gudgeon_scene, only: event_contact_begins
   use trace_sink, only: trace_sink_t, trace_event_t
   use result_file, only: result_file_t
   use file_mark, only: file_mark_t
-  use checkpoint, only: checkpoint_t, restart_hint
+  use gudgeon_checkpoint, only: checkpoint_t, restart_hint
   use number_writer, only: longest_number
   use trace_table, only: trace_table_t
-  use progress, only: progress_t
+  use gudgeon_progress, only: progress_t
   use stability_advice, only: stability_advice_t
   use ode_method, only: step_statistics_t
-  use posix, only: interrupted
+  use gudgeon_posix, only: interrupted
   use text_tools, only: printable
   implicit none
   private

@@ -1,6 +1,6 @@
 !> The file NAME.csv of a trace: rows of numbers, the phase as one digit.
 module trace_table
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use gudgeon_columns, only: column_list_t, column_name
   use number_writer, only: number_writer_t, longest_number
   use result_file, only: result_file_t

@@ -2,7 +2,7 @@
 !> gives a message that says what is wanted; nothing here can overflow.
 module value_reader
   use, intrinsic :: iso_fortran_env, only: int64
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use text_tools, only: lowercase, whole_number
   implicit none
   private

@@ -3,9 +3,9 @@
 !> While journal and bearing are apart the joint is free, or a film carries it; while they touch, the contact does (Reis 2013,
 !> fig. 3.9). A law that the case does not ask for is not allocated.
 module clearance_joint
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
-  use bearing, only: bearing_t
+  use gudgeon_bearing, only: bearing_t
   use state_layout, only: layout_t, coordinates_t
   use chain_motion, only: motion_t, piston_pin
   use chain_bodies, only: bodies_t

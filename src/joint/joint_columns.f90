@@ -1,6 +1,6 @@
 !> The columns of a joint with clearance. Those of the piston pin have plain names, others the place in front.
 module joint_columns
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use trace_row, only: trace_row_t
   use chain_motion, only: piston_pin
   use joint_motion, only: joint_motion_t

@@ -1,6 +1,6 @@
 !> Events of a joint with clearance: contact begins and ends, set-valued friction changes.
 module joint_events
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use ode_problem, only: step_admitted, step_too_deep
   use chain_motion, only: accelerations_t
   use clearance_joint, only: clearance_joint_t, joint_loads_t, phase_contact

@@ -1,6 +1,6 @@
 !> How journal and bearing of a joint move against each other (Reis 2013, 3.70-3.78).
 module joint_motion
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, crank_pin
   implicit none
   private

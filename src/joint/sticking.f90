@@ -1,6 +1,6 @@
 !> The friction that holds surfaces which stick.
 module sticking
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t
   use chain_loads, only: loads_t
   use gudgeon_chain, only: chain_t

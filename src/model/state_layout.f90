@@ -5,7 +5,7 @@
 !> all have claimed, each settles what it has claimed, since only then is known where rates, states and quadratures begin.
 !> Quadratures come last, so more of them may be claimed and settled later.
 module state_layout
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   implicit none
   private
   public :: layout_t, coordinates_t, slice_t

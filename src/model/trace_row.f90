@@ -3,7 +3,7 @@
 !> The same calls serve two passes. Before a run they collect the names of the columns that a scene has; in every row they give the
 !> values. What takes work is asked for only where a column that needs it is wanted (`wants`).
 module trace_row
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   implicit none
   private
   public :: trace_row_t, column_list_t, name_length, most_columns

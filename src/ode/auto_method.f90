@@ -7,7 +7,7 @@
 !> proportion to the stiffness: where Radau turns out dearer on the whole, the phase goes back and asks for more
 !> patience the next time.
 module auto_method
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t, step_statistics_t, step_done, limit_stability, with_adams, with_radau
   use adams, only: adams_t

@@ -4,7 +4,7 @@
 !> gives them back, so that both directions cannot disagree.
 module gudgeon_archive
   use, intrinsic :: iso_fortran_env, only: int64
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   implicit none
   private
   public :: archive_t

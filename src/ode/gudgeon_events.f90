@@ -5,7 +5,7 @@
 !> function that passes zero and comes back within one step is found in general. So it is, for any function, in the first step
 !> after a restart until it has become negative.
 module gudgeon_events
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t, max_events
   use ode_method, only: ode_method_t
   use gudgeon_archive, only: archive_t

@@ -1,6 +1,6 @@
 !> The integration methods by name.
 module gudgeon_methods
-  use errors, only: error_t, fail, status_case_file
+  use gudgeon_errors, only: error_t, fail, status_case_file
   use ode_method, only: ode_method_t
   use adams, only: adams_t
   use radau, only: radau_t

@@ -1,6 +1,6 @@
 !> The root of an event function on the interpolant of a step.
 module gudgeon_roots
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   implicit none
   private
   public :: bracket_t, next_abscissa, narrow

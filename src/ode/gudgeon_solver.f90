@@ -1,7 +1,7 @@
 !> Integration from one time to another through events: step, search the step for events, show it to the observer,
 !> take the event, restart.
 module gudgeon_solver
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t, event_stop, max_events
   use ode_method, only: ode_method_t, step_done
   use gudgeon_events, only: event_watch_t

@@ -1,6 +1,6 @@
 !> What every integration method offers, its settings, its statistics and its status codes.
 module ode_method
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t
   use gudgeon_archive, only: archive_t
   implicit none

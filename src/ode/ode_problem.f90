@@ -4,7 +4,7 @@
 !> f is smooth. Everything that an integrator may call on trial states (`derivatives`, `events`, `judge_step`) is pure:
 !> a rejected step leaves no trace in the problem.
 module ode_problem
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
   implicit none
   private

@@ -1,6 +1,6 @@
 !> The largest value of a smooth quantity between two instants, by as few values as it takes.
 module peak_search
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
   implicit none
   private

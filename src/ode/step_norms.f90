@@ -1,7 +1,7 @@
 !> Weighted norms over the n components of a state. Their squares, wherever a comparison is all that is asked: a root takes as long
 !> as a dozen products.
 module step_norms
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   implicit none
   private
   public :: norm, square_of_sum

@@ -3,9 +3,9 @@
 !>
 !> `visit_case` is the one list of groups. Each group hands its parameters to the visitor, and so do the laws that it can name.
 module case_definition
-  use kinds, only: dp
-  use parameters, only: has_parameters_t, parameter_list_t
-  use bearing, only: bearing_t
+  use gudgeon_kinds, only: dp
+  use gudgeon_parameters, only: has_parameters_t, parameter_list_t
+  use gudgeon_bearing, only: bearing_t
   use contact_law, only: contact_law_t
   use contact_laws, only: offer_contact_laws
   use friction_law, only: friction_law_t

@@ -3,8 +3,8 @@
 !> The crank must not stop or turn back on its way. Its sense is that of its start speed; of a crank that starts from rest, the sense in
 !> which it has left its start by one degree (by half of what is wanted, where that is less).
 module crank_turns
-  use kinds, only: dp
-  use constants, only: two_pi, degree
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: two_pi, degree
   use ode_problem, only: event_continue, event_stop
   use gudgeon_archive, only: archive_t
   implicit none

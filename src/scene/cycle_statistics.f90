@@ -1,6 +1,6 @@
 !> What a run does in each revolution of its crank, and over all of them.
 module cycle_statistics
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   implicit none
   private
   public :: cycle_t, cycle_statistics_t

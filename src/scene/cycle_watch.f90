@@ -4,8 +4,8 @@
 !> Revolution k ends when the crank has turned k times 2 pi away from its start in the sense of its start speed (from rest, of
 !> its torque). A crank that swings back is still in the revolution that it has reached.
 module cycle_watch
-  use kinds, only: dp
-  use constants, only: two_pi
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: two_pi
   use ode_method, only: ode_method_t
   use chain_motion, only: piston_pin
   use gudgeon_scene, only: scene_t, evaluation_t, phase_contact

@@ -1,6 +1,6 @@
 !> The figures of a run, most of them for its summary.
 module run_figures
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
   implicit none
   private

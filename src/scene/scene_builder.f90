@@ -1,8 +1,8 @@
 !> From a case to the scene that it asks for.
 module scene_builder
-  use kinds, only: dp
-  use constants, only: two_pi, degree
-  use errors, only: error_t, fail, status_case_file
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: two_pi, degree
+  use gudgeon_errors, only: error_t, fail, status_case_file
   use case_definition, only: case_t, joint_case_t
   use ode_method, only: ode_settings_t
   use chain_motion, only: piston_pin, crank_pin

@@ -4,7 +4,7 @@
 !> the pin alone, on the interpolant of the method. The force on the pin takes evaluations of the scene: where three points do not
 !> show that it only rises or only falls, its slope at both ends is found, and where it rises and then falls its peak.
 module step_peaks
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use ode_method, only: ode_method_t
   use chain_loads, only: force_size
   use joint_motion, only: joint_motion_t

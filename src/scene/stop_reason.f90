@@ -1,7 +1,7 @@
 !> Why and where a run ended before its end, in words.
 module stop_reason
-  use kinds, only: dp
-  use constants, only: degree
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: degree
   use ode_method, only: ode_settings_t, step_too_small, tolerance_too_small, start_outside, left_domain
   use gudgeon_solver, only: step_limit_reached, integration_interrupted, chattering, evaluation_limit_reached, unreadable_archive
   use gudgeon_scene, only: scene_t, evaluation_t

@@ -1,6 +1,6 @@
 !> Where a run puts what it finds: implemented by whoever writes files, or by tests.
 module trace_sink
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
   use ode_method, only: step_statistics_t
   implicit none

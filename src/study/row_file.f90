@@ -6,11 +6,12 @@
 module row_file
   use, intrinsic :: iso_fortran_env, only: int64
   use, intrinsic :: iso_c_binding, only: c_long
-  use errors, only: error_t, fail, status_output, status_integration
+  use gudgeon_errors, only: error_t, fail, status_output, status_integration
   use text_tools, only: printable, whole_number
   use growing_text, only: growing_text_t
   use result_file, only: result_file_t
-  use posix, only: open_for_reading, open_for_appending, read_at, read_bytes, write_bytes, truncate_file, synchronise_file, &
+  use gudgeon_posix, only: open_for_reading, open_for_appending, read_at, read_bytes, write_bytes, truncate_file, &
+    synchronise_file, &
     synchronise_folder, close_file, error_text, error_interrupted, error_no_entry, interrupted
   implicit none
   private

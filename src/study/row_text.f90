@@ -5,7 +5,7 @@
 !> apostrophe in front, and so does one whose apostrophes stand before such a beginning: who reads a field takes one apostrophe
 !> away there. Numbers stay as they are.
 module row_text
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use value_reader, only: read_real
   use number_writer, only: number_writer_t, longest_number
   implicit none

@@ -2,7 +2,7 @@
 !> their file new-joe-kuo-6, first 21 dimensions), in the order of Antonov and Saleev (Gray code), 32 bits.
 module sobol_points
   use, intrinsic :: iso_fortran_env, only: int64
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   implicit none
   private
   public :: sobol_points_t, most_dimensions

@@ -1,9 +1,9 @@
 !> The base case of a study with the values of one run put in. Everything is read and checked once; a run costs a few
 !> conversions.
 module study_case
-  use errors, only: error_t, fail, status_case_file
+  use gudgeon_errors, only: error_t, fail, status_case_file
   use case_definition, only: case_t
-  use parameters, only: real_kind, integer_kind, word_kind, text_kind
+  use gudgeon_parameters, only: real_kind, integer_kind, word_kind, text_kind
   use case_schema, only: find_group
   use case_values, only: case_values_t
   use case_file, only: complete_case

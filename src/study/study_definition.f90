@@ -1,6 +1,6 @@
 !> A parameter study as data: a base case, what is varied, and what is wanted of every run.
 module study_definition
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   implicit none
   private
   public :: study_t, parameter_t, text_t

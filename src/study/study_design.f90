@@ -2,8 +2,8 @@
 !> row of the results can be repeated by hand.
 module study_design
   use, intrinsic :: iso_fortran_env, only: int64
-  use kinds, only: dp
-  use errors, only: error_t, fail, status_case_file
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text
   use number_writer, only: number_writer_t, longest_number
   use study_definition, only: study_t, parameter_t

@@ -1,9 +1,9 @@
 !> Study files: reading one, and what must hold between its values. Errors are as those of case files.
 module study_file
-  use errors, only: error_t, fail, status_case_file
+  use gudgeon_errors, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text, case_name, lowercase
   use text_file, only: read_text_file
-  use posix, only: absolute_path
+  use gudgeon_posix, only: absolute_path
   use namelist_reader, only: namelist_t, entry_t, token_t, read_namelist
   use case_values, only: case_values_t
   use case_schema, only: find_key, is_group_of_cases

@@ -1,12 +1,12 @@
 !> What is written of a run of a study: its row among all runs, one for each of its revolutions, one for each strobe.
 module study_rows
-  use kinds, only: dp
-  use constants, only: two_pi
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: two_pi
   use gudgeon_columns, only: column_list_t, column_name
   use cycle_statistics, only: cycle_t
   use cycle_watch, only: cycle_watch_t
-  use simulation, only: run_report_t
-  use summary, only: relative_residual
+  use gudgeon_simulation, only: run_report_t
+  use gudgeon_summary, only: relative_residual
   use number_writer, only: number_writer_t
   use row_text, only: row_text_t
   implicit none

@@ -2,15 +2,15 @@
 module study_runner
   use, intrinsic :: iso_fortran_env, only: int64
   use omp_lib, only: omp_get_num_procs
-  use kinds, only: dp
-  use errors, only: error_t, fail, status_output, status_integration
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t, fail, status_output, status_integration
   use text_tools, only: printable, integer_text
   use number_text, only: short_text
   use result_file, only: write_text
   use command_line, only: command_line_t
-  use progress, only: rate_text
+  use gudgeon_progress, only: rate_text
   use case_runner, only: tell_warning
-  use posix, only: make_directory, synchronise_folder, error_text, interrupted, signal_set_t, hold_interrupts, &
+  use gudgeon_posix, only: make_directory, synchronise_folder, error_text, interrupted, signal_set_t, hold_interrupts, &
     restore_interrupts
   use text_file, only: read_text_file
   use study_sweep, only: sweep_t, read_sweep, check_rows, study_checksum

@@ -1,10 +1,10 @@
 !> A study read and checked, and what its threads share while it is under way.
 module study_sweep
-  use kinds, only: dp
-  use errors, only: error_t, fail, status_case_file, status_integration
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t, fail, status_case_file, status_integration
   use text_tools, only: printable, integer_text
-  use checksum, only: checksum_t
-  use version, only: program_version
+  use gudgeon_checksum, only: checksum_t
+  use gudgeon_version, only: program_version
   use gudgeon_columns, only: column_list_t, choose_columns
   use case_definition, only: case_t
   use case_file, only: read_case_values
@@ -12,7 +12,7 @@ module study_sweep
   use case_schema, only: find_key
   use accuracy_presets, only: with_preset
   use command_line, only: command_line_t
-  use progress, only: progress_t
+  use gudgeon_progress, only: progress_t
   use study_definition, only: study_t
   use study_file, only: read_study
   use study_design, only: study_design_t, new_design

@@ -1,7 +1,7 @@
 !> A table of runs: CSV after RFC 4180, a header of GROUP.KEY, a row for each run. A table may be large and its fields of any
 !> length: they are kept one behind the other, without their quotes, in the place of the text that they are read from.
 module study_table
-  use errors, only: error_t, fail, status_case_file
+  use gudgeon_errors, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text, lowercase
   use text_file, only: read_text_file
   use row_text, only: begins_formula

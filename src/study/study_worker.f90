@@ -1,16 +1,16 @@
 !> What one thread needs to run the runs of a study one after the other. Everything is made once; a run makes nothing but what
 !> the simulation itself does.
 module study_worker
-  use errors, only: error_t
-  use constants, only: degree
+  use gudgeon_errors, only: error_t
+  use gudgeon_constants, only: degree
   use gudgeon_columns, only: column_list_t, choose_columns
   use cycle_watch, only: cycle_watch_t
-  use simulation, only: simulate, run_report_t, interrupted_text
+  use gudgeon_simulation, only: simulate, run_report_t, interrupted_text
   use trace_sink, only: trace_sink_t, trace_event_t
   use trace_files, only: trace_files_t
   use number_writer, only: number_writer_t
-  use posix, only: interrupted
-  use kinds, only: dp
+  use gudgeon_posix, only: interrupted
+  use gudgeon_kinds, only: dp
   use study_definition, only: study_t
   use study_design, only: study_design_t
   use study_case, only: study_case_t

@@ -19,7 +19,7 @@
 !> - y is summed with compensation at every tolerance.
 !> The error of a step is its weighted Euclidean norm, as in the published code.
 module adams
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t, step_admitted, step_too_deep
   use ode_method, only: ode_method_t, highest_order, step_done, step_too_small, tolerance_too_small, left_domain, limit_start
   use adams_coefficients, only: adams_coefficients_t

@@ -1,6 +1,6 @@
 !> Coefficients of the variable-step Adams formulas in modified divided differences (Shampine & Gordon 1975, ch. 5).
 module adams_coefficients
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use ode_method, only: highest_order
   use gudgeon_archive, only: archive_t
   implicit none

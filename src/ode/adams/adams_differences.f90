@@ -9,7 +9,7 @@
 !> of the table (of which column k+1 was zero, and column k+2 the negative of the old difference of its order). That is put
 !> off to the next pass over the table: until then the columns lack what is `owed`.
 module adams_differences
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   implicit none
   private
   public :: lanes, extrapolate, restore_differences, correct, add_weighted, differences_of

@@ -8,7 +8,7 @@
 !>
 !> Where a trial state leaves the model, Newton's step is halved until it stays inside.
 module collocation
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t
   use radau_coefficients, only: radau_formula_t, radau_formula, most_stages
   use small_lu, only: solve

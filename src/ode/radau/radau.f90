@@ -3,7 +3,7 @@
 !>
 !> Each step is solved by `collocation`. Where that does not converge, or leaves the model, the step is halved.
 module radau
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t, step_admitted, step_too_deep
   use ode_method, only: ode_method_t, step_done, step_too_small, tolerance_too_small, left_domain
   use gudgeon_archive, only: archive_t

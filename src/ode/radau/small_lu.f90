@@ -1,6 +1,6 @@
 !> LU decomposition with partial pivoting of the small dense matrices of an implicit step, real and complex.
 module small_lu
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   implicit none
   private
   public :: decompose, solve

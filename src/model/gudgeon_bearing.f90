@@ -1,6 +1,6 @@
 !> The journal bearing of a joint with clearance, as far as contact, friction and film laws need it.
-module bearing
-  use kinds, only: dp
+module gudgeon_bearing
+  use gudgeon_kinds, only: dp
   implicit none
   private
   public :: bearing_t
@@ -21,4 +21,4 @@ contains
     class(bearing_t), intent(in) :: self
     pin_radius = self%radius - self%clearance
   end function pin_radius
-end module bearing
+end module gudgeon_bearing

@@ -1,5 +1,5 @@
 !> A checksum that tells texts apart: CRC-64 with the polynomial of ECMA-182, reflected (CRC-64/XZ), eight bytes at a time.
-module checksum
+module gudgeon_checksum
   use, intrinsic :: iso_fortran_env, only: int64
   implicit none
   private
@@ -72,4 +72,4 @@ contains
     character(len=16) :: text
     write (text, '(z16.16)') self%sum
   end function hexadecimal
-end module checksum
+end module gudgeon_checksum

@@ -1,7 +1,7 @@
 !> One run of one case: build the scene, integrate it, give rows, events and figures to a sink.
-module simulation
-  use kinds, only: dp
-  use errors, only: error_t, fail, status_integration, status_internal
+module gudgeon_simulation
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t, fail, status_integration, status_internal
   use case_definition, only: case_t
   use ode_method, only: ode_method_t, step_statistics_t, limit_stability
   use gudgeon_methods, only: new_method
@@ -13,10 +13,10 @@ module simulation
   use crank_turns, only: all_made, turned_back
   use gudgeon_columns, only: choose_columns, column_list_t
   use cycle_watch, only: cycle_watch_t
-  use recorder, only: recorder_t
+  use gudgeon_recorder, only: recorder_t
   use run_figures, only: run_figures_t
   use trace_sink, only: trace_sink_t
-  use constants, only: two_pi
+  use gudgeon_constants, only: two_pi
   use gudgeon_archive, only: archive_t
   implicit none
   private
@@ -177,4 +177,4 @@ contains
     needed = method%totals()
     if (status == integration_done .or. status == integration_stopped) evaluations = needed%evaluations
   end subroutine try_auto
-end module simulation
+end module gudgeon_simulation

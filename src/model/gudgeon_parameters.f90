@@ -3,8 +3,8 @@
 !> A type with parameters has one procedure that hands each of them, with its key, unit, limits, default and meaning, to a
 !> visitor. One visitor collects them for the reader, the template and the messages; another one sets them from the values of
 !> a case. A law is chosen from those that its family registers, by the words that the laws give as their names.
-module parameters
-  use kinds, only: dp
+module gudgeon_parameters
+  use gudgeon_kinds, only: dp
   implicit none
   private
   public :: parameter_list_t, has_parameters_t, law_t, key_t
@@ -222,4 +222,4 @@ contains
     key = ''
     wanted = ''
   end subroutine no_conflict
-end module parameters
+end module gudgeon_parameters

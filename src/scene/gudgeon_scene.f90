@@ -1,6 +1,6 @@
 !> A scene: the chain with the joints and the gas that its case asks for, as a system of differential equations.
 module gudgeon_scene
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
   use ode_problem, only: ode_problem_t, max_events
   use state_layout, only: layout_t, coordinates_t, slice_t

@@ -2,13 +2,13 @@
 !> all.
 !>
 !> The file holds a line that says what it is, an archive and a checksum of all that.
-module checkpoint
-  use kinds, only: dp
-  use errors, only: error_t, fail, status_case_file
+module gudgeon_checkpoint
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t, fail, status_case_file
   use gudgeon_archive, only: archive_t
-  use checksum, only: checksum_t
+  use gudgeon_checksum, only: checksum_t
   use file_mark, only: file_mark_t
-  use posix, only: remove_file, synchronise_folder, error_text, error_no_entry
+  use gudgeon_posix, only: remove_file, synchronise_folder, error_text, error_no_entry
   use result_file, only: result_file_t
   use run_identity, only: identity_length
   use text_file, only: read_whole
@@ -122,4 +122,4 @@ contains
     call self%event_list%exchange(archive)
     call archive%exchange_text(self%state)
   end subroutine exchange
-end module checkpoint
+end module gudgeon_checkpoint

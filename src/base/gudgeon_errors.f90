@@ -1,5 +1,5 @@
 !> Errors as values: an unallocated `error_t` means success.
-module errors
+module gudgeon_errors
   implicit none
   private
   public :: error_t, fail
@@ -30,4 +30,4 @@ contains
     error%message = message
     error%status = status
   end subroutine fail
-end module errors
+end module gudgeon_errors

@@ -3,9 +3,9 @@
 !>
 !> Peaks of the force on the pin, of the penetration, of the film thickness and of the normal force in a contact are searched
 !> between accepted points too (`step_peaks`), and none is below what a row says. The energy is looked at in accepted points.
-module recorder
-  use kinds, only: dp
-  use constants, only: two_pi
+module gudgeon_recorder
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: two_pi
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t, limit_stability
   use gudgeon_solver, only: observer_t
@@ -362,4 +362,4 @@ contains
     call row_values(self%list, scene, t, now, scene%work(y), self%initial_energy, self%values)
     call self%sink%take_row(self%values)
   end subroutine put_row
-end module recorder
+end module gudgeon_recorder

@@ -1,14 +1,14 @@
 !> The summary of a run: NAME.summary.csv, and one line for people.
-module summary
+module gudgeon_summary
   use, intrinsic :: iso_fortran_env, only: int64, compiler_version, compiler_options
-  use kinds, only: dp
-  use constants, only: two_pi
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: two_pi
   use ode_method, only: highest_order, with_adams, with_radau, n_limits, limit_names, limit_stability
-  use simulation, only: run_report_t
+  use gudgeon_simulation, only: run_report_t
   use case_definition, only: case_t
   use number_text, only: real_text, short_text
   use text_tools, only: integer_text, quoted
-  use version, only: program_version
+  use gudgeon_version, only: program_version
   implicit none
   private
   public :: summary_table, summary_value, summary_line, energy_warning, build_advice, relative_residual
@@ -184,4 +184,4 @@ contains
       text = text//'; '//path//'.csv'
     end associate
   end function summary_line
-end module summary
+end module gudgeon_summary

@@ -1,11 +1,11 @@
 !> Progress on standard error, one line for each case that rewrites itself. Each line goes out in one call, so that
 !> lines of cases side by side do not mix.
-module progress
+module gudgeon_progress
   use, intrinsic :: iso_fortran_env, only: int64
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use text_tools, only: printable, integer_text
   use number_text, only: short_text
-  use posix, only: is_terminal, write_bytes
+  use gudgeon_posix, only: is_terminal, write_bytes
   implicit none
   private
   public :: progress_t, progress_wanted, tell, rate_text, duration_text
@@ -159,4 +159,4 @@ contains
       text = integer_text(whole/3600)//' h '//integer_text(mod(whole/60, 60))//' min'
     end if
   end function duration_text
-end module progress
+end module gudgeon_progress

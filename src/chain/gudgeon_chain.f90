@@ -1,7 +1,7 @@
 !> The chain crank - rod - piston. Where the forces of its loose pins are known from the state, it falls into pieces that each have
 !> a closed form on one page.
 module gudgeon_chain
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, n_pins, follow_rod, follow_piston
   use chain_bodies, only: bodies_t, drive_t, weightless
   use chain_loads, only: loads_t

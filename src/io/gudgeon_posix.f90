@@ -1,6 +1,6 @@
 !> The few calls of the C library that Fortran has no words for, as thin bindings for Linux. Numbers of errors are
 !> returned, never kept: two threads do not meet here.
-module posix
+module gudgeon_posix
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_short, c_null_char, c_ptr, &
     c_size_t, c_loc, c_f_pointer, c_associated
   use posix_calls, only: file_status_t, poll_t, c_open, c_read, c_pread, c_realpath, c_write, c_fsync, c_ftruncate, c_flock, &
@@ -336,4 +336,4 @@ contains
     call c_f_pointer(c_errno_location(), number)
     status = number
   end function outcome
-end module posix
+end module gudgeon_posix

@@ -1,7 +1,7 @@
 !> The columns of a trace: which of them a scene has, which the case wants, and the values of a row.
 module gudgeon_columns
-  use kinds, only: dp
-  use errors, only: error_t, fail, status_case_file
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t, fail, status_case_file
   use trace_row, only: trace_row_t, column_list_t, name_length
   use chain_motion, only: motion_t, accelerations_t, piston_pin
   use chain_reactions, only: reactions_t

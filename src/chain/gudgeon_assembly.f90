@@ -8,8 +8,8 @@
 !> By virtual work every body adds J^T M J to the mass matrix of the chain and J^T (Q - M b) to its forces, Q being what acts on the
 !> body and what its own motion asks for (centripetal terms). The mass matrix is symmetric and positive definite: no constraints
 !> are left, since the coordinates are independent.
-module assembly
-  use kinds, only: dp
+module gudgeon_assembly
+  use gudgeon_kinds, only: dp
   use small_cholesky, only: factorise_cholesky, solve_cholesky
   implicit none
   private
@@ -98,4 +98,4 @@ contains
     accelerations(:self%n) = a
     if (holds_first) holding = dot_product(self%mass(1, :self%n), a) - self%force(1)
   end subroutine solve
-end module assembly
+end module gudgeon_assembly
