@@ -9,7 +9,7 @@ module collecting_sink
   use trace_sink, only: trace_sink_t, trace_event_t
   implicit none
   private
-  public :: collecting_sink_t, trace_t, run_case, load_trace, column, last_row_time
+  public :: collecting_sink_t, trace_t, run_case, load_trace, load_table, column, last_row_time
 
   type, extends(trace_sink_t) :: collecting_sink_t
     integer :: rows = 0, events = 0
@@ -73,21 +73,9 @@ contains
     type(trace_t) :: trace
     character(len=2000) :: line
     character(len=40) :: label
-    integer :: unit, status, i, rows, commas
+    integer :: unit, status, rows
 
-    open (newunit=unit, file='data/'//name//'.csv', status='old', action='read')
-    read (unit, '(a)') line
-    commas = count([(line(i:i) == ',', i=1, len_trim(line))])
-    allocate (trace%names(commas + 1), trace%values(commas + 1, 3000))
-    trace%names = split(line, commas + 1)
-    rows = 0
-    do
-      read (unit, *, iostat=status) trace%values(:, rows + 1)
-      if (status /= 0) exit
-      rows = rows + 1
-    end do
-    close (unit)
-    trace%values = trace%values(:, :rows)
+    call load_table(name//'.csv', trace%names, trace%values)
     open (newunit=unit, file='data/'//name//'.events.csv', status='old', action='read')
     read (unit, '(a)') line
     allocate (trace%event(1000))
@@ -101,6 +89,28 @@ contains
     close (unit)
     trace%event = trace%event(:rows)
   end function load_trace
+
+  !> Read a table of numbers from data/: the names of its columns, cut at 40 characters, and its values (columns, rows).
+  subroutine load_table(name, names, values)
+    character(len=*), intent(in) :: name
+    character(len=40), allocatable, intent(out) :: names(:)
+    real(dp), allocatable, intent(out) :: values(:, :)
+    character(len=2000) :: line
+    integer :: unit, status, i, rows, commas
+    open (newunit=unit, file='data/'//name, status='old', action='read')
+    read (unit, '(a)') line
+    commas = count([(line(i:i) == ',', i=1, len_trim(line))])
+    allocate (names(commas + 1), values(commas + 1, 3000))
+    names = split(line, commas + 1)
+    rows = 0
+    do
+      read (unit, *, iostat=status) values(:, rows + 1)
+      if (status /= 0) exit
+      rows = rows + 1
+    end do
+    close (unit)
+    values = values(:, :rows)
+  end subroutine load_table
 
   !> The fields of a line, split at commas (list-directed input would stop at the / of a unit).
   pure function split(line, n) result(fields)

@@ -23,6 +23,7 @@ program gudgeon_tests
   use test_events, only: run_test_events
   use test_findings, only: run_test_findings
   use test_friction, only: run_test_friction
+  use test_friction_runs, only: run_test_friction_runs
   use test_joint, only: run_test_joint
   use test_number_text, only: run_test_number_text
   use test_number_writer, only: run_test_number_writer
@@ -38,6 +39,7 @@ program gudgeon_tests
   use test_standard_problems, only: run_test_standard_problems
   use test_state_layout, only: run_test_state_layout
   use test_states, only: run_test_states
+  use test_stick_slip, only: run_test_stick_slip
   use test_study, only: run_test_study
   use test_summary, only: run_test_summary
   use test_trace_files, only: run_test_trace_files
@@ -71,6 +73,7 @@ program gudgeon_tests
   call run('events', run_test_events)
   call run('findings', run_test_findings)
   call run('friction', run_test_friction)
+  call run('friction_runs', run_test_friction_runs)
   call run('joint', run_test_joint)
   call run('number_text', run_test_number_text)
   call run('number_writer', run_test_number_writer)
@@ -86,6 +89,7 @@ program gudgeon_tests
   call run('standard_problems', run_test_standard_problems)
   call run('state_layout', run_test_state_layout)
   call run('states', run_test_states)
+  call run('stick_slip', run_test_stick_slip)
   call run('study', run_test_study)
   call run('summary', run_test_summary)
   call run('trace_files', run_test_trace_files)

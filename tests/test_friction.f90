@@ -1,13 +1,19 @@
-!> The friction laws: values, continuity, signs, factory.
+!> The friction laws without memory: values, slopes, continuity, signs, factory.
 module test_friction
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, status_case_file
   use checks, only: checks_t
   use friction_law, only: friction_law_t
+  use collecting_sink, only: load_table
   use laws, only: friction_law_of
   implicit none
   private
   public :: run_test_friction
+
+  character(len=*), parameter :: brown_mcphee_keys = &
+    "law='brown_mcphee' coefficient=0.08 static_coefficient=0.12 transition_speed=0.01 viscous_coefficient=2e-3"
+  character(len=*), parameter :: stribeck_keys = "law='stribeck' coefficient=0.08 static_coefficient=0.12 "// &
+    "stribeck_speed=0.02 transition_speed=1e-3 viscous_coefficient=2e-3"
 
 contains
 
@@ -16,6 +22,12 @@ contains
     call test_ramp(check)
     call test_jump(check)
     call test_coulomb(check)
+    call test_curves(check)
+    call test_peaks(check)
+    call test_slopes(check)
+    call test_extremes(check)
+    call test_static_coulomb(check)
+    call test_conflicts(check)
     call test_factory(check)
   end subroutine run_test_friction
 
@@ -71,6 +83,144 @@ contains
     end do
   end subroutine test_coulomb
 
+  !> The table of an independent implementation (data/README.md), and a few numbers of it, of 12 digits.
+  subroutine test_curves(check)
+    class(checks_t), intent(inout) :: check
+    character(len=130), parameter :: keys(5) = [character(len=130) :: "law='coulomb' coefficient=0.08", &
+      "law='ambrosio' coefficient=0.08 v0=1e-3 v1=1e-2", "law='threlfall' coefficient=0.08 v1=1e-2", brown_mcphee_keys, &
+      stribeck_keys]
+    class(friction_law_t), allocatable :: law
+    type(error_t), allocatable :: error
+    character(len=40), allocatable :: names(:)
+    real(dp), allocatable :: table(:, :)
+    integer :: i, row
+    call load_table('friction/curves.csv', names, table)
+    call check%that(size(table, 2) == 27, 'the table of friction curves is whole')
+    do i = 1, size(keys)
+      call friction_law_of(trim(keys(i)), law, error)
+      do row = 1, size(table, 2)
+        associate (v => table(1, row))
+          if (law%set_valued .and. .not. abs(v) > 0) cycle
+          call check%close_to(law%friction_ratio(v, nint(sign(1.0_dp, v))), table(i + 1, row), 2e-12_dp, 'curve of '//law%name())
+        end associate
+      end do
+      if (law%name() == 'threlfall') call check%relative(law%friction_ratio(5e-3_dp, 1), -0.0621495871881_dp, 1e-11_dp, &
+        'threlfall at half v1')
+      if (law%name() == 'brown_mcphee') call check%relative(law%friction_ratio(-0.05_dp, 1), 0.0841816326531_dp, 1e-11_dp, &
+        'brown_mcphee at five transition speeds')
+      if (law%name() == 'stribeck') call check%relative(law%friction_ratio(0.01_dp, 1), -0.111172030865_dp, 1e-11_dp, &
+        'stribeck at half the Stribeck speed')
+    end do
+  end subroutine test_curves
+
+  !> The largest friction of Brown and McPhee's law is 0.9994 to 0.9998 c_s, at 1.001 to 1.016 transition speeds.
+  subroutine test_peaks(check)
+    class(checks_t), intent(inout) :: check
+    class(friction_law_t), allocatable :: law
+    type(error_t), allocatable :: error
+    real(dp) :: ratio, peak, at
+    integer :: i
+    call friction_law_of("law='brown_mcphee' coefficient=0.08 static_coefficient=0.12 transition_speed=0.01", law, error)
+    peak = 0
+    at = 0
+    do i = 1, 40000
+      ratio = -law%friction_ratio(1e-6_dp*i, 1)
+      if (ratio > peak) at = 1e-6_dp*i
+      peak = max(peak, ratio)
+    end do
+    call check%that(peak > 0.9994_dp*0.12_dp .and. peak < 0.9998_dp*0.12_dp, 'the peak is the static friction')
+    call check%that(at > 1.001e-2_dp .and. at < 1.016e-2_dp, 'at the transition speed')
+    call check%relative(-law%friction_ratio(10.0_dp, 1), 0.08_dp, 1e-7_dp, 'the sliding friction is left at high speeds')
+  end subroutine test_peaks
+
+  !> The closed slopes against central differences of the ratio.
+  subroutine test_slopes(check)
+    class(checks_t), intent(inout) :: check
+    character(len=130), parameter :: keys(5) = [character(len=130) :: "law='ambrosio' coefficient=0.08 v0=1e-3 v1=1e-2", &
+      "law='threlfall' coefficient=0.08 v1=1e-2", brown_mcphee_keys, stribeck_keys, "law='stribeck' coefficient=0.08 "// &
+      "static_coefficient=0.12 stribeck_speed=0.02 transition_speed=1e-3 stribeck_exponent=0.5"]
+    class(friction_law_t), allocatable :: law
+    type(error_t), allocatable :: error
+    real(dp) :: v, step
+    integer :: i, j
+    do i = 1, size(keys)
+      call friction_law_of(trim(keys(i)), law, error)
+      do j = -40, 40
+        v = sign(1e-6_dp*1.5_dp**abs(j), real(j, dp))
+        if (j == 0) v = 0
+        step = max(1e-5_dp*abs(v), 1e-11_dp)
+        if (j == 0 .and. i == 5) cycle   ! its second derivative has no bound there
+        call check%close_to(law%friction_ratio_slope(v), (law%friction_ratio(v + step, 1) - law%friction_ratio(v - step, 1)) &
+          /(2*step), 1e-5_dp*abs(law%friction_ratio_slope(v)) + 1e-10_dp/step*1e-5_dp, 'slope of '//law%name())
+      end do
+    end do
+  end subroutine test_slopes
+
+  !> At the ends of every range: friction never drives, is odd, and is a number; so is its slope.
+  subroutine test_extremes(check)
+    class(checks_t), intent(inout) :: check
+    character(len=130), parameter :: keys(8) = [character(len=130) :: "law='threlfall' coefficient=2 v1=1e-9", &
+      "law='threlfall' coefficient=0 v1=1e3", &
+      "law='brown_mcphee' coefficient=0 static_coefficient=1 transition_speed=1e-9", &
+      "law='brown_mcphee' coefficient=0.1 static_coefficient=0.1 transition_speed=1e3 viscous_coefficient=1", &
+      "law='brown_mcphee' coefficient=0.1 transition_speed=1e-3", &
+      "law='stribeck' coefficient=0.1 static_coefficient=0.2 stribeck_speed=1e-9 transition_speed=1e-9 stribeck_exponent=10", &
+      "law='stribeck' coefficient=0.1 static_coefficient=0.2 stribeck_speed=1e3 transition_speed=1e-9 stribeck_exponent=0.1", &
+      "law='stribeck' coefficient=0.1 stribeck_speed=1e-3 transition_speed=10 viscous_coefficient=1"]
+    class(friction_law_t), allocatable :: law
+    type(error_t), allocatable :: error
+    real(dp) :: v, ratio
+    integer :: i, j
+    do i = 1, size(keys)
+      call friction_law_of(trim(keys(i)), law, error)
+      do j = -30, 12
+        v = 10.0_dp**j
+        ratio = law%friction_ratio(v, 1)
+        call check%that(ratio <= 0 .and. ratio >= -2 - v, 'friction opposes sliding: '//law%name())
+        call check%that(.not. abs(ratio + law%friction_ratio(-v, -1)) > 0, 'and is odd: '//law%name())
+        call check%that(abs(law%friction_ratio_slope(v)) < 1e12_dp, 'with a slope: '//law%name())
+      end do
+      call check%that(.not. abs(law%friction_ratio(0.0_dp, 1)) > 0, 'none at rest: '//law%name())
+    end do
+  end subroutine test_extremes
+
+  subroutine test_static_coulomb(check)
+    class(checks_t), intent(inout) :: check
+    class(friction_law_t), allocatable :: law
+    type(error_t), allocatable :: error
+    call friction_law_of("law='coulomb' coefficient=0.1 static_coefficient=0.15", law, error)
+    call check%close_to(law%friction_ratio(0.2_dp, 1), -0.1_dp, 0.0_dp, 'surfaces slide with the coefficient')
+    call check%close_to(law%holding_ratio(), 0.15_dp, 0.0_dp, 'and are held with the static one')
+    call friction_law_of("law='coulomb' coefficient=0.1", law, error)
+    call check%close_to(law%holding_ratio(), 0.1_dp, 0.0_dp, 'which is that of sliding where none is given')
+  end subroutine test_static_coulomb
+
+  subroutine test_conflicts(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: less = 'static_coefficient = 0.05: must be >= coefficient, or 0: as coefficient'
+    call refused("law='coulomb' coefficient=0.1 static_coefficient=0.05", less)
+    call refused("law='brown_mcphee' coefficient=0.1 static_coefficient=0.05 transition_speed=1", less)
+    call refused("law='stribeck' coefficient=0.1 static_coefficient=0.05 transition_speed=1 stribeck_speed=1", less)
+    call refused("law='threlfall' coefficient=0.1 v1=0", 'v1 = 0: must be > 0 (m/s) for threlfall')
+    call refused("law='brown_mcphee' coefficient=0.1 transition_speed=0", 'transition_speed = 0: must be > 0 (m/s)')
+    call refused("law='stribeck' coefficient=0.1 stribeck_speed=-1 transition_speed=1", 'stribeck_speed = -1: must be > 0 (m/s)')
+    call refused("law='stribeck' coefficient=0.1 stribeck_speed=1 transition_speed=1 stribeck_exponent=0", &
+      'stribeck_exponent = 0: must be >= 0.1 and <= 10')
+    call refused("law='brown_mcphee' coefficient=0.1", 'transition_speed: required')
+
+  contains
+
+    subroutine refused(keys, wanted)
+      character(len=*), intent(in) :: keys, wanted
+      class(friction_law_t), allocatable :: law
+      type(error_t), allocatable :: error
+      call friction_law_of(keys, law, error)
+      call check%that(allocated(error), 'refused: '//keys)
+      if (.not. allocated(error)) return
+      call check%that(error%status == status_case_file .and. index(error%message, '&friction '//wanted) > 0, error%message)
+    end subroutine refused
+  end subroutine test_conflicts
+
   subroutine test_factory(check)
     class(checks_t), intent(inout) :: check
     class(friction_law_t), allocatable :: law
@@ -78,7 +228,8 @@ contains
     call friction_law_of("law='glue' coefficient=0.1", law, error)
     call check%that(allocated(error) .and. .not. allocated(law), 'an unknown friction law is refused')
     if (.not. allocated(error)) return
-    call check%equal_text(error%message, "x.nml:1: &friction law = glue: must be one of ambrosio, coulomb", &
+    call check%equal_text(error%message, "x.nml:1: &friction law = glue: must be one of ambrosio, coulomb, "// &
+      "threlfall, brown_mcphee, stribeck", &
       'the refusal names the laws')
     call check%that(error%status == status_case_file, 'the refusal is a case file error')
   end subroutine test_factory

@@ -33,6 +33,12 @@ check = assertions.check
 #: Runs by name: the case, and settings that keep it short. Between them they have every law and both joints.
 SCENES = {
     "dry": ("flores/friction_050", {"integrator.revolutions": "0.3"}),
+    "sticks": ("friction/coulomb_static", {"integrator.revolutions": "0.3"}),
+    "threlfall": ("flores/friction_050", {"integrator.revolutions": "0.15", "friction.law": "threlfall", "friction.v1": "0.4"}),
+    "brown_mcphee": ("friction/brown_mcphee", {"integrator.revolutions": "0.15", "friction.viscous_coefficient": "0.01",
+                                               "friction.transition_speed": "0.2"}),
+    "stribeck": ("friction/brown_mcphee", {"integrator.revolutions": "0.15", "friction.law": "stribeck", "friction.stribeck_speed": "0.3",
+                                           "friction.transition_speed": "0.1"}),
     "film": ("sim_V", {"integrator.method": "'auto'", "integrator.revolutions": "1.2", "initial.crank_angle_deg": "170",
                        "integrator.max_step": "5e-5"}),
     "contact": ("sim_V_oscillating", {"integrator.method": "'auto'", "integrator.revolutions": "0.25", "initial.crank_angle_deg": "340"}),
@@ -40,7 +46,7 @@ SCENES = {
 }
 
 LONG_STEPS = ("sim_V", {"integrator.method": "'auto'", "integrator.revolutions": "1.2", "initial.crank_angle_deg": "170"})
-PHASES = {"dry": {0, 2}, "film": {1}, "contact": {1, 2}, "ideal": {0}}   # 0 free flight, 1 film, 2 contact
+PHASES = {"dry": {0, 2}, "sticks": {0, 2}, "threlfall": {0, 2}, "brown_mcphee": {0, 2}, "stribeck": {0, 2}, "film": {1}, "contact": {1, 2}, "ideal": {0}}   # 0 free flight, 1 film, 2 contact
 
 #: (what is changed, scene, column, change of (value, row), what the verdict must say)
 CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
@@ -61,6 +67,10 @@ CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
     ("thicker film", "film", "film_thickness", lambda v, i: v * (1 + 1e-9), "film thickness"),
     ("harder contact", "contact", "normal_force", lambda v, i: v * (1 + 1e-5), "contact law"),
     ("friction with the sliding", "contact", "friction_force", lambda v, i: -v, "friction law"),
+    ("friction at rest above the static one", "sticks", "friction_force", lambda v, i: v * 1.2, "friction law"),
+    ("a little more friction of Threlfall", "threlfall", "friction_force", lambda v, i: v * (1 + 1e-5), "friction law"),
+    ("a little less friction of Brown and McPhee", "brown_mcphee", "friction_force", lambda v, i: v * (1 - 1e-5), "friction law"),
+    ("a little more friction of Stribeck", "stribeck", "friction_force", lambda v, i: v * (1 + 1e-5), "friction law"),
     ("faster sliding", "dry", "sliding_speed", lambda v, i: v * (1 + 1e-6), "sliding speed"),
     ("another film", "film", "film_force_x", lambda v, i: v * 1.001, "film force on the pin"),
     ("more pressure", "film", "cylinder_pressure", lambda v, i: v * 1.001, "gas law"),
@@ -74,6 +84,9 @@ CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
 LIARS = [
     ("another restitution", "dry", "contact.restitution", "0.89", "contact law"),
     ("another friction", "dry", "friction.coefficient", "0.051", "friction law"),
+    ("more friction at rest", "sticks", "friction.static_coefficient", "0.151", "friction law"),
+    ("another friction at rest", "brown_mcphee", "friction.static_coefficient", "0.151", "friction law"),
+    ("another speed of transition", "stribeck", "friction.transition_speed", "0.11", "friction law"),
     ("more damping", "ideal", "drive.damping", "0.031", "Euler, crank"),
     ("more heat", "film", "combustion.heat", "166.0", "gas law"),
     ("thicker oil", "film", "lubrication.viscosity", "0.0118", "film law"),
@@ -88,6 +101,7 @@ LIARS = [
 MUTANTS = [
     ("contact damping gives energy", "lankarani_nikravesh.f90", "1 + self%damping*min(", "1 - self%damping*min(", "dry", "contact law"),
     ("friction drives", "ambrosio.f90", "ratio = -sign(ratio, sliding_speed)", "ratio = sign(ratio, sliding_speed)", "dry", "friction law"),
+    ("static friction grips too early", "brown_mcphee.f90", "0.25_dp*u**2 + 0.75_dp)**2", "0.25_dp*u**2 + 0.76_dp)**2", "brown_mcphee", "friction law"),
     ("film holds too much as it withdraws", "pinkus_sternlicht.f90", "withdrawal_sign*radial", "withdrawal_sign*(1.001_dp*radial)", "film", "film law"),
     ("gas loses no heat as it expands", "gas_cycle.f90", "values(i) = p*(volume", "values(i) = 1.001_dp*p*(volume", "film", "gas law"),
 ]

@@ -44,24 +44,46 @@ class Contact:
 
 
 class Friction:
-    """Ambrosio (4.9, 4.10) and Coulomb (4.8): against the sliding, at most the coefficient times the normal force."""
+    """Friction over normal force along t, at a sliding speed: Ambrosio (4.9, 4.10), Coulomb (4.8) with a larger friction at rest,
+    Threlfall, Brown and McPhee (2016), and Stribeck's curve eased in by a hyperbolic tangent."""
 
     def __init__(self, run: Run) -> None:
-        self.coefficient = run.number("friction.coefficient")
-        self.coulomb = run.text("friction.law") == "coulomb"
-        self.v0, self.v1 = run.number("friction.v0"), run.number("friction.v1")
+        self.law = run.text("friction.law")
+        self.number = lambda key, default=0.0: run.number(f"friction.{key}", default)
+        self.coefficient = self.number("coefficient")
+        self.static = self.number("static_coefficient") or self.coefficient
+        self.v0, self.v1 = self.number("v0"), self.number("v1")
+        self.coulomb = self.law == "coulomb" or self.law == "ambrosio" and self.v1 <= 0
+        self.grip = {"ambrosio": self.ramp, "threlfall": self.eased, "brown_mcphee": self.peaked, "stribeck": self.falling}.get(self.law)
 
     def range(self, speed: float, give: float) -> tuple[float, float]:
         """Least and largest friction over normal force along t at a sliding speed known to +- `give`."""
-        return tuple(sorted(self.ratio(v) for v in (speed - give, speed + give)))
+        found = sorted(self.ratio(v) for v in (speed - give, speed, speed + give))
+        return found[0], found[-1]
 
     def ratio(self, speed: float) -> float:
         size = abs(speed)
-        if self.coulomb or self.v1 <= 0 or size >= self.v1:
-            part = 1.0 if size else 0.0
+        if self.coulomb:
+            grip = self.coefficient if size else 0.0
         else:
-            part = 0.0 if size <= self.v0 else (size - self.v0) / (self.v1 - self.v0)
-        return -math.copysign(part * self.coefficient, speed)
+            grip = self.grip(size)
+        return -math.copysign(grip + self.number("viscous_coefficient") * size, speed)
+
+    def ramp(self, size: float) -> float:
+        if size >= self.v1:
+            return self.coefficient
+        return 0.0 if size <= self.v0 else self.coefficient * (size - self.v0) / (self.v1 - self.v0)
+
+    def eased(self, size: float) -> float:
+        return -self.coefficient * math.expm1(-3 * min(size, self.v1) / self.v1)
+
+    def peaked(self, size: float) -> float:
+        u = size / self.number("transition_speed")
+        return self.coefficient * math.tanh(4 * u) + (self.static - self.coefficient) * 16 * u / (u * u + 3) ** 2
+
+    def falling(self, size: float) -> float:
+        fall = math.exp(-((size / self.number("stribeck_speed")) ** self.number("stribeck_exponent", 2.0)))
+        return (self.coefficient * (1 - fall) + self.static * fall) * math.tanh(size / self.number("transition_speed"))
 
 
 def squeeze_film(run: Run, row: Row, slip: tuple[float, float]) -> tuple[float, float]:

@@ -113,8 +113,9 @@ class RowChecks:
             self.take("no friction", abs(friction), 0.0, t)
             return
         low, high = self.friction.range(get["sliding_speed"], 10 * give)
-        if self.friction.coulomb and abs(sliding) <= 1e3 * give:   # sticking, or about to
-            low, high = -self.friction.coefficient, self.friction.coefficient
+        still = max(1e3 * give, self.run.number("integrator.relative_tolerance") * row.speed_size)   # what a step may miss of a speed
+        if self.friction.coulomb and abs(sliding) <= still:   # sticking, or about to
+            low, high = -self.friction.static, self.friction.static
         self.take("friction law", inside(friction, low * normal, high * normal), LAW * normal * (abs(low) + abs(high)) / 2 + 1e-300, t)
 
     def check_film(self, row: Row, n: tuple[float, float], give: float, t: float) -> None:

@@ -4,7 +4,7 @@ module friction_law
   use gudgeon_parameters, only: law_t
   implicit none
   private
-  public :: friction_law_t
+  public :: friction_law_t, static_or_sliding, static_conflict
 
   !> Dry friction between pin and bearing surfaces.
   type, abstract, extends(law_t) :: friction_law_t
@@ -13,6 +13,7 @@ module friction_law
     procedure :: prepare => nothing_to_prepare
     procedure(friction_ratio), deferred :: friction_ratio
     procedure :: friction_ratio_slope
+    procedure :: holding_ratio
   end type friction_law_t
 
   abstract interface
@@ -45,4 +46,26 @@ contains
     end associate
     slope = 0
   end function friction_ratio_slope
+
+  !> Largest friction over normal force [-] that a set-valued law has for surfaces that stick. The default is that of sliding.
+  pure real(dp) function holding_ratio(self)
+    class(friction_law_t), intent(in) :: self
+    holding_ratio = abs(self%friction_ratio(0.0_dp, 1))
+  end function holding_ratio
+
+  !> Coefficient of friction at rest as it is meant: a case that gives none, 0, means that of sliding.
+  pure real(dp) function static_or_sliding(static, sliding)
+    real(dp), intent(in) :: static, sliding
+    static_or_sliding = sliding
+    if (static > 0) static_or_sliding = static
+  end function static_or_sliding
+
+  !> Refuse, in the way of `conflict`, friction at rest that is smaller than that of sliding.
+  pure subroutine static_conflict(static, sliding, key, wanted)
+    real(dp), intent(in) :: static, sliding
+    character(len=:), allocatable, intent(out) :: key, wanted
+    key = ''
+    wanted = 'must be >= coefficient, or 0: as coefficient'
+    if (static_or_sliding(static, sliding) < sliding) key = 'static_coefficient'
+  end subroutine static_conflict
 end module friction_law

@@ -3,6 +3,9 @@ module friction_laws
   use gudgeon_parameters, only: parameter_list_t
   use ambrosio, only: ambrosio_t
   use coulomb, only: coulomb_t
+  use threlfall, only: threlfall_t
+  use brown_mcphee, only: brown_mcphee_t
+  use stribeck, only: stribeck_t
   implicit none
   private
   public :: offer_friction_laws
@@ -14,5 +17,8 @@ contains
     class(parameter_list_t), intent(inout) :: list
     call list%law(ambrosio_t())
     call list%law(coulomb_t())
+    call list%law(threlfall_t())
+    call list%law(brown_mcphee_t())
+    call list%law(stribeck_t())
   end subroutine offer_friction_laws
 end module friction_laws

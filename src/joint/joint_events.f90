@@ -73,11 +73,11 @@ contains
     end if
   end subroutine sliding_event
 
-  !> Largest friction force that a set-valued law can give [N].
+  !> Largest friction force that a set-valued law can hold surfaces with [N].
   pure real(dp) function sticking_limit(joint, normal_force)
     type(clearance_joint_t), intent(in) :: joint
     real(dp), intent(in) :: normal_force
-    sticking_limit = abs(joint%friction%friction_ratio(0.0_dp, 1))*normal_force
+    sticking_limit = joint%friction%holding_ratio()*normal_force
   end function sticking_limit
 
   !> A step that begins apart may go no deeper into contact than `max_penetration` (4.12-4.13), nor pass through it. The

@@ -176,7 +176,7 @@ contains
     character(len=*), intent(in) :: place
     class(parameter_list_t), intent(inout) :: list
     call list%group('friction', 'dry friction of the contact: leave the group out for none', .true., place)
-    call list%choice('law', 'ambrosio', 'ambrosio: grows from 0 at v0 to full at v1')
+    call list%choice('law', 'ambrosio', 'coulomb holds a load at rest; under the others it creeps')
     call offer_friction_laws(list)
     if (.not. list%sets) return
     if (allocated(law)) deallocate (law)

@@ -1,0 +1,62 @@
+!> Coulomb friction eased in exponentially over small sliding speeds, after Threlfall.
+module threlfall
+  use gudgeon_kinds, only: dp
+  use gudgeon_parameters, only: parameter_list_t
+  use friction_law, only: friction_law_t
+  implicit none
+  private
+  public :: threlfall_t
+
+  !> F_T = -c_f F_N sign(v_T) (1 - exp(-3 |v_T|/v1)) up to |v_T| = v1, from there on what it is at v1: 95 % of c_f F_N.
+  type, extends(friction_law_t) :: threlfall_t
+    real(dp) :: coefficient = 0   !! c_f [-], >= 0
+    real(dp) :: v1 = 0            !! the friction grows up to this sliding speed [m/s], > 0
+  contains
+    procedure, nopass :: name
+    procedure :: parameters
+    procedure :: conflict
+    procedure :: friction_ratio
+    procedure :: friction_ratio_slope
+  end type threlfall_t
+
+contains
+
+  pure function name()
+    character(len=:), allocatable :: name
+    name = 'threlfall'
+  end function name
+
+  subroutine parameters(self, list)
+    class(threlfall_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%add('coefficient', self%coefficient, 'of sliding friction', range='>= 0', example='0.03')
+    call list%add('v1', self%v1, 'full friction from this sliding speed on', 'm/s', '>= 0', example='0.010')
+  end subroutine parameters
+
+  pure subroutine conflict(self, key, wanted)
+    class(threlfall_t), intent(in) :: self
+    character(len=:), allocatable, intent(out) :: key, wanted
+    key = ''
+    wanted = 'must be > 0 (m/s) for threlfall'
+    if (.not. self%v1 > 0) key = 'v1'
+  end subroutine conflict
+
+  !> Continuous, with a kink at v1.
+  pure function friction_ratio(self, sliding_speed, direction) result(ratio)
+    class(threlfall_t), intent(in) :: self
+    real(dp), value, intent(in) :: sliding_speed
+    integer, value, intent(in) :: direction
+    real(dp) :: ratio
+    associate (unused => direction)
+    end associate
+    ratio = -sign(self%coefficient*(1 - exp(-3*min(abs(sliding_speed)/self%v1, 1.0_dp))), sliding_speed)
+  end function friction_ratio
+
+  pure function friction_ratio_slope(self, sliding_speed) result(slope)
+    class(threlfall_t), intent(in) :: self
+    real(dp), intent(in) :: sliding_speed
+    real(dp) :: slope
+    slope = 0
+    if (abs(sliding_speed) < self%v1) slope = -3*self%coefficient/self%v1*exp(-3*abs(sliding_speed)/self%v1)
+  end function friction_ratio_slope
+end module threlfall

@@ -1,0 +1,123 @@
+!> Stick-slip: a mass on a dry floor, drawn by a spring whose other end moves at a constant speed. Friction is a law of the program;
+!> where that is set-valued, sticking and slipping are told by the procedures of a joint.
+module belt_problem
+  use gudgeon_kinds, only: dp
+  use ode_problem, only: ode_problem_t, event_continue
+  use chain_motion, only: accelerations_t, piston_pin
+  use friction_law, only: friction_law_t
+  use clearance_joint, only: clearance_joint_t, joint_loads_t
+  use joint_motion, only: joint_motion_t
+  use joint_events, only: sliding_event, choose_sliding
+  implicit none
+  private
+  public :: belt_t, new_belt, mass, spring, draw_speed, load
+
+  real(dp), parameter :: mass = 1            !! [kg]
+  real(dp), parameter :: spring = 2          !! its stiffness [N/m]
+  real(dp), parameter :: draw_speed = 0.1_dp !! of the spring's end [m/s]
+  real(dp), parameter :: load = 10           !! normal force of the mass on the floor [N]
+
+  !> y = (x, x', work of friction).
+  type, extends(ode_problem_t) :: belt_t
+    type(clearance_joint_t) :: joint     !! its friction, and whether it sticks
+    integer :: n_changes = 0
+    real(dp) :: change(100) = 0          !! when the mass began to slip or to stick [s]
+  contains
+    procedure :: derivatives
+    procedure :: events
+    procedure :: handle_event
+  end type belt_t
+
+contains
+
+  !> At rest, with the spring at ease.
+  subroutine new_belt(law, belt)
+    class(friction_law_t), intent(in) :: law
+    type(belt_t), intent(out) :: belt
+    allocate (belt%joint%friction, source=law)
+    belt%n = 3
+    belt%n_positions = 1
+    belt%n_quadratures = 1
+    belt%n_events = merge(1, 0, law%set_valued)
+    belt%refuses_steps = .false.
+  end subroutine new_belt
+
+  pure subroutine derivatives(self, t, y, dydt, inside)
+    class(belt_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: dydt(self%n)
+    logical, intent(out) :: inside
+    real(dp) :: friction
+    inside = .true.
+    friction = -pull(t, y)
+    if (.not. sticks(self)) friction = load*self%joint%friction%friction_ratio(y(2), self%joint%sliding)
+    dydt(1) = y(2)
+    dydt(2) = (pull(t, y) + friction)/mass
+    dydt(3) = friction*y(2)
+  end subroutine derivatives
+
+  !> Force of the spring [N].
+  pure real(dp) function pull(t, y)
+    real(dp), intent(in) :: t, y(:)
+    pull = spring*(draw_speed*t - y(1))
+  end function pull
+
+  pure logical function sticks(self)
+    class(belt_t), intent(in) :: self
+    sticks = self%joint%friction%set_valued .and. self%joint%sliding == 0
+  end function sticks
+
+  !> What the procedures of a joint need to know of the mass: it slides along y on a wall across x.
+  pure subroutine see_as_joint(self, t, y, motion, own, accelerations)
+    class(belt_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    type(joint_motion_t), intent(out) :: motion
+    type(joint_loads_t), intent(out) :: own
+    type(accelerations_t), intent(out) :: accelerations
+    real(dp) :: dydt(3)
+    logical :: inside
+    call self%derivatives(t, y, dydt, inside)
+    motion%normal = [1.0_dp, 0.0_dp]
+    motion%distance = 1
+    motion%penetration_rate = 0
+    motion%tangential_rate = y(2)
+    motion%bearing_speed = 0
+    motion%sliding_speed = y(2)
+    own%normal_force = load
+    own%friction_force = -pull(t, y)
+    accelerations%rod = 0
+    accelerations%pin = 0
+    accelerations%pin(2, piston_pin) = dydt(2)
+  end subroutine see_as_joint
+
+  pure subroutine events(self, t, y, g, g_rate)
+    class(belt_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: g(:), g_rate(:)
+    type(joint_motion_t) :: motion
+    type(joint_loads_t) :: own
+    type(accelerations_t) :: accelerations
+    if (self%n_events == 0) return
+    call see_as_joint(self, t, y, motion, own, accelerations)
+    call sliding_event(self%joint, motion, own, accelerations, g(1), g_rate(1))
+  end subroutine events
+
+  subroutine handle_event(self, index, t, y, action)
+    class(belt_t), intent(inout) :: self
+    integer, intent(in) :: index
+    real(dp), intent(in) :: t
+    real(dp), intent(inout) :: y(:)
+    integer, intent(out) :: action
+    type(joint_motion_t) :: motion
+    type(joint_loads_t) :: own
+    type(accelerations_t) :: accelerations
+    logical :: was_sliding
+    was_sliding = self%joint%sliding /= 0
+    self%joint%sliding = 0
+    call see_as_joint(self, t, y, motion, own, accelerations)
+    call choose_sliding(self%joint, motion, own, was_sliding, .false.)
+    self%n_changes = self%n_changes + index
+    self%change(self%n_changes) = t
+    action = event_continue
+  end subroutine handle_event
+end module belt_problem
