@@ -315,8 +315,8 @@ contains
   !> The next discontinuity: t = 1, 2, ... 19, in F4 t = 10.
   pure subroutine discontinuities(self, t, y, g, g_rate)
     class(standard_problem_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    real(dp), intent(out) :: g(:), g_rate(:)
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
     associate (unused => y)
     end associate
     g = t - (self%part + 1)

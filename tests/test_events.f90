@@ -171,8 +171,8 @@ contains
 
   pure subroutine three_events(self, t, y, g, g_rate)
     class(crossings_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    real(dp), intent(out) :: g(:), g_rate(:)
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
     associate (unused_self => self, unused_t => t)
     end associate
     g = [y(1) - 0.5_dp, 0.5_dp - y(1), y(2)]
@@ -218,8 +218,8 @@ contains
 
   pure subroutine passes_zero(self, t, y, g, g_rate)
     class(chatterer_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    real(dp), intent(out) :: g(:), g_rate(:)
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
     associate (unused_t => t)
     end associate
     g = -1

@@ -116,8 +116,8 @@ contains
 
   pure subroutine ball_events(self, t, y, g, g_rate)
     class(bouncing_ball_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    real(dp), intent(out) :: g(:), g_rate(:)
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
     associate (unused_self => self, unused_t => t)
     end associate
     g = -y(1)
@@ -139,8 +139,8 @@ contains
 
   pure subroutine hopper_events(self, t, y, g, g_rate)
     class(hopper_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    real(dp), intent(out) :: g(:), g_rate(:)
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
     associate (unused_t => t)
     end associate
     g = y(1) - self%level

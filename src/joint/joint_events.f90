@@ -7,19 +7,20 @@ module joint_events
   use joint_motion, only: joint_motion_t, sliding_acceleration
   implicit none
   private
-  public :: n_events, contact_begins, contact_ends, sliding_changes
-  public :: contact_events, sliding_event, judge_entry, rough_end, begin_contact, end_contact, choose_sliding
+  public :: n_events, contact_changes, sliding_changes
+  public :: contact_event, sliding_event, judge_entry, rough_end, begin_contact, end_contact, choose_sliding
   public :: penetration_and_rate
 
-  !> The events of a joint, in this order. One without contact has none, and only set-valued friction has the third.
-  integer, parameter :: contact_begins = 1, contact_ends = 2, sliding_changes = 3
+  !> The events of a joint, in this order. One without contact has none, and only set-valued friction has the second. A contact
+  !> begins where journal and bearing are apart, and ends where they touch.
+  integer, parameter :: contact_changes = 1, sliding_changes = 2
 
 contains
 
   pure integer function n_events(joint)
     type(clearance_joint_t), intent(in) :: joint
     n_events = 0
-    if (allocated(joint%contact)) n_events = contact_ends
+    if (allocated(joint%contact)) n_events = contact_changes
     if (allocated(joint%friction)) then
       if (joint%friction%set_valued) n_events = sliding_changes
     end if
@@ -39,23 +40,21 @@ contains
     end associate
   end function penetration_and_rate
 
-  !> Event functions and rates of the beginning and the end of a contact. That of the other phase is constant.
-  pure subroutine contact_events(joint, y, g, g_rate)
+  !> Event function of a contact that begins or ends, and its rate: (e . e - c^2)/2 [m^2] while apart, which is smooth in every
+  !> state, and less it in contact.
+  pure subroutine contact_event(joint, y, g, g_rate)
     type(clearance_joint_t), intent(in) :: joint
-    real(dp), intent(in) :: y(:)
-    real(dp), intent(out) :: g(2), g_rate(2)
-    real(dp) :: contact(2)
-    contact = penetration_and_rate(joint, y)
-    g = -1
-    g_rate = 0
-    if (joint%phase == phase_contact) then
-      g(contact_ends) = -contact(1)
-      g_rate(contact_ends) = -contact(2)
-    else
-      g(contact_begins) = contact(1)
-      g_rate(contact_begins) = contact(2)
-    end if
-  end subroutine contact_events
+    real(dp), intent(in) :: y(*)
+    real(dp), intent(out) :: g, g_rate
+    associate (x => y(joint%at%position), x_rate => y(joint%at%rate), &
+               across => y(joint%at%position + 1), across_rate => y(joint%at%rate + 1))
+      g = 0.5_dp*(x**2 + across**2 - joint%bearing%clearance**2)
+      g_rate = x*x_rate + across*across_rate
+      if (joint%phase /= phase_contact) return
+      g = -g
+      g_rate = -g_rate
+    end associate
+  end subroutine contact_event
 
   !> Event function of set-valued friction in contact: surfaces slip that stuck, or the sliding speed passes zero.
   pure subroutine sliding_event(joint, motion, own, accelerations, g, g_rate)

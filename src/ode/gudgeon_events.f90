@@ -69,9 +69,9 @@ contains
   subroutine look(self, problem, t, y)
     class(event_watch_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
-    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(in) :: t, y(problem%n)
     self%t = t
-    call problem%events(t, y, self%g(:self%n), self%rate(:self%n))
+    call problem%events(t, y, self%g, self%rate)
   end subroutine look
 
   !> To or from an archive, for a problem that has been in it before.
@@ -101,8 +101,7 @@ contains
     real(dp), intent(in) :: t_last
     integer, intent(out) :: index
     real(dp), intent(out) :: t_event
-    type(sample_t) :: before(max_events)
-    real(dp) :: t_end, t_found
+    real(dp) :: t_before, g_before(max_events), rate_before(max_events), t_end, t_found
     logical :: found
     integer :: i
 
@@ -111,9 +110,9 @@ contains
     if (self%fresh) call take_passed(self, index, t_event)
     if (index > 0 .or. self%n == 0) return
     t_end = t_event
-    do i = 1, self%n
-      before(i) = sample_t(self%t, self%g(i), self%rate(i))
-    end do
+    t_before = self%t
+    g_before(:self%n) = self%g(:self%n)
+    rate_before(:self%n) = self%rate(:self%n)
     if (t_end < method%t) then
       call method%interpolate(t_end, self%y)
       call look(self, problem, t_end, self%y)
@@ -121,7 +120,11 @@ contains
       call look(self, problem, method%t, method%y)
     end if
     do i = 1, self%n
-      call search_one(self, method, problem, i, before(i), sample_t(t_end, self%g(i), self%rate(i)), found, t_found)
+      if (self%low(i)) then
+        if (stays_negative(t_end - t_before, g_before(i), rate_before(i), self%g(i), self%rate(i))) cycle
+      end if
+      call search_one(self, method, problem, i, sample_t(t_before, g_before(i), rate_before(i)), &
+        sample_t(t_end, self%g(i), self%rate(i)), found, t_found)
       if (found .and. (index == 0 .or. t_found < t_event)) then
         index = i
         t_event = t_found
@@ -147,7 +150,7 @@ contains
     self%fresh = .false.
   end subroutine take_passed
 
-  !> Search one function from `before` to `here`, the end of the step or less.
+  !> Search one function, which may reach zero, from `before` to `here`, the end of the step or less.
   subroutine search_one(self, method, problem, index, before, here, found, t_found)
     class(event_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
@@ -167,7 +170,6 @@ contains
       found = .true.
       return
     end if
-    if (low .and. stays_negative(before, here)) return
     pieces = method%order + 2
     left = before
     do i = 1, pieces
@@ -181,14 +183,17 @@ contains
 
   !> Whether a function that is negative at both ends cannot reach zero between them: its cubic, in Bernstein form and
   !> with its deviation from the straight line counted twice, stays negative.
-  pure logical function stays_negative(left, right)
-    type(sample_t), intent(in) :: left, right
-    real(dp) :: h, inner_left, inner_right, bend
-    h = (right%t - left%t)/3
-    inner_left = left%g + h*left%rate
-    inner_right = right%g - h*right%rate
-    bend = max(abs(inner_left - (2*left%g + right%g)/3), abs(inner_right - (left%g + 2*right%g)/3))
-    stays_negative = left%g < 0 .and. right%g < 0 .and. inner_left + bend < 0 .and. inner_right + bend < 0
+  pure logical function stays_negative(width, left, left_rate, right, right_rate)
+    real(dp), intent(in) :: width                            !! of the time between them
+    real(dp), intent(in) :: left, left_rate, right, right_rate
+    real(dp) :: inner_left, inner_right, bend
+    real(dp), parameter :: third = 1/3.0_dp
+    stays_negative = left < 0 .and. right < 0
+    if (.not. stays_negative) return
+    inner_left = left + third*width*left_rate
+    inner_right = right - third*width*right_rate
+    bend = max(abs(inner_left - third*(2*left + right)), abs(inner_right - third*(left + 2*right)))
+    stays_negative = max(inner_left, inner_right) + bend < 0
   end function stays_negative
 
   !> Search between two samples. `low` tells whether the function has been negative before, and is updated.
@@ -214,7 +219,7 @@ contains
       found = .true.
       t_found = passage(self, method, problem, index, start, right)
     else if (low .and. start%g < 0 .and. start%rate > 0 .and. right%rate < 0) then
-      if (.not. stays_negative(start, right)) then
+      if (.not. stays_negative(right%t - start%t, start%g, start%rate, right%g, right%rate)) then
         peak = extremum(self, method, problem, index, start, right)
         found = peak%g >= 0
         if (found) t_found = passage(self, method, problem, index, start, peak)
@@ -277,7 +282,7 @@ contains
     type(sample_t) :: sample
     real(dp) :: g(max_events), rate(max_events)
     call method%interpolate(t, self%y)
-    call problem%events(t, self%y, g(:problem%n_events), rate(:problem%n_events))
+    call problem%events(t, self%y, g, rate)
     sample = sample_t(t, g(index), rate(index))
   end function sample
 end module gudgeon_events

@@ -235,7 +235,7 @@ contains
     longest = 0.01_dp*(method%t - method%t_old)
     call method%land_on(problem, t, y)
     do i = 1, 3
-      call problem%events(t, y, g(:problem%n_events), rate(:problem%n_events))
+      call problem%events(t, y, g, rate)
       if (.not. abs(rate(event)) > 0) return
       correction = -g(event)/rate(event)
       if (abs(correction) <= 1e-8_dp*longest .or. .not. abs(correction) < longest) return

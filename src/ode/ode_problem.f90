@@ -119,8 +119,8 @@ contains
   !> negative to positive. g and g_rate have n_events elements. The default is for problems without events.
   pure subroutine no_events(self, t, y, g, g_rate)
     class(ode_problem_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    real(dp), intent(out) :: g(:), g_rate(:)
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
     associate (unused_self => self, unused_t => t, unused_y => y)
     end associate
     g = -1

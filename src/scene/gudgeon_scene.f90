@@ -107,8 +107,8 @@ module gudgeon_scene
     !> Those of the joints one by one, then those of the gas and of the crank's turns.
     pure module subroutine all_events(self, t, y, g, g_rate)
       class(scene_t), intent(in) :: self
-      real(dp), intent(in) :: t, y(:)
-      real(dp), intent(out) :: g(:), g_rate(:)
+      real(dp), intent(in) :: t, y(self%n)
+      real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
     end subroutine all_events
 
     module subroutine handle_event(self, index, t, y, action)
@@ -119,7 +119,7 @@ module gudgeon_scene
       integer, intent(out) :: action
     end subroutine handle_event
 
-    !> Which event of the trace event `index` of the integrator is.
+    !> Which event of the trace event `index` of the integrator is, before it is handled.
     pure integer module function reported_event(self, index)
       class(scene_t), intent(in) :: self
       integer, intent(in) :: index

@@ -1,8 +1,8 @@
 !> Events of a scene: each is its owner's, a joint's, the gas's or that of the crank's turns.
 submodule (gudgeon_scene) scene_events
   use ode_problem, only: step_admitted, event_continue
-  use joint_events, only: n_events, contact_begins, contact_ends, sliding_changes, contact_events, &
-    sliding_event, judge_entry, rough_end, begin_contact, end_contact, choose_sliding
+  use joint_events, only: n_events, contact_changes, sliding_changes, contact_event, sliding_event, judge_entry, &
+    rough_end, begin_contact, end_contact, choose_sliding
   use joint_motion, only: outward_acceleration
   use working_gas, only: n_gas_events
   use crank_turns, only: n_turn_events
@@ -39,28 +39,21 @@ contains
   end subroutine number_events
 
   module procedure all_events
-    real(dp) :: own(2), own_rate(2)
-    integer :: k, i
+    integer :: i, k, n
     k = 0
-    do while (k < self%n_events)
-      k = k + 1
-      i = self%event_of(k)%joint
-      if (i == of_gas) then
-        call self%gas%events(self%crank_angle(t, y), self%crank_speed(y), own, own_rate)
-      else if (i == of_turns) then
-        call self%turns%events(self%crank_angle(t, y), self%crank_speed(y), own, own_rate)
-      else if (self%event_of(k)%event == sliding_changes) then
-        call find_sliding_event(self, t, y, i, g(k), g_rate(k))
-        cycle
-      else
-        call contact_events(self%joints(i), y, own, own_rate)
-      end if
-      g(k) = own(1)
-      g_rate(k) = own_rate(1)
-      k = k + 1
-      g(k) = own(2)
-      g_rate(k) = own_rate(2)
+    do i = 1, self%n_joints
+      n = n_events(self%joints(i))
+      if (n >= contact_changes) call contact_event(self%joints(i), y, g(k + contact_changes), g_rate(k + contact_changes))
+      if (n >= sliding_changes) &
+        call find_sliding_event(self, t, y, i, g(k + sliding_changes), g_rate(k + sliding_changes))
+      k = k + n
     end do
+    if (allocated(self%gas)) then
+      call self%gas%events(self%crank_angle(t, y), self%crank_speed(y), g(k + 1:k + n_gas_events), g_rate(k + 1:k + n_gas_events))
+      k = k + n_gas_events
+    end if
+    if (allocated(self%turns)) call self%turns%events(self%crank_angle(t, y), self%crank_speed(y), &
+      g(k + 1:k + n_turn_events), g_rate(k + 1:k + n_turn_events))
   end procedure all_events
 
   !> That of set-valued friction, which hangs on the accelerations.
@@ -88,13 +81,15 @@ contains
         call self%turns%pass(event, self%crank_angle(t, y), action)
       else
         select case (event)
-        case (contact_begins)
-          contact = penetration_and_rate(self%joints(i), y)
-          call begin_contact(self%joints(i), contact(2))
-          self%entry_time = t
-          call find_sliding_direction(self, i, t, y, .true.)
-        case (contact_ends)
-          call end_contact(self%joints(i))
+        case (contact_changes)
+          if (self%joints(i)%phase == phase_contact) then
+            call end_contact(self%joints(i))
+          else
+            contact = penetration_and_rate(self%joints(i), y)
+            call begin_contact(self%joints(i), contact(2))
+            self%entry_time = t
+            call find_sliding_direction(self, i, t, y, .true.)
+          end if
         case (sliding_changes)
           call find_sliding_direction(self, i, t, y, .false.)
         end select
@@ -131,9 +126,10 @@ contains
 
   module procedure reported_event
     reported_event = event_none
-    if (self%event_of(index)%joint <= 0) return
-    if (self%event_of(index)%event == contact_begins) reported_event = event_contact_begins
-    if (self%event_of(index)%event == contact_ends) reported_event = event_contact_ends
+    associate (i => self%event_of(index)%joint)
+      if (i <= 0 .or. self%event_of(index)%event /= contact_changes) return
+      reported_event = merge(event_contact_ends, event_contact_begins, self%joints(i)%phase == phase_contact)
+    end associate
   end procedure reported_event
 
   module procedure judge_step
@@ -150,7 +146,7 @@ contains
   end procedure judge_step
 
   module procedure lands_on_step_end
-    lands_on_step_end = self%refuses_steps .and. self%event_of(index)%joint > 0 .and. self%event_of(index)%event == contact_begins
+    lands_on_step_end = self%refuses_steps .and. self%reported_event(index) == event_contact_begins
   end procedure lands_on_step_end
 
   module procedure rough_time
