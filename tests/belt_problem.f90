@@ -92,8 +92,8 @@ contains
 
   pure subroutine events(self, t, y, g, g_rate)
     class(belt_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(:)
-    real(dp), intent(out) :: g(:), g_rate(:)
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
     type(joint_motion_t) :: motion
     type(joint_loads_t) :: own
     type(accelerations_t) :: accelerations
