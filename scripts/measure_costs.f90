@@ -279,7 +279,7 @@ contains
 
     method%settings = settings_for(case, template)
     call prepare_recorder(case, recorder)
-    if (with_figures) call recorder%prepare(template%n)
+    if (with_figures) call recorder%prepare(template)
     ns = 0
     evaluations = 0
     steps = 0

@@ -2,6 +2,7 @@
 module test_cycle_watch
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
+  use chain_motion, only: piston_pin
   use checks, only: checks_t
   use gudgeon_errors, only: error_t
   use case_definition, only: case_t
@@ -75,9 +76,10 @@ contains
         name = trim(files(i))//' '//methods(k)
         associate (a => plain%report%figures, b => report%figures)
           call check%that(plain%report%statistics%evaluations == report%statistics%evaluations, trim(name)//': evaluations')
-          call check%relative(b%max_pin_force, a%max_pin_force, 0.0_dp, trim(name)//': force')
+          call check%relative(b%pin(piston_pin)%max_force, a%pin(piston_pin)%max_force, 0.0_dp, trim(name)//': force')
           call check%relative(b%max_energy_residual, a%max_energy_residual, 0.0_dp, trim(name)//': energy residual')
-          call check%relative(b%min_film_thickness, a%min_film_thickness, 0.0_dp, trim(name)//': film thickness')
+          call check%relative(b%pin(piston_pin)%min_film_thickness, a%pin(piston_pin)%min_film_thickness, 0.0_dp, &
+            trim(name)//': film thickness')
         end associate
       end do
     end do
@@ -118,12 +120,13 @@ contains
         call check%that(s%cycles >= 1, trim(name)//': a revolution was counted')
         m = count(t <= s%total%duration)   ! the rows of the revolutions counted, the last one cut
         lost = sum(0.5_dp*(force(2:m) + force(:m - 1))*(t(2:m) - t(:m - 1))) + force(m)*(s%total%duration - t(m))
-        call check%relative(s%total%pin_force_integral, lost, force_within(i), trim(name)//': integral of the force')
+        call check%relative(s%total%pin(piston_pin)%force_integral, lost, force_within(i), trim(name)//': integral of the force')
         lost = energy(1) - energy(m) - (energy(min(n, m + 1)) - energy(m))* &
           (s%total%duration - t(m))/max(t(min(n, m + 1)) - t(m), tiny(1.0_dp))
         call check%close_to(s%total%dissipated_energy, lost, 1e-5_dp*abs(lost), &
           trim(name)//': energy lost in the joint')
-        call check%relative(sum(watch%cycles(:s%cycles)%pin_force_integral), s%total%pin_force_integral, 1e-14_dp, &
+        call check%relative(sum(watch%cycles(:s%cycles)%pin(piston_pin)%force_integral), &
+          s%total%pin(piston_pin)%force_integral, 1e-14_dp, &
           trim(name)//': revolutions add up')
       end associate
       deallocate (watch, t, energy, force)
@@ -147,20 +150,22 @@ contains
       do i = 1, s%cycles
         call check%relative(watch%cycles(i)%duration, f%time/3, 1e-12_dp, 'duration of each')
       end do
-      call check%that(s%total%impacts == f%contacts, 'contacts')
-      call check%relative(s%total%contact_time, f%contact_time, 1e-12_dp, 'contact time')
-      call check%relative(s%total%max_pin_force, f%max_pin_force, 0.0_dp, 'largest force')
-      call check%relative(s%total%max_penetration, f%max_penetration, 0.0_dp, 'deepest contact')
-      call check%relative(s%total%min_film_thickness, f%min_film_thickness, 0.0_dp, 'thinnest film')
-      call check%relative(s%max_pin_force_mean(), sum(watch%cycles(:3)%max_pin_force)/3, 1e-14_dp, 'mean of largest forces')
-      call check%that(s%max_pin_force_mean() < s%total%max_pin_force, 'the mean is not the largest')
-      call check%relative(s%min_film_thickness_mean(), sum(watch%cycles(:3)%min_film_thickness)/3, 1e-14_dp, 'mean film')
-      late = watch%cycles(3)%pin_force_integral
+      call check%that(s%total%pin(piston_pin)%impacts == f%pin(piston_pin)%contacts, 'contacts')
+      call check%relative(s%total%pin(piston_pin)%contact_time, f%pin(piston_pin)%contact_time, 1e-12_dp, 'contact time')
+      call check%relative(s%total%pin(piston_pin)%max_force, f%pin(piston_pin)%max_force, 0.0_dp, 'largest force')
+      call check%relative(s%total%pin(piston_pin)%max_penetration, f%pin(piston_pin)%max_penetration, 0.0_dp, 'deepest contact')
+      call check%relative(s%total%pin(piston_pin)%min_film_thickness, f%pin(piston_pin)%min_film_thickness, 0.0_dp, 'thinnest film')
+      call check%relative(s%max_force_mean(piston_pin), sum(watch%cycles(:3)%pin(piston_pin)%max_force)/3, 1e-14_dp, &
+        'mean of largest forces')
+      call check%that(s%max_force_mean(piston_pin) < s%total%pin(piston_pin)%max_force, 'the mean is not the largest')
+      call check%relative(s%min_film_thickness_mean(piston_pin), sum(watch%cycles(:3)%pin(piston_pin)%min_film_thickness)/3, &
+        1e-14_dp, 'mean film')
+      late = watch%cycles(3)%pin(piston_pin)%force_integral
     end associate
     watch%settle = 2
     call run_watched('cases/flores/dry_0500um.nml', [character(len=long) :: 'integrator.revolutions=3'], '', watch, report)
     call check%that(watch%statistics%cycles == 1, 'two revolutions are left out')
-    call check%relative(watch%statistics%total%pin_force_integral, late, 0.0_dp, 'the third is counted')
+    call check%relative(watch%statistics%total%pin(piston_pin)%force_integral, late, 0.0_dp, 'the third is counted')
     watch%settle = 0
     ! the mechanism of simulation I is its own mirror image
     call run_watched('cases/sim_I.nml', [character(len=long) :: 'integrator.revolutions=2.5', 'integrator.method=auto'], '', &
@@ -170,17 +175,17 @@ contains
       'initial.crank_speed=-250'], '', watch, report)
     call check%that(watch%statistics%cycles == 2, 'a crank that turns backwards has revolutions too')
     call check%relative(-report%figures%crank_travel, travel, 1e-6_dp, 'as far as one that turns forwards')
-    call check%relative(watch%statistics%total%pin_force_integral, forwards%statistics%total%pin_force_integral, 1e-4_dp, &
-      'with the same force')
+    call check%relative(watch%statistics%total%pin(piston_pin)%force_integral, &
+      forwards%statistics%total%pin(piston_pin)%force_integral, 1e-4_dp, 'with the same force')
     call check%relative(watch%statistics%total%dissipated_energy, forwards%statistics%total%dissipated_energy, 1e-4_dp, &
       'and the same loss')
     call run_watched('cases/flores/ideal.nml', [character(len=long) :: 'integrator.revolutions=2'], '', watch, report)
     call check%that(watch%statistics%cycles == 2, 'ideal joint: two revolutions')
-    call check%that(watch%statistics%total%impacts == 0, 'and no impact')
-    late = watch%statistics%total%pin_force_integral
+    call check%that(watch%statistics%total%pin(piston_pin)%impacts == 0, 'and no impact')
+    late = watch%statistics%total%pin(piston_pin)%force_integral
     call run_watched('cases/flores/ideal.nml', [character(len=long) :: 'integrator.revolutions=2', &
       'integrator.relative_tolerance=1e-11'], '', watch, report)
-    call check%relative(late, watch%statistics%total%pin_force_integral, 2e-5_dp, 'ideal joint: force to the tolerance')
+    call check%relative(late, watch%statistics%total%pin(piston_pin)%force_integral, 2e-5_dp, 'ideal joint: force to the tolerance')
   end subroutine revolutions_follow_the_crank
 
   !> The joint's loss from the work, and integrated by itself where a damping that does next to nothing asks for that; and the
@@ -199,13 +204,13 @@ contains
       write (overrides(4)(len('initial.crank_angle_deg=') + 1:), '(i0)') 60*i
       call run_watched('cases/sim_I.nml', overrides, '', watch, report)
       loss = watch%statistics%dissipated_energy_mean()
-      force = watch%statistics%total%pin_force_integral
+      force = watch%statistics%total%pin(piston_pin)%force_integral
       call run_watched('cases/sim_I.nml', [character(len=long) :: overrides, 'drive.damping=1e-20'], '', watch, report)
       call check%relative(watch%statistics%dissipated_energy_mean(), loss, 1e-6_dp, 'loss of the joint by itself')
       overrides(3) = 'integrator.relative_tolerance=1e-4'
       call run_watched('cases/sim_I.nml', overrides, '', loose, report)
       call check%relative(loose%statistics%dissipated_energy_mean(), loss, 1e-4_dp, 'loss at a loose tolerance')
-      call check%relative(loose%statistics%total%pin_force_integral, force, 1e-4_dp, 'force at a loose tolerance')
+      call check%relative(loose%statistics%total%pin(piston_pin)%force_integral, force, 1e-4_dp, 'force at a loose tolerance')
     end do
   end subroutine losses_are_the_same_however_found
 

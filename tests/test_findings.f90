@@ -1,6 +1,7 @@
 !> What the dissertation found in its chapter 6 (Reis 2013), on the shipped cases.
 module test_findings
   use gudgeon_kinds, only: dp
+  use chain_motion, only: piston_pin
   use checks, only: checks_t
   use collecting_sink, only: trace_t, run_case, column
   implicit none
@@ -32,7 +33,7 @@ contains
       trace = run_case('cases/sim_'//trim(simulations(i))//'.nml', [character(len=long) :: 'integrator.method=radau', &
         'integrator.relative_tolerance=1e-8'])
       call check%that(.not. allocated(trace%error), 'Pinkus-Sternlicht '//simulations(i)//' runs')
-      call check%that(size(trace%event) == 0 .and. trace%report%figures%min_film_thickness > 0, &
+      call check%that(size(trace%event) == 0 .and. trace%report%figures%pin(piston_pin)%min_film_thickness > 0, &
         'Pinkus-Sternlicht '//simulations(i)//' never touches')
       associate (e => trace%values(column(trace, 'energy[J]'), :))
         lost(i) = e(1) - e(size(e))
@@ -51,8 +52,8 @@ contains
       trace = run_case('cases/sim_'//trim(simulations(i))//'_oscillating.nml', [character(len=long) :: &
         'integrator.relative_tolerance=1e-9'])
       call check%that(.not. allocated(trace%error), 'oscillating film '//simulations(i)//' runs')
-      call check%that(trace%report%figures%contacts > 0, 'oscillating film '//simulations(i)//' touches')
-      fraction = trace%report%figures%contact_time/trace%report%figures%time
+      call check%that(trace%report%figures%pin(piston_pin)%contacts > 0, 'oscillating film '//simulations(i)//' touches')
+      fraction = trace%report%figures%pin(piston_pin)%contact_time/trace%report%figures%time
       if (mod(i, 3) == 0) call check%that(fraction > 0.5_dp, 'oscillating film '//simulations(i)//' mostly touches')
       call check%close_to(trace%report%figures%max_energy_residual/trace%report%figures%max_energy, 0.0_dp, 1e-7_dp, &
         'energy residual of the oscillating film '//simulations(i))

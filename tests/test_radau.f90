@@ -2,6 +2,7 @@
 module test_radau
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
+  use chain_motion, only: piston_pin
   use checks, only: checks_t
   use gudgeon_errors, only: error_t
   use case_definition, only: case_t
@@ -339,7 +340,7 @@ contains
         trace = run_case('cases/'//trim(files(i))//'.nml', overrides)
         call check%that(.not. allocated(trace%error), trim(files(i))//' at 1e-2, '//trim(methods(k)))
         if (i > 7) cycle   ! chaotic: costs differ with the path
-        call check%that(trace%report%figures%min_film_thickness > 0, 'and the pin stays in its film')
+        call check%that(trace%report%figures%pin(piston_pin)%min_film_thickness > 0, 'and the pin stays in its film')
         overrides(2) = 'integrator.relative_tolerance=1e-4'
         tighter = run_case('cases/'//trim(files(i))//'.nml', overrides)
         call check%that(trace%report%statistics%evaluations <= tighter%report%statistics%evaluations, &

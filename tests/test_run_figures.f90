@@ -1,6 +1,7 @@
 !> The figures of a run: the time that each method has, and peaks between the steps.
 module test_run_figures
   use gudgeon_kinds, only: dp
+  use chain_motion, only: piston_pin
   use checks, only: checks_t
   use case_definition, only: case_t
   use case_file, only: read_case
@@ -76,7 +77,7 @@ contains
         call check%that(t > 0 .and. t < 1, trim(names(i))//': inside')
         call search%take(t, curve(t))
       end do
-      call check%close_to(search%best%value, 2.0_dp, within(i), trim(names(i))//': the peak')
+      call check%close_to(search%value(1), 2.0_dp, within(i), trim(names(i))//': the peak')
       call check%that(values <= most(i), trim(names(i))//': few values')
     end do
 
@@ -138,12 +139,14 @@ contains
           cycle
         end if
         associate (figures => trace%report%figures, contact => trace%event(2))
-          call check%relative(figures%max_penetration, depth, within, 'deepest penetration at '//speeds(i)//methods(k))
+          call check%relative(figures%pin(piston_pin)%max_penetration, depth, within, &
+            'deepest penetration at '//speeds(i)//methods(k))
           call check%relative(contact%max_penetration, depth, within, 'that of the contact at '//speeds(i)//methods(k))
-          call check%relative(-figures%min_film_thickness, depth, within, 'film thickness at '//speeds(i)//methods(k))
+          call check%relative(-figures%pin(piston_pin)%min_film_thickness, depth, within, &
+            'film thickness at '//speeds(i)//methods(k))
           call check%relative(contact%max_normal_force, stiffness*depth*sqrt(depth), 1.5_dp*within, &
             'largest normal force at '//speeds(i)//methods(k))
-          call check%relative(figures%max_pin_force, stiffness*depth*sqrt(depth), 1.5_dp*within, &
+          call check%relative(figures%pin(piston_pin)%max_force, stiffness*depth*sqrt(depth), 1.5_dp*within, &
             'largest force on the pin at '//speeds(i)//methods(k))
         end associate
       end do
@@ -164,7 +167,7 @@ contains
     force = hypot(trace%values(column(trace, 'pin_force_x[N]'), 2:3), trace%values(column(trace, 'pin_force_y[N]'), 2:3))
     call check%that(force(2) > force(3), 'the force of the film falls')
     first = force(2) + (force(2) - force(3))*(interval - trace%event(2)%time)/interval
-    call check%relative(trace%report%figures%max_pin_force, first, 1e-9_dp, 'largest force, where the film begins')
+    call check%relative(trace%report%figures%pin(piston_pin)%max_force, first, 1e-9_dp, 'largest force, where the film begins')
   end subroutine a_film_begins_at_its_highest
 
   !> Between the rows too: figures and contacts of a run with next to no rows against close rows of another one with the same
@@ -191,8 +194,8 @@ contains
         call check%that(plain%report%statistics%evaluations == rows%report%statistics%evaluations, name//': the same steps')
         associate (figures => plain%report%figures, force => hypot(rows%values(column(rows, 'pin_force_x[N]'), :), &
                    rows%values(column(rows, 'pin_force_y[N]'), :)))
-          call is_peak_of(check, figures%max_pin_force, force, rounding, name//': force on the pin')
-          if (column(rows, 'film_thickness[m]') > 0) call is_peak_of(check, -figures%min_film_thickness, &
+          call is_peak_of(check, figures%pin(piston_pin)%max_force, force, rounding, name//': force on the pin')
+          if (column(rows, 'film_thickness[m]') > 0) call is_peak_of(check, -figures%pin(piston_pin)%min_film_thickness, &
             -rows%values(column(rows, 'film_thickness[m]'), :), rounding, name//': film thickness')
           call check%that(100*figures%peak_evaluations <= 3*(plain%report%statistics%evaluations + 720) .or. i == 5, &
             name//': peaks cost less than 3 % of the evaluations')
@@ -254,12 +257,13 @@ contains
       do k = 1, watch%statistics%cycles
         associate (c => watch%cycles(k), force => hypot(rows%values(column(rows, 'pin_force_x[N]'), :), &
                    rows%values(column(rows, 'pin_force_y[N]'), :)))
-          call is_peak_of(check, c%max_pin_force, pack(force, turned >= k - 1 .and. turned <= k), rounding, &
+          call is_peak_of(check, c%pin(piston_pin)%max_force, pack(force, turned >= k - 1 .and. turned <= k), rounding, &
             trim(files(i))//': force on the pin in a revolution')
           if (column(rows, 'film_thickness[m]') == 0) cycle
-          call is_peak_of(check, -c%min_film_thickness, pack(-rows%values(column(rows, 'film_thickness[m]'), :), &
+          call is_peak_of(check, -c%pin(piston_pin)%min_film_thickness, pack(-rows%values(column(rows, 'film_thickness[m]'), :), &
             turned >= k - 1 .and. turned <= k), rounding, trim(files(i))//': film thickness in a revolution')
-          call check%close_to(c%max_penetration, max(0.0_dp, -c%min_film_thickness), 0.0_dp, 'penetration')
+          call check%close_to(c%pin(piston_pin)%max_penetration, max(0.0_dp, -c%pin(piston_pin)%min_film_thickness), 0.0_dp, &
+            'penetration')
         end associate
       end do
       deallocate (watch, sink, turned)

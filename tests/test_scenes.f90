@@ -1,6 +1,7 @@
 !> Contact and friction inside whole scenes: entry by step rejection, sticking, energy, what a run leaves out.
 module test_scenes
   use gudgeon_kinds, only: dp
+  use chain_motion, only: piston_pin
   use checks, only: checks_t
   use gudgeon_errors, only: error_t
   use case_definition, only: case_t
@@ -47,9 +48,9 @@ contains
     fine = run_case('cases/flores/dry_0100um.nml', [character(len=long) :: common, &
       'integrator.contact_entry=step_rejection', 'integrator.max_penetration=1e-10'])
     call check%that(size(root%event) >= 20, 'there are contacts')
-    call check%that(root%report%figures%max_entry_penetration < 1e-14_dp, 'a root enters without penetration')
-    call check%that(coarse%report%figures%max_entry_penetration <= 1e-8_dp, 'entry within 1e-8 m')
-    call check%that(fine%report%figures%max_entry_penetration <= 1e-10_dp, 'entry within 1e-10 m')
+    call check%that(root%report%figures%pin(piston_pin)%max_entry_penetration < 1e-14_dp, 'a root enters without penetration')
+    call check%that(coarse%report%figures%pin(piston_pin)%max_entry_penetration <= 1e-8_dp, 'entry within 1e-8 m')
+    call check%that(fine%report%figures%pin(piston_pin)%max_entry_penetration <= 1e-10_dp, 'entry within 1e-10 m')
     call check%that(coarse%report%statistics%rejected_penetration > 0, 'steps were rejected for their depth')
     call check%that(root%report%statistics%rejected_penetration == 0, 'with roots none is')
     call check%that(size(coarse%event) == size(root%event) .and. size(fine%event) == size(root%event), &
@@ -80,15 +81,17 @@ contains
         if (e(i)%kind /= merge(event_contact_begins, event_contact_ends, mod(i, 2) == 1)) wrong = wrong + 1
         if (e(i)%kind == event_contact_begins) begun = begun + 1
       end do
-      call check%that(wrong == 0 .and. begun == figures%contacts, 'contacts begin and end in turn, each counted once')
+      call check%that(wrong == 0 .and. begun == figures%pin(piston_pin)%contacts, &
+        'contacts begin and end in turn, each counted once')
       call check%that(s%restarts == size(e), 'one restart an event')
       call check%that(size(trace%values, 2) - s%accepted >= 1 .and. size(trace%values, 2) - s%accepted <= 1 + size(e), &
         'a row for every accepted step, none for the others')
       call check%that(figures%evaluations == size(trace%values, 2) + size(e) + figures%peak_evaluations, &
         'one evaluation serves the row and the figures; each event takes one, and so do peaks')
-      call check%relative(figures%max_penetration, maxval(-fine%values(column(fine, 'film_thickness[m]'), :)), 1e-6_dp, &
+      call check%relative(figures%pin(piston_pin)%max_penetration, maxval(-fine%values(column(fine, 'film_thickness[m]'), :)), &
+        1e-6_dp, &
         'the deepest penetration is that of the accepted steps')
-      call check%relative(figures%max_pin_force, maxval(hypot(fine%values(column(fine, 'pin_force_x[N]'), :), &
+      call check%relative(figures%pin(piston_pin)%max_force, maxval(hypot(fine%values(column(fine, 'pin_force_x[N]'), :), &
         fine%values(column(fine, 'pin_force_y[N]'), :))), 1e-6_dp, 'and so is the largest force')
     end associate
   end subroutine rejected_steps_are_not_counted
@@ -224,11 +227,11 @@ contains
         contact_time = contact_time + trace%event(i)%duration
       end if
     end do
-    total = trace%report%figures%contact_time
+    total = trace%report%figures%pin(piston_pin)%contact_time
     if (mod(size(trace%event), 2) == 1) contact_time = contact_time + &
       (trace%values(1, size(trace%values, 2)) - trace%event(size(trace%event))%time)   ! the last contact does not end
     call check%relative(total, contact_time, 1e-9_dp, 'contact time')
-    call check%that(trace%report%figures%max_entry_penetration < 1e-14_dp, 'contact begins at zero penetration')
+    call check%that(trace%report%figures%pin(piston_pin)%max_entry_penetration < 1e-14_dp, 'contact begins at zero penetration')
     associate (f => trace%values(column(trace, 'normal_force[N]'), :), h => trace%values(column(trace, 'film_thickness[m]'), :))
       call check%that(all(f >= 0), 'the contact never pulls')
       call check%that(all(f > 0 .eqv. h < -1e-15_dp), 'and presses exactly where there is penetration')

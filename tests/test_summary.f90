@@ -2,6 +2,7 @@
 module test_summary
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp
+  use chain_motion, only: piston_pin
   use checks, only: checks_t
   use gudgeon_summary, only: build_advice, summary_table, summary_value
   use case_definition, only: case_t
@@ -47,7 +48,7 @@ contains
     type(run_report_t) :: report
     report%status = 'done'
     report%figures%time = 2
-    report%figures%min_film_thickness = 0
+    report%figures%pin(piston_pin)%min_film_thickness = 0
     case%output%digits = 10
     allocate (report%time_with(2, 0:2), source=0.0_dp)
     report%time_with(2, 1) = 0.2_dp

@@ -13,13 +13,14 @@ module chain_motion
   use gudgeon_kinds, only: dp
   implicit none
   private
-  public :: motion_t, accelerations_t, crank_pin, piston_pin, n_pins
+  public :: motion_t, accelerations_t, crank_pin, piston_pin, n_pins, pin_names, name_prefix
   public :: turn_crank, follow_rod, follow_piston
 
   !> The pins of the chain.
   integer, parameter :: crank_pin = 1    !! journal on the crank, bearing in the rod
   integer, parameter :: piston_pin = 2   !! journal on the rod, bearing in the piston
   integer, parameter :: n_pins = 2
+  character(len=*), parameter :: pin_names(n_pins) = [character(len=10) :: 'crank_pin', 'piston_pin']   !! in cases and results
 
   !> Positions and speeds of the three bodies at one instant.
   type :: motion_t
@@ -45,6 +46,14 @@ module chain_motion
   end type accelerations_t
 
 contains
+
+  !> What stands in front of the names of a pin's quantities: nothing for the piston pin's.
+  pure function name_prefix(pin) result(prefix)
+    integer, intent(in) :: pin
+    character(len=:), allocatable :: prefix
+    prefix = ''
+    if (pin /= piston_pin) prefix = trim(pin_names(pin))//'_'
+  end function name_prefix
 
   !> The crank of a motion: its angle [rad] with sine and cosine, and its speed [rad/s].
   pure subroutine turn_crank(motion, crank_angle, crank_speed)

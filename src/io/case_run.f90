@@ -203,6 +203,7 @@ contains
     if (allocated(trace_error)) self%report%status = 'stopped: '//trace_error%message
     case = self%case
     if (self%is_twin) case%joint%kind = 'ideal'
+    if (self%is_twin) case%crank_pin%kind = 'ideal'
     self%line = summary_line(case, self%report, files%wall_time(), self%base)
     if (.not. files%advice%was_given) self%notice = advice(self%report%auto_saves)
     if (self%notice /= '') self%notice = printable(case%file, 200)//': '//self%notice
@@ -233,7 +234,7 @@ contains
   !> Whether the run has a list of events.
   pure logical function has_events(self)
     class(case_run_t), intent(in) :: self
-    has_events = allocated(self%case%joint%contact) .and. .not. self%is_twin
+    has_events = self%case%has_contact() .and. .not. self%is_twin
   end function has_events
 
   !> Add to the message of a run that was stopped how it can go on.

@@ -5,7 +5,9 @@ module gudgeon_summary
   use gudgeon_constants, only: two_pi
   use ode_method, only: highest_order, with_adams, with_radau, n_limits, limit_names, limit_stability
   use gudgeon_simulation, only: run_report_t
-  use case_definition, only: case_t
+  use run_figures, only: pin_figures_t
+  use chain_motion, only: crank_pin, piston_pin, name_prefix
+  use case_definition, only: case_t, joint_case_t
   use number_text, only: real_text, short_text
   use text_tools, only: integer_text, quoted
   use gudgeon_version, only: program_version
@@ -70,19 +72,16 @@ contains
         end do
       end if
       if (report%auto_saves > 0) call add('evaluations_over_those_of_auto', real_text(report%auto_saves), '1')
-      call add('max_pin_force', real_text(f%max_pin_force, case%output%digits), 'N')
+      call add('max_pin_force', real_text(f%pin(piston_pin)%max_force, case%output%digits), 'N')
       call add('crank_revolutions', real_text(f%crank_travel/two_pi), '1')
       if (f%time > 0) call add('mean_crank_speed', real_text(f%crank_travel/f%time), 'rad/s')
       call add('max_energy_residual', real_text(f%max_energy_residual), 'J')
       call add('max_energy_residual_relative', real_text(relative_residual(report)), '1')
       if (report%energy_is_poor) call add('energy_warning', quoted(energy_warning(case, report), '"'), '')
-      if (case%joint%has_clearance()) then
-        call add('min_film_thickness', real_text(f%min_film_thickness, case%output%digits), 'm')
-        call add('contacts', integer_text(f%contacts), '1')
-        if (f%time > 0) call add('contact_time_fraction', real_text(f%contact_time/f%time), '1')
-        call add('max_penetration', real_text(f%max_penetration, case%output%digits), 'm')
-        call add('max_entry_penetration', real_text(f%max_entry_penetration), 'm')
-        call add('impacts_beyond_validity', integer_text(f%impacts_beyond_validity), '1')
+      if (case%joint%has_clearance()) call add_joint('', f%pin(piston_pin))
+      if (case%crank_pin%has_clearance()) then
+        call add(name_prefix(crank_pin)//'max_pin_force', real_text(f%pin(crank_pin)%max_force, case%output%digits), 'N')
+        call add_joint(name_prefix(crank_pin), f%pin(crank_pin))
       end if
     end associate
     if (trace_length > 0) call add('trace_bytes', bytes_text(trace_length), 'B')
@@ -93,6 +92,19 @@ contains
     call add('compiler_options', quoted(compiler_options(), '"'), '')
 
   contains
+
+    !> What a joint with clearance has, its names after a prefix.
+    subroutine add_joint(prefix, pin)
+      character(len=*), intent(in) :: prefix
+      type(pin_figures_t), intent(in) :: pin
+      call add(prefix//'min_film_thickness', real_text(pin%min_film_thickness, case%output%digits), 'm')
+      call add(prefix//'contacts', integer_text(pin%contacts), '1')
+      if (report%figures%time > 0) &
+        call add(prefix//'contact_time_fraction', real_text(pin%contact_time/report%figures%time), '1')
+      call add(prefix//'max_penetration', real_text(pin%max_penetration, case%output%digits), 'm')
+      call add(prefix//'max_entry_penetration', real_text(pin%max_entry_penetration), 'm')
+      call add(prefix//'impacts_beyond_validity', integer_text(pin%impacts_beyond_validity), '1')
+    end subroutine add_joint
 
     subroutine add(quantity, value, unit)
       character(len=*), intent(in) :: quantity, value, unit
@@ -174,14 +186,24 @@ contains
     associate (s => report%statistics, f => report%figures)
       text = case%name//': '//report%status//'; '//short_text(f%time)//' s in '//short_text(wall_time)//' s, '// &
         integer_text(s%accepted)//' steps, '//integer_text(s%evaluations)//' evaluations; '
-      if (case%joint%has_clearance()) then
-        if (allocated(case%joint%contact)) text = text//integer_text(f%contacts)//' contacts, '
-        text = text//'film at least '//short_text(f%min_film_thickness)//' m, '
-      end if
-      text = text//'pin force up to '//short_text(f%max_pin_force)//' N, energy residual '// &
-        short_text(relative_residual(report))
+      text = text//pin_text(case%joint, f%pin(piston_pin))
+      if (case%crank_pin%has_clearance()) text = text//'; crank pin: '//pin_text(case%crank_pin, f%pin(crank_pin))
+      text = text//', energy residual '//short_text(relative_residual(report))
       if (report%energy_is_poor) text = text//' ('//energy_warning(case, report)//')'
       text = text//'; '//path//'.csv'
     end associate
   end function summary_line
+
+  !> What it says of a pin.
+  function pin_text(joint, pin) result(text)
+    type(joint_case_t), intent(in) :: joint
+    type(pin_figures_t), intent(in) :: pin
+    character(len=:), allocatable :: text
+    text = ''
+    if (joint%has_clearance()) then
+      if (allocated(joint%contact)) text = integer_text(pin%contacts)//' contacts, '
+      text = text//'film at least '//short_text(pin%min_film_thickness)//' m, '
+    end if
+    text = text//'pin force up to '//short_text(pin%max_force)//' N'
+  end function pin_text
 end module gudgeon_summary

@@ -9,6 +9,7 @@ module trace_files
   use gudgeon_archive, only: archive_t
   use gudgeon_columns, only: column_list_t, column_name
   use gudgeon_scene, only: event_contact_begins
+  use chain_motion, only: pin_names
   use trace_sink, only: trace_sink_t, trace_event_t
   use result_file, only: result_file_t
   use file_mark, only: file_mark_t
@@ -25,7 +26,7 @@ module trace_files
   public :: trace_files_t
 
   character(len=*), parameter :: newline = achar(10)
-  integer, parameter :: event_fields = 8   !! at most, in a line
+  integer, parameter :: event_fields = 9   !! at most, in a line
 
   !> A sink that writes. It asks for the end of the run when the user interrupts it or a file cannot be written.
   type, extends(trace_sink_t) :: trace_files_t
@@ -86,7 +87,7 @@ contains
       return
     end if
     call self%event_list%put('time[s],crank_angle[rad],event,normal_speed[m/s],duration[s],max_penetration[m],'// &
-      'max_normal_force[N]'//newline)
+      'max_normal_force[N],joint'//newline)
   end subroutine open
 
   !> Before any row.
@@ -275,7 +276,7 @@ contains
       call append(self%line, used, ',')
       call self%trace%numbers%append(self%line, used, event%max_normal_force)
     end if
-    call append(self%line, used, newline)
+    call append(self%line, used, ','//trim(pin_names(event%pin))//newline)
     call self%event_list%put(self%line(:used))
   end subroutine take_event
 

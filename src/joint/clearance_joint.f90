@@ -62,6 +62,7 @@ module clearance_joint
     procedure :: complete
     procedure :: look
     procedure :: slopes
+    procedure :: reach
     procedure :: is_singular
     procedure :: phase_apart
     procedure :: exchange
@@ -293,6 +294,15 @@ contains
     class(clearance_joint_t), intent(in) :: self
     phase_apart = merge(phase_film, phase_free, allocated(self%film))
   end function phase_apart
+
+  !> How far from the centre the journal may be in the present phase [m].
+  pure real(dp) function reach(self)
+    class(clearance_joint_t), intent(in) :: self
+    reach = self%bearing%radius
+    if (self%phase == phase_film) then
+      if (self%film%singular_at_wall) reach = min(reach, self%bearing%clearance)
+    end if
+  end function reach
 
   !> Whether the film grows without bound at the wall, and has next to no thickness.
   pure logical function is_singular(self, y)

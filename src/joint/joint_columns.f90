@@ -2,7 +2,7 @@
 module joint_columns
   use gudgeon_kinds, only: dp
   use trace_row, only: trace_row_t
-  use chain_motion, only: piston_pin
+  use chain_motion, only: piston_pin, name_prefix
   use joint_motion, only: joint_motion_t
   use clearance_joint, only: clearance_joint_t, joint_loads_t
   implicit none
@@ -17,7 +17,7 @@ contains
     type(joint_motion_t), intent(in) :: motion
     type(joint_loads_t), intent(in) :: loads
     type(trace_row_t), intent(inout) :: row
-    if (joint%place /= piston_pin) row%place = 'crank_pin_'
+    if (joint%place /= piston_pin) row%place = name_prefix(joint%place)
     call row%put('eccentricity_x[m]', motion%eccentricity(1))
     call row%put('eccentricity_y[m]', motion%eccentricity(2))
     call row%put('eccentricity_ratio[-]', motion%distance/joint%bearing%clearance)

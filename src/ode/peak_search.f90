@@ -1,10 +1,9 @@
 !> The largest value of a smooth quantity between two instants, by as few values as it takes.
 module peak_search
   use gudgeon_kinds, only: dp
-  use gudgeon_archive, only: archive_t
   implicit none
   private
-  public :: sample_t, peak_search_t, most_between
+  public :: sample_t, peak_search_t, may_peak
 
   integer, parameter :: most_values = 40
   real(dp), parameter :: resolution = 1e-8_dp   !! of the time, part of the piece searched
@@ -13,21 +12,19 @@ module peak_search
   !> A quantity at one instant.
   type :: sample_t
     real(dp) :: t = 0, value = 0, slope = 0   !! slope: by the time
-  contains
-    procedure :: exchange
   end type sample_t
 
   !> A search for a peak. The caller evaluates the quantity where `next_time` says and hands the value to `take`, until the search
   !> is done. The first instant is the peak of the cubic through values and slopes at both ends; then come peaks of parabolas
   !> through the three best points, with the golden section where they fail (Brent 1973, ch. 5).
   type :: peak_search_t
-    type(sample_t) :: best                !! the largest value so far, without its slope
-    type(sample_t), private :: left, right
-    real(dp), private :: second_t = 0, second = 0, third_t = 0, third = 0   !! the next best points
+    real(dp) :: value(3) = 0              !! the three best so far, the largest first
+    real(dp), private :: t(3) = 0         !! their instants
+    type(sample_t), private :: left, right   !! the peak is between
     real(dp), private :: width = 0        !! of the piece at the beginning
     real(dp), private :: last = 0, last_but_one = 0   !! ways from one instant to the next
     integer, private :: values = 0
-    logical, private :: has_top = .false. !! `best` is inside, and no end is above it
+    logical, private :: has_top = .false. !! the best is inside, and no end is above it
   contains
     procedure :: begin
     procedure :: next_time
@@ -36,26 +33,21 @@ module peak_search
 
 contains
 
-  !> To or from an archive.
-  subroutine exchange(self, archive)
-    class(sample_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    call archive%exchange(self%t)
-    call archive%exchange(self%value)
-    call archive%exchange(self%slope)
-  end subroutine exchange
-
-  !> No less than what the quantity reaches between two samples: of the cubic through them in Bernstein form, with its deviation
-  !> from the straight line counted twice.
-  pure real(dp) function most_between(left, right) result(most)
+  !> Whether the quantity may come above `known` between two samples with slopes, and where it does not rise at the left and fall at
+  !> the right, above them too. It stays below the cubic through them in Bernstein form, with its deviation from the straight line
+  !> counted twice.
+  pure logical function may_peak(left, right, known)
     type(sample_t), intent(in) :: left, right
-    real(dp) :: third, inner_left, inner_right, bend
+    real(dp), intent(in) :: known
+    real(dp) :: third, inner_left, inner_right, bend, most
     third = (right%t - left%t)/3
     inner_left = left%value + third*left%slope
     inner_right = right%value - third*right%slope
     bend = max(abs(inner_left - (2*left%value + right%value)/3), abs(inner_right - (left%value + 2*right%value)/3))
     most = max(left%value, right%value, max(inner_left, inner_right) + bend)
-  end function most_between
+    may_peak = most > known
+    if (.not. (left%slope > 0 .and. right%slope < 0)) may_peak = may_peak .and. most > max(left%value, right%value)
+  end function may_peak
 
   !> Search between two samples with slopes.
   subroutine begin(self, left, right)
@@ -64,17 +56,12 @@ contains
     self%left = left
     self%right = right
     self%width = right%t - left%t
-    self%best = left
-    if (right%value > left%value) self%best = right
-    self%second_t = left%t
-    self%second = left%value
-    self%third_t = right%t
-    self%third = right%value
     if (right%value > left%value) then
-      self%second_t = right%t
-      self%second = right%value
-      self%third_t = left%t
-      self%third = left%value
+      self%t = [right%t, right%t, left%t]
+      self%value = [right%value, right%value, left%value]
+    else
+      self%t = [left%t, left%t, right%t]
+      self%value = [left%value, left%value, right%value]
     end if
     self%last = self%width
     self%last_but_one = self%width
@@ -89,7 +76,7 @@ contains
     real(dp) :: way, gain
     logical :: has_parabola
 
-    associate (a => self%left, b => self%right, x => self%best)
+    associate (a => self%left, b => self%right, x => self%t(1))
       is_done = self%values >= most_values
       t = a%t + 0.5_dp*(b%t - a%t)
       if (self%values == 0) then
@@ -98,16 +85,15 @@ contains
         call step_from_end(self, t, is_done)
       else
         call find_parabola(self, has_parabola, way, gain)
-        if (has_parabola .and. self%values > 1 .and. gain <= worthwhile*abs(x%value)) is_done = .true.
-        if (max(x%t - a%t, b%t - x%t) <= 2*resolution*self%width) is_done = .true.
-        if (.not. has_parabola .or. abs(way) >= 0.5_dp*abs(self%last_but_one) .or. &
-            x%t + way <= a%t .or. x%t + way >= b%t) then
-          self%last = merge(a%t - x%t, b%t - x%t, x%t - a%t > b%t - x%t)
+        if (has_parabola .and. self%values > 1 .and. gain <= worthwhile*abs(self%value(1))) is_done = .true.
+        if (max(x - a%t, b%t - x) <= 2*resolution*self%width) is_done = .true.
+        if (.not. has_parabola .or. abs(way) >= 0.5_dp*abs(self%last_but_one) .or. x + way <= a%t .or. x + way >= b%t) then
+          self%last = merge(a%t - x, b%t - x, x - a%t > b%t - x)
           way = golden*self%last
         end if
         self%last_but_one = self%last
         self%last = way
-        t = x%t + sign(max(abs(way), resolution*self%width), way)
+        t = x + sign(max(abs(way), resolution*self%width), way)
       end if
       is_done = is_done .or. .not. (t > a%t .and. t < b%t)
     end associate
@@ -141,11 +127,11 @@ contains
     has_peak = .false.
     way = 0
     gain = 0
-    to_second = self%second_t - self%best%t
-    to_third = self%third_t - self%best%t
+    to_second = self%t(2) - self%t(1)
+    to_third = self%t(3) - self%t(1)
     if (.not. (abs(to_second) > 0 .and. abs(to_third) > 0 .and. abs(to_third - to_second) > 0)) return
-    chord = (self%second - self%best%value)/to_second
-    curvature = ((self%third - self%best%value)/to_third - chord)/(to_third - to_second)
+    chord = (self%value(2) - self%value(1))/to_second
+    curvature = ((self%value(3) - self%value(1))/to_third - chord)/(to_third - to_second)
     if (.not. curvature < 0) return
     has_peak = .true.
     slope = chord - curvature*to_second
@@ -157,45 +143,34 @@ contains
   pure subroutine take(self, t, value)
     class(peak_search_t), intent(inout) :: self
     real(dp), intent(in) :: t, value
-    type(sample_t) :: here
-    here = sample_t(t, value, 0.0_dp)
+    type(sample_t) :: bound
+    integer :: rank
+    logical :: is_left
     self%values = self%values + 1
-    if (.not. self%has_top) then
-      self%has_top = value >= max(self%left%value, self%right%value)
-      if (self%has_top) then
-        self%best = here
-      else if (self%left%value >= self%right%value) then
-        self%right = here
-        self%third_t = t
-        self%third = value
-      else
-        self%left = here
-        self%third_t = t
-        self%third = value
-      end if
-      return
+    rank = 3
+    if (value >= self%value(1)) then
+      rank = 1
+    else if (self%has_top .and. value >= self%value(2)) then
+      rank = 2
     end if
-    if (value >= self%best%value) then
-      if (t >= self%best%t) self%left = self%best
-      if (t < self%best%t) self%right = self%best
-      self%third_t = self%second_t
-      self%third = self%second
-      self%second_t = self%best%t
-      self%second = self%best%value
-      self%best = here
-    else
-      if (t < self%best%t) self%left = here
-      if (t >= self%best%t) self%right = here
-      if (value >= self%second) then
-        self%third_t = self%second_t
-        self%third = self%second
-        self%second_t = t
-        self%second = value
-      else
-        self%third_t = t
-        self%third = value
-      end if
+    ! the lower of this point and the best bounds the peak on its side; at first the best is an end and goes on being one
+    bound = sample_t(t, value, 0.0_dp)
+    is_left = t < self%t(1)
+    if (rank == 1) then
+      bound = sample_t(self%t(1), self%value(1), 0.0_dp)
+      is_left = .not. is_left
     end if
+    if (self%has_top .or. rank > 1) then
+      if (is_left) self%left = bound
+      if (.not. is_left) self%right = bound
+    end if
+    if (self%has_top) then
+      self%t(rank + 1:) = self%t(rank:2)
+      self%value(rank + 1:) = self%value(rank:2)
+    end if
+    self%t(rank) = t
+    self%value(rank) = value
+    self%has_top = self%has_top .or. rank == 1
   end subroutine take
 
   !> Where between 0 and 1 the cubic through two samples has its peak, which rises at the left one and falls at the right one.

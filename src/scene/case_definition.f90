@@ -6,6 +6,7 @@ module case_definition
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t
   use gudgeon_bearing, only: bearing_t
+  use chain_motion, only: crank_pin, piston_pin, pin_names
   use contact_law, only: contact_law_t
   use contact_laws, only: offer_contact_laws
   use friction_law, only: friction_law_t
@@ -85,13 +86,21 @@ module case_definition
     type(gas_cycle_t), allocatable :: combustion
     type(integrator_case_t) :: integrator
     type(output_case_t) :: output
+  contains
+    procedure :: has_contact
   end type case_t
 
   !> The places of joints, as a case names them. A group &joint without a place is the first's, a law's group without one is for
   !> every joint with clearance that has none of its own.
-  character(len=*), parameter :: piston_pin_place = 'piston_pin', crank_pin_place = 'crank_pin'
+  character(len=*), parameter :: piston_pin_place = trim(pin_names(piston_pin)), crank_pin_place = trim(pin_names(crank_pin))
 
 contains
+
+  !> Whether there is a joint with a contact law.
+  pure logical function has_contact(self)
+    class(case_t), intent(in) :: self
+    has_contact = allocated(self%joint%contact) .or. allocated(self%crank_pin%contact)
+  end function has_contact
 
   !> Whether the joint has clearance.
   pure logical function has_clearance(self)

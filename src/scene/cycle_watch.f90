@@ -7,7 +7,7 @@ module cycle_watch
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
   use ode_method, only: ode_method_t
-  use chain_motion, only: piston_pin
+  use chain_motion, only: n_pins
   use gudgeon_scene, only: scene_t, evaluation_t, phase_contact
   use gudgeon_roots, only: bracket_t, next_abscissa, narrow
   use step_peaks, only: n_peaks, of_pin_force, of_penetration
@@ -37,7 +37,7 @@ module cycle_watch
     real(dp), private :: start_angle = 0, strobe_offset = 0, initial_energy = 0
     real(dp), private :: t = 0                     !! of the last point [s]
     real(dp), private :: cycle_start = 0           !! [s]
-    real(dp), private :: measures(2) = 0           !! at the start of the revolution
+    real(dp), private :: force_integral(n_pins) = 0, loss = 0   !! at the start of the revolution
     logical, private :: has_strobe = .false.
     real(dp), allocatable :: y(:)                  !! state at the end of the present revolution, from `find_end`
   contains
@@ -67,7 +67,8 @@ contains
     self%strobes = 0
     self%t = 0
     self%cycle_start = 0
-    self%measures = 0
+    self%force_integral = 0
+    self%loss = 0
     self%direction = sign(1.0_dp, scene%chain%drive%torque)
     if (abs(scene%start_speed) > 0) self%direction = sign(1.0_dp, scene%start_speed)
     self%start_angle = scene%start_angle
@@ -116,23 +117,27 @@ contains
   end subroutine take_strobes
 
   !> Values of interest are those above what is `known` of the run, or of the present revolution if that is to be counted.
-  pure subroutine lower_to_peaks(self, known)
+  pure subroutine lower_to_peaks(self, pin, known)
     class(cycle_watch_t), intent(in) :: self
+    integer, intent(in) :: pin
     real(dp), intent(inout) :: known(n_peaks)   !! huge: not of interest at all
     if (self%ended < self%settle) return
-    known(of_pin_force) = min(known(of_pin_force), self%present%max_pin_force)
-    if (known(of_penetration) < huge(known)) known(of_penetration) = min(known(of_penetration), -self%present%min_film_thickness)
+    associate (c => self%present%pin(pin))
+      known(of_pin_force) = min(known(of_pin_force), c%max_force)
+      if (known(of_penetration) < huge(known)) known(of_penetration) = min(known(of_penetration), -c%min_film_thickness)
+    end associate
   end subroutine lower_to_peaks
 
-  !> Values in the present revolution of the quantities that have peaks.
-  pure subroutine take_peaks(self, scene, values)
+  !> Values at a pin, in the present revolution, of the quantities that have peaks.
+  pure subroutine take_peaks(self, pin, is_touching, values)
     class(cycle_watch_t), intent(inout) :: self
-    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: pin
+    logical, intent(in) :: is_touching
     real(dp), intent(in) :: values(n_peaks)
-    associate (c => self%present)
-      c%max_pin_force = max(c%max_pin_force, values(of_pin_force))
+    associate (c => self%present%pin(pin))
+      c%max_force = max(c%max_force, values(of_pin_force))
       c%min_film_thickness = min(c%min_film_thickness, -values(of_penetration))
-      if (scene%phase_at(piston_pin) == phase_contact) c%max_penetration = max(c%max_penetration, values(of_penetration))
+      if (is_touching) c%max_penetration = max(c%max_penetration, values(of_penetration))
     end associate
   end subroutine take_peaks
 
@@ -141,14 +146,21 @@ contains
     class(cycle_watch_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
-    if (scene%phase_at(piston_pin) == phase_contact) self%present%contact_time = self%present%contact_time + (t - self%t)
+    integer :: i
+    do i = 1, scene%n_joints
+      if (scene%joints(i)%phase /= phase_contact) cycle
+      associate (c => self%present%pin(scene%joints(i)%place))
+        c%contact_time = c%contact_time + (t - self%t)
+      end associate
+    end do
     self%t = t
   end subroutine take_point
 
-  !> A contact begins.
-  pure subroutine take_impact(self)
+  !> A contact begins at a pin.
+  pure subroutine take_impact(self, pin)
     class(cycle_watch_t), intent(inout) :: self
-    self%present%impacts = self%present%impacts + 1
+    integer, intent(in) :: pin
+    self%present%pin(pin)%impacts = self%present%pin(pin)%impacts + 1
   end subroutine take_impact
 
   !> The run ended at (t, y): a revolution that rounding left open is whole.
@@ -217,12 +229,13 @@ contains
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
     type(cycle_t), allocatable :: more(:)
-    real(dp) :: measures(2)
-    measures = [self%y(scene%measures%first), scene%joint_loss(t, self%y)]
-    if (scene%phase_at(piston_pin) == phase_contact) self%present%contact_time = self%present%contact_time + (t - self%t)
+    real(dp) :: force_integral(n_pins), loss
+    force_integral = scene%force_integrals(self%y)
+    loss = scene%joint_loss(t, self%y)
+    call self%take_point(scene, t)
     self%present%duration = t - self%cycle_start
-    self%present%pin_force_integral = measures(1) - self%measures(1)
-    self%present%dissipated_energy = measures(2) - self%measures(2)
+    self%present%pin%force_integral = force_integral - self%force_integral
+    self%present%dissipated_energy = loss - self%loss
     self%ended = self%ended + 1
     if (self%ended > self%settle) then
       call self%statistics%add(self%present)
@@ -239,8 +252,8 @@ contains
     end if
     self%present = cycle_t()
     self%cycle_start = t
-    self%measures = measures
-    self%t = t
+    self%force_integral = force_integral
+    self%loss = loss
   end subroutine end_cycle
 
   !> The crank passes the strobe angle at (t, y).

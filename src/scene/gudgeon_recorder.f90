@@ -1,19 +1,19 @@
 !> The observer of a run: samples on a fixed grid of time, events of contact, the figures of the summary and, where they are
 !> asked for, those of each revolution.
 !>
-!> Peaks of the force on the pin, of the penetration, of the film thickness and of the normal force in a contact are searched
-!> between accepted points too (`step_peaks`), and none is below what a row says. The energy is looked at in accepted points.
+!> What belongs to a pin is in its `pin_record`: the piston pin has one, and a crank pin with clearance. Peaks are searched
+!> between accepted points too, and none is below what a row says. The energy is looked at in accepted points.
 module gudgeon_recorder
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t, limit_stability
   use gudgeon_solver, only: observer_t
-  use chain_motion, only: piston_pin
-  use gudgeon_scene, only: scene_t, evaluation_t, phase_contact, event_none, event_contact_begins, event_contact_ends
+  use chain_motion, only: crank_pin, piston_pin
+  use gudgeon_scene, only: scene_t, evaluation_t, event_none, event_contact_begins
   use gudgeon_columns, only: column_list_t, row_values
   use cycle_watch, only: cycle_watch_t
-  use step_peaks, only: peak_watch_t, of_pin_force, of_penetration, of_normal_force, n_peaks, peaks_of
+  use pin_record, only: pin_record_t
   use trace_sink, only: trace_sink_t, trace_event_t
   use run_figures, only: run_figures_t
   use gudgeon_archive, only: archive_t
@@ -34,13 +34,11 @@ module gudgeon_recorder
     integer :: max_evaluations_per_revolution = 0   !! budget for one revolution, or the time it takes at first; 0: none
     real(dp) :: revolution_time = huge(1.0_dp)      !! that time [s]
     logical :: over_budget = .false.                !! the run is to stop for it
-    real(dp) :: validity_limit = huge(1.0_dp)  !! largest impact speed that the contact law is meant for [m/s]
     real(dp), private :: initial_energy = 0, start_angle = 0
     integer, private :: next_row = 0, steps = 0
     integer, private :: evaluations_then = 0        !! when the present revolution was begun, and then
     real(dp), private :: time_then = 0, angle_then = 0   !! [s], [rad]
-    type(trace_event_t), private :: contact   !! the present contact
-    type(peak_watch_t), private :: peaks
+    type(pin_record_t), allocatable, private :: pins(:)
     real(dp), allocatable, private :: y(:), values(:)
   contains
     procedure :: prepare
@@ -55,11 +53,18 @@ module gudgeon_recorder
 
 contains
 
-  !> Before anything else, for states of n components.
-  subroutine prepare(self, n)
+  !> Before anything else, for a scene that is ready to run.
+  subroutine prepare(self, scene)
     class(recorder_t), intent(inout) :: self
-    integer, intent(in) :: n
-    allocate (self%y(n), self%values(size(self%list%id)))
+    type(scene_t), intent(in) :: scene
+    if (scene%joint_at(crank_pin) > 0) then
+      allocate (self%pins(2))
+      call self%pins(2)%prepare(crank_pin, scene)
+    else
+      allocate (self%pins(1))
+    end if
+    call self%pins(1)%prepare(piston_pin, scene)
+    allocate (self%y(scene%n), self%values(size(self%list%id)))
     self%keeps_archives = self%sink%keeps_archives .and. .not. allocated(self%cycles)   ! whose state is not put away
   end subroutine prepare
 
@@ -70,6 +75,7 @@ contains
     real(dp), intent(in) :: y(:)
     type(evaluation_t) :: now
     logical :: inside
+    integer :: i
 
     call look_at(self, scene, 0.0_dp, y, now, inside)
     if (inside) then
@@ -77,8 +83,11 @@ contains
       self%start_angle = now%motion%crank_angle
     end if
     if (allocated(self%cycles)) call self%cycles%begin(scene, y, self%initial_energy)
-    if (inside .and. scene%phase_at(piston_pin) == phase_contact) call take_contact(self, event_contact_begins, 0.0_dp, now)
-    call self%peaks%begin(size(y), 0.0_dp, now)
+    do i = 1, size(self%pins)
+      if (inside .and. self%pins(i)%is_touching(scene)) call take_contact(self, self%pins(i), event_contact_begins, 0.0_dp, now)
+      call self%pins(i)%begin(0.0_dp, now)
+      if (inside) call self%pins(i)%take_values(scene, now, self%figures, self%cycles)
+    end do
     call take_point(self, scene, 0.0_dp, y, now, inside, self%first_sample <= 0)
     if (self%first_sample <= 0) self%next_row = 1
   end subroutine begin
@@ -150,7 +159,6 @@ contains
         if (.not. ends) exit
         call look_at(self, scene, t_cycle, self%cycles%y, now, inside)
         if (inside) call search_peaks(self, method, scene, t_cycle, now)
-        if (inside) call take_peaks(self, scene, peaks_of(now), .true.)
         call self%cycles%end_cycle(scene, t_cycle)
       end do
       call self%cycles%take_strobes(method, scene, t, y)
@@ -167,44 +175,11 @@ contains
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
-    real(dp) :: known(n_peaks), largest(n_peaks)
-    integer :: before
-
-    known = huge(known)
-    associate (f => self%figures)
-      known(of_pin_force) = f%max_pin_force
-      if (scene%joint_at(piston_pin) > 0) known(of_penetration) = -f%min_film_thickness
-      if (allocated(self%cycles)) call self%cycles%lower_to_peaks(known)
-      if (scene%phase_at(piston_pin) == phase_contact) then
-        known(of_penetration) = min(known(of_penetration), self%contact%max_penetration)
-        known(of_normal_force) = self%contact%max_normal_force
-      end if
-      before = self%peaks%evaluations
-      call self%peaks%search(method, scene, t, now, known, largest)
-      f%evaluations = f%evaluations + (self%peaks%evaluations - before)
-      f%peak_evaluations = self%peaks%evaluations
-    end associate
-    call take_peaks(self, scene, largest, .true.)
+    integer :: i
+    do i = 1, size(self%pins)
+      call self%pins(i)%search(method, scene, t, now, self%figures, self%cycles)
+    end do
   end subroutine search_peaks
-
-  !> Values of the quantities that have peaks, for the run, for the present contact and, if they are `of_cycle`, for the present
-  !> revolution. (Rows are not: a revolution must not depend on whether anybody wants them.)
-  subroutine take_peaks(self, scene, values, of_cycle)
-    class(recorder_t), intent(inout) :: self
-    type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: values(n_peaks)
-    logical, intent(in) :: of_cycle
-    associate (f => self%figures, contact => self%contact)
-      f%max_pin_force = max(f%max_pin_force, values(of_pin_force))
-      f%min_film_thickness = min(f%min_film_thickness, -values(of_penetration))
-      if (scene%phase_at(piston_pin) == phase_contact) then
-        f%max_penetration = max(f%max_penetration, values(of_penetration))
-        contact%max_penetration = max(contact%max_penetration, values(of_penetration))
-        contact%max_normal_force = max(contact%max_normal_force, values(of_normal_force))
-      end if
-    end associate
-    if (of_cycle .and. allocated(self%cycles)) call self%cycles%take_peaks(scene, values)
-  end subroutine take_peaks
 
   !> Whether the present revolution costs more than it may. One that takes longer than the first would have ends there: a crank
   !> at rest must not spend for ever.
@@ -241,15 +216,20 @@ contains
     type(evaluation_t), intent(in) :: now
     logical, intent(in) :: inside, has_row
     real(dp) :: energy
+    integer :: i
 
     if (.not. inside) return
     energy = scene%energy(now%motion)
-    call take_peaks(self, scene, peaks_of(now), .true.)
     associate (f => self%figures)
       f%max_energy = max(f%max_energy, abs(energy))
       f%max_energy_residual = max(f%max_energy_residual, abs(energy - self%initial_energy - scene%work(y)))
       f%crank_travel = now%motion%crank_angle - self%start_angle
-      if (scene%phase_at(piston_pin) == phase_contact) f%contact_time = f%contact_time + (t - f%time)
+      do i = 1, size(self%pins)
+        if (.not. self%pins(i)%is_touching(scene)) cycle
+        associate (contact_time => f%pin(self%pins(i)%pin)%contact_time)
+          contact_time = contact_time + (t - f%time)
+        end associate
+      end do
       f%time = t
     end associate
     if (allocated(self%cycles)) call self%cycles%take_point(scene, t)
@@ -263,43 +243,32 @@ contains
     real(dp), intent(in) :: t, y(:)
     type(evaluation_t) :: now
     logical :: inside
+    integer :: i
 
     select type (problem)
     class is (scene_t)
-      call self%peaks%change_phase()
+      do i = 1, size(self%pins)
+        call self%pins(i)%change_phase()
+      end do
       if (problem%reported_event(index) == event_none) return
       call look_at(self, problem, t, y, now, inside)
-      call take_contact(self, problem%reported_event(index), t, now)
+      do i = 1, size(self%pins)
+        if (self%pins(i)%joint == problem%event_of(index)%joint) &
+          call take_contact(self, self%pins(i), problem%reported_event(index), t, now)
+      end do
     end select
   end subroutine event_taken
 
-  !> A contact begins or ends at time t; `now` is evaluated before that.
-  subroutine take_contact(self, kind, t, now)
+  !> A contact begins or ends at a pin, at time t; `now` is evaluated before that.
+  subroutine take_contact(self, pin, kind, t, now)
     class(recorder_t), intent(inout) :: self
+    type(pin_record_t), intent(inout) :: pin
     integer, intent(in) :: kind
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
-
-    associate (contact => self%contact, figures => self%figures)
-      contact%kind = kind
-      if (contact%kind == event_contact_begins) then
-        figures%contacts = figures%contacts + 1
-        if (allocated(self%cycles)) call self%cycles%take_impact()
-        figures%max_entry_penetration = max(figures%max_entry_penetration, now%relative(1)%penetration)
-        if (now%relative(1)%penetration_rate > self%validity_limit) &
-          figures%impacts_beyond_validity = figures%impacts_beyond_validity + 1
-        contact%duration = 0
-        contact%max_penetration = 0
-        contact%max_normal_force = 0
-        contact%time = t
-      else
-        contact%duration = t - contact%time
-        contact%time = t
-      end if
-      contact%crank_angle = now%motion%crank_angle
-      contact%normal_speed = now%relative(1)%penetration_rate
-      call self%sink%take_event(contact)
-    end associate
+    type(trace_event_t) :: event
+    call pin%take_contact(kind, t, now, self%figures, event, self%cycles)
+    call self%sink%take_event(event)
   end subroutine take_contact
 
   !> The run ended at (t, y): with a row at every step, and for the last of a grid that rounding left out.
@@ -320,9 +289,11 @@ contains
   subroutine exchange_recorder(self, archive)
     class(recorder_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
+    integer :: i
     call self%figures%exchange(archive)
-    call self%contact%exchange(archive)
-    call self%peaks%exchange(size(self%y), archive)
+    do i = 1, size(self%pins)
+      call self%pins(i)%exchange(archive)
+    end do
     call archive%exchange(self%initial_energy)
     call archive%exchange(self%start_angle)
     call archive%exchange(self%next_row)
@@ -346,10 +317,13 @@ contains
     real(dp), intent(in) :: t, y(:)
     type(evaluation_t) :: now
     logical :: inside
+    integer :: i
     if (size(self%values) == 0) return
     call look_at(self, scene, t, y, now, inside)
     if (.not. inside) return
-    call take_peaks(self, scene, peaks_of(now), .false.)
+    do i = 1, size(self%pins)   ! for no revolution: these must not depend on whether anybody wants rows
+      call self%pins(i)%take_values(scene, now, self%figures)
+    end do
     call put_row(self, scene, t, y, now)
   end subroutine write_row
 

@@ -4,7 +4,7 @@ module gudgeon_scene
   use gudgeon_archive, only: archive_t
   use ode_problem, only: ode_problem_t, max_events
   use state_layout, only: layout_t, coordinates_t, slice_t
-  use chain_motion, only: motion_t, accelerations_t, piston_pin, n_pins, turn_crank
+  use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, n_pins, turn_crank
   use chain_loads, only: loads_t, force_size
   use gudgeon_chain, only: chain_t
   use joint_motion, only: joint_motion_t
@@ -49,8 +49,8 @@ module gudgeon_scene
 
   !> A scene as an ode_problem. Of the state it claims the crank angle, unless the crank speed is held; the joints claim their
   !> eccentricities; quadratures are the work of all non-conservative forces and the drive [J] and, where somebody asks for them,
-  !> the measures of the joints: the integral of the size of the force on the piston pin [N s] and, where the work does not tell
-  !> it, what the joints take from the bodies [J].
+  !> the measures of the joints: the integrals of the sizes of the forces on the piston pin and on a loose crank pin [N s] and, where
+  !> the work does not tell it, what the joints take from the bodies [J].
   type, extends(ode_problem_t) :: scene_t
     type(chain_t) :: chain
     integer :: n_joints = 0         !! with clearance: 0, 1 or 2
@@ -65,6 +65,7 @@ module gudgeon_scene
     type(coordinates_t) :: crank    !! where the crank angle stands in it
     integer :: work_at = 0          !! where the work of the forces stands
     type(slice_t) :: measures       !! quadratures of the joints
+    logical :: measures_loss = .false.   !! the last of them is what the joints take
     logical :: may_stick = .false.  !! a joint has set-valued friction
     real(dp) :: entry_time = -huge(1.0_dp)          !! when a joint has begun to touch last [s]
     type(event_owner_t) :: event_of(max_events)     !! owners of the event functions
@@ -86,6 +87,7 @@ module gudgeon_scene
     procedure :: crank_speed
     procedure :: work
     procedure :: measure_joint
+    procedure :: force_integrals
     procedure :: joint_loss
     procedure :: energy
     procedure :: energy_scale
@@ -168,8 +170,9 @@ contains
     call put_rates(self%n_joints, self%joints, now, dydt)
     dydt(self%work_at) = now%power
     if (self%measures%last < self%measures%first) return
+    if (self%measures_loss) dydt(self%measures%last) = -sum(now%joint(:self%n_joints)%power)
     dydt(self%measures%first) = force_size(now%loads%force(:, piston_pin))
-    if (self%measures%last > self%measures%first) dydt(self%measures%last) = -sum(now%joint(:self%n_joints)%power)
+    if (self%joint_of_pin(crank_pin) > 0) dydt(self%measures%first + 1) = force_size(now%loads%force(:, crank_pin))
   end subroutine derivatives
 
   !> Rates of what the joints claimed.
@@ -333,9 +336,11 @@ contains
     integer :: n
     real(dp) :: scale
     n = 1
+    if (self%joint_of_pin(crank_pin) > 0) n = 2
     scale = 0
     if (self%n_joints > 0) then
-      if (.not. work_tells(self)) n = 2
+      self%measures_loss = .not. work_tells(self)
+      if (self%measures_loss) n = n + 1
     else
       scale = self%energy_scale(self%span)/(self%chain%bodies%crank%length*self%speed_scale(self%span))
     end if
@@ -350,6 +355,16 @@ contains
     work_tells = self%chain%drive%free_crank .and. .not. (self%chain%drive%damping > 0 .or. allocated(self%gas))
   end function work_tells
 
+  !> Integrals of the sizes of the forces on the pins so far, in a scene that measures them [N s]; 0 of an ideal crank pin.
+  pure function force_integrals(self, y) result(integrals)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: y(:)
+    real(dp) :: integrals(n_pins)
+    integrals(piston_pin) = y(self%measures%first)
+    integrals(crank_pin) = 0
+    if (self%joint_of_pin(crank_pin) > 0) integrals(crank_pin) = y(self%measures%first + 1)
+  end function force_integrals
+
   !> Energy that the joints have taken from the bodies, in a scene that measures it [J]; where it is not integrated itself, the
   !> work of the drive's torque less that of all forces.
   pure real(dp) function joint_loss(self, t, y)
@@ -357,7 +372,7 @@ contains
     real(dp), intent(in) :: t, y(:)
     joint_loss = 0
     if (self%n_joints == 0) return
-    if (self%measures%last > self%measures%first) then
+    if (self%measures_loss) then
       joint_loss = y(self%measures%last)
     else
       joint_loss = self%chain%drive%torque*(self%crank_angle(t, y) - self%start_angle) - self%work(y)

@@ -66,7 +66,6 @@ contains
     recorder%every_step = case%output%every_step
     recorder%max_evaluations_per_revolution = case%integrator%max_evaluations_per_revolution
     recorder%revolution_time = two_pi/scene%speed_scale(recorder%expected_end)
-    if (allocated(case%joint%contact)) recorder%validity_limit = case%joint%contact%fastest_impact()
     call move_alloc(sink, recorder%sink)
     if (present(cycles)) then
       call scene%measure_joint()
@@ -76,7 +75,7 @@ contains
     method%settings = settings_for(case, scene)
     y = scene%initial_state()
     t = 0
-    call recorder%prepare(scene%n)
+    call recorder%prepare(scene)
     if (.not. present(archive)) call recorder%begin(scene, y)
     call integrate(scene, method, t, y, recorder%end_time, case%integrator%max_steps, recorder, status, archive)
     if (status == integration_interrupted .and. recorder%over_budget) status = revolution_budget_spent

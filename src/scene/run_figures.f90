@@ -2,21 +2,28 @@
 module run_figures
   use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
+  use chain_motion, only: n_pins
   implicit none
   private
-  public :: run_figures_t
+  public :: run_figures_t, pin_figures_t
 
-  !> Figures of a joint with clearance are 0 without one.
-  type :: run_figures_t
+  !> Those of one pin. Without clearance there is no more than the force, and of an ideal crank pin not even that.
+  type :: pin_figures_t
     integer :: contacts = 0                   !! contacts begun
     integer :: impacts_beyond_validity = 0    !! of them faster than the contact law is meant for
-    integer :: evaluations = 0                !! of the scene for rows, events and these figures
-    integer :: peak_evaluations = 0           !! of them for peaks between accepted points
     real(dp) :: contact_time = 0              !! [s]
     real(dp) :: max_penetration = 0           !! [m]
     real(dp) :: max_entry_penetration = 0     !! penetration at the beginning of a contact [m]
-    real(dp) :: max_pin_force = 0             !! [N]
+    real(dp) :: max_force = 0                 !! size of the joint's force on the pin [N]
     real(dp) :: min_film_thickness = huge(1.0_dp)  !! c - |e| [m]
+  contains
+    procedure :: exchange => exchange_pin
+  end type pin_figures_t
+
+  type :: run_figures_t
+    type(pin_figures_t) :: pin(n_pins)        !! crank_pin, piston_pin
+    integer :: evaluations = 0                !! of the scene for rows, events and these figures
+    integer :: peak_evaluations = 0           !! of them for peaks between accepted points
     real(dp) :: max_energy = 0                !! largest |kinetic + potential energy| [J]
     real(dp) :: max_energy_residual = 0       !! largest |energy residual| [J]
     real(dp) :: crank_travel = 0              !! crank angle turned through, signed [rad]
@@ -31,18 +38,28 @@ contains
   subroutine exchange_figures(self, archive)
     class(run_figures_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
-    call archive%exchange(self%contacts)
-    call archive%exchange(self%impacts_beyond_validity)
+    integer :: pin
+    do pin = 1, n_pins
+      call self%pin(pin)%exchange(archive)
+    end do
     call archive%exchange(self%evaluations)
     call archive%exchange(self%peak_evaluations)
-    call archive%exchange(self%contact_time)
-    call archive%exchange(self%max_penetration)
-    call archive%exchange(self%max_entry_penetration)
-    call archive%exchange(self%max_pin_force)
-    call archive%exchange(self%min_film_thickness)
     call archive%exchange(self%max_energy)
     call archive%exchange(self%max_energy_residual)
     call archive%exchange(self%crank_travel)
     call archive%exchange(self%time)
   end subroutine exchange_figures
+
+  !> Those of a pin.
+  subroutine exchange_pin(self, archive)
+    class(pin_figures_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    call archive%exchange(self%contacts)
+    call archive%exchange(self%impacts_beyond_validity)
+    call archive%exchange(self%contact_time)
+    call archive%exchange(self%max_penetration)
+    call archive%exchange(self%max_entry_penetration)
+    call archive%exchange(self%max_force)
+    call archive%exchange(self%min_film_thickness)
+  end subroutine exchange_pin
 end module run_figures

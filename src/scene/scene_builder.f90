@@ -2,7 +2,7 @@
 module scene_builder
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi, degree
-  use gudgeon_errors, only: error_t, fail, status_case_file
+  use gudgeon_errors, only: error_t
   use case_definition, only: case_t, joint_case_t
   use ode_method, only: ode_settings_t
   use chain_motion, only: piston_pin, crank_pin
@@ -40,18 +40,13 @@ module scene_builder
 contains
 
   !> Build the scene of a case; with `ideal_joint` its twin without clearance. The case has been validated by its
-  !> reader. Errors: the gas cycle cannot be integrated; the crank pin has clearance.
+  !> reader. Error: the gas cycle cannot be integrated.
   subroutine build_scene(case, ideal_joint, scene, error)
     type(case_t), intent(in) :: case
     logical, intent(in) :: ideal_joint
     type(scene_t), allocatable, intent(out) :: scene
     type(error_t), allocatable, intent(out) :: error
 
-    if (case%crank_pin%has_clearance()) then   ! the scene can, events and figures cannot
-      call fail(error, '&joint of crank_pin kind = clearance: cannot be run yet: events and figures know the piston pin alone', &
-        status_case_file)
-      return
-    end if
     call assemble_scene(case, ideal_joint, scene)
     call prepare_joints(case, scene)
     associate (m => case%mechanism)

@@ -5,7 +5,7 @@ module stop_reason
   use ode_method, only: ode_settings_t, step_too_small, tolerance_too_small, start_outside, left_domain
   use gudgeon_solver, only: step_limit_reached, integration_interrupted, chattering, evaluation_limit_reached, unreadable_archive
   use gudgeon_scene, only: scene_t, evaluation_t
-  use chain_motion, only: piston_pin
+  use chain_motion, only: crank_pin, piston_pin
   implicit none
   private
   public :: reason, place, interrupted_text, revolution_budget_spent, crank_turned_back, turns_not_made
@@ -34,8 +34,8 @@ contains
     case (tolerance_too_small)
       text = 'tolerance below the rounding of the state'
     case (left_domain, start_outside)
-      text = 'the state leaves the model (the pin its bearing or its film)'
-      if (scene%is_singular(y)) text = ill_posed_text()
+      text = 'the state leaves the model ('//leaving_pin(scene, y)//' its bearing or its film)'
+      if (scene%is_singular(y)) text = ill_posed_text(scene, y)
     case (step_limit_reached)
       text = 'too many steps (&integrator max_steps)'
     case (evaluation_limit_reached)
@@ -79,10 +79,51 @@ contains
     if (index(digits, '.') == 1) text = '0'//text
   end function decimal_text
 
-  function ill_posed_text() result(text)
+  function ill_posed_text(scene, y) result(text)
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: y(:)
     character(len=:), allocatable :: text
-    text = 'ill-posed: a film of next to no thickness, whose force has no bound'
+    integer :: i
+    text = 'ill-posed: a film of next to no thickness'
+    do i = 1, scene%n_joints
+      if (scene%joints(i)%is_singular(y) .and. .not. has_plain_names(scene)) text = text//' at the '//joint_name(scene, i)
+    end do
+    text = text//', whose force has no bound'
   end function ill_posed_text
+
+  !> The pin that is nearest to where it may not be, in parts of the way there from the centre.
+  function leaving_pin(scene, y) result(text)
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: y(:)
+    character(len=:), allocatable :: text
+    real(dp) :: part, largest
+    integer :: i
+    text = 'the pin'
+    if (has_plain_names(scene)) return
+    largest = -1
+    do i = 1, scene%n_joints
+      associate (at => scene%joints(i)%at%position)
+        part = norm2(y(at:at + 1))/scene%joints(i)%reach()
+      end associate
+      if (part > largest) text = 'the '//joint_name(scene, i)
+      largest = max(largest, part)
+    end do
+  end function leaving_pin
+
+  !> Whether there is no joint but the piston pin's to be told apart.
+  pure logical function has_plain_names(scene)
+    type(scene_t), intent(in) :: scene
+    has_plain_names = scene%joint_at(crank_pin) == 0
+  end function has_plain_names
+
+  !> The pin of a joint in words.
+  pure function joint_name(scene, i) result(text)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: i
+    character(len=:), allocatable :: text
+    text = merge('piston pin', 'crank pin ', scene%joints(i)%place == piston_pin)
+    text = trim(text)
+  end function joint_name
 
   !> Why no step was short enough.
   function small_step_reason(scene, settings, t, y) result(text)
@@ -92,7 +133,7 @@ contains
     character(len=:), allocatable :: text
     real(dp), parameter :: appreciable = 0.01_dp
     if (scene%is_singular(y)) then
-      text = ill_posed_text()
+      text = ill_posed_text(scene, y)
     else if (settings%tolerance <= tight_tolerance) then
       text = 'tolerance below the rounding of the forces'
     else if (change_in_rounding(scene, settings, t, y) > appreciable) then
@@ -120,7 +161,7 @@ contains
     end do
   end function change_in_rounding
 
-  !> Where a run stands: time, crank angle and phase.
+  !> Where a run stands: time, crank angle and the phase of each joint.
   function place(scene, t, y) result(text)
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
@@ -129,8 +170,17 @@ contains
     character(len=80) :: figures
     type(evaluation_t) :: now
     logical :: inside
+    integer :: i
     call scene%evaluate(t, y, now, inside)
     write (figures, '(a,es15.8,a,f0.4,a)') 't =', t, ' s, crank angle ', now%motion%crank_angle/degree, ' deg'
-    text = trim(figures)//', phase '//trim(phase_names(scene%phase_at(piston_pin)))
+    text = trim(figures)//', phase '
+    if (has_plain_names(scene)) then
+      text = text//trim(phase_names(scene%phase_at(piston_pin)))
+      return
+    end if
+    do i = 1, scene%n_joints
+      if (i > 1) text = text//', '
+      text = text//trim(phase_names(scene%joints(i)%phase))//' at the '//joint_name(scene, i)
+    end do
   end function place
 end module stop_reason

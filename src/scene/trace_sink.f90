@@ -3,6 +3,7 @@ module trace_sink
   use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
   use ode_method, only: step_statistics_t
+  use chain_motion, only: piston_pin
   implicit none
   private
   public :: trace_sink_t, trace_event_t
@@ -16,6 +17,7 @@ module trace_sink
     real(dp) :: duration = 0               !! of the contact that ends [s]
     real(dp) :: max_penetration = 0        !! in it [m]
     real(dp) :: max_normal_force = 0       !! in it [N]
+    integer :: pin = piston_pin            !! whose joint it is
   contains
     procedure :: exchange
   end type trace_event_t
@@ -69,6 +71,7 @@ contains
     call archive%exchange(self%duration)
     call archive%exchange(self%max_penetration)
     call archive%exchange(self%max_normal_force)
+    call archive%exchange(self%pin)
   end subroutine exchange
 
   !> Called now and then while most of the time simulated so far was bound by the stability of Adams. The default does nothing.

@@ -2,6 +2,7 @@
 module study_rows
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
+  use chain_motion, only: piston_pin
   use gudgeon_columns, only: column_list_t, column_name
   use cycle_statistics, only: cycle_t
   use cycle_watch, only: cycle_watch_t
@@ -82,14 +83,14 @@ contains
     call row%add_text('done')
     associate (s => watch%statistics, total => watch%statistics%total)
       call row%add_whole(s%cycles)
-      call add(row, numbers, total%min_film_thickness, has_clearance)
-      call add(row, numbers, s%min_film_thickness_mean(), has_clearance)
-      call add(row, numbers, total%contact_time/total%duration, has_clearance)
-      call add(row, numbers, s%impacts_mean(), has_clearance)
-      call add(row, numbers, total%max_penetration, has_clearance)
-      call row%add_number(numbers, total%max_pin_force)
-      call row%add_number(numbers, s%max_pin_force_mean())
-      call row%add_number(numbers, total%pin_force_integral/total%duration)
+      call add(row, numbers, total%pin(piston_pin)%min_film_thickness, has_clearance)
+      call add(row, numbers, s%min_film_thickness_mean(piston_pin), has_clearance)
+      call add(row, numbers, total%pin(piston_pin)%contact_time/total%duration, has_clearance)
+      call add(row, numbers, s%impacts_mean(piston_pin), has_clearance)
+      call add(row, numbers, total%pin(piston_pin)%max_penetration, has_clearance)
+      call row%add_number(numbers, total%pin(piston_pin)%max_force)
+      call row%add_number(numbers, s%max_force_mean(piston_pin))
+      call row%add_number(numbers, total%pin(piston_pin)%force_integral/total%duration)
       call row%add_number(numbers, watch%direction*two_pi*s%cycles/total%duration)
       call add(row, numbers, s%dissipated_energy_mean(), has_clearance)
     end associate
@@ -172,13 +173,13 @@ contains
         call row%add_whole(run)
         call row%add_whole(watch%settle + i)
         call row%add_number(numbers, c%duration)
-        call add(row, numbers, c%min_film_thickness, has_clearance)
-        call add(row, numbers, c%contact_time/c%duration, has_clearance)
-        if (has_clearance) call row%add_whole(c%impacts)
+        call add(row, numbers, c%pin(piston_pin)%min_film_thickness, has_clearance)
+        call add(row, numbers, c%pin(piston_pin)%contact_time/c%duration, has_clearance)
+        if (has_clearance) call row%add_whole(c%pin(piston_pin)%impacts)
         if (.not. has_clearance) call row%add_text('')
-        call add(row, numbers, c%max_penetration, has_clearance)
-        call row%add_number(numbers, c%max_pin_force)
-        call row%add_number(numbers, c%pin_force_integral/c%duration)
+        call add(row, numbers, c%pin(piston_pin)%max_penetration, has_clearance)
+        call row%add_number(numbers, c%pin(piston_pin)%max_force)
+        call row%add_number(numbers, c%pin(piston_pin)%force_integral/c%duration)
         call row%add_number(numbers, watch%direction*two_pi/c%duration)
         call add(row, numbers, c%dissipated_energy, has_clearance)
         call row%end_row()

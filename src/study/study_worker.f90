@@ -134,7 +134,7 @@ contains
     allocate (files)
     call choose_columns(self%base%case, .false., list, error)
     if (.not. allocated(error)) call files%open(self%trace_folder//'/'//trim(name), list, self%base%case%output%digits, &
-      allocated(self%base%case%joint%contact), self%output_error)
+      self%base%case%has_contact(), self%output_error)
     !$omp end critical (texts)
     if (allocated(error) .or. allocated(self%output_error)) return
     call move_alloc(files, sink)

@@ -1,0 +1,166 @@
+!> What a run does at one pin: its contacts, and the peaks of the force on it, of penetration, film thickness and normal force.
+module pin_record
+  use gudgeon_kinds, only: dp
+  use gudgeon_archive, only: archive_t
+  use ode_method, only: ode_method_t
+  use chain_motion, only: piston_pin
+  use gudgeon_scene, only: scene_t, evaluation_t, phase_contact, event_contact_begins
+  use step_peaks, only: peak_watch_t, of_pin_force, of_penetration, of_normal_force, n_peaks
+  use cycle_watch, only: cycle_watch_t
+  use trace_sink, only: trace_event_t
+  use run_figures, only: run_figures_t
+  implicit none
+  private
+  public :: pin_record_t
+
+  type :: pin_record_t
+    integer :: pin = piston_pin                !! of the chain
+    integer :: joint = 0                       !! which of the scene's is there; 0: the pin is ideal
+    real(dp) :: validity_limit = huge(1.0_dp)  !! largest impact speed that the contact law is meant for [m/s]
+    type(trace_event_t), private :: contact    !! the present or the last one
+    type(peak_watch_t), private :: peaks
+  contains
+    procedure :: prepare
+    procedure :: begin
+    procedure :: change_phase
+    procedure :: search
+    procedure :: take_values
+    procedure :: take_contact
+    procedure :: is_touching
+    procedure :: exchange
+  end type pin_record_t
+
+contains
+
+  !> The record of a pin of this scene.
+  subroutine prepare(self, pin, scene)
+    class(pin_record_t), intent(out) :: self
+    integer, intent(in) :: pin
+    type(scene_t), intent(in) :: scene
+    self%pin = pin
+    self%joint = scene%joint_at(pin)
+    self%contact%pin = pin
+    self%peaks%pin = self%pin
+    self%peaks%joint = self%joint
+    if (self%joint == 0) return
+    if (allocated(scene%joints(self%joint)%contact)) self%validity_limit = scene%joints(self%joint)%contact%fastest_impact()
+  end subroutine prepare
+
+  !> The run begins at t with what has been evaluated there.
+  subroutine begin(self, t, now)
+    class(pin_record_t), intent(inout) :: self
+    real(dp), intent(in) :: t
+    type(evaluation_t), intent(in) :: now
+    call self%peaks%begin(t, now)
+  end subroutine begin
+
+  !> An event has changed the phase of the scene.
+  pure subroutine change_phase(self)
+    class(pin_record_t), intent(inout) :: self
+    call self%peaks%change_phase()
+  end subroutine change_phase
+
+  !> Whether the joint is in contact.
+  pure logical function is_touching(self, scene)
+    class(pin_record_t), intent(in) :: self
+    type(scene_t), intent(in) :: scene
+    is_touching = .false.
+    if (self%joint > 0) is_touching = scene%joints(self%joint)%phase == phase_contact
+  end function is_touching
+
+  !> Peaks between the last point looked at, or the beginning of a step after an event, and t, where the scene is evaluated.
+  subroutine search(self, method, scene, t, now, figures, cycles)
+    class(pin_record_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t
+    type(evaluation_t), intent(in) :: now
+    type(run_figures_t), intent(inout) :: figures
+    type(cycle_watch_t), intent(inout), optional :: cycles
+    real(dp) :: known(n_peaks), largest(n_peaks)
+    integer :: before
+
+    known = huge(known)
+    associate (f => figures%pin(self%pin))
+      known(of_pin_force) = f%max_force
+      if (self%joint > 0) known(of_penetration) = -f%min_film_thickness
+    end associate
+    if (present(cycles)) call cycles%lower_to_peaks(self%pin, known)
+    if (self%is_touching(scene)) then
+      known(of_penetration) = min(known(of_penetration), self%contact%max_penetration)
+      known(of_normal_force) = self%contact%max_normal_force
+    end if
+    before = self%peaks%evaluations
+    call self%peaks%search(method, scene, t, now, known, largest)
+    figures%evaluations = figures%evaluations + (self%peaks%evaluations - before)
+    figures%peak_evaluations = figures%peak_evaluations + (self%peaks%evaluations - before)
+    call put_values(self, scene, largest, figures, cycles)
+  end subroutine search
+
+  !> The quantities that have peaks in one evaluation, for the run, for the present contact and, where it is given, for the present
+  !> revolution.
+  subroutine take_values(self, scene, now, figures, cycles)
+    class(pin_record_t), intent(inout) :: self
+    type(scene_t), intent(in) :: scene
+    type(evaluation_t), intent(in) :: now
+    type(run_figures_t), intent(inout) :: figures
+    type(cycle_watch_t), intent(inout), optional :: cycles
+    call put_values(self, scene, self%peaks%values(now), figures, cycles)
+  end subroutine take_values
+
+  subroutine put_values(self, scene, values, figures, cycles)
+    class(pin_record_t), intent(inout) :: self
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: values(n_peaks)
+    type(run_figures_t), intent(inout) :: figures
+    type(cycle_watch_t), intent(inout), optional :: cycles
+    associate (f => figures%pin(self%pin), contact => self%contact)
+      f%max_force = max(f%max_force, values(of_pin_force))
+      f%min_film_thickness = min(f%min_film_thickness, -values(of_penetration))
+      if (self%is_touching(scene)) then
+        f%max_penetration = max(f%max_penetration, values(of_penetration))
+        contact%max_penetration = max(contact%max_penetration, values(of_penetration))
+        contact%max_normal_force = max(contact%max_normal_force, values(of_normal_force))
+      end if
+    end associate
+    if (present(cycles)) call cycles%take_peaks(self%pin, self%is_touching(scene), values)
+  end subroutine put_values
+
+  !> A contact begins or ends at time t; `now` is evaluated before that. `event` is what the trace tells of it.
+  subroutine take_contact(self, kind, t, now, figures, event, cycles)
+    class(pin_record_t), intent(inout) :: self
+    integer, intent(in) :: kind
+    real(dp), intent(in) :: t
+    type(evaluation_t), intent(in) :: now
+    type(run_figures_t), intent(inout) :: figures
+    type(trace_event_t), intent(out) :: event
+    type(cycle_watch_t), intent(inout), optional :: cycles
+
+    associate (contact => self%contact, f => figures%pin(self%pin), relative => now%relative(self%joint))
+      contact%kind = kind
+      if (contact%kind == event_contact_begins) then
+        f%contacts = f%contacts + 1
+        if (present(cycles)) call cycles%take_impact(self%pin)
+        f%max_entry_penetration = max(f%max_entry_penetration, relative%penetration)
+        if (relative%penetration_rate > self%validity_limit) f%impacts_beyond_validity = f%impacts_beyond_validity + 1
+        contact%duration = 0
+        contact%max_penetration = 0
+        contact%max_normal_force = 0
+      else
+        contact%duration = t - contact%time
+      end if
+      contact%time = t
+      contact%crank_angle = now%motion%crank_angle
+      contact%normal_speed = relative%penetration_rate
+      event = contact
+    end associate
+  end subroutine take_contact
+
+  !> What has been found so far, to or from an archive; not which pin it is.
+  subroutine exchange(self, archive)
+    class(pin_record_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    call self%contact%exchange(archive)
+    call self%peaks%exchange(archive)
+  end subroutine exchange
+end module pin_record
