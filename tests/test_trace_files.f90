@@ -49,7 +49,8 @@ contains
     call check%that(.not. allocated(error), 'a trace is closed')
     call expect_line(check, 'a.csv', 1, 'time[s],phase[-],gas_force[N]')
     call expect_line(check, 'a.csv', 2, '1.00000000000E-03,2,0.00000000000E+00')
-    call expect_line(check, 'a.events.csv', 2, '5.00000000000E-01,-1.00000000000E+00,contact_begins,2.50000000000E-01,,,,piston_pin')
+    call expect_line(check, 'a.events.csv', 2, '5.00000000000E-01,-1.00000000000E+00,contact_begins,'// &
+                     '2.50000000000E-01,,,,piston_pin')
     call expect_line(check, 'a.events.csv', 3, '5.00000000000E-01,-1.00000000000E+00,contact_ends,2.50000000000E-01,'// &
                      '9.00000000000E+00,9.00000000000E+00,9.00000000000E+00,piston_pin')
   end subroutine test_text
