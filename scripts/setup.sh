@@ -46,6 +46,15 @@ gudgeon_python() {   # the packages of the plots; pip looks only at what is miss
   gudgeon_venv && gudgeon_pip -r scripts/requirements.txt "$@"
 }
 
+# fpm 0.12 goes on linking the objects of source files that were moved or removed, and says nothing: where the list of sources is
+# another one than at the last set-up, programs are built anew.
+gudgeon_sources() {
+  gudgeon_list=$(find src tests scripts -name '*.f90' | sort)
+  [ "$gudgeon_list" = "$(cat build/sources 2>/dev/null)" ] && return 0
+  rm -rf build/gfortran_* scripts/build/gfortran_*
+  mkdir -p build && printf '%s\n' "$gudgeon_list" >build/sources
+}
+
 gudgeon_setup() {
   if [ ! -f fpm.toml ]; then
     echo "setup: run it from the top of the checkout" >&2
@@ -55,6 +64,7 @@ gudgeon_setup() {
     # gcc and libc6-dev come with gfortran; fpm uses gcc and ar too
     gudgeon_apt gfortran libc6-dev || return 1
   fi
+  gudgeon_sources
   if command -v fpm >/dev/null 2>&1 && fpm --version >/dev/null 2>&1; then
     return 0
   fi
@@ -94,7 +104,7 @@ case "${0##*/} $#" in
     fi
     ;;
 esac
-unset -f gudgeon_apt gudgeon_link gudgeon_venv gudgeon_pip gudgeon_python gudgeon_setup
-unset gudgeon_sudo gudgeon_dir gudgeon_packages
+unset -f gudgeon_apt gudgeon_link gudgeon_venv gudgeon_pip gudgeon_python gudgeon_sources gudgeon_setup
+unset gudgeon_sudo gudgeon_dir gudgeon_packages gudgeon_list
 # the status of the last command is that of the set-up, sourced or not
 [ "$gudgeon_status" = 0 ]

@@ -31,7 +31,8 @@ count() {   # count NAME COMMAND...: run the command and add up its counts
   fi
 }
 
-count "every module compiles" sh -c 'fpm build --no-prune && echo "1 passed, 0 failed"'
+count "every module and program compiles" sh -c 'fpm build --no-prune && fpm build --directory scripts && echo "1 passed, 0 failed"'
+count "builds" tests/test_build.sh
 count "layers" tests/test_layers.py
 count "tests, strict" fpm @strict
 count "case files, fuzzed" tests/test_fuzz.py
