@@ -79,7 +79,8 @@ contains
     call check%that(.not. allocated(error), 'overrides are taken')
     call check%that(allocated(c%joint%friction), 'an override makes its group present')
     call check%relative(element(parameter_of(c%joint%friction, 'coefficient'), 1), 0.2_dp, 0.0_dp, 'the last override counts')
-    call check%relative(element(parameter_of(c%joint%contact, 'youngs_modulus'), 2), 2e11_dp, 0.0_dp, 'override of an array')
+    call check%relative(element(parameter_of(c%joint%contact%geometry, 'youngs_modulus'), 2), 2e11_dp, 0.0_dp, &
+      'override of an array')
     call check%equal_text(c%title, 'A, b ''c''', 'text of an override without quotes')
   end subroutine test_values
 
@@ -98,9 +99,12 @@ contains
     call check%that(.not. allocated(error), 'forms of namelists')
     if (allocated(error)) call check%equal_text(error%message, '', 'forms')
     call check%equal_text(c%title, 'it''s "so" ! / &', 'quotes, and what is no comment inside them')
-    call check%relative(element(parameter_of(c%joint%contact, 'poissons_ratio'), 2), 0.25_dp, 0.0_dp, 'repeat count')
-    call check%relative(element(parameter_of(c%joint%contact, 'youngs_modulus'), 1), 207e9_dp, 0.0_dp, 'element by default')
-    call check%relative(element(parameter_of(c%joint%contact, 'youngs_modulus'), 2), 1.5e11_dp, 0.0_dp, 'element by index')
+    call check%relative(element(parameter_of(c%joint%contact%geometry, 'poissons_ratio'), 2), 0.25_dp, 0.0_dp, &
+      'repeat count')
+    call check%relative(element(parameter_of(c%joint%contact%geometry, 'youngs_modulus'), 1), 207e9_dp, 0.0_dp, &
+      'element by default')
+    call check%relative(element(parameter_of(c%joint%contact%geometry, 'youngs_modulus'), 2), 1.5e11_dp, 0.0_dp, &
+      'element by index')
     call check%that(c%joint%contact%name() == 'hertz', 'words in any case')
     call check%that(c%output%every_step .and. c%output%ideal_twin, 'logicals')
     call check%equal_text(c%output%columns, 'time,rod_angle', 'list of texts')

@@ -3,10 +3,9 @@ module test_contact
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, status_case_file
   use checks, only: checks_t
-  use contact_law, only: contact_law_t
+  use contact_law, only: contact_law_t, ratio_limit
   use laws, only: contact_law_of
   use contact_stiffness, only: hertz_stiffness, valid_impact_speed
-  use lankarani_nikravesh, only: ratio_limit
   use free_impact, only: speed_given_back, exact_restitution
   implicit none
   private

@@ -14,7 +14,8 @@ module test_radau
   use film_law, only: film_law_t, film_motion_t, difference_derivatives
   use pinkus_sternlicht, only: pinkus_sternlicht_t
   use gudgeon_bearing, only: bearing_t
-  use lankarani_nikravesh, only: lankarani_nikravesh_t
+  use contact_law, only: contact_law_t
+  use laws, only: contact_law_of
   use gudgeon_scene, only: scene_t, phase_contact, phase_film
   use state_making, only: put_crank, put_pin
   use scene_builder, only: build_scene
@@ -219,13 +220,13 @@ contains
 
   subroutine contact_slopes_by_complex_step(check)
     class(checks_t), intent(inout) :: check
-    type(lankarani_nikravesh_t) :: law
+    class(contact_law_t), allocatable :: law
+    type(error_t), allocatable :: error
     complex(dp) :: force
     real(dp) :: stiffness, damping, depth, rate
     real(dp), parameter :: step = 1e-30_dp, impact = 0.7_dp
     integer :: i
-    call law%set_elastic_part(6.61e10_dp, 1.5_dp)
-    call law%set_restitution(0.6_dp)
+    call contact_law_of('stiffness=6.61e10 restitution=0.6', law, error)
     do i = 1, 10
       depth = 3e-6_dp*i
       rate = 0.7_dp*cos(0.3_dp*i)

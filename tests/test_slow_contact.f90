@@ -5,7 +5,9 @@ module test_slow_contact
   use chain_motion, only: piston_pin
   use checks, only: checks_t
   use contact_stiffness, only: hertz_stiffness
-  use lankarani_nikravesh, only: lankarani_nikravesh_t
+  use gudgeon_errors, only: error_t
+  use contact_law, only: contact_law_t
+  use laws, only: contact_law_of
   use gudgeon_scene, only: event_contact_begins
   use free_impact, only: speed_given_back, exact_restitution
   use collecting_sink, only: trace_t, run_case, column
@@ -36,17 +38,19 @@ contains
   !> than it had, and the slower the more.
   subroutine slow_impacts_lose_less(check)
     class(checks_t), intent(inout) :: check
-    type(lankarani_nikravesh_t) :: law
+    class(contact_law_t), allocatable :: law
+    type(error_t), allocatable :: error
     real(dp), parameter :: restitution(4) = [0.0_dp, 0.5_dp, 0.9_dp, 1.0_dp]
     real(dp) :: speed, back, previous
+    character(len=40) :: keys
     integer :: i, power
-    call law%set_elastic_part(1e9_dp, 1.5_dp)
     do i = 1, size(restitution)
-      call law%set_restitution(restitution(i))
+      write (keys, '(a,f3.1)') 'stiffness=1e9 restitution=', restitution(i)
+      call contact_law_of(trim(keys), law, error)
       previous = 0
       do power = 3, 15
         speed = 10.0_dp**(-power)
-        back = speed_given_back(law, law%stiffness, law%exponent, speed, 4000, 40000)
+        back = speed_given_back(law, 1e9_dp, 1.5_dp, speed, 4000, 40000)
         call check%that(back > 0 .and. back <= 1 + 1e-9_dp, 'a slow impact gives back no more than it had')
         call check%that(back >= previous - 1e-7_dp, 'the slower, the more')
         call check%close_to(back, exact_restitution(law%damping*min(1.0_dp, speed/law%least_impact_speed)), 1e-6_dp, &

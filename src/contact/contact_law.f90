@@ -1,57 +1,142 @@
-!> What every normal contact law answers.
+!> The normal force of a contact: an elastic force, which the geometry gives, and what the law takes away by damping.
 module contact_law
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: law_t
   use gudgeon_bearing, only: bearing_t
+  use contact_geometry, only: contact_geometry_t
   implicit none
   private
-  public :: contact_law_t
+  public :: contact_law_t, ratio_limit
 
-  !> A compliant normal contact between pin and bearing.
+  !> Upper bound of delta_dot/delta_dot_minus. In a free impact the ratio is 1 at most; it exceeds 1 only where a load
+  !> drives the pin on, and would grow without bound as the impact becomes a grazing one.
+  real(dp), parameter :: ratio_limit = 100
+
+  !> A compliant normal contact between pin and bearing, F = f(delta) [1 + chi delta_dot/delta_dot_minus]: the geometry has f, a
+  !> law sets chi when it is prepared. A law with damping of another form sets `has_own_damping` and overrides `damped_force` and
+  !> its slopes.
   type, abstract, extends(law_t) :: contact_law_t
+    class(contact_geometry_t), allocatable :: geometry
+    real(dp) :: damping = 0                    !! chi [-], >= 0
+    real(dp) :: least_impact_speed = 1e-5_dp   !! slower impacts are damped as one of this speed [m/s], > 0
+    logical :: has_own_damping = .false.
+    real(dp), private :: three_halves = 0      !! K [N/m^1.5] where f is K delta^1.5 and damped by chi; 0: it is not
   contains
-    procedure :: prepare => nothing_to_prepare
-    procedure :: fastest_impact => any_speed
-    procedure(normal_force), deferred :: normal_force
-    procedure(normal_force_slopes), deferred :: normal_force_slopes
+    procedure :: prepare
+    procedure, non_overridable :: prepare_geometry
+    procedure, non_overridable :: normal_force
+    procedure, non_overridable :: normal_force_slopes
+    procedure :: damped_force
+    procedure :: damped_force_slopes
   end type contact_law_t
-
-  abstract interface
-    !> The pressing force [N] between pin and bearing, never negative (no adhesion).
-    pure function normal_force(self, penetration, penetration_rate, impact_speed) result(force)
-      import :: contact_law_t, dp
-      class(contact_law_t), intent(in) :: self
-      real(dp), value, intent(in) :: penetration       !! |e| - c [m]; the force is 0 where it is not positive
-      real(dp), value, intent(in) :: penetration_rate  !! its rate [m/s], positive while the pin goes deeper
-      real(dp), value, intent(in) :: impact_speed      !! penetration_rate at the instant contact began [m/s], >= 0
-      real(dp) :: force
-    end function normal_force
-
-    !> Derivatives of the force by the penetration [N/m] and by its rate [N s/m], for implicit integration. The arguments are
-    !> those of `normal_force`; where the force is 0 both are 0.
-    pure subroutine normal_force_slopes(self, penetration, penetration_rate, impact_speed, stiffness, damping)
-      import :: contact_law_t, dp
-      class(contact_law_t), intent(in) :: self
-      real(dp), intent(in) :: penetration, penetration_rate, impact_speed
-      real(dp), intent(out) :: stiffness, damping
-    end subroutine normal_force_slopes
-  end interface
 
 contains
 
-  !> Find what follows from the parameters and the bearing, before the first force is asked for. The default has nothing to find.
-  subroutine nothing_to_prepare(self, bearing)
+  !> Find what follows from the parameters and the bearing, before the first force is asked for.
+  subroutine prepare(self, bearing)
     class(contact_law_t), intent(inout) :: self
     type(bearing_t), intent(in) :: bearing
-    associate (unused_self => self, unused_bearing => bearing)
-    end associate
-  end subroutine nothing_to_prepare
+    call self%prepare_geometry(bearing)
+  end subroutine prepare
 
-  !> The fastest impact for which the law is meant [m/s]. The default is a law without such a limit.
-  pure real(dp) function any_speed(self)
+  !> The contact of most cases is found without a call of its geometry: this is asked in every right-hand side.
+  subroutine prepare_geometry(self, bearing)
+    class(contact_law_t), intent(inout) :: self
+    type(bearing_t), intent(in) :: bearing
+    call self%geometry%prepare(bearing)
+    self%three_halves = 0
+    if (.not. self%has_own_damping) self%three_halves = self%geometry%three_halves
+  end subroutine prepare_geometry
+
+  !> The pressing force [N] between pin and bearing.
+  !>
+  !> (4.7), bounded on both sides: the force never pulls (it is 0 where the bracket is negative), and the ratio of the
+  !> rates counts as `ratio_limit` where it is above. An impact slower than `least_impact_speed` counts as that fast in the
+  !> ratio: without that the law becomes a switch as the impact speed vanishes, stiffer than any time scale of the contact.
+  !> Such an impact loses less: the free impact of speed v comes back as from chi v/least_impact_speed, ever more
+  !> elastic, as metals do. A pin that starts pressed into its bearing has the impact speed 0 and the
+  !> damping of this speed, and comes to rest where the elastic force carries its load. The force beyond the elastic one has
+  !> the sign of the rate: the law dissipates in every case. It is continuous in both arguments.
+  pure function normal_force(self, penetration, penetration_rate, impact_speed) result(force)
     class(contact_law_t), intent(in) :: self
-    associate (unused_self => self)
+    real(dp), value, intent(in) :: penetration       !! |e| - c [m]; the force is 0 where it is not positive
+    real(dp), value, intent(in) :: penetration_rate  !! its rate [m/s], positive while the pin goes deeper
+    real(dp), value, intent(in) :: impact_speed      !! penetration_rate at the instant contact began [m/s], >= 0
+    real(dp) :: force
+    if (self%three_halves > 0) then
+      force = 0
+      if (penetration > 0) force = self%three_halves*penetration*sqrt(penetration)*bracket(self, penetration_rate, impact_speed)
+    else
+      force = any_normal_force(self, penetration, penetration_rate, impact_speed)
+    end if
+  end function normal_force
+
+  !> The pressing force of any geometry and any damping.
+  pure function any_normal_force(self, penetration, penetration_rate, impact_speed) result(force)
+    class(contact_law_t), intent(in) :: self
+    real(dp), value, intent(in) :: penetration, penetration_rate, impact_speed
+    real(dp) :: force
+    force = 0
+    if (.not. penetration > 0) return
+    force = self%geometry%elastic_force(penetration)
+    if (self%has_own_damping) then
+      force = self%damped_force(force, penetration, penetration_rate)
+    else
+      force = force*bracket(self, penetration_rate, impact_speed)
+    end if
+  end function any_normal_force
+
+  !> 1 + chi delta_dot/delta_dot_minus, within its bounds.
+  pure real(dp) function bracket(self, penetration_rate, impact_speed)
+    class(contact_law_t), intent(in) :: self
+    real(dp), value, intent(in) :: penetration_rate, impact_speed
+    bracket = 1
+    if (self%damping > 0) bracket = max(0.0_dp, 1 + self%damping*min(penetration_rate/ &
+      max(impact_speed, self%least_impact_speed), ratio_limit))
+  end function bracket
+
+  !> Derivatives of the force by the penetration [N/m] and by its rate [N s/m], for implicit integration. The arguments are
+  !> those of `normal_force`; where the force is 0 both are 0.
+  pure subroutine normal_force_slopes(self, penetration, penetration_rate, impact_speed, stiffness, damping)
+    class(contact_law_t), intent(in) :: self
+    real(dp), intent(in) :: penetration, penetration_rate, impact_speed
+    real(dp), intent(out) :: stiffness, damping
+    real(dp) :: force
+    stiffness = 0
+    damping = 0
+    force = self%normal_force(penetration, penetration_rate, impact_speed)
+    if (.not. force > 0) return
+    if (self%has_own_damping) then
+      call self%damped_force_slopes(penetration, penetration_rate, stiffness, damping)
+      return
+    end if
+    stiffness = self%geometry%slope(penetration, force)
+    if (.not. self%damping > 0) return
+    associate (speed => max(impact_speed, self%least_impact_speed))
+      if (penetration_rate <= ratio_limit*speed) damping = self%geometry%elastic_force(penetration)*self%damping/speed
     end associate
-    any_speed = huge(any_speed)
-  end function any_speed
+  end subroutine normal_force_slopes
+
+  !> The pressing force [N], never negative, of a law with damping of its own. The default has none.
+  pure function damped_force(self, elastic_force, penetration, penetration_rate) result(force)
+    class(contact_law_t), intent(in) :: self
+    real(dp), value, intent(in) :: elastic_force      !! [N], > 0
+    real(dp), value, intent(in) :: penetration        !! [m], > 0
+    real(dp), value, intent(in) :: penetration_rate   !! [m/s]
+    real(dp) :: force
+    associate (unused_self => self, unused_depth => penetration, unused_rate => penetration_rate)
+    end associate
+    force = elastic_force
+  end function damped_force
+
+  !> Derivatives of `damped_force`, where it is positive, by the penetration [N/m] and by its rate [N s/m].
+  pure subroutine damped_force_slopes(self, penetration, penetration_rate, stiffness, damping)
+    class(contact_law_t), intent(in) :: self
+    real(dp), intent(in) :: penetration, penetration_rate
+    real(dp), intent(out) :: stiffness, damping
+    associate (unused_rate => penetration_rate)
+    end associate
+    stiffness = self%geometry%slope(penetration, self%geometry%elastic_force(penetration))
+    damping = 0
+  end subroutine damped_force_slopes
 end module contact_law

@@ -82,6 +82,7 @@ contains
     associate (unused => default, unused_too => says)
     end associate
     if (self%sets) self%law_name = self%values%values(self%place_of(key))%text
+    if (allocated(self%chosen)) deallocate (self%chosen)
   end subroutine load_choice
 
   !> The law, if it is the one that the case names.

@@ -8,7 +8,8 @@ module case_definition
   use gudgeon_bearing, only: bearing_t
   use chain_motion, only: crank_pin, piston_pin, pin_names
   use contact_law, only: contact_law_t
-  use contact_laws, only: offer_contact_laws
+  use contact_geometry, only: contact_geometry_t
+  use contact_laws, only: offer_contact_laws, offer_contact_geometries
   use friction_law, only: friction_law_t
   use friction_laws, only: offer_friction_laws
   use film_law, only: film_law_t
@@ -169,14 +170,23 @@ contains
     character(len=*), intent(in) :: place
     class(parameter_list_t), intent(inout) :: list
     call list%group('contact', 'pin against bearing: leave the group out for no contact', .true., place)
-    call list%choice('law', 'lankarani_nikravesh', 'hertz: without dissipation')
+    call list%choice('law', 'lankarani_nikravesh', 'how an impact is damped; hertz: without dissipation')
     call offer_contact_laws(list)
-    if (.not. list%sets) return
-    if (allocated(law)) deallocate (law)
-    if (.not. allocated(list%chosen)) return
+    if (list%sets) then
+      if (allocated(law)) deallocate (law)
+      if (allocated(list%chosen)) then
+        select type (chosen => list%chosen)
+        class is (contact_law_t)
+          allocate (law, source=chosen)
+        end select
+      end if
+    end if
+    call list%choice('geometry', 'hertz_sphere', 'the elastic force')
+    call offer_contact_geometries(list)
+    if (.not. list%sets .or. .not. allocated(list%chosen)) return
     select type (chosen => list%chosen)
-    class is (contact_law_t)
-      allocate (law, source=chosen)
+    class is (contact_geometry_t)
+      allocate (law%geometry, source=chosen)
     end select
   end subroutine visit_contact
 

@@ -43,7 +43,8 @@ contains
     self%peaks%pin = self%pin
     self%peaks%joint = self%joint
     if (self%joint == 0) return
-    if (allocated(scene%joints(self%joint)%contact)) self%validity_limit = scene%joints(self%joint)%contact%fastest_impact()
+    if (allocated(scene%joints(self%joint)%contact)) &
+      self%validity_limit = scene%joints(self%joint)%contact%geometry%fastest_impact()
   end subroutine prepare
 
   !> The run begins at t with what has been evaluated there.

@@ -1,0 +1,68 @@
+!> Hertz's contact of two spheres (4.1), a pin in a bearing that have no length.
+module hertz_sphere
+  use gudgeon_kinds, only: dp
+  use gudgeon_parameters, only: parameter_list_t
+  use gudgeon_bearing, only: bearing_t
+  use contact_geometry, only: contact_geometry_t
+  use contact_stiffness, only: hertz_stiffness
+  implicit none
+  private
+  public :: hertz_sphere_t
+
+  !> f = K delta^n.
+  type, extends(contact_geometry_t) :: hertz_sphere_t
+    real(dp) :: stiffness = 0         !! K [N/m^n], > 0
+    real(dp) :: exponent = 1.5_dp     !! n [-], >= 1
+    real(dp) :: given_stiffness = 0   !! of the case [N/m^n]; 0: Hertz's, from the materials and the bearing
+  contains
+    procedure, nopass :: name
+    procedure :: parameters
+    procedure :: prepare
+    procedure :: elastic_force
+    procedure :: slope
+  end type hertz_sphere_t
+
+contains
+
+  pure function name()
+    character(len=:), allocatable :: name
+    name = 'hertz_sphere'
+  end function name
+
+  subroutine parameters(self, list)
+    class(hertz_sphere_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%add('exponent', self%exponent, 'of the penetration', range='>= 1', default='1.5')
+    call self%material_parameters(list)
+    call list%add('stiffness', self%given_stiffness, '0: from the materials', 'N/m^exponent', '> 0', default='0.0')
+  end subroutine parameters
+
+  !> The stiffness that the case gives, or else Hertz's (4.2).
+  subroutine prepare(self, bearing)
+    class(hertz_sphere_t), intent(inout) :: self
+    type(bearing_t), intent(in) :: bearing
+    self%stiffness = self%given_stiffness
+    if (.not. self%stiffness > 0) &
+      self%stiffness = hertz_stiffness(bearing%radius, bearing%clearance, self%youngs_modulus, self%poissons_ratio)
+    self%three_halves = 0
+    if (abs(self%exponent - 1.5_dp) <= 0) self%three_halves = self%stiffness
+  end subroutine prepare
+
+  pure function elastic_force(self, penetration) result(force)
+    class(hertz_sphere_t), intent(in) :: self
+    real(dp), value, intent(in) :: penetration
+    real(dp) :: force
+    if (self%three_halves > 0) then
+      force = self%stiffness*penetration*sqrt(penetration)
+    else
+      force = self%stiffness*penetration**self%exponent
+    end if
+  end function elastic_force
+
+  pure function slope(self, penetration, force)
+    class(hertz_sphere_t), intent(in) :: self
+    real(dp), intent(in) :: penetration, force
+    real(dp) :: slope
+    slope = self%exponent*force/penetration
+  end function slope
+end module hertz_sphere
