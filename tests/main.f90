@@ -35,6 +35,7 @@ program gudgeon_tests
   use test_run_figures, only: run_test_run_figures
   use test_resume, only: run_test_resume
   use test_scenes, only: run_test_scenes
+  use test_small_lu, only: run_test_small_lu
   use test_slow_contact, only: run_test_slow_contact
   use test_standard_problems, only: run_test_standard_problems
   use test_state_layout, only: run_test_state_layout
@@ -85,6 +86,7 @@ program gudgeon_tests
   call run('run_figures', run_test_run_figures)
   call run('resume', run_test_resume)
   call run('scenes', run_test_scenes)
+  call run('small_lu', run_test_small_lu)
   call run('slow_contact', run_test_slow_contact)
   call run('standard_problems', run_test_standard_problems)
   call run('state_layout', run_test_state_layout)

@@ -33,7 +33,7 @@ contains
         singular = .true.
         return
       end if
-      do l = 1, n
+      do l = j, n   ! the factors to the left stay in the order in which `solve` takes them
         swap = a(j, l)
         a(j, l) = a(pivot(j), l)
         a(pivot(j), l) = swap
@@ -89,7 +89,7 @@ contains
         singular = .true.
         return
       end if
-      do l = 1, n
+      do l = j, n   ! the factors to the left stay in the order in which `solve` takes them
         swap = a(j, l)
         a(j, l) = a(pivot(j), l)
         a(pivot(j), l) = swap
