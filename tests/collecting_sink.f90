@@ -7,6 +7,7 @@ module collecting_sink
   use gudgeon_columns, only: column_list_t, choose_columns, column_name
   use gudgeon_simulation, only: simulate, run_report_t
   use trace_sink, only: trace_sink_t, trace_event_t
+  use chain_motion, only: crank_pin, piston_pin
   implicit none
   private
   public :: collecting_sink_t, trace_t, run_case, load_trace, load_table, column, last_row_time
@@ -72,7 +73,7 @@ contains
     character(len=*), intent(in) :: name
     type(trace_t) :: trace
     character(len=2000) :: line
-    character(len=40) :: label
+    character(len=40) :: label, joint
     integer :: unit, status, rows
 
     call load_table(name//'.csv', trace%names, trace%values)
@@ -81,10 +82,13 @@ contains
     allocate (trace%event(1000))
     rows = 0
     do
-      read (unit, *, iostat=status) trace%event(rows + 1)%time, label, trace%event(rows + 1)%normal_speed
+      read (unit, '(a)', iostat=status) line
       if (status /= 0) exit
+      line = trim(line)//',piston_pin'   ! where the file does not name it
+      read (line, *) trace%event(rows + 1)%time, label, trace%event(rows + 1)%normal_speed, joint
       rows = rows + 1
       trace%event(rows)%kind = merge(1, 2, label == 'contact_begins')
+      trace%event(rows)%pin = merge(crank_pin, piston_pin, joint == 'crank_pin')
     end do
     close (unit)
     trace%event = trace%event(:rows)

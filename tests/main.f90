@@ -15,6 +15,7 @@ program gudgeon_tests
   use test_combustion, only: run_test_combustion
   use test_command_line, only: run_test_command_line
   use test_contact, only: run_test_contact
+  use test_crank_pin, only: run_test_crank_pin
   use test_crank_turns, only: run_test_crank_turns
   use test_cycle_watch, only: run_test_cycle_watch
   use test_coordinates, only: run_test_coordinates
@@ -66,6 +67,7 @@ program gudgeon_tests
   call run('combustion', run_test_combustion)
   call run('command_line', run_test_command_line)
   call run('contact', run_test_contact)
+  call run('crank_pin', run_test_crank_pin)
   call run('crank_turns', run_test_crank_turns)
   call run('cycle_watch', run_test_cycle_watch)
   call run('coordinates', run_test_coordinates)

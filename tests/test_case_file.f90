@@ -232,6 +232,12 @@ contains
                       'x.nml: &contact least_impact_speed = 0: must be >= 1e-9 and <= 1 (m/s)')
     call refused_with(check, 'initial.eccentricity=1,0', 'x.nml: &initial eccentricity(1) = 1: must be shorter than '// &
                       'bearing_radius: the pin would be through its bearing (m)')
+    call refused_with(check, 'initial.crank_pin_eccentricity=1e-5,0', &
+                      'x.nml: &initial crank_pin_eccentricity(1) = 1e-5: must be 0 in an ideal joint (m)')
+    call refused_with(check, 'initial.crank_pin_eccentricity_rate=0,1', &
+                      'x.nml: &initial crank_pin_eccentricity_rate(1) = 0: must be 0 in an ideal joint (m/s)')
+    call refused(check, '&mechanism gravity_angle_deg=down /', 'x.nml:1: &mechanism gravity_angle_deg = down: must be a '// &
+                 'number (degrees)')
     call refused_with(check, 'integrator.max_evaluations_per_revolution=-1', &
                       'x.nml: &integrator max_evaluations_per_revolution = -1: must be > 0 and <= 2000000000')
     call refused_with(check, 'contact.stiffness=-1', 'x.nml: &contact stiffness = -1: must be > 0 (N/m^exponent)')
@@ -377,6 +383,14 @@ contains
                     'x.nml: &mechanism rod_length = 0.12: must be > crank_length + clearance (m)')
     call refused_on(check, whole//second, ['mechanism.rod_inertia=0'], &
                     'x.nml: &mechanism rod_inertia = 0: must be > 0 with clearance at the crank pin (kg m^2)')
+    call refused_on(check, whole//second, ['initial.crank_pin_eccentricity=0.012,0'], 'x.nml: &initial '// &
+                    'crank_pin_eccentricity(1) = 0.012: must be shorter than bearing_radius: the pin would be through its '// &
+                    'bearing (m)')
+    call accepted(check, whole//second, 'a crank pin that starts in contact', ['initial.crank_pin_eccentricity=1.1e-4,0'])
+    call refused_on(check, whole//second//'&lubrication viscosity=0.01 /', [character(len=40) :: 'joint.bearing_length=0.01'], &
+                    'x.nml: &joint of crank_pin bearing_length: required with lubrication (m)')
+    call refused_on(check, whole//second, [character(len=40) :: 'contact=none', 'crank_pin.contact.law=hertz'], &
+                    'x.nml: &joint kind = clearance: needs contact or lubrication: nothing would hold the pin')
   end subroutine test_places
 
   subroutine test_runs(check)
@@ -585,10 +599,11 @@ contains
   !> The cases that come with the program are read, and resolved they are the same.
   subroutine test_shipped_cases(check)
     class(checks_t), intent(inout) :: check
-    character(len=24), parameter :: names(20) = [character(len=24) :: 'sim_I', 'sim_II', 'sim_III', 'sim_IV', 'sim_V', &
+    character(len=28), parameter :: names(23) = [character(len=28) :: 'sim_I', 'sim_II', 'sim_III', 'sim_IV', 'sim_V', &
       'sim_VI', 'sim_I_oscillating', 'sim_II_oscillating', 'sim_III_oscillating', 'sim_IV_oscillating', &
       'sim_V_oscillating', 'sim_VI_oscillating', 'flores/dry_0500um', 'flores/dry_0100um', 'flores/dry_0010um', &
-      'flores/friction_010', 'flores/friction_050', 'flores/friction_100', 'flores/lubricated_400cP', 'flores/ideal']
+      'flores/friction_010', 'flores/friction_050', 'flores/friction_100', 'flores/lubricated_400cP', 'flores/ideal', &
+      'joints/both_pins', 'joints/crank_pin', 'joints/both_pins_lubricated']
     type(case_t) :: c, back
     type(error_t), allocatable :: error
     character(len=1) :: none(0)

@@ -27,6 +27,7 @@ contains
     call compare_events(check, 'cases/flores/dry_0500um.nml', 'flores_dry_0500um', '1e-13', 20, 1e-8_dp)
     call compare_events(check, 'cases/flores/dry_0100um.nml', 'flores_dry_0100um', '1e-10', 100, 1e-6_dp)
     call compare_events(check, 'cases/flores/dry_0010um.nml', 'flores_dry_0010um', '1e-10', 100, 1e-6_dp)
+    call compare_both_pins(check)
     call compare_events(check, 'cases/flores/friction_010.nml', 'flores_friction_010', '1e-10', 100, 1e-6_dp)
     call compare_events(check, 'cases/flores/friction_050.nml', 'flores_friction_050', '1e-10', 100, 1e-6_dp)
     call compare_events(check, 'cases/flores/friction_100.nml', 'flores_friction_100', '1e-10', 100, 1e-6_dp)
@@ -80,6 +81,33 @@ contains
       name//' energy residual')
   end subroutine compare_states
 
+  !> Both pins loose, with friction and gravity: every column of the reference, and its contacts.
+  subroutine compare_both_pins(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: want, got
+    real(dp) :: error, size_of
+    character(len=60) :: overrides(4)
+    integer :: i, k, rows
+    want = load_trace('both_pins')
+    rows = size(want%values, 2)
+    overrides = [character(len=60) :: 'integrator.relative_tolerance=1e-11', 'integrator.revolutions=0', '', &
+      'output.interval=1.2e-5']
+    write (overrides(3), '(a,es23.16)') 'integrator.end_time=', want%values(1, rows)
+    got = run_case('cases/joints/both_pins.nml', overrides)
+    call check%that(.not. allocated(got%error), 'both pins run')
+    call check%that(size(got%values, 2) == rows, 'both pins have every row')
+    if (size(got%values, 2) /= rows) return
+    do i = 1, size(want%names)
+      k = column(got, want%names(i))
+      call check%that(k > 0, 'both pins have the column '//want%names(i))
+      if (k == 0) cycle
+      error = maxval(abs(got%values(k, :) - want%values(i, :)))
+      size_of = maxval(abs(want%values(i, :)))
+      call check%that(error <= merge(1e-5_dp, 6e-5_dp, any(want%names(i) == states))*size_of, 'both pins: '//want%names(i))
+    end do
+    call compare_events(check, 'cases/joints/both_pins.nml', 'both_pins', '1e-11', 67, 4e-8_dp)
+  end subroutine compare_both_pins
+
   !> The first contact instants of the reference, at most `most` of them.
   subroutine compare_events(check, file, name, tolerance, most, allowed)
     class(checks_t), intent(inout) :: check
@@ -98,6 +126,7 @@ contains
     call check%that(size(got%event) >= n, name//' has the events')
     n = min(n, size(got%event))
     call check%that(all(got%event(:n)%kind == want%event(:n)%kind), name//' has events of the same kinds')
+    call check%that(all(got%event(:n)%pin == want%event(:n)%pin), name//' has events of the same joints')
     call check%close_to(maxval(abs(got%event(:n)%time - want%event(:n)%time)), 0.0_dp, allowed, &
       name//' contact instants [s]')
   end subroutine compare_events

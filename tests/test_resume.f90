@@ -48,6 +48,10 @@ contains
     call split(check, 'cases/flores/ideal.nml', 'crank_revolutions=1', 'adams', 'drive.damping=0.1', .true.)
     call split(check, 'cases/sim_IV.nml', 'crank_revolutions=1', 'auto', 'initial.crank_angle_deg=330')
     call split(check, 'cases/sim_I.nml', 'crank_revolutions=0.1', 'auto', 'drive.torque=100', from_rest=.true.)
+    call split(check, 'cases/joints/both_pins.nml', 'revolutions=0.1', 'auto', 'drive.kind=free')
+    call split(check, 'cases/joints/both_pins.nml', 'revolutions=0.05', 'radau', 'friction.law=coulomb')
+    call split(check, 'cases/joints/crank_pin.nml', 'revolutions=0.2', 'adams', 'crank_pin.joint.clearance=5e-5')
+    call split(check, 'cases/joints/both_pins_lubricated.nml', 'revolutions=0.2', 'auto', 'mechanism.gravity_angle_deg=30')
     call split(check, 'cases/flores/ideal.nml', 'revolutions=4', 'adams', 'integrator.max_evaluations_per_revolution=200', .true.)
   end subroutine run_test_resume
 

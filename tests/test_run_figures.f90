@@ -1,7 +1,7 @@
 !> The figures of a run: the time that each method has, and peaks between the steps.
 module test_run_figures
   use gudgeon_kinds, only: dp
-  use chain_motion, only: piston_pin
+  use chain_motion, only: crank_pin, piston_pin, n_pins, name_prefix
   use checks, only: checks_t
   use case_definition, only: case_t
   use case_file, only: read_case
@@ -174,17 +174,19 @@ contains
   !> steps. No row may be higher, and the parabola through the three highest is as high to a `resolution`.
   subroutine no_row_is_above_a_peak(check)
     class(checks_t), intent(inout) :: check
-    character(len=30), parameter :: files(8) = [character(len=30) :: 'flores/ideal', 'flores/dry_0500um', 'flores/friction_100', &
-      'flores/lubricated_400cP', 'wiebe/wiebe_340', 'sim_I', 'sim_III_oscillating', 'sim_IV_oscillating']
+    character(len=30), parameter :: files(11) = [character(len=30) :: 'flores/ideal', 'flores/dry_0500um', 'flores/friction_100', &
+      'flores/lubricated_400cP', 'wiebe/wiebe_340', 'sim_I', 'sim_III_oscillating', 'sim_IV_oscillating', 'joints/both_pins', &
+      'joints/crank_pin', 'joints/both_pins_lubricated']
     character(len=8), parameter :: methods(2) = [character(len=8) :: 'auto', 'adams']
     real(dp), parameter :: rounding = 1e-12_dp
     character(len=long) :: common(4)
     type(trace_t) :: rows, plain
-    character(len=:), allocatable :: name
-    integer :: i, k
+    character(len=:), allocatable :: name, prefix
+    integer :: i, k, pin
     do i = 1, size(files)
       do k = 1, size(methods)
-        if (files(i) == 'sim_I' .and. methods(k) == 'adams') cycle   ! 10^5 steps
+        if (methods(k) == 'adams' .and. any(files(i) == [character(len=30) :: 'sim_I', 'joints/both_pins_lubricated'])) &
+          cycle   ! 10^5 steps
         common = [character(len=long) :: 'integrator.revolutions=1', 'integrator.method='//methods(k), 'output.ideal_twin=F', &
           'output.samples_per_revolution=1']
         name = trim(files(i))//' '//trim(methods(k))
@@ -192,42 +194,64 @@ contains
         common(4) = 'output.samples_per_revolution=200000'
         rows = run_case('cases/'//trim(files(i))//'.nml', common)
         call check%that(plain%report%statistics%evaluations == rows%report%statistics%evaluations, name//': the same steps')
-        associate (figures => plain%report%figures, force => hypot(rows%values(column(rows, 'pin_force_x[N]'), :), &
-                   rows%values(column(rows, 'pin_force_y[N]'), :)))
-          call is_peak_of(check, figures%pin(piston_pin)%max_force, force, rounding, name//': force on the pin')
-          if (column(rows, 'film_thickness[m]') > 0) call is_peak_of(check, -figures%pin(piston_pin)%min_film_thickness, &
-            -rows%values(column(rows, 'film_thickness[m]'), :), rounding, name//': film thickness')
+        associate (figures => plain%report%figures)
+          do pin = 1, n_pins
+            if (pin == crank_pin .and. column(rows, 'crank_pin_phase[-]') == 0) cycle
+            prefix = name_prefix(pin)
+            call is_peak_of(check, figures%pin(pin)%max_force, force_in_rows(rows, pin), rounding, &
+              name//prefix//': force on the pin')
+            if (column(rows, prefix//'film_thickness[m]') > 0) call is_peak_of(check, -figures%pin(pin)%min_film_thickness, &
+              -rows%values(column(rows, prefix//'film_thickness[m]'), :), rounding, name//prefix//': film thickness')
+            call check_contacts()
+          end do
           call check%that(100*figures%peak_evaluations <= 3*(plain%report%statistics%evaluations + 720) .or. i == 5, &
             name//': peaks cost less than 3 % of the evaluations')
         end associate
-        call check_contacts()
       end do
     end do
 
   contains
 
-    !> Each contact against the rows between its ends.
+    !> Each contact of the pin against the rows between its ends.
     subroutine check_contacts()
       integer :: j
-      if (column(rows, 'normal_force[N]') == 0) return
+      if (column(rows, prefix//'normal_force[N]') == 0) return
       call check%that(size(plain%event) == size(rows%event), name//': the same contacts')
-      do j = 2, min(size(plain%event), size(rows%event)), 2
+      call check%that(count(plain%event%kind == 1 .and. plain%event%pin == pin) == plain%report%figures%pin(pin)%contacts, &
+        name//prefix//': as many as are counted')
+      do j = 1, min(size(plain%event), size(rows%event))
         associate (t => rows%values(1, :), e => plain%event(j))
+          if (e%pin /= pin .or. e%kind /= 2) cycle
           if (count(t > e%time - e%duration .and. t < e%time) < 100) cycle
-          call is_peak_of(check, e%max_penetration, pack(-rows%values(column(rows, 'film_thickness[m]'), :), &
-            t > e%time - e%duration .and. t < e%time), rounding, name//': penetration in a contact')
-          call is_peak_of(check, e%max_normal_force, pack(rows%values(column(rows, 'normal_force[N]'), :), &
-            t > e%time - e%duration .and. t < e%time), rounding, name//': normal force in a contact')
+          call is_peak_of(check, e%max_penetration, pack(-rows%values(column(rows, prefix//'film_thickness[m]'), :), &
+            t > e%time - e%duration .and. t < e%time), rounding, name//prefix//': penetration in a contact')
+          call is_peak_of(check, e%max_normal_force, pack(rows%values(column(rows, prefix//'normal_force[N]'), :), &
+            t > e%time - e%duration .and. t < e%time), rounding, name//prefix//': normal force in a contact')
         end associate
       end do
     end subroutine check_contacts
   end subroutine no_row_is_above_a_peak
 
+  !> Size of the force on a pin in each row; on a crank pin with clearance from its contact and its film.
+  function force_in_rows(rows, pin) result(force)
+    type(trace_t), intent(in) :: rows
+    integer, intent(in) :: pin
+    real(dp), allocatable :: force(:)
+    if (pin == piston_pin) then
+      force = hypot(rows%values(column(rows, 'pin_force_x[N]'), :), rows%values(column(rows, 'pin_force_y[N]'), :))
+      return
+    end if
+    force = hypot(rows%values(column(rows, 'crank_pin_normal_force[N]'), :), &
+      rows%values(column(rows, 'crank_pin_friction_force[N]'), :))
+    if (column(rows, 'crank_pin_film_force_x[N]') > 0) force = max(force, hypot(rows%values(column(rows, &
+      'crank_pin_film_force_x[N]'), :), rows%values(column(rows, 'crank_pin_film_force_y[N]'), :)))
+  end function force_in_rows
+
   !> The same of each revolution, by the crank angle, of a run without any rows.
   subroutine revolutions_have_their_peaks(check)
     class(checks_t), intent(inout) :: check
-    character(len=30), parameter :: files(5) = [character(len=30) :: 'flores/ideal', 'flores/dry_0500um', 'sim_I', &
-      'sim_II_oscillating', 'wiebe/wiebe_360']
+    character(len=30), parameter :: files(6) = [character(len=30) :: 'flores/ideal', 'flores/dry_0500um', 'sim_I', &
+      'sim_II_oscillating', 'wiebe/wiebe_360', 'joints/both_pins']
     real(dp) :: rounding
     character(len=long) :: common(4)
     type(cycle_watch_t), allocatable :: watch
@@ -238,11 +262,13 @@ contains
     type(run_report_t) :: report
     type(error_t), allocatable :: error
     real(dp), allocatable :: turned(:)
-    integer :: i, k
+    character(len=:), allocatable :: prefix
+    integer :: i, k, pin
     allocate (no_rows%id(0))
     do i = 1, size(files)
       common = [character(len=long) :: 'integrator.revolutions=3', 'integrator.method=auto', 'output.ideal_twin=F', &
         'output.samples_per_revolution=50000']
+      if (i == 6) common(4) = 'output.samples_per_revolution=200000'   ! its contacts are half as long
       rows = run_case('cases/'//trim(files(i))//'.nml', common)
       call read_case('cases/'//trim(files(i))//'.nml', common, case, error)
       allocate (watch)
@@ -255,16 +281,18 @@ contains
       rounding = 1e-12_dp
       if (case%joint%kind == 'ideal') rounding = 1e-6_dp   ! the measures of an ideal joint make its steps others
       do k = 1, watch%statistics%cycles
-        associate (c => watch%cycles(k), force => hypot(rows%values(column(rows, 'pin_force_x[N]'), :), &
-                   rows%values(column(rows, 'pin_force_y[N]'), :)))
-          call is_peak_of(check, c%pin(piston_pin)%max_force, pack(force, turned >= k - 1 .and. turned <= k), rounding, &
-            trim(files(i))//': force on the pin in a revolution')
-          if (column(rows, 'film_thickness[m]') == 0) cycle
-          call is_peak_of(check, -c%pin(piston_pin)%min_film_thickness, pack(-rows%values(column(rows, 'film_thickness[m]'), :), &
-            turned >= k - 1 .and. turned <= k), rounding, trim(files(i))//': film thickness in a revolution')
-          call check%close_to(c%pin(piston_pin)%max_penetration, max(0.0_dp, -c%pin(piston_pin)%min_film_thickness), 0.0_dp, &
-            'penetration')
-        end associate
+        do pin = 1, n_pins
+          if (pin == crank_pin .and. column(rows, 'crank_pin_phase[-]') == 0) cycle
+          prefix = name_prefix(pin)
+          associate (c => watch%cycles(k)%pin(pin))
+            call is_peak_of(check, c%max_force, pack(force_in_rows(rows, pin), turned >= k - 1 .and. turned <= k), rounding, &
+              trim(files(i))//prefix//': force on the pin in a revolution')
+            if (column(rows, prefix//'film_thickness[m]') == 0) cycle
+            call is_peak_of(check, -c%min_film_thickness, pack(-rows%values(column(rows, prefix//'film_thickness[m]'), :), &
+              turned >= k - 1 .and. turned <= k), rounding, trim(files(i))//prefix//': film thickness in a revolution')
+            call check%close_to(c%max_penetration, max(0.0_dp, -c%min_film_thickness), 0.0_dp, prefix//'penetration')
+          end associate
+        end do
       end do
       deallocate (watch, sink, turned)
     end do

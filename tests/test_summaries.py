@@ -17,6 +17,7 @@ from pathlib import Path
 from test_faults import ROOT, Gudgeon, assertions, check, program_built
 
 LONG = {"sim_IV", "sim_V"}   # with the method of their files: 4 and 11 million steps
+PREFIXES = {"piston_pin": "", "crank_pin": "crank_pin_"}   # of the names of a joint's columns and quantities
 
 
 def table(path: Path) -> list[dict[str, str]]:
@@ -24,42 +25,65 @@ def table(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
+def force(row: dict[str, str], prefix: str) -> float:
+    """Size of the force on a pin; on a crank pin with clearance of its contact and its film, of which one acts."""
+    names = [f"{prefix}{name}[N]" for name in (("pin_force_x", "pin_force_y") if not prefix else (
+        "normal_force", "friction_force", "film_force_x", "film_force_y"))]
+    return math.hypot(*(float(row[name]) for name in names if name in row))
+
+
 def judge(folder: Path, name: str, slack: float) -> None:
     """One case. `slack` is the rounding of the numbers in the files: of a force, which has two components."""
     summary = {row["quantity"]: row["value"] for row in table(folder / f"{name}.summary.csv")}
     rows = table(folder / f"{name}.csv")
-    force = max(math.hypot(float(row["pin_force_x[N]"]), float(row["pin_force_y[N]"])) for row in rows)
-    peak = float(summary["max_pin_force"])
-    check(peak >= force * (1 - slack), f"{name}: max_pin_force {peak!r} is below a row, {force!r}")
     fractions = sum(float(value) for quantity, value in summary.items() if "_time_fraction_with_" in quantity)
     check(fractions <= 1 + 1e-9, f"{name}: times by method sum to {fractions} of the run")
-    if "film_thickness[m]" not in rows[0]:
-        return
-    film = min(float(row["film_thickness[m]"]) for row in rows)
-    thinnest, deepest = float(summary["min_film_thickness"]), float(summary["max_penetration"])
-    check(thinnest <= film, f"{name}: min_film_thickness {thinnest!r} is above a row, {film!r}")
-    check(deepest >= -film, f"{name}: max_penetration {deepest!r} is below a row, {-film!r}")
-    if not (folder / f"{name}.events.csv").exists():
-        return
-    for event in table(folder / f"{name}.events.csv"):
+    events = table(folder / f"{name}.events.csv") if (folder / f"{name}.events.csv").exists() else []
+    loose = {joint for joint, prefix in PREFIXES.items() if f"{prefix}film_thickness[m]" in rows[0]}
+    check({event["joint"] for event in events} <= loose, f"{name}: events of other joints than {loose}")
+    for joint, prefix in PREFIXES.items():
+        has_figures = any(f"{prefix}{quantity}" in summary for quantity in ("contacts", "min_film_thickness", "max_penetration"))
+        check(has_figures == (joint in loose), f"{name}: figures of the {joint} {'missing' if joint in loose else 'of an ideal pin'}")
+        if joint == "piston_pin" or joint in loose:
+            judge_pin(name, prefix, summary, rows, slack)
+        if joint in loose:
+            judge_contacts(name, prefix, summary, rows, [event for event in events if event["joint"] == joint])
+
+
+def judge_pin(name: str, prefix: str, summary: dict[str, str], rows: list[dict[str, str]], slack: float) -> None:
+    """Its force, which an ideal piston pin has too."""
+    largest = max(force(row, prefix) for row in rows)
+    peak = float(summary[f"{prefix}max_pin_force"])
+    check(peak >= largest * (1 - slack), f"{name}: {prefix}max_pin_force {peak!r} is below a row, {largest!r}")
+
+
+def judge_contacts(name: str, prefix: str, summary: dict[str, str], rows: list[dict[str, str]], events: list[dict[str, str]]) -> None:
+    """Film thickness and contacts of one joint."""
+    film = min(float(row[f"{prefix}film_thickness[m]"]) for row in rows)
+    thinnest, deepest = float(summary[f"{prefix}min_film_thickness"]), float(summary[f"{prefix}max_penetration"])
+    check(thinnest <= film, f"{name}: {prefix}min_film_thickness {thinnest!r} is above a row, {film!r}")
+    check(deepest >= -film, f"{name}: {prefix}max_penetration {deepest!r} is below a row, {-film!r}")
+    begun = sum(event["event"] == "contact_begins" for event in events)
+    check(begun == int(summary[f"{prefix}contacts"]), f"{name}: {prefix}contacts are not the {begun} of the events")
+    for event in events:
         if event["event"] != "contact_ends":
             continue
         end = float(event["time[s]"])
         inside = [row for row in rows if end - float(event["duration[s]"]) < float(row["time[s]"]) < end]
         if not inside:
             continue
-        depth = max(-float(row["film_thickness[m]"]) for row in inside)
-        normal = max(float(row["normal_force[N]"]) for row in inside)
-        check(float(event["max_penetration[m]"]) >= depth, f"{name}: a contact to {end} s is deeper in a row")
-        check(float(event["max_normal_force[N]"]) >= normal, f"{name}: a contact to {end} s presses harder in a row")
-        check(float(event["max_penetration[m]"]) <= deepest, f"{name}: a contact to {end} s is deeper than the deepest")
+        depth = max(-float(row[f"{prefix}film_thickness[m]"]) for row in inside)
+        normal = max(float(row[f"{prefix}normal_force[N]"]) for row in inside)
+        check(float(event["max_penetration[m]"]) >= depth, f"{name}: a {prefix}contact to {end} s is deeper in a row")
+        check(float(event["max_normal_force[N]"]) >= normal, f"{name}: a {prefix}contact to {end} s presses harder in a row")
+        check(float(event["max_penetration[m]"]) <= deepest, f"{name}: a {prefix}contact to {end} s is deeper than the deepest")
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", type=Path)
     gudgeon = Gudgeon(parser.parse_args().program or program_built())
-    files = [file for folder in (".", "flores", "wiebe") for file in sorted((ROOT / "cases" / folder).glob("*.nml"))]
+    files = [file for folder in (".", "flores", "joints", "wiebe") for file in sorted((ROOT / "cases" / folder).glob("*.nml"))]
     with tempfile.TemporaryDirectory() as work:
         for method, slack, options in (("auto", 1e-9, ()), ("auto", 4e-16, ("--set", "output.digits=17")), ("adams", 1e-9, ())):
             chosen = [file for file in files if method == "auto" or file.stem not in LONG]

@@ -136,28 +136,46 @@ contains
     if (.not. values%is_present(find_group(values%groups, group))) group = name
   end function law_group
 
-  !> The pin starts where it can be: in its bearing, or where there is contact pressed into it, but not through.
+  !> The pins start where they can be.
   subroutine check_start(c, values, error)
     type(case_t), intent(in) :: c
     type(case_values_t), intent(in) :: values
     type(error_t), allocatable, intent(out) :: error
-    real(dp) :: distance
-    distance = norm2(c%initial%eccentricity)
-    if (.not. c%joint%has_clearance()) then
+    call check_pin(c%joint, '', c%initial%eccentricity, c%initial%eccentricity_rate, values, error)
+    if (.not. allocated(error)) call check_pin(c%crank_pin, crank_pin_place//'_', c%initial%crank_pin_eccentricity, &
+      c%initial%crank_pin_eccentricity_rate, values, error)
+    if (allocated(error)) return
+    associate (distance => norm2(c%initial%eccentricity), other => norm2(c%initial%crank_pin_eccentricity), m => c%mechanism)
+      if (distance + other < m%rod_length - m%crank_length) return
       if (distance > 0) then
-        call values%refuse('initial', 'eccentricity', 'must be 0 in an ideal joint', error)
-      else if (norm2(c%initial%eccentricity_rate) > 0) then
-        call values%refuse('initial', 'eccentricity_rate', 'must be 0 in an ideal joint', error)
+        call values%refuse('initial', 'eccentricity', 'must be shorter than rod_length - crank_length', error)
+      else
+        call values%refuse('initial', 'crank_pin_eccentricity', 'must be shorter than rod_length - crank_length', error)
       end if
-    else if (.not. allocated(c%joint%contact) .and. distance >= c%joint%clearance) then
-      call values%refuse('initial', 'eccentricity', 'must be shorter than the clearance where there is no contact', error)
-    else if (distance >= c%joint%bearing_radius) then
-      call values%refuse('initial', 'eccentricity', 'must be shorter than bearing_radius: the pin would be through its bearing', &
-                         error)
-    else if (distance >= c%mechanism%rod_length - c%mechanism%crank_length) then
-      call values%refuse('initial', 'eccentricity', 'must be shorter than rod_length - crank_length', error)
-    end if
+    end associate
   end subroutine check_start
+
+  !> A pin is in its bearing, or where there is contact pressed into it, but not through.
+  subroutine check_pin(joint, prefix, eccentricity, rate, values, error)
+    type(joint_case_t), intent(in) :: joint
+    character(len=*), intent(in) :: prefix   !! of its keys
+    real(dp), intent(in) :: eccentricity(2), rate(2)
+    type(case_values_t), intent(in) :: values
+    type(error_t), allocatable, intent(out) :: error
+    associate (distance => norm2(eccentricity), key => prefix//'eccentricity')
+      if (.not. joint%has_clearance()) then
+        if (distance > 0) then
+          call values%refuse('initial', key, 'must be 0 in an ideal joint', error)
+        else if (norm2(rate) > 0) then
+          call values%refuse('initial', key//'_rate', 'must be 0 in an ideal joint', error)
+        end if
+      else if (.not. allocated(joint%contact) .and. distance >= joint%clearance) then
+        call values%refuse('initial', key, 'must be shorter than the clearance where there is no contact', error)
+      else if (distance >= joint%bearing_radius) then
+        call values%refuse('initial', key, 'must be shorter than bearing_radius: the pin would be through its bearing', error)
+      end if
+    end associate
+  end subroutine check_pin
 
   !> What to say of a length of the joint that is missing, or given as 0.
   function needed(group, name, values, why) result(wanted)

@@ -22,7 +22,7 @@ module case_definition
   type, extends(has_parameters_t) :: mechanism_case_t
     real(dp) :: crank_length = 0, crank_mass = 0, crank_inertia = 0, crank_com(2) = 0
     real(dp) :: rod_length = 0, rod_mass = 0, rod_inertia = 0, rod_com(2) = 0
-    real(dp) :: piston_mass = 0, gravity = 0
+    real(dp) :: piston_mass = 0, gravity = 0, gravity_angle_deg = 0
   contains
     procedure :: parameters => mechanism_parameters
   end type mechanism_case_t
@@ -36,7 +36,8 @@ module case_definition
 
   type, extends(has_parameters_t) :: initial_case_t
     real(dp) :: crank_angle_deg = 0, crank_speed = 0
-    real(dp) :: eccentricity(2) = 0, eccentricity_rate(2) = 0   !! of the pin in its bearing
+    real(dp) :: eccentricity(2) = 0, eccentricity_rate(2) = 0   !! of the piston pin in its bearing
+    real(dp) :: crank_pin_eccentricity(2) = 0, crank_pin_eccentricity_rate(2) = 0   !! of the crank pin in its bearing
   contains
     procedure :: parameters => initial_parameters
   end type initial_case_t
@@ -251,7 +252,10 @@ contains
       example='0.010')
     call list%add('rod_com', self%rod_com, 'centre of mass from the crank pin', 'm', default='0.0')
     call list%add('piston_mass', self%piston_mass, 'mass', 'kg', '> 0', example='0.91')
-    call list%add('gravity', self%gravity, 'downwards, from the cylinder to the crank', 'm/s^2', default='9.80665')
+    call list%add('gravity', self%gravity, 'from the cylinder to the crank, unless gravity_angle_deg turns it', 'm/s^2', &
+      default='9.80665')
+    call list%add('gravity_angle_deg', self%gravity_angle_deg, &
+      'of gravity: 0 along the cylinder from piston to crank, 90 across it, against y', 'degrees', default='0.0')
   end subroutine mechanism_parameters
 
   subroutine drive_parameters(self, list)
@@ -268,9 +272,11 @@ contains
     class(parameter_list_t), intent(inout) :: list
     call list%add('crank_angle_deg', self%crank_angle_deg, 'from the cylinder axis', 'degrees', default='0.0')
     call list%add('crank_speed', self%crank_speed, 'held there by drive kind constant_speed', 'rad/s', example='250.0')
-    call list%add('eccentricity', self%eccentricity, 'pin centre from bearing centre; from the clearance on it touches', 'm', &
-      default='0.0')
+    call list%add('eccentricity', self%eccentricity, 'piston pin from its bearing''s centre; from the clearance on it touches', &
+      'm', default='0.0')
     call list%add('eccentricity_rate', self%eccentricity_rate, 'its rate', 'm/s', default='0.0')
+    call list%add('crank_pin_eccentricity', self%crank_pin_eccentricity, 'crank pin from its bearing''s centre', 'm', default='0.0')
+    call list%add('crank_pin_eccentricity_rate', self%crank_pin_eccentricity_rate, 'its rate', 'm/s', default='0.0')
   end subroutine initial_parameters
 
   subroutine joint_parameters(self, list)
@@ -279,7 +285,7 @@ contains
     call list%word('kind', self%kind, 'ideal, clearance', 'ideal', 'ideal: no play', example='clearance')
     call list%add('clearance', self%clearance, 'radial: bearing radius minus pin radius', 'm', '> 0', default='0.0', &
       example='2.0e-5')
-    call list%add('bearing_radius', self%bearing_radius, 'radius of the piston''s bore', 'm', '> 0', default='0.0', &
+    call list%add('bearing_radius', self%bearing_radius, 'radius of the bearing around the pin', 'm', '> 0', default='0.0', &
       example='0.010')
     call list%add('bearing_length', self%bearing_length, 'its width, for a film', 'm', '> 0', default='0.0', example='0.015')
   end subroutine joint_parameters

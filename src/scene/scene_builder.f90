@@ -51,7 +51,7 @@ contains
     call prepare_joints(case, scene)
     associate (m => case%mechanism)
       scene%chain%bodies = new_bodies(crank_t(m%crank_length, m%crank_mass, m%crank_inertia, m%crank_com), &
-        rod_t(m%rod_length, m%rod_mass, m%rod_inertia, m%rod_com), piston_t(m%piston_mass), [-m%gravity, 0.0_dp])
+        rod_t(m%rod_length, m%rod_mass, m%rod_inertia, m%rod_com), piston_t(m%piston_mass), gravity_of(case))
     end associate
     scene%chain%drive = drive_t(case%drive%kind == 'free', case%drive%torque, case%drive%damping)
     scene%start_angle = case%initial%crank_angle_deg*degree
@@ -68,6 +68,15 @@ contains
       allocate (scene%turns, source=new_crank_turns(case%integrator%crank_revolutions, scene%start_angle, scene%start_speed))
     call scene%prepare_start()
   end subroutine build_scene
+
+  !> Gravity (x, y) [m/s^2]: from the cylinder to the crank, turned towards -y.
+  pure function gravity_of(case) result(gravity)
+    type(case_t), intent(in) :: case
+    real(dp) :: gravity(2)
+    associate (g => case%mechanism%gravity, angle => case%mechanism%gravity_angle_deg*degree)
+      gravity = [-g*cos(angle), 0 - g*sin(angle)]   ! no negative zero along the cylinder
+    end associate
+  end function gravity_of
 
   !> The parts of a scene as the case gives them: which joints have clearance and which laws act in them, and the gas. Nothing is
   !> prepared for a run.
@@ -88,7 +97,12 @@ contains
       scene%joints(n)%start_eccentricity = case%initial%eccentricity
       scene%joints(n)%start_rate = case%initial%eccentricity_rate
     end if
-    if (is_loose(2)) call build_joint(case, case%crank_pin, crank_pin, scene%joints(n + 1))
+    if (is_loose(2)) then
+      n = n + 1
+      call build_joint(case, case%crank_pin, crank_pin, scene%joints(n))
+      scene%joints(n)%start_eccentricity = case%initial%crank_pin_eccentricity
+      scene%joints(n)%start_rate = case%initial%crank_pin_eccentricity_rate
+    end if
     scene%chain%is_loose(piston_pin) = is_loose(1)
     scene%chain%is_loose(crank_pin) = is_loose(2)
     scene%n_joints = size(scene%joints)
