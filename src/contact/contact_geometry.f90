@@ -3,6 +3,7 @@ module contact_geometry
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: law_t, parameter_list_t
   use gudgeon_bearing, only: bearing_t
+  use trace_row, only: trace_row_t
   use contact_stiffness, only: valid_impact_speed
   implicit none
   private
@@ -18,6 +19,11 @@ module contact_geometry
     procedure(prepare), deferred :: prepare
     procedure(elastic_force), deferred :: elastic_force
     procedure(slope), deferred :: slope
+    procedure :: elastic_energy => integral_of_force
+    procedure :: deepest => any_depth
+    procedure, nopass :: needs_length => needs_it
+    procedure :: bearing_conflict => fits_every_bearing
+    procedure :: put_columns => no_columns
     procedure, non_overridable :: material_parameters
     procedure, non_overridable :: fastest_impact
   end type contact_geometry_t
@@ -59,6 +65,65 @@ contains
     call list%add('poissons_ratio', self%poissons_ratio, 'of pin and bearing', range='>= 0 and <= 0.5', default='0.3')
     call list%add('density', self%density, 'of pin and bearing, for the limit of validity', 'kg/m^3', '> 0', default='7850.0')
   end subroutine material_parameters
+
+  !> The energy that the contact holds at a penetration [J]: the integral of the elastic force, by Gauss's formula with 16 points
+  !> in the square root of the penetration, in which the force is smooth. Geometries that have a closed form give that.
+  pure real(dp) function integral_of_force(self, penetration) result(energy)
+    class(contact_geometry_t), intent(in) :: self
+    real(dp), intent(in) :: penetration   !! [m], > 0
+    real(dp), parameter :: points(8) = [0.0950125098376374402_dp, 0.2816035507792589133_dp, 0.4580167776572273863_dp, &
+      0.6178762444026437484_dp, 0.7554044083550030339_dp, 0.8656312023878317439_dp, 0.9445750230732325761_dp, &
+      0.9894009349916499326_dp]
+    real(dp), parameter :: weights(8) = [0.1894506104550684963_dp, 0.1826034150449235889_dp, 0.1691565193950025382_dp, &
+      0.1495959888165767321_dp, 0.1246289712555338720_dp, 0.0951585116824927848_dp, 0.0622535239386478929_dp, &
+      0.0271524594117540949_dp]
+    integer :: i
+    energy = 0
+    do i = 1, size(points)
+      energy = energy + weights(i)*(share((1 + points(i))/2) + share((1 - points(i))/2))
+    end do
+
+  contains
+
+    pure real(dp) function share(root)
+      real(dp), intent(in) :: root
+      share = penetration*root*self%elastic_force(penetration*root**2)
+    end function share
+  end function integral_of_force
+
+  !> The greatest penetration for which the geometry is meant [m]. The default is one without such a limit.
+  pure real(dp) function any_depth(self)
+    class(contact_geometry_t), intent(in) :: self
+    associate (unused => self)
+    end associate
+    any_depth = huge(any_depth)
+  end function any_depth
+
+  !> Whether the force is in proportion to the length of the bearing. By default it is.
+  pure logical function needs_it()
+    needs_it = .true.
+  end function needs_it
+
+  !> What of the bearing does not fit: the key of the wrong value and what is wanted of it. An empty key means that all is well.
+  pure subroutine fits_every_bearing(self, bearing, key, wanted)
+    class(contact_geometry_t), intent(in) :: self
+    type(bearing_t), intent(in) :: bearing
+    character(len=:), allocatable, intent(out) :: key, wanted
+    associate (unused => self, unused_bearing => bearing)
+    end associate
+    key = ''
+    wanted = ''
+  end subroutine fits_every_bearing
+
+  !> What a trace can tell of this geometry alone. The default is nothing.
+  pure subroutine no_columns(self, penetration, normal_force, row)
+    class(contact_geometry_t), intent(in) :: self
+    real(dp), intent(in) :: penetration    !! [m]; 0 while apart
+    real(dp), intent(in) :: normal_force   !! with what the law's damping gives [N]
+    type(trace_row_t), intent(inout) :: row
+    associate (unused => self, depth => penetration, force => normal_force, nothing => row)
+    end associate
+  end subroutine no_columns
 
   !> The fastest impact for which elastic contact of these materials is meant (remark after 4.7) [m/s].
   pure real(dp) function fastest_impact(self)

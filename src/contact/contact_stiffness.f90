@@ -4,7 +4,7 @@ module contact_stiffness
   use gudgeon_kinds, only: dp
   implicit none
   private
-  public :: hertz_stiffness, valid_impact_speed
+  public :: hertz_stiffness, contact_modulus, valid_impact_speed
 
 contains
 
@@ -22,6 +22,13 @@ contains
     compliance = sum((1 - poissons_ratio**2)/youngs_modulus)
     stiffness = 4/(3*compliance)*sqrt(bearing_radius*(bearing_radius - clearance)/clearance)
   end function hertz_stiffness
+
+  !> E* [Pa] of two materials: 1/E* = (1 - nu_i^2)/E_i + (1 - nu_j^2)/E_j.
+  pure real(dp) function contact_modulus(youngs_modulus, poissons_ratio)
+    real(dp), intent(in) :: youngs_modulus(2)  !! of pin and bearing [Pa]
+    real(dp), intent(in) :: poissons_ratio(2)  !! of pin and bearing [-]
+    contact_modulus = 1/sum((1 - poissons_ratio**2)/youngs_modulus)
+  end function contact_modulus
 
   !> Fastest impact [m/s] for which the contact laws are valid: 1e-5 sqrt(E/rho) (remark after 4.7), the smaller of the
   !> two materials'.

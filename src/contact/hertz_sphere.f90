@@ -20,6 +20,8 @@ module hertz_sphere
     procedure :: prepare
     procedure :: elastic_force
     procedure :: slope
+    procedure :: elastic_energy
+    procedure, nopass :: needs_length
   end type hertz_sphere_t
 
 contains
@@ -32,9 +34,10 @@ contains
   subroutine parameters(self, list)
     class(hertz_sphere_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('exponent', self%exponent, 'of the penetration', range='>= 1', default='1.5')
+    call list%add('exponent', self%exponent, 'of the penetration', range='>= 1', default='1.5', only_here=.true.)
     call self%material_parameters(list)
-    call list%add('stiffness', self%given_stiffness, '0: from the materials', 'N/m^exponent', '> 0', default='0.0')
+    call list%add('stiffness', self%given_stiffness, '0: from the materials', 'N/m^exponent', '> 0', default='0.0', &
+      only_here=.true.)
   end subroutine parameters
 
   !> The stiffness that the case gives, or else Hertz's (4.2).
@@ -65,4 +68,15 @@ contains
     real(dp) :: slope
     slope = self%exponent*force/penetration
   end function slope
+
+  pure real(dp) function elastic_energy(self, penetration)
+    class(hertz_sphere_t), intent(in) :: self
+    real(dp), intent(in) :: penetration
+    elastic_energy = self%elastic_force(penetration)*penetration/(self%exponent + 1)
+  end function elastic_energy
+
+  !> Spheres have no length.
+  pure logical function needs_length()
+    needs_length = .false.
+  end function needs_length
 end module hertz_sphere

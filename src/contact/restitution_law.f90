@@ -14,10 +14,15 @@ module restitution_law
 
   type, abstract, extends(contact_law_t) :: restitution_law_t
     real(dp) :: restitution = 1   !! e of the case [-], 0 to 1
+    real(dp) :: dissipation = 0   !! of the case, in place of chi/delta_dot_minus [s/m]; 0: from the restitution
   contains
     procedure :: parameters
+    procedure :: conflict
     procedure :: prepare
+    procedure :: damped_force
+    procedure :: damped_force_slopes
     procedure(damping_for), deferred, nopass :: damping_for
+    procedure, nopass :: least_restitution => zero
   end type restitution_law_t
 
   abstract interface
@@ -34,7 +39,10 @@ contains
   subroutine parameters(self, list)
     class(restitution_law_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('restitution', self%restitution, 'coefficient of restitution', range='>= 0 and <= 1', default='0.9')
+    call list%add('restitution', self%restitution, 'coefficient of restitution', range='>= 0 and <= 1', default='0.9', &
+      family='loss')
+    call list%add('dissipation', self%dissipation, 'a of force = elastic (1 + a rate), whatever the law; 0: from restitution', &
+      's/m', '> 0', default='0.0', family='loss')
     call list%add('least_impact_speed', self%least_impact_speed, 'slower impacts are damped as one of this speed', 'm/s', &
       '>= 1e-9 and <= 1', default='1.0e-5')
   end subroutine parameters
@@ -42,7 +50,41 @@ contains
   subroutine prepare(self, bearing)
     class(restitution_law_t), intent(inout) :: self
     type(bearing_t), intent(in) :: bearing
+    self%has_own_damping = self%dissipation > 0
+    if (.not. self%has_own_damping) self%damping = self%damping_for(self%restitution)
     call self%prepare_geometry(bearing)
-    self%damping = self%damping_for(self%restitution)
   end subroutine prepare
+
+  !> A chi that grows as 1/e wants an e that is not next to 0.
+  pure subroutine conflict(self, key, wanted)
+    class(restitution_law_t), intent(in) :: self
+    character(len=:), allocatable, intent(out) :: key, wanted
+    key = ''
+    wanted = 'must be >= 0.01 with law = '''//self%name()//''''
+    if (self%restitution < self%least_restitution() .and. .not. self%dissipation > 0) key = 'restitution'
+  end subroutine conflict
+
+  pure real(dp) function zero()
+    zero = 0
+  end function zero
+
+  !> f (1 + a delta_dot), a the dissipation: the impact speed does not matter.
+  pure function damped_force(self, elastic_force, penetration, penetration_rate) result(force)
+    class(restitution_law_t), intent(in) :: self
+    real(dp), value, intent(in) :: elastic_force, penetration, penetration_rate
+    real(dp) :: force
+    associate (unused => penetration)
+    end associate
+    force = elastic_force*max(0.0_dp, 1 + self%dissipation*penetration_rate)
+  end function damped_force
+
+  pure subroutine damped_force_slopes(self, penetration, penetration_rate, stiffness, damping)
+    class(restitution_law_t), intent(in) :: self
+    real(dp), intent(in) :: penetration, penetration_rate
+    real(dp), intent(out) :: stiffness, damping
+    real(dp) :: elastic
+    elastic = self%geometry%elastic_force(penetration)
+    stiffness = self%geometry%slope(penetration, self%damped_force(elastic, penetration, penetration_rate))
+    damping = elastic*self%dissipation
+  end subroutine damped_force_slopes
 end module restitution_law

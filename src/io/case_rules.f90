@@ -5,7 +5,7 @@ module case_rules
   use gudgeon_errors, only: error_t
   use number_text, only: short_text
   use case_definition, only: case_t, joint_case_t, piston_pin_place, crank_pin_place
-  use case_schema, only: find_group
+  use case_schema, only: find_group, find_key
   use case_values, only: case_values_t
   implicit none
   private
@@ -116,8 +116,32 @@ contains
     else if (allocated(joint%friction) .and. .not. allocated(joint%contact)) then
       call values%refuse(law_group(values, 'friction', place), 'law', &
                          'needs the group contact: dry friction follows the normal force', error)
+    else if (allocated(joint%contact)) then
+      call check_contact(joint, group, law_group(values, 'contact', place), values, error)
     end if
   end subroutine check_joint
+
+  !> A contact has its loss from one key, and a bearing that its geometry can have.
+  subroutine check_contact(joint, group, contact_group, values, error)
+    type(joint_case_t), intent(in) :: joint
+    character(len=*), intent(in) :: group, contact_group   !! of the joint and of its contact
+    type(case_values_t), intent(in) :: values
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: key, wanted
+    if (values%is_said(find_key(values%keys, contact_group, 'dissipation'))) then
+      call values%check_family(contact_group, 'dissipation', error)
+      if (allocated(error)) return
+    end if
+    associate (geometry => joint%contact%geometry)
+      if (geometry%needs_length() .and. joint%bearing_length <= 0) then
+        call values%refuse(group, 'bearing_length', needed(group, 'bearing_length', values, 'with contact geometry = '''// &
+          geometry%name()//''''), error)
+        return
+      end if
+      call geometry%bearing_conflict(joint%bearing(rod_length=0.0_dp), key, wanted)
+      if (key /= '') call values%refuse(group, key, wanted, error)
+    end associate
+  end subroutine check_contact
 
   !> Whether the case has a law for the joint of this place alone.
   logical function has_own_law(values, place)

@@ -29,6 +29,7 @@ module case_values
     procedure :: is_said      !! a number that is not its default
     procedure :: check        !! required keys and ranges
     procedure :: check_required
+    procedure :: check_absent
     procedure :: is_used      !! the law that the case names has this key
     procedure :: check_range  !! the range of one key
     procedure :: is_in_range
@@ -129,12 +130,21 @@ contains
         earlier = trim(self%keys(k)%name)
         call fail(error, self%file//': '//shown_group(group)//' '//trim(self%keys(i)%name)//' = '// &
           trim(self%values(i)%written(1))//': must not be given together with '//earlier//' = '// &
-          trim(self%values(k)%written(1))//'; '//group//'.'//earlier//'=0 takes that back', status_case_file)
+          trim(self%values(k)%written(1))//'; '//group//'.'//earlier//'='//short_default(self%keys(k))//' takes that back', &
+          status_case_file)
         return
       end do
     end do
     if (.not. is_ended) call self%refuse(group, name, others//' is required, > 0', error)
   end subroutine check_family
+
+  !> A default as a user would write it: 0 for 0.0.
+  pure function short_default(key) result(text)
+    type(key_t), intent(in) :: key
+    character(len=:), allocatable :: text
+    text = trim(key%default)
+    if (text == '0.0') text = '0'
+  end function short_default
 
   !> Whether two keys are of one family, or are the same key.
   pure logical function is_relative(key, other)
@@ -264,9 +274,12 @@ contains
     do i = 1, size(self%keys)
       group = find_group(self%groups, trim(self%keys(i)%group))
       if (self%groups(group)%is_model .and. .not. self%is_present(group)) cycle
-      if (.not. self%is_used(i)) cycle   ! it may stand there for another law
-      call self%check_required(i, error)
-      if (.not. allocated(error)) call self%check_range(i, error)
+      if (self%is_used(i)) then
+        call self%check_required(i, error)
+        if (.not. allocated(error)) call self%check_range(i, error)
+      else if (self%keys(i)%only_here) then   ! others may stand there for another law
+        call self%check_absent(i, error)
+      end if
       if (allocated(error)) return
     end do
   end subroutine check
@@ -288,6 +301,18 @@ contains
       end if
     end associate
   end subroutine check_required
+
+  !> The key at `place` is not given, which the law that the case names does not have.
+  subroutine check_absent(self, place, error)
+    class(case_values_t), intent(in) :: self
+    integer, intent(in) :: place
+    type(error_t), allocatable, intent(out) :: error
+    if (.not. self%is_said(place)) return
+    associate (key => self%keys(place), choice => find_key(self%keys, self%keys(place)%group, self%keys(place)%choice))
+      call self%refuse(trim(key%group), trim(key%name), 'is for '//key%choice//' = '''//key%laws//''' alone and must not be '// &
+        'given with '''//self%values(choice)%text//'''', error)
+    end associate
+  end subroutine check_absent
 
   !> Whether the model that the case asks for has the key at `place`: keys of other laws of the group may stand there too.
   pure logical function is_used(self, place)

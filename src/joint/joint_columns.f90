@@ -4,7 +4,7 @@ module joint_columns
   use trace_row, only: trace_row_t
   use chain_motion, only: piston_pin, name_prefix
   use joint_motion, only: joint_motion_t
-  use clearance_joint, only: clearance_joint_t, joint_loads_t
+  use clearance_joint, only: clearance_joint_t, joint_loads_t, phase_contact
   implicit none
   private
   public :: put_joint_columns
@@ -27,6 +27,8 @@ contains
       call row%put('normal_force[N]', loads%normal_force)
       call row%put('friction_force[N]', loads%friction_force)
       call row%put('sliding_speed[m/s]', motion%sliding_speed)
+      call joint%contact%geometry%put_columns(merge(motion%penetration, 0.0_dp, joint%phase == phase_contact), &
+        loads%normal_force, row)
     end if
     if (allocated(joint%film)) then
       call row%put('film_force_x[N]', loads%film(1))

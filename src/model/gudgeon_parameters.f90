@@ -30,6 +30,7 @@ module gudgeon_parameters
     character(len=100) :: description = ''
     character(len=12) :: family = ''         !! of the keys of its group that say one thing in different ways: one alone may be given
     character(len=32) :: beside = ''         !! the one of them that may stand beside this one, as a bound
+    logical :: only_here = .false.           !! must not be given where a law is chosen that does not have it
   end type key_t
 
   !> A visitor of parameters. A model calls `add`, `word` and `text`; a visitor has to answer `visit`, and whatever else it
@@ -117,19 +118,21 @@ contains
   end subroutine pass_law
 
   !> A number. Without a default it is required.
-  subroutine add_real(self, key, value, says, unit, range, default, example, family, beside)
+  subroutine add_real(self, key, value, says, unit, range, default, example, family, beside, only_here)
     class(parameter_list_t), intent(inout) :: self
     character(len=*), intent(in) :: key, says                               !! its meaning in a few words
     real(dp), intent(inout) :: value
     character(len=*), intent(in), optional :: unit, range, default, example
     character(len=*), intent(in), optional :: family   !! of keys of which one alone may be given
     character(len=*), intent(in), optional :: beside   !! but this key
+    logical, intent(in), optional :: only_here         !! not where a law is chosen that does not have it
     type(key_t) :: new
     real(dp) :: values(1)
     values = value
     new = described(key, real_kind, says, unit, range, default, example)
     if (present(family)) new%family = family
     if (present(beside)) new%beside = beside
+    if (present(only_here)) new%only_here = only_here
     call self%visit(new, reals=values)
     value = values(1)
   end subroutine add_real

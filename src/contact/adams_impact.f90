@@ -1,0 +1,64 @@
+!> The IMPACT force of Adams and MotionSolve: a damper beside the elastic force, which comes in over a depth.
+module adams_impact
+  use gudgeon_kinds, only: dp
+  use gudgeon_parameters, only: parameter_list_t
+  use gudgeon_bearing, only: bearing_t
+  use contact_law, only: contact_law_t
+  implicit none
+  private
+  public :: adams_impact_t
+
+  !> F = max(0, f(delta) + c s^2 (3 - 2s) delta_dot), s = min(1, delta/d). What an impact gives back depends on its speed and on the
+  !> masses.
+  type, extends(contact_law_t) :: adams_impact_t
+    real(dp) :: full_damping = 0        !! c [N s/m], >= 0
+    real(dp) :: full_damping_depth = 1  !! d [m], > 0
+  contains
+    procedure, nopass :: name
+    procedure :: parameters
+    procedure :: prepare
+    procedure :: damped_force
+    procedure :: damped_force_slopes
+  end type adams_impact_t
+
+contains
+
+  pure function name()
+    character(len=:), allocatable :: name
+    name = 'impact'
+  end function name
+
+  subroutine parameters(self, list)
+    class(adams_impact_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%add('damping', self%full_damping, 'of the damper beside the elastic force', 'N s/m', '>= 0', example='100.0')
+    call list%add('full_damping_depth', self%full_damping_depth, 'penetration from which on it damps in full', 'm', '> 0', &
+      example='1.0e-6')
+  end subroutine parameters
+
+  subroutine prepare(self, bearing)
+    class(adams_impact_t), intent(inout) :: self
+    type(bearing_t), intent(in) :: bearing
+    self%has_own_damping = .true.
+    call self%prepare_geometry(bearing)
+  end subroutine prepare
+
+  pure function damped_force(self, elastic_force, penetration, penetration_rate) result(force)
+    class(adams_impact_t), intent(in) :: self
+    real(dp), value, intent(in) :: elastic_force, penetration, penetration_rate
+    real(dp) :: force, s
+    s = min(1.0_dp, penetration/self%full_damping_depth)
+    force = max(0.0_dp, elastic_force + self%full_damping*s**2*(3 - 2*s)*penetration_rate)
+  end function damped_force
+
+  pure subroutine damped_force_slopes(self, penetration, penetration_rate, stiffness, damping)
+    class(adams_impact_t), intent(in) :: self
+    real(dp), intent(in) :: penetration, penetration_rate
+    real(dp), intent(out) :: stiffness, damping
+    real(dp) :: s
+    s = min(1.0_dp, penetration/self%full_damping_depth)
+    damping = self%full_damping*s**2*(3 - 2*s)
+    stiffness = self%geometry%slope(penetration, self%geometry%elastic_force(penetration)) &
+      + self%full_damping*6*s*(1 - s)/self%full_damping_depth*penetration_rate
+  end subroutine damped_force_slopes
+end module adams_impact

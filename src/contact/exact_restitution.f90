@@ -1,0 +1,53 @@
+!> Contact that gives back what the coefficient of restitution says.
+module exact_restitution
+  use gudgeon_kinds, only: dp
+  use restitution_law, only: restitution_law_t
+  implicit none
+  private
+  public :: exact_restitution_t
+
+  !> chi is the root of chi (1 + e) = ln[(1 + chi)/(1 - chi e)]: a free impact gives back e itself (Zhang and Sharf 2009).
+  type, extends(restitution_law_t) :: exact_restitution_t
+  contains
+    procedure, nopass :: name
+    procedure, nopass :: damping_for
+    procedure, nopass :: least_restitution
+  end type exact_restitution_t
+
+contains
+
+  pure function name()
+    character(len=:), allocatable :: name
+    name = 'exact'
+  end function name
+
+  !> chi grows as 1/e: a hundredth is nearly a wall of e already.
+  pure real(dp) function least_restitution()
+    least_restitution = 0.01_dp
+  end function least_restitution
+
+  !> With d = chi e and y = -ln(1 - d) the equation is d (1 + 1/e) - ln(1 + d/e) - y = 0. Where e is next to 1 its terms
+  !> cancel, and two terms of the series of chi say it closer.
+  pure real(dp) function damping_for(restitution) result(damping)
+    real(dp), intent(in) :: restitution
+    real(dp) :: low, high, y, d
+    integer :: i
+    associate (e => restitution)
+      damping = 1.5_dp*(1 - e)*(2 - e)
+      if (e > 1 - 1e-4_dp) return
+      low = -log(1 - (1 - e)/2)
+      high = 2 + 2/e
+      do i = 1, 200
+        y = (low + high)/2
+        if (.not. (y > low .and. y < high)) exit
+        d = 1 - exp(-y)
+        if (d*(1 + 1/e) - log(1 + d/e) > y) then
+          low = y
+        else
+          high = y
+        end if
+      end do
+      damping = (1 - exp(-y))/e
+    end associate
+  end function damping_for
+end module exact_restitution

@@ -1,0 +1,108 @@
+!> Johnson's contact of a cylinder in a cylindrical bore (Contact Mechanics, 1985): both are half-spaces near the contact.
+module johnson
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: pi
+  use gudgeon_parameters, only: parameter_list_t
+  use gudgeon_bearing, only: bearing_t
+  use contact_geometry, only: contact_geometry_t
+  use contact_stiffness, only: contact_modulus
+  implicit none
+  private
+  public :: johnson_t
+
+  !> D = x [ln(4/x) - 1] with D = delta/c and x = f/(pi E* L c). There is no x for D > 4/e^2 = 0.541, and the stiffness grows
+  !> without bound on the way there, so the force goes on in a straight line from D = 0.3 on, which is beyond its validity.
+  type, extends(contact_geometry_t) :: johnson_t
+    real(dp) :: clearance = 1    !! c [m]
+    real(dp) :: modulus = 0      !! pi E* L [N/m]
+    real(dp) :: last_v = 2       !! v, below, at the last penetration of the law
+  contains
+    procedure, nopass :: name
+    procedure :: parameters
+    procedure :: prepare
+    procedure :: elastic_force
+    procedure :: slope
+    procedure :: elastic_energy
+    procedure :: deepest
+  end type johnson_t
+
+  real(dp), parameter :: last = 0.3_dp   !! D up to which the law is taken
+
+contains
+
+  pure function name()
+    character(len=:), allocatable :: name
+    name = 'johnson'
+  end function name
+
+  subroutine parameters(self, list)
+    class(johnson_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call self%material_parameters(list)
+  end subroutine parameters
+
+  subroutine prepare(self, bearing)
+    class(johnson_t), intent(inout) :: self
+    type(bearing_t), intent(in) :: bearing
+    self%clearance = bearing%clearance
+    self%modulus = pi*contact_modulus(self%youngs_modulus, self%poissons_ratio)*bearing%length
+    self%last_v = log_term(last)
+  end subroutine prepare
+
+  !> v = ln(4/x) - 1 = D/x, > 1: the root of v - ln v = -ln(e D/4), which is -W of Lambert's lower branch at -(e/4) D. Newton's
+  !> method from a start that is good to a few percent.
+  pure real(dp) function log_term(d) result(v)
+    real(dp), intent(in) :: d   !! D [-], > 0 and <= 0.3
+    real(dp) :: m, correction
+    integer :: i
+    m = log(4.0_dp) - 1 - log(d)
+    v = m + log(m + log(m + 1))
+    do i = 1, 20
+      correction = (v - log(v) - m)*v/(v - 1)
+      v = v - correction
+      if (abs(correction) <= 1e-15_dp*v) exit
+    end do
+  end function log_term
+
+  pure function elastic_force(self, penetration) result(force)
+    class(johnson_t), intent(in) :: self
+    real(dp), value, intent(in) :: penetration
+    real(dp) :: force
+    if (penetration <= self%deepest()) then
+      force = self%modulus*penetration/log_term(penetration/self%clearance)
+    else
+      force = self%modulus*(self%deepest()/self%last_v + (penetration - self%deepest())/(self%last_v - 1))
+    end if
+  end function elastic_force
+
+  !> The stiffness is pi E* L/(v - 1).
+  pure function slope(self, penetration, force)
+    class(johnson_t), intent(in) :: self
+    real(dp), intent(in) :: penetration, force
+    real(dp) :: slope, v
+    if (penetration <= self%deepest()) then
+      v = log_term(penetration/self%clearance)
+      slope = force/penetration*(v/(v - 1))
+    else
+      slope = force/self%elastic_force(penetration)*(self%modulus/(self%last_v - 1))
+    end if
+  end function slope
+
+  !> pi E* L c^2 [x^2 (v - 1)/2 + x^2/4].
+  pure real(dp) function elastic_energy(self, penetration) result(energy)
+    class(johnson_t), intent(in) :: self
+    real(dp), intent(in) :: penetration
+    real(dp) :: depth, v
+    depth = min(penetration, self%deepest())
+    v = log_term(depth/self%clearance)
+    energy = self%modulus*(depth/v)**2*(v/2 - 0.25_dp)
+    if (penetration > depth) energy = energy + (penetration - depth)*(self%elastic_force(depth) &
+      + self%elastic_force(penetration))/2
+  end function elastic_energy
+
+  !> Where the straight line begins [m].
+  pure real(dp) function deepest(self)
+    class(johnson_t), intent(in) :: self
+    deepest = last*self%clearance
+  end function deepest
+end module johnson

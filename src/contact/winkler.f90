@@ -1,0 +1,144 @@
+!> A bedding of springs around the bore, each by itself: the contact of a bearing with a thin, soft liner.
+module winkler
+  use gudgeon_kinds, only: dp
+  use gudgeon_parameters, only: parameter_list_t
+  use gudgeon_bearing, only: bearing_t
+  use contact_geometry, only: contact_geometry_t
+  implicit none
+  private
+  public :: winkler_t
+
+  !> A rigid pin goes (c + delta) cos(theta) - c deep into the bedding at the angle theta, up to the half-angle a with
+  !> cos a = c/(c + delta): f = k Rb L [(c + delta)(a + sin a cos a) - 2 c sin a], which is k Rb L c [(1 + D) a - sin a] with
+  !> D = delta/c. Of a thin liner that is bonded to a stiff back: k = E (1 - nu)/[(1 + nu)(1 - 2 nu) t].
+  type, extends(contact_geometry_t) :: winkler_t
+    real(dp) :: given_modulus = 0   !! k of the case [Pa/m]; 0: from the liner
+    real(dp) :: liner_modulus = 0, liner_poissons_ratio = 0, liner_thickness = 0   !! E [Pa], nu [-], t [m]
+    real(dp) :: clearance = 1       !! c [m]
+    real(dp) :: bedding = 0         !! k Rb L [N/m^2]
+  contains
+    procedure, nopass :: name
+    procedure :: parameters
+    procedure :: conflict
+    procedure :: prepare
+    procedure :: elastic_force
+    procedure :: slope
+    procedure :: elastic_energy
+    procedure :: deepest
+  end type winkler_t
+
+contains
+
+  pure function name()
+    character(len=:), allocatable :: name
+    name = 'winkler'
+  end function name
+
+  subroutine parameters(self, list)
+    class(winkler_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call self%material_parameters(list)
+    call list%add('bedding_modulus', self%given_modulus, 'pressure for a depth; 0: from the liner', 'Pa/m', '> 0', default='0.0')
+    call list%add('liner_modulus', self%liner_modulus, 'Young''s modulus of a thin liner', 'Pa', '> 0', default='0.0')
+    call list%add('liner_poissons_ratio', self%liner_poissons_ratio, 'of the liner', range='>= 0 and <= 0.49', default='0.0')
+    call list%add('liner_thickness', self%liner_thickness, 'of the liner', 'm', '> 0', default='0.0')
+  end subroutine parameters
+
+  !> The bedding is given, or the liner.
+  pure subroutine conflict(self, key, wanted)
+    class(winkler_t), intent(in) :: self
+    character(len=:), allocatable, intent(out) :: key, wanted
+    logical :: has_liner
+    key = ''
+    has_liner = self%liner_modulus > 0 .or. self%liner_thickness > 0
+    wanted = 'required with geometry = ''winkler'', or liner_modulus and liner_thickness'
+    if (self%given_modulus > 0 .and. has_liner) then
+      key = 'bedding_modulus'
+      wanted = 'must not be given together with liner_modulus or liner_thickness'
+    else if (has_liner .and. .not. self%liner_modulus > 0) then
+      key = 'liner_modulus'
+      wanted = 'required with liner_thickness'
+    else if (has_liner .and. .not. self%liner_thickness > 0) then
+      key = 'liner_thickness'
+      wanted = 'required with liner_modulus'
+    else if (.not. (has_liner .or. self%given_modulus > 0)) then
+      key = 'bedding_modulus'
+    end if
+  end subroutine conflict
+
+  subroutine prepare(self, bearing)
+    class(winkler_t), intent(inout) :: self
+    type(bearing_t), intent(in) :: bearing
+    real(dp) :: k
+    k = self%given_modulus
+    associate (nu => self%liner_poissons_ratio)
+      if (.not. k > 0) k = self%liner_modulus*(1 - nu)/((1 + nu)*(1 - 2*nu)*self%liner_thickness)
+    end associate
+    self%clearance = bearing%clearance
+    self%bedding = k*bearing%radius*bearing%length
+  end subroutine prepare
+
+  !> tan a = sqrt(D (2 + D)).
+  pure real(dp) function tangent(self, penetration)
+    class(winkler_t), intent(in) :: self
+    real(dp), intent(in) :: penetration
+    associate (d => penetration/self%clearance)
+      tangent = sqrt(d)*sqrt(2 + d)
+    end associate
+  end function tangent
+
+  !> k Rb L c [D a + (a - sin a)]; a small difference a - sin a as its series.
+  pure function elastic_force(self, penetration) result(force)
+    class(winkler_t), intent(in) :: self
+    real(dp), value, intent(in) :: penetration
+    real(dp) :: force, a, difference, term
+    integer :: k
+    a = atan(tangent(self, penetration))
+    difference = a - sin(a)
+    if (a < 0.6_dp) then
+      term = a**3/6
+      difference = term
+      do k = 2, 8
+        term = -term*a**2/((2*k)*(2*k + 1))
+        difference = difference + term
+      end do
+    end if
+    force = self%bedding*(penetration*a + self%clearance*difference)
+  end function elastic_force
+
+  !> The stiffness is k Rb L (a + sin a cos a).
+  pure function slope(self, penetration, force)
+    class(winkler_t), intent(in) :: self
+    real(dp), intent(in) :: penetration, force
+    real(dp) :: slope, t
+    t = tangent(self, penetration)
+    slope = force/self%elastic_force(penetration)*self%bedding*(atan(t) + t/(1 + t**2))
+  end function slope
+
+  !> k Rb L [(c + delta)^2 (a + sin a cos a)/2 - 2 (c + delta) c sin a + c^2 a], with t = tan a: k Rb L c^2 [(3 + t^2) a - 3 t]/2;
+  !> where t is small its series 2/15 t^5 - 4/35 t^7 + ...
+  pure real(dp) function elastic_energy(self, penetration) result(energy)
+    class(winkler_t), intent(in) :: self
+    real(dp), intent(in) :: penetration
+    real(dp) :: t
+    integer :: k
+    t = tangent(self, penetration)
+    if (t < 0.3_dp) then
+      energy = 0
+      do k = 20, 2, -1
+        energy = 2*(k - 1)/(4*k**2 - 1.0_dp) - t**2*energy
+      end do
+      energy = energy*t**5
+    else
+      energy = ((3 + t**2)*atan(t) - 3*t)/2
+    end if
+    energy = energy*self%bedding*self%clearance**2
+  end function elastic_energy
+
+  !> The liner's thickness [m].
+  pure real(dp) function deepest(self)
+    class(winkler_t), intent(in) :: self
+    deepest = huge(deepest)
+    if (self%liner_thickness > 0) deepest = self%liner_thickness
+  end function deepest
+end module winkler
