@@ -37,7 +37,7 @@ contains
     end function rate
   end function speed_given_back
 
-  !> What the damping chi of Lankarani and Nikravesh gives back: root in (0,1] of chi (1 + x) = ln[(1 + chi)/(1 - chi x)].
+  !> What the damping chi gives back: root in (0,1] of chi (1 + x) = ln[(1 + chi)/(1 - chi x)].
   pure real(dp) function exact_restitution(chi) result(root)
     real(dp), intent(in) :: chi
     real(dp) :: low, high
@@ -45,7 +45,7 @@ contains
     root = 1 - 2*chi/3   ! to first order, where the difference below is rounding
     if (chi < 1e-5_dp) return
     low = 0
-    high = 1
+    high = min(1.0_dp, 1/chi)
     do i = 1, 60
       root = (low + high)/2
       if (chi*(1 + root) > log((1 + chi)/(1 - chi*root))) then

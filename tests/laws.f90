@@ -28,16 +28,21 @@ module laws
 
 contains
 
-  !> The contact law of a group &contact with these keys.
-  subroutine contact_law_of(keys, law, error)
+  !> The contact law of a group &contact with these keys, in the bearing of the case or in another one.
+  subroutine contact_law_of(keys, law, error, bearing)
     character(len=*), intent(in) :: keys
     class(contact_law_t), allocatable, intent(out) :: law
     type(error_t), allocatable, intent(out) :: error
+    type(bearing_t), intent(in), optional :: bearing
     type(case_t) :: case
     call read_keys('&contact '//keys//' /', case, error)
     if (allocated(error)) return
     allocate (law, source=case%joint%contact)
-    call law%prepare(case%joint%bearing(case%mechanism%rod_length))
+    if (present(bearing)) then
+      call law%prepare(bearing)
+    else
+      call law%prepare(case%joint%bearing(case%mechanism%rod_length))
+    end if
   end subroutine contact_law_of
 
   !> The friction law of a group &friction with these keys.

@@ -16,6 +16,7 @@ program gudgeon_tests
   use test_command_line, only: run_test_command_line
   use test_contact, only: run_test_contact
   use test_crank_pin, only: run_test_crank_pin
+  use test_contact_geometries, only: run_test_contact_geometries
   use test_crank_turns, only: run_test_crank_turns
   use test_cycle_watch, only: run_test_cycle_watch
   use test_coordinates, only: run_test_coordinates
@@ -32,6 +33,7 @@ program gudgeon_tests
   use test_pinkus_sternlicht, only: run_test_pinkus_sternlicht
   use test_radau, only: run_test_radau
   use test_reference, only: run_test_reference
+  use test_restitution, only: run_test_restitution
   use test_result_file, only: run_test_result_file
   use test_run_figures, only: run_test_run_figures
   use test_resume, only: run_test_resume
@@ -68,6 +70,8 @@ program gudgeon_tests
   call run('command_line', run_test_command_line)
   call run('contact', run_test_contact)
   call run('crank_pin', run_test_crank_pin)
+  call run('contact_geometries', run_test_contact_geometries)
+  call run('restitution', run_test_restitution)
   call run('crank_turns', run_test_crank_turns)
   call run('cycle_watch', run_test_cycle_watch)
   call run('coordinates', run_test_coordinates)

@@ -3,6 +3,8 @@ module test_contact
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, status_case_file
   use checks, only: checks_t
+  use case_definition, only: case_t
+  use case_file, only: parse_case
   use contact_law, only: contact_law_t, ratio_limit
   use laws, only: contact_law_of
   use contact_stiffness, only: hertz_stiffness, valid_impact_speed
@@ -23,6 +25,7 @@ contains
     call test_dissipation(check)
     call test_extremes(check)
     call test_factory(check)
+    call test_refusals(check)
   end subroutine run_test_contact
 
   subroutine test_stiffness(check)
@@ -177,4 +180,65 @@ contains
       'the refusal names the laws')
     call check%that(error%status == status_case_file, 'the refusal is a case file error')
   end subroutine test_factory
+
+  !> One line for each thing that cannot be.
+  subroutine test_refusals(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: joint = "kind='clearance' clearance=20e-6 bearing_radius=10e-3"
+    character(len=*), parameter :: whole = joint//' bearing_length=15e-3'
+    call refused(joint, "geometry='johnson'", "&joint bearing_length: required with contact geometry = 'johnson' (m)")
+    call refused(joint//' bearing_length=0', "geometry='winkler' bedding_modulus=1e13", &
+      '&joint bearing_length = 0: must be > 0 (m)')
+    call refused("kind='clearance' clearance=4.9e-6 bearing_radius=10e-3 bearing_length=15e-3", "geometry='pereira'", &
+      "&joint clearance = 4.9e-6: must be >= 5e-6 and <= 1e-2 with contact geometry = 'pereira' (m)")
+    call refused(whole, "geometry='sphere'", '&contact geometry = sphere: must be one of hertz_sphere, johnson, conformal, '// &
+      'pereira, winkler', line=.true.)
+    call refused(whole, "geometry='conformal' stiffness=1e9", "&contact stiffness = 1e9: is for geometry = 'hertz_sphere' "// &
+      "alone and must not be given with 'conformal' (N/m^exponent)")
+    call refused(whole, "geometry='johnson' exponent=1.4", "&contact exponent = 1.4: is for geometry = 'hertz_sphere' alone "// &
+      "and must not be given with 'johnson'")
+    call refused(whole, "geometry='johnson' exponent=1.5 stiffness=0", '')
+    call refused(whole, "geometry='conformal' housing_compliance=-0.6", '&contact housing_compliance = -0.6: must be >= -0.5')
+    call refused(whole, "geometry='winkler'", "&contact bedding_modulus: required with geometry = 'winkler', or "// &
+      'liner_modulus and liner_thickness (Pa/m)')
+    call refused(whole, "geometry='winkler' liner_modulus=3e9", '&contact liner_thickness: required with liner_modulus (m)')
+    call refused(whole, "geometry='winkler' liner_thickness=1e-3", '&contact liner_modulus: required with liner_thickness (Pa)')
+    call refused(whole, "geometry='winkler' bedding_modulus=1e13 liner_modulus=3e9 liner_thickness=1e-3", &
+      '&contact bedding_modulus = 1e13: must not be given together with liner_modulus or liner_thickness (Pa/m)')
+    call refused(whole, "geometry='winkler' liner_modulus=3e9 liner_thickness=1e-3 liner_poissons_ratio=0.5", &
+      '&contact liner_poissons_ratio = 0.5: must be >= 0 and <= 0.49')
+    call refused(whole, "law='exact' restitution=0.009", "&contact restitution = 0.009: must be >= 0.01 with law = 'exact'")
+    call refused(whole, "law='gonthier' restitution=0", "&contact restitution = 0: must be >= 0.01 with law = 'gonthier'")
+    call refused(whole, "law='zhiying_qishao' restitution=0", '')
+    call refused(whole, "law='flores' restitution=0.5 dissipation=0.3", '&contact dissipation = 0.3: must not be given '// &
+      'together with restitution = 0.5; contact.restitution=0.9 takes that back')
+    call refused(whole, "dissipation=-1", '&contact dissipation = -1: must be > 0 (s/m)')
+    call refused(whole, "law='impact' damping=10", "&contact full_damping_depth: required with law = 'impact' (m)")
+    call refused(whole, "law='impact' damping=-1 full_damping_depth=1e-6", '&contact damping = -1: must be >= 0 (N s/m)')
+
+  contains
+
+    !> The case is refused with this message, with or without a line in front of it; '': it is not refused.
+    subroutine refused(joint_keys, contact_keys, message, line)
+      character(len=*), intent(in) :: joint_keys, contact_keys, message
+      logical, intent(in), optional :: line
+      type(case_t) :: case
+      type(error_t), allocatable :: error
+      character(len=:), allocatable :: got, at
+      character(len=1) :: nothing(0)
+      at = 'x.nml: '
+      if (present(line)) at = 'x.nml:1: '
+      call parse_case('&mechanism crank_length=0.05 crank_mass=1 crank_inertia=1 rod_length=0.2 rod_mass=1 rod_inertia=1 '// &
+        'piston_mass=1 / &initial crank_speed=100 / &integrator revolutions=1 / &joint '//joint_keys//' / &contact '// &
+        contact_keys//' /', 'x.nml', nothing, case, error)
+      got = ''
+      if (allocated(error)) got = error%message
+      if (message == '') then
+        call check%equal_text(got, '', 'taken: '//contact_keys)
+      else
+        call check%equal_text(got, at//message, &
+          'refused: '//contact_keys)
+      end if
+    end subroutine refused
+  end subroutine test_refusals
 end module test_contact

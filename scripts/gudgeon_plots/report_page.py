@@ -168,6 +168,10 @@ def warnings(run: Run) -> list[str]:
             f"{beyond:.0f} of {number('contacts') or 0:.0f} impacts were faster than the contact law's limit of "
             "validity, 1e-5 √(E/ρ)."
         )
+    if (deep := number("contacts_beyond_validity") or 0) > 0:
+        found.append(
+            f"{deep:.0f} of {number('contacts') or 0:.0f} contacts went deeper than the contact geometry is meant for."
+        )
     if (residual := number("max_energy_residual_relative") or 0) > 1e-6:
         found.append(f"The energy balance is open by {residual:.1e} of the energy: tighten the tolerance.")
     if run.clearance and (deepest := number("max_penetration") or 0) > 0.1 * run.clearance:

@@ -26,8 +26,8 @@ contains
     least_restitution = 0.01_dp
   end function least_restitution
 
-  !> With d = chi e and y = -ln(1 - d) the equation is d (1 + 1/e) - ln(1 + d/e) - y = 0. Where e is next to 1 its terms
-  !> cancel, and two terms of the series of chi say it closer.
+  !> With d = chi e and y = -ln(1 - d) the equation is d (1 + 1/e) - ln(1 + d/e) - y = 0: by bisection. Where e is next to 1 the
+  !> terms cancel, and two terms of the series of chi say it closer.
   pure real(dp) function damping_for(restitution) result(damping)
     real(dp), intent(in) :: restitution
     real(dp) :: low, high, y, d
@@ -40,14 +40,32 @@ contains
       do i = 1, 200
         y = (low + high)/2
         if (.not. (y > low .and. y < high)) exit
-        d = 1 - exp(-y)
-        if (d*(1 + 1/e) - log(1 + d/e) > y) then
+        d = one_minus_exp(y)
+        if (d*(1 + 1/e) - log_of_one_plus(d/e) > y) then
           low = y
         else
           high = y
         end if
       end do
-      damping = (1 - exp(-y))/e
+      damping = one_minus_exp(y)/e
     end associate
   end function damping_for
+
+  !> 1 - exp(-y), close where y is small too (Kahan).
+  pure real(dp) function one_minus_exp(y)
+    real(dp), intent(in) :: y
+    associate (u => exp(-y))
+      one_minus_exp = y
+      if (u < 1) one_minus_exp = (1 - u)*(y/(-log(u)))
+    end associate
+  end function one_minus_exp
+
+  !> ln(1 + x), close where x is small too (Kahan).
+  pure real(dp) function log_of_one_plus(x)
+    real(dp), intent(in) :: x
+    associate (u => 1 + x)
+      log_of_one_plus = x
+      if (u > 1) log_of_one_plus = log(u)*(x/(u - 1))
+    end associate
+  end function log_of_one_plus
 end module exact_restitution

@@ -104,6 +104,7 @@ contains
       call add(prefix//'max_penetration', real_text(pin%max_penetration, case%output%digits), 'm')
       call add(prefix//'max_entry_penetration', real_text(pin%max_entry_penetration), 'm')
       call add(prefix//'impacts_beyond_validity', integer_text(pin%impacts_beyond_validity), '1')
+      call add(prefix//'contacts_beyond_validity', integer_text(pin%contacts_beyond_validity), '1')
     end subroutine add_joint
 
     subroutine add(quantity, value, unit)

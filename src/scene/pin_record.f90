@@ -17,6 +17,7 @@ module pin_record
     integer :: pin = piston_pin                !! of the chain
     integer :: joint = 0                       !! which of the scene's is there; 0: the pin is ideal
     real(dp) :: validity_limit = huge(1.0_dp)  !! largest impact speed that the contact law is meant for [m/s]
+    real(dp) :: deepest = huge(1.0_dp)         !! largest penetration that its geometry is meant for [m]
     type(trace_event_t), private :: contact    !! the present or the last one
     type(peak_watch_t), private :: peaks
   contains
@@ -43,8 +44,11 @@ contains
     self%peaks%pin = self%pin
     self%peaks%joint = self%joint
     if (self%joint == 0) return
-    if (allocated(scene%joints(self%joint)%contact)) &
-      self%validity_limit = scene%joints(self%joint)%contact%geometry%fastest_impact()
+    if (.not. allocated(scene%joints(self%joint)%contact)) return
+    associate (geometry => scene%joints(self%joint)%contact%geometry)
+      self%validity_limit = geometry%fastest_impact()
+      self%deepest = geometry%deepest()
+    end associate
   end subroutine prepare
 
   !> The run begins at t with what has been evaluated there.
@@ -120,6 +124,8 @@ contains
       f%min_film_thickness = min(f%min_film_thickness, -values(of_penetration))
       if (self%is_touching(scene)) then
         f%max_penetration = max(f%max_penetration, values(of_penetration))
+        if (contact%max_penetration <= self%deepest .and. values(of_penetration) > self%deepest) &
+          f%contacts_beyond_validity = f%contacts_beyond_validity + 1
         contact%max_penetration = max(contact%max_penetration, values(of_penetration))
         contact%max_normal_force = max(contact%max_normal_force, values(of_normal_force))
       end if

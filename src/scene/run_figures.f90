@@ -11,6 +11,7 @@ module run_figures
   type :: pin_figures_t
     integer :: contacts = 0                   !! contacts begun
     integer :: impacts_beyond_validity = 0    !! of them faster than the contact law is meant for
+    integer :: contacts_beyond_validity = 0   !! and deeper than its geometry is meant for
     real(dp) :: contact_time = 0              !! [s]
     real(dp) :: max_penetration = 0           !! [m]
     real(dp) :: max_entry_penetration = 0     !! penetration at the beginning of a contact [m]
@@ -56,6 +57,7 @@ contains
     type(archive_t), intent(inout) :: archive
     call archive%exchange(self%contacts)
     call archive%exchange(self%impacts_beyond_validity)
+    call archive%exchange(self%contacts_beyond_validity)
     call archive%exchange(self%contact_time)
     call archive%exchange(self%max_penetration)
     call archive%exchange(self%max_entry_penetration)
