@@ -1,11 +1,9 @@
 !> Adams where the problem is not stiff, Radau where it is, chosen while integrating.
 !>
-!> Every phase of the problem (its `mode`) begins with the method that it ended with the last time, at first with Adams
-!> unless the damping in the Jacobian promises that it would be bound by its stability. A
-!> phase in which Adams is bound by its stability for a number of steps goes on with Radau from the same point. What
-!> Radau costs in a mode is then held against what Adams would have cost, its price per time while it was bound carried on in
-!> proportion to the stiffness: where Radau turns out dearer on the whole, the phase goes back and asks for more
-!> patience the next time.
+!> Every phase of the problem (its `mode`) begins with the method that it ended with the last time, at first with Adams. A
+!> phase in which Adams is bound by its stability for a number of steps goes on with Radau from the same point. What Radau then
+!> costs in this mode is held against what Adams would need, which is proportional to the rate of the fastest mode; where it comes
+!> to a loss, the phase goes back and asks for more patience the next time.
 module auto_method
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t
@@ -18,32 +16,20 @@ module auto_method
   public :: auto_t
 
   integer, parameter :: first_patience = 40    !! steps bound by stability, more than not, before Radau takes over
-  integer, parameter :: trial_steps = 30       !! of Radau, before its cost is judged
-  real(dp), parameter :: fair_trial = 1.5_dp   !! it is too dear above this factor: what Adams would cost is an estimate
-  integer, parameter :: bad_trial_steps = 12   !! after so many steps it is judged too,
-  real(dp), parameter :: bad_trial = 3         !! by this factor
-  integer, parameter :: most_patience = 400    !! each change that did not pay doubles the patience up to this
-  real(dp), parameter :: stiff_start = 250.0_dp  !! damping rate times the span from which Radau begins at once, and
-  real(dp), parameter :: start_price = 1.3_dp  !! what Adams is then taken to cost, in evaluations per 1/damping rate
+  real(dp), parameter :: adams_price = 1.3_dp  !! of Adams where it is bound, in evaluations per 1/rate of the fastest mode
   real(dp), parameter :: step_overhead = 5     !! of a Radau step, Jacobian and algebra, in evaluations
+  real(dp), parameter :: most_loss = 150       !! by Radau in a mode, in evaluations, before Adams is back
 
   type, extends(ode_method_t) :: auto_t
     private
     type(adams_t) :: adams
     type(radau_t) :: radau
-    logical :: stiff = .false.                 !! Radau is at work
-    logical, allocatable :: stiff_in(:)        !! the mode ended with Radau; this and what follows (0:highest mode)
-    logical, allocatable :: known(:)           !! the mode has begun before
-    integer :: mode = 0                        !! of the present phase
-    integer :: bound = 0                       !! steps of Adams bound by stability, more than not
-    integer, allocatable :: patience(:)
-    real(dp) :: adams_price = 0                !! evaluations per time of Adams while it was bound
-    real(dp) :: stiffness_then = 0             !! bound of the fastest mode's rate at that time; the price goes with it
-    integer :: evaluations_then = 0            !! evaluations when Adams came to be bound, and
-    real(dp) :: time_then = 0                  !! when that was
-    integer, allocatable :: trial(:)           !! steps of Radau in each mode since it took over
-    real(dp), allocatable :: spent(:)          !! what it has cost in each mode, in evaluations
-    real(dp), allocatable :: saved(:)          !! what Adams would have cost instead
+    logical :: stiff = .false.            !! Radau is at work
+    logical, allocatable :: stiff_in(:)   !! the mode ended with Radau, (0:highest mode)
+    integer :: mode = 0                   !! of the present phase
+    integer :: bound = 0                  !! steps of Adams bound by stability, more than not
+    integer, allocatable :: patience(:)   !! in each mode, as what follows
+    real(dp), allocatable :: loss(:)      !! evaluations that Radau has taken more than Adams would have
   contains
     procedure :: start
     procedure :: step
@@ -73,7 +59,6 @@ contains
       call self%adams%prepare(problem)
     end if
     self%mode = problem%mode
-    if (.not. self%known(self%mode)) call look_ahead(self, problem, t, y)
     call begin_with(self, problem, self%stiff_in(self%mode), t, y, first, status)
   end subroutine start
 
@@ -81,12 +66,10 @@ contains
   pure subroutine forget_modes(self, highest)
     class(auto_t), intent(inout) :: self
     integer, intent(in) :: highest
-    if (allocated(self%known)) deallocate (self%stiff_in, self%known, self%patience, self%trial, self%spent, self%saved, &
-      self%time_with)
-    allocate (self%stiff_in(0:highest), self%known(0:highest), source=.false.)
+    if (allocated(self%stiff_in)) deallocate (self%stiff_in, self%patience, self%loss, self%time_with)
+    allocate (self%stiff_in(0:highest), source=.false.)
     allocate (self%patience(0:highest), source=first_patience)
-    allocate (self%trial(0:highest), source=0)
-    allocate (self%spent(0:highest), self%saved(0:highest), source=0.0_dp)
+    allocate (self%loss(0:highest), source=0.0_dp)
     allocate (self%time_with(2, 0:highest), source=0.0_dp)
   end subroutine forget_modes
 
@@ -103,33 +86,12 @@ contains
     call self%radau%exchange(problem, archive)
     call archive%exchange(self%stiff)
     call archive%exchange(self%stiff_in)
-    call archive%exchange(self%known)
     call archive%exchange(self%mode)
     call archive%exchange(self%bound)
     call archive%exchange(self%patience)
-    call archive%exchange(self%adams_price)
-    call archive%exchange(self%stiffness_then)
-    call archive%exchange(self%evaluations_then)
-    call archive%exchange(self%time_then)
-    call archive%exchange(self%trial)
-    call archive%exchange(self%spent)
-    call archive%exchange(self%saved)
+    call archive%exchange(self%loss)
     call archive%exchange(self%time_with)
   end subroutine exchange
-
-  !> A mode that begins for the first time: whether it is stiff beyond doubt.
-  subroutine look_ahead(self, problem, t, y)
-    class(auto_t), intent(inout) :: self
-    class(ode_problem_t), intent(in) :: problem
-    real(dp), intent(in) :: t, y(:)
-    real(dp) :: rate
-    self%known(self%mode) = .true.
-    if (problem%n_positions + problem%n_states() == 0) return
-    call self%radau%damping_rate(problem, t, y, rate)
-    self%stiff_in(self%mode) = rate*self%settings%span > stiff_start
-    self%adams_price = start_price*rate
-    self%stiffness_then = rate
-  end subroutine look_ahead
 
   !> Start a method at (t, y); the statistics go with it.
   subroutine begin_with(self, problem, stiff, t, y, first, status)
@@ -163,67 +125,35 @@ contains
     integer :: bound_before, evaluations_before
 
     status = step_done
-    if (self%stiff) then
-      if (radau_is_dearer(self)) then
-        self%patience(self%mode) = min(2*self%patience(self%mode), most_patience)
+    associate (mode => self%mode)
+      if (self%stiff .and. self%loss(mode) > most_loss) then
+        self%patience(mode) = 2*self%patience(mode)
         call change_over(self, problem, .false., status)
+      else if (.not. self%stiff .and. self%bound >= self%patience(mode)) then
+        self%loss(mode) = 0
+        call change_over(self, problem, .true., status)
       end if
-    else if (self%bound >= self%patience(self%mode)) then
-      self%adams_price = (self%adams%statistics%evaluations - self%evaluations_then) &
-        /max(self%t - self%time_then, tiny(1.0_dp))
-      self%stiffness_then = 0
-      self%trial(self%mode) = 0
-      call change_over(self, problem, .true., status)
-    end if
-    if (status /= step_done) return
-
-    if (self%stiff) then
-      evaluations_before = self%radau%statistics%evaluations
-      call self%radau%step(problem, status)
       if (status /= step_done) return
-      call take_over(self, self%radau)
-      call keep_account(self, self%radau%statistics%evaluations - evaluations_before)
-    else
-      bound_before = self%adams%statistics%limited_by(limit_stability)
-      self%adams%rough_time = self%rough_time
-      call self%adams%step(problem, status)
-      if (status == step_done) call take_over(self, self%adams)
-      if (self%adams%statistics%limited_by(limit_stability) > bound_before) then
-        if (self%bound == 0) then
-          self%evaluations_then = self%adams%statistics%evaluations
-          self%time_then = self%t
-        end if
-        self%bound = self%bound + 1
-      else
-        self%bound = max(0, self%bound - 1)
+      if (self%stiff) then
+        evaluations_before = self%radau%statistics%evaluations
+        call self%radau%step(problem, status)
+        if (status /= step_done) return
+        call take_over(self, self%radau)
+        self%loss(mode) = self%loss(mode) + self%radau%statistics%evaluations - evaluations_before + step_overhead &
+          - adams_price*self%radau%fastest_rate()*(self%t - self%t_old)
+        return
       end if
+    end associate
+    bound_before = self%adams%statistics%limited_by(limit_stability)
+    self%adams%rough_time = self%rough_time
+    call self%adams%step(problem, status)
+    if (status == step_done) call take_over(self, self%adams)
+    if (self%adams%statistics%limited_by(limit_stability) > bound_before) then
+      self%bound = self%bound + 1
+    else
+      self%bound = max(0, self%bound - 1)
     end if
   end subroutine step
-
-  !> Enter a step of Radau into the account of its mode.
-  subroutine keep_account(self, evaluations)
-    class(auto_t), intent(inout) :: self
-    integer, intent(in) :: evaluations
-    real(dp) :: stiffness
-    stiffness = self%radau%spectral_bound()
-    if (.not. self%stiffness_then > 0) self%stiffness_then = stiffness
-    associate (mode => self%mode)
-      self%trial(mode) = self%trial(mode) + 1
-      self%spent(mode) = self%spent(mode) + evaluations + step_overhead
-      if (self%stiffness_then > 0) self%saved(mode) = self%saved(mode) &
-        + self%adams_price*(stiffness/self%stiffness_then)*(self%t - self%t_old)
-    end associate
-  end subroutine keep_account
-
-  !> Whether Radau has cost more in the present mode than Adams would have; not asked before a number of steps, a smaller
-  !> number where it is much more.
-  pure logical function radau_is_dearer(self)
-    class(auto_t), intent(in) :: self
-    associate (mode => self%mode)
-      radau_is_dearer = self%trial(mode) >= trial_steps .and. self%spent(mode) > fair_trial*self%saved(mode) &
-        .or. self%trial(mode) >= bad_trial_steps .and. self%spent(mode) > bad_trial*self%saved(mode)
-    end associate
-  end function radau_is_dearer
 
   !> Go on with the other method from where we are.
   subroutine change_over(self, problem, stiff, status)
@@ -231,20 +161,23 @@ contains
     class(ode_problem_t), intent(in) :: problem
     logical, intent(in) :: stiff
     integer, intent(out) :: status
-    type(step_statistics_t) :: so_far
     self%stiff_in(self%mode) = stiff
     self%adams%goes_on = .true.
     call begin_with(self, problem, stiff, self%t, self%y, .false., status)
     self%adams%goes_on = .false.
-    so_far = self%totals()
-    so_far%restarts = so_far%restarts - 1   ! not one that the problem asked for
-    so_far%switches = so_far%switches + 1
     if (stiff) then
-      self%radau%statistics = so_far
+      call count_change(self%radau%statistics)
     else
-      self%adams%statistics = so_far
+      call count_change(self%adams%statistics)
     end if
   end subroutine change_over
+
+  !> A change-over, which is no restart that the problem asked for.
+  pure subroutine count_change(statistics)
+    type(step_statistics_t), intent(inout) :: statistics
+    statistics%restarts = statistics%restarts - 1
+    statistics%switches = statistics%switches + 1
+  end subroutine count_change
 
   !> The last step of the method at work is ours.
   subroutine take_over(self, method)

@@ -65,7 +65,7 @@ module collocation
     procedure :: keep
     procedure :: filtered_error
     procedure :: polynomial
-    procedure :: jacobian_norms
+    procedure :: fastest_rate
     procedure :: exchange
   end type collocation_t
 
@@ -200,29 +200,24 @@ contains
     self%h_done = self%h
   end subroutine keep
 
-  !> Row-sum norms of a_v and a_p in the weights of the error of the rates.
-  pure subroutine jacobian_norms(self, most_v, most_p)
+  !> An upper bound of the rate of the fastest mode of the last Jacobian: the row-sum norm of a_v and the root of that of a_p, in
+  !> the weights of the error of the rates.
+  pure real(dp) function fastest_rate(self)
     class(collocation_t), intent(in) :: self
-    real(dp), intent(out) :: most_v, most_p
-    real(dp) :: row_v, row_p
-    integer :: i, j
+    real(dp) :: most_v, most_p, size_of(self%m + self%k)
+    integer :: i
+    size_of = 1/max(self%inverse_weight(:self%m + self%k), tiny(most_v))
+    size_of(:self%m) = size_of(self%m + 1:2*self%m)   ! positions are measured as rates, since a_p is the square of one
     most_v = 0
     most_p = 0
     do i = 1, self%k
-      row_v = 0
-      row_p = 0
       associate (weight => self%inverse_weight(self%m + i))
-        do j = 1, self%k
-          row_v = row_v + abs(self%a_v(i, j))*weight/max(self%inverse_weight(self%m + j), tiny(weight))
-        end do
-        do j = 1, self%m   ! measured as a rate, since a_p is the square of one
-          row_p = row_p + abs(self%a_p(i, j))*weight/max(self%inverse_weight(self%m + j), tiny(weight))
-        end do
+        most_v = max(most_v, weight*sum(abs(self%a_v(i, :))*size_of(self%m + 1:)))
+        most_p = max(most_p, weight*sum(abs(self%a_p(i, :))*size_of(:self%m)))
       end associate
-      most_v = max(most_v, row_v)
-      most_p = max(most_p, row_p)
     end do
-  end subroutine jacobian_norms
+    fastest_rate = max(most_v, sqrt(most_p))
+  end function fastest_rate
 
   !> One over the product of the distances of each node 0, c_1, ..., c_s from the others.
   pure function inverse_node_products(formula) result(per_node)

@@ -40,8 +40,7 @@ module radau
     real(dp), allocatable :: y_try(:), y_new(:), f_new(:), error(:)
   contains
     procedure :: prepare
-    procedure :: spectral_bound
-    procedure :: damping_rate
+    procedure :: fastest_rate
     procedure :: start
     procedure :: step
     procedure :: interpolate
@@ -70,14 +69,6 @@ module radau
       class(ode_problem_t), intent(in) :: problem
       type(archive_t), intent(inout) :: archive
     end subroutine exchange
-
-    !> The same of the damping alone, a_v, at (t, y): how stiff a phase is that begins there. Takes one Jacobian.
-    module subroutine damping_rate(self, problem, t, y, rate)
-      class(radau_t), intent(inout) :: self
-      class(ode_problem_t), intent(in) :: problem
-      real(dp), intent(in) :: t, y(:)
-      real(dp), intent(out) :: rate
-    end subroutine damping_rate
 
     !> The formula to start with: the looser the tolerance the lower.
     pure integer module function first_level(self)
@@ -143,14 +134,11 @@ module radau
 
 contains
 
-  !> An upper bound of the rate of the fastest mode of the last Jacobian: the norm of a_v and the root of that of a_p, in the
-  !> weights of the error.
-  pure real(dp) function spectral_bound(self)
+  !> See `fastest_rate` of collocation_t.
+  pure real(dp) function fastest_rate(self)
     class(radau_t), intent(in) :: self
-    real(dp) :: most_v, most_p
-    call self%stages%jacobian_norms(most_v, most_p)
-    spectral_bound = max(most_v, sqrt(most_p))
-  end function spectral_bound
+    fastest_rate = self%stages%fastest_rate()
+  end function fastest_rate
 
   subroutine step(self, problem, status)
     class(radau_t), intent(inout) :: self

@@ -1,4 +1,4 @@
-!> How Radau begins: memory, the first formula and step, how stiff a problem looks.
+!> How Radau begins: memory, the first formula and step.
 submodule (radau) radau_start
   use ode_method, only: start_outside, step_statistics_t
   implicit none
@@ -57,15 +57,6 @@ contains
     call archive%exchange(self%cautious)
     call archive%exchange(self%first)
   end procedure exchange
-
-  module procedure damping_rate
-    real(dp) :: unused
-    self%y = y
-    call weigh(self)
-    self%statistics%jacobians = self%statistics%jacobians + 1
-    call problem%jacobian(t, y, self%stages%a_p, self%stages%a_v)
-    call self%stages%jacobian_norms(rate, unused)
-  end procedure damping_rate
 
   module procedure first_level
     real(dp) :: tolerance
