@@ -33,20 +33,19 @@ module peak_search
 
 contains
 
-  !> Whether the quantity may come above `known` between two samples with slopes, and where it does not rise at the left and fall at
-  !> the right, above them too. It stays below the cubic through them in Bernstein form, with its deviation from the straight line
-  !> counted twice.
-  pure logical function may_peak(left, right, known)
-    type(sample_t), intent(in) :: left, right
-    real(dp), intent(in) :: known
-    real(dp) :: third, inner_left, inner_right, bend, most
-    third = (right%t - left%t)/3
-    inner_left = left%value + third*left%slope
-    inner_right = right%value - third*right%slope
-    bend = max(abs(inner_left - (2*left%value + right%value)/3), abs(inner_right - (left%value + 2*right%value)/3))
-    most = max(left%value, right%value, max(inner_left, inner_right) + bend)
+  !> Whether the quantity may come above `known` between two instants where its values and slopes are given, and, unless it rises at
+  !> the first and falls at the second, above its values there too. It stays below the cubic through them in Bernstein form, with its
+  !> deviation from the straight line counted twice.
+  pure logical function may_peak(t_left, left, left_slope, t_right, right, right_slope, known)
+    real(dp), intent(in) :: t_left, left, left_slope, t_right, right, right_slope, known
+    real(dp), parameter :: third = 1/3.0_dp
+    real(dp) :: rise_left, rise_right, line, most   ! in a third of the time
+    rise_left = third*(t_right - t_left)*left_slope
+    rise_right = third*(t_right - t_left)*right_slope
+    line = third*(right - left)
+    most = max(left + rise_left, right - rise_right) + max(abs(rise_left - line), abs(rise_right - line))
     may_peak = most > known
-    if (.not. (left%slope > 0 .and. right%slope < 0)) may_peak = may_peak .and. most > max(left%value, right%value)
+    if (may_peak .and. .not. (left_slope > 0 .and. right_slope < 0)) may_peak = most > max(left, right)
   end function may_peak
 
   !> Search between two samples with slopes.

@@ -9,7 +9,7 @@ module gudgeon_recorder
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t, limit_stability
   use gudgeon_solver, only: observer_t
-  use chain_motion, only: crank_pin, piston_pin
+  use chain_motion, only: crank_pin, piston_pin, most_pins => n_pins
   use gudgeon_scene, only: scene_t, evaluation_t, event_none, event_contact_begins
   use gudgeon_columns, only: column_list_t, row_values
   use cycle_watch, only: cycle_watch_t
@@ -38,7 +38,8 @@ module gudgeon_recorder
     integer, private :: next_row = 0, steps = 0
     integer, private :: evaluations_then = 0        !! when the present revolution was begun, and then
     real(dp), private :: time_then = 0, angle_then = 0   !! [s], [rad]
-    type(pin_record_t), allocatable, private :: pins(:)
+    integer, private :: n_pins = 1                 !! that have a record
+    type(pin_record_t), private :: pins(most_pins)
     real(dp), allocatable, private :: y(:), values(:)
   contains
     procedure :: prepare
@@ -57,13 +58,11 @@ contains
   subroutine prepare(self, scene)
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
-    if (scene%joint_at(crank_pin) > 0) then
-      allocate (self%pins(2))
-      call self%pins(2)%prepare(crank_pin, scene)
-    else
-      allocate (self%pins(1))
-    end if
     call self%pins(1)%prepare(piston_pin, scene)
+    if (scene%joint_at(crank_pin) > 0) then
+      self%n_pins = 2
+      call self%pins(2)%prepare(crank_pin, scene)
+    end if
     allocate (self%y(scene%n), self%values(size(self%list%id)))
     self%keeps_archives = self%sink%keeps_archives .and. .not. allocated(self%cycles)   ! whose state is not put away
   end subroutine prepare
@@ -83,7 +82,7 @@ contains
       self%start_angle = now%motion%crank_angle
     end if
     if (allocated(self%cycles)) call self%cycles%begin(scene, y, self%initial_energy)
-    do i = 1, size(self%pins)
+    do i = 1, self%n_pins
       if (inside .and. self%pins(i)%is_touching(scene)) call take_contact(self, self%pins(i), event_contact_begins, 0.0_dp, now)
       call self%pins(i)%begin(0.0_dp, now)
       if (inside) call self%pins(i)%take_values(scene, now, self%figures, self%cycles)
@@ -148,7 +147,7 @@ contains
     class(recorder_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(in) :: t, y(scene%n)
     type(evaluation_t) :: now
     logical :: inside, ends
     real(dp) :: t_cycle
@@ -176,7 +175,7 @@ contains
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
     integer :: i
-    do i = 1, size(self%pins)
+    do i = 1, self%n_pins
       call self%pins(i)%search(method, scene, t, now, self%figures, self%cycles)
     end do
   end subroutine search_peaks
@@ -201,7 +200,7 @@ contains
   subroutine look_at(self, scene, t, y, now, inside)
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(in) :: t, y(scene%n)
     type(evaluation_t), intent(out) :: now
     logical, intent(out) :: inside
     self%figures%evaluations = self%figures%evaluations + 1
@@ -212,7 +211,7 @@ contains
   subroutine take_point(self, scene, t, y, now, inside, has_row)
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(in) :: t, y(scene%n)
     type(evaluation_t), intent(in) :: now
     logical, intent(in) :: inside, has_row
     real(dp) :: energy
@@ -224,7 +223,7 @@ contains
       f%max_energy = max(f%max_energy, abs(energy))
       f%max_energy_residual = max(f%max_energy_residual, abs(energy - self%initial_energy - scene%work(y)))
       f%crank_travel = now%motion%crank_angle - self%start_angle
-      do i = 1, size(self%pins)
+      do i = 1, self%n_pins
         if (.not. self%pins(i)%is_touching(scene)) cycle
         associate (contact_time => f%pin(self%pins(i)%pin)%contact_time)
           contact_time = contact_time + (t - f%time)
@@ -247,12 +246,12 @@ contains
 
     select type (problem)
     class is (scene_t)
-      do i = 1, size(self%pins)
+      do i = 1, self%n_pins
         call self%pins(i)%change_phase()
       end do
       if (problem%reported_event(index) == event_none) return
       call look_at(self, problem, t, y, now, inside)
-      do i = 1, size(self%pins)
+      do i = 1, self%n_pins
         if (self%pins(i)%joint == problem%event_of(index)%joint) &
           call take_contact(self, self%pins(i), problem%reported_event(index), t, now)
       end do
@@ -291,7 +290,7 @@ contains
     type(archive_t), intent(inout) :: archive
     integer :: i
     call self%figures%exchange(archive)
-    do i = 1, size(self%pins)
+    do i = 1, self%n_pins
       call self%pins(i)%exchange(archive)
     end do
     call archive%exchange(self%initial_energy)
@@ -314,14 +313,14 @@ contains
   subroutine write_row(self, scene, t, y)
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(in) :: t, y(scene%n)
     type(evaluation_t) :: now
     logical :: inside
     integer :: i
     if (size(self%values) == 0) return
     call look_at(self, scene, t, y, now, inside)
     if (.not. inside) return
-    do i = 1, size(self%pins)   ! for no revolution: these must not depend on whether anybody wants rows
+    do i = 1, self%n_pins   ! for no revolution: these must not depend on whether anybody wants rows
       call self%pins(i)%take_values(scene, now, self%figures)
     end do
     call put_row(self, scene, t, y, now)
@@ -330,7 +329,7 @@ contains
   subroutine put_row(self, scene, t, y, now)
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(in) :: t, y(scene%n)
     type(evaluation_t), intent(in) :: now
     if (size(self%values) == 0) return
     call row_values(self%list, scene, t, now, scene%work(y), self%initial_energy, self%values)

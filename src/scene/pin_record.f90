@@ -21,13 +21,13 @@ module pin_record
     type(trace_event_t), private :: contact    !! the present or the last one
     type(peak_watch_t), private :: peaks
   contains
-    procedure :: prepare
-    procedure :: begin
-    procedure :: change_phase
-    procedure :: search
-    procedure :: take_values
-    procedure :: take_contact
-    procedure :: is_touching
+    procedure, non_overridable :: prepare
+    procedure, non_overridable :: begin
+    procedure, non_overridable :: change_phase
+    procedure, non_overridable :: search
+    procedure, non_overridable :: take_values
+    procedure, non_overridable :: take_contact
+    procedure, non_overridable :: is_touching
     procedure :: exchange
   end type pin_record_t
 
@@ -84,14 +84,14 @@ contains
     type(cycle_watch_t), intent(inout), optional :: cycles
     real(dp) :: known(n_peaks), largest(n_peaks)
     integer :: before
+    logical :: touches
 
-    known = huge(known)
-    associate (f => figures%pin(self%pin))
-      known(of_pin_force) = f%max_force
-      if (self%joint > 0) known(of_penetration) = -f%min_film_thickness
-    end associate
+    touches = self%is_touching(scene)
+    known(of_pin_force) = figures%pin(self%pin)%max_force
+    known(of_penetration:) = huge(known)
+    if (self%joint > 0) known(of_penetration) = -figures%pin(self%pin)%min_film_thickness
     if (present(cycles)) call cycles%lower_to_peaks(self%pin, known)
-    if (self%is_touching(scene)) then
+    if (touches) then
       known(of_penetration) = min(known(of_penetration), self%contact%max_penetration)
       known(of_normal_force) = self%contact%max_normal_force
     end if
@@ -99,7 +99,7 @@ contains
     call self%peaks%search(method, scene, t, now, known, largest)
     figures%evaluations = figures%evaluations + (self%peaks%evaluations - before)
     figures%peak_evaluations = figures%peak_evaluations + (self%peaks%evaluations - before)
-    call put_values(self, scene, largest, figures, cycles)
+    call put_values(self, touches, largest, figures, cycles)
   end subroutine search
 
   !> The quantities that have peaks in one evaluation, for the run, for the present contact and, where it is given, for the present
@@ -110,19 +110,19 @@ contains
     type(evaluation_t), intent(in) :: now
     type(run_figures_t), intent(inout) :: figures
     type(cycle_watch_t), intent(inout), optional :: cycles
-    call put_values(self, scene, self%peaks%values(now), figures, cycles)
+    call put_values(self, self%is_touching(scene), self%peaks%values(now), figures, cycles)
   end subroutine take_values
 
-  subroutine put_values(self, scene, values, figures, cycles)
+  subroutine put_values(self, touches, values, figures, cycles)
     class(pin_record_t), intent(inout) :: self
-    type(scene_t), intent(in) :: scene
+    logical, intent(in) :: touches
     real(dp), intent(in) :: values(n_peaks)
     type(run_figures_t), intent(inout) :: figures
     type(cycle_watch_t), intent(inout), optional :: cycles
     associate (f => figures%pin(self%pin), contact => self%contact)
       f%max_force = max(f%max_force, values(of_pin_force))
       f%min_film_thickness = min(f%min_film_thickness, -values(of_penetration))
-      if (self%is_touching(scene)) then
+      if (touches) then
         f%max_penetration = max(f%max_penetration, values(of_penetration))
         if (contact%max_penetration <= self%deepest .and. values(of_penetration) > self%deepest) &
           f%contacts_beyond_validity = f%contacts_beyond_validity + 1
@@ -130,7 +130,7 @@ contains
         contact%max_normal_force = max(contact%max_normal_force, values(of_normal_force))
       end if
     end associate
-    if (present(cycles)) call cycles%take_peaks(self%pin, self%is_touching(scene), values)
+    if (present(cycles)) call cycles%take_peaks(self%pin, touches, values)
   end subroutine put_values
 
   !> A contact begins or ends at time t; `now` is evaluated before that. `event` is what the trace tells of it.

@@ -34,46 +34,43 @@ module step_peaks
     logical, private :: has_before = .false.      !! there was a piece before the last one in this phase
     real(dp), private :: t_before = 0, t = 0      !! where the last piece began and ended [s]
     real(dp), private :: before(n_peaks) = 0, last(n_peaks) = 0   !! what the quantities were there
-    real(dp), private :: slope(n_peaks) = 0                       !! at t, where it is known
-    logical, private :: knows_slope(n_peaks) = .false.
+    real(dp), private :: slope(n_peaks) = 0       !! of the penetration at t, of forces
+    real(dp), private :: slope_time(n_peaks) = -huge(1.0_dp)   !! when it was found [s]
   contains
-    procedure :: begin
-    procedure :: change_phase
-    procedure :: search
-    procedure :: values
+    procedure, non_overridable :: begin
+    procedure, non_overridable :: change_phase
+    procedure, non_overridable :: search
+    procedure, non_overridable :: values
     procedure :: exchange
   end type peak_watch_t
 
 contains
 
   !> A run begins at t with what has been evaluated there.
-  subroutine begin(self, t, now)
+  pure subroutine begin(self, t, now)
     class(peak_watch_t), intent(inout) :: self
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
     self%fresh = .false.
     self%has_before = .false.
-    call take_end(self, t, now)
+    call stand_at(self, t, self%values(now), rate_of(self, now))
   end subroutine begin
 
-  !> The end of a piece, which is the beginning of the next.
-  pure subroutine take_end(self, t, now)
+  !> The next piece begins at t.
+  pure subroutine stand_at(self, t, values, rate)
     class(peak_watch_t), intent(inout) :: self
-    real(dp), intent(in) :: t
-    type(evaluation_t), intent(in) :: now
+    real(dp), intent(in) :: t, values(n_peaks), rate
     self%t = t
-    self%last = self%values(now)
-    self%knows_slope = .false.
-    if (self%joint == 0) return
-    self%knows_slope(of_penetration) = .true.
-    self%slope(of_penetration) = now%relative(self%joint)%penetration_rate
-  end subroutine take_end
+    self%last = values
+    self%slope(of_penetration) = rate
+  end subroutine stand_at
 
   !> An event has changed the phase of the scene: nothing that was before it tells of what comes.
   pure subroutine change_phase(self)
     class(peak_watch_t), intent(inout) :: self
     self%fresh = .true.
     self%has_before = .false.
+    self%slope_time = -huge(1.0_dp)
   end subroutine change_phase
 
   !> What has been found so far, to or from an archive; not which pin it is.
@@ -88,7 +85,7 @@ contains
     call archive%exchange(self%before)
     call archive%exchange(self%last)
     call archive%exchange(self%slope)
-    call archive%exchange(self%knows_slope)
+    call archive%exchange(self%slope_time)
   end subroutine exchange
 
   !> The quantities in one evaluation.
@@ -104,8 +101,17 @@ contains
     values(of_normal_force) = now%joint(self%joint)%normal_force
   end function values
 
+  !> The rate of the penetration in one evaluation [m/s].
+  pure real(dp) function rate_of(self, now) result(rate)
+    class(peak_watch_t), intent(in) :: self
+    type(evaluation_t), intent(in) :: now
+    rate = 0
+    if (self%joint > 0) rate = now%relative(self%joint)%penetration_rate
+  end function rate_of
+
   !> Search the last step of the method from where the piece before ended, or from its beginning, to t_to, for values above
-  !> `known`. `largest` is the largest value in the piece, its end among them, as far as it has been looked for.
+  !> `known`. `largest` is the largest value in the piece, its end among them, as far as it has been looked for. Most pieces are
+  !> done with by a few comparisons: nothing is copied or called for them.
   subroutine search(self, method, scene, t_to, now, known, largest)
     class(peak_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
@@ -114,32 +120,38 @@ contains
     type(evaluation_t), intent(in) :: now      !! there
     real(dp), intent(in) :: known(n_peaks)     !! huge: not of interest
     real(dp), intent(out) :: largest(n_peaks)
-    type(peak_watch_t) :: next
-    integer :: i
+    real(dp) :: ends(n_peaks), rate
 
-    next%pin = self%pin
-    next%joint = self%joint
-    call take_end(next, t_to, now)
-    largest = next%last
+    ends = self%values(now)
+    rate = rate_of(self, now)
+    largest = ends
     if (self%fresh) then
-      call meet_beginning(self, method, scene, largest(of_normal_force))
-      largest = max(largest, self%last)
+      call meet_beginning(self, method, scene, ends(of_normal_force))
+      largest = max(ends, self%last)
+      self%fresh = .false.
     end if
     if (t_to > self%t) then
-      do i = 1, n_peaks
-        if (known(i) < huge(known)) then
-          if (may_exceed(self, next, i, known(i))) call search_one(self, next, method, scene, i, known(i), largest(i))
-        end if
-      end do
+      if (known(of_pin_force) < huge(known)) call search_force(of_pin_force)
+      if (known(of_normal_force) < huge(known)) call search_force(of_normal_force)
+      if (known(of_penetration) < huge(known)) then
+        if (may_peak(self%t, self%last(of_penetration), self%slope(of_penetration), t_to, ends(of_penetration), rate, &
+          known(of_penetration))) call search_between(self, method, scene, of_penetration, &
+          sample_t(self%t, self%last(of_penetration), self%slope(of_penetration)), sample_t(t_to, ends(of_penetration), rate), &
+          largest(of_penetration))
+      end if
       self%t_before = self%t
       self%before = self%last
       self%has_before = .true.
     end if
-    self%t = next%t
-    self%last = next%last
-    self%slope = next%slope
-    self%knows_slope = next%knows_slope
-    self%fresh = .false.
+    call stand_at(self, t_to, ends, rate)
+
+  contains
+
+    subroutine search_force(i)
+      integer, intent(in) :: i
+      if (may_exceed(self, i, t_to, ends(i), known(i))) &
+        call find_force_peak(self, method, scene, i, t_to, ends(i), known(i), largest(i))
+    end subroutine search_force
   end subroutine search
 
   !> The quantities at the beginning of the step, after a change of phase. In free flight there is no force, and at the beginning
@@ -158,106 +170,115 @@ contains
     if (self%joint > 0) then
       associate (joint => scene%joints(self%joint))
         call joint%look(method%y_old, motion, normal_force)
-        self%t = method%t_old
-        self%last = [normal_force, motion%penetration, normal_force]
-        self%knows_slope = [.false., .true., .false.]
-        self%slope(of_penetration) = motion%penetration_rate
+        call stand_at(self, method%t_old, [normal_force, motion%penetration, normal_force], motion%penetration_rate)
         if (joint%phase == phase_free) return
         if (joint%phase == phase_contact .and. normal_force <= next_to_none*later_force) return
       end associate
     end if
     self%evaluations = self%evaluations + 1
     call scene%evaluate(method%t_old, method%y_old, now, inside)
-    if (inside) call take_end(self, method%t_old, now)
+    if (inside) call stand_at(self, method%t_old, self%values(now), rate_of(self, now))
   end subroutine meet_beginning
 
-  !> Whether a quantity may come above what is known, inside the piece up to `next`. Without slopes it may not where it is too far
-  !> below at both ends for its changes in this piece and the one before, nor where the parabola through three points, with twice
+  !> Whether a force, whose slopes are not known, may come above what is known, inside the piece up to t. It may not where it is too
+  !> far below at both ends for its changes in this piece and the one before, nor where the parabola through three points, with twice
   !> its bend, only rises or only falls.
-  pure logical function may_exceed(self, next, i, known)
+  pure logical function may_exceed(self, i, t, value, known)
     class(peak_watch_t), intent(in) :: self
-    type(peak_watch_t), intent(in) :: next
     integer, intent(in) :: i
-    real(dp), intent(in) :: known
+    real(dp), intent(in) :: t, value, known
     real(dp) :: change, earlier_change, rate, bend
-    if (next%knows_slope(i) .and. self%knows_slope(i)) then
-      may_exceed = may_peak(sample(self, i), sample(next, i), known)
-      return
-    end if
-    change = next%last(i) - self%last(i)
+    change = value - self%last(i)
     earlier_change = 0
     if (self%has_before) earlier_change = self%last(i) - self%before(i)
-    may_exceed = max(self%last(i), next%last(i)) + 2*abs(change) + abs(earlier_change) > known
+    may_exceed = max(self%last(i), value) + 2*abs(change) + abs(earlier_change) > known
     if (.not. (may_exceed .and. self%has_before)) return
-    rate = change/(next%t - self%t)
-    bend = abs(rate - earlier_change/(self%t - self%t_before))*(next%t - self%t)/(next%t - self%t_before)
+    rate = change/(t - self%t)
+    bend = abs(rate - earlier_change/(self%t - self%t_before))*(t - self%t)/(t - self%t_before)
     may_exceed = abs(rate) <= 2*bend
   end function may_exceed
 
-  !> One quantity where the last piece ended.
-  pure type(sample_t) function sample(self, i)
-    class(peak_watch_t), intent(in) :: self
-    integer, intent(in) :: i
-    sample = sample_t(self%t, self%last(i), self%slope(i))
-  end function sample
-
-  !> Search one quantity that may come above what is known, from the end of the last piece to `next`.
-  subroutine search_one(self, next, method, scene, quantity, known, largest)
+  !> Search a force that may come above what is known, up to `value` at t_to: its slopes are found first.
+  subroutine find_force_peak(self, method, scene, quantity, t_to, value, known, largest)
     class(peak_watch_t), intent(inout) :: self
-    type(peak_watch_t), intent(inout) :: next
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: quantity
-    real(dp), intent(in) :: known
+    real(dp), intent(in) :: t_to, value, known
     real(dp), intent(inout) :: largest
-    type(peak_search_t) :: peak
-    real(dp) :: t, y(size(method%y))
-    logical :: is_done
-
-    if (.not. next%knows_slope(quantity)) call find_slope(next, -1)
-    if (.not. self%knows_slope(quantity)) then
-      if (next%slope(quantity) >= 0 .and. next%last(quantity) >= self%last(quantity) .and. self%has_before) return
-      call find_slope(self, 1)
+    type(sample_t) :: left, right
+    left = sample_t(self%t, self%last(quantity), self%slope(quantity))
+    right = sample_t(t_to, value, 0.0_dp)
+    right%slope = slope_at(right, -1)
+    if (self%slope_time(quantity) < self%t) then
+      if (right%slope < 0 .or. right%value < left%value .or. .not. self%has_before) then
+        left%slope = slope_at(left, 1)
+        call search()
+      end if
+    else
+      call search()
     end if
-    if (.not. may_peak(sample(self, quantity), sample(next, quantity), known)) return
-    call peak%begin(sample(self, quantity), sample(next, quantity))
-    do
-      call peak%next_time(t, is_done)
-      if (is_done) exit
-      call peak%take(t, value_at(t))
-    end do
-    largest = max(largest, peak%value(1))
+    self%slope(quantity) = right%slope
+    self%slope_time(quantity) = t_to
 
   contains
 
+    subroutine search()
+      if (may_peak(left%t, left%value, left%slope, right%t, right%value, right%slope, known)) &
+        call search_between(self, method, scene, quantity, left, right, largest)
+    end subroutine search
+
     !> Slope at one end of the piece, by one more value `short` of it, later (1) or earlier (-1).
-    subroutine find_slope(at, way)
-      class(peak_watch_t), intent(inout) :: at
+    real(dp) function slope_at(at, way)
+      type(sample_t), intent(in) :: at
       integer, intent(in) :: way
       real(dp) :: t
-      t = at%t + way*short*(next%t - self%t)
-      at%slope(quantity) = 0
-      if (abs(t - at%t) > 0) at%slope(quantity) = (value_at(t) - at%last(quantity))/(t - at%t)
-      at%knows_slope(quantity) = .true.
-    end subroutine find_slope
+      t = at%t + way*short*(right%t - left%t)
+      slope_at = 0
+      if (abs(t - at%t) > 0) slope_at = (value_inside(self, method, scene, quantity, t) - at%value)/(t - at%t)
+    end function slope_at
+  end subroutine find_force_peak
 
-    !> The quantity inside the step, where the scene is defined.
-    real(dp) function value_at(t)
-      real(dp), intent(in) :: t
-      type(evaluation_t) :: now
-      type(joint_motion_t) :: motion
-      real(dp) :: normal_force
-      logical :: inside
-      call method%interpolate(t, y)
-      if (quantity == of_pin_force) then
-        self%evaluations = self%evaluations + 1
-        call scene%evaluate(t, y, now, inside)
-        value_at = no_peak
-        if (inside) value_at = force_size(now%loads%force(:, self%pin))
-      else
-        call scene%joints(self%joint)%look(y, motion, normal_force)
-        value_at = merge(motion%penetration, normal_force, quantity == of_penetration)
-      end if
-    end function value_at
-  end subroutine search_one
+  !> The peak between two samples, if it is above `largest`.
+  subroutine search_between(self, method, scene, quantity, left, right, largest)
+    class(peak_watch_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: quantity
+    type(sample_t), intent(in) :: left, right
+    real(dp), intent(inout) :: largest
+    type(peak_search_t) :: peak
+    real(dp) :: t
+    logical :: is_done
+    call peak%begin(left, right)
+    do
+      call peak%next_time(t, is_done)
+      if (is_done) exit
+      call peak%take(t, value_inside(self, method, scene, quantity, t))
+    end do
+    largest = max(largest, peak%value(1))
+  end subroutine search_between
+
+  !> A quantity inside the step, where the scene is defined.
+  real(dp) function value_inside(self, method, scene, quantity, t) result(value)
+    class(peak_watch_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: quantity
+    real(dp), intent(in) :: t
+    type(evaluation_t) :: now
+    type(joint_motion_t) :: motion
+    real(dp) :: normal_force, y(size(method%y))
+    logical :: inside
+    call method%interpolate(t, y)
+    if (quantity == of_pin_force) then
+      self%evaluations = self%evaluations + 1
+      call scene%evaluate(t, y, now, inside)
+      value = no_peak
+      if (inside) value = force_size(now%loads%force(:, self%pin))
+    else
+      call scene%joints(self%joint)%look(y, motion, normal_force)
+      value = merge(motion%penetration, normal_force, quantity == of_penetration)
+    end if
+  end function value_inside
 end module step_peaks
