@@ -3,8 +3,8 @@ module case_loader
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t
   use gudgeon_parameters, only: parameter_list_t, law_t, key_t, word_kind
-  use case_definition, only: case_t, visit_case, piston_pin_place
-  use case_schema, only: find_key, find_group, is_listed
+  use case_definition, only: case_t, visit_case
+  use case_schema, only: find_group, is_listed
   use case_values, only: case_values_t
   implicit none
   private
@@ -12,8 +12,9 @@ module case_loader
 
   type, extends(parameter_list_t) :: loader_t
     type(case_values_t), pointer :: values => null()
-    character(len=:), allocatable :: only         !! the one group to set; empty: all
+    logical, allocatable :: only(:)               !! the groups to set, by their places in the table
     character(len=:), allocatable :: group_name   !! the present group
+    integer :: at = 0                             !! its place in the table
     character(len=:), allocatable :: law_name     !! that the case names in it
     logical :: is_loading_law = .false.
     type(error_t), allocatable :: error           !! the first one
@@ -27,17 +28,22 @@ module case_loader
 
 contains
 
-  !> Set every parameter of a case, or those of one group. Defaults that depend on the law chosen are put into the values
+  !> Set every parameter of a case, or those of some groups. Defaults that depend on the law chosen are put into the values
   !> too. Errors: parameters of a law that do not fit together.
   subroutine load_case(values, into, error, only)
     type(case_values_t), intent(inout), target :: values   !! within their limits
     type(case_t), intent(inout) :: into
     type(error_t), allocatable, intent(out) :: error
-    character(len=*), intent(in), optional :: only
+    logical, intent(in), optional :: only(:)   !! by group: what a joint's says may change which laws act in the other, so that with
+                                               !! one group of a joint all are set
     type(loader_t) :: loader
     loader%values => values
-    loader%only = ''
-    if (present(only)) loader%only = only
+    allocate (loader%only(size(values%groups)), source=.true.)
+    if (present(only)) then
+      loader%only = only
+      where (values%groups%place /= '' .or. values%groups%is_law) loader%only = any(only .and. (values%groups%place /= '' .or. &
+        values%groups%is_law))
+    end if
     call visit_case(into, loader)
     if (allocated(loader%error)) call move_alloc(loader%error, error)
   end subroutine load_case
@@ -49,32 +55,23 @@ contains
     character(len=*), intent(in) :: name, says
     logical, intent(in) :: is_model
     character(len=*), intent(in), optional :: place
-    integer :: group
+    integer :: of_place
     associate (unused => says)
     end associate
-    self%group_name = name
+    self%at = find_group(self%values%groups, name)
     if (present(place)) then
-      if (.not. is_model .and. place /= piston_pin_place) self%group_name = place//'.'//name
-      if (is_model) then
-        group = find_group(self%values%groups, place//'.'//name)
-        if (self%values%is_present(group)) self%group_name = place//'.'//name
+      of_place = find_group(self%values%groups, place//'.'//name)
+      if (of_place > 0) then
+        if (.not. is_model .or. self%values%is_present(of_place)) self%at = of_place
       end if
     end if
+    self%group_name = trim(self%values%groups(self%at)%name)
     self%law_name = ''
-    self%sets = self%only == '' .or. self%only == name
-    if (present(place)) self%sets = self%sets .or. is_of_joint(self)
-    self%is_present = self%values%is_present(find_group(self%values%groups, self%group_name))
+    self%sets = self%only(self%at)
+    self%passes = .not. self%sets
+    self%is_present = self%values%is_present(self%at)
     if (allocated(self%chosen)) deallocate (self%chosen)
   end subroutine load_group
-
-  !> Whether the one group to set is a joint's: what one says may change which laws act in the other.
-  pure logical function is_of_joint(self)
-    class(loader_t), intent(in) :: self
-    integer :: group
-    is_of_joint = .false.
-    group = find_group(self%values%groups, self%only)
-    if (group > 0) is_of_joint = self%values%groups(group)%place /= '' .or. self%values%groups(group)%is_law
-  end function is_of_joint
 
   subroutine load_choice(self, key, default, says)
     class(loader_t), intent(inout) :: self
@@ -109,7 +106,12 @@ contains
   pure integer function place_of(self, key)
     class(loader_t), intent(in) :: self
     character(len=*), intent(in) :: key
-    place_of = find_key(self%values%keys, self%group_name, key)
+    associate (group => self%values%groups(self%at))
+      do place_of = group%first, group%last
+        if (self%values%keys(place_of)%name(1:1) == key(1:1) .and. self%values%keys(place_of)%name == key) return
+      end do
+    end associate
+    place_of = 0
   end function place_of
 
   !> A word or a text that is not given has the default of the law that asks for it, which goes into the values too.

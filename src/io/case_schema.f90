@@ -18,6 +18,7 @@ module case_schema
     logical :: is_law = .false.           !! of a law for every joint that has none of its own
     logical :: is_model = .false.
     character(len=100) :: description = ''
+    integer :: first = 1, last = 0        !! its keys in the table
   end type group_definition_t
 
   !> Collects groups and keys. Laws of one group may share a key, which then means the same in all of them.
@@ -77,9 +78,8 @@ contains
   !> The groups of laws that are for the first joint alone: copies of those that are for every joint.
   subroutine add_laws_of_one_joint(schema)
     type(schema_t), intent(inout) :: schema
-    integer :: i, j, n_groups, n_keys
+    integer :: i, j, n_groups
     n_groups = schema%n_groups
-    n_keys = schema%n_keys
     do i = 1, n_groups
       if (schema%groups(i)%place /= piston_pin_place .or. .not. schema%groups(i)%is_model) cycle
       schema%n_groups = schema%n_groups + 1
@@ -87,8 +87,9 @@ contains
       schema%groups(schema%n_groups)%name = piston_pin_place//'.'//trim(schema%groups(i)%name)
       schema%groups(i)%place = ''
       schema%groups(i)%is_law = .true.
-      do j = 1, n_keys
-        if (schema%keys(j)%group /= schema%groups(i)%name) cycle
+      schema%groups(schema%n_groups)%first = schema%n_keys + 1
+      schema%groups(schema%n_groups)%last = schema%n_keys + 1 + schema%groups(i)%last - schema%groups(i)%first
+      do j = schema%groups(i)%first, schema%groups(i)%last
         if (schema%n_keys == size(schema%keys)) call make_room(schema%keys)
         schema%n_keys = schema%n_keys + 1
         schema%keys(schema%n_keys) = schema%keys(j)
@@ -115,7 +116,7 @@ contains
     character(len=*), intent(in), optional :: place
     self%n_groups = self%n_groups + 1
     associate (group => self%groups(self%n_groups))
-      group = group_definition_t(name=name, is_model=is_model, description=says)
+      group = group_definition_t(name=name, is_model=is_model, description=says, first=self%n_keys + 1, last=self%n_keys)
       if (present(place)) then
         group%place = place
         if (place /= piston_pin_place) then
@@ -171,6 +172,7 @@ contains
       place = self%n_keys
       self%keys(place) = key
       self%keys(place)%group = self%groups(self%n_groups)%name
+      self%groups(self%n_groups)%last = place
       if (self%law_name /= '') then
         self%keys(place)%choice = trim(self%keys(self%present_choice)%name)
         self%keys(place)%laws = ''
@@ -248,7 +250,10 @@ contains
     type(group_definition_t), intent(in) :: groups(:)
     character(len=*), intent(in) :: name
     integer :: place
+    character(len=1) :: letter
+    letter = name
     do place = size(groups), 1, -1
+      if (groups(place)%name(1:1) /= letter) cycle
       if (groups(place)%name == name) return
     end do
   end function find_group

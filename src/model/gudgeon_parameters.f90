@@ -39,6 +39,7 @@ module gudgeon_parameters
     class(law_t), allocatable :: chosen   !! the law of the present group that the case names, with its parameters set
     logical :: sets = .false.             !! this visitor sets the parameters of the present group, and `chosen`
     logical :: is_present = .false.       !! while it sets them: the case has the present group
+    logical :: passes = .false.           !! this visitor has no use for the parameters of the present group
   contains
     procedure(visit_parameter), deferred :: visit
     procedure :: group => pass_group
@@ -128,6 +129,7 @@ contains
     logical, intent(in), optional :: only_here         !! not where a law is chosen that does not have it
     type(key_t) :: new
     real(dp) :: values(1)
+    if (self%passes) return
     values = value
     new = described(key, real_kind, says, unit, range, default, example)
     if (present(family)) new%family = family
@@ -144,6 +146,7 @@ contains
     real(dp), intent(inout) :: value(2)
     character(len=*), intent(in), optional :: unit, range, default, example
     type(key_t) :: new
+    if (self%passes) return
     new = described(key, real_kind, says, unit, range, default, example)
     new%count = size(value)
     call self%visit(new, reals=value)
@@ -155,6 +158,7 @@ contains
     character(len=*), intent(in) :: key, says
     integer, intent(inout) :: value
     character(len=*), intent(in), optional :: range, default
+    if (self%passes) return
     call self%visit(described(key, integer_kind, says, range=range, default=default), whole=value)
   end subroutine add_integer
 
@@ -163,6 +167,7 @@ contains
     class(parameter_list_t), intent(inout) :: self
     character(len=*), intent(in) :: key, says, default
     logical, intent(inout) :: value
+    if (self%passes) return
     call self%visit(described(key, logical_kind, says, default=default), switch=value)
   end subroutine add_logical
 
@@ -173,6 +178,7 @@ contains
     character(len=:), allocatable, intent(inout) :: value
     character(len=*), intent(in), optional :: example
     type(key_t) :: new
+    if (self%passes) return
     new = described(key, word_kind, says, default=default, example=example)
     new%words = words
     call self%visit(new, text=value)
@@ -185,6 +191,7 @@ contains
     character(len=:), allocatable, intent(inout) :: value
     logical, intent(in), optional :: many
     type(key_t) :: new
+    if (self%passes) return
     new = described(key, text_kind, says, default=default)
     if (present(many)) new%count = merge(1000, 1, many)
     call self%visit(new, text=value)

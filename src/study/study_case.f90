@@ -21,6 +21,7 @@ module study_case
     type(case_t) :: case                             !! the case of the present run
     type(case_values_t), private :: values
     integer, allocatable, private :: places(:)       !! of the parameters among the keys
+    logical, allocatable, private :: groups(:)       !! of the table: a parameter belongs to it
     logical, allocatable :: is_number(:)             !! a parameter is one number, real or whole
     logical, allocatable :: is_whole(:)              !! it is one whole number
     logical, private :: varies_words = .false.       !! a parameter is a word: it may name a law, which has keys of its own
@@ -28,7 +29,7 @@ module study_case
   contains
     procedure :: prepare
     procedure :: put
-    procedure :: put_one
+    procedure :: convert
     procedure :: check
     procedure :: resolved
   end type study_case_t
@@ -43,11 +44,12 @@ contains
     character(len=*), intent(in) :: path, keys(:), at
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: key
-    integer :: i, dot
+    integer :: i, dot, group
 
     self%values = values
     call complete_case(self%values, path, self%case, error)
     if (allocated(error)) return
+    allocate (self%groups(size(values%groups)), source=.false.)
     allocate (self%places(size(keys)), self%is_number(size(keys)), self%is_whole(size(keys)))
     self%values%values%is_override = .false.   ! to the parameters, all else is the file
     do i = 1, size(keys)
@@ -59,44 +61,42 @@ contains
         self%varies_words = self%varies_words .or. schema%kind == word_kind
         self%is_number(i) = schema%kind <= integer_kind .and. schema%count == 1
         self%is_whole(i) = self%is_number(i) .and. schema%kind == integer_kind
-        self%values%is_present(find_group(values%groups, trim(schema%group))) = .true.
+        group = find_group(values%groups, trim(schema%group))
+        self%groups(group) = .true.
+        self%values%is_present(group) = .true.
         self%values%values(self%places(i))%replaces = self%values%is_said(self%places(i))
         self%values%values(self%places(i))%given(1) = .true.
         self%values%values(self%places(i))%is_override = .true.
       end associate
     end do
-    call take_families(self)
+    do i = 1, size(keys)   ! a parameter takes away what the base case says by other keys of its family
+      if (values%keys(self%places(i))%family /= '') call self%values%prefer(self%places(i))
+    end do
+    call load_case(self%values, self%case, self%wrong, self%groups)
     do i = 1, size(values%keys)   ! of models that the parameters bring in
       if (self%values%is_used(i)) call self%values%check_required(i, error)
       if (allocated(error)) return
     end do
   end subroutine prepare
 
-  !> A parameter takes away what the base case says by other keys of its family.
-  subroutine take_families(self)
-    class(study_case_t), intent(inout) :: self
-    integer :: i
-    do i = 1, size(self%places)
-      if (self%values%keys(self%places(i))%family == '') cycle
-      call self%values%prefer(self%places(i))
-      call load_case(self%values, self%case, self%wrong, trim(self%values%keys(self%places(i))%group))
-    end do
-  end subroutine take_families
-
-  !> Put the values of a run in, without any check of ranges.
+  !> Put the values of a run in, without any check of ranges. Error: see `convert`.
   subroutine put(self, texts, error)
     class(study_case_t), intent(inout) :: self
     character(len=*), intent(in) :: texts(:)
     type(error_t), allocatable, intent(out) :: error
     integer :: i
     do i = 1, size(texts)
-      call self%put_one(i, trim(texts(i)), error)
+      call self%convert(i, trim(texts(i)), error)
       if (allocated(error)) return
     end do
+    !$omp critical (texts)
+    call load_case(self%values, self%case, self%wrong, self%groups)
+    !$omp end critical (texts)
   end subroutine put
 
-  !> Put the value of parameter i in. Error: a text that is no value of its key, told without naming the key.
-  subroutine put_one(self, i, text, error)
+  !> Make the value of parameter i, which `put` puts into the case. Error: a text that is no value of its key, told without naming
+  !> the key.
+  subroutine convert(self, i, text, error)
     class(study_case_t), intent(inout) :: self
     integer, intent(in) :: i
     character(len=*), intent(in) :: text
@@ -104,23 +104,20 @@ contains
     character(len=:), allocatable :: wanted
     associate (place => self%places(i))
       if (.not. self%is_number(i)) then
-        call put_other(self, text, place, error)
+        call convert_other(self, text, place, error)
+        return
       else if (self%values%keys(place)%kind == real_kind) then
         call read_real(text, self%values%values(place)%reals(1), wanted)
       else
         call read_integer(text, self%values%values(place)%whole, wanted)
       end if
-      if (self%is_number(i)) self%values%values(place)%written(1) = text
+      self%values%values(place)%written(1) = text
       if (allocated(wanted)) call fail(error, wanted, status_case_file)
-      if (allocated(error)) return
-      !$omp critical (texts)
-      call load_case(self%values, self%case, self%wrong, trim(self%values%keys(place)%group))
-      !$omp end critical (texts)
     end associate
-  end subroutine put_one
+  end subroutine convert
 
   !> A value that is a word, a text, a switch or several numbers.
-  subroutine put_other(self, text, place, error)
+  subroutine convert_other(self, text, place, error)
     class(study_case_t), intent(inout) :: self
     character(len=*), intent(in) :: text
     integer, intent(in) :: place
@@ -140,7 +137,7 @@ contains
       call self%values%assign(place, 0, tokens, '', .true., error)
     end if
     !$omp end critical (texts)
-  end subroutine put_other
+  end subroutine convert_other
 
   !> Whether the run that was put in last can be: ranges, and what must hold between values. The error is the run's, not the
   !> study's.

@@ -114,7 +114,7 @@ contains
       do k = 1, sweep%design%runs
         if (study%table == '') exit
         do i = 1, size(table%keys)
-          call sweep%base%put_one(i, table%field(i, k), error)
+          call sweep%base%convert(i, table%field(i, k), error)
           if (.not. allocated(error)) cycle
           error%message = printable(study%table, 200)//':'//integer_text(table%lines(k))//': column '//integer_text(i)//', '// &
             trim(table%keys(i))//' = '//printable(table%field(i, k), 48)//': '//error%message
@@ -123,7 +123,7 @@ contains
       end do
       do i = 1, size(study%parameters)
         do k = 1, size(study%parameters(i)%list)
-          call sweep%base%put_one(i, study%parameters(i)%list(k)%text, error)
+          call sweep%base%convert(i, study%parameters(i)%list(k)%text, error)
           if (.not. allocated(error)) cycle
           error%message = printable(study%file, 200)//': &parameter key = '''//study%parameters(i)%key//''', values = '// &
             printable(study%parameters(i)%list(k)%text, 48)//': '//error%message
