@@ -17,7 +17,7 @@ module belt_problem
   real(dp), parameter :: draw_speed = 0.1_dp !! of the spring's end [m/s]
   real(dp), parameter :: load = 10           !! normal force of the mass on the floor [N]
 
-  !> y = (x, x', work of friction).
+  !> y = (x, x', deflection of the bristles of a law that has them, work of friction).
   type, extends(ode_problem_t) :: belt_t
     type(clearance_joint_t) :: joint     !! its friction, and whether it sticks
     integer :: n_changes = 0
@@ -35,7 +35,7 @@ contains
     class(friction_law_t), intent(in) :: law
     type(belt_t), intent(out) :: belt
     allocate (belt%joint%friction, source=law)
-    belt%n = 3
+    belt%n = 3 + law%n_states
     belt%n_positions = 1
     belt%n_quadratures = 1
     belt%n_events = merge(1, 0, law%set_valued)
@@ -47,13 +47,20 @@ contains
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: inside
-    real(dp) :: friction
+    real(dp) :: friction, ratio
     inside = .true.
     friction = -pull(t, y)
-    if (.not. sticks(self)) friction = load*self%joint%friction%friction_ratio(y(2), self%joint%sliding)
+    associate (law => self%joint%friction)
+      if (law%n_states > 0) then
+        call law%state_friction(y(2), y(3:2 + law%n_states), ratio, dydt(3:2 + law%n_states))
+        friction = load*ratio
+      else if (.not. sticks(self)) then
+        friction = load*law%friction_ratio(y(2), self%joint%sliding)
+      end if
+    end associate
     dydt(1) = y(2)
     dydt(2) = (pull(t, y) + friction)/mass
-    dydt(3) = friction*y(2)
+    dydt(self%n) = friction*y(2)
   end subroutine derivatives
 
   !> Force of the spring [N].
@@ -74,7 +81,7 @@ contains
     type(joint_motion_t), intent(out) :: motion
     type(joint_loads_t), intent(out) :: own
     type(accelerations_t), intent(out) :: accelerations
-    real(dp) :: dydt(3)
+    real(dp) :: dydt(self%n)
     logical :: inside
     call self%derivatives(t, y, dydt, inside)
     motion%normal = [1.0_dp, 0.0_dp]

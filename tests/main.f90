@@ -9,6 +9,7 @@ program gudgeon_tests
   use test_checks, only: run_test_checks
   use test_adams, only: run_test_adams
   use test_adams_order, only: run_test_adams_order
+  use test_bristles, only: run_test_bristles
   use test_case_file, only: run_test_case_file
   use test_chain, only: run_test_chain
   use test_checkpoint, only: run_test_checkpoint
@@ -63,6 +64,7 @@ program gudgeon_tests
   call run('checks', run_test_checks)
   call run('adams', run_test_adams)
   call run('adams_order', run_test_adams_order)
+  call run('bristles', run_test_bristles)
   call run('case_file', run_test_case_file)
   call run('chain', run_test_chain)
   call run('checkpoint', run_test_checkpoint)

@@ -201,7 +201,7 @@ contains
     call refused("law='coulomb' coefficient=0.1 static_coefficient=0.05", less)
     call refused("law='brown_mcphee' coefficient=0.1 static_coefficient=0.05 transition_speed=1", less)
     call refused("law='stribeck' coefficient=0.1 static_coefficient=0.05 transition_speed=1 stribeck_speed=1", less)
-    call refused("law='threlfall' coefficient=0.1 v1=0", 'v1 = 0: must be > 0 (m/s) for threlfall')
+    call refused("law='threlfall' coefficient=0.1 v1=0", 'v1 = 0: threlfall needs a speed: must be > 0 (m/s)')
     call refused("law='brown_mcphee' coefficient=0.1 transition_speed=0", 'transition_speed = 0: must be > 0 (m/s)')
     call refused("law='stribeck' coefficient=0.1 stribeck_speed=-1 transition_speed=1", 'stribeck_speed = -1: must be > 0 (m/s)')
     call refused("law='stribeck' coefficient=0.1 stribeck_speed=1 transition_speed=1 stribeck_exponent=0", &
@@ -229,7 +229,7 @@ contains
     call check%that(allocated(error) .and. .not. allocated(law), 'an unknown friction law is refused')
     if (.not. allocated(error)) return
     call check%equal_text(error%message, "x.nml:1: &friction law = glue: must be one of ambrosio, coulomb, "// &
-      "threlfall, brown_mcphee, stribeck", &
+      "threlfall, brown_mcphee, stribeck, lugre, dahl, elasto_plastic", &
       'the refusal names the laws')
     call check%that(error%status == status_case_file, 'the refusal is a case file error')
   end subroutine test_factory

@@ -7,6 +7,7 @@ module test_friction_runs
   use case_file, only: read_case
   use ode_problem, only: difference_jacobian
   use gudgeon_scene, only: scene_t, phase_contact
+  use chain_motion, only: piston_pin
   use scene_builder, only: build_scene
   use collecting_sink, only: trace_t, run_case, column
   use state_making, only: put_crank, put_pin
@@ -15,7 +16,7 @@ module test_friction_runs
   public :: run_test_friction_runs
 
   integer, parameter :: long = 120
-  character(len=*), parameter :: coulomb_static = 'cases/friction/coulomb_static.nml'
+  character(len=*), parameter :: coulomb_static = 'cases/friction/coulomb_static.nml', lugre = 'cases/friction/lugre.nml'
 
 contains
 
@@ -24,6 +25,10 @@ contains
     call surfaces_stick_above_the_sliding_friction(check)
     call coulomb_is_the_limit_of_smooth_curves(check)
     call closed_jacobian(check)
+    call methods_agree(check)
+    call bristles_live_in_contact(check)
+    call work_of_friction(check)
+    call stiff_bristles_are_found(check)
   end subroutine run_test_friction_runs
 
   !> While the surfaces slide, the friction is that of sliding; while they stick it may be larger, up to that of rest.
@@ -81,24 +86,30 @@ contains
     character(len=long), parameter :: laws(3) = [character(len=long) :: 'friction.law=threlfall', 'friction.law=brown_mcphee', &
       'friction.law=stribeck']
     character(len=long), parameter :: drives(2) = [character(len=long) :: 'drive.kind=constant_speed', 'drive.kind=free']
+    character(len=long), parameter :: bristles(3) = [character(len=long) :: 'friction.law=lugre', 'friction.law=dahl', &
+      'friction.law=elasto_plastic']
     integer :: i, j
-    do i = 1, size(laws)
-      do j = 1, size(drives)
-        call compare_jacobians(check, [character(len=long) :: laws(i), drives(j), 'friction.v1=0.5', &
+    do j = 1, size(drives)
+      do i = 1, size(laws)
+        call compare_jacobians(check, coulomb_static, [character(len=long) :: laws(i), drives(j), 'friction.v1=0.5', &
           'friction.transition_speed=0.3', 'friction.stribeck_speed=0.4', 'friction.viscous_coefficient=0.01'])
+      end do
+      do i = 1, size(bristles)
+        call compare_jacobians(check, lugre, [character(len=long) :: bristles(i), drives(j), 'friction.stribeck_speed=0.4', &
+          'friction.damping_speed=0.3', 'friction.bristle_damping=0.1'])
       end do
     end do
   end subroutine closed_jacobian
 
-  subroutine compare_jacobians(check, overrides)
+  subroutine compare_jacobians(check, file, overrides)
     class(checks_t), intent(inout) :: check
-    character(len=*), intent(in) :: overrides(:)
+    character(len=*), intent(in) :: file, overrides(:)
     type(case_t) :: case
     type(error_t), allocatable :: error
     type(scene_t), allocatable :: scene
     real(dp), allocatable :: y(:), a_p(:, :), a_v(:, :), d_p(:, :), d_v(:, :)
     integer :: i, m, k
-    call read_case(coulomb_static, overrides, case, error)
+    call read_case(file, overrides, case, error)
     call check%that(.not. allocated(error), 'the case of '//overrides(1))
     if (allocated(error)) return
     call build_scene(case, .false., scene, error)
@@ -113,10 +124,126 @@ contains
       scene%joints(1)%phase = phase_contact
       scene%joints(1)%impact_speed = 1
       scene%joints(1)%sliding = 1
+      if (scene%n_states() > 0) y(scene%joints(1)%friction_states%first) = 1.4e-6_dp*(2*i - 5)
       call scene%jacobian(1e-3_dp*i, y, a_p, a_v)
       call difference_jacobian(scene, 1e-3_dp*i, y, d_p, d_v)
       call check%close_to(maxval(abs(a_p - d_p)), 0.0_dp, 1e-5_dp*maxval(abs(d_p)), 'slopes by positions: '//overrides(1))
       call check%close_to(maxval(abs(a_v - d_v)), 0.0_dp, 1e-5_dp*maxval(abs(d_v)), 'slopes by rates: '//overrides(1))
+      if (k == m) cycle
+      call check%close_to(maxval(abs(a_p(k, :) - d_p(k, :))), 0.0_dp, 1e-5_dp*maxval(abs(d_p(k, :))) + 2e-4_dp, &
+        'slopes of the bristles by positions: '//overrides(1))
+      call check%close_to(maxval(abs(a_v(k, :m) - d_v(k, :m))), 0.0_dp, 1e-5_dp*maxval(abs(d_v(k, :m))), &
+        'slopes of the bristles by rates: '//overrides(1))
+      call check%close_to(a_v(k, k), d_v(k, k), 1e-5_dp*(1 + abs(d_v(k, k))), 'slopes of bristles by themselves: '//overrides(1))
+      call check%close_to(maxval(abs(a_v(:m, k) - d_v(:m, k))), 0.0_dp, 1e-5_dp*maxval(abs(d_v(:m, k))), &
+        'slopes by the bristles: '//overrides(1))
     end do
   end subroutine compare_jacobians
+
+  !> A law with bristles by three methods: the same contacts and the same motion.
+  subroutine methods_agree(check)
+    class(checks_t), intent(inout) :: check
+    character(len=long), parameter :: laws(2) = [character(len=long) :: 'friction.law=lugre', 'friction.law=elasto_plastic']
+    character(len=long), parameter :: methods(3) = [character(len=long) :: 'integrator.method=adams', 'integrator.method=radau', &
+      'integrator.method=auto']
+    type(trace_t) :: trace(3)
+    integer :: i, k, n, pin
+    do k = 1, size(laws)
+      do i = 1, size(methods)
+        trace(i) = run_case(lugre, [character(len=long) :: laws(k), methods(i), 'integrator.relative_tolerance=1e-10', &
+          'integrator.revolutions=0.5'])
+        call check%that(.not. allocated(trace(i)%error), 'bristles run with '//methods(i))
+        associate (f => trace(i)%report%figures)
+          call check%close_to(f%max_energy_residual/f%max_energy, 0.0_dp, 1e-9_dp, 'energy with bristles')
+        end associate
+      end do
+      n = size(trace(1)%event)
+      call check%that(n > 8, 'there are contacts')
+      pin = column(trace(1), 'piston_position[m]')
+      do i = 2, 3
+        call check%that(size(trace(i)%event) == n, 'as many contacts by '//methods(i))
+        if (size(trace(i)%event) /= n) cycle
+        call check%close_to(maxval(abs(trace(i)%event%time - trace(1)%event%time)), 0.0_dp, 1e-9_dp, &
+          'contact instants by Adams and by '//methods(i))
+        call check%close_to(maxval(abs(trace(i)%values(pin, :) - trace(1)%values(pin, :))), 0.0_dp, 1e-10_dp, &
+          'piston by Adams and by '//methods(i))
+      end do
+    end do
+  end subroutine methods_agree
+
+  !> Bristles are unbent while the surfaces are apart and when they meet, and never bent by more than static friction bends them.
+  subroutine bristles_live_in_contact(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    real(dp) :: most
+    integer :: i, k
+    trace = run_case(lugre, [character(len=long) :: 'integrator.relative_tolerance=1e-9', 'output.samples_per_revolution=20000', &
+      'integrator.revolutions=0.5'])
+    k = 1
+    most = 0
+    associate (t => trace%values(1, :), z => trace%values(column(trace, 'bristle[m]'), :), &
+               phase => trace%values(column(trace, 'phase[-]'), :), normal => trace%values(column(trace, 'normal_force[N]'), :), &
+               friction => trace%values(column(trace, 'friction_force[N]'), :))
+      do i = 1, size(t)
+        do while (k < size(trace%event))
+          if (trace%event(k + 1)%time > t(i)) exit
+          k = k + 1
+        end do
+        most = max(most, abs(z(i)))
+        if (nint(phase(i)) /= phase_contact) then
+          call check%close_to(z(i), 0.0_dp, 0.0_dp, 'no bristle is bent while the surfaces are apart')
+        else if (t(i) > trace%event(k)%time) then
+          call check%that(abs(z(i)) < 10*(t(i) - trace%event(k)%time), 'bristles begin unbent in every contact')
+          call check%that(abs(friction(i)) <= 0.17_dp*normal(i), 'friction stays within the static one and some damping')
+        end if
+      end do
+    end associate
+    call check%that(most < 0.15_dp/2e4_dp*(1 + 1e-6_dp) .and. most > 0.099_dp/2e4_dp, 'bristles give way at their bound')
+  end subroutine bristles_live_in_contact
+
+  !> The work of friction against Simpson's sum over a fine trace, and what asking for it changes: nothing.
+  subroutine work_of_friction(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace, quiet
+    character(len=long), parameter :: laws(3) = [character(len=long) :: 'friction.law=coulomb', 'friction.law=stribeck', &
+      'friction.law=elasto_plastic']
+    character(len=long) :: overrides(6)
+    real(dp) :: work
+    integer :: k, i, n
+    do k = 1, size(laws)
+      overrides = [character(len=long) :: laws(k), 'friction.report_work=T', 'integrator.revolutions=0.3', &
+        'output.samples_per_revolution=200000', 'integrator.relative_tolerance=1e-9', 'friction.transition_speed=1e-2']
+      trace = run_case(lugre, overrides)
+      overrides(2) = 'friction.report_work=F'
+      quiet = run_case(lugre, overrides)
+      associate (t => trace%values(1, :), power => trace%values(column(trace, 'friction_force[N]'), :)* &
+                 trace%values(column(trace, 'sliding_speed[m/s]'), :), found => trace%report%figures%pin(piston_pin)%friction_work)
+        n = size(t)
+        work = 0
+        do i = 1, n - 2, 2
+          work = work + (t(i + 2) - t(i))*(power(i) + 4*power(i + 1) + power(i + 2))/6
+        end do
+        if (mod(n, 2) == 0) work = work + (t(n) - t(n - 1))*(power(n) + power(n - 1))/2
+        call check%that(found < -0.1_dp, 'friction takes work: '//laws(k))
+        call check%relative(found, work, 1e-5_dp, 'as much as force times speed: '//laws(k))
+      end associate
+      call check%that(maxval(abs(trace%values - quiet%values)) <= 0, 'a run is the same whether its friction work is told')
+      call check%that((quiet%report%figures%pin(piston_pin)%friction_work < 0) .eqv. k == 3, 'laws with bristles always tell it')
+    end do
+  end subroutine work_of_friction
+
+  !> Stiff bristles: auto works with Radau in contact, at a small part of what Adams costs.
+  subroutine stiff_bristles_are_found(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: adams, auto
+    integer, parameter :: with_radau = 2
+    character(len=long), parameter :: stiff = 'friction.bristle_stiffness=1e7'
+    adams = run_case(lugre, [character(len=long) :: stiff, 'integrator.revolutions=0.1', 'integrator.method=adams'])
+    auto = run_case(lugre, [character(len=long) :: stiff, 'integrator.revolutions=0.1', 'integrator.method=auto'])
+    associate (time => auto%report%time_with(:, 2))   ! in contact
+      call check%that(time(with_radau) > 0.9_dp*sum(time), 'auto takes stiff bristles with Radau')
+    end associate
+    call check%that(auto%report%statistics%evaluations < 0.2_dp*adams%report%statistics%evaluations, &
+      'and needs a small part of the evaluations of Adams')
+  end subroutine stiff_bristles_are_found
 end module test_friction_runs

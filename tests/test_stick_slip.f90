@@ -4,6 +4,7 @@ module test_stick_slip
   use checks, only: checks_t
   use gudgeon_errors, only: error_t
   use friction_law, only: friction_law_t
+  use bristle_law, only: bristle_law_t
   use ode_method, only: ode_method_t
   use gudgeon_methods, only: new_method
   use gudgeon_solver, only: integrate, silent_observer_t, integration_done
@@ -15,6 +16,8 @@ module test_stick_slip
   public :: run_test_stick_slip
 
   real(dp), parameter :: sliding = 0.10_dp, static = 0.15_dp   !! coefficients of friction
+  character(len=*), parameter :: bristles = ' bristle_stiffness=1e4 stribeck_speed=1e-3'
+  real(dp), parameter :: bristle_damping = sqrt(1e5_dp)/load   !! [s/m]: a case would refuse it, with damping_speed 0
   real(dp), parameter :: speed_scale = 0.467423461_dp          !! fastest of Coulomb's friction [m/s]
 
 contains
@@ -27,6 +30,10 @@ contains
     call against_the_table(check, "law='brown_mcphee' transition_speed=1e-3", 'brown_mcphee', 'auto', 1e-6_dp)
     call against_the_table(check, "law='stribeck' stribeck_speed=1e-3 transition_speed=1e-4", &
       'stribeck_tanh', 'radau', 1e-6_dp)
+    call against_the_table(check, "law='lugre'"//bristles, 'lugre', 'radau', 1e-6_dp)
+    call against_the_table(check, "law='lugre'"//bristles, 'lugre', 'auto', 1e-6_dp)
+    call against_the_table(check, "law='lugre'"//bristles, 'lugre', 'adams', 1e-6_dp)
+    call against_the_table(check, "law='elasto_plastic'"//bristles, 'elasto_plastic', 'radau', 1e-6_dp)
   end subroutine run_test_stick_slip
 
   !> A belt under a law, at t = 0.
@@ -38,10 +45,15 @@ contains
     class(friction_law_t), allocatable :: law
     type(error_t), allocatable :: error
     call friction_law_of(keys//' coefficient=0.10 static_coefficient=0.15 viscous_coefficient=0.04', law, error)
+    select type (law)
+    class is (bristle_law_t)
+      law%bristle_damping = bristle_damping
+    end select
     call new_belt(law, belt)
     call new_method(method_name, method, error)
-    method%settings%relative = [tolerance, tolerance, 0.0_dp]
-    method%settings%absolute = [tolerance, tolerance, tolerance]
+    allocate (method%settings%relative(belt%n), method%settings%absolute(belt%n), source=tolerance)
+    method%settings%relative(belt%n) = 0
+    if (law%n_states > 0) method%settings%absolute(3) = tolerance*law%state_scale()
     method%settings%span = 40
   end subroutine prepare
 
@@ -92,12 +104,13 @@ contains
     type(belt_t) :: belt
     character(len=40), allocatable :: names(:)
     real(dp), allocatable :: table(:, :)
-    real(dp) :: t, y(3), far, fast, work
+    real(dp) :: t, far, fast, work
+    real(dp), allocatable :: y(:)
     integer :: status, row
     call load_table('friction/belt.csv', names, table)
     call prepare(keys, method_name, 1e-11_dp, belt, method)
     t = 0
-    y = 0
+    allocate (y(belt%n), source=0.0_dp)
     far = 0
     fast = 0
     work = 0
@@ -106,7 +119,7 @@ contains
       if (status /= integration_done) exit
       far = max(far, abs(y(1) - table(at(' x[m]'), row)))
       fast = max(fast, abs(y(2) - table(at(' v[m/s]'), row)))
-      if (at(' friction work[J]') > 0) work = max(work, abs(y(3) - table(at(' friction work[J]'), row)))
+      if (at(' friction work[J]') > 0) work = max(work, abs(y(belt%n) - table(at(' friction work[J]'), row)))
     end do
     call check%that(status == integration_done .and. row == 402, name//' on the belt by '//method_name)
     call check%close_to(far, 0.0_dp, allowed*maxval(table(at(' x[m]'), :)), 'where the mass is: '//name//' by '//method_name)

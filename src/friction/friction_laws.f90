@@ -6,6 +6,9 @@ module friction_laws
   use threlfall, only: threlfall_t
   use brown_mcphee, only: brown_mcphee_t
   use stribeck, only: stribeck_t
+  use lugre, only: lugre_t
+  use dahl, only: dahl_t
+  use elasto_plastic, only: elasto_plastic_t
   implicit none
   private
   public :: offer_friction_laws
@@ -20,5 +23,8 @@ contains
     call list%law(threlfall_t())
     call list%law(brown_mcphee_t())
     call list%law(stribeck_t())
+    call list%law(lugre_t())
+    call list%law(dahl_t())
+    call list%law(elasto_plastic_t())
   end subroutine offer_friction_laws
 end module friction_laws

@@ -37,7 +37,7 @@ contains
     class(threlfall_t), intent(in) :: self
     character(len=:), allocatable, intent(out) :: key, wanted
     key = ''
-    wanted = 'must be > 0 (m/s) for threlfall'
+    wanted = 'threlfall needs a speed: must be > 0'
     if (.not. self%v1 > 0) key = 'v1'
   end subroutine conflict
 

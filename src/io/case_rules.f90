@@ -26,6 +26,10 @@ contains
     if (allocated(error)) return
     call check_joint(c%crank_pin, crank_pin_place//'.joint', crank_pin_place, values, error)
     if (allocated(error)) return
+    call check_friction(c, c%joint, piston_pin_place, values, error)
+    if (allocated(error)) return
+    call check_friction(c, c%crank_pin, crank_pin_place, values, error)
+    if (allocated(error)) return
     call check_start(c, values, error)
     if (allocated(error)) return
     call check_combustion(c, values, error)
@@ -142,6 +146,27 @@ contains
       if (key /= '') call values%refuse(group, key, wanted, error)
     end associate
   end subroutine check_contact
+
+  !> Friction at touch-down stays within that at rest at the speeds with which an ideal joint slides: crank speed times rod angle
+  !> over crank angle, at most crank over rod, times the pin's radius; at the crank pin the crank's own turn adds to it.
+  subroutine check_friction(c, joint, place, values, error)
+    type(case_t), intent(in) :: c
+    type(joint_case_t), intent(in) :: joint
+    character(len=*), intent(in) :: place
+    type(case_values_t), intent(in) :: values
+    type(error_t), allocatable, intent(out) :: error
+    real(dp) :: speed, limit
+    if (.not. (joint%has_clearance() .and. allocated(joint%friction))) return
+    associate (m => c%mechanism, bearing => joint%bearing(c%mechanism%rod_length))
+      speed = m%crank_length/m%rod_length
+      if (place == crank_pin_place) speed = 1 + speed
+      speed = speed*abs(c%initial%crank_speed)*bearing%pin_radius()
+    end associate
+    limit = joint%friction%touch_down_limit()
+    if (speed > limit) call values%refuse(law_group(values, 'friction', place), 'damping_speed', 'a constant bristle_damping '// &
+      'gives more than the static friction at touch-down from '//short_text(limit)//' m/s on, and this joint slides with '// &
+      short_text(speed)//' m/s: must be > 0', error)
+  end subroutine check_friction
 
   !> Whether the case has a law for the joint of this place alone.
   logical function has_own_law(values, place)

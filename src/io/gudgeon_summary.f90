@@ -105,6 +105,7 @@ contains
       call add(prefix//'max_entry_penetration', real_text(pin%max_entry_penetration), 'm')
       call add(prefix//'impacts_beyond_validity', integer_text(pin%impacts_beyond_validity), '1')
       call add(prefix//'contacts_beyond_validity', integer_text(pin%contacts_beyond_validity), '1')
+      if (pin%friction_work < huge(pin%friction_work)) call add(prefix//'friction_work', real_text(pin%friction_work), 'J')
     end subroutine add_joint
 
     subroutine add(quantity, value, unit)

@@ -53,7 +53,7 @@ contains
     real(dp), intent(in) :: ratio
     character(len=:), allocatable :: text
     text = ''
-    if (ratio > 1.5_dp) text = "bound by the stability of Adams, not by its accuracy (a stiff film): "// &
+    if (ratio > 1.5_dp) text = "bound by the stability of Adams, not by its accuracy (a stiff film, contact or friction): "// &
       "method = 'auto' needs 1/"//integer_text(nint(ratio))//" of the evaluations"
   end function advice
 end module stability_advice

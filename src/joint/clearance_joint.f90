@@ -6,13 +6,13 @@ module clearance_joint
   use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
   use gudgeon_bearing, only: bearing_t
-  use state_layout, only: layout_t, coordinates_t
+  use state_layout, only: layout_t, coordinates_t, slice_t
   use chain_motion, only: motion_t, piston_pin
   use chain_bodies, only: bodies_t
   use ideal_chain, only: ideal_rod
   use chain_loads, only: loads_t, bearing_moment
   use contact_law, only: contact_law_t
-  use friction_law, only: friction_law_t
+  use friction_law, only: friction_law_t, most_friction_states
   use film_law, only: film_law_t, film_motion_t
   use joint_motion, only: joint_motion_t, find_polar, find_speeds, find_sliding
   implicit none
@@ -34,6 +34,7 @@ module clearance_joint
     real(dp) :: normal_force      !! of the contact, pressing [N]
     real(dp) :: friction_force    !! along t [N]
     real(dp) :: power             !! of all on the bodies [W]
+    real(dp) :: friction_rates(most_friction_states)   !! of a friction law's states
     logical :: sticks             !! set-valued friction holds the surfaces: its force is found with the accelerations
   end type joint_loads_t
 
@@ -45,6 +46,11 @@ module clearance_joint
     class(friction_law_t), allocatable :: friction
     class(film_law_t), allocatable :: film
     type(coordinates_t) :: at               !! where the eccentricity stands in the state
+    integer :: n_friction_states = 0        !! of the friction law
+    type(slice_t) :: friction_states        !! where they stand
+    logical :: reports_friction_work = .false.   !! integrate it, also where the friction law has no states
+    type(slice_t) :: friction_work          !! where the work of friction stands, if anywhere [J]
+    logical :: has_own_rates = .false.      !! one of these
     integer :: phase = phase_free
     integer :: sliding = 0                  !! set-valued friction: sign of sliding, 0 sticking
     real(dp) :: impact_speed = 0            !! penetration rate at which the present contact began [m/s]
@@ -56,6 +62,9 @@ module clearance_joint
     procedure :: own_speed
     procedure :: settle
     procedure :: put_start
+    procedure :: put_own_rates
+    procedure :: reset_friction
+    procedure :: work_of_friction
     procedure, non_overridable :: read_state
     procedure, non_overridable :: admits
     procedure, non_overridable :: loads
@@ -63,6 +72,7 @@ module clearance_joint
     procedure :: look
     procedure :: slopes
     procedure :: reach
+    procedure :: state_slopes
     procedure :: is_singular
     procedure :: phase_apart
     procedure :: exchange
@@ -70,7 +80,7 @@ module clearance_joint
 
 contains
 
-  !> Claim the eccentricity. It is measured by the clearance, its rate by the clearance in the time of one radian. Measured
+  !> Claim the eccentricity, the states of the friction law and its work. The eccentricity is measured by the clearance, its rate by the clearance in the time of one radian. Measured
   !> (scripts/compare_adams.sh, simulation IV, c = 20 um): at the relative tolerance 1e-4 the pin is off by 4e-5 c at the
   !> end, at 1e-6 by 4e-9 c, at 1e-12 by 1e-14 c; in (q, A, x) rounding alone makes 4e-12 c.
   !>
@@ -83,6 +93,12 @@ contains
     real(dp), intent(in) :: span          !! of the simulation [s]
     call layout%claim_positions(2, self%bearing%clearance, max(self%bearing%clearance*crank_speed, norm2(self%start_rate), &
       0.01_dp*crossing_speed(self, span)), self%at, grows=.false.)
+    if (.not. allocated(self%friction)) return
+    self%n_friction_states = self%friction%n_states
+    self%has_own_rates = self%n_friction_states > 0 .or. self%reports_friction_work
+    if (self%n_friction_states > 0) &
+      call layout%claim_states(self%n_friction_states, self%friction%state_scale(), self%friction_states)
+    if (self%has_own_rates) call layout%claim_quadratures(1, 0.0_dp, self%friction_work)
   end subroutine claim
 
   !> Natural size of the journal's speed in its bearing where the crank does not give it [m/s]: the one that it starts with, or that
@@ -105,6 +121,8 @@ contains
     class(clearance_joint_t), intent(inout) :: self
     type(layout_t), intent(in) :: layout
     call layout%settle(self%at)
+    if (self%n_friction_states > 0) call layout%settle(self%friction_states)
+    if (self%has_own_rates) call layout%settle(self%friction_work)
   end subroutine settle
 
   !> Its part of the state at t = 0.
@@ -114,6 +132,36 @@ contains
     y(self%at%position:self%at%position + 1) = self%start_eccentricity
     y(self%at%rate:self%at%rate + 1) = self%start_rate
   end subroutine put_start
+
+  !> Rates of the states of its friction law and of the work of friction: 0 while journal and bearing are apart.
+  pure subroutine put_own_rates(self, motion, own, dydt)
+    class(clearance_joint_t), intent(in) :: self
+    type(joint_motion_t), intent(in) :: motion
+    type(joint_loads_t), intent(in) :: own
+    real(dp), intent(inout) :: dydt(*)
+    integer :: i
+    do i = 1, self%n_friction_states
+      dydt(self%friction_states%first + i - 1) = 0
+      if (self%phase == phase_contact) dydt(self%friction_states%first + i - 1) = own%friction_rates(i)
+    end do
+    dydt(self%friction_work%first) = 0
+    if (self%phase == phase_contact) dydt(self%friction_work%first) = own%friction_force*motion%sliding_speed
+  end subroutine put_own_rates
+
+  !> The states of its friction law are 0 where a contact begins or ends.
+  pure subroutine reset_friction(self, y)
+    class(clearance_joint_t), intent(in) :: self
+    real(dp), intent(inout) :: y(:)
+    if (self%n_friction_states > 0) y(self%friction_states%first:self%friction_states%last) = 0
+  end subroutine reset_friction
+
+  !> Work of friction so far [J], where it is integrated; else 0. What it takes from the bodies is negative.
+  pure real(dp) function work_of_friction(self, y)
+    class(clearance_joint_t), intent(in) :: self
+    real(dp), intent(in) :: y(:)
+    work_of_friction = 0
+    if (self%has_own_rates) work_of_friction = y(self%friction_work%first)
+  end function work_of_friction
 
   !> The eccentricity and its rate.
   pure subroutine read_state(self, y, joint)
@@ -139,10 +187,11 @@ contains
 
   !> The loads of the present phase, also among those of the chain, and their power on the bodies. What the phase does not have is
   !> left as it is.
-  pure subroutine loads(self, bodies, motion, joint, own, all)
+  pure subroutine loads(self, bodies, motion, y, joint, own, all)
     class(clearance_joint_t), intent(in) :: self
     type(bodies_t), intent(in) :: bodies
     type(motion_t), intent(in) :: motion
+    real(dp), intent(in) :: y(*)          !! whole, for the states of its laws
     type(joint_motion_t), intent(inout) :: joint
     type(joint_loads_t), intent(inout) :: own
     type(loads_t), intent(inout) :: all
@@ -155,7 +204,7 @@ contains
     if (self%phase /= phase_free) then
       call find_speeds(self%place, motion, joint)
       if (self%phase == phase_contact) then
-        call find_contact(self, joint, own)
+        call find_contact(self, y, joint, own)
         force = own%contact
       else
         call self%film%film_force(film_motion(self, bodies, motion, joint), own%film, own%moment)
@@ -172,8 +221,9 @@ contains
 
   !> Contact and friction: -F_N n + F_T t on the journal, and the moment F_T R. Where the surfaces stick there is no friction yet:
   !> it is found with the accelerations.
-  pure subroutine find_contact(self, joint, own)
+  pure subroutine find_contact(self, y, joint, own)
     type(clearance_joint_t), intent(in) :: self
+    real(dp), intent(in) :: y(*)
     type(joint_motion_t), intent(inout) :: joint
     type(joint_loads_t), intent(inout) :: own
     call find_polar(self%bearing%clearance, joint)
@@ -181,8 +231,12 @@ contains
     own%friction_force = 0
     if (allocated(self%friction)) then
       call find_sliding(self%pin_radius, joint)
-      own%sticks = self%friction%set_valued .and. self%sliding == 0
-      if (.not. own%sticks) own%friction_force = own%normal_force*self%friction%friction_ratio(joint%sliding_speed, self%sliding)
+      if (self%n_friction_states > 0) then
+        call find_state_friction(self, y, joint, own)
+      else
+        own%sticks = self%friction%set_valued .and. self%sliding == 0
+        if (.not. own%sticks) own%friction_force = own%normal_force*self%friction%friction_ratio(joint%sliding_speed, self%sliding)
+      end if
     end if
     associate (n => joint%normal, pressing => own%normal_force, friction => own%friction_force)
       own%contact(1) = -pressing*n(1) - friction*n(2)
@@ -190,6 +244,21 @@ contains
       own%moment = friction*self%pin_radius
     end associate
   end subroutine find_contact
+
+  !> Friction of a law with states.
+  pure subroutine find_state_friction(self, y, joint, own)
+    type(clearance_joint_t), intent(in) :: self
+    real(dp), intent(in) :: y(*)
+    type(joint_motion_t), intent(inout) :: joint
+    type(joint_loads_t), intent(inout) :: own
+    real(dp) :: ratio
+    integer :: i
+    do i = 1, self%n_friction_states
+      joint%friction_states(i) = y(self%friction_states%first + i - 1)
+    end do
+    call self%friction%state_friction(joint%sliding_speed, joint%friction_states, ratio, own%friction_rates)
+    own%friction_force = own%normal_force*ratio
+  end subroutine find_state_friction
 
   !> What `loads` has left: how journal and bearing move against each other, whatever the phase asks for, and loads that the phase
   !> does not have. Where the motion of the bodies is not known there are no turning and sliding speeds.
@@ -204,6 +273,7 @@ contains
       own%contact = 0
       own%normal_force = 0
       own%friction_force = 0
+      joint%friction_states = 0
     end if
     call find_polar(self%bearing%clearance, joint)
     if (.not. is_known) return
@@ -264,7 +334,8 @@ contains
     type(joint_motion_t), intent(in) :: joint
     type(joint_loads_t), intent(in) :: own
     real(dp), intent(out) :: derivatives(3, 5)
-    real(dp) :: stiffness, damping, ratio, ratio_slope, turn(5), depth(5), rate(5), sliding(5), normal(5), friction(5)
+    real(dp) :: stiffness, damping, ratio, ratio_slope, turn(5), depth(5), rate(5), normal(5), friction(5)
+    real(dp) :: friction_slopes(1 + most_friction_states, 1 + most_friction_states)
     integer :: i
 
     associate (n => joint%normal)
@@ -272,15 +343,14 @@ contains
       ratio = 0
       ratio_slope = 0
       if (allocated(self%friction)) then
-        ratio = self%friction%friction_ratio(joint%sliding_speed, self%sliding)
-        ratio_slope = self%friction%friction_ratio_slope(joint%sliding_speed)
+        call find_friction_slopes(self, joint, ratio, friction_slopes)
+        ratio_slope = friction_slopes(1, 1)
       end if
       turn = [-n(2), n(1), 0.0_dp, 0.0_dp, 0.0_dp]/joint%distance
       depth = [n(1), n(2), 0.0_dp, 0.0_dp, 0.0_dp]
       rate = turn*joint%tangential_rate + [0.0_dp, 0.0_dp, n(1), n(2), 0.0_dp]
-      sliding = -turn*joint%penetration_rate + [0.0_dp, 0.0_dp, -n(2), n(1), self%pin_radius]
       normal = stiffness*depth + damping*rate
-      friction = ratio*normal + ratio_slope*own%normal_force*sliding
+      friction = ratio*normal + ratio_slope*own%normal_force*sliding_gradient(self, joint)
       do i = 1, 5
         associate (along => -normal(i) - own%friction_force*turn(i), across => friction(i) - own%normal_force*turn(i))
           derivatives(:, i) = [along*n(1) - across*n(2), along*n(2) + across*n(1), self%pin_radius*friction(i)]
@@ -288,6 +358,55 @@ contains
       end do
     end associate
   end subroutine contact_slopes
+
+  !> Derivatives of the sliding speed by e_x, e_y, e_x', e_y' and the journal's speed.
+  pure function sliding_gradient(self, joint) result(gradient)
+    type(clearance_joint_t), intent(in) :: self
+    type(joint_motion_t), intent(in) :: joint
+    real(dp) :: gradient(5)
+    associate (n => joint%normal, turn_rate => joint%penetration_rate/joint%distance)
+      gradient = [n(2)*turn_rate, -n(1)*turn_rate, -n(2), n(1), self%pin_radius]
+    end associate
+  end function sliding_gradient
+
+  !> Friction force over normal force, and derivatives of it (row 1) and of the rates of the friction law's states (rows behind) by
+  !> the sliding speed (column 1) and these states (columns behind).
+  pure subroutine find_friction_slopes(self, joint, ratio, slopes)
+    type(clearance_joint_t), intent(in) :: self
+    type(joint_motion_t), intent(in) :: joint
+    real(dp), intent(out) :: ratio, slopes(1 + most_friction_states, 1 + most_friction_states)
+    real(dp) :: rates(most_friction_states)
+    slopes = 0
+    if (self%n_friction_states > 0) then
+      call self%friction%state_friction(joint%sliding_speed, joint%friction_states, ratio, rates)
+      call self%friction%state_slopes(joint%sliding_speed, joint%friction_states, slopes)
+    else
+      ratio = self%friction%friction_ratio(joint%sliding_speed, self%sliding)
+      slopes(1, 1) = self%friction%friction_ratio_slope(joint%sliding_speed)
+    end if
+  end subroutine find_friction_slopes
+
+  !> What the states of the friction law add to `slopes`: derivatives of the force and the moment on the journal (rows F_x, F_y,
+  !> moment) by these states, and of the states' rates by e_x, e_y, e_x', e_y', the journal's speed and the states (columns).
+  pure subroutine state_slopes(self, joint, own, by_states, of_rates)
+    class(clearance_joint_t), intent(in) :: self
+    type(joint_motion_t), intent(in) :: joint
+    type(joint_loads_t), intent(in) :: own
+    real(dp), intent(out) :: by_states(3, most_friction_states), of_rates(most_friction_states, 5 + most_friction_states)
+    real(dp) :: slopes(1 + most_friction_states, 1 + most_friction_states), ratio
+    integer :: i
+    by_states = 0
+    of_rates = 0
+    if (self%phase /= phase_contact .or. self%n_friction_states == 0) return
+    call find_friction_slopes(self, joint, ratio, slopes)
+    do i = 1, self%n_friction_states
+      associate (n => joint%normal, force => own%normal_force*slopes(1, 1 + i))
+        by_states(:, i) = [-n(2)*force, n(1)*force, self%pin_radius*force]
+      end associate
+      of_rates(i, :5) = slopes(1 + i, 1)*sliding_gradient(self, joint)
+      of_rates(i, 6:) = slopes(1 + i, 2:)
+    end do
+  end subroutine state_slopes
 
   !> The phase while journal and bearing are apart.
   pure integer function phase_apart(self)

@@ -29,6 +29,7 @@ contains
       call row%put('sliding_speed[m/s]', motion%sliding_speed)
       call joint%contact%geometry%put_columns(merge(motion%penetration, 0.0_dp, joint%phase == phase_contact), &
         loads%normal_force, row)
+      if (allocated(joint%friction)) call joint%friction%put_columns(motion%friction_states, row)
     end if
     if (allocated(joint%film)) then
       call row%put('film_force_x[N]', loads%film(1))

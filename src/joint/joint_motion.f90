@@ -2,6 +2,7 @@
 module joint_motion
   use gudgeon_kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, crank_pin
+  use friction_law, only: most_friction_states
   implicit none
   private
   public :: joint_motion_t, find_polar, find_speeds, find_sliding, sliding_acceleration, outward_acceleration
@@ -18,6 +19,7 @@ module joint_motion
     real(dp) :: penetration_rate      !! n . e' [m/s]
     real(dp) :: tangential_rate       !! t . e' [m/s]
     real(dp) :: sliding_speed         !! v_T, of the journal's surface on the bearing [m/s]
+    real(dp) :: friction_states(most_friction_states)   !! of a friction law that has them
   end type joint_motion_t
 
 contains

@@ -48,6 +48,7 @@ module case_definition
     real(dp) :: clearance = 0, bearing_radius = 0, bearing_length = 0
     class(contact_law_t), allocatable :: contact
     class(friction_law_t), allocatable :: friction
+    logical :: reports_friction_work = .false.
     class(film_law_t), allocatable :: film
   contains
     procedure :: parameters => joint_parameters
@@ -152,7 +153,7 @@ contains
     call list%group('joint', 'piston-pin joint', .false., place)
     call joint%parameters(list)
     call visit_contact(joint%contact, place, list)
-    call visit_friction(joint%friction, place, list)
+    call visit_friction(joint%friction, joint%reports_friction_work, place, list)
     call visit_film(joint%film, place, list)
   end subroutine visit_joint
 
@@ -191,12 +192,14 @@ contains
     end select
   end subroutine visit_contact
 
-  subroutine visit_friction(law, place, list)
+  subroutine visit_friction(law, reports_work, place, list)
     class(friction_law_t), allocatable, intent(inout) :: law
+    logical, intent(inout) :: reports_work
     character(len=*), intent(in) :: place
     class(parameter_list_t), intent(inout) :: list
     call list%group('friction', 'dry friction of the contact: leave the group out for none', .true., place)
-    call list%choice('law', 'ambrosio', 'coulomb holds a load at rest; under the others it creeps')
+    call list%choice('law', 'ambrosio', 'coulomb, lugre, dahl, elasto_plastic hold a load at rest; under the others it creeps')
+    call list%add('report_work', reports_work, 'its work in the summary, also of a law without bristles', '.false.')
     call offer_friction_laws(list)
     if (.not. list%sets) return
     if (allocated(law)) deallocate (law)

@@ -224,9 +224,10 @@ contains
       f%max_energy_residual = max(f%max_energy_residual, abs(energy - self%initial_energy - scene%work(y)))
       f%crank_travel = now%motion%crank_angle - self%start_angle
       do i = 1, self%n_pins
-        if (.not. self%pins(i)%is_touching(scene)) cycle
-        associate (contact_time => f%pin(self%pins(i)%pin)%contact_time)
-          contact_time = contact_time + (t - f%time)
+        if (self%pins(i)%joint == 0) cycle
+        associate (figures => f%pin(self%pins(i)%pin), joint => scene%joints(self%pins(i)%joint))
+          if (self%pins(i)%is_touching(scene)) figures%contact_time = figures%contact_time + (t - f%time)
+          if (joint%has_own_rates) figures%friction_work = joint%work_of_friction(y)
         end associate
       end do
       f%time = t

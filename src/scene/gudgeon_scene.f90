@@ -24,9 +24,9 @@ module gudgeon_scene
 
   !> An ideal pin, in the terms of a joint with clearance.
   type(joint_motion_t), parameter :: centred_pin = joint_motion_t([0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp], 0.0_dp, 0.0_dp, &
-    [1.0_dp, 0.0_dp], 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp)
+    [1.0_dp, 0.0_dp], 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp)
   type(joint_loads_t), parameter :: no_loads = joint_loads_t([0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp], 0.0_dp, 0.0_dp, 0.0_dp, &
-    0.0_dp, .false.)
+    0.0_dp, 0.0_dp, .false.)
 
   !> Everything that one evaluation of a scene finds: of each of its joints, or of one centred pin without loads where it has none.
   !> A right-hand side does not set what it does not need.
@@ -67,6 +67,7 @@ module gudgeon_scene
     type(slice_t) :: measures       !! quadratures of the joints
     logical :: measures_loss = .false.   !! the last of them is what the joints take
     logical :: may_stick = .false.  !! a joint has set-valued friction
+    logical :: has_more_rates = .false.   !! measures, or a law of a joint has states or quadratures
     real(dp) :: entry_time = -huge(1.0_dp)          !! when a joint has begun to touch last [s]
     type(event_owner_t) :: event_of(max_events)     !! owners of the event functions
   contains
@@ -169,6 +170,8 @@ contains
     end if
     call put_rates(self%n_joints, self%joints, now, dydt)
     dydt(self%work_at) = now%power
+    if (.not. self%has_more_rates) return
+    call put_own_rates(self%n_joints, self%joints, now, dydt)
     if (self%measures%last < self%measures%first) return
     if (self%measures_loss) dydt(self%measures%last) = -sum(now%joint(:self%n_joints)%power)
     dydt(self%measures%first) = force_size(now%loads%force(:, piston_pin))
@@ -191,6 +194,18 @@ contains
       end associate
     end do
   end subroutine put_rates
+
+  !> Rates of what the laws of the joints claimed.
+  pure subroutine put_own_rates(n, joints, now, dydt)
+    integer, intent(in) :: n
+    type(clearance_joint_t), intent(in) :: joints(n)
+    type(evaluation_t), intent(in) :: now
+    real(dp), intent(inout) :: dydt(*)
+    integer :: i
+    do i = 1, n
+      if (joints(i)%has_own_rates) call joints(i)%put_own_rates(now%relative(i), now%joint(i), dydt)
+    end do
+  end subroutine put_own_rates
 
   !> Everything at (t, y). `inside` is false where a model is not defined: then there are only the crank angle and how the joints
   !> move, without their sliding speeds.
@@ -234,7 +249,7 @@ contains
     if (.not. inside) return
     now%power = 0
     do i = 1, n
-      call joints(i)%loads(self%chain%bodies, now%motion, now%relative(i), now%joint(i), now%loads)
+      call joints(i)%loads(self%chain%bodies, now%motion, y, now%relative(i), now%joint(i), now%loads)
       now%power = now%power + now%joint(i)%power
     end do
     now%loads%gas_force = 0
@@ -315,6 +330,7 @@ contains
     do i = 1, self%n_joints
       call self%joints(i)%settle(self%layout)
     end do
+    self%has_more_rates = any(self%joints%has_own_rates)
     call self%layout%settle(work)
     self%work_at = work%first
     call take_layout(self)
@@ -346,6 +362,7 @@ contains
     end if
     call self%layout%claim_quadratures(n, scale, self%measures)
     call self%layout%settle(self%measures)
+    self%has_more_rates = .true.
     call take_layout(self)
   end subroutine measure_joint
 

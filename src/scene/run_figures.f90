@@ -17,6 +17,7 @@ module run_figures
     real(dp) :: max_entry_penetration = 0     !! penetration at the beginning of a contact [m]
     real(dp) :: max_force = 0                 !! size of the joint's force on the pin [N]
     real(dp) :: min_film_thickness = huge(1.0_dp)  !! c - |e| [m]
+    real(dp) :: friction_work = huge(1.0_dp)  !! of friction on the bodies so far [J]; huge: it is not integrated
   contains
     procedure :: exchange => exchange_pin
   end type pin_figures_t
@@ -63,5 +64,6 @@ contains
     call archive%exchange(self%max_entry_penetration)
     call archive%exchange(self%max_force)
     call archive%exchange(self%min_film_thickness)
+    call archive%exchange(self%friction_work)
   end subroutine exchange_pin
 end module run_figures

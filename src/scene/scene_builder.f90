@@ -141,6 +141,7 @@ contains
     if (allocated(wanted%contact)) allocate (joint%contact, source=wanted%contact)
     if (allocated(wanted%friction)) allocate (joint%friction, source=wanted%friction)
     if (allocated(wanted%film)) allocate (joint%film, source=wanted%film)
+    joint%reports_friction_work = wanted%reports_friction_work
   end subroutine build_joint
 
   !> Time to simulate [s], as far as the case tells: revolutions take what they do at the starting speed, and so, for the time

@@ -82,6 +82,7 @@ contains
       else
         select case (event)
         case (contact_changes)
+          call self%joints(i)%reset_friction(y)
           if (self%joints(i)%phase == phase_contact) then
             call end_contact(self%joints(i))
           else

@@ -2,6 +2,7 @@
 submodule (gudgeon_scene) scene_tangent
   use ode_problem, only: difference_jacobian
   use chain_motion, only: crank_pin
+  use friction_law, only: most_friction_states
   use crank_rod_tangent, only: motion_change_t, load_change_t, motion_change, acceleration_change
   implicit none
 
@@ -12,8 +13,10 @@ contains
     type(motion_change_t) :: change
     type(load_change_t) :: load_change
     real(dp) :: force(3, 5), direction(6), loads(3), a(3)
+    real(dp) :: by_states(3, most_friction_states), of_rates(most_friction_states, 5 + most_friction_states)
+    real(dp) :: rates(most_friction_states)
     logical :: has_closed_form
-    integer :: i, skip
+    integer :: i, skip, m, n
 
     has_closed_form = self%chain%is_loose(piston_pin) .and. .not. self%chain%is_loose(crank_pin)
     if (has_closed_form) then
@@ -26,6 +29,9 @@ contains
     end if
     call self%joints(1)%slopes(self%chain%bodies, now%motion, now%relative(1), now%joint(1), force)
     skip = merge(0, 1, self%chain%drive%free_crank)   ! the held crank angle is no unknown
+    m = 3 - skip
+    n = self%joints(1)%n_friction_states
+    if (n > 0) call self%joints(1)%state_slopes(now%relative(1), now%joint(1), by_states, of_rates)
     associate (bodies => self%chain%bodies, drive => self%chain%drive)
       do i = 1 + skip, 6
         if (i == 4 .and. skip == 1) cycle
@@ -36,11 +42,21 @@ contains
         load_change = load_change_t(loads(1:2), loads(3))
         if (allocated(self%gas) .and. i == 1) load_change%gas_force = self%gas%force_slope(now%motion%crank_angle)
         a = acceleration_change(bodies, drive, now%loads, now%motion, now%accelerations, change, load_change)
+        if (n > 0) rates = matmul(of_rates(:, 1:2), direction(2:3)) + matmul(of_rates(:, 3:4), direction(5:6)) &
+          - of_rates(:, 5)*change%rod_speed
         if (i <= 3) then
-          a_p(:, i - skip) = a(1 + skip:3)
+          a_p(:m, i - skip) = a(1 + skip:3)
+          a_p(m + 1:, i - skip) = rates(:n)
         else
-          a_v(:, i - 3 - skip) = a(1 + skip:3)
+          a_v(:m, i - 3 - skip) = a(1 + skip:3)
+          a_v(m + 1:, i - 3 - skip) = rates(:n)
         end if
+      end do
+      do i = 1, n
+        a = acceleration_change(bodies, drive, now%loads, now%motion, now%accelerations, motion_change_t(), &
+          load_change_t(by_states(1:2, i), by_states(3, i)))
+        a_v(:m, m + i) = a(1 + skip:3)
+        a_v(m + 1:, m + i) = of_rates(:n, 5 + i)
       end do
     end associate
   end procedure jacobian

@@ -1,0 +1,208 @@
+!> Friction laws with a memory: the surfaces meet in bristles, whose mean deflection z is a state.
+!>
+!> The deflection lives in contact only: it is 0 when a contact begins, and stays 0 while the surfaces are apart. Forces are taken
+!> over the normal force (the parameters of Canudas de Wit et al. divided by it), so that |z| <= c_s/s_0 whatever the load, and the
+!> friction vanishes with the load. The price: the energy of the bristles, F_N s_0 z^2/2, follows the load, so where the load swings
+!> while they are bent, friction may give energy, up to this much in each swing.
+module bristle_law
+  use gudgeon_kinds, only: dp
+  use gudgeon_parameters, only: parameter_list_t
+  use trace_row, only: trace_row_t
+  use friction_law, only: friction_law_t, static_or_sliding, static_conflict
+  implicit none
+  private
+  public :: bristle_law_t
+
+  !> F_T/F_N = -(s_0 z + s_1(v) z' + s_2 v), s_1(v) = s_1 exp(-(v/v_d)^2), v = v_T. How z follows v is each law's own.
+  type, abstract, extends(friction_law_t) :: bristle_law_t
+    real(dp) :: coefficient = 0           !! c_f of sliding [-], > 0
+    real(dp) :: static_coefficient = 0    !! c_s of break-away [-], >= c_f; 0: as c_f
+    real(dp) :: stribeck_speed = 1        !! v_s, over which c_s falls to c_f [m/s], > 0
+    real(dp) :: bristle_stiffness = 0     !! s_0 [1/m], > 0
+    real(dp) :: bristle_damping = 0       !! s_1 [s/m], >= 0
+    real(dp) :: damping_speed = 0         !! v_d, beyond which the damping falls [m/s]; 0: it is constant
+    real(dp) :: viscous_coefficient = 0   !! s_2 [s/m], >= 0
+    real(dp) :: static_part = 0           !! c_s - c_f [-], once prepared
+  contains
+    procedure :: conflict
+    procedure :: touch_down_limit
+    procedure :: prepare
+    procedure :: state_scale
+    procedure :: friction_ratio
+    procedure :: friction_ratio_slope
+    procedure :: state_friction
+    procedure :: state_slopes
+    procedure :: put_columns
+    procedure, non_overridable :: add_common
+    procedure, non_overridable :: add_sliding
+    procedure, non_overridable :: steady_sliding
+    procedure(bristle_rate), deferred :: bristle_rate
+    procedure(rate_slopes), deferred :: rate_slopes
+  end type bristle_law_t
+
+  abstract interface
+    !> z' [m/s] at a sliding speed v [m/s] and a deflection z [m].
+    pure real(dp) function bristle_rate(self, v, z)
+      import :: bristle_law_t, dp
+      class(bristle_law_t), intent(in) :: self
+      real(dp), intent(in) :: v, z
+    end function bristle_rate
+
+    !> Its derivatives by v [-] and z [1/s].
+    pure subroutine rate_slopes(self, v, z, by_speed, by_deflection)
+      import :: bristle_law_t, dp
+      class(bristle_law_t), intent(in) :: self
+      real(dp), intent(in) :: v, z
+      real(dp), intent(out) :: by_speed, by_deflection
+    end subroutine rate_slopes
+  end interface
+
+contains
+
+  !> The parameters that every law with bristles has.
+  subroutine add_common(self, list)
+    class(bristle_law_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%add('coefficient', self%coefficient, 'of sliding friction', range='>= 0', example='0.03')
+    call list%add('bristle_stiffness', self%bristle_stiffness, 'friction over normal force by the bristles'' deflection', &
+      '1/m', '> 0', example='2.0e4')
+  end subroutine add_common
+
+  !> Those of friction at rest, and of what hangs on the speed.
+  subroutine add_sliding(self, list)
+    class(bristle_law_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%add('static_coefficient', self%static_coefficient, 'of friction at rest; 0: as coefficient', range='>= 0', &
+      default='0.0')
+    call list%add('stribeck_speed', self%stribeck_speed, 'sliding speed over which the static part of the friction falls', 'm/s', &
+      '> 0', example='0.010')
+    call list%add('bristle_damping', self%bristle_damping, 'friction over normal force by the bristles'' rate', 's/m', &
+      '>= 0', default='0.0')
+    call list%add('damping_speed', self%damping_speed, 'sliding speed over which the bristles'' damping falls; 0: it does not', &
+      'm/s', '>= 0', default='0.0')
+    call list%add('viscous_coefficient', self%viscous_coefficient, 'friction over normal force that grows with the sliding speed', &
+      's/m', '>= 0', default='0.0')
+  end subroutine add_sliding
+
+  pure subroutine conflict(self, key, wanted)
+    class(bristle_law_t), intent(in) :: self
+    character(len=:), allocatable, intent(out) :: key, wanted
+    real(dp), parameter :: largest = 0.42888194248035344_dp   !! of x exp(-x^2)
+    real(dp) :: static
+    static = static_or_sliding(self%static_coefficient, self%coefficient)
+    call static_conflict(self%static_coefficient, self%coefficient, key, wanted)
+    if (key /= '') return
+    if (.not. self%coefficient > 0) then
+      key = 'coefficient'
+      wanted = 'must be > 0 for a law with bristles'
+    else if (largest*self%bristle_damping*self%damping_speed >= static) then
+      key = 'damping_speed'
+      wanted = 'bristle_damping gives more than the static friction at touch-down: must be < '// &
+        'static_coefficient/(0.43 bristle_damping)'
+    end if
+  end subroutine conflict
+
+  !> At touch-down z is 0 and F_T/F_N = -(s_1 + s_2) v: with a constant s_1 the first part is above c_s at high speeds.
+  pure real(dp) function touch_down_limit(self)
+    class(bristle_law_t), intent(in) :: self
+    touch_down_limit = huge(touch_down_limit)
+    if (self%damping_speed > 0 .or. .not. self%bristle_damping > 0) return
+    touch_down_limit = static_or_sliding(self%static_coefficient, self%coefficient)/self%bristle_damping
+  end function touch_down_limit
+
+  subroutine prepare(self)
+    class(bristle_law_t), intent(inout) :: self
+    self%n_states = 1
+    self%static_part = static_or_sliding(self%static_coefficient, self%coefficient) - self%coefficient
+  end subroutine prepare
+
+  !> The deflection at break-away [m].
+  pure real(dp) function state_scale(self)
+    class(bristle_law_t), intent(in) :: self
+    state_scale = (self%coefficient + self%static_part)/self%bristle_stiffness
+  end function state_scale
+
+  !> g(v) = c_f + (c_s - c_f) exp(-(v/v_s)^2) [-], and its derivative [s/m]: the friction of bristles that have come to rest.
+  pure subroutine steady_sliding(self, v, g, slope)
+    class(bristle_law_t), intent(in) :: self
+    real(dp), intent(in) :: v
+    real(dp), intent(out) :: g
+    real(dp), intent(out), optional :: slope
+    real(dp) :: fall
+    fall = 0
+    if (self%static_part > 0) fall = self%static_part*exp(-(v/self%stribeck_speed)**2)
+    g = self%coefficient + fall
+    if (present(slope)) slope = -2*v/self%stribeck_speed**2*fall
+  end subroutine steady_sliding
+
+  !> s_1(v) [s/m] and its derivative.
+  pure subroutine damping_at(self, v, damping, slope)
+    class(bristle_law_t), intent(in) :: self
+    real(dp), intent(in) :: v
+    real(dp), intent(out) :: damping
+    real(dp), intent(out), optional :: slope
+    damping = self%bristle_damping
+    if (self%damping_speed > 0) damping = damping*exp(-(v/self%damping_speed)**2)
+    if (.not. present(slope)) return
+    slope = 0
+    if (self%damping_speed > 0) slope = -2*v/self%damping_speed**2*damping
+  end subroutine damping_at
+
+  !> That of steady sliding, after some micrometres of sliding one way.
+  pure function friction_ratio(self, sliding_speed, direction) result(ratio)
+    class(bristle_law_t), intent(in) :: self
+    real(dp), value, intent(in) :: sliding_speed
+    integer, value, intent(in) :: direction
+    real(dp) :: ratio
+    associate (unused => direction)
+    end associate
+    call self%steady_sliding(sliding_speed, ratio)
+    ratio = -(sign(ratio, sliding_speed) + self%viscous_coefficient*sliding_speed)
+  end function friction_ratio
+
+  pure function friction_ratio_slope(self, sliding_speed) result(slope)
+    class(bristle_law_t), intent(in) :: self
+    real(dp), intent(in) :: sliding_speed
+    real(dp) :: slope
+    real(dp) :: g
+    call self%steady_sliding(sliding_speed, g, slope)
+    slope = -(sign(1.0_dp, sliding_speed)*slope + self%viscous_coefficient)
+  end function friction_ratio_slope
+
+  pure subroutine state_friction(self, sliding_speed, states, ratio, rates)
+    class(bristle_law_t), intent(in) :: self
+    real(dp), intent(in) :: sliding_speed
+    real(dp), intent(in) :: states(self%n_states)
+    real(dp), intent(out) :: ratio
+    real(dp), intent(out) :: rates(self%n_states)
+    real(dp) :: damping
+    associate (v => sliding_speed, z => states(1))
+      rates(1) = self%bristle_rate(v, z)
+      call damping_at(self, v, damping)
+      ratio = -(self%bristle_stiffness*z + damping*rates(1) + self%viscous_coefficient*v)
+    end associate
+  end subroutine state_friction
+
+  pure subroutine state_slopes(self, sliding_speed, states, slopes)
+    class(bristle_law_t), intent(in) :: self
+    real(dp), intent(in) :: sliding_speed
+    real(dp), intent(in) :: states(self%n_states)
+    real(dp), intent(out) :: slopes(1 + self%n_states, 1 + self%n_states)
+    real(dp) :: damping, damping_slope
+    associate (v => sliding_speed, z => states(1))
+      call self%rate_slopes(v, z, slopes(2, 1), slopes(2, 2))
+      call damping_at(self, v, damping, damping_slope)
+      slopes(1, 1) = -(damping_slope*self%bristle_rate(v, z) + damping*slopes(2, 1) + self%viscous_coefficient)
+      slopes(1, 2) = -(self%bristle_stiffness + damping*slopes(2, 2))
+    end associate
+  end subroutine state_slopes
+
+  pure subroutine put_columns(self, states, row)
+    class(bristle_law_t), intent(in) :: self
+    real(dp), intent(in) :: states(:)
+    type(trace_row_t), intent(inout) :: row
+    associate (unused => self)
+    end associate
+    call row%put('bristle[m]', states(1))
+  end subroutine put_columns
+end module bristle_law

@@ -1,0 +1,29 @@
+!> Dahl's friction (1968): bristles without damping and without friction at rest above that of sliding.
+module dahl
+  use gudgeon_parameters, only: parameter_list_t
+  use lugre, only: lugre_t
+  implicit none
+  private
+  public :: dahl_t
+
+  !> z' = v - s_0 |v| z/c_f, F_T/F_N = -s_0 z: LuGre's law with c_s = c_f, s_1 = s_2 = 0. From rest, sliding one way over x,
+  !> z = (c_f/s_0) (1 - exp(-s_0 x/c_f)).
+  type, extends(lugre_t) :: dahl_t
+  contains
+    procedure, nopass :: name
+    procedure :: parameters
+  end type dahl_t
+
+contains
+
+  pure function name()
+    character(len=:), allocatable :: name
+    name = 'dahl'
+  end function name
+
+  subroutine parameters(self, list)
+    class(dahl_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call self%add_common(list)
+  end subroutine parameters
+end module dahl
