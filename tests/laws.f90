@@ -68,6 +68,7 @@ contains
     if (allocated(error)) return
     allocate (law, source=case%joint%film)
     call law%prepare(case%joint%bearing(case%mechanism%rod_length), tolerance)
+    call law%make_table(case%joint%bearing(case%mechanism%rod_length), tolerance)
   end subroutine film_law_of
 
   subroutine read_keys(groups, case, error)

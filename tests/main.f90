@@ -25,6 +25,7 @@ program gudgeon_tests
   use test_error_growth, only: run_test_error_growth
   use test_events, only: run_test_events
   use test_findings, only: run_test_findings
+  use test_finite_bearing, only: run_test_finite_bearing
   use test_friction, only: run_test_friction
   use test_friction_runs, only: run_test_friction_runs
   use test_joint, only: run_test_joint
@@ -81,6 +82,7 @@ program gudgeon_tests
   call run('error_growth', run_test_error_growth)
   call run('events', run_test_events)
   call run('findings', run_test_findings)
+  call run('finite_bearing', run_test_finite_bearing)
   call run('friction', run_test_friction)
   call run('friction_runs', run_test_friction_runs)
   call run('joint', run_test_joint)

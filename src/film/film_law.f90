@@ -1,17 +1,27 @@
 !> What every lubricating film answers.
 module film_law
   use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: two_pi
   use gudgeon_parameters, only: law_t
   use gudgeon_bearing, only: bearing_t
+  use gudgeon_archive, only: archive_t
   implicit none
   private
-  public :: film_law_t, film_motion_t, difference_derivatives
+  public :: film_law_t, film_motion_t, table_watch_t, difference_derivatives
+
+  !> Somebody who waits for a table to be made.
+  type, abstract :: table_watch_t
+    logical :: wants_to_stop = .false.   !! the table is not to be made
+  contains
+    procedure(row_done), deferred :: row_done
+  end type table_watch_t
 
   !> The motion of the pin in its bearing, as far as a film needs it.
   type :: film_motion_t
     real(dp) :: eccentricity(2)          !! e = pin centre - bearing centre [m], |e| < c
     real(dp) :: eccentricity_rate(2)     !! de/dt [m/s]
-    real(dp) :: pin_speed                !! angular velocity of the pin relative to the bearing, x towards y [rad/s]
+    real(dp) :: pin_speed                !! of both surfaces together, which draws the film along, x towards y [rad/s]
+    real(dp) :: turning_speed = 0        !! angular velocity of the pin's surface against the bearing's [rad/s]
     real(dp) :: ideal_pin_speed = 0      !! the same of the ideal-joint mechanism at (q, qdot) [rad/s]
     real(dp) :: ideal_pin_acceleration = 0 !! its rate at constant crank speed [rad/s^2]
     real(dp) :: frequency = 0            !! |qdot|, oscillation frequency of the pin [rad/s]
@@ -22,14 +32,26 @@ module film_law
     real(dp) :: clearance = 1                 !! c, radial [m]
     real(dp) :: per_clearance = 1             !! 1/c [1/m]
     logical :: needs_ideal_motion = .false.   !! whether the ideal_* fields and the frequency are read
+    logical :: film_moment = .false.          !! its shear acts on the pin
     logical :: singular_at_wall = .true.      !! the force is infinite at |e| = c: the state may not reach it
   contains
     procedure(prepare), deferred :: prepare
     procedure(film_force), deferred :: film_force
     procedure :: force_derivatives => difference_derivatives
+    procedure, non_overridable :: shear_moment
+    procedure :: table_key => no_key
+    procedure :: make_table => no_table
+    procedure :: exchange_table => nothing_to_exchange
   end type film_law_t
 
   abstract interface
+    !> `done` of `rows` rows of the table are there. One thread calls at a time.
+    subroutine row_done(self, done, rows)
+      import :: table_watch_t
+      class(table_watch_t), intent(inout) :: self
+      integer, intent(in) :: done, rows
+    end subroutine row_done
+
     !> Find what follows from the parameters and the bearing, before the first force is asked for. What the law sums or
     !> tabulates is to be finer than `tolerance`, the relative tolerance of the run.
     subroutine prepare(self, bearing, tolerance)
@@ -50,6 +72,51 @@ module film_law
   end interface
 
 contains
+
+  !> Moment of the film on the pin about its centre [N m] of the shear u = U y/h + y (y - h) p'/(2 mu) in a film whose pressure gives
+  !> `force`: -2 pi mu omega R^3 L/(c sqrt(1 - eps^2)) - e x F/2. (The gap counts as full, where the film has ruptured too.) With it
+  !> the power that a film of pressure takes is never negative.
+  pure real(dp) function shear_moment(self, force_scale, motion, force) result(moment)
+    class(film_law_t), intent(in) :: self
+    real(dp), intent(in) :: force_scale   !! mu L R^3/c^2 [N s]
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: force(2)
+    real(dp) :: square
+    associate (e => motion%eccentricity)
+      square = min((e(1)**2 + e(2)**2)*self%per_clearance**2, 1 - 2*epsilon(1.0_dp))
+      moment = -two_pi*force_scale*self%clearance*motion%turning_speed/sqrt(1 - square) - 0.5_dp*(e(1)*force(2) - e(2)*force(1))
+    end associate
+  end function shear_moment
+
+  !> What the law's table is of, where it has one that takes long to make: laws with the same key have the same table. Somebody may
+  !> keep it (`exchange_table`) and put it there before it is made.
+  function no_key(self, bearing, tolerance) result(key)
+    class(film_law_t), intent(in) :: self
+    type(bearing_t), intent(in) :: bearing
+    real(dp), intent(in) :: tolerance
+    character(len=:), allocatable :: key
+    associate (unused => self, unused_too => bearing, also_unused => tolerance)
+    end associate
+    key = ''
+  end function no_key
+
+  !> Make the table where it is not there. Without one the law does what it takes at every evaluation.
+  subroutine no_table(self, bearing, tolerance, watch)
+    class(film_law_t), intent(inout) :: self
+    type(bearing_t), intent(in) :: bearing
+    real(dp), intent(in) :: tolerance
+    class(table_watch_t), intent(inout), optional :: watch
+    associate (unused => self, unused_too => bearing, also_unused => tolerance, unused_as_well => watch)
+    end associate
+  end subroutine no_table
+
+  !> The table, to or from an archive.
+  subroutine nothing_to_exchange(self, archive)
+    class(film_law_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    associate (unused => self, unused_too => archive)
+    end associate
+  end subroutine nothing_to_exchange
 
   !> Derivatives of the force and the moment (rows F_x, F_y, moment) by e_x, e_y, e_x', e_y' and the pin speed (columns), for
   !> implicit integration. The default is central differences; what else the law depends on is left out, since it
@@ -84,6 +151,7 @@ contains
         other%eccentricity_rate(i - 2) = other%eccentricity_rate(i - 2) + by
       case default
         other%pin_speed = other%pin_speed + by
+        other%turning_speed = other%turning_speed + by
       end select
       call self%film_force(other, values(1:2), values(3))
     end subroutine moved

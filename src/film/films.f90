@@ -4,6 +4,8 @@ module films
   use pinkus_sternlicht, only: pinkus_sternlicht_t
   use half_film, only: half_film_t
   use oscillating_film, only: oscillating_film_t
+  use finite_bearing, only: finite_bearing_t
+  use short_bearing, only: short_bearing_t
   implicit none
   private
   public :: offer_film_laws
@@ -16,5 +18,7 @@ contains
     call list%law(pinkus_sternlicht_t())
     call list%law(half_film_t())
     call list%law(oscillating_film_t())
+    call list%law(finite_bearing_t())
+    call list%law(short_bearing_t())
   end subroutine offer_film_laws
 end module films

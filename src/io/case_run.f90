@@ -4,6 +4,7 @@ module case_run
   use gudgeon_errors, only: error_t, fail, status_output
   use case_definition, only: case_t
   use gudgeon_columns, only: column_list_t
+  use film_tables, only: provide_tables
   use gudgeon_simulation, only: simulate, run_report_t
   use trace_sink, only: trace_sink_t
   use trace_files, only: trace_files_t
@@ -126,6 +127,8 @@ contains
     type(archive_t) :: archive
 
     if (self%start%is_done) return
+    if (.not. self%is_twin) call provide_tables(self%case, self%show_progress, self%error)
+    if (allocated(self%error)) return
     !$omp critical (texts)
     call self%open_files(files)
     !$omp end critical (texts)

@@ -68,7 +68,7 @@ contains
     if (allocated(self%error)) return
     call choose_columns(case, .false., list, self%error)
     if (.not. allocated(self%error)) call choose_columns(case, .true., ideal_list, self%error)
-    if (.not. allocated(self%error)) call build_scene(case, .false., scene, self%error)
+    if (.not. allocated(self%error)) call build_scene(case, .false., scene, self%error, without_tables=.true.)
     if (allocated(self%error)) then
       call name_file(path, self%error)
       return
@@ -76,7 +76,7 @@ contains
     if (.not. options%quiet) call tell_warning(case)
     base = options%out//'/'//case%name
     text = resolved_text(values)
-    self%has_twin = case%output%ideal_twin .and. case%has_play()
+    self%has_twin = case%output%ideal_twin .and. (case%joint%has_clearance() .or. case%crank_pin%has_clearance())
     identity = identity_of(text, program)
     call self%run%prepare(case, text, identity, .false., list, base, options%checkpoint_interval, show_progress, options%quiet)
     self%twin%base = base//'.ideal'

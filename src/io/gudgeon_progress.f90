@@ -25,6 +25,7 @@ module gudgeon_progress
     procedure :: start
     procedure :: update
     procedure :: update_runs
+    procedure :: update_share
     procedure :: finish
     procedure :: tell => tell_above
   end type progress_t
@@ -82,6 +83,19 @@ contains
     call show(self%rewrites, line)
     self%has_shown = .true.
   end subroutine update_runs
+
+  !> `fraction` of something else than a run is done. Called as often as one likes.
+  subroutine update_share(self, fraction)
+    class(progress_t), intent(inout) :: self
+    real(dp), intent(in) :: fraction
+    real(dp) :: elapsed
+    logical :: is_due
+    call look_at_clock(self, elapsed, is_due)
+    if (.not. is_due) return
+    call show(self%rewrites, self%name//': '//integer_text(int(100*fraction))//' %, '// &
+      duration_text(elapsed*(1/fraction - 1))//' left')
+    self%has_shown = .true.
+  end subroutine update_share
 
   !> Whether a line is due, and the time since the beginning [s].
   subroutine look_at_clock(self, elapsed, is_due)

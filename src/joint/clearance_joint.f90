@@ -306,6 +306,7 @@ contains
     film%eccentricity = joint%eccentricity
     film%eccentricity_rate = joint%eccentricity_rate
     film%pin_speed = joint%journal_speed + joint%bearing_speed
+    film%turning_speed = joint%journal_speed - joint%bearing_speed
     if (self%film%needs_ideal_motion) then
       call ideal_rod(bodies, motion, rod_speed, rod_acceleration)
       film%ideal_pin_speed = -rod_speed

@@ -4,7 +4,7 @@ module joint_columns
   use trace_row, only: trace_row_t
   use chain_motion, only: piston_pin, name_prefix
   use joint_motion, only: joint_motion_t
-  use clearance_joint, only: clearance_joint_t, joint_loads_t, phase_contact
+  use clearance_joint, only: clearance_joint_t, joint_loads_t, phase_contact, phase_film
   implicit none
   private
   public :: put_joint_columns
@@ -34,6 +34,7 @@ contains
     if (allocated(joint%film)) then
       call row%put('film_force_x[N]', loads%film(1))
       call row%put('film_force_y[N]', loads%film(2))
+      if (joint%film%film_moment) call row%put('film_moment[N.m]', merge(loads%moment, 0.0_dp, joint%phase == phase_film))
     end if
     row%place = ''
   end subroutine put_joint_columns

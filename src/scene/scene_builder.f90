@@ -41,14 +41,16 @@ contains
 
   !> Build the scene of a case; with `ideal_joint` its twin without clearance. The case has been validated by its
   !> reader. Error: the gas cycle cannot be integrated.
-  subroutine build_scene(case, ideal_joint, scene, error)
+  subroutine build_scene(case, ideal_joint, scene, error, without_tables)
     type(case_t), intent(in) :: case
     logical, intent(in) :: ideal_joint
     type(scene_t), allocatable, intent(out) :: scene
     type(error_t), allocatable, intent(out) :: error
+    logical, intent(in), optional :: without_tables   !! films make no tables: the scene is not to be integrated
 
     call assemble_scene(case, ideal_joint, scene)
     call prepare_joints(case, scene)
+    if (.not. present(without_tables)) call make_tables(case, scene)
     associate (m => case%mechanism)
       scene%chain%bodies = new_bodies(crank_t(m%crank_length, m%crank_mass, m%crank_inertia, m%crank_com), &
         rod_t(m%rod_length, m%rod_mass, m%rod_inertia, m%rod_com), piston_t(m%piston_mass), gravity_of(case))
@@ -127,6 +129,18 @@ contains
       end associate
     end do
   end subroutine prepare_joints
+
+  !> Tables of films that have none yet.
+  subroutine make_tables(case, scene)
+    type(case_t), intent(in) :: case
+    type(scene_t), intent(inout) :: scene
+    integer :: i
+    do i = 1, size(scene%joints)
+      associate (joint => scene%joints(i))
+        if (allocated(joint%film)) call joint%film%make_table(joint%bearing, case%integrator%relative_tolerance)
+      end associate
+    end do
+  end subroutine make_tables
 
   !> A joint with its laws, only those that the case asks for.
   subroutine build_joint(case, wanted, place, joint)

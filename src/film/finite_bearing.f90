@@ -1,0 +1,198 @@
+!> The film of a bearing of finite length: Reynolds' equation, quasi-static, with its own pressure solved for (`finite_film`), as a
+!> table (`film_map`) or at every evaluation.
+!>
+!> Wedge and squeeze are one velocity, v* = e' - (omega/2) z x e (Booker 1965), and the force is mu L R^3/c^2 |v*|/c times a function of
+!> eps = |e|/c and of the direction of v*.
+module finite_bearing
+  use gudgeon_kinds, only: dp
+  use gudgeon_parameters, only: parameter_list_t
+  use gudgeon_bearing, only: bearing_t
+  use gudgeon_archive, only: archive_t
+  use film_law, only: film_law_t, film_motion_t, table_watch_t
+  use finite_film, only: cavitation_none, cavitation_gumbel, cavitation_reynolds
+  use film_map, only: film_map_t, solved_force
+  implicit none
+  private
+  public :: finite_bearing_t
+
+  real(dp), parameter :: least_gap = 1e-6_dp   !! 1 - eps below which the equation is not solved: the force is held there
+
+  type, extends(film_law_t) :: finite_bearing_t
+    character(len=:), allocatable :: variant, cavitation
+    real(dp) :: viscosity = 0        !! mu [Pa s], > 0
+    integer :: table_points = 0      !! values of the table in each direction; 0: from the tolerance
+    integer :: film_points = 0       !! nodes round the film where it is solved; 0: from the tolerance
+    type(film_map_t) :: map          !! of the variant `table`; without points the film is solved at every evaluation
+    real(dp) :: half_length = 0      !! L/(2R)
+    real(dp) :: force_scale = 0      !! mu L R^3/c^2 [N s]
+    integer :: condition = 0         !! the cavitation, as finite_film counts it
+  contains
+    procedure, nopass :: name
+    procedure :: serves
+    procedure :: conflict
+    procedure :: parameters
+    procedure :: prepare
+    procedure :: film_force
+    procedure :: reduced_force
+    procedure :: table_key
+    procedure :: make_table
+    procedure :: exchange_table
+  end type finite_bearing_t
+
+contains
+
+  pure function name()
+    character(len=:), allocatable :: name
+    name = 'finite_bearing'
+  end function name
+
+  !> All variants but the short bearing, which is short_bearing_t.
+  pure logical function serves(self, variant)
+    class(finite_bearing_t), intent(in) :: self
+    character(len=*), intent(in) :: variant
+    associate (unused => self)
+    end associate
+    serves = variant /= 'short'
+  end function serves
+
+  subroutine parameters(self, list)
+    class(finite_bearing_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%word('variant', self%variant, 'table, direct, short', 'table', &
+      'table: made once, then fast; direct: solved at every evaluation; short: Ocvirk''s closed form', example='table')
+    call list%word('cavitation', self%cavitation, 'reynolds, gumbel, none', 'reynolds', &
+      'where the pressure would be negative: reynolds: the film ruptures with pressure and slope 0; gumbel: it is cut off')
+    call list%add('viscosity', self%viscosity, 'dynamic viscosity', 'Pa s', '> 0', example='0.0117')
+    call list%add('film_moment', self%film_moment, 'the film''s shear acts on the pin', '.true.')
+    call list%add('table_points', self%table_points, &
+      'of the table in each direction; 0: from the tolerance, 33 above 3e-5, else 65', '>= 17 and <= 513', '0')
+    call list%add('film_points', self%film_points, &
+      'round the film, divisible by 4; 0: from the tolerance, 64 above 3e-5, 128, 256 below 1e-8', '>= 32 and <= 1024', '0')
+  end subroutine parameters
+
+  !> A number of nodes that cannot be halved twice.
+  pure subroutine conflict(self, key, wanted)
+    class(finite_bearing_t), intent(in) :: self
+    character(len=:), allocatable, intent(out) :: key, wanted
+    key = ''
+    if (mod(self%film_points, 4) == 0) return
+    key = 'film_points'
+    wanted = 'must be divisible by 4'
+  end subroutine conflict
+
+  !> Scales, and the number of nodes.
+  subroutine prepare(self, bearing, tolerance)
+    class(finite_bearing_t), intent(inout) :: self
+    type(bearing_t), intent(in) :: bearing
+    real(dp), intent(in) :: tolerance
+    call set_scales(self, bearing)
+    if (self%film_points == 0) self%film_points = film_points_for(tolerance)
+  end subroutine prepare
+
+  subroutine set_scales(self, bearing)
+    class(finite_bearing_t), intent(inout) :: self
+    type(bearing_t), intent(in) :: bearing
+    associate (c => bearing%clearance, r => bearing%pin_radius())
+      self%clearance = c
+      self%per_clearance = 1/c
+      self%half_length = 0.5_dp*bearing%length/r
+      self%force_scale = self%viscosity*bearing%length*r**3/c**2
+    end associate
+    self%condition = cavitation_reynolds
+    if (self%cavitation == 'gumbel') self%condition = cavitation_gumbel
+    if (self%cavitation == 'none') self%condition = cavitation_none
+  end subroutine set_scales
+
+  pure integer function film_points_for(tolerance)
+    real(dp), intent(in) :: tolerance
+    film_points_for = 128
+    if (tolerance > 3e-5_dp) film_points_for = 64
+    if (tolerance < 1e-8_dp) film_points_for = 256
+  end function film_points_for
+
+  pure integer function table_points_for(tolerance)
+    real(dp), intent(in) :: tolerance
+    table_points_for = merge(33, 65, tolerance > 3e-5_dp)
+  end function table_points_for
+
+  !> What a table is of: two laws with the same key have the same table.
+  function table_key(self, bearing, tolerance) result(key)
+    class(finite_bearing_t), intent(in) :: self
+    type(bearing_t), intent(in) :: bearing
+    real(dp), intent(in) :: tolerance
+    character(len=:), allocatable :: key
+    character(len=100) :: text
+    key = ''
+    if (self%variant /= 'table') return
+    write (text, '(a,es24.16e3,a,i0,a,i0)') 'finite_bearing 1 '//self%cavitation//' ', 0.5_dp*bearing%length/bearing%pin_radius(), &
+      ' ', merge(self%table_points, table_points_for(tolerance), self%table_points > 0), &
+      ' ', merge(self%film_points, film_points_for(tolerance), self%film_points > 0)
+    key = trim(text)
+  end function table_key
+
+  !> Make the table where the variant has one that is not there.
+  subroutine make_table(self, bearing, tolerance, watch)
+    class(finite_bearing_t), intent(inout) :: self
+    type(bearing_t), intent(in) :: bearing
+    real(dp), intent(in) :: tolerance
+    class(table_watch_t), intent(inout), optional :: watch
+    if (self%variant /= 'table' .or. self%map%points > 0) return
+    call set_scales(self, bearing)
+    call self%map%build(self%half_length, self%condition, &
+      merge(self%table_points, table_points_for(tolerance), self%table_points > 0), &
+      merge(self%film_points, film_points_for(tolerance), self%film_points > 0), watch)
+  end subroutine make_table
+
+  subroutine exchange_table(self, archive)
+    class(finite_bearing_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    call self%map%exchange(archive)
+  end subroutine exchange_table
+
+  !> Force and, of the shear, moment.
+  pure subroutine film_force(self, motion, force, moment)
+    class(finite_bearing_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(out) :: force(2), moment
+    real(dp), parameter :: centred = 1e-200_dp          !! below this square of eps n is the direction of x
+    real(dp), parameter :: largest_square = 1 - 2*epsilon(1.0_dp)
+    real(dp) :: e(2), v(2), n(2), square, eps, radial, tangential
+    e = motion%eccentricity*self%per_clearance
+    v = motion%eccentricity_rate*self%per_clearance
+    v = [v(1) + 0.5_dp*motion%pin_speed*e(2), v(2) - 0.5_dp*motion%pin_speed*e(1)]   ! v*/c
+    square = e(1)**2 + e(2)**2
+    eps = 0
+    n = [1.0_dp, 0.0_dp]
+    if (square > centred) then
+      eps = sqrt(square)
+      n = e/eps
+    end if
+    square = min(square, largest_square)
+    call self%reduced_force(square, n(1)*v(1) + n(2)*v(2), n(1)*v(2) - n(2)*v(1), radial, tangential)
+    radial = self%force_scale*radial
+    tangential = self%force_scale*tangential
+    force = [radial*n(1) - tangential*n(2), radial*n(2) + tangential*n(1)]
+    moment = 0
+    if (self%film_moment) moment = self%shear_moment(self%force_scale, motion, force)
+  end subroutine film_force
+
+  !> Force over mu L R^3/c^2 along n and t [1/s] for the velocity (B, T) = v*/c [1/s] at eps^2.
+  pure subroutine reduced_force(self, eps_squared, b, t, radial, tangential)
+    class(finite_bearing_t), intent(in) :: self
+    real(dp), intent(in) :: eps_squared, b, t
+    real(dp), intent(out) :: radial, tangential
+    real(dp) :: force(2), v
+    if (self%map%points > 0) then
+      call self%map%force(eps_squared, b, t, radial, tangential)
+      return
+    end if
+    radial = 0
+    tangential = 0
+    v = sqrt(b**2 + t**2)
+    if (.not. v > 0) return
+    call solved_force(self%film_points, self%half_length, self%condition, &
+      max((1 - eps_squared)/(1 + sqrt(eps_squared)), least_gap), atan2(t, b), force)
+    radial = v*force(1)
+    tangential = v*force(2)
+  end subroutine reduced_force
+end module finite_bearing

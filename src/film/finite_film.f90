@@ -1,0 +1,298 @@
+!> The pressure of a film of finite length, and what it does: the solver from which the table of the law `finite_bearing` is made.
+module finite_film
+  use gudgeon_kinds, only: dp
+  use reynolds_grid, only: reynolds_grid_t, new_reynolds_grid
+  implicit none
+  private
+  public :: film_answer_t, film_solver_t
+  public :: cavitation_none, cavitation_gumbel, cavitation_reynolds
+
+  !> What happens where the pressure would be negative: nothing (Sommerfeld); the negative part is cut off (Gumbel); the film ruptures
+  !> where both pressure and its slope are 0 (Swift and Stieber: P >= 0, r = div(H^3 grad P) + 12 cos(phi - alpha) <= 0, P r = 0).
+  integer, parameter :: cavitation_none = 1, cavitation_gumbel = 2, cavitation_reynolds = 3
+
+  !> Force over mu V L R^3/c^2 along n and t, flow out of both ends over V c R^2, and largest pressure over mu V R^2/c^2.
+  type :: film_answer_t
+    real(dp) :: force(2) = 0, flow = 0, most = 0
+  end type film_answer_t
+
+  !> Solves for one eccentricity and any direction of the velocity. Unknowns are the nodes of the grid, first along the film, then in
+  !> the order of the ring's places. The matrix, minus div(H^3 grad), is symmetric with the half bandwidth 2m and has an inverse
+  !> without negative elements.
+  type :: film_solver_t
+    private
+    type(reynolds_grid_t) :: grid
+    integer :: n = 0, band = 0
+    integer, allocatable :: node(:)            !! of the ring, by its place
+    real(dp), allocatable :: matrix(:, :)      !! (0:band, n): element (i, l) is that of row l + i, column l
+    real(dp), allocatable :: linear(:, :)      !! solutions for the sources cos phi and sin phi
+    real(dp), allocatable :: pressure(:)       !! of the last solution
+    logical, allocatable :: active(:)          !! where it was positive: the next one begins there
+  contains
+    procedure :: begin
+    procedure :: solve
+    procedure :: pressure_at
+  end type film_solver_t
+
+contains
+
+  !> Prepare for one thickness `gap` = 1 - eps (> 0, <= 1) and half length L/(2R) on n times m nodes.
+  pure subroutine begin(self, n, m, gap, half_length)
+    class(film_solver_t), intent(inout) :: self
+    integer, intent(in) :: n, m
+    real(dp), intent(in) :: gap, half_length
+    real(dp), allocatable :: factor(:, :)
+    integer :: i, j, k, next
+
+    self%grid = new_reynolds_grid(n, m, gap, half_length)
+    self%n = n*m
+    self%band = 2*m
+    if (allocated(self%matrix)) deallocate (self%matrix, self%linear, self%pressure, self%active, self%node)
+    allocate (self%matrix(0:self%band, self%n), self%linear(self%n, 2), self%pressure(self%n), self%active(self%n), self%node(n))
+    self%matrix = 0
+    do i = 1, n
+      self%node(self%grid%place(i)) = i
+    end do
+    associate (g => self%grid, a => self%matrix)
+      do i = 1, n
+        next = modulo(i, n) + 1
+        do j = 1, m
+          k = (g%place(i) - 1)*m + j
+          call connect(a, k, (g%place(next) - 1)*m + j, g%around(i)*g%width(j))
+          if (j < m) then
+            call connect(a, k, k + 1, g%along(j)*g%height_cubed(i))
+          else
+            a(0, k) = a(0, k) + g%along(m)*g%height_cubed(i)
+          end if
+        end do
+      end do
+    end associate
+    factor = self%matrix
+    call decompose(self%n, self%band, factor)
+    call put_source(self, 1.0_dp, 0.0_dp, self%linear(:, 1))
+    call put_source(self, 0.0_dp, 1.0_dp, self%linear(:, 2))
+    call substitute(self%n, self%band, factor, self%linear(:, 1))
+    call substitute(self%n, self%band, factor, self%linear(:, 2))
+    self%active = .true.
+    self%pressure = 0
+  end subroutine begin
+
+  !> A conductance between two unknowns.
+  pure subroutine connect(a, k, l, conductance)
+    real(dp), intent(inout) :: a(0:, :)
+    integer, intent(in) :: k, l
+    real(dp), intent(in) :: conductance
+    a(0, k) = a(0, k) + conductance
+    a(0, l) = a(0, l) + conductance
+    a(abs(k - l), min(k, l)) = a(abs(k - l), min(k, l)) - conductance
+  end subroutine connect
+
+  !> The source 12 cos(phi - alpha), integrated over the cells exactly.
+  pure subroutine put_source(self, cos_alpha, sin_alpha, source)
+    class(film_solver_t), intent(in) :: self
+    real(dp), intent(in) :: cos_alpha, sin_alpha
+    real(dp), intent(out) :: source(:)
+    integer :: i, m
+    m = self%grid%m
+    do i = 1, self%grid%n
+      associate (node => self%node(i))
+        source((i - 1)*m + 1:i*m) = 12*(cos_alpha*self%grid%sine(node) + sin_alpha*self%grid%cosine(node))*self%grid%width(:m)
+      end associate
+    end do
+  end subroutine put_source
+
+  !> The film for a velocity in the direction alpha from n to t. `warm`: begin with the film of the solution before.
+  pure subroutine solve(self, alpha, cavitation, warm, answer)
+    class(film_solver_t), intent(inout) :: self
+    real(dp), intent(in) :: alpha   !! [rad]
+    integer, intent(in) :: cavitation
+    logical, intent(in) :: warm
+    type(film_answer_t), intent(out) :: answer
+    real(dp) :: source(self%n)
+    call put_source(self, cos(alpha), sin(alpha), source)
+    if (cavitation /= cavitation_reynolds .or. .not. warm) then
+      self%pressure = cos(alpha)*self%linear(:, 1) + sin(alpha)*self%linear(:, 2)
+      self%active = self%pressure > 0
+    end if
+    if (cavitation == cavitation_reynolds) call find_film(self, source)
+    call sum_up(self, cavitation, alpha, answer)
+  end subroutine solve
+
+  !> The film with free edges as a linear complementarity problem, by the primal-dual active set: P = 0 outside of it, the equation
+  !> holds inside; a node stays inside while P > 0 and comes in where its cell would gain.
+  pure subroutine find_film(self, source)
+    class(film_solver_t), intent(inout) :: self
+    real(dp), intent(in) :: source(:)
+    integer, parameter :: most_rounds = 100
+    real(dp), allocatable :: factor(:, :)
+    real(dp) :: product(self%n), threshold
+    logical :: active(self%n)
+    integer :: round
+
+    threshold = 1e-13_dp*maxval(abs(source))
+    allocate (factor(0:self%band, self%n))
+    do round = 1, most_rounds
+      call restrict(self%n, self%band, self%matrix, self%active, factor)
+      call decompose(self%n, self%band, factor)
+      self%pressure = merge(source, 0.0_dp, self%active)
+      call substitute(self%n, self%band, factor, self%pressure)
+      call multiply(self%n, self%band, self%matrix, self%pressure, product)
+      active = merge(self%pressure > 0, source - product > threshold, self%active)
+      if (all(active .eqv. self%active)) exit
+      self%active = active
+    end do
+    self%pressure = max(self%pressure, 0.0_dp)
+  end subroutine find_film
+
+  !> The matrix for the unknowns inside alone: rows and columns outside are those of the unit matrix.
+  pure subroutine restrict(n, band, matrix, active, part)
+    integer, intent(in) :: n, band
+    real(dp), intent(in) :: matrix(0:band, n)
+    logical, intent(in) :: active(n)
+    real(dp), intent(out) :: part(0:band, n)
+    integer :: l, i
+    do l = 1, n
+      part(:, l) = 0
+      part(0, l) = 1
+      if (.not. active(l)) cycle
+      part(0, l) = matrix(0, l)
+      do i = 1, min(band, n - l)
+        if (active(l + i)) part(i, l) = matrix(i, l)
+      end do
+    end do
+  end subroutine restrict
+
+  !> Cholesky's factor of a band matrix, in its place.
+  pure subroutine decompose(n, band, a)
+    integer, intent(in) :: n, band
+    real(dp), intent(inout) :: a(0:band, n)
+    real(dp) :: factor
+    integer :: l, i, k, last
+    do l = 1, n
+      last = min(band, n - l)
+      a(0, l) = sqrt(a(0, l))
+      a(1:last, l) = a(1:last, l)*(1/a(0, l))
+      do i = 1, last
+        factor = a(i, l)
+        if (.not. abs(factor) > 0) cycle
+        !$omp simd
+        do k = 0, last - i
+          a(k, l + i) = a(k, l + i) - factor*a(i + k, l)
+        end do
+      end do
+    end do
+  end subroutine decompose
+
+  !> Solve with such a factor.
+  pure subroutine substitute(n, band, a, x)
+    integer, intent(in) :: n, band
+    real(dp), intent(in) :: a(0:band, n)
+    real(dp), intent(inout) :: x(n)
+    integer :: l, last
+    do l = 1, n
+      last = min(band, n - l)
+      x(l) = x(l)/a(0, l)
+      x(l + 1:l + last) = x(l + 1:l + last) - x(l)*a(1:last, l)
+    end do
+    do l = n, 1, -1
+      last = min(band, n - l)
+      x(l) = (x(l) - dot_product(a(1:last, l), x(l + 1:l + last)))/a(0, l)
+    end do
+  end subroutine substitute
+
+  !> Product of the symmetric band matrix with x.
+  pure subroutine multiply(n, band, a, x, y)
+    integer, intent(in) :: n, band
+    real(dp), intent(in) :: a(0:band, n), x(n)
+    real(dp), intent(out) :: y(n)
+    integer :: l, i
+    y = a(0, :)*x
+    do l = 1, n
+      do i = 1, min(band, n - l)
+        if (.not. abs(a(i, l)) > 0) cycle
+        y(l + i) = y(l + i) + a(i, l)*x(l)
+        y(l) = y(l) + a(i, l)*x(l + i)
+      end do
+    end do
+  end subroutine multiply
+
+  !> Force, flow and largest pressure of the last solution.
+  pure subroutine sum_up(self, cavitation, alpha, answer)
+    class(film_solver_t), intent(in) :: self
+    integer, intent(in) :: cavitation
+    real(dp), intent(in) :: alpha
+    type(film_answer_t), intent(out) :: answer
+    real(dp) :: line(self%grid%n), out
+    integer :: i, j
+
+    associate (g => self%grid)
+      do j = 1, g%m
+        do i = 1, g%n
+          line(i) = self%pressure((g%place(i) - 1)*g%m + j)
+        end do
+        if (cavitation == cavitation_gumbel) then
+          answer%force = answer%force - g%width(j)*positive_force(g%angle, line)
+        else
+          answer%force(1) = answer%force(1) - g%width(j)*sum(line*g%sine)
+          answer%force(2) = answer%force(2) - g%width(j)*sum(line*g%cosine)
+        end if
+        answer%most = max(answer%most, maxval(line))
+      end do
+      answer%force = answer%force/g%half_length
+      do i = 1, g%n   ! `line` is the last one before the end
+        out = g%along(g%m)*g%height_cubed(i)*line(i) &
+          + 12*(cos(alpha)*g%sine(i) + sin(alpha)*g%cosine(i))*g%width(g%m + 1)
+        if (cavitation == cavitation_none .or. line(i) > 0) answer%flow = answer%flow + out/6
+      end do
+    end associate
+  end subroutine sum_up
+
+  !> Integrals of the positive part of a pressure, linear between the nodes of the ring, times cos phi and sin phi.
+  pure function positive_force(angle, pressure) result(force)
+    real(dp), intent(in) :: angle(:), pressure(:)
+    real(dp) :: force(2), left, right, from, to
+    integer :: i, next, n
+    n = size(angle)
+    force = 0
+    do i = 1, n
+      next = modulo(i, n) + 1
+      left = pressure(i)
+      right = pressure(next)
+      if (left <= 0 .and. right <= 0) cycle
+      from = angle(i)
+      to = merge(angle(1) + 8*atan(1.0_dp), angle(next), i == n)
+      if (left < 0) from = from + (to - from)*left/(left - right)
+      if (right < 0) to = to - (to - from)*right/(right - left)
+      force = force + linear_integrals(from, to, max(left, 0.0_dp), max(right, 0.0_dp))
+    end do
+  end function positive_force
+
+  !> Integrals from a to b of a linear function times cosine and sine.
+  pure function linear_integrals(a, b, left, right) result(sums)
+    real(dp), intent(in) :: a, b, left, right
+    real(dp) :: sums(2), half, middle, even, odd
+    middle = 0.5_dp*(a + b)
+    half = 0.5_dp*(b - a)
+    even = (left + right)*sin(half)
+    odd = 0   ! (right - left)/(2 half) times the integral of x sin x from -half to half
+    if (half > 1e-2_dp) then
+      odd = (right - left)*(sin(half)/half - cos(half))
+    else
+      odd = (right - left)*half**2*(1/3.0_dp - half**2/30*(1 - half**2/28))
+    end if
+    sums = [cos(middle)*even - sin(middle)*odd, sin(middle)*even + cos(middle)*odd]
+  end function linear_integrals
+
+  !> Pressure of the last solution at the nodes, over mu V R^2/c^2: (i, j) as in the grid, with the nodes' angles [rad].
+  pure subroutine pressure_at(self, angle, pressure)
+    class(film_solver_t), intent(in) :: self
+    real(dp), allocatable, intent(out) :: angle(:), pressure(:, :)
+    integer :: i
+    angle = self%grid%angle
+    allocate (pressure(self%grid%n, self%grid%m))
+    do i = 1, self%grid%n
+      pressure(i, :) = self%pressure((self%grid%place(i) - 1)*self%grid%m + 1:self%grid%place(i)*self%grid%m)
+    end do
+    pressure = max(pressure, 0.0_dp)
+  end subroutine pressure_at
+end module finite_film

@@ -1,0 +1,80 @@
+!> Ocvirk's film of a short bearing, of whose pressure only the positive part acts, in closed form.
+module short_bearing
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: pi, two_pi
+  use gudgeon_bearing, only: bearing_t
+  use finite_bearing, only: finite_bearing_t
+  implicit none
+  private
+  public :: short_bearing_t
+
+  !> The variant `short` of the law of its parent.
+  type, extends(finite_bearing_t) :: short_bearing_t
+  contains
+    procedure :: serves
+    procedure :: conflict
+    procedure :: reduced_force
+  end type short_bearing_t
+
+contains
+
+  pure logical function serves(self, variant)
+    class(short_bearing_t), intent(in) :: self
+    character(len=*), intent(in) :: variant
+    associate (unused => self)
+    end associate
+    serves = variant == 'short'
+  end function serves
+
+  !> The positive part of its pressure alone acts, whatever the cavitation is called.
+  pure subroutine conflict(self, key, wanted)
+    class(short_bearing_t), intent(in) :: self
+    character(len=:), allocatable, intent(out) :: key, wanted
+    key = ''
+    if (self%cavitation /= 'none') return
+    key = 'cavitation'
+    wanted = 'none is for the variants table and direct: of the short bearing the positive pressure acts'
+  end subroutine conflict
+
+  !> P = 6 cos(phi - alpha) (lambda^2 - zeta^2)/H^3 where cos(phi - alpha) > 0. With a = phi + pi and Sommerfeld's angle g,
+  !> exp(i g) = (cos a + eps + i w sin a)/(1 + eps cos a), w = sqrt(1 - eps^2), the integrals of cos^2 a, cos a sin a and sin^2 a over
+  !> (1 + eps cos a)^3 are
+  !>
+  !>     w^-5 [g (1/2 + eps^2) + sin g cos g/2 - 2 eps sin g],  w^-4 [sin^2 g/2 + eps cos g],  w^-3 [g - sin g cos g]/2
+  !>
+  !> from a = alpha + pi/2 to alpha + 3 pi/2 (Booker 1965).
+  pure subroutine reduced_force(self, eps_squared, b, t, radial, tangential)
+    class(short_bearing_t), intent(in) :: self
+    real(dp), intent(in) :: eps_squared, b, t
+    real(dp), intent(out) :: radial, tangential
+    real(dp) :: eps, w, speed, to(3), from(3), cc, cs, ss
+    radial = 0
+    tangential = 0
+    speed = sqrt(b**2 + t**2)
+    if (.not. speed > 0) return
+    eps = sqrt(eps_squared)
+    w = sqrt(1 - eps_squared)
+    from = primitives(eps, w, atan2(t, b), b/speed, t/speed, 0.5_dp*pi)
+    to = primitives(eps, w, atan2(t, b), b/speed, t/speed, 1.5_dp*pi)
+    cc = (to(1) - from(1))/w**5
+    cs = (to(2) - from(2))/w**4
+    ss = (to(3) - from(3))/w**3
+    radial = -4*self%half_length**2*(b*cc + t*cs)
+    tangential = -4*self%half_length**2*(b*cs + t*ss)
+  end subroutine reduced_force
+
+  !> The brackets above at a = alpha + beyond, `beyond` being pi/2 or 3 pi/2.
+  pure function primitives(eps, w, alpha, cos_alpha, sin_alpha, beyond) result(brackets)
+    real(dp), intent(in) :: eps, w, alpha, cos_alpha, sin_alpha, beyond
+    real(dp) :: brackets(3), cos_a, sin_a, g, cosine, sine, a
+    a = alpha + beyond
+    cos_a = merge(-sin_alpha, sin_alpha, beyond < pi)
+    sin_a = merge(cos_alpha, -cos_alpha, beyond < pi)
+    g = atan2(w*sin_a, cos_a + eps)
+    g = g + two_pi*nint((a - g)/two_pi)   ! the branch next to a
+    cosine = (cos_a + eps)/(1 + eps*cos_a)
+    sine = w*sin_a/(1 + eps*cos_a)
+    brackets = [g*(0.5_dp + eps**2) + 0.5_dp*sine*cosine - 2*eps*sine, 0.5_dp*sine**2 + eps*cosine, &
+      0.5_dp*(g - sine*cosine)]
+  end function primitives
+end module short_bearing

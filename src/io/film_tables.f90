@@ -1,0 +1,166 @@
+!> The tables of film laws that take long to make: kept in the user's cache folder, from one run to the next.
+!>
+!> A file holds a line that says what it is, the key of the table, the table as an archive, and a checksum of all that. One that is
+!> damaged, or that another version of the program wrote, is made again; one that cannot be written is done without.
+module film_tables
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t, fail, status_integration
+  use gudgeon_archive, only: archive_t
+  use gudgeon_bearing, only: bearing_t
+  use gudgeon_checksum, only: checksum_t
+  use case_definition, only: case_t, joint_case_t
+  use film_law, only: film_law_t, table_watch_t
+  use gudgeon_posix, only: make_directory
+  use posix_signals, only: interrupted
+  use gudgeon_progress, only: progress_t
+  use result_file, only: result_file_t
+  use text_file, only: read_whole
+  implicit none
+  private
+  public :: provide_tables
+
+  character(len=*), parameter :: newline = achar(10), title = 'gudgeon film table'//newline
+  integer, parameter :: mark_length = 8   !! bytes of the checksum
+
+  !> Shows how far a table is, and gives it up when the user interrupts.
+  type, extends(table_watch_t) :: progress_watch_t
+    type(progress_t) :: progress
+  contains
+    procedure :: row_done
+  end type progress_watch_t
+
+contains
+
+  !> Give the films of a case their tables: those that are in the cache, or new ones. Error: the user interrupted
+  !> (status_integration).
+  subroutine provide_tables(case, shows_progress, error)
+    type(case_t), intent(inout) :: case
+    logical, intent(in) :: shows_progress
+    type(error_t), allocatable, intent(out) :: error
+    logical :: was_stopped
+    call provide_table(case%joint, case, shows_progress, was_stopped)
+    if (.not. was_stopped) call provide_table(case%crank_pin, case, shows_progress, was_stopped)
+    if (was_stopped) call fail(error, 'interrupted before it began, while the table of its film was made', status_integration)
+  end subroutine provide_tables
+
+  subroutine provide_table(joint, case, shows_progress, was_stopped)
+    type(joint_case_t), intent(inout) :: joint
+    type(case_t), intent(in) :: case
+    logical, intent(in) :: shows_progress
+    logical, intent(out) :: was_stopped
+    type(progress_watch_t) :: watch
+    type(bearing_t) :: bearing
+    character(len=:), allocatable :: key, path
+    logical :: is_there
+    was_stopped = .false.
+    if (.not. (allocated(joint%film) .and. joint%has_clearance())) return
+    bearing = joint%bearing(case%mechanism%rod_length)
+    associate (tolerance => case%integrator%relative_tolerance)
+      key = joint%film%table_key(bearing, tolerance)
+      if (key == '') return
+      !$omp critical (film_tables)
+      path = path_for(key)
+      call load(path, key, joint%film, is_there)
+      if (.not. is_there) then
+        call watch%progress%start(case%name//': film table', shows_progress)
+        call joint%film%make_table(bearing, tolerance, watch)
+        call watch%progress%finish()
+        was_stopped = watch%wants_to_stop
+        if (.not. was_stopped) call save(path, key, joint%film)
+      end if
+      !$omp end critical (film_tables)
+    end associate
+  end subroutine provide_table
+
+  subroutine row_done(self, done, rows)
+    class(progress_watch_t), intent(inout) :: self
+    integer, intent(in) :: done, rows
+    call self%progress%update_share(real(done, dp)/rows)
+    self%wants_to_stop = interrupted()
+  end subroutine row_done
+
+  !> Where a table is kept; empty where there is no place.
+  function path_for(key) result(path)
+    character(len=*), intent(in) :: key
+    character(len=:), allocatable :: path
+    type(checksum_t) :: sum
+    integer :: status
+    call get_variable('XDG_CACHE_HOME', path)
+    if (path == '') then
+      call get_variable('HOME', path)
+      if (path == '') return
+      path = path//'/.cache'
+    end if
+    path = path//'/gudgeon'
+    call make_directory(path, status)
+    call sum%add(key)
+    path = path//'/film-'//sum%hexadecimal()//'.table'
+    if (status /= 0) path = ''
+  end function path_for
+
+  !> A variable of the environment; empty where it is not set.
+  subroutine get_variable(name, value)
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable, intent(out) :: value
+    integer :: length
+    call get_environment_variable(name, length=length)
+    allocate (character(len=length) :: value)
+    if (length > 0) call get_environment_variable(name, value)
+  end subroutine get_variable
+
+  !> Take a table from its file, if it is there and whole.
+  subroutine load(path, key, film, is_there)
+    character(len=*), intent(in) :: path, key
+    class(film_law_t), intent(inout) :: film
+    logical, intent(out) :: is_there
+    class(film_law_t), allocatable :: filled
+    type(archive_t) :: archive
+    character(len=:), allocatable :: bytes, head
+    integer :: status, last
+
+    is_there = .false.
+    if (path == '') return
+    call read_whole(path, bytes, status)
+    if (status /= 0) return
+    head = title//key//newline
+    last = len(bytes) - mark_length
+    if (last < len(head)) return
+    if (bytes(:len(head)) /= head) return
+    if (bytes(last + 1:) /= mark_of(bytes(:last))) return
+    call archive%begin_reading(bytes(len(head) + 1:last))
+    allocate (filled, source=film)
+    call filled%exchange_table(archive)
+    if (archive%failed .or. .not. archive%is_at_end()) return
+    call archive%begin_reading(bytes(len(head) + 1:last))
+    call film%exchange_table(archive)
+    is_there = .true.
+  end subroutine load
+
+  !> Keep a table, if that is possible: first under another name.
+  subroutine save(path, key, film)
+    character(len=*), intent(in) :: path, key
+    class(film_law_t), intent(inout) :: film
+    type(archive_t) :: archive
+    type(result_file_t) :: file
+    type(error_t), allocatable :: error
+    character(len=:), allocatable :: bytes
+    if (path == '') return
+    call archive%begin_writing()
+    call film%exchange_table(archive)
+    call archive%contents(bytes)
+    bytes = title//key//newline//bytes
+    call file%open(path, error)
+    if (allocated(error)) return
+    call file%put(bytes//mark_of(bytes))
+    call file%close(error, whole_only=.true.)
+  end subroutine save
+
+  !> The checksum as bytes.
+  function mark_of(bytes) result(mark)
+    character(len=*), intent(in) :: bytes
+    character(len=mark_length) :: mark
+    type(checksum_t) :: sum
+    call sum%add(bytes)
+    mark = transfer(sum%value(), mark)
+  end function mark_of
+end module film_tables

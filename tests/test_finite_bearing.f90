@@ -1,0 +1,313 @@
+!> The film of a bearing of finite length: against an independent solver's tables (data/film), a printed table, closed forms and
+!> identities; its table against its solver; the short bearing against quadrature; energy.
+module test_finite_bearing
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: pi, degree
+  use gudgeon_errors, only: error_t
+  use gudgeon_archive, only: archive_t
+  use checks, only: checks_t
+  use film_law, only: film_law_t, film_motion_t
+  use finite_film, only: cavitation_none, cavitation_gumbel, cavitation_reynolds
+  use film_map, only: film_map_t, solved_force
+  use short_bearing, only: short_bearing_t
+  use laws, only: film_law_of
+  implicit none
+  private
+  public :: run_test_finite_bearing
+
+  real(dp), parameter :: omega = 180, c = 20e-6_dp   !! [rad/s], [m]
+
+contains
+
+  subroutine run_test_finite_bearing(check)
+    class(checks_t), intent(inout) :: check
+    call forces_of_the_tables(check)
+    call linear_film_by_modes(check)
+    call squeeze_of_butenschoen(check)
+    call limits_in_closed_form(check)
+    call short_bearing_by_quadrature(check)
+    call potential_of_the_velocity(check)
+    call table_meets_solver(check)
+    call table_goes_through_an_archive(check)
+    call symmetries_and_extremes(check)
+    call power_is_lost(check)
+    call refuses(check)
+  end subroutine run_test_finite_bearing
+
+  !> Phi of five bearings, with each cavitation, up to the eccentricity ratio 0.9 as a draft solves it.
+  subroutine forces_of_the_tables(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: bearings(5) = [character(len=4) :: '0.25', '0.5', '0.75', '1', '2']
+    character(len=10) :: condition
+    character(len=200) :: line
+    real(dp) :: half_length, eps, alpha, want(2), flow, most, rest(2), got(2)
+    integer :: i, unit, status, rows
+    rows = 0
+    do i = 1, size(bearings)
+      open (newunit=unit, file='data/film/phi_LD'//trim(bearings(i))//'.csv', status='old', action='read')
+      read (unit, '(a)') line
+      do
+        read (unit, '(a)', iostat=status) line
+        if (status /= 0) exit
+        read (line, *) half_length, condition, eps, alpha, want, flow, most, rest
+        if (eps > 0.91_dp) cycle
+        call solved_force(64, half_length, condition_of(condition), 1 - eps, alpha*degree, got)
+        rows = rows + 1
+        call check%that(norm2(got - want) <= merge(8e-3_dp, 3e-3_dp, condition == 'reynolds')*norm2(want), &
+          'a force of '//trim(condition)//' film as tabulated')
+      end do
+      close (unit)
+    end do
+    call check%that(rows > 400, 'the tables were read')
+  end subroutine forces_of_the_tables
+
+  pure integer function condition_of(name)
+    character(len=*), intent(in) :: name
+    condition_of = cavitation_none
+    if (name == 'gumbel') condition_of = cavitation_gumbel
+    if (name == 'reynolds') condition_of = cavitation_reynolds
+  end function condition_of
+
+  !> The film without cavitation by axial modes and Fourier collocation (an independent program, ten digits).
+  subroutine linear_film_by_modes(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: cases(4, 3) = reshape([0.5_dp, 0.75_dp, -14.50450691_dp, -7.67532726_dp, &
+      0.1_dp, 0.25_dp, -93.24696221_dp, -6.99270960_dp, 0.01_dp, 0.75_dp, -11793.984_dp, -126.51373_dp], [4, 3])
+    real(dp) :: force(2)
+    integer :: i
+    do i = 1, 3
+      call solved_force(128, cases(2, i), cavitation_none, cases(1, i), 0.0_dp, force)
+      call check%relative(force(1), cases(3, i), 2e-4_dp, 'squeeze by modes')
+      call solved_force(128, cases(2, i), cavitation_none, cases(1, i), 0.5_dp*pi, force)
+      call check%relative(force(2), cases(4, i), 2e-4_dp, 'wedge by modes')
+    end do
+  end subroutine linear_film_by_modes
+
+  !> Butenschoen's printed table of squeeze films (1976): So = |Phi|/2. Six numbers of it are misprints.
+  subroutine squeeze_of_butenschoen(check)
+    class(checks_t), intent(inout) :: check
+    character(len=100) :: line
+    character(len=10) :: kind
+    real(dp) :: width, eps, printed, force(2)
+    integer :: unit, status, rows
+    rows = 0
+    open (newunit=unit, file='data/film/butenschoen_squeeze.csv', status='old', action='read')
+    read (unit, '(a)') line
+    do
+      read (unit, '(a)', iostat=status) line
+      if (status /= 0) exit
+      read (line, *) kind, width, eps, printed
+      if (abs(eps) > 0.905_dp .or. is_misprint(width, eps)) cycle
+      call solved_force(64, width, cavitation_reynolds, 1 - abs(eps), merge(0.0_dp, pi, eps >= 0), force)
+      rows = rows + 1
+      call check%relative(0.5_dp*norm2(force), printed, 6e-3_dp, 'squeeze film as printed')
+    end do
+    close (unit)
+    call check%that(rows > 100, 'the printed table was read')
+  end subroutine squeeze_of_butenschoen
+
+  pure logical function is_misprint(width, eps)
+    real(dp), intent(in) :: width, eps
+    is_misprint = near(width, 0.5_dp) .and. (near(eps, 0.1_dp) .or. near(eps, 0.2_dp)) .or. &
+      near(width, 0.4_dp) .and. (near(eps, 0.8_dp) .or. near(eps, 0.96_dp)) .or. &
+      near(width, 1/6.0_dp) .and. near(eps, 0.99_dp) .or. near(width, 0.125_dp) .and. near(eps, -0.95_dp)
+  end function is_misprint
+
+  pure logical function near(a, b)
+    real(dp), intent(in) :: a, b
+    near = abs(a - b) < 1e-3_dp
+  end function near
+
+  !> Sommerfeld's long bearing and Ocvirk's short one.
+  subroutine limits_in_closed_form(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: ratios(4) = [0.1_dp, 0.5_dp, 0.8_dp, 0.95_dp], angles(4) = [0.0_dp, 45.0_dp, 90.0_dp, 120.0_dp]
+    type(short_bearing_t) :: short
+    real(dp) :: w, force(2), want(2), a
+    integer :: i, j
+    short%half_length = 0.005_dp
+    do i = 1, size(ratios)
+      w = sqrt(1 - ratios(i)**2)
+      do j = 1, size(angles)
+        a = angles(j)*degree
+        call solved_force(128, 1e5_dp, cavitation_none, 1 - ratios(i), a, force)
+        want = [-12*pi*cos(a)/w**3, -24*pi*sin(a)/((2 + ratios(i)**2)*w)]
+        call check%that(norm2(force - want) <= 1e-4_dp*norm2(want), 'the long bearing')
+        call solved_force(128, short%half_length, cavitation_gumbel, 1 - ratios(i), a, force)
+        call short%reduced_force(ratios(i)**2, cos(a), sin(a), want(1), want(2))
+        call check%that(norm2(force - want) <= 3e-3_dp*norm2(want), 'the short bearing')
+      end do
+    end do
+  end subroutine limits_in_closed_form
+
+  !> Its pressure integrated by the trapezoidal rule in the angle, the parabola along the film exactly.
+  subroutine short_bearing_by_quadrature(check)
+    class(checks_t), intent(inout) :: check
+    integer, parameter :: points = 200000
+    type(short_bearing_t) :: short
+    real(dp) :: eps, alpha, phi, pressure, want(2), got(2)
+    integer :: i, j, k
+    short%half_length = 0.6_dp
+    do i = 0, 3
+      eps = 0.3_dp*i
+      do j = -3, 3
+        alpha = j*0.9_dp
+        want = 0
+        do k = 0, points - 1
+          phi = alpha - 0.5_dp*pi + pi*(k + 0.5_dp)/points
+          pressure = 6*cos(phi - alpha)/(1 - eps*cos(phi))**3*(2/3.0_dp)*short%half_length**2
+          want = want - pressure*[cos(phi), sin(phi)]*pi/points
+        end do
+        call short%reduced_force(eps**2, 2.5_dp*cos(alpha), 2.5_dp*sin(alpha), got(1), got(2))
+        call check%that(norm2(got - 2.5_dp*want) <= 1e-8_dp*norm2(want), 'the short bearing by quadrature')
+      end do
+    end do
+  end subroutine short_bearing_by_quadrature
+
+  !> With Reynolds' condition the force is the gradient of a potential of the velocity: its change along the direction is half of that
+  !> of its product with the velocity. With Gumbel's it is not.
+  subroutine potential_of_the_velocity(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: step = 0.02_dp
+    real(dp) :: alpha, before(2), after(2), here(2), along, across
+    integer :: condition, j
+    real(dp) :: worst(3)
+    worst = 0
+    do condition = cavitation_gumbel, cavitation_reynolds
+      do j = 1, 5
+        alpha = 0.5_dp*j
+        call solved_force(96, 0.75_dp, condition, 0.5_dp, alpha - step, before)
+        call solved_force(96, 0.75_dp, condition, 0.5_dp, alpha + step, after)
+        call solved_force(96, 0.75_dp, condition, 0.5_dp, alpha, here)
+        along = (dot_product(after, [cos(alpha + step), sin(alpha + step)]) &
+          - dot_product(before, [cos(alpha - step), sin(alpha - step)]))/(2*step)
+        across = dot_product(here, [-sin(alpha), cos(alpha)])
+        worst(condition) = max(worst(condition), abs(0.5_dp*along - across)/norm2(here))
+      end do
+    end do
+    call check%close_to(worst(cavitation_reynolds), 0.0_dp, 5e-3_dp, 'a ruptured film has a potential')
+    call check%that(worst(cavitation_gumbel) > 0.02_dp, 'half a film has none')
+  end subroutine potential_of_the_velocity
+
+  !> A table of 33 values each way is off by little more than the noise of its solver, and holds beyond its last row.
+  subroutine table_meets_solver(check)
+    class(checks_t), intent(inout) :: check
+    type(film_map_t) :: map
+    real(dp) :: eps, alpha, got(2), want(2)
+    integer :: i
+    call map%build(0.75_dp, cavitation_gumbel, 33, 64)
+    do i = 1, 40
+      eps = 0.985_dp*modulo(0.618_dp*i, 1.0_dp)
+      alpha = pi*(2*modulo(0.414_dp*i, 1.0_dp) - 1)
+      call solved_force(128, 0.75_dp, cavitation_gumbel, 1 - eps, alpha, want)
+      call map%force(eps**2, 3*cos(alpha), 3*sin(alpha), got(1), got(2))
+      call check%that(norm2(got - 3*want) <= 1.2e-2_dp*norm2(3*want), 'the table meets the solver')
+    end do
+    call map%force((1 - 1e-7_dp)**2, 1.0_dp, 0.3_dp, got(1), got(2))
+    call check%relative(got(1)*(2e-7_dp)**1.5_dp, -12*pi, 0.02_dp, 'approach next to the wall, as of a long film')
+  end subroutine table_meets_solver
+
+  !> A table that was put away and taken back gives the same bits.
+  subroutine table_goes_through_an_archive(check)
+    class(checks_t), intent(inout) :: check
+    type(film_map_t) :: map, again
+    type(archive_t) :: archive
+    character(len=:), allocatable :: bytes
+    real(dp) :: one(2), other(2)
+    call map%build(0.5_dp, cavitation_none, 17, 32)
+    call archive%begin_writing()
+    call map%exchange(archive)
+    call archive%contents(bytes)
+    call archive%begin_reading(bytes)
+    call again%exchange(archive)
+    call check%that(.not. archive%failed .and. archive%is_at_end(), 'a table goes through an archive')
+    call map%force(0.3_dp, -0.2_dp, 0.9_dp, one(1), one(2))
+    call again%force(0.3_dp, -0.2_dp, 0.9_dp, other(1), other(2))
+    call check%that(all(abs(one - other) <= 0), 'and gives the same force')
+  end subroutine table_goes_through_an_archive
+
+  !> Mirror, size, a centred pin, rest, and the wall.
+  subroutine symmetries_and_extremes(check)
+    class(checks_t), intent(inout) :: check
+    class(film_law_t), allocatable :: law
+    type(film_motion_t) :: motion, other
+    real(dp) :: force(2), mirrored(2), larger(2), moment, other_moment
+    integer :: i
+    do i = 1, 2
+      call new_film(check, merge('table', 'short', i == 1), law)
+      motion = motion_of([8e-6_dp, 3e-6_dp], [-4e-3_dp, 2e-3_dp], omega)
+      other = motion_of([8e-6_dp, -3e-6_dp], [-4e-3_dp, -2e-3_dp], -omega)
+      call law%film_force(motion, force, moment)
+      call law%film_force(other, mirrored, other_moment)
+      call check%that(norm2(mirrored - [force(1), -force(2)]) <= 1e-12_dp*norm2(force), 'the mirrored film')
+      call check%relative(other_moment, -moment, 1e-12_dp, 'the mirrored moment')
+      call law%film_force(motion_of(motion%eccentricity, 7.3_dp*motion%eccentricity_rate, 7.3_dp*omega), larger, moment)
+      call check%that(norm2(larger - 7.3_dp*force) <= 1e-12_dp*norm2(larger), 'force as the velocity')
+      call law%film_force(motion_of([0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp], 0.0_dp), force, moment)
+      call check%that(norm2(force) <= 0 .and. abs(moment) <= 0, 'no motion, no force')
+      call law%film_force(motion_of([0.0_dp, 0.0_dp], [1e-3_dp, 0.0_dp], omega), force, moment)
+      call law%film_force(motion_of([1e-13_dp, 1e-13_dp], [1e-3_dp, 0.0_dp], omega), mirrored, moment)
+      call check%that(norm2(force - mirrored) <= 1e-6_dp*norm2(force), 'continuous through the centre')
+      call law%film_force(motion_of([c*(1 - 1e-7_dp), 0.0_dp], [1e-6_dp, 1e-4_dp], omega), force, moment)
+      call check%that(all(abs(force) < huge(force)) .and. force(1) < 0, 'finite and outwards bound next to the wall')
+      call law%film_force(motion_of([1.5_dp*c, 0.0_dp], [1e-3_dp, 0.0_dp], omega), force, moment)
+      call check%that(all(abs(force) < huge(force)), 'finite beyond the wall')
+    end do
+  end subroutine symmetries_and_extremes
+
+  !> The film takes energy in every motion: of the force along the pin's way and of the moment along its turning.
+  subroutine power_is_lost(check)
+    class(checks_t), intent(inout) :: check
+    class(film_law_t), allocatable :: law
+    type(film_motion_t) :: motion
+    real(dp) :: force(2), moment, power, shear, v(2)
+    integer :: i, j
+    do j = 1, 2
+      call new_film(check, merge('table', 'short', j == 1), law)
+      do i = 1, 60
+        associate (a => 0.37_dp*i, b => 1.31_dp*i)
+          motion = motion_of(c*modulo(0.618_dp*i, 0.97_dp)*[cos(a), sin(a)], 5e-3_dp*[cos(b), sin(b)], omega*cos(2.1_dp*i))
+        end associate
+        call law%film_force(motion, force, moment)
+        power = -(dot_product(force, motion%eccentricity_rate) + moment*motion%turning_speed)
+        v = motion%eccentricity_rate - 0.5_dp*motion%pin_speed*[-motion%eccentricity(2), motion%eccentricity(1)]
+        shear = 2*pi*0.0117_dp*15e-3_dp*(10e-3_dp - c)**3/c*motion%turning_speed**2 &
+          /sqrt(1 - sum(motion%eccentricity**2)/c**2)
+        call check%that(power > 0, 'a film takes energy')
+        call check%relative(power, shear - dot_product(force, v), 1e-10_dp, 'power of pressure and shear')
+      end do
+    end do
+  end subroutine power_is_lost
+
+  subroutine refuses(check)
+    class(checks_t), intent(inout) :: check
+    class(film_law_t), allocatable :: law
+    type(error_t), allocatable :: error
+    call film_law_of("law='finite_bearing' viscosity=0.01 film_points=66", 1e-6_dp, law, error)
+    call check%that(allocated(error), 'film_points that cannot be halved twice')
+    call film_law_of("law='finite_bearing' viscosity=0.01 table_points=5", 1e-6_dp, law, error)
+    call check%that(allocated(error), 'a table of five values')
+    call film_law_of("law='finite_bearing' viscosity=0.01 variant='short' cavitation='none'", 1e-6_dp, law, error)
+    call check%that(allocated(error), 'a short bearing without cavitation')
+  end subroutine refuses
+
+  !> A film in the bearing of `laws`, with a small table.
+  subroutine new_film(check, variant, law)
+    class(checks_t), intent(inout) :: check
+    character(len=*), intent(in) :: variant
+    class(film_law_t), allocatable, intent(out) :: law
+    type(error_t), allocatable :: error
+    call film_law_of("law='finite_bearing' viscosity=0.0117 cavitation='gumbel' table_points=17 film_points=32 variant='"// &
+      variant//"'", 1e-4_dp, law, error)
+    call check%that(.not. allocated(error), 'a film of finite length')
+  end subroutine new_film
+
+  pure function motion_of(eccentricity, rate, speed) result(motion)
+    real(dp), intent(in) :: eccentricity(2), rate(2), speed
+    type(film_motion_t) :: motion
+    motion%eccentricity = eccentricity
+    motion%eccentricity_rate = rate
+    motion%pin_speed = speed
+    motion%turning_speed = speed
+  end function motion_of
+end module test_finite_bearing
