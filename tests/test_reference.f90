@@ -27,7 +27,10 @@ contains
     call compare_events(check, 'cases/flores/dry_0500um.nml', 'flores_dry_0500um', '1e-13', 20, 1e-8_dp)
     call compare_events(check, 'cases/flores/dry_0100um.nml', 'flores_dry_0100um', '1e-10', 100, 1e-6_dp)
     call compare_events(check, 'cases/flores/dry_0010um.nml', 'flores_dry_0010um', '1e-10', 100, 1e-6_dp)
-    call compare_both_pins(check)
+    call compare_columns(check, 'cases/joints/both_pins.nml', 'both_pins', 1e-5_dp, 6e-5_dp)
+    call compare_events(check, 'cases/joints/both_pins.nml', 'both_pins', '1e-11', 67, 4e-8_dp)
+    call compare_columns(check, 'cases/contact/flores_brown_mcphee.nml', 'flores_brown_mcphee', 2.3e-7_dp, 4.4e-6_dp)
+    call compare_events(check, 'cases/contact/flores_brown_mcphee.nml', 'flores_brown_mcphee', '1e-11', 7, 2e-10_dp)
     call compare_events(check, 'cases/flores/friction_010.nml', 'flores_friction_010', '1e-10', 100, 1e-6_dp)
     call compare_events(check, 'cases/flores/friction_050.nml', 'flores_friction_050', '1e-10', 100, 1e-6_dp)
     call compare_events(check, 'cases/flores/friction_100.nml', 'flores_friction_100', '1e-10', 100, 1e-6_dp)
@@ -81,32 +84,33 @@ contains
       name//' energy residual')
   end subroutine compare_states
 
-  !> Both pins loose, with friction and gravity: every column of the reference, and its contacts.
-  subroutine compare_both_pins(check)
+  !> Every column of a reference, relative to the largest value that it takes.
+  subroutine compare_columns(check, file, name, in_states, in_others)
     class(checks_t), intent(inout) :: check
+    character(len=*), intent(in) :: file, name
+    real(dp), intent(in) :: in_states, in_others   !! allowed
     type(trace_t) :: want, got
     real(dp) :: error, size_of
     character(len=60) :: overrides(4)
     integer :: i, k, rows
-    want = load_trace('both_pins')
+    want = load_trace(name)
     rows = size(want%values, 2)
-    overrides = [character(len=60) :: 'integrator.relative_tolerance=1e-11', 'integrator.revolutions=0', '', &
-      'output.interval=1.2e-5']
+    overrides = [character(len=60) :: 'integrator.relative_tolerance=1e-11', 'integrator.revolutions=0', '', '']
     write (overrides(3), '(a,es23.16)') 'integrator.end_time=', want%values(1, rows)
-    got = run_case('cases/joints/both_pins.nml', overrides)
-    call check%that(.not. allocated(got%error), 'both pins run')
-    call check%that(size(got%values, 2) == rows, 'both pins have every row')
+    write (overrides(4), '(a,es23.16)') 'output.interval=', want%values(1, 2)
+    got = run_case(file, overrides)
+    call check%that(.not. allocated(got%error), name//' runs')
+    call check%that(size(got%values, 2) == rows, name//' has every row')
     if (size(got%values, 2) /= rows) return
     do i = 1, size(want%names)
       k = column(got, want%names(i))
-      call check%that(k > 0, 'both pins have the column '//want%names(i))
+      call check%that(k > 0, name//' has the column '//want%names(i))
       if (k == 0) cycle
       error = maxval(abs(got%values(k, :) - want%values(i, :)))
       size_of = maxval(abs(want%values(i, :)))
-      call check%that(error <= merge(1e-5_dp, 6e-5_dp, any(want%names(i) == states))*size_of, 'both pins: '//want%names(i))
+      call check%that(error <= merge(in_states, in_others, any(want%names(i) == states))*size_of, name//': '//want%names(i))
     end do
-    call compare_events(check, 'cases/joints/both_pins.nml', 'both_pins', '1e-11', 67, 4e-8_dp)
-  end subroutine compare_both_pins
+  end subroutine compare_columns
 
   !> The first contact instants of the reference, at most `most` of them.
   subroutine compare_events(check, file, name, tolerance, most, allowed)
