@@ -39,6 +39,11 @@ SCENES = {
                                                "friction.transition_speed": "0.2"}),
     "stribeck": ("friction/brown_mcphee", {"integrator.revolutions": "0.15", "friction.law": "stribeck", "friction.stribeck_speed": "0.3",
                                            "friction.transition_speed": "0.1"}),
+    "conformal": ("contact/conformal_exact", {"integrator.revolutions": "0.15"}),
+    "johnson": ("contact/johnson_gonthier", {"integrator.revolutions": "0.15"}),
+    "liner": ("contact/liner_carvalho_martins", {"integrator.revolutions": "0.15"}),
+    "pereira": ("contact/pereira_impact", {"integrator.revolutions": "0.15"}),
+    "dissipation": ("contact/hunt_crossley", {"integrator.revolutions": "0.15", "contact.dissipation": "0.4"}),
     "film": ("sim_V", {"integrator.method": "'auto'", "integrator.revolutions": "1.2", "initial.crank_angle_deg": "170",
                        "integrator.max_step": "5e-5"}),
     "contact": ("sim_V_oscillating", {"integrator.method": "'auto'", "integrator.revolutions": "0.25", "initial.crank_angle_deg": "340"}),
@@ -46,7 +51,8 @@ SCENES = {
 }
 
 LONG_STEPS = ("sim_V", {"integrator.method": "'auto'", "integrator.revolutions": "1.2", "initial.crank_angle_deg": "170"})
-PHASES = {"dry": {0, 2}, "sticks": {0, 2}, "threlfall": {0, 2}, "brown_mcphee": {0, 2}, "stribeck": {0, 2}, "film": {1}, "contact": {1, 2}, "ideal": {0}}   # 0 free flight, 1 film, 2 contact
+PHASES = {"dry": {0, 2}, "sticks": {0, 2}, "threlfall": {0, 2}, "brown_mcphee": {0, 2}, "stribeck": {0, 2}, "conformal": {0, 2}, "johnson": {0, 2},
+          "liner": {0, 2}, "pereira": {0, 2}, "dissipation": {0, 2}, "film": {1}, "contact": {1, 2}, "ideal": {0}}   # 0 free flight, 1 film, 2 contact
 
 #: (what is changed, scene, column, change of (value, row), what the verdict must say)
 CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
@@ -71,6 +77,13 @@ CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
     ("a little more friction of Threlfall", "threlfall", "friction_force", lambda v, i: v * (1 + 1e-5), "friction law"),
     ("a little less friction of Brown and McPhee", "brown_mcphee", "friction_force", lambda v, i: v * (1 - 1e-5), "friction law"),
     ("a little more friction of Stribeck", "stribeck", "friction_force", lambda v, i: v * (1 + 1e-5), "friction law"),
+    ("a little harder conformal contact", "conformal", "normal_force", lambda v, i: v * (1 + 1e-5), "contact law"),
+    ("a wider arc", "conformal", "contact_half_angle", lambda v, i: v * (1 + 1e-5), "contact half-angle"),
+    ("more pressure in the middle", "conformal", "peak_pressure", lambda v, i: v * (1 + 1e-5), "peak pressure"),
+    ("a little harder contact of Johnson", "johnson", "normal_force", lambda v, i: v * (1 + 1e-5), "contact law"),
+    ("a little harder contact of Pereira", "pereira", "normal_force", lambda v, i: v * (1 + 1e-5), "contact law"),
+    ("a little softer liner", "liner", "normal_force", lambda v, i: v * (1 - 1e-5), "contact law"),
+    ("a little less dissipation", "dissipation", "normal_force", lambda v, i: v * (1 - 1e-5), "contact law"),
     ("faster sliding", "dry", "sliding_speed", lambda v, i: v * (1 + 1e-6), "sliding speed"),
     ("another film", "film", "film_force_x", lambda v, i: v * 1.001, "film force on the pin"),
     ("more pressure", "film", "cylinder_pressure", lambda v, i: v * 1.001, "gas law"),
@@ -83,6 +96,15 @@ CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
 #: (what the program does, scene, value that it runs with instead of the one that it says, what the verdict must say)
 LIARS = [
     ("another restitution", "dry", "contact.restitution", "0.89", "contact law"),
+    ("another restitution of Gonthier", "johnson", "contact.restitution", "0.71", "contact law"),
+    ("another restitution of Carvalho and Martins", "liner", "contact.restitution", "0.61", "contact law"),
+    ("another exact restitution", "conformal", "contact.restitution", "0.51", "contact law"),
+    ("another housing", "conformal", "contact.housing_compliance", "0.39", "contact law"),
+    ("a longer bearing", "johnson", "joint.bearing_length", "0.0401", "contact law"),
+    ("a thicker liner", "liner", "contact.liner_thickness", "0.501e-3", "contact law"),
+    ("another damper", "pereira", "contact.damping", "5.1e3", "contact law"),
+    ("another depth of the damper", "pereira", "contact.full_damping_depth", "1.1e-6", "contact law"),
+    ("more dissipation", "dissipation", "contact.dissipation", "0.41", "contact law"),
     ("another friction", "dry", "friction.coefficient", "0.051", "friction law"),
     ("more friction at rest", "sticks", "friction.static_coefficient", "0.151", "friction law"),
     ("another friction at rest", "brown_mcphee", "friction.static_coefficient", "0.151", "friction law"),
@@ -99,7 +121,14 @@ LIARS = [
 
 #: (what is broken, file, what it says, what it says in the mutant, scene, what the verdict must say)
 MUTANTS = [
-    ("contact damping gives energy", "lankarani_nikravesh.f90", "1 + self%damping*min(", "1 - self%damping*min(", "dry", "contact law"),
+    ("contact damping gives energy", "contact_law.f90", "1 + self%damping*min(", "1 - self%damping*min(", "dry", "contact law"),
+    ("dissipation gives energy", "restitution_law.f90", "max(0.0_dp, 1 + self%dissipation*", "max(0.0_dp, 1 - self%dissipation*", "dissipation", "contact law"),
+    ("exact gives back a little less", "exact_restitution.f90", "damping = one_minus_exp(y)/e", "damping = 1.001_dp*one_minus_exp(y)/e", "conformal", "contact law"),
+    ("Johnson's cylinder without the one", "johnson.f90", "m = log(4.0_dp) - 1 - log(d)", "m = log(4.0_dp) - 1.001_dp - log(d)", "johnson", "contact law"),
+    ("a coefficient of the conformal fit off", "conformal.f90", "-1.52090276_dp", "-1.52190276_dp", "conformal", "contact law"),
+    ("pressure of half the arc", "conformal.f90", "(2*b/sqrt(b**2 + 1) +", "(b/sqrt(b**2 + 1) +", "conformal", "peak pressure"),
+    ("Pereira's exponent off", "pereira.f90", "1.51_dp*log", "1.511_dp*log", "pereira", "contact law"),
+    ("the bedding without its small difference", "winkler.f90", "self%clearance*difference)", "0*difference)", "liner", "contact law"),
     ("friction drives", "ambrosio.f90", "ratio = -sign(ratio, sliding_speed)", "ratio = sign(ratio, sliding_speed)", "dry", "friction law"),
     ("static friction grips too early", "brown_mcphee.f90", "0.25_dp*u**2 + 0.75_dp)**2", "0.25_dp*u**2 + 0.76_dp)**2", "brown_mcphee", "friction law"),
     ("film holds too much as it withdraws", "pinkus_sternlicht.f90", "withdrawal_sign*radial", "withdrawal_sign*(1.001_dp*radial)", "film", "film law"),

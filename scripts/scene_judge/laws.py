@@ -1,7 +1,6 @@
-"""The laws of contact, friction, film and gas, from their published equations, against the rows of a trace."""
+"""The laws of friction, film and gas, from their published equations, against the rows of a trace."""
 from __future__ import annotations
 
-import bisect
 import math
 
 from .mechanics import Row
@@ -9,38 +8,6 @@ from .trace import Run
 
 GAUSS_5 = ((0.0, 0.5688888888888889), (0.5384693101056831, 0.47862867049936647), (0.906179845938664, 0.23692688505618908))
 ROUNDING = 1e-14   # of a speed found from those of crank, rod and piston, in their sum
-
-
-class Contact:
-    """Lankarani and Nikravesh (Reis 2013, 4.7): F = K d^n [1 + 3/4 (1 - e^2) d'/d'_0], d'_0 the speed at which the contact began.
-
-    The program's manual bounds it: it never pulls, the quotient of the rates is at most 100 and a slower impact counts as one
-    of the least impact speed. Hertz is the law without loss."""
-
-    MOST = 100.0
-
-    def __init__(self, run: Run) -> None:
-        self.exponent = run.number("contact.exponent")
-        self.stiffness = run.number("contact.stiffness")
-        if not self.stiffness:
-            (e1, e2), (nu1, nu2) = run.pair("contact.youngs_modulus"), run.pair("contact.poissons_ratio")
-            bearing = run.number("joint.bearing_radius")
-            pin = bearing - run.number("joint.clearance")
-            give = (1 - nu1**2) / e1 + (1 - nu2**2) / e2
-            self.stiffness = 4 / (3 * give) * math.sqrt(bearing * pin / run.number("joint.clearance"))
-        self.loss = 0.75 * (1 - run.number("contact.restitution")**2) if run.text("contact.law") == "lankarani_nikravesh" else 0.0
-        self.least = run.number("contact.least_impact_speed", 1e-5)
-        begins = [event for event in run.events if event["event"] == "contact_begins"]
-        self.begin = [float(event["time[s]"]) for event in begins]
-        self.speed = [float(event["normal_speed[m/s]"]) for event in begins]
-
-    def force(self, depth: float, rate: float, time: float) -> float:
-        if depth <= 0:
-            return 0.0
-        elastic = self.stiffness * depth**self.exponent
-        began = bisect.bisect_right(self.begin, time * (1 + 1e-9)) - 1
-        first = max(self.speed[began] if began >= 0 else 0.0, self.least)
-        return elastic * max(0.0, 1 + self.loss * min(rate / first, self.MOST))
 
 
 class Friction:

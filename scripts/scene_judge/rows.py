@@ -4,7 +4,8 @@ from __future__ import annotations
 import dataclasses
 import math
 
-from .laws import ROUNDING, Contact, Friction, Gas, squeeze_film
+from .contact import Contact
+from .laws import ROUNDING, Friction, Gas, squeeze_film
 from .mechanics import Bodies, Row
 from .trace import Run
 
@@ -102,8 +103,10 @@ class RowChecks:
         low, high = (self.contact.force(depth, rate + d, t) for d in (-give, give))
         normal, friction = get["normal_force"], get["friction_force"]
         # the depth is the difference of two lengths
-        blur = self.contact.exponent * 1e-15 * self.run.number("joint.clearance") / depth if depth > 0 else 0.0
+        blur = self.contact.geometry.exponent * 1e-15 * self.run.number("joint.clearance") / depth if depth > 0 else 0.0
         self.take("contact law", inside(normal, low, high), (LAW + blur) * max(abs(high), abs(normal)), t)
+        if "contact_half_angle" in get:
+            self.check_arc(row, depth, normal, blur, t)
         want = -normal * n[0] - friction * n[1], -normal * n[1] + friction * n[0]
         self.take("contact force on the pin", math.hypot(row.force[0] - want[0], row.force[1] - want[1]),
                   SUM * (abs(normal) + abs(friction)), t)
@@ -117,6 +120,16 @@ class RowChecks:
         if self.friction.coulomb and abs(sliding) <= still:   # sticking, or about to
             low, high = -self.friction.static, self.friction.static
         self.take("friction law", inside(friction, low * normal, high * normal), LAW * normal * (abs(low) + abs(high)) / 2 + 1e-300, t)
+
+    def check_arc(self, row: Row, depth: float, normal: float, blur: float, t: float) -> None:
+        """The load that has such an arc is that of the penetration, and the pressures over the arc carry the pressing force."""
+        if depth <= 0:
+            return
+        geometry = self.contact.geometry
+        x, force = geometry.carried(row.get["contact_half_angle"], row.get["peak_pressure"])
+        want = geometry.load(depth)
+        self.take("contact half-angle", abs(x - want), (LAW + 2 * blur) * want, t)
+        self.take("peak pressure", abs(force - normal), (LAW + 2 * blur) * normal + 1e-300, t)
 
     def check_film(self, row: Row, n: tuple[float, float], give: float, t: float) -> None:
         get = row.get
