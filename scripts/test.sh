@@ -42,6 +42,7 @@ count "studies" tests/test_sweep.sh
 count "the judge of runs" tests/test_judge.py
 count "extreme scenes" scripts/extremes --scenes 120 --seed 5 --evaluations 100000 --judged 24 --known tests/known_findings.csv --quiet
 count "summaries" tests/test_summaries.py
+count "tables of films" tests/test_film_tables.py
 count "faults" tests/test_faults.py --kills 10
 count "runs taken up again" tests/test_resume.py --kills 10
 count "the plots" sh -c 'scripts/setup.sh --python && tests/test_plots.py'

@@ -67,6 +67,9 @@ contains
       if (options%check) call say_outcome(cases(i), options, status)
     end do
     if (options%check) return
+    do i = 1, size(cases)
+      call cases(i)%make_ready()
+    end do
     jobs = options%jobs
     if (jobs == 0) jobs = omp_get_num_procs()
     jobs = min(jobs, size(cases) + count(cases%has_twin))

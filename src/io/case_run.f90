@@ -40,6 +40,7 @@ module case_run
     procedure :: look_for_earlier
     procedure :: disown
     procedure :: clear
+    procedure :: make_ready
     procedure :: go
     procedure, private :: has_events
     procedure, private :: open_files
@@ -118,6 +119,12 @@ contains
     if (status == 0) status = failed
   end subroutine remove
 
+  !> Give the films of the scene their tables, while no other run needs the processors. Error in `error`: the user interrupted.
+  subroutine make_ready(self)
+    class(case_run_t), intent(inout) :: self
+    call provide_tables(self%case, self%show_progress, self%error)
+  end subroutine make_ready
+
   !> Integrate into the files, and write the summary: down to the disk, in an order that leaves no results that are not whole
   !> under their names without a summary that says so, whatever happens on the way.
   subroutine go(self)
@@ -126,9 +133,7 @@ contains
     type(trace_files_t), allocatable :: files
     type(archive_t) :: archive
 
-    if (self%start%is_done) return
-    if (.not. self%is_twin) call provide_tables(self%case, self%show_progress, self%error)
-    if (allocated(self%error)) return
+    if (self%start%is_done .or. allocated(self%error)) return
     !$omp critical (texts)
     call self%open_files(files)
     !$omp end critical (texts)

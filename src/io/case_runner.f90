@@ -35,6 +35,7 @@ module case_runner
     logical, private :: has_removed = .false.         !! earlier results
   contains
     procedure :: prepare
+    procedure :: make_ready
     procedure :: go
     procedure :: tell_outcome
     procedure, private :: take_place
@@ -84,6 +85,14 @@ contains
       options%checkpoint_interval, show_progress .and. options%jobs == 1, options%quiet)
   end subroutine prepare
 
+  !> What takes all processors: the tables of films. After `prepare`, in a run that is to go.
+  subroutine make_ready(self)
+    class(case_job_t), intent(inout) :: self
+    if (allocated(self%error) .or. allocated(self%run%error)) return
+    call self%run%make_ready()
+    if (allocated(self%run%error)) call name_file(self%path, self%run%error)
+  end subroutine make_ready
+
   !> Tell what in a case is right but has no effect.
   subroutine tell_warning(case)
     type(case_t), intent(in) :: case
@@ -103,7 +112,7 @@ contains
 
     !$omp critical (texts)
     is_over = interrupted()
-    if (is_over .and. .not. allocated(self%error)) then
+    if (is_over .and. .not. (allocated(self%error) .or. allocated(self%run%error))) then
       if (is_twin .and. self%has_twin) call not_begun(self%path, 'ideal twin: ', self%twin%error)
       if (.not. is_twin) call not_begun(self%path, '', self%run%error)
     end if

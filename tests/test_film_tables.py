@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+"""Films of finite length from outside: the cache of their tables, and whole mechanisms against independent programs.
+
+    tests/test_film_tables.py
+
+Builds the fast program. Ends with `N passed, N failed`; the exit status is 0 if nothing failed.
+"""
+
+import csv
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+TOP = Path(__file__).resolve().parent.parent
+REFERENCES = TOP.parent / "shared" / "reference" / "models"
+CASE = TOP / "cases" / "film" / "sim_I_finite.nml"
+SMALL = ["-s", "lubrication.table_points=33", "-s", "lubrication.film_points=64", "-s", "integrator.revolutions=1"]
+
+
+def build() -> Path:
+    done = subprocess.run([TOP / "scripts" / "build.sh"], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        sys.exit(f"test_film_tables: {done.stderr}")
+    return TOP / done.stdout.strip()
+
+
+def columns(path: Path) -> dict[str, list[float]]:
+    with path.open() as file:
+        rows = list(csv.reader(file))
+    return {name: [float(row[i]) if row[i] else float("nan") for row in rows[1:]] for i, name in enumerate(rows[0])}
+
+
+class Cache(unittest.TestCase):
+    """A table is made once, kept whole or not at all, and checked when it is read."""
+
+    def setUp(self) -> None:
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+        self.cache = self.folder / "cache"
+
+    def run_case(self, name: str, *options: str, **changed: str) -> tuple[subprocess.CompletedProcess, bytes]:
+        environment = {**os.environ, "XDG_CACHE_HOME": str(self.cache), **changed}
+        done = subprocess.run([GUDGEON, "-q", "-o", self.folder / name, *SMALL, *options, CASE], env=environment,
+                              capture_output=True, text=True, check=False)
+        trace = self.folder / name / "sim_I_finite.csv"
+        return done, trace.read_bytes() if trace.exists() else b""
+
+    def test_kept_and_checked(self) -> None:
+        done, first = self.run_case("first")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        tables = list((self.cache / "gudgeon").iterdir())
+        self.assertEqual([table.suffix for table in tables], [".table"], "one table, nothing half-written")
+        whole = tables[0].read_bytes()
+        written = tables[0].stat().st_mtime_ns
+        _, again = self.run_case("again")
+        self.assertEqual(first, again, "a table from the cache gives the same run")
+        self.assertEqual(tables[0].stat().st_mtime_ns, written, "and is not made again")
+        for what, bytes_there in (("truncated", whole[: len(whole) // 2]), ("changed", whole[:5000] + b"?" + whole[5001:]),
+                                  ("empty", b""), ("foreign", b"x" * len(whole))):
+            with self.subTest(what):
+                tables[0].write_bytes(bytes_there)
+                done, remade = self.run_case(what)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertEqual(first, remade, f"a {what} table is made again")
+                self.assertEqual(tables[0].read_bytes(), whole, f"a {what} table is replaced")
+
+    def test_other_tables(self) -> None:
+        self.run_case("one")
+        self.run_case("same", "-s", "lubrication.viscosity=0.03", "-s", "joint.clearance=20e-6")
+        self.assertEqual(len(list((self.cache / "gudgeon").iterdir())), 1, "the table does not depend on the oil")
+        self.run_case("longer", "-s", "joint.bearing_length=0.02")
+        self.run_case("half", "-s", "lubrication.cavitation=gumbel")
+        self.assertEqual(len(list((self.cache / "gudgeon").iterdir())), 3, "but on length and cavitation")
+
+    def test_no_cache(self) -> None:
+        self.cache.write_text("a file in the place of the folder")
+        done, trace = self.run_case("none")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue(trace, "a run without a cache")
+
+    def test_check_makes_none(self) -> None:
+        done, _ = self.run_case("check", "--check")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertFalse(self.cache.exists(), "--check makes no table")
+
+    def test_interrupted(self) -> None:
+        environment = {**os.environ, "XDG_CACHE_HOME": str(self.cache)}
+        began = time.monotonic()
+        process = subprocess.Popen([GUDGEON, "-o", self.folder / "stopped", "-s", "lubrication.table_points=129", CASE],
+                                   env=environment, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+        time.sleep(1)
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 4, said)
+        self.assertIn("interrupted before it began", said)
+        self.assertLess(time.monotonic() - began, 40, "an interruption is obeyed")
+        self.assertFalse(list(self.cache.glob("gudgeon/*")), "a table given up is not kept")
+
+
+class References(unittest.TestCase):
+    """Whole mechanisms by independent programs, where their traces are at hand."""
+
+    def compare(self, name: str, bounds: dict[str, float], *options: str) -> None:
+        case = REFERENCES / f"{name}.nml"
+        if not case.exists():
+            self.skipTest("the references are not here")
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run([GUDGEON, "-q", "-o", folder, *options, case], capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            ours, theirs = columns(Path(folder) / f"{name}.csv"), columns(REFERENCES / f"{name}.csv")
+        for column, bound in bounds.items():
+            size = max(map(abs, theirs[column]))
+            worst = max(abs(a - b) for a, b in zip(ours[column], theirs[column], strict=True))
+            self.assertLessEqual(worst, bound * size, f"{name}: {column}")
+
+    def test_short_bearing(self) -> None:
+        self.compare("short_bearing_sim_I", {"crank_angle[rad]": 1e-8, "piston_velocity[m/s]": 1e-8, "eccentricity_x[m]": 1e-6,
+                                             "eccentricity_y[m]": 1e-6, "pin_force_x[N]": 3e-5, "pin_force_y[N]": 3e-5,
+                                             "film_moment[N.m]": 1e-5})
+
+    def test_finite_bearing(self) -> None:
+        self.compare("finite_reynolds_engine", {"crank_angle[rad]": 1e-5, "piston_velocity[m/s]": 1e-5, "eccentricity_x[m]": 1e-3,
+                                                "eccentricity_y[m]": 1e-3, "pin_force_x[N]": 1e-2, "pin_force_y[N]": 5e-3,
+                                                "film_moment[N.m]": 5e-3},
+                     "-s", "lubrication.table_points=65", "-s", "lubrication.film_points=96")
+
+
+if __name__ == "__main__":
+    GUDGEON = build()
+    result = unittest.main(exit=False, verbosity=0).result
+    failed = len(result.failures) + len(result.errors)
+    print(f"{result.testsRun - failed - len(result.skipped)} passed, {failed} failed")
+    sys.exit(failed > 0)
