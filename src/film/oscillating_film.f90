@@ -86,10 +86,9 @@ contains
 
   !> Surface speed of the pin as a phasor [m/s]: Re U = R omega, Re(i w U) = R omegadot, of the ideal joint. Without
   !> oscillation it is R omega.
-  pure function surface_speed(self, motion) result(speed)
+  pure complex(dp) function surface_speed(self, motion) result(speed)
     class(oscillating_film_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
-    complex(dp) :: speed
     real(dp), parameter :: slowest = 1e-300_dp   !! frequency that has a reciprocal
     real(dp) :: lag
     lag = 0
@@ -151,11 +150,10 @@ contains
 
   !> dP/dth [Pa] as a phasor, at the angle theta [rad] from the thinnest place (the direction of the eccentricity), x
   !> towards y. Its real part is the gradient now.
-  pure function pressure_gradient(self, motion, theta) result(gradient)
+  pure complex(dp) function pressure_gradient(self, motion, theta) result(gradient)
     class(oscillating_film_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
     real(dp), intent(in) :: theta
-    complex(dp) :: gradient
     complex(dp) :: speed
     speed = self%surface_speed(motion)
     gradient = driving_gradient(self, motion, theta)
@@ -165,11 +163,10 @@ contains
   end function pressure_gradient
 
   !> The part of dP/dth [Pa] that drives the flow.
-  pure function driving_gradient(self, motion, theta) result(gradient)
+  pure complex(dp) function driving_gradient(self, motion, theta) result(gradient)
     class(oscillating_film_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
     real(dp), intent(in) :: theta
-    complex(dp) :: gradient
     complex(dp) :: inertia
     type(film_phasors_t) :: response
     real(dp) :: eta, v

@@ -90,10 +90,9 @@ contains
   !> below 10 r^(-2n), where r + 1/r is the sum of the distances of the integrand's nearest pole from the ends of the range of eta,
   !> over half that range. The worst range is that of eps = 1, from 0 to 2; the nearest pole is where B = 0, u^2 = -pi^2,
   !> eta = d sqrt(i) with d = pi/sqrt(Q). Hence r + 1/r = d + |2 - d sqrt(i)|, which is solved for d.
-  pure function served_inertia(n, accuracy) result(q)
+  pure real(dp) function served_inertia(n, accuracy) result(q)
     integer, intent(in) :: n
     real(dp), intent(in) :: accuracy
-    real(dp) :: q
     real(dp) :: r, total
     r = (accuracy/10)**(-0.5_dp/n)
     total = r + 1/r
@@ -195,9 +194,8 @@ contains
   end subroutine sum_remainders
 
   !> (B - 3 - u^2/5)/u^4 for u^2 = i v, v >= 0: by its series, or from T = tanh(u) for real and imaginary part of u equal.
-  pure function second_remainder(v) result(remainder)
+  pure complex(dp) function second_remainder(v) result(remainder)
     real(dp), intent(in) :: v
-    complex(dp) :: remainder
     complex(dp) :: u, tangent
     real(dp) :: w, root, decay
     if (v <= series_limit) then

@@ -81,10 +81,9 @@ contains
   end subroutine prepare
 
   !> The motion in polar terms. At the centre, where there is no direction, e.g. x is taken.
-  pure function reduced(self, motion) result(state)
+  pure type(reduced_motion_t) function reduced(self, motion) result(state)
     class(pinkus_sternlicht_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
-    type(reduced_motion_t) :: state
     call reduce(self%per_clearance, motion, state)
   end function reduced
 

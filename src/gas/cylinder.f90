@@ -21,12 +21,11 @@ module cylinder
 
 contains
 
-  pure function new_cylinder(bore, crank_length, rod_length, compression_ratio) result(cylinder)
+  pure type(cylinder_t) function new_cylinder(bore, crank_length, rod_length, compression_ratio) result(cylinder)
     real(dp), intent(in) :: bore               !! b [m]
     real(dp), intent(in) :: crank_length       !! R [m]
     real(dp), intent(in) :: rod_length         !! L [m], > R
     real(dp), intent(in) :: compression_ratio  !! r > 1 [-]
-    type(cylinder_t) :: cylinder
     cylinder%area = pi*bore**2/4
     cylinder%displacement = 2*crank_length*cylinder%area
     cylinder%dead_volume = cylinder%displacement/(compression_ratio - 1)

@@ -18,9 +18,8 @@ module hermite_table
 contains
 
   !> From values, first and second derivatives at i/n, i = 0..n: arrays of size n+1.
-  pure function new_hermite_table(f, slope, curvature) result(table)
+  pure type(hermite_table_t) function new_hermite_table(f, slope, curvature) result(table)
     real(dp), intent(in) :: f(0:), slope(0:), curvature(0:)
-    type(hermite_table_t) :: table
     real(dp) :: h, d, left(2), right(2)
     integer :: i, n
     n = ubound(f, 1)

@@ -301,9 +301,8 @@ contains
   end subroutine check_output
 
   !> Whether the crank turns at the start.
-  pure function turns(c) result(answer)
+  pure logical function turns(c) result(answer)
     type(case_t), intent(in) :: c
-    logical :: answer
     answer = abs(c%initial%crank_speed) > 0
   end function turns
 end module case_rules

@@ -233,10 +233,9 @@ contains
   end function is_listed
 
   !> Place of a key in the table; 0 where there is none.
-  pure function find_key(keys, group, name) result(place)
+  pure integer function find_key(keys, group, name) result(place)
     type(key_t), intent(in) :: keys(:)
     character(len=*), intent(in) :: group, name
-    integer :: place
     character(len=1) :: letter
     letter = name
     do place = size(keys), 1, -1
@@ -246,10 +245,9 @@ contains
   end function find_key
 
   !> Place of a group in the table; 0 where there is none.
-  pure function find_group(groups, name) result(place)
+  pure integer function find_group(groups, name) result(place)
     type(group_definition_t), intent(in) :: groups(:)
     character(len=*), intent(in) :: name
-    integer :: place
     character(len=1) :: letter
     letter = name
     do place = size(groups), 1, -1

@@ -108,11 +108,10 @@ contains
   end function element_is_within
 
   !> Whether a number equals the default of its key, however it is written.
-  function is_default(key, value, element) result(same)
+  logical function is_default(key, value, element) result(same)
     type(key_t), intent(in) :: key
     type(value_t), intent(in) :: value
     integer, intent(in) :: element
-    logical :: same
     type(value_t) :: default
     type(token_t) :: token
     character(len=:), allocatable :: wanted

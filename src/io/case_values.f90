@@ -172,36 +172,22 @@ contains
     character(len=*), intent(in) :: group, key, at
     integer, intent(out) :: place
     type(error_t), allocatable, intent(out) :: error
-    character(len=32), allocatable :: allowed(:)
     character(len=:), allocatable :: text
-    integer :: i, shown
+    integer :: i
     place = find_key(self%keys, group, key)
     if (place > 0) return
     if (find_group(self%groups, group) == 0) then
-      allocate (allowed(count([(index(self%groups(i)%name, '.') == 0, i=1, size(self%groups))])))
-      shown = 0
-      do i = 1, size(self%groups)
-        if (index(self%groups(i)%name, '.') > 0) cycle
-        shown = shown + 1
-        allowed(shown) = self%groups(i)%name
-      end do
       text = '&'//printable(group, 40)//': unknown group'
-      call fail(error, at//text//suggestion(group, allowed), status_case_file)
+      call fail(error, at//text//suggestion(group, pack(self%groups%name, index(self%groups%name, '.') == 0)), status_case_file)
       return
     end if
-    allocate (allowed(count(self%keys%group == group)))
-    shown = 0
-    do i = 1, size(self%keys)
-      if (self%keys(i)%group /= group) cycle
-      shown = shown + 1
-      allowed(shown) = self%keys(i)%name
-    end do
     text = shown_group(group)//' '//printable(key, 40)//': unknown key'
     do i = 1, size(self%keys)
-      if (self%keys(i)%name == key) text = text//' of this group; it belongs to '//shown_group(trim(self%keys(i)%group))
-      if (self%keys(i)%name == key) exit
+      if (self%keys(i)%name /= key) cycle
+      text = text//' of this group; it belongs to '//shown_group(trim(self%keys(i)%group))
+      exit
     end do
-    call fail(error, at//text//suggestion(key, allowed), status_case_file)
+    call fail(error, at//text//suggestion(key, pack(self%keys%name, self%keys%group == group)), status_case_file)
   end subroutine find
 
   !> `; did you mean x? (allowed: ...)`
@@ -383,18 +369,16 @@ contains
   end subroutine refuse
 
   !> Whether a key is given in the file or by an override.
-  pure function is_given(self, group, name) result(given)
+  pure logical function is_given(self, group, name) result(given)
     class(case_values_t), intent(in) :: self
     character(len=*), intent(in) :: group, name
-    logical :: given
     given = self%values(find_key(self%keys, group, name))%given(1)
   end function is_given
 
   !> Whether the key at `place` is a text, which an override may give without quotes.
-  pure function takes_bare_text(self, place) result(answer)
+  pure logical function takes_bare_text(self, place) result(answer)
     class(case_values_t), intent(in) :: self
     integer, intent(in) :: place
-    logical :: answer
     answer = self%keys(place)%kind == text_kind
   end function takes_bare_text
 end module case_values

@@ -60,10 +60,9 @@ contains
 
   !> Whether the results BASE are all there and those of a run of this identity that is done: its summary says so, and the files
   !> have the lengths that it tells.
-  function are_whole(base, identity, with_events) result(answer)
+  logical function are_whole(base, identity, with_events) result(answer)
     character(len=*), intent(in) :: base, identity
     logical, intent(in) :: with_events
-    logical :: answer
     character(len=:), allocatable :: table
     integer :: status
     call read_whole(base//'.summary.csv', table, status)
@@ -75,9 +74,8 @@ contains
   end function are_whole
 
   !> Whether a file has as many bytes as these digits say.
-  function has_length(path, digits) result(answer)
+  logical function has_length(path, digits) result(answer)
     character(len=*), intent(in) :: path, digits
-    logical :: answer
     integer(int64) :: length
     integer :: iostat
     read (digits, '(i20)', iostat=iostat) length

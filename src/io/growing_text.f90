@@ -5,12 +5,11 @@ module growing_text
   public :: growing_text_t
 
   type :: growing_text_t
-    private
-    character(len=:), allocatable :: buffer   !! with room behind the text
-    integer :: used = 0                       !! its length
+    character(len=:), allocatable :: text   !! its first `used` characters count
+    integer :: used = 0
   contains
     procedure :: append
-    procedure :: take
+    procedure :: make_room
   end type growing_text_t
 
 contains
@@ -19,26 +18,21 @@ contains
   pure subroutine append(self, piece)
     class(growing_text_t), intent(inout) :: self
     character(len=*), intent(in) :: piece
-    integer, parameter :: first_length = 4096
-    character(len=:), allocatable :: longer
-    integer :: needed
-    needed = self%used + len(piece)
-    if (.not. allocated(self%buffer)) allocate (character(len=max(first_length, needed)) :: self%buffer)
-    if (needed > len(self%buffer)) then
-      allocate (character(len=2*needed) :: longer)
-      longer(:self%used) = self%buffer(:self%used)
-      call move_alloc(longer, self%buffer)
-    end if
-    self%buffer(self%used + 1:needed) = piece
-    self%used = needed
+    call self%make_room(len(piece))
+    self%text(self%used + 1:self%used + len(piece)) = piece
+    self%used = self%used + len(piece)
   end subroutine append
 
-  !> The text, which is empty again afterwards.
-  pure subroutine take(self, text)
+  !> Room for so many characters more.
+  pure subroutine make_room(self, more)
     class(growing_text_t), intent(inout) :: self
-    character(len=:), allocatable, intent(out) :: text
-    text = ''
-    if (allocated(self%buffer)) text = self%buffer(:self%used)
-    self%used = 0
-  end subroutine take
+    integer, intent(in) :: more
+    integer, parameter :: first_length = 4096
+    character(len=:), allocatable :: longer
+    if (.not. allocated(self%text)) allocate (character(len=max(first_length, more)) :: self%text)
+    if (self%used + more <= len(self%text)) return
+    allocate (character(len=2*(self%used + more)) :: longer)
+    longer(:self%used) = self%text(:self%used)
+    call move_alloc(longer, self%text)
+  end subroutine make_room
 end module growing_text

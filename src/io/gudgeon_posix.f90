@@ -1,17 +1,17 @@
 !> The few calls of the C library that Fortran has no words for, as thin bindings for Linux. Numbers of errors are
 !> returned, never kept: two threads do not meet here.
 module gudgeon_posix
-  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_short, c_null_char, c_ptr, &
+  use, intrinsic :: iso_c_binding, only: c_int, c_long, c_short, c_null_char, c_ptr, &
     c_size_t, c_loc, c_f_pointer, c_associated
   use posix_calls, only: file_status_t, poll_t, c_open, c_read, c_pread, c_realpath, c_write, c_fsync, c_ftruncate, c_flock, &
-    c_fallocate, c_statx, c_poll, c_close, c_rename, c_unlink, c_rmdir, c_mkdir, c_isatty, c_errno_location, c_strerror_r, &
+    c_fallocate, c_statx, c_poll, c_close, c_rename, c_unlink, c_mkdir, c_isatty, c_errno_location, c_strerror_r, &
     c_exit
   use posix_signals, only: signal_set_t, hold_interrupts, restore_interrupts, interrupted, ignore_write_signals
   implicit none
   private
   public :: open_for_reading, open_standard_input, open_for_writing, open_for_appending, open_to_lock, lock_file, &
     is_file, file_length, absolute_path, read_at, read_bytes, write_bytes, truncate_file, reserve_file, synchronise_file, &
-    synchronise_folder, close_file, rename_file, remove_file, remove_directory, make_directory, is_terminal, wait_for_input, &
+    synchronise_folder, close_file, rename_file, remove_file, make_directory, is_terminal, wait_for_input, &
     error_text, signal_set_t, hold_interrupts, restore_interrupts, interrupted, fill_standard_descriptors, &
     ignore_write_signals, quit
   public :: error_no_entry, error_interrupted, error_locked, error_exists, error_is_directory, error_no_space, &
@@ -119,10 +119,9 @@ contains
   end subroutine lock_file
 
   !> Whether `path` is the name of this open file, and not of a link to it.
-  function is_file(path, descriptor) result(answer)
+  logical function is_file(path, descriptor) result(answer)
     character(len=*), intent(in) :: path
     integer, intent(in) :: descriptor
-    logical :: answer
     type(file_status_t) :: named, opened
     answer = .false.
     if (c_statx(at_working_folder, path//c_null_char, at_link_itself, basic_status, named) /= 0) return
@@ -131,19 +130,17 @@ contains
   end function is_file
 
   !> Bytes in a file, below 0 where there is none.
-  function file_length(path) result(length)
+  integer(c_long) function file_length(path) result(length)
     character(len=*), intent(in) :: path
-    integer(c_long) :: length
     type(file_status_t) :: file
     length = -1
     if (c_statx(at_working_folder, path//c_null_char, 0_c_int, basic_status, file) == 0) length = file%length
   end function file_length
 
   !> The kind of a file, found as statx finds it; 0 where it cannot be told.
-  function kind_of_file(folder, path, flags) result(kind_bits)
+  integer function kind_of_file(folder, path, flags) result(kind_bits)
     integer(c_int), intent(in) :: folder, flags
     character(len=*), intent(in) :: path
-    integer :: kind_bits
     type(file_status_t) :: file
     kind_bits = 0
     if (c_statx(folder, path//c_null_char, flags, basic_status, file) == 0) kind_bits = iand(int(file%mode), kind_mask)
@@ -172,15 +169,9 @@ contains
   function absolute_path(path) result(whole)
     character(len=*), intent(in) :: path
     character(len=:), allocatable :: whole
-    character(kind=c_char, len=1) :: buffer(4097)   ! PATH_MAX and the end
-    integer :: i
+    character(len=4097) :: buffer   ! PATH_MAX and the end
     whole = path
-    if (.not. c_associated(c_realpath(path//c_null_char, buffer))) return
-    whole = ''
-    do i = 1, size(buffer)
-      if (buffer(i) == c_null_char) exit
-      whole = whole//buffer(i)
-    end do
+    if (c_associated(c_realpath(path//c_null_char, buffer))) whole = buffer(:index(buffer, c_null_char) - 1)
   end function absolute_path
 
   !> Wait until what was written to a file is on its disk.
@@ -251,13 +242,6 @@ contains
     status = outcome(int(c_unlink(path//c_null_char)))
   end subroutine remove_file
 
-  !> Remove an empty folder.
-  subroutine remove_directory(path, status)
-    character(len=*), intent(in) :: path
-    integer, intent(out) :: status
-    status = outcome(int(c_rmdir(path//c_null_char)))
-  end subroutine remove_directory
-
   !> Make a folder and the folders above it; one that exists already is no error.
   subroutine make_directory(path, status)
     character(len=*), intent(in) :: path
@@ -273,9 +257,8 @@ contains
   end subroutine make_directory
 
   !> Whether a file descriptor (1 standard output, 2 standard error) is a terminal.
-  function is_terminal(descriptor) result(answer)
+  logical function is_terminal(descriptor) result(answer)
     integer, intent(in) :: descriptor
-    logical :: answer
     answer = c_isatty(int(descriptor, c_int)) == 1
   end function is_terminal
 
@@ -293,18 +276,12 @@ contains
   function error_text(number) result(text)
     integer, intent(in) :: number
     character(len=:), allocatable :: text
-    character(kind=c_char, len=1) :: buffer(256)
-    integer :: i
+    character(len=256) :: buffer
     if (number == error_not_regular) text = 'not a regular file'
     if (number == error_is_link) text = 'a symbolic link'
     if (number < 0) return
-    if (c_strerror_r(int(number, c_int), buffer, size(buffer, kind=c_size_t)) /= 0) buffer(1) = c_null_char
-    text = ''
-    do i = 1, size(buffer)
-      if (buffer(i) == c_null_char) exit
-      text = text//buffer(i)
-    end do
-    if (text == '') text = 'unknown error'
+    text = 'unknown error'
+    if (c_strerror_r(int(number, c_int), buffer, len(buffer, c_size_t)) == 0) text = buffer(:index(buffer, c_null_char) - 1)
   end function error_text
 
   !> Where the program was started without standard input, output or error, nothing takes their places: else the first
@@ -327,9 +304,8 @@ contains
   end subroutine quit
 
   !> 0 after success, else the error number of the call just made.
-  function outcome(returned) result(status)
+  integer function outcome(returned) result(status)
     integer, intent(in) :: returned
-    integer :: status
     integer(c_int), pointer :: number
     status = 0
     if (returned >= 0) return

@@ -33,9 +33,8 @@ module gudgeon_progress
 contains
 
   !> Whether progress is to be shown: `when` is auto (a terminal is there), always or never.
-  function progress_wanted(when) result(wanted)
+  logical function progress_wanted(when) result(wanted)
     character(len=*), intent(in) :: when
-    logical :: wanted
     wanted = when == 'always'
     if (when == 'auto') wanted = is_terminal(standard_error)
   end function progress_wanted

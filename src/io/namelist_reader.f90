@@ -36,7 +36,6 @@ module namelist_reader
   type :: namelist_t
     type(named_group_t), allocatable :: groups(:)
     type(entry_t), allocatable :: entries(:)
-    integer, private :: n_entries = 0   !! while it is read: entries has room for more
   end type namelist_t
 
   integer, parameter :: most = 1000  !! groups, keys, values of a key: no sane file has as many
@@ -50,23 +49,26 @@ contains
     character(len=:), allocatable, intent(out) :: message
     integer, intent(out) :: line
     type(scanner_t) :: scan
-    integer :: i
-    allocate (list%groups(0))
-    allocate (list%entries(min(most, count([(text(i:i) == '=', i=1, len(text))]))))   ! each of them has one
+    type(named_group_t) :: groups(most)
+    type(entry_t) :: entries(most)
+    integer :: n_groups, n_entries
+    n_groups = 0
+    n_entries = 0
     scan%text = text
     if (index(text, char(239)//char(187)//char(191)) == 1) scan%at = 4
     do
       call skip_blanks(scan)
       if (at_end(scan)) exit
       if (scan%text(scan%at:scan%at) == '&') then
-        call read_group(scan, list)
+        call read_group(scan, groups, n_groups, entries, n_entries)
       else
         scan%message = 'text outside a group: '//piece(scan)
       end if
       if (allocated(scan%message)) exit
     end do
     line = scan%line
-    call drop_room(list)
+    list%groups = groups(:n_groups)
+    list%entries = entries(:n_entries)
     if (allocated(scan%message)) call move_alloc(scan%message, message)
   end subroutine read_namelist
 
@@ -86,11 +88,12 @@ contains
   end subroutine read_values
 
   !> From the & of a group to the / or &end that closes it.
-  subroutine read_group(scan, list)
+  subroutine read_group(scan, groups, n_groups, entries, n_entries)
     type(scanner_t), intent(inout) :: scan
-    type(namelist_t), intent(inout) :: list
+    type(named_group_t), intent(inout) :: groups(most)
+    type(entry_t), intent(inout) :: entries(most)
+    integer, intent(inout) :: n_groups, n_entries
     type(named_group_t) :: group
-    type(entry_t) :: entry
     character(len=:), allocatable :: next
     scan%at = scan%at + 1
     group%line = scan%line
@@ -100,9 +103,10 @@ contains
       if (group%name == 'end') scan%message = '&end closes no group'
       return
     end if
-    if (size(list%groups) == most) scan%message = 'too many groups'
+    if (n_groups == most) scan%message = 'too many groups'
     if (allocated(scan%message)) return
-    call append_group(list%groups, group)
+    n_groups = n_groups + 1
+    groups(n_groups) = group
     do
       call skip_blanks(scan)
       if (at_end(scan)) then
@@ -119,13 +123,13 @@ contains
         if (next /= 'end') call not_closed(scan, group, '&'//printable(next, shown))
         return
       end select
-      entry%group = group%name
-      entry%group_number = size(list%groups)
-      call read_entry(scan, entry)
-      if (list%n_entries == most) scan%message = 'too many keys'
+      if (n_entries == most) scan%message = 'too many keys'
       if (allocated(scan%message)) return
-      list%n_entries = list%n_entries + 1
-      call move_entry(entry, list%entries(list%n_entries))
+      n_entries = n_entries + 1
+      entries(n_entries)%group = group%name
+      entries(n_entries)%group_number = n_groups
+      call read_entry(scan, entries(n_entries))
+      if (allocated(scan%message)) return
     end do
   end subroutine read_group
 
@@ -188,10 +192,10 @@ contains
   subroutine read_tokens(scan, tokens)
     type(scanner_t), intent(inout) :: scan
     type(token_t), allocatable, intent(out) :: tokens(:)
-    type(token_t) :: token
+    type(token_t) :: found(most)
     logical :: comma
-    integer :: behind_comma
-    allocate (tokens(0))
+    integer :: behind_comma, n
+    n = 0
     comma = .true.
     behind_comma = 0
     do
@@ -209,14 +213,16 @@ contains
       end if
       if (scan%text(scan%at:scan%at) == '/' .or. scan%text(scan%at:scan%at) == '&') exit
       if (key_is_next(scan)) exit
-      token%follows_comma = scan%at == behind_comma
-      call read_token(scan, token)
-      if (size(tokens) == most) scan%message = 'too many values'
+      if (n == most) scan%message = 'too many values'
       if (allocated(scan%message)) return
-      call append_token(tokens, token)
+      n = n + 1
+      found(n)%follows_comma = scan%at == behind_comma
+      call read_token(scan, found(n))
+      if (allocated(scan%message)) return
       comma = .false.
     end do
-    if (size(tokens) == 0) scan%message = 'a value is missing'
+    tokens = found(:n)
+    if (n == 0) scan%message = 'a value is missing'
   end subroutine read_tokens
 
   !> One value: a quoted string or a bare word or number, with its repeat count.
@@ -285,9 +291,8 @@ contains
   end subroutine read_string
 
   !> Whether a key, not a value, stands here: a name, perhaps an index in parentheses, and =.
-  function key_is_next(scan) result(found)
+  logical function key_is_next(scan) result(found)
     type(scanner_t), intent(inout) :: scan
-    logical :: found
     integer :: at, line, n
     at = scan%at
     line = scan%line
@@ -303,61 +308,4 @@ contains
     scan%at = at
     scan%line = line
   end function key_is_next
-
-  !> Add a group to the list.
-  subroutine append_group(list, group)
-    type(named_group_t), allocatable, intent(inout) :: list(:)
-    type(named_group_t), intent(in) :: group
-    type(named_group_t), allocatable :: longer(:)
-    allocate (longer(size(list) + 1))
-    longer(:size(list)) = list
-    longer(size(longer)) = group
-    call move_alloc(longer, list)
-  end subroutine append_group
-
-  !> A key with its values, handed over, not copied.
-  subroutine move_entry(from, to)
-    type(entry_t), intent(inout) :: from, to
-    call move_alloc(from%group, to%group)
-    call move_alloc(from%key, to%key)
-    call move_alloc(from%tokens, to%tokens)
-    to%group_number = from%group_number
-    to%index = from%index
-    to%line = from%line
-  end subroutine move_entry
-
-  !> No more entries than there are.
-  subroutine drop_room(list)
-    type(namelist_t), intent(inout) :: list
-    type(entry_t), allocatable :: entries(:)
-    integer :: i
-    if (size(list%entries) == list%n_entries) return
-    allocate (entries(list%n_entries))
-    do i = 1, size(entries)
-      call move_entry(list%entries(i), entries(i))
-    end do
-    call move_alloc(entries, list%entries)
-  end subroutine drop_room
-
-  !> Add a value to the list; its text is handed over.
-  subroutine append_token(list, token)
-    type(token_t), allocatable, intent(inout) :: list(:)
-    type(token_t), intent(inout) :: token
-    type(token_t), allocatable :: longer(:)
-    integer :: i
-    allocate (longer(size(list) + 1))
-    do i = 1, size(list)
-      call move_token(list(i), longer(i))
-    end do
-    call move_token(token, longer(size(longer)))
-    call move_alloc(longer, list)
-  end subroutine append_token
-
-  subroutine move_token(from, to)
-    type(token_t), intent(inout) :: from, to
-    call move_alloc(from%text, to%text)
-    to%quoted = from%quoted
-    to%repeat = from%repeat
-    to%follows_comma = from%follows_comma
-  end subroutine move_token
 end module namelist_reader

@@ -5,7 +5,7 @@ module posix_calls
   private
   public :: file_status_t, poll_t
   public :: c_open, c_read, c_pread, c_realpath, c_write, c_fsync, c_ftruncate, c_flock, &
-    c_fallocate, c_statx, c_poll, c_close, c_rename, c_unlink, c_rmdir, c_mkdir, c_isatty, c_errno_location, c_strerror_r, &
+    c_fallocate, c_statx, c_poll, c_close, c_rename, c_unlink, c_mkdir, c_isatty, c_errno_location, c_strerror_r, &
     c_exit
 
   !> The struct statx of Linux, the same on every processor.
@@ -26,117 +26,94 @@ module posix_calls
   end type poll_t
 
   interface
-    function c_open(path, flags, mode) bind(c, name='open') result(descriptor)
+    integer(c_int) function c_open(path, flags, mode) bind(c, name='open') result(descriptor)
       import :: c_char, c_int
       character(kind=c_char), intent(in) :: path(*)
       integer(c_int), value :: flags, mode
-      integer(c_int) :: descriptor
     end function c_open
-    function c_read(descriptor, buffer, count) bind(c, name='read') result(done)
+    integer(c_long) function c_read(descriptor, buffer, count) bind(c, name='read') result(done)
       import :: c_int, c_ptr, c_size_t, c_long
       integer(c_int), value :: descriptor
       type(c_ptr), value :: buffer
       integer(c_size_t), value :: count
-      integer(c_long) :: done
     end function c_read
-    function c_pread(descriptor, buffer, count, offset) bind(c, name='pread') result(done)
+    integer(c_long) function c_pread(descriptor, buffer, count, offset) bind(c, name='pread') result(done)
       import :: c_int, c_ptr, c_size_t, c_long
       integer(c_int), value :: descriptor
       type(c_ptr), value :: buffer
       integer(c_size_t), value :: count
       integer(c_long), value :: offset
-      integer(c_long) :: done
     end function c_pread
-    function c_realpath(path, resolved) bind(c, name='realpath') result(answer)
+    type(c_ptr) function c_realpath(path, resolved) bind(c, name='realpath') result(answer)
       import :: c_char, c_ptr
       character(kind=c_char), intent(in) :: path(*)
       character(kind=c_char), intent(out) :: resolved(*)
-      type(c_ptr) :: answer
     end function c_realpath
-    function c_write(descriptor, buffer, count) bind(c, name='write') result(done)
+    integer(c_long) function c_write(descriptor, buffer, count) bind(c, name='write') result(done)
       import :: c_int, c_ptr, c_size_t, c_long
       integer(c_int), value :: descriptor
       type(c_ptr), value :: buffer
       integer(c_size_t), value :: count
-      integer(c_long) :: done
     end function c_write
-    function c_fsync(descriptor) bind(c, name='fsync') result(status)
+    integer(c_int) function c_fsync(descriptor) bind(c, name='fsync') result(status)
       import :: c_int
       integer(c_int), value :: descriptor
-      integer(c_int) :: status
     end function c_fsync
-    function c_ftruncate(descriptor, length) bind(c, name='ftruncate') result(status)
+    integer(c_int) function c_ftruncate(descriptor, length) bind(c, name='ftruncate') result(status)
       import :: c_int, c_long
       integer(c_int), value :: descriptor
       integer(c_long), value :: length
-      integer(c_int) :: status
     end function c_ftruncate
-    function c_flock(descriptor, operation) bind(c, name='flock') result(status)
+    integer(c_int) function c_flock(descriptor, operation) bind(c, name='flock') result(status)
       import :: c_int
       integer(c_int), value :: descriptor, operation
-      integer(c_int) :: status
     end function c_flock
-    function c_fallocate(descriptor, mode, offset, length) bind(c, name='fallocate') result(status)
+    integer(c_int) function c_fallocate(descriptor, mode, offset, length) bind(c, name='fallocate') result(status)
       import :: c_int, c_long
       integer(c_int), value :: descriptor, mode
       integer(c_long), value :: offset, length
-      integer(c_int) :: status
     end function c_fallocate
-    function c_statx(folder, path, flags, mask, file) bind(c, name='statx') result(status)
+    integer(c_int) function c_statx(folder, path, flags, mask, file) bind(c, name='statx') result(status)
       import :: c_char, c_int, file_status_t
       integer(c_int), value :: folder, flags, mask
       character(kind=c_char), intent(in) :: path(*)
       type(file_status_t), intent(inout) :: file
-      integer(c_int) :: status
     end function c_statx
-    function c_poll(files, number, milliseconds) bind(c, name='poll') result(ready)
+    integer(c_int) function c_poll(files, number, milliseconds) bind(c, name='poll') result(ready)
       import :: c_int, c_long, poll_t
       type(poll_t), intent(inout) :: files
       integer(c_long), value :: number
       integer(c_int), value :: milliseconds
-      integer(c_int) :: ready
     end function c_poll
-    function c_close(descriptor) bind(c, name='close') result(status)
+    integer(c_int) function c_close(descriptor) bind(c, name='close') result(status)
       import :: c_int
       integer(c_int), value :: descriptor
-      integer(c_int) :: status
     end function c_close
-    function c_rename(from, to) bind(c, name='rename') result(status)
+    integer(c_int) function c_rename(from, to) bind(c, name='rename') result(status)
       import :: c_char, c_int
       character(kind=c_char), intent(in) :: from(*), to(*)
-      integer(c_int) :: status
     end function c_rename
-    function c_unlink(path) bind(c, name='unlink') result(status)
+    integer(c_int) function c_unlink(path) bind(c, name='unlink') result(status)
       import :: c_char, c_int
       character(kind=c_char), intent(in) :: path(*)
-      integer(c_int) :: status
     end function c_unlink
-    function c_rmdir(path) bind(c, name='rmdir') result(status)
-      import :: c_char, c_int
-      character(kind=c_char), intent(in) :: path(*)
-      integer(c_int) :: status
-    end function c_rmdir
-    function c_mkdir(path, mode) bind(c, name='mkdir') result(status)
+    integer(c_int) function c_mkdir(path, mode) bind(c, name='mkdir') result(status)
       import :: c_char, c_int
       character(kind=c_char), intent(in) :: path(*)
       integer(c_int), value :: mode
-      integer(c_int) :: status
     end function c_mkdir
-    function c_isatty(descriptor) bind(c, name='isatty') result(answer)
+    integer(c_int) function c_isatty(descriptor) bind(c, name='isatty') result(answer)
       import :: c_int
       integer(c_int), value :: descriptor
-      integer(c_int) :: answer
     end function c_isatty
-    function c_errno_location() bind(c, name='__errno_location') result(location)
+    type(c_ptr) function c_errno_location() bind(c, name='__errno_location') result(location)
       import :: c_ptr
-      type(c_ptr) :: location
     end function c_errno_location
-    function c_strerror_r(number, buffer, length) bind(c, name='__xpg_strerror_r') result(status)
+    integer(c_int) function c_strerror_r(number, buffer, length) bind(c, name='__xpg_strerror_r') result(status)
       import :: c_int, c_char, c_size_t
       integer(c_int), value :: number
       character(kind=c_char), intent(out) :: buffer(*)
       integer(c_size_t), value :: length
-      integer(c_int) :: status
     end function c_strerror_r
     subroutine c_exit(status) bind(c, name='exit')
       import :: c_int

@@ -17,35 +17,30 @@ module posix_signals
   end type signal_set_t
 
   interface
-    function c_sigaddset(set, number) bind(c, name='sigaddset') result(status)
+    integer(c_int) function c_sigaddset(set, number) bind(c, name='sigaddset') result(status)
       import :: signal_set_t, c_int
       type(signal_set_t), intent(inout) :: set
       integer(c_int), value :: number
-      integer(c_int) :: status
     end function c_sigaddset
-    function c_sigismember(set, number) bind(c, name='sigismember') result(answer)
+    integer(c_int) function c_sigismember(set, number) bind(c, name='sigismember') result(answer)
       import :: signal_set_t, c_int
       type(signal_set_t), intent(in) :: set
       integer(c_int), value :: number
-      integer(c_int) :: answer
     end function c_sigismember
-    function c_sigpending(set) bind(c, name='sigpending') result(status)
+    integer(c_int) function c_sigpending(set) bind(c, name='sigpending') result(status)
       import :: signal_set_t, c_int
       type(signal_set_t), intent(inout) :: set
-      integer(c_int) :: status
     end function c_sigpending
-    function c_sigmask(how, set, old) bind(c, name='pthread_sigmask') result(status)
+    integer(c_int) function c_sigmask(how, set, old) bind(c, name='pthread_sigmask') result(status)
       import :: signal_set_t, c_int
       integer(c_int), value :: how
       type(signal_set_t), intent(in) :: set
       type(signal_set_t), intent(inout) :: old
-      integer(c_int) :: status
     end function c_sigmask
-    function c_signal(number, handler) bind(c, name='signal') result(old)
+    integer(c_intptr_t) function c_signal(number, handler) bind(c, name='signal') result(old)
       import :: c_int, c_intptr_t
       integer(c_int), value :: number
       integer(c_intptr_t), value :: handler
-      integer(c_intptr_t) :: old
     end function c_signal
   end interface
 
@@ -79,8 +74,7 @@ contains
   end subroutine restore_interrupts
 
   !> Whether a held signal has come in.
-  function interrupted() result(answer)
-    logical :: answer
+  logical function interrupted() result(answer)
     type(signal_set_t) :: pending
     integer :: i
     answer = .false.

@@ -145,9 +145,8 @@ contains
   end function length
 
   !> Whether a write has failed, so that nothing more can be kept; also while another thread writes.
-  function has_failed(self) result(failed)
+  logical function has_failed(self) result(failed)
     class(result_file_t), intent(in) :: self
-    logical :: failed
     integer :: status
     !$omp atomic read
     status = self%status

@@ -70,9 +70,8 @@ contains
   end subroutine skip_blanks
 
   !> Bytes from here to the end of the line.
-  pure function rest_of_line(scan) result(length)
+  pure integer function rest_of_line(scan) result(length)
     type(scanner_t), intent(in) :: scan
-    integer :: length
     do length = 0, len(scan%text) - scan%at
       select case (scan%text(scan%at + length:scan%at + length))
       case (newline, return)
@@ -82,9 +81,8 @@ contains
   end function rest_of_line
 
   !> Bytes from here to the next separator.
-  pure function bare_length(scan) result(length)
+  pure integer function bare_length(scan) result(length)
     type(scanner_t), intent(in) :: scan
-    integer :: length
     do length = 0, len(scan%text) - scan%at
       select case (scan%text(scan%at + length:scan%at + length))
       case (' ', ',', '/', '!', '&', '=', '(', ')', '''', '"', tab, newline, return)   ! separators
@@ -93,16 +91,14 @@ contains
     end do
   end function bare_length
 
-  pure function at_end(scan) result(ended)
+  pure logical function at_end(scan) result(ended)
     type(scanner_t), intent(in) :: scan
-    logical :: ended
     ended = scan%at > len(scan%text)
   end function at_end
 
-  pure function next_is(scan, character) result(same)
+  pure logical function next_is(scan, character) result(same)
     type(scanner_t), intent(in) :: scan
     character(len=1), intent(in) :: character
-    logical :: same
     same = .false.
     if (.not. at_end(scan)) same = scan%text(scan%at:scan%at) == character
   end function next_is

@@ -98,9 +98,8 @@ contains
 
   !> Whether a character of UTF-8 beyond ASCII is a blank, has no width or turns the direction of writing: U+00A0, U+00AD,
   !> U+2000-200F, U+2028-202F, U+205F-206F, U+3000, U+FEFF.
-  pure function is_invisible(character) result(answer)
+  pure logical function is_invisible(character) result(answer)
     character(len=*), intent(in) :: character
-    logical :: answer
     integer :: last
     last = ichar(character(len(character):))
     select case (character(:len(character) - 1))
@@ -120,9 +119,8 @@ contains
   end function is_invisible
 
   !> Whether the text is UTF-8 without control characters.
-  pure function is_clean(text) result(clean)
+  pure logical function is_clean(text) result(clean)
     character(len=*), intent(in) :: text
-    logical :: clean
     integer :: i, bytes
     clean = .true.
     i = 1

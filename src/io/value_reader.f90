@@ -92,10 +92,9 @@ contains
   end subroutine read_logical
 
   !> Whether a value lies in a range written as `> 0`, or `>= 0 and <= 0.5`.
-  pure function is_within(value, range) result(within)
+  pure logical function is_within(value, range) result(within)
     real(dp), intent(in) :: value
     character(len=*), intent(in) :: range
-    logical :: within
     integer :: last
     within = .true.
     if (range == '') return
@@ -109,10 +108,9 @@ contains
   end function is_within
 
   !> Whether a value meets one condition, an operator and a number with a blank between.
-  pure function meets(value, condition) result(met)
+  pure logical function meets(value, condition) result(met)
     real(dp), intent(in) :: value
     character(len=*), intent(in) :: condition
-    logical :: met
     character(len=:), allocatable :: wanted
     real(dp) :: bound
     integer :: blank
@@ -131,9 +129,8 @@ contains
   end function meets
 
   !> Digits, perhaps with a sign before them.
-  pure function is_whole(text) result(whole)
+  pure logical function is_whole(text) result(whole)
     character(len=*), intent(in) :: text
-    logical :: whole
     integer :: first
     first = 1
     if (scan(text, '+-') == 1) first = 2

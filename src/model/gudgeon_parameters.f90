@@ -197,11 +197,10 @@ contains
     call self%visit(new, text=value)
   end subroutine text
 
-  pure function described(name, kind, says, unit, range, default, example) result(key)
+  pure type(key_t) function described(name, kind, says, unit, range, default, example) result(key)
     character(len=*), intent(in) :: name, says
     integer, intent(in) :: kind
     character(len=*), intent(in), optional :: unit, range, default, example
-    type(key_t) :: key
     key%name = name
     key%kind = kind
     key%description = says

@@ -222,16 +222,16 @@ contains
   subroutine write_waiting(self, error)
     class(row_file_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: text
     integer :: at, done, ignored
     if (self%descriptor < 0) return
-    call self%waiting%take(text)
+    call self%waiting%make_room(0)
     at = 0
-    do while (at < len(text) .and. self%status == 0)
-      call write_bytes(self%descriptor, text(at + 1:), done, self%status)
+    do while (at < self%waiting%used .and. self%status == 0)
+      call write_bytes(self%descriptor, self%waiting%text(at + 1:self%waiting%used), done, self%status)
       if (self%status == error_interrupted) self%status = 0
       if (self%status == 0) at = at + max(done, 0)
     end do
+    self%waiting%used = 0
     if (self%status /= 0) then
       if (at > 0) call truncate_file(self%descriptor, int(self%written, c_long), ignored)
       call report(self, self%status, error)

@@ -8,13 +8,12 @@ module row_text
   use gudgeon_kinds, only: dp
   use value_reader, only: read_real
   use number_writer, only: number_writer_t, longest_number
+  use growing_text, only: growing_text_t
   implicit none
   private
   public :: row_text_t, begins_formula
 
-  type :: row_text_t
-    character(len=:), allocatable :: text   !! its first `used` characters count
-    integer :: used = 0
+  type, extends(growing_text_t) :: row_text_t
     logical, private :: is_open = .false.   !! a row has begun
   contains
     procedure :: clear
@@ -22,7 +21,6 @@ module row_text
     procedure :: add_whole
     procedure :: add_number
     procedure :: end_row
-    procedure, private :: make_room
   end type row_text_t
 
 contains
@@ -52,21 +50,20 @@ contains
     real(dp) :: unimportant
     integer :: i
     logical :: needs_quotes, needs_apostrophe
-    call self%make_room(2*len(text) + 4)
     needs_quotes = scan(text, '",'//achar(10)//achar(13)) > 0
     needs_apostrophe = begins_formula(text)
     if (needs_apostrophe) then
       call read_real(trim(text), unimportant, wanted)
       needs_apostrophe = allocated(wanted)
     end if
-    call append(self, ',', self%is_open)
-    call append(self, '"', needs_quotes)
-    call append(self, "'", needs_apostrophe)
+    if (self%is_open) call self%append(',')
+    if (needs_quotes) call self%append('"')
+    if (needs_apostrophe) call self%append("'")
     do i = 1, len_trim(text)
-      call append(self, '"', text(i:i) == '"')
-      call append(self, text(i:i), .true.)
+      if (text(i:i) == '"') call self%append('"')
+      call self%append(text(i:i))
     end do
-    call append(self, '"', needs_quotes)
+    if (needs_quotes) call self%append('"')
     self%is_open = .true.
   end subroutine add_text
 
@@ -82,37 +79,15 @@ contains
     class(row_text_t), intent(inout) :: self
     type(number_writer_t), intent(in) :: numbers
     real(dp), intent(in) :: value
-    call self%make_room(longest_number + 1)
-    call append(self, ',', self%is_open)
+    if (self%is_open) call self%append(',')
+    call self%make_room(longest_number)
     call numbers%append(self%text, self%used, value)
     self%is_open = .true.
   end subroutine add_number
 
   pure subroutine end_row(self)
     class(row_text_t), intent(inout) :: self
-    call self%make_room(1)
-    call append(self, achar(10), .true.)
+    call self%append(achar(10))
     self%is_open = .false.
   end subroutine end_row
-
-  pure subroutine append(self, character, wanted)
-    class(row_text_t), intent(inout) :: self
-    character(len=1), intent(in) :: character
-    logical, intent(in) :: wanted
-    if (.not. wanted) return
-    self%used = self%used + 1
-    self%text(self%used:self%used) = character
-  end subroutine append
-
-  !> Room for so many characters more.
-  pure subroutine make_room(self, more)
-    class(row_text_t), intent(inout) :: self
-    integer, intent(in) :: more
-    character(len=:), allocatable :: longer
-    if (.not. allocated(self%text)) allocate (character(len=1024) :: self%text)
-    if (self%used + more <= len(self%text)) return
-    allocate (character(len=2*(self%used + more)) :: longer)
-    longer(:self%used) = self%text(:self%used)
-    call move_alloc(longer, self%text)
-  end subroutine make_room
 end module row_text

@@ -114,10 +114,10 @@ contains
       do k = 1, sweep%design%runs
         if (study%table == '') exit
         do i = 1, size(table%keys)
-          call sweep%base%convert(i, table%field(i, k), error)
+          call sweep%base%convert(i, trim(table%field(i, k)), error)
           if (.not. allocated(error)) cycle
           error%message = printable(study%table, 200)//':'//integer_text(table%lines(k))//': column '//integer_text(i)//', '// &
-            trim(table%keys(i))//' = '//printable(table%field(i, k), 48)//': '//error%message
+            trim(table%keys(i))//' = '//printable(trim(table%field(i, k)), 48)//': '//error%message
           return
         end do
       end do
@@ -206,7 +206,7 @@ contains
       end do
       do run = 1, sweep%design%runs
         do i = 1, size(sweep%design%keys)
-          call checksum%add(sweep%design%table%field(i, run)//',')
+          call checksum%add(trim(sweep%design%table%field(i, run))//',')
         end do
       end do
     end if

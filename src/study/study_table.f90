@@ -1,5 +1,5 @@
 !> A table of runs: CSV after RFC 4180, a header of GROUP.KEY, a row for each run. A table may be large and its fields of any
-!> length: they are kept one behind the other, without their quotes, in the place of the text that they are read from.
+!> length: they stay in the text, in which they are found again by their places.
 module study_table
   use gudgeon_errors, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text, lowercase
@@ -17,29 +17,37 @@ module study_table
     integer :: rows = 0
     integer :: longest = 1                          !! bytes of the longest field
     character(len=:), allocatable :: keys(:)        !! (columns), in lower case
-    integer, allocatable :: lines(:)                !! of the file where each row begins
-    character(len=:), allocatable, private :: text  !! the fields of all rows
-    integer, allocatable, private :: ends(:)        !! where each of them ends
+    integer, allocatable :: lines(:)                !! of the file where each row begins, (0:rows): the header's first
+    character(len=:), allocatable, private :: text
+    integer, allocatable, private :: first(:), last(:)   !! bytes of each field, with its quotes; the header's first
   contains
     procedure :: field
   end type study_table_t
 
-  !> A place in the text, which is read from `at` on while its beginning is overwritten by fields.
-  type :: place_t
-    integer :: at = 1, line = 1
-    integer :: used = 0   !! bytes of fields
-  end type place_t
-
 contains
 
-  !> The field of a row in a column, without quotes, blanks around it and an apostrophe that was put before it.
+  !> The field of a row (0: the header) in a column, without quotes, blanks before it and an apostrophe that was put before it;
+  !> blanks stand behind it.
   pure function field(self, column, row) result(text)
     class(study_table_t), intent(in) :: self
     integer, intent(in) :: column, row
-    character(len=self%ends(size(self%keys)*(row - 1) + column) - self%ends(size(self%keys)*(row - 1) + column - 1)) :: text
-    associate (last => self%ends(size(self%keys)*(row - 1) + column))
-      text = self%text(last - len(text) + 1:last)
-    end associate
+    character(len=self%last(size(self%keys)*row + column) - self%first(size(self%keys)*row + column) + 1) :: text
+    integer :: first, i, used
+    first = self%first(size(self%keys)*row + column)
+    text = self%text(first:first + len(text) - 1)
+    if (index(text, quote) == 1) then
+      used = 0
+      i = 2
+      do while (i < len(text))
+        used = used + 1
+        text(used:used) = text(i:i)
+        i = i + merge(2, 1, text(i:i) == quote)   ! a doubled one stands for itself
+      end do
+      text(used + 1:) = ''
+    end if
+    text = adjustl(text)
+    if (index(text, "'") /= 1) return
+    if (begins_formula(text)) text = text(2:)
   end function field
 
   subroutine read_table(path, table, error)
@@ -57,180 +65,124 @@ contains
     character(len=*), intent(in) :: path
     type(study_table_t), intent(out) :: table
     type(error_t), allocatable, intent(out) :: error
-    type(place_t) :: place
-    integer :: columns, most_rows, most_fields, i, row
+    character(len=:), allocatable :: message
+    integer :: at, line, columns, column, row, n, i
+    logical :: is_last
 
     call move_alloc(text, table%text)
-    if (index(table%text, char(239)//char(187)//char(191)) == 1) place%at = 4
-    call take_header(path, table, place, columns, error)
-    if (allocated(error)) return
-    most_rows = 1
-    most_fields = columns   ! of a last row that is too short
-    do i = place%at, len(table%text)
-      if (table%text(i:i) == newline) most_rows = most_rows + 1
-      if (index(','//newline, table%text(i:i)) > 0) most_fields = most_fields + 1
+    n = count_of(table%text, newline)
+    allocate (table%lines(0:n))
+    n = n + count_of(table%text, ',') + 1
+    allocate (table%first(n), table%last(n))
+    at = 1
+    if (index(table%text, char(239)//char(187)//char(191)) == 1) at = 4
+    line = 1
+    columns = 0
+    n = 0
+    row = -1
+    message = ''
+    do
+      call skip_empty_lines(table%text, at, line)
+      if (at > len(table%text)) exit
+      row = row + 1
+      table%lines(row) = line
+      column = 0
+      is_last = .false.
+      do while (.not. is_last .and. message == '')
+        column = column + 1
+        if (column > most_columns) then
+          message = 'more than 200 columns'
+        else if (row > 0 .and. column > columns) then
+          message = 'the header has '//integer_text(columns)//' fields, this row more'
+        else
+          n = n + 1
+          call take_field(table%text, at, line, table%first(n), table%last(n), is_last, message)
+          if (row > 0) table%longest = max(table%longest, table%last(n) - table%first(n) + 1)
+        end if
+      end do
+      if (row == 0) columns = column
+      if (column < columns .and. message == '') message = 'the header has '//integer_text(columns)//' fields, this row fewer'
+      if (message /= '') then
+        call fail(error, printable(path, 200)//':'//integer_text(table%lines(row))//': column '//integer_text(column)//': '// &
+                  message, status_case_file)
+        return
+      end if
     end do
-    allocate (table%lines(most_rows), table%ends(0:most_fields + columns))
-    table%ends(0) = place%used
-    do row = 1, most_rows
-      call skip_empty_lines(table%text, place)
-      if (place%at > len(table%text)) exit
-      table%lines(row) = place%line
-      call take_row(path, table%text, place, columns, table%ends(columns*(row - 1):columns*row), table%longest, error)
-      if (allocated(error)) return
-      table%rows = row
-    end do
-    if (table%rows == 0) then
+    table%rows = row
+    if (row < 0) then
+      call fail(error, printable(path, 200)//': the table is empty: a header of GROUP.KEY and a row for each run are wanted', &
+                status_case_file)
+    else if (row == 0) then
       call fail(error, printable(path, 200)//': the table has a header but no run', status_case_file)
     else
+      allocate (character(len=max(1, maxval(table%last(:columns) - table%first(:columns)) + 1)) :: table%keys(columns))
+      do i = 1, columns
+        table%keys(i) = lowercase(table%field(i, 0))
+      end do
       call check_header(path, table, error)
     end if
   end subroutine parse_table
 
-  !> The keys of the header, and how many there are.
-  subroutine take_header(path, table, place, columns, error)
-    character(len=*), intent(in) :: path
-    type(study_table_t), intent(inout) :: table
-    type(place_t), intent(inout) :: place
-    integer, intent(out) :: columns
-    type(error_t), allocatable, intent(out) :: error
-    integer :: ends(0:most_columns), i
-    columns = 0
-    call skip_empty_lines(table%text, place)
-    if (place%at > len(table%text)) then
-      call fail(error, printable(path, 200)//': the table is empty: a header of GROUP.KEY and a row for each run are wanted', &
-                status_case_file)
-      return
-    end if
-    call take_row(path, table%text, place, columns, ends, table%longest, error)
-    if (allocated(error)) return
-    allocate (character(len=table%longest) :: table%keys(columns))
-    do i = 1, columns
-      table%keys(i) = lowercase(table%text(ends(i - 1) + 1:ends(i)))
-    end do
-    table%longest = 1
-  end subroutine take_header
-
-  !> The fields of one row, of which there must be so many; 0: as many as there are, which is answered.
-  subroutine take_row(path, text, place, columns, ends, longest, error)
-    character(len=*), intent(in) :: path
-    character(len=*), intent(inout) :: text
-    type(place_t), intent(inout) :: place
-    integer, intent(inout) :: columns, longest
-    integer, intent(inout) :: ends(0:)   !! of each field
-    type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: message
-    integer :: column, line
-    logical :: is_last
-    line = place%line
-    ends(0) = place%used
-    column = 0
-    is_last = .false.
-    message = ''
-    do while (.not. is_last .and. message == '')
-      column = column + 1
-      if (column > most_columns) then
-        message = 'more than 200 columns'
-      else if (column > ubound(ends, 1)) then
-        message = 'the header has '//integer_text(columns)//' fields, this row more'
-      else
-        call take_field(text, place, is_last, message)
-        ends(column) = place%used
-        longest = max(longest, ends(column) - ends(column - 1))
-      end if
-    end do
-    if (columns == 0) columns = column
-    if (column < columns .and. message == '') &
-      message = 'the header has '//integer_text(columns)//' fields, this row fewer'
-    if (message /= '') call fail(error, printable(path, 200)//':'//integer_text(line)//': column '// &
-                                      integer_text(column)//': '//message, status_case_file)
-  end subroutine take_row
-
-  pure subroutine skip_empty_lines(text, place)
+  !> How often a character stands in a text.
+  pure integer function count_of(text, character) result(number)
     character(len=*), intent(in) :: text
-    type(place_t), intent(inout) :: place
-    do while (place%at <= len(text))
-      if (text(place%at:place%at) == newline) place%line = place%line + 1
-      if (index(newline//return, text(place%at:place%at)) == 0) return
-      place%at = place%at + 1
+    character(len=1), intent(in) :: character
+    integer :: i
+    number = 0
+    do i = 1, len(text)
+      if (text(i:i) == character) number = number + 1
+    end do
+  end function count_of
+
+  pure subroutine skip_empty_lines(text, at, line)
+    character(len=*), intent(in) :: text
+    integer, intent(inout) :: at, line
+    do while (at <= len(text))
+      if (text(at:at) == newline) line = line + 1
+      if (index(newline//return, text(at:at)) == 0) return
+      at = at + 1
     end do
   end subroutine skip_empty_lines
 
   !> One field and the comma or the end of line behind it.
-  subroutine take_field(text, place, is_last, message)
-    character(len=*), intent(inout) :: text
-    type(place_t), intent(inout) :: place
+  pure subroutine take_field(text, at, line, first, last, is_last, message)
+    character(len=*), intent(in) :: text
+    integer, intent(inout) :: at, line
+    integer, intent(out) :: first, last
     logical, intent(out) :: is_last
     character(len=:), allocatable, intent(inout) :: message   !! what is wrong; unchanged where nothing is
-    character(len=1) :: c
+    integer :: ending, next
     logical :: is_quoted
-    integer :: before
 
-    before = place%used
-    is_quoted = .false.
+    first = at - 1 + verify(text(at:)//'.', ' ')
+    is_quoted = index(text(first:min(first, len(text))), quote) == 1
     is_last = .false.
-    if (place%at <= len(text)) is_quoted = text(place%at:place%at) == quote
-    if (is_quoted) then
-      place%at = place%at + 1
-      do
-        if (place%at > len(text)) then
-          message = 'the quote " is not closed'
-          return
-        end if
-        c = text(place%at:place%at)
-        place%at = place%at + 1
-        if (c == quote) then
-          if (place%at > len(text)) exit
-          if (text(place%at:place%at) /= quote) exit
-          place%at = place%at + 1
-        end if
-        if (c == newline) place%line = place%line + 1
-        call keep(text, place, before, c)
-      end do
-    end if
-    is_last = .true.
-    do while (place%at <= len(text))
-      c = text(place%at:place%at)
-      place%at = place%at + 1
-      is_last = c /= ','
-      if (.not. is_last) exit
-      if (c == newline) then
-        place%line = place%line + 1
-        exit
-      end if
-      if (c == return) then
-        if (place%at > len(text)) exit
-        if (text(place%at:place%at) == newline) cycle
-      end if
-      if (is_quoted) then
-        if (c == ' ') cycle
-        message = 'text behind a closing quote'
-        return
-      else if (c == quote) then
-        message = 'a quote inside a field that does not begin with one'
+    last = first
+    at = first
+    do while (is_quoted)
+      next = index(text(at + 1:), quote)
+      if (next == 0) then
+        message = 'the quote " is not closed'
         return
       end if
-      call keep(text, place, before, c)
+      at = at + next + 1
+      if (text(at:min(at, len(text))) /= quote) exit
     end do
-    place%used = before + len_trim(text(before + 1:place%used))
-    if (text(before + 1:min(before + 1, place%used)) == "'") then
-      if (begins_formula(text(before + 1:place%used))) then
-        text(before + 1:place%used - 1) = text(before + 2:place%used)
-        place%used = place%used - 1
-      end if
+    last = at - 1
+    line = line + count_of(text(first:last), newline)
+    ending = at - 1 + scan(text(at:)//newline, ','//newline)
+    is_last = text(ending:min(ending, len(text))) /= ','
+    next = ending - 1   ! the last byte before it
+    if (is_last .and. text(max(next, at):next) == return) next = next - 1
+    if (.not. is_quoted) then
+      if (index(text(at:next), quote) > 0) message = 'a quote inside a field that does not begin with one'
+      last = at - 1 + len_trim(text(at:next))
+    else if (text(at:next) /= '') then
+      message = 'text behind a closing quote'
     end if
+    if (is_last) line = line + 1
+    at = ending + 1
   end subroutine take_field
-
-  !> Add a character to a field that begins behind `before`, unless it is a blank at its beginning.
-  pure subroutine keep(text, place, before, c)
-    character(len=*), intent(inout) :: text
-    type(place_t), intent(inout) :: place
-    integer, intent(in) :: before
-    character(len=1), intent(in) :: c
-    if (c == ' ' .and. place%used == before) return
-    place%used = place%used + 1
-    text(place%used:place%used) = c
-  end subroutine keep
 
   !> Every column has a name of its own.
   subroutine check_header(path, table, error)
