@@ -2,13 +2,13 @@
 module case_loader
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t
-  use gudgeon_parameters, only: parameter_list_t, law_t, key_t, word_kind
+  use gudgeon_parameters, only: parameter_list_t, has_parameters_t, law_t, key_t, word_kind
   use case_definition, only: case_t, visit_case
   use case_schema, only: find_group, is_listed
   use case_values, only: case_values_t
   implicit none
   private
-  public :: load_case
+  public :: load_case, load_model
 
   type, extends(parameter_list_t) :: loader_t
     type(case_values_t), pointer :: values => null()
@@ -47,6 +47,18 @@ contains
     call visit_case(into, loader)
     if (allocated(loader%error)) call move_alloc(loader%error, error)
   end subroutine load_case
+
+  !> Set the parameters of one model, which are those of one group.
+  subroutine load_model(values, group, model)
+    type(case_values_t), intent(inout), target :: values
+    character(len=*), intent(in) :: group
+    class(has_parameters_t), intent(inout) :: model
+    type(loader_t) :: loader
+    loader%values => values
+    allocate (loader%only(size(values%groups)), source=.true.)
+    call loader%group(group, '', .true.)
+    call model%parameters(loader)
+  end subroutine load_model
 
   !> A group: of a joint's place that of this place, or else, for laws, that of every place. A law of a joint that is ideal is
   !> not set.

@@ -8,7 +8,7 @@ module case_schema
   use case_definition, only: case_t, visit_case, piston_pin_place
   implicit none
   private
-  public :: key_t, group_definition_t, case_schema_of, find_key, find_group, is_listed, is_group_of_cases, shown_group
+  public :: key_t, group_definition_t, schema_t, case_schema_of, find_key, find_group, is_listed, is_group_of_cases, shown_group
   public :: real_kind, integer_kind, logical_kind, word_kind, text_kind, shared_keys_differ
 
   !> A group. One that stands for a model may be absent from a case, and so the model from its scene.
@@ -23,6 +23,7 @@ module case_schema
 
   !> Collects groups and keys. Laws of one group may share a key, which then means the same in all of them.
   type, extends(parameter_list_t) :: schema_t
+    private
     type(group_definition_t), allocatable :: groups(:)
     type(key_t), allocatable :: keys(:)
     integer :: n_groups = 0, n_keys = 0
@@ -30,6 +31,8 @@ module case_schema
     character(len=:), allocatable :: law_name
     character(len=:), allocatable :: difference   !! a key whose laws disagree on what it is, for the tests
   contains
+    procedure :: begin
+    procedure :: take
     procedure :: visit => collect
     procedure :: group => collect_group
     procedure :: choice => collect_choice
@@ -44,9 +47,25 @@ contains
     type(key_t), allocatable, intent(out) :: keys(:)
     type(schema_t) :: schema
     call collect_case(schema)
-    groups = schema%groups(:schema%n_groups)
-    keys = schema%keys(:schema%n_keys)
+    call schema%take(groups, keys)
   end subroutine case_schema_of
+
+  !> Be ready to be a visitor.
+  subroutine begin(self)
+    class(schema_t), intent(inout) :: self
+    allocate (self%groups(50), self%keys(200))
+    self%law_name = ''
+    self%difference = ''
+  end subroutine begin
+
+  !> What has been collected.
+  subroutine take(self, groups, keys)
+    class(schema_t), intent(in) :: self
+    type(group_definition_t), allocatable, intent(out) :: groups(:)
+    type(key_t), allocatable, intent(out) :: keys(:)
+    groups = self%groups(:self%n_groups)
+    keys = self%keys(:self%n_keys)
+  end subroutine take
 
   !> Whether case files have a group of this name.
   logical function is_group_of_cases(name)
@@ -68,9 +87,7 @@ contains
   subroutine collect_case(schema)
     type(schema_t), intent(inout) :: schema
     type(case_t) :: case
-    allocate (schema%groups(50), schema%keys(200))
-    schema%law_name = ''
-    schema%difference = ''
+    call schema%begin()
     call visit_case(case, schema)
     call add_laws_of_one_joint(schema)
   end subroutine collect_case

@@ -178,7 +178,9 @@ contains
     if (place > 0) return
     if (find_group(self%groups, group) == 0) then
       text = '&'//printable(group, 40)//': unknown group'
-      call fail(error, at//text//suggestion(group, pack(self%groups%name, index(self%groups%name, '.') == 0)), status_case_file)
+      associate (names => [(self%groups(i)%name, i=1, size(self%groups))])
+        call fail(error, at//text//suggestion(group, pack(names, index(names, '.') == 0)), status_case_file)
+      end associate
       return
     end if
     text = shown_group(group)//' '//printable(key, 40)//': unknown key'
@@ -187,7 +189,9 @@ contains
       text = text//' of this group; it belongs to '//shown_group(trim(self%keys(i)%group))
       exit
     end do
-    call fail(error, at//text//suggestion(key, pack(self%keys%name, self%keys%group == group)), status_case_file)
+    associate (names => [(self%keys(i)%name, i=1, size(self%keys))])
+      call fail(error, at//text//suggestion(key, pack(names, self%keys%group == group)), status_case_file)
+    end associate
   end subroutine find
 
   !> `; did you mean x? (allowed: ...)`

@@ -153,13 +153,13 @@ contains
   end subroutine add_pair
 
   !> A whole number.
-  subroutine add_integer(self, key, value, says, range, default)
+  subroutine add_integer(self, key, value, says, range, default, example)
     class(parameter_list_t), intent(inout) :: self
     character(len=*), intent(in) :: key, says
     integer, intent(inout) :: value
-    character(len=*), intent(in), optional :: range, default
+    character(len=*), intent(in), optional :: range, default, example
     if (self%passes) return
-    call self%visit(described(key, integer_kind, says, range=range, default=default), whole=value)
+    call self%visit(described(key, integer_kind, says, range=range, default=default, example=example), whole=value)
   end subroutine add_integer
 
   !> A switch, .true. or .false.
@@ -184,15 +184,16 @@ contains
     call self%visit(new, text=value)
   end subroutine word
 
-  !> Any text; with `many`, several texts are joined by commas.
-  subroutine text(self, key, value, says, default, many)
+  !> Any text; with `many`, several texts are joined by commas. Without a default it is required.
+  subroutine text(self, key, value, says, default, many, example)
     class(parameter_list_t), intent(inout) :: self
-    character(len=*), intent(in) :: key, says, default
+    character(len=*), intent(in) :: key, says
     character(len=:), allocatable, intent(inout) :: value
+    character(len=*), intent(in), optional :: default, example
     logical, intent(in), optional :: many
     type(key_t) :: new
     if (self%passes) return
-    new = described(key, text_kind, says, default=default)
+    new = described(key, text_kind, says, default=default, example=example)
     if (present(many)) new%count = merge(1000, 1, many)
     call self%visit(new, text=value)
   end subroutine text

@@ -1,9 +1,11 @@
 !> A parameter study as data: a base case, what is varied, and what is wanted of every run.
 module study_definition
   use gudgeon_kinds, only: dp
+  use gudgeon_parameters, only: has_parameters_t, parameter_list_t
+  use case_schema, only: schema_t, key_t, group_definition_t
   implicit none
   private
-  public :: study_t, parameter_t, text_t
+  public :: study_t, parameter_t, text_t, study_schema_of
 
   !> A text of its own length.
   type :: text_t
@@ -11,15 +13,18 @@ module study_definition
   end type text_t
 
   !> One key that is varied: over a range, or a list.
-  type :: parameter_t
-    character(len=:), allocatable :: key    !! GROUP.KEY
+  type, extends(has_parameters_t) :: parameter_t
+    character(len=:), allocatable :: key      !! GROUP.KEY
     real(dp) :: from = 0, to = 0
-    integer :: count = 0                    !! points of a range on a grid
-    logical :: is_log = .false.             !! the points are even in the logarithm
-    type(text_t), allocatable :: list(:)    !! values as written; empty: a range
+    integer :: count = 0                      !! points of a range on a grid
+    character(len=:), allocatable :: scale    !! in which the points are even: linear, log
+    character(len=:), allocatable :: values   !! those of a list, with commas
+    type(text_t), allocatable :: list(:)      !! the same; empty: a range
+  contains
+    procedure :: parameters => parameters_of_parameter
   end type parameter_t
 
-  type :: study_t
+  type, extends(has_parameters_t) :: study_t
     character(len=:), allocatable :: name, file     !! NAME of its results; path as given, for messages
     character(len=:), allocatable :: title
     character(len=:), allocatable :: case           !! path of the base case
@@ -32,8 +37,57 @@ module study_definition
     real(dp) :: strobe_angle_deg = 0
     character(len=:), allocatable :: strobe_columns !! empty: no strobe
     integer :: strobe_cycles = 0                    !! strobes of a run; 0: all
-    type(parameter_t), allocatable :: parameters(:)
+    type(parameter_t), allocatable :: varied(:)
     character(len=:), allocatable :: resolved       !! a study file with every default that gives the same study
     character(len=:), allocatable :: identity       !! the same without title and paths
+  contains
+    procedure :: parameters => parameters_of_study
   end type study_t
+
+contains
+
+  !> Groups and keys of a study file.
+  subroutine study_schema_of(groups, keys)
+    type(group_definition_t), allocatable, intent(out) :: groups(:)
+    type(key_t), allocatable, intent(out) :: keys(:)
+    type(schema_t) :: schema
+    type(study_t) :: study
+    type(parameter_t) :: parameter
+    call schema%begin()
+    call schema%group('study', 'a base case run many times; its case must be correct by itself', .true.)
+    call study%parameters(schema)
+    call schema%group('parameter', 'one key that is varied; the group stands here once for each', .true.)
+    call parameter%parameters(schema)
+    call schema%take(groups, keys)
+  end subroutine study_schema_of
+
+  subroutine parameters_of_study(self, list)
+    class(study_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%text('title', self%title, 'what the study is', '')
+    call list%text('case', self%case, 'base case; its path begins at this file', example='sim_I.nml')
+    call list%text('table', self%table, 'CSV, a column for each key, a row for each run, instead of &parameter; path as case', '')
+    call list%word('design', self%design, 'grid, latin_hypercube, sobol', 'grid', &
+      'how the runs fill the ranges; a grid''s last parameter goes fastest')
+    call list%add('runs', self%runs, 'of a sampled design', '> 0 and <= 10000000', '0')
+    call list%add('seed', self%seed, 'of a sampled design; sobol: 0 gives the points as they are, others shift them', '>= 0', '0')
+    call list%add('settle_cycles', self%settle_cycles, 'crank revolutions at the start that the statistics leave out', '>= 0', '0')
+    call list%word('traces', self%traces, 'none, all, failed', 'none', 'runs whose trace is written, as NAME/RUN.csv')
+    call list%add('cycles', self%cycles, 'write the statistics of each revolution too, as NAME.cycles.csv', '.false.')
+    call list%add('strobe_angle_deg', self%strobe_angle_deg, &
+      'crank angle at which the strobe columns are taken, once in a revolution', 'degrees', default='0.0')
+    call list%text('strobe_columns', self%strobe_columns, 'columns for NAME.strobe.csv; empty: none', '', .true.)
+    call list%add('strobe_cycles', self%strobe_cycles, 'strobes of a run, from settle_cycles on; 0: to its end', '>= 0', '0')
+  end subroutine parameters_of_study
+
+  subroutine parameters_of_parameter(self, list)
+    class(parameter_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%text('key', self%key, 'GROUP.KEY of the base case', example='joint.clearance')
+    call list%add('from', self%from, 'first value of the range', default='0.0', example='1.0e-5')
+    call list%add('to', self%to, 'last value', default='0.0', example='5.0e-5')
+    call list%add('count', self%count, 'of values on a grid', '>= 2 and <= 10000000', '0', '5')
+    call list%word('scale', self%scale, 'linear, log', 'linear', 'values even in this scale')
+    call list%text('values', self%values, 'a list of values, with commas, instead of from, to, count', '', .true.)
+  end subroutine parameters_of_parameter
 end module study_definition

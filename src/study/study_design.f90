@@ -59,14 +59,14 @@ contains
       allocate (design%keys, source=design%table%keys)
       return
     end if
-    longest = maxval([(len(study%parameters(i)%key), i=1, size(study%parameters))])
-    allocate (character(len=longest) :: design%keys(size(study%parameters)))
-    allocate (design%axes(size(study%parameters)))
-    allocate (design%is_whole(size(study%parameters)), source=.false.)
+    longest = maxval([(len(study%varied(i)%key), i=1, size(study%varied))])
+    allocate (character(len=longest) :: design%keys(size(study%varied)))
+    allocate (design%axes(size(study%varied)))
+    allocate (design%is_whole(size(study%varied)), source=.false.)
     design%text_length = longest_number
     runs = 1
     do i = 1, size(design%axes)
-      associate (axis => design%axes(i), p => study%parameters(i))
+      associate (axis => design%axes(i), p => study%varied(i))
         design%keys(i) = p%key
         axis%range = p
         axis%levels = merge(size(p%list), p%count, size(p%list) > 0)
@@ -192,7 +192,7 @@ contains
     character(len=*), intent(out) :: text
     real(dp) :: number
     integer :: used
-    if (p%is_log) then
+    if (p%scale == 'log') then
       number = exp((1 - fraction)*log(p%from) + fraction*log(p%to))
     else
       number = (1 - fraction)*p%from + fraction*p%to

@@ -6,10 +6,10 @@ module study_file
   use gudgeon_posix, only: absolute_path
   use namelist_reader, only: namelist_t, entry_t, token_t, read_namelist
   use case_values, only: case_values_t
-  use case_schema, only: find_key, is_group_of_cases
+  use case_schema, only: key_t, group_definition_t, find_key, is_group_of_cases
+  use case_loader, only: load_model
   use case_text, only: resolved_text, template_text
-  use study_schema, only: study_groups, study_keys
-  use study_definition, only: study_t, parameter_t, text_t
+  use study_definition, only: study_t, parameter_t, text_t, study_schema_of
   implicit none
   private
   public :: read_study, study_template
@@ -19,8 +19,11 @@ contains
   !> A complete, commented study file.
   function study_template() result(text)
     character(len=:), allocatable :: text
+    type(group_definition_t), allocatable :: groups(:)
+    type(key_t), allocatable :: keys(:)
+    call study_schema_of(groups, keys)
     text = template_text('A parameter study of gudgeon with every key there is. Keys marked required have no default.', &
-      study_groups(), study_keys())
+      groups, keys)
   end function study_template
 
   !> Read and check a study file; paths in it become paths from here.
@@ -56,11 +59,14 @@ contains
     type(namelist_t), intent(in) :: list
     type(case_values_t), allocatable, intent(out) :: groups(:)
     type(error_t), allocatable, intent(out) :: error
+    type(group_definition_t), allocatable :: schema_groups(:)
+    type(key_t), allocatable :: schema_keys(:)
     integer :: place(size(list%groups)), i, n, key
 
+    call study_schema_of(schema_groups, schema_keys)
     allocate (groups(count([(list%groups(i)%name == 'parameter', i=1, size(list%groups))]) + 1))
     do i = 1, size(groups)
-      call groups(i)%set_schema(path, study_groups(), study_keys())
+      call groups(i)%set_schema(path, schema_groups, schema_keys)
     end do
     n = 1
     place = 0
@@ -128,22 +134,13 @@ contains
 
   !> The values of &study.
   subroutine take_study(values, study)
-    type(case_values_t), intent(in) :: values
+    type(case_values_t), intent(inout) :: values
     type(study_t), intent(inout) :: study
     character(len=:), allocatable :: folder
     folder = study%file(:index(study%file, '/', back=.true.))
-    study%title = text('title')
-    study%case = path_from(folder, text('case'))
-    study%table = path_from(folder, text('table'))
-    study%design = text('design')
-    study%traces = text('traces')
-    study%strobe_columns = text('strobe_columns')
-    study%runs = whole('runs')
-    study%seed = whole('seed')
-    study%settle_cycles = whole('settle_cycles')
-    study%strobe_cycles = whole('strobe_cycles')
-    study%cycles = values%values(find_key(values%keys, 'study', 'cycles'))%switch
-    study%strobe_angle_deg = values%values(find_key(values%keys, 'study', 'strobe_angle_deg'))%reals(1)
+    call load_model(values, 'study', study)
+    study%case = path_from(folder, study%case)
+    study%table = path_from(folder, study%table)
     study%resolved = resolved_with(absolute_path(study%case), absolute_path(study%table), study%title)
     study%identity = resolved_with('', '', '')
 
@@ -160,17 +157,6 @@ contains
       changed%values(find_key(values%keys, 'study', 'title'))%text = title
       resolved_with = resolved_text(changed)
     end function resolved_with
-
-    function text(name)
-      character(len=*), intent(in) :: name
-      character(len=:), allocatable :: text
-      text = values%values(find_key(values%keys, 'study', name))%text
-    end function text
-
-    integer function whole(name)
-      character(len=*), intent(in) :: name
-      whole = values%values(find_key(values%keys, 'study', name))%whole
-    end function whole
   end subroutine take_study
 
   !> A path that begins in a folder, unless it begins at the root or is empty.
@@ -206,24 +192,21 @@ contains
 
   !> The values of every &parameter.
   subroutine take_parameters(groups, study, error)
-    type(case_values_t), intent(in) :: groups(:)
+    type(case_values_t), intent(inout) :: groups(:)
     type(study_t), intent(inout) :: study
     type(error_t), allocatable, intent(out) :: error
     integer :: i, k
-    allocate (study%parameters(size(groups)))
+    allocate (study%varied(size(groups)))
     do i = 1, size(groups)
-      associate (values => groups(i)%values, keys => groups(i)%keys, p => study%parameters(i))
-        p%key = lowercase(values(find_key(keys, 'parameter', 'key'))%text)
-        p%from = values(find_key(keys, 'parameter', 'from'))%reals(1)
-        p%to = values(find_key(keys, 'parameter', 'to'))%reals(1)
-        p%count = values(find_key(keys, 'parameter', 'count'))%whole
-        p%is_log = values(find_key(keys, 'parameter', 'scale'))%text == 'log'
-        call split(values(find_key(keys, 'parameter', 'values'))%text, p%list)
+      associate (p => study%varied(i))
+        call load_model(groups(i), 'parameter', p)
+        p%key = lowercase(p%key)
+        call split(p%values, p%list)
       end associate
-      call check_parameter(groups(i), study, study%parameters(i), error)
+      call check_parameter(groups(i), study, study%varied(i), error)
       if (allocated(error)) return
       do k = 1, i - 1
-        if (study%parameters(k)%key /= study%parameters(i)%key) cycle
+        if (study%varied(k)%key /= study%varied(i)%key) cycle
         call groups(i)%refuse('parameter', 'key', 'is varied twice', error)
         return
       end do
@@ -249,7 +232,7 @@ contains
       call values%refuse('parameter', 'from', 'from and to, or values, are required'//key, error)
     else if (.not. values%is_given('parameter', 'to')) then
       call values%refuse('parameter', 'to', 'required with from'//key, error)
-    else if (p%is_log .and. .not. (p%from > 0 .and. p%to > 0)) then
+    else if (p%scale == 'log' .and. .not. (p%from > 0 .and. p%to > 0)) then
       call values%refuse('parameter', 'scale', 'from and to must be > 0 for scale = ''log'''//key, error)
     else if (study%design == 'grid' .and. p%count == 0) then
       call values%refuse('parameter', 'count', 'required on a grid, with from and to'//key, error)

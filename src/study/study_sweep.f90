@@ -76,8 +76,8 @@ contains
       call sweep%base%prepare(values, study%case, design%keys, at, error)
       if (allocated(error)) return
       design%is_whole = sweep%base%is_whole
-      do i = 1, size(study%parameters)
-        if (size(study%parameters(i)%list) > 0 .or. sweep%base%is_number(i)) cycle
+      do i = 1, size(study%varied)
+        if (size(study%varied(i)%list) > 0 .or. sweep%base%is_number(i)) cycle
         call fail(error, at//'&parameter key = '''//trim(design%keys(i))//''': has no range; give values', status_case_file)
         return
       end do
@@ -121,12 +121,12 @@ contains
           return
         end do
       end do
-      do i = 1, size(study%parameters)
-        do k = 1, size(study%parameters(i)%list)
-          call sweep%base%convert(i, study%parameters(i)%list(k)%text, error)
+      do i = 1, size(study%varied)
+        do k = 1, size(study%varied(i)%list)
+          call sweep%base%convert(i, study%varied(i)%list(k)%text, error)
           if (.not. allocated(error)) cycle
-          error%message = printable(study%file, 200)//': &parameter key = '''//study%parameters(i)%key//''', values = '// &
-            printable(study%parameters(i)%list(k)%text, 48)//': '//error%message
+          error%message = printable(study%file, 200)//': &parameter key = '''//study%varied(i)%key//''', values = '// &
+            printable(study%varied(i)%list(k)%text, 48)//': '//error%message
           return
         end do
       end do
