@@ -666,6 +666,28 @@ class Reading(unittest.TestCase):
                 },
             )
 
+    def test_a_loose_crank_pin_is_told_from_the_piston_pin(self) -> None:
+        with tempfile.TemporaryDirectory() as work:
+            path = Path(work, "x.csv")
+            path.write_text("time[s],film_thickness[m],crank_pin_phase[-]\n0,1e-4,0\n1,1e-4,2\n", encoding="utf-8")
+            path.with_name("x.resolved.nml").write_text(
+                "&joint\n  kind = 'clearance'\n  clearance = 2.0E-04  ! m\n/\n"
+                "&joint\n  place = 'crank_pin'\n  clearance = 1.0E-04  ! m\n/\n"
+                "&contact\n  place = 'crank_pin'\n  law = 'hertz'\n/\n",
+                encoding="utf-8",
+            )
+            path.with_name("x.events.csv").write_text(
+                "time[s],crank_angle[rad],event,normal_speed[m/s],duration[s],max_penetration[m],max_normal_force[N],joint\n"
+                "0.1,0,contact_begins,1,,,,crank_pin\n0.2,0,contact_begins,2,,,,piston_pin\n"
+                "0.3,0,contact_ends,-1,0.2,3e-6,30,crank_pin\n0.5,0,contact_ends,-2,0.3,5e-6,50,piston_pin\n",
+                encoding="utf-8",
+            )
+            loaded = load_run(path)
+        self.assertEqual(loaded.clearance, 2e-4)
+        self.assertEqual(loaded.parameter("crank_pin.joint", "clearance"), 1e-4)
+        self.assertEqual(list(loaded.case), ["joint", "crank_pin.joint", "crank_pin.contact"])
+        np.testing.assert_allclose(loaded.contacts.to_numpy(), [[0.2, 0.5, 5e-6, 50]])
+
     def test_columns_lose_their_units(self) -> None:
         trace = load_run(TOP / "data" / "sim_I.csv")
         self.assertIn("crank_speed", trace)

@@ -46,6 +46,8 @@ OVER_TIME = (
     ("film_thickness", "Film thickness (below 0: penetration)", "µm", 1e6),
     ("pin_force", "Pin reaction", "kN", 1e-3),
     ("normal_force", "Contact force", "kN", 1e-3),
+    ("crank_pin_film_thickness", "Crank pin: film thickness (below 0: penetration)", "µm", 1e6),
+    ("crank_pin_normal_force", "Crank pin: contact force", "kN", 1e-3),
     ("crank_speed", "Crank speed", "rad/s", 1.0),
     ("crank_acceleration", "Crank angular acceleration", "10³ rad/s²", 1e-3),
     ("rod_acceleration", "Rod angular acceleration", "10³ rad/s²", 1e-3),
@@ -131,6 +133,17 @@ def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
                 circle=True,
             )
         )
+    if crank_pin := float(run.parameter("crank_pin.joint", "clearance", 0.0)) if "crank_pin_phase" in columns else 0.0:
+        found.append(
+            plane(
+                "Crank-pin orbit over its c",
+                "e_y / c",
+                "e_x / c",
+                ("crank_pin_eccentricity_y", "crank_pin_eccentricity_x"),
+                (1 / crank_pin,) * 2,
+                circle=True,
+            )
+        )
     found.append(
         plane(
             "Piston: velocity and acceleration",
@@ -163,15 +176,17 @@ def warnings(run: Run) -> list[str]:
     status = run.summary.get("status", ("unknown", ""))[0]
     if status != "done":
         found.append(f"The run did not end as asked: {status}.")
-    if (beyond := number("impacts_beyond_validity") or 0) > 0:
-        found.append(
-            f"{beyond:.0f} of {number('contacts') or 0:.0f} impacts were faster than the contact law's limit of "
-            "validity, 1e-5 √(E/ρ)."
-        )
-    if (deep := number("contacts_beyond_validity") or 0) > 0:
-        found.append(
-            f"{deep:.0f} of {number('contacts') or 0:.0f} contacts went deeper than the contact geometry is meant for."
-        )
+    for prefix, at in (("", ""), ("crank_pin_", " at the crank pin")):
+        contacts = number(f"{prefix}contacts") or 0
+        if (beyond := number(f"{prefix}impacts_beyond_validity") or 0) > 0:
+            found.append(
+                f"{beyond:.0f} of {contacts:.0f} impacts{at} were faster than the contact law's limit of "
+                "validity, 1e-5 √(E/ρ)."
+            )
+        if (deep := number(f"{prefix}contacts_beyond_validity") or 0) > 0:
+            found.append(
+                f"{deep:.0f} of {contacts:.0f} contacts{at} went deeper than the contact geometry is meant for."
+            )
     if (residual := number("max_energy_residual_relative") or 0) > 1e-6:
         found.append(f"The energy balance is open by {residual:.1e} of the energy: tighten the tolerance.")
     if run.clearance and (deepest := number("max_penetration") or 0) > 0.1 * run.clearance:

@@ -24,7 +24,7 @@ class MissingResult(Exception):
 
 @dataclass(frozen=True)
 class Run:
-    """One run: its trace by column name without unit, and what the program wrote beside it."""
+    """One run: its trace by column name without unit, and what the program wrote beside it; events of the piston pin."""
 
     name: str
     trace: pd.DataFrame
@@ -103,15 +103,32 @@ def read_summary(path: Path) -> dict[str, tuple[str, str]]:
 
 
 def read_case(path: Path) -> dict[str, dict[str, object]]:
-    """A NAME.resolved.nml: group -> key -> number, list of numbers, truth or text. Reads what the program writes."""
+    """A NAME.resolved.nml: group -> key -> number, list of numbers, truth or text. Reads what the program writes.
+
+    A group of one joint alone has its place in front: crank_pin.joint. It is told by the group's first key."""
     case: dict[str, dict[str, object]] = {}
-    group: dict[str, object] = {}
+    name = ""
     for line in path.read_text(encoding="utf-8").splitlines():
         if line.startswith("&"):
-            group = case.setdefault(line[1:].strip(), {})
+            name = line[1:].strip()
+            case.setdefault(name, {})
         elif match := re.match(r"\s*(\w+)\s*=\s*(.*)$", line):
-            group[match[1]] = _value(match[2])
+            key, value = match[1], _value(match[2])
+            if key == "place":
+                if not case[name]:
+                    del case[name]
+                name = f"{value}.{name}"
+                case.setdefault(name, {})
+            else:
+                case[name][key] = value
     return case
+
+
+def events_of(joint: str, events: pd.DataFrame) -> pd.DataFrame:
+    """Those of one joint, piston_pin or crank_pin; a table without that column has the piston pin's alone."""
+    if "joint" not in events:
+        return events if joint == "piston_pin" else events.iloc[:0]
+    return events[events["joint"] == joint].reset_index(drop=True)
 
 
 def _value(text: str) -> object:
@@ -137,10 +154,10 @@ def load_run(path: Path) -> Run:
         return base.with_name(base.name + suffix)
 
     events = pd.DataFrame(
-        columns=["time", "crank_angle", "event", "normal_speed", "duration", "max_penetration", "max_normal_force"]
+        columns=["time", "crank_angle", "event", "normal_speed", "duration", "max_penetration", "max_normal_force", "joint"]
     )
     if beside(".events.csv").exists() and not ideal:
-        events = read_table(beside(".events.csv"))[0]
+        events = events_of("piston_pin", read_table(beside(".events.csv"))[0])
     summary = read_summary(beside(".summary.csv")) if beside(".summary.csv").exists() and not ideal else {}
     case = read_case(beside(".resolved.nml")) if beside(".resolved.nml").exists() else {}
     return Run(name, trace, units, events, summary, case)

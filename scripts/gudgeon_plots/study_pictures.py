@@ -12,7 +12,7 @@ from matplotlib.figure import Figure as Drawing
 from scipy.optimize import brentq
 
 from .figures import add_legend
-from .results import MissingResult, read_table
+from .results import MissingResult, events_of, read_table
 from .study import Runs
 from .style import BLACK, BLUE, GREEN, GREY, VERMILION, WIDTH
 
@@ -204,7 +204,7 @@ def restitution_of_law(nominal: float) -> float:
 
 def impacts(path: Path, settled_from: float) -> tuple[np.ndarray, np.ndarray]:
     """Speeds at which the contacts of a run's events begin and end, of those that begin after a crank angle."""
-    events, _ = read_table(path)
+    events = events_of("piston_pin", read_table(path)[0])
     begins = events[events["event"] == "contact_begins"].reset_index(drop=True)
     ends = events[events["event"] == "contact_ends"].reset_index(drop=True)
     both = min(len(begins), len(ends))
