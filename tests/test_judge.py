@@ -47,12 +47,16 @@ SCENES = {
     "film": ("sim_V", {"integrator.method": "'auto'", "integrator.revolutions": "1.2", "initial.crank_angle_deg": "170",
                        "integrator.max_step": "5e-5"}),
     "contact": ("sim_V_oscillating", {"integrator.method": "'auto'", "integrator.revolutions": "0.25", "initial.crank_angle_deg": "340"}),
+    "both": ("joints/both_pins", {"integrator.revolutions": "0.2", "drive.kind": "'free'", "mechanism.gravity_angle_deg": "25"}),
+    "crank": ("joints/crank_pin", {"integrator.revolutions": "0.2", "integrator.relative_tolerance": "1e-7"}),
+    "films": ("joints/both_pins_lubricated", {"integrator.revolutions": "0.5"}),
     "ideal": ("flores/ideal", {"drive.kind": "'free'", "drive.damping": "0.03", "mechanism.gravity": "9.8", "initial.crank_angle_deg": "20"}),
 }
 
 LONG_STEPS = ("sim_V", {"integrator.method": "'auto'", "integrator.revolutions": "1.2", "initial.crank_angle_deg": "170"})
 PHASES = {"dry": {0, 2}, "sticks": {0, 2}, "threlfall": {0, 2}, "brown_mcphee": {0, 2}, "stribeck": {0, 2}, "conformal": {0, 2}, "johnson": {0, 2},
-          "liner": {0, 2}, "pereira": {0, 2}, "dissipation": {0, 2}, "film": {1}, "contact": {1, 2}, "ideal": {0}}   # 0 free flight, 1 film, 2 contact
+          "liner": {0, 2}, "pereira": {0, 2}, "dissipation": {0, 2}, "film": {1}, "contact": {1, 2},
+          "both": {0, 2}, "crank": {0}, "films": {1}, "ideal": {0}}   # 0 free flight, 1 film, 2 contact
 
 #: (what is changed, scene, column, change of (value, row), what the verdict must say)
 CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
@@ -85,6 +89,17 @@ CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
     ("a little softer liner", "liner", "normal_force", lambda v, i: v * (1 - 1e-5), "contact law"),
     ("a little less dissipation", "dissipation", "normal_force", lambda v, i: v * (1 - 1e-5), "contact law"),
     ("faster sliding", "dry", "sliding_speed", lambda v, i: v * (1 + 1e-6), "sliding speed"),
+    ("harder contact at the crank pin", "both", "crank_pin_normal_force", lambda v, i: v * (1 + 1e-5), "crank pin: contact law"),
+    ("harder contact at the crank pin alone", "crank", "crank_pin_normal_force", lambda v, i: v * (1 + 1e-5), "crank pin: contact law"),
+    ("friction with the sliding at the crank pin", "both", "crank_pin_friction_force", lambda v, i: -v, "crank pin: friction law"),
+    ("faster sliding at the crank pin", "crank", "crank_pin_sliding_speed", lambda v, i: v * (1 + 1e-6), "crank pin: sliding speed"),
+    ("force on the rod that is not the law's", "both", "crankpin_force_y", lambda v, i: v * (1 + 1e-6), "crank pin: contact force on the pin"),
+    ("eccentricity of another crank pin", "both", "crank_pin_eccentricity_y", lambda v, i: v * (1 + 1e-5), "pin in the bearing, y"),
+    ("rate of the crank pin off", "both", "crank_pin_eccentricity_rate_x", lambda v, i: v * 1.001, "energy column"),
+    ("rate of a crank pin alone off", "crank", "crank_pin_eccentricity_rate_y", lambda v, i: v + 1e-6, "pin speed, y"),
+    ("another film at the crank pin", "films", "crank_pin_film_force_y", lambda v, i: v * (1 + 1e-5), "crank pin: film force on the pin"),
+    ("rod acceleration off with both pins loose", "both", "rod_acceleration", lambda v, i: v * 1.001, "Euler, rod"),
+    ("crank acceleration off with both pins loose", "both", "crank_acceleration", lambda v, i: v * 1.001, "Euler, crank"),
     ("another film", "film", "film_force_x", lambda v, i: v * 1.001, "film force on the pin"),
     ("more pressure", "film", "cylinder_pressure", lambda v, i: v * 1.001, "gas law"),
     ("another gas force", "film", "gas_force", lambda v, i: -v, "gas force"),
@@ -113,6 +128,8 @@ LIARS = [
     ("more heat", "film", "combustion.heat", "166.0", "gas law"),
     ("thicker oil", "film", "lubrication.viscosity", "0.0118", "film law"),
     ("a heavier piston", "ideal", "mechanism.piston_mass", "0.92", "Newton, piston"),
+    ("gravity from elsewhere", "both", "mechanism.gravity_angle_deg", "25.01", "Newton, crank"),
+    ("a heavier rod between two loose pins", "both", "mechanism.rod_mass", "0.2101", "energy column"),
     ("less gravity", "film", "mechanism.gravity", "9.8", "Newton, piston"),
     ("a looser tolerance than asked for, in contact", "contact", "integrator.relative_tolerance", "1e-4", "grown tolerances off"),
     ("a looser tolerance than asked for, in a film", "long steps", "integrator.relative_tolerance", "1e-3", "grown tolerances off"),
@@ -132,6 +149,10 @@ MUTANTS = [
     ("friction drives", "ambrosio.f90", "ratio = -sign(ratio, sliding_speed)", "ratio = sign(ratio, sliding_speed)", "dry", "friction law"),
     ("static friction grips too early", "brown_mcphee.f90", "0.25_dp*u**2 + 0.75_dp)**2", "0.25_dp*u**2 + 0.76_dp)**2", "brown_mcphee", "friction law"),
     ("film holds too much as it withdraws", "pinkus_sternlicht.f90", "withdrawal_sign*radial", "withdrawal_sign*(1.001_dp*radial)", "film", "film law"),
+    ("the crank pin slides without its bearing's turning", "joint_motion.f90", "- joint%bearing_speed*(joint%distance + pin_radius)",
+     "- joint%bearing_speed*pin_radius", "both", "crank pin: sliding speed"),
+    ("a loose rod has no weight", "free_rod.f90", "centre = (f - j)/rod%mass + bodies%gravity", "centre = (f - j)/rod%mass", "both", "is not the integral"),
+    ("angular momentum from nowhere", "chain_loads.f90", "-(moment + eccentricity(1)", "-(moment + 0*eccentricity(1)", "both", "Euler, rod"),
     ("gas loses no heat as it expands", "gas_cycle.f90", "values(i) = p*(volume", "values(i) = 1.001_dp*p*(volume", "film", "gas law"),
 ]
 

@@ -123,7 +123,7 @@ class Contact:
         elif self.law in self.DAMPING and not self.dissipation:
             self.loss = self.DAMPING[self.law](e)
         self.least = run.number("contact.least_impact_speed", 1e-5)
-        begins = [event for event in run.events if event["event"] == "contact_begins" and event.get("joint", "piston_pin") == "piston_pin"]
+        begins = [event for event in run.events if event["event"] == "contact_begins"]
         self.begin = [float(event["time[s]"]) for event in begins]
         self.speed = [float(event["normal_speed[m/s]"]) for event in begins]
 

@@ -1,6 +1,7 @@
 """The balance of energy of a run, and whether its speeds and positions are the integrals of its accelerations and speeds."""
 from __future__ import annotations
 
+import bisect
 import dataclasses
 import math
 
@@ -29,23 +30,28 @@ class Balances:
     scale: float = 0.0   # [J]
 
 
+def phase_key(checks: RowChecks, i: int) -> tuple[float, int, int]:
+    """Phase of a joint in a row, number of its contact, side of its friction."""
+    columns = checks.run.columns
+    phase = columns["phase"][i] if "phase" in columns else 0
+    if phase != CONTACT:
+        return phase, -1, 0
+    side = 0
+    if checks.friction:
+        v = columns["sliding_speed"][i]
+        side = (v > 0) - (v < 0) if abs(v) > checks.friction.v1 else 0
+    return phase, bisect.bisect_left(checks.begins, checks.run.times[i]), side
+
+
+def gas_part(checks: RowChecks, i: int) -> int:
+    """Part of the gas cycle; a row at a bound stands for what was before it."""
+    columns = checks.run.columns
+    return checks.gas.part(columns["crank_angle"][i] - math.copysign(1e-10, columns["crank_speed"][i])) if checks.gas else 0
+
+
 def pieces_of(checks: RowChecks, run: Run) -> list[list[int]]:
     """Runs of rows within which nothing jumps: same phase, same contact, same part of the gas cycle, same side of the friction."""
-    keys = []
-    begins = 0
-    events = [float(event["time[s]"]) for event in run.events if event["event"] == "contact_begins"]
-    for i, t in enumerate(run.times):
-        while begins < len(events) and events[begins] < t:
-            begins += 1
-        phase = run.columns["phase"][i] if "phase" in run.columns else 0
-        # a row at a bound of the gas cycle stands for what was before it
-        back = math.copysign(1e-10, run.columns["crank_speed"][i])
-        part = checks.gas.part(run.columns["crank_angle"][i] - back) if checks.gas else 0
-        side = 0
-        if phase == CONTACT and checks.friction:
-            v = run.columns["sliding_speed"][i]
-            side = (v > 0) - (v < 0) if abs(v) > checks.friction.v1 else 0
-        keys.append((phase, begins if phase == CONTACT else -1, part, side))
+    keys = [(phase_key(checks, i), phase_key(checks.crank_pin, i) if checks.crank_pin else None, gas_part(checks, i)) for i in range(len(run.times))]
     pieces: list[list[int]] = []
     for i, key in enumerate(keys):
         if i and key == keys[i - 1]:
@@ -61,7 +67,9 @@ def sizes(run: Run) -> dict[str, float]:
     span = max(run.times[-1] - run.times[0], 1e-300)
     speed = max(max(map(abs, run.columns["crank_speed"])), 1 / span)
     way = run.number("joint.clearance") or run.number("mechanism.crank_length")
-    return {"crank_speed": speed, "rod_speed": speed * way / run.number("mechanism.rod_length"), "piston_velocity": speed * way,
+    own = run.number("crank_pin.joint.clearance")
+    return {"rod_velocity_x": speed * max(way, own), "rod_velocity_y": speed * max(way, own), "crank_pin_eccentricity_x": own,
+            "crank_pin_eccentricity_y": own, "crank_speed": speed, "rod_speed": speed * way / run.number("mechanism.rod_length"), "piston_velocity": speed * way,
             "crank_angle": 1.0, "piston_position": way}
 
 
@@ -82,14 +90,19 @@ def worst_drift(run: Run, rates: dict[str, str], stencil: list[list[Stencil]]) -
 def balances(checks: RowChecks) -> Balances:
     """Kinetic and potential energy against the work of gas, joint, damping and drive, by quadrature over the rows."""
     run = checks.run
-    stencil = stencils(run.times, pieces_of(checks, run), joined=not (checks.film or checks.gas))
+    film = checks.film or checks.crank_pin and checks.crank_pin.film
+    stencil = stencils(run.times, pieces_of(checks, run), joined=not (film or checks.gas))
     kinetic, potential, power = [], [], []
+    rod: list[list[float]] = [[], [], [], []]   # speeds and accelerations of its centre of mass
     for i in range(len(run.times)):
         row = checks.row(i)
         one, two = row.energy_terms()
         kinetic.append(sum(one))
         potential.append(sum(two))
-        power.append(power_of(checks, row))
+        power.append(power_of(checks, row, i))
+        if checks.crank_pin:
+            for values, value in zip(rod, (*row.rod_velocity, *row.rod_acceleration())):
+                values.append(value)
     work = integral(power, stencil)
     spread = max(potential) - min(potential)
     bodies = checks.bodies
@@ -106,15 +119,26 @@ def balances(checks: RowChecks) -> Balances:
         found.differs = max(found.differs, (abs(residual - column[i]) - SAFETY * work.bound[i]) / scale)
     rates = {"crank_speed": "crank_acceleration", "rod_speed": "rod_acceleration", "piston_velocity": "piston_acceleration",
              "crank_angle": "crank_speed", "piston_position": "piston_velocity"}
+    if checks.crank_pin:   # Newton's law of the rod, and its place
+        names = "rod_velocity_x", "rod_velocity_y", "rod_acceleration_x", "rod_acceleration_y"
+        run = dataclasses.replace(run, columns=run.columns | dict(zip(names, rod)))
+        rates |= {f"rod_velocity_{axis}": f"rod_acceleration_{axis}" for axis in "xy"}
+        rates |= {f"crank_pin_eccentricity_{axis}": f"crank_pin_eccentricity_rate_{axis}" for axis in "xy"}
     found.drift, found.drift_bound, found.worst = worst_drift(run, rates, stencil)
     return found
 
 
-def power_of(checks: RowChecks, row: Row) -> float:
-    """Of gas on the piston, of the joint on pin and piston, of damping and drive on the crank [W]."""
+def power_of(checks: RowChecks, row: Row, i: int) -> float:
+    """Of gas on the piston, of the joints on their bodies, of damping and drive on the crank [W]."""
     power = row.get["crank_moment"] * row.turn - row.bodies.damping * row.turn**2 - row.gas * row.vx
     if checks.has_joint:
         moment = checks.joint_moment(row)
         power += row.force[0] * row.slip[0] + row.force[1] * row.slip[1]
         power += (row.joint_moment() if moment is None else moment) * row.rod_turn
+    if checks.crank_pin:
+        own = row.crank_pin(checks.crank_pin.run.columns, i)
+        moment = checks.crank_pin.joint_moment(own)
+        if moment is None:
+            moment = row.crank_pin_moment()
+        power += own.force[0] * own.slip[0] + own.force[1] * own.slip[1] + moment * row.turn + row.bearing_moment(moment) * row.rod_turn
     return power

@@ -63,8 +63,8 @@ def squeeze_film(run: Run, row: Row, slip: tuple[float, float]) -> tuple[float, 
     eps = size / c
     open_ = gap * (1 + eps)   # 1 - eps^2, exact near the wall
     rate = (n[0] * slip[0] + n[1] * slip[1]) / c
-    turn = row.rod_turn - 2 * (n[0] * slip[1] - n[1] * slip[0]) / size
-    scale = run.number("lubrication.viscosity") * run.number("joint.bearing_length") * row.bodies.pin_radius**3 / c**2
+    turn = row.journal_turn + row.bearing_turn - 2 * (n[0] * slip[1] - n[1] * slip[0]) / size
+    scale = run.number("lubrication.viscosity") * run.number("joint.bearing_length") * (run.number("joint.bearing_radius") - c)**3 / c**2
     k = math.sqrt(open_ * ((turn / (2 * rate))**2 + 1 / eps**2))
     if rate > 0:
         share = (k + 3) / (k + 1.5)

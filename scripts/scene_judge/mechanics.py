@@ -5,6 +5,7 @@ angular velocity in the plane is minus the column. A body is a frame: an origin,
 """
 from __future__ import annotations
 
+import copy
 import dataclasses
 import math
 
@@ -67,6 +68,7 @@ class Bodies:
     crank_com: Vector
     rod_com: Vector
     gravity: float
+    downwards: Vector                     # of length 1
     damping: float
     pin_radius: float
 
@@ -76,7 +78,8 @@ class Bodies:
         return cls(n("mechanism.crank_length"), n("mechanism.rod_length"),
                    (n("mechanism.crank_mass"), n("mechanism.rod_mass"), n("mechanism.piston_mass")),
                    (n("mechanism.crank_inertia"), n("mechanism.rod_inertia")),
-                   run.pair("mechanism.crank_com"), run.pair("mechanism.rod_com"), n("mechanism.gravity"), n("drive.damping"),
+                   run.pair("mechanism.crank_com"), run.pair("mechanism.rod_com"), n("mechanism.gravity"),
+                   rotated(-1.0, 0.0, math.radians(n("mechanism.gravity_angle_deg"))), n("drive.damping"),
                    n("joint.bearing_radius") - n("joint.clearance"))
 
 
@@ -96,7 +99,15 @@ class Row:
         self.rod_arm = rotated(*bodies.rod_com, rod_angle)
         self.rod = rotated(bodies.rod_length, 0.0, rod_angle)
         self.crankpin_velocity = velocity((0.0, 0.0), self.crankpin, self.turn)
-        self.pin_velocity = velocity(self.crankpin_velocity, self.rod, self.rod_turn)
+        # of the crank pin in the rod's big end, and that end's centre
+        self.has_loose_crank_pin = "crank_pin_phase" in get
+        self.offset = get.get("crank_pin_eccentricity_x", 0.0), get.get("crank_pin_eccentricity_y", 0.0)
+        self.offset_rate = get.get("crank_pin_eccentricity_rate_x", 0.0), get.get("crank_pin_eccentricity_rate_y", 0.0)
+        self.big_end = self.crankpin[0] - self.offset[0], self.crankpin[1] - self.offset[1]
+        self.big_end_velocity = self.crankpin_velocity[0] - self.offset_rate[0], self.crankpin_velocity[1] - self.offset_rate[1]
+        self.pin_velocity = velocity(self.big_end_velocity, self.rod, self.rod_turn)
+        self.journal_turn, self.bearing_turn = self.rod_turn, 0.0
+        self.law_noise = 0.0   # of the column of the joint's force: it is the law's own
         self.force = get["pin_force_x"], get["pin_force_y"]
         self.gas = get.get("gas_force", 0.0)
         # of the pin in its bearing
@@ -107,11 +118,30 @@ class Row:
         """Kinetic and potential energies of the bodies [J]."""
         b = self.bodies
         crank = velocity((0.0, 0.0), self.crank_arm, self.turn)
-        rod = velocity(self.crankpin_velocity, self.rod_arm, self.rod_turn)
+        rod = self.rod_velocity
         kinetic = [0.5 * b.mass[0] * (crank[0]**2 + crank[1]**2), 0.5 * b.inertia[0] * self.turn**2,
                    0.5 * b.mass[1] * (rod[0]**2 + rod[1]**2), 0.5 * b.inertia[1] * self.rod_turn**2, 0.5 * b.mass[2] * self.vx**2]
-        height = self.crank_arm[0], self.crankpin[0] + self.rod_arm[0], self.x
-        return kinetic, [m * b.gravity * h for m, h in zip(b.mass, height)]
+        places = self.crank_arm, (self.big_end[0] + self.rod_arm[0], self.big_end[1] + self.rod_arm[1]), (self.x, 0.0)
+        return kinetic, [-m * b.gravity * (b.downwards[0] * x + b.downwards[1] * y) for m, (x, y) in zip(b.mass, places)]
+
+    @property
+    def rod_velocity(self) -> Vector:
+        """Of the rod's centre of mass."""
+        return velocity(self.big_end_velocity, self.rod_arm, self.rod_turn)
+
+    def crank_pin(self, columns: dict[str, list[float]], i: int) -> Row:
+        """The row as the joint of crank and rod has it, from the columns that it has: what its journal, the crank, takes from it."""
+        row = copy.copy(self)
+        row.get = {name: column[i] for name, column in columns.items()}
+        row.force = -self.get["crankpin_force_x"], -self.get["crankpin_force_y"]
+        row.slip = self.offset_rate
+        row.journal_turn, row.bearing_turn = self.turn, self.rod_turn
+        row.law_noise = self.noise() + 1e-10 * math.hypot(*row.force)   # the column's force is found from the bodies' motion
+        return row
+
+    def bearing_moment(self, moment: float) -> float:
+        """What the rod takes at the crank pin about its big end's centre, from the moment on the crank: all balance about any point [N m]."""
+        return -(moment - cross(self.offset, (self.get["crankpin_force_x"], self.get["crankpin_force_y"])))
 
     def rod_moment_terms(self) -> list[float]:
         """Euler's law of the rod about its centre of mass, all but the joint's moment: what is left is that moment [N m]."""
@@ -130,11 +160,28 @@ class Row:
         return LAST_DIGITS * size * b.rod_length / abs(self.rod[0])   # the guide's force has the rod's slope in it
 
     def joint_moment(self) -> float:
-        return math.fsum(self.rod_moment_terms())
+        """Of the piston pin's joint on the rod, from the rod's motion [N m]."""
+        at_big_end = self.bearing_moment(self.crank_pin_moment()) if self.has_loose_crank_pin else 0.0
+        return math.fsum((*self.rod_moment_terms(), -at_big_end))
 
-    def balances(self, joint_moment: float | None) -> dict[str, Balance]:
-        """Sums that vanish in every row, by name. `joint_moment`: of the joint on the rod [N m], None where no law here gives it."""
-        b, get, g = self.bodies, self.get, self.bodies.gravity
+    def crank_pin_moment(self) -> float:
+        """Of the crank pin's joint on the crank, from the crank's motion [N m]."""
+        b, get = self.bodies, self.get
+        pin = self.crankpin[0] - self.crank_arm[0], self.crankpin[1] - self.crank_arm[1]
+        return math.fsum((b.inertia[0] * self.turn_rate, -get["crank_moment"], b.damping * self.turn,
+                          cross(self.crank_arm, (get["crank_bearing_force_x"], get["crank_bearing_force_y"])),
+                          cross(pin, (get["crankpin_force_x"], get["crankpin_force_y"]))))
+
+    def rod_acceleration(self) -> Vector:
+        """Of its centre of mass, from the forces on it."""
+        weight = scaled(self.bodies.gravity, self.bodies.downwards)
+        forces = (self.get["crankpin_force_x"], self.get["crankpin_force_y"]), self.force
+        return (weight[0] + (forces[0][0] + forces[1][0]) / self.bodies.mass[1], weight[1] + (forces[0][1] + forces[1][1]) / self.bodies.mass[1])
+
+    def balances(self, joint_moment: float | None, crank_pin_moment: float | None = 0.0) -> dict[str, Balance]:
+        """Sums that vanish in every row, by name. `joint_moment`: of the joint on the rod [N m], None where no law here gives it;
+        `crank_pin_moment`: of that at the crank pin on the crank."""
+        b, get, g = self.bodies, self.get, scaled(self.bodies.gravity, self.bodies.downwards)
         found = {}
         kinetic, potential = self.energy_terms()
         found["energy column"] = balance(get["energy"], *(-e for e in kinetic), *(-e for e in potential))
@@ -143,30 +190,35 @@ class Row:
         at_pin = acceleration((0.0, 0.0), self.crankpin, self.turn, self.turn_rate)
         crank = acceleration((0.0, 0.0), self.crank_arm, self.turn, self.turn_rate)
         rod = acceleration(at_pin, self.rod_arm, self.rod_turn, self.rod_turn_rate)
-        found["Newton, piston"] = balance(b.mass[2] * self.ax, self.gas, self.force[0], b.mass[2] * g)
+        found["Newton, piston"] = balance(b.mass[2] * self.ax, self.gas, self.force[0], -b.mass[2] * g[0])
         # the guide's force follows from the rod's moments, so their rounding is in it
-        found["guide force"] = Balance(abs(get["guide_force"] + self.force[1]), abs(self.force[1]) + abs(on_rod[1]) + (
+        found["guide force"] = Balance(abs(get["guide_force"] + self.force[1] - b.mass[2] * g[1]), abs(self.force[1]) + abs(on_rod[1]) + (
             sum(map(abs, self.rod_moment_terms())) + abs(self.rod[1] * on_rod[0])) / abs(self.rod[0]))
-        found |= vector_balance("Newton, rod", scaled(b.mass[1], rod), (b.mass[1] * g, 0.0), scaled(-1, on_rod), scaled(-1, self.force))
-        found |= vector_balance("Newton, crank", scaled(b.mass[0], crank), (b.mass[0] * g, 0.0), scaled(-1, on_crank), on_rod)
+        if not self.has_loose_crank_pin:   # where there is no column of the rod's acceleration
+            found |= vector_balance("Newton, rod", scaled(b.mass[1], rod), scaled(-b.mass[1], g), scaled(-1, on_rod), scaled(-1, self.force))
+        found |= vector_balance("Newton, crank", scaled(b.mass[0], crank), scaled(-b.mass[0], g), scaled(-1, on_crank), on_rod)
         arm, pin = self.crank_arm, (self.crankpin[0] - self.crank_arm[0], self.crankpin[1] - self.crank_arm[1])
-        found["Euler, crank"] = Balance(
-            abs(math.fsum((b.inertia[0] * self.turn_rate, -get["crank_moment"], b.damping * self.turn, cross(arm, on_crank), cross(pin, on_rod)))),
-            abs(b.inertia[0] * self.turn_rate) + abs(get["crank_moment"]) + abs(b.damping * self.turn)
-            + math.hypot(*arm) * math.hypot(*on_crank) + math.hypot(*pin) * math.hypot(*on_rod))
-        if joint_moment is not None:
-            found["Euler, rod"] = Balance(abs(math.fsum((*self.rod_moment_terms(), -joint_moment))), abs(joint_moment) + sum(
-                map(abs, self.rod_moment_terms())) + b.rod_length * (math.hypot(*on_rod) + math.hypot(*self.force)))
+        if crank_pin_moment is not None:
+            found["Euler, crank"] = Balance(
+                abs(math.fsum((b.inertia[0] * self.turn_rate, -get["crank_moment"], b.damping * self.turn, cross(arm, on_crank), cross(pin, on_rod),
+                               -crank_pin_moment))),
+                abs(b.inertia[0] * self.turn_rate) + abs(get["crank_moment"]) + abs(b.damping * self.turn) + abs(crank_pin_moment)
+                + math.hypot(*arm) * math.hypot(*on_crank) + math.hypot(*pin) * math.hypot(*on_rod))
+        if joint_moment is not None and crank_pin_moment is not None:
+            at_big_end = self.bearing_moment(crank_pin_moment)
+            found["Euler, rod"] = Balance(
+                abs(math.fsum((*self.rod_moment_terms(), -joint_moment, -at_big_end))), abs(joint_moment) + abs(at_big_end) + sum(
+                    map(abs, self.rod_moment_terms())) + b.rod_length * (math.hypot(*on_rod) + math.hypot(*self.force)))
         found["force on the frame, x"] = balance(get["frame_force_x"], -on_crank[0], self.gas)
         found["force on the frame, y"] = balance(get["frame_force_y"], -on_crank[1], get["guide_force"])
-        pin_at = self.crankpin[0] + self.rod[0], self.crankpin[1] + self.rod[1]
         e = get.get("eccentricity_x", 0.0), get.get("eccentricity_y", 0.0)
-        found["pin in the bearing, x"] = balance(pin_at[0], -self.x, -e[0])
-        found["pin in the bearing, y"] = balance(self.crankpin[1], self.rod[1], -e[1])
+        found["pin in the bearing, x"] = balance(self.crankpin[0], -self.offset[0], self.rod[0], -self.x, -e[0])
+        found["pin in the bearing, y"] = balance(self.crankpin[1], -self.offset[1], self.rod[1], -e[1])
         if "eccentricity_x" not in get:
-            at_end = acceleration(at_pin, self.rod, self.rod_turn, self.rod_turn_rate)
             found["pin speed, x"] = balance(self.pin_velocity[0], -self.vx)
-            found["pin speed, y"] = balance(self.crankpin_velocity[1], self.rod_turn * self.rod[0])
+            found["pin speed, y"] = balance(self.big_end_velocity[1], self.rod_turn * self.rod[0])
+        if "eccentricity_x" not in get and not self.has_loose_crank_pin:
+            at_end = acceleration(at_pin, self.rod, self.rod_turn, self.rod_turn_rate)
             found["pin acceleration, x"] = Balance(abs(at_end[0] - self.ax), abs(at_end[0]) + abs(at_pin[0]))
             found["pin acceleration, y"] = Balance(abs(at_end[1]), abs(at_pin[1]) + abs(self.rod_turn_rate * self.rod[0]))
         noise = self.noise()

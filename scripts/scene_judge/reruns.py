@@ -52,38 +52,47 @@ class Comparison:
 
 @dataclasses.dataclass
 class Scales:
-    """Sizes of the coordinates and their rates."""
+    """Sizes of the coordinates and their rates; of each joint with clearance those of its eccentricity."""
 
     angle: float
     speed: float
-    eccentricity: float
-    rate: float
+    joints: list[tuple[float, float]]
 
 
 def states(run: Run) -> list[tuple[float, ...]]:
-    """Crank angle and speed, eccentricity and its rate, at every row."""
+    """Crank angle and speed, of each joint with clearance eccentricity and its rate, at every row."""
     bodies = Bodies.of(run)
     found = []
     for i in range(len(run.times)):
         row = Row(bodies, run.columns, i)
         e = (row.get["eccentricity_x"], row.get["eccentricity_y"], *row.slip) if run.has_clearance else ()
-        found.append((row.q, row.turn, *e))
+        c = (*row.offset, *row.offset_rate) if run.has_loose_crank_pin else ()
+        found.append((row.q, row.turn, *e, *c))
     return found
 
 
 def scales_of(run: Run, rows: list[tuple[float, ...]]) -> Scales:
     speed = max(max(abs(row[1]) for row in rows), 1 / max(run.times[-1], 1e-300))   # at rest, one radian in the time simulated
-    if not run.has_clearance:
-        return Scales(1.0, speed, 1.0, 1.0)
-    rates = sorted(math.hypot(row[4], row[5]) for row in rows)
-    c = run.number("joint.clearance")
-    return Scales(1.0, speed, c, max(c * speed, rates[len(rates) // 2]))
+    found = Scales(1.0, speed, [])
+    for k, (group, _) in enumerate(loose_joints(run)):
+        rates = sorted(math.hypot(*row[4 + 4 * k:6 + 4 * k]) for row in rows)
+        c = run.number(f"{group}.clearance")
+        found.joints.append((c, max(c * speed, rates[len(rates) // 2])))
+    return found
+
+
+def loose_joints(run: Run) -> list[tuple[str, str]]:
+    """Group of each joint with clearance, and what the keys of its start begin with."""
+    found = [("joint", "")] if run.has_clearance else []
+    return [*found, ("crank_pin.joint", "crank_pin_")] if run.has_loose_crank_pin else found
 
 
 def distance(one: tuple[float, ...], two: tuple[float, ...], scales: Scales) -> float:
     """The largest difference of two states, in the sizes of the coordinates or of what is there, whichever is larger."""
-    rate = max(scales.rate, math.hypot(*two[4:6])) if len(two) > 4 else scales.rate
-    sizes = (scales.angle, scales.speed, scales.eccentricity, scales.eccentricity, rate, rate)
+    sizes = [scales.angle, scales.speed]
+    for k, (eccentricity, rate) in enumerate(scales.joints):
+        rate = max(rate, math.hypot(*two[4 + 4 * k:6 + 4 * k]))
+        sizes += [eccentricity, eccentricity, rate, rate]
     return max(abs(a - b) / size for a, b, size in zip(one, two, sizes))
 
 
@@ -133,8 +142,8 @@ class Reruns:
         if run.text("drive.kind") != "constant_speed":
             start["initial__crank_angle_deg"] = repr(run.number("initial.crank_angle_deg") + sign() * math.degrees(scales.angle))
             start["initial__crank_speed"] = repr(run.number("initial.crank_speed") + sign() * scales.speed)
-        if run.has_clearance:
-            for key, size in (("eccentricity", scales.eccentricity), ("eccentricity_rate", scales.rate)):
+        for (_, prefix), (eccentricity, rate) in zip(loose_joints(run), scales.joints):
+            for key, size in ((f"{prefix}eccentricity", eccentricity), (f"{prefix}eccentricity_rate", rate)):
                 start[f"initial__{key}"] = ",".join(repr(value + sign() * size) for value in run.pair(f"initial.{key}"))
         return start
 
@@ -153,7 +162,7 @@ class Reruns:
         if isinstance(runs, str):
             return Comparison(unjudged=runs)
         found = compare_states(*runs, self.tolerance, self.revolutions())
-        if found.horizon < self.span and self.turn > 0 and self.judged.has_clearance:
+        if found.horizon < self.span and self.turn > 0 and loose_joints(self.judged):
             self.compare_statistics(found)
         return found
 
@@ -241,7 +250,7 @@ def window(run: Run, low: float, high: float) -> range:
 
 def contact_share(run: Run, low: float, high: float) -> float:
     rows = window(run, low, high)
-    return sum(run.columns["phase"][i] == 2 for i in rows) / max(len(rows), 1)
+    return sum(run.columns[name][i] == 2 for name in ("phase", "crank_pin_phase") if name in run.columns for i in rows) / max(len(rows), 1)
 
 
 def mean_pin_force(run: Run, low: float, high: float) -> float:

@@ -44,15 +44,17 @@ def inside(value: float, low: float, high: float) -> float:
 class RowChecks:
     """Goes through the rows of a run; `misses` are the worst of each check."""
 
-    def __init__(self, run: Run) -> None:
-        self.run = run
+    def __init__(self, whole: Run, joint: str = "piston_pin") -> None:
+        run = self.run = whole.at(joint)
+        self.crank_pin = RowChecks(whole, "crank_pin") if joint == "piston_pin" and whole.has_loose_crank_pin else None
         self.bodies = Bodies.of(run)
         self.misses: dict[str, Miss] = {}
+        self.begins = [float(event["time[s]"]) for event in run.events if event["event"] == "contact_begins"]
         self.has_joint = run.has_clearance
         self.film = run.text("lubrication.law")
         self.contact = Contact(run) if self.has_joint and run.text("contact.law") else None
         self.friction = Friction(run) if self.has_joint and run.text("friction.law") else None
-        self.gas = Gas(run) if "combustion.bore" in run.case else None
+        self.gas = Gas(run) if "combustion.bore" in run.case and joint == "piston_pin" else None
         tolerance = min(run.number("integrator.relative_tolerance"), 1e-3)
         self.gas_tolerance = max(10 * tolerance, 1e-9)
 
@@ -63,7 +65,7 @@ class RowChecks:
         return Row(self.bodies, self.run.columns, i)
 
     def joint_moment(self, row: Row) -> float | None:
-        """Of the joint on the rod [N m]: friction at the pin's radius; none by pressure; None for the shear of a film."""
+        """Of the joint on its journal [N m]: friction at the pin's radius; none by pressure; None for the shear of a film."""
         phase = row.get.get("phase", FREE)
         if phase == CONTACT and self.friction:
             return row.get["friction_force"] * self.bodies.pin_radius
@@ -73,12 +75,19 @@ class RowChecks:
         for i in range(len(self.run.times)):
             row = self.row(i)
             t = row.get["time"]
-            for name, found in row.balances(self.joint_moment(row) if self.has_joint else 0.0).items():
+            at_crank_pin = row.crank_pin(self.crank_pin.run.columns, i) if self.crank_pin else None
+            moments = self.joint_moment(row) if self.has_joint else 0.0, self.crank_pin.joint_moment(at_crank_pin) if self.crank_pin else 0.0
+            for name, found in row.balances(*moments).items():
                 self.take(name, found.miss, SUM * found.size + found.noise + 1e-300, t)
+            if self.crank_pin:
+                self.crank_pin.check_joint(at_crank_pin, t)
             if self.has_joint:
                 self.check_joint(row, t)
             if self.gas:
                 self.check_gas(row, t)
+        if self.crank_pin:
+            self.misses |= {f"crank pin: {name}": dataclasses.replace(miss, check=f"crank pin: {name}")
+                            for name, miss in self.crank_pin.misses.items()}
         return self.misses
 
     def check_joint(self, row: Row, t: float) -> None:
@@ -91,7 +100,7 @@ class RowChecks:
         n = (e[0] / size, e[1] / size) if size > 0 else (1.0, 0.0)
         give = ROUNDING * row.speed_size
         if phase == FREE:
-            self.take("no force in free flight", math.hypot(*row.force), 0.0, t)
+            self.take("no force in free flight", math.hypot(*row.force), row.law_noise, t)
         if phase == FILM:
             self.check_film(row, n, give, t)
         if phase == CONTACT and self.contact:
@@ -109,8 +118,9 @@ class RowChecks:
             self.check_arc(row, depth, normal, blur, t)
         want = -normal * n[0] - friction * n[1], -normal * n[1] + friction * n[0]
         self.take("contact force on the pin", math.hypot(row.force[0] - want[0], row.force[1] - want[1]),
-                  SUM * (abs(normal) + abs(friction)), t)
-        sliding = n[0] * row.slip[1] - n[1] * row.slip[0] + row.rod_turn * self.bodies.pin_radius
+                  SUM * (abs(normal) + abs(friction)) + row.law_noise, t)
+        sliding = n[0] * row.slip[1] - n[1] * row.slip[0] + (row.journal_turn - row.bearing_turn) * self.bodies.pin_radius
+        sliding -= row.bearing_turn * (self.run.number("joint.clearance") + depth)
         self.take("sliding speed", abs(sliding - get["sliding_speed"]), 10 * give, t)
         if not self.friction:
             self.take("no friction", abs(friction), 0.0, t)
@@ -133,7 +143,7 @@ class RowChecks:
 
     def check_film(self, row: Row, n: tuple[float, float], give: float, t: float) -> None:
         get = row.get
-        self.take("film force on the pin", math.hypot(row.force[0] - get["film_force_x"], row.force[1] - get["film_force_y"]), 0.0, t)
+        self.take("film force on the pin", math.hypot(row.force[0] - get["film_force_x"], row.force[1] - get["film_force_y"]), row.law_noise, t)
         self.take("no contact force in a film", abs(get["normal_force"]) + abs(get["friction_force"]), 0.0, t)
         if self.film == "oscillating_film":
             self.take("no load along the line of centres", abs(row.force[0] * n[0] + row.force[1] * n[1]), SUM * math.hypot(*row.force), t)

@@ -43,9 +43,23 @@ class Run:
     def has_clearance(self) -> bool:
         return self.text("joint.kind") == "clearance"
 
+    @property
+    def has_loose_crank_pin(self) -> bool:
+        return self.text("crank_pin.joint.kind") == "clearance"
+
+    def at(self, joint: str) -> Run:
+        """The run as one joint has it, under the names that the piston pin's have: its group, its laws, its columns, its events."""
+        case = {key: value for key, value in self.case.items() if not (joint != "piston_pin" and key.startswith("joint."))}
+        case |= {key.removeprefix(f"{joint}."): value for key, value in self.case.items() if key.startswith(f"{joint}.")}
+        columns = self.columns
+        if joint != "piston_pin":
+            columns = columns | {name.removeprefix(f"{joint}_"): column for name, column in columns.items() if name.startswith(f"{joint}_")}
+        return dataclasses.replace(self, case=case, columns=columns,
+                                   events=[event for event in self.events if event.get("joint", "piston_pin") == joint])
+
 
 def read_case(text: str) -> Values:
-    """The values of a resolved case file, by group and key."""
+    """The values of a resolved case file, by group and key: crank_pin.joint.clearance where the group is one joint's."""
     values: Values = {}
     group = ""
     for line in text.splitlines():
@@ -56,7 +70,9 @@ def read_case(text: str) -> Values:
             continue
         key, rest = found.groups()
         quoted = re.match(r"'((?:[^']|'')*)'", rest)
-        if quoted:
+        if key == "place":   # the first key of a group that is one joint's
+            group = f"{quoted[1]}.{group}"
+        elif quoted:
             values[f"{group}.{key}"] = [quoted[1]]
         else:
             rest = rest.split("!")[0]

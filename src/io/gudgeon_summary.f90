@@ -59,7 +59,7 @@ contains
         call add('method_switches', integer_text(s%switches), '1')
         do mode = lbound(report%time_with, 2), ubound(report%time_with, 2)
           do method = with_adams, with_radau
-            if (report%time_with(method, mode) > 0) call add(phases_of(mode, size(report%time_with, 2))// &
+            if (report%time_with(method, mode) > 0) call add(phases_of(case, mode)// &
               '_time_fraction_with_'//trim(method_names(method)), real_text(report%time_with(method, mode)/f%time), '1')
           end do
         end do
@@ -114,13 +114,19 @@ contains
     end subroutine add
   end function summary_table
 
-  !> The phases of the joints in a mode, the piston pin's first: its digits to the base of three.
-  function phases_of(mode, modes) result(text)
-    integer, intent(in) :: mode, modes   !! from 0 on, of so many
+  !> The phases of the joints with clearance in a mode, the piston pin's first: its digits to the base of three.
+  function phases_of(case, mode) result(text)
+    type(case_t), intent(in) :: case
+    integer, intent(in) :: mode   !! from 0 on
     character(len=:), allocatable :: text
     character(len=7), parameter :: names(0:2) = ['free   ', 'film   ', 'contact']
-    text = trim(names(mod(mode, 3)))
-    if (modes > size(names)) text = text//'_'//trim(names(mode/3))
+    text = trim(names(mod(mode, size(names))))
+    if (.not. case%crank_pin%has_clearance()) return
+    if (case%joint%has_clearance()) then
+      text = text//'_'//trim(names(mode/size(names)))
+    else
+      text = name_prefix(crank_pin)//text
+    end if
   end function phases_of
 
   !> The value of a quantity in such a table, as it stands there; empty where there is none.

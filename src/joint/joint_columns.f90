@@ -20,6 +20,10 @@ contains
     if (joint%place /= piston_pin) row%place = name_prefix(joint%place)
     call row%put('eccentricity_x[m]', motion%eccentricity(1))
     call row%put('eccentricity_y[m]', motion%eccentricity(2))
+    if (joint%place /= piston_pin) then   ! whose rates follow from crank, rod and piston only where the other pin is ideal
+      call row%put('eccentricity_rate_x[m/s]', motion%eccentricity_rate(1))
+      call row%put('eccentricity_rate_y[m/s]', motion%eccentricity_rate(2))
+    end if
     call row%put('eccentricity_ratio[-]', motion%distance/joint%bearing%clearance)
     call row%put('film_thickness[m]', -motion%penetration)
     call row%put('phase[-]', real(joint%phase, dp))

@@ -83,12 +83,15 @@ contains
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: y(:)
     character(len=:), allocatable :: text
+    character(len=:), allocatable :: at
     integer :: i
-    text = 'ill-posed: a film of next to no thickness'
+    at = ''
     do i = 1, scene%n_joints
-      if (scene%joints(i)%is_singular(y) .and. .not. has_plain_names(scene)) text = text//' at the '//joint_name(scene, i)
+      if (has_plain_names(scene) .or. .not. scene%joints(i)%is_singular(y)) cycle
+      if (at /= '') at = at//' and'
+      at = at//' at the '//joint_name(scene, i)
     end do
-    text = text//', whose force has no bound'
+    text = 'ill-posed: a film of next to no thickness'//at//', whose force has no bound'
   end function ill_posed_text
 
   !> The pin that is nearest to where it may not be, in parts of the way there from the centre.
