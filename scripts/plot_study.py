@@ -2,7 +2,7 @@
 """Draws parameter studies from their results, NAME.runs.csv and NAME.strobe.csv.
 
     scripts/plot_study.py                        the shipped studies, as scripts/run_studies.sh leaves them
-    scripts/plot_study.py --picture map          one of map, bifurcation, restitution
+    scripts/plot_study.py --picture map          one of map, bifurcation, restitution, contact_laws
     scripts/plot_study.py results/x.runs.csv     any study of one parameter or two: curves or maps of --columns
 
 Prints the numbers of the pictures and where they are. Failed runs are left blank, and counted on standard error.
@@ -18,7 +18,7 @@ use_virtual_environment(studies=True)
 
 import numpy as np  # noqa: E402
 
-from gudgeon_plots import figures, study_pictures  # noqa: E402
+from gudgeon_plots import contact_study, figures, study_pictures  # noqa: E402
 from gudgeon_plots.results import MissingResult  # noqa: E402
 from gudgeon_plots.study import Runs, warn_of_failures  # noqa: E402
 
@@ -77,7 +77,12 @@ def restitution(results: Path) -> tuple[figures.Drawing, list[str]]:
     return drawing, [study_pictures.describe_restitution(runs, measured)]
 
 
-PICTURES = {"map": maps, "bifurcation": bifurcation, "restitution": restitution}
+def contact_laws(results: Path) -> tuple[figures.Drawing, list[str]]:
+    runs = read(results, "contact_laws")
+    return contact_study.draw_contact_laws(runs), [contact_study.describe_contact_laws(runs)]
+
+
+PICTURES = {"map": maps, "bifurcation": bifurcation, "restitution": restitution, "contact_laws": contact_laws}
 
 
 def any_study(path: Path, columns: list[str]) -> figures.Drawing:

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Runs the shipped studies with the release build, draws them and prints what they say: when a film carries the pin, what
-# the mechanism settles to, what restitution changes, which parameters the films depend on.
+# the mechanism settles to, what restitution and contact laws change, which parameters the films depend on.
 #
 #   scripts/run_studies.sh [-o DIR] [-j N] [--fresh]     threads; forget what was run before
 #
@@ -23,7 +23,7 @@ done
 program=$(scripts/build.sh) || exit 1
 
 status=0
-for study in map_I map_IV map_I_oscillating map_IV_oscillating bifurcation_clearance bifurcation_speed restitution; do
+for study in map_I map_IV map_I_oscillating map_IV_oscillating bifurcation_clearance bifurcation_speed restitution contact_laws; do
   # shellcheck disable=SC2086  # options are words
   "$program" sweep -o "$out" $options "cases/studies/$study.nml" || status=$?
 done

@@ -27,7 +27,7 @@ import numpy as np  # noqa: E402
 import pandas as pd  # noqa: E402
 from scipy.integrate import solve_ivp  # noqa: E402
 
-from gudgeon_plots import sensitivity, study, study_pictures  # noqa: E402
+from gudgeon_plots import contact_study, sensitivity, study, study_pictures  # noqa: E402
 from gudgeon_plots.program import release_program  # noqa: E402
 from gudgeon_plots.results import MissingResult  # noqa: E402
 from gudgeon_plots.sensitivity import Output  # noqa: E402
@@ -313,6 +313,27 @@ class Pictures(InDirectory):
         found = study_pictures.measured_restitution(self.work / "r", runs, settled_from=6.28).iloc[0]
         self.assertEqual(found["count"], 2)  # not the first, which is not settled, nor the soft one, nor the last
         self.assertAlmostEqual(found["middle"], 0.55)
+
+    def test_contact_laws(self) -> None:
+        """Means and scatter over the laws with a restitution, the others by themselves; a failed run takes no part."""
+        rows = []
+        for law, force in (("hertz", 9e4), ("exact", 2e4), ("flores", 4e4), ("gonthier", 1e6)):
+            for restitution in (0.9, 0.5):
+                row = {"contact.law": law, "contact.geometry": "johnson", "contact.restitution": restitution}
+                row |= {"status": "no" if law == "gonthier" else "done", "contact_time_fraction": 0.5}
+                rows.append(row | {"max_pin_force_mean": force * restitution, "dissipated_energy": 0.25})
+        runs = Runs(pd.DataFrame(rows), {})
+        text = contact_study.describe_contact_laws(runs)
+        self.assertIn("6 of 8 runs done", text)
+        self.assertIn("  johnson, 0.9: 27 ± 9 kN, 50 ± 0 %, 0.25 ± 0 J", text)
+        self.assertIn("  johnson, 0.5: 15 ± 5 kN", text)
+        self.assertEqual(text.count("johnson, hertz: 81 kN"), 1)
+        drawing = contact_study.draw_contact_laws(runs)
+        panels = [axis for axis in drawing.axes if axis.get_title()]
+        self.assertEqual([axis.get_title() for axis in panels], ["restitution 0.9 asked for", "restitution 0.5 asked for"])
+        points = [line.get_xydata() for line in panels[0].lines if line.get_label() == "johnson"]
+        np.testing.assert_allclose(points[0], [[0, 81.0], [1, 18.0], [2, 36.0]])
+        plt.close(drawing)
 
     def test_maps(self) -> None:
         table = pd.DataFrame(
