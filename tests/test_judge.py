@@ -44,6 +44,8 @@ SCENES = {
     "liner": ("contact/liner_carvalho_martins", {"integrator.revolutions": "0.15"}),
     "pereira": ("contact/pereira_impact", {"integrator.revolutions": "0.15"}),
     "dissipation": ("contact/hunt_crossley", {"integrator.revolutions": "0.15", "contact.dissipation": "0.4"}),
+    "lugre": ("friction/lugre", {"integrator.revolutions": "0.15"}),
+    "elasto_plastic": ("friction/lugre", {"integrator.revolutions": "0.15", "friction.law": "elasto_plastic"}),
     "film": ("sim_V", {"integrator.method": "'auto'", "integrator.revolutions": "1.2", "initial.crank_angle_deg": "170",
                        "integrator.max_step": "5e-5"}),
     "contact": ("sim_V_oscillating", {"integrator.method": "'auto'", "integrator.revolutions": "0.25", "initial.crank_angle_deg": "340"}),
@@ -54,7 +56,8 @@ SCENES = {
 }
 
 LONG_STEPS = ("sim_V", {"integrator.method": "'auto'", "integrator.revolutions": "1.2", "initial.crank_angle_deg": "170"})
-PHASES = {"dry": {0, 2}, "sticks": {0, 2}, "threlfall": {0, 2}, "brown_mcphee": {0, 2}, "stribeck": {0, 2}, "conformal": {0, 2}, "johnson": {0, 2},
+PHASES = {"dry": {0, 2}, "sticks": {0, 2}, "threlfall": {0, 2}, "brown_mcphee": {0, 2}, "stribeck": {0, 2}, "lugre": {0, 2},
+          "elasto_plastic": {0, 2}, "conformal": {0, 2}, "johnson": {0, 2},
           "liner": {0, 2}, "pereira": {0, 2}, "dissipation": {0, 2}, "film": {1}, "contact": {1, 2},
           "both": {0, 2}, "crank": {0}, "films": {1}, "ideal": {0}}   # 0 free flight, 1 film, 2 contact
 
@@ -88,6 +91,10 @@ CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
     ("a little harder contact of Pereira", "pereira", "normal_force", lambda v, i: v * (1 + 1e-5), "contact law"),
     ("a little softer liner", "liner", "normal_force", lambda v, i: v * (1 - 1e-5), "contact law"),
     ("a little less dissipation", "dissipation", "normal_force", lambda v, i: v * (1 - 1e-5), "contact law"),
+    ("bristles a little more bent", "lugre", "bristle", lambda v, i: v * (1 + 1e-4), "friction law"),
+    ("bristles bent in free flight", "lugre", "bristle", lambda v, i: v or 1e-12, "no bristles bent"),
+    ("bristles bent too far", "elasto_plastic", "bristle", lambda v, i: 2 * v, "bristles bent by static friction"),
+    ("bristles of another history", "elasto_plastic", "bristle", lambda v, i: v * (1 + 0.1 * (i % 2)), "bristle is not the integral of its rate"),
     ("faster sliding", "dry", "sliding_speed", lambda v, i: v * (1 + 1e-6), "sliding speed"),
     ("harder contact at the crank pin", "both", "crank_pin_normal_force", lambda v, i: v * (1 + 1e-5), "crank pin: contact law"),
     ("harder contact at the crank pin alone", "crank", "crank_pin_normal_force", lambda v, i: v * (1 + 1e-5), "crank pin: contact law"),
@@ -124,6 +131,8 @@ LIARS = [
     ("more friction at rest", "sticks", "friction.static_coefficient", "0.151", "friction law"),
     ("another friction at rest", "brown_mcphee", "friction.static_coefficient", "0.151", "friction law"),
     ("another speed of transition", "stribeck", "friction.transition_speed", "0.11", "friction law"),
+    ("stiffer bristles", "lugre", "friction.bristle_stiffness", "2.01e4", "friction law"),
+    ("other damping of bristles", "lugre", "friction.bristle_damping", "0.0101", "friction law"),
     ("more damping", "ideal", "drive.damping", "0.031", "Euler, crank"),
     ("more heat", "film", "combustion.heat", "166.0", "gas law"),
     ("thicker oil", "film", "lubrication.viscosity", "0.0118", "film law"),
@@ -148,6 +157,7 @@ MUTANTS = [
     ("the bedding without its small difference", "winkler.f90", "self%clearance*difference)", "0*difference)", "liner", "contact law"),
     ("friction drives", "ambrosio.f90", "ratio = -sign(ratio, sliding_speed)", "ratio = sign(ratio, sliding_speed)", "dry", "friction law"),
     ("static friction grips too early", "brown_mcphee.f90", "0.25_dp*u**2 + 0.75_dp)**2", "0.25_dp*u**2 + 0.76_dp)**2", "brown_mcphee", "friction law"),
+    ("bristles give way too late", "lugre.f90", "abs(v)*z/g\n  end function", "0.99_dp*abs(v)*z/g\n  end function", "lugre", "bristle is not the integral"),
     ("film holds too much as it withdraws", "pinkus_sternlicht.f90", "withdrawal_sign*radial", "withdrawal_sign*(1.001_dp*radial)", "film", "film law"),
     ("the crank pin slides without its bearing's turning", "joint_motion.f90", "- joint%bearing_speed*(joint%distance + pin_radius)",
      "- joint%bearing_speed*pin_radius", "both", "crank pin: sliding speed"),

@@ -12,7 +12,8 @@ ROUNDING = 1e-14   # of a speed found from those of crank, rod and piston, in th
 
 class Friction:
     """Friction over normal force along t, at a sliding speed: Ambrosio (4.9, 4.10), Coulomb (4.8) with a larger friction at rest,
-    Threlfall, Brown and McPhee (2016), and Stribeck's curve eased in by a hyperbolic tangent."""
+    Threlfall, Brown and McPhee (2016), and Stribeck's curve eased in by a hyperbolic tangent; with bristles of a deflection z that
+    follows its own equation: LuGre (1995), Dahl (1968), elasto-plastic (Dupont et al. 2002)."""
 
     def __init__(self, run: Run) -> None:
         self.law = run.text("friction.law")
@@ -20,6 +21,9 @@ class Friction:
         self.coefficient = self.number("coefficient")
         self.static = self.number("static_coefficient") or self.coefficient
         self.v0, self.v1 = self.number("v0"), self.number("v1")
+        self.has_bristles = self.law in ("lugre", "dahl", "elasto_plastic")
+        self.stiffness = self.number("bristle_stiffness")
+        self.elastic = self.number("breakaway_ratio", 0.7) * self.coefficient / self.stiffness if self.has_bristles else 0.0
         self.coulomb = self.law == "coulomb" or self.law == "ambrosio" and self.v1 <= 0
         self.grip = {"ambrosio": self.ramp, "threlfall": self.eased, "brown_mcphee": self.peaked, "stribeck": self.falling}.get(self.law)
 
@@ -35,6 +39,38 @@ class Friction:
         else:
             grip = self.grip(size)
         return -math.copysign(grip + self.number("viscous_coefficient") * size, speed)
+
+    def steady(self, v: float) -> float:
+        """Of bristles that slide on, without the viscous part."""
+        if self.static == self.coefficient:
+            return self.coefficient
+        fall = math.exp(-((v / self.number("stribeck_speed")) ** 2))
+        return self.static * fall + self.coefficient * (1 - fall)
+
+    def side(self, v: float, z: float) -> tuple[int, bool]:
+        """On which side of what is not smooth: the sense of sliding, bristles that give way."""
+        sense = (v > 0) - (v < 0) if abs(v) > self.v1 else 0
+        return sense, self.law == "elasto_plastic" and v * z > 0 and abs(z) > self.elastic
+
+    def bristle_rate(self, v: float, z: float) -> float:
+        """[m/s]"""
+        share, full = 1.0, self.steady(v) / self.stiffness
+        if self.law == "elasto_plastic":
+            if v * z <= 0 or abs(z) <= self.elastic:
+                share = 0.0
+            elif abs(z) < full:
+                share = math.sin(math.pi / 2 * (abs(z) - self.elastic) / (full - self.elastic)) ** 2
+        return v - share * abs(v) * z / full
+
+    def bristle_range(self, speed: float, z: float, give: float) -> tuple[float, float]:
+        """As `range`, with the deflection z of the bristles [m]."""
+        found = []
+        for v in (speed - give, speed, speed + give):
+            damping = self.number("bristle_damping")
+            if self.number("damping_speed"):
+                damping *= math.exp(-((v / self.number("damping_speed")) ** 2))
+            found.append(-self.stiffness * z - damping * self.bristle_rate(v, z) - self.number("viscous_coefficient") * v)
+        return min(found), max(found)
 
     def ramp(self, size: float) -> float:
         if size >= self.v1:

@@ -12,6 +12,7 @@ from .trace import Run
 FREE, FILM, CONTACT = 0, 1, 2
 SUM = 1e-9        # of a sum's terms: what may be left of one that vanishes
 LAW = 1e-6        # of a force: what a law may be missed by, beyond the rounding of the speeds it was given
+BENT = 1000       # tolerances of the static friction: what bristles may be bent beyond it in rows between the steps
 
 
 @dataclasses.dataclass
@@ -99,6 +100,8 @@ class RowChecks:
         phase = get["phase"]
         n = (e[0] / size, e[1] / size) if size > 0 else (1.0, 0.0)
         give = ROUNDING * row.speed_size
+        if phase != CONTACT and self.friction and self.friction.has_bristles:
+            self.take("no bristles bent", abs(get["bristle"]), 0.0, t)
         if phase == FREE:
             self.take("no force in free flight", math.hypot(*row.force), row.law_noise, t)
         if phase == FILM:
@@ -124,6 +127,13 @@ class RowChecks:
         self.take("sliding speed", abs(sliding - get["sliding_speed"]), 10 * give, t)
         if not self.friction:
             self.take("no friction", abs(friction), 0.0, t)
+            return
+        if self.friction.has_bristles:
+            bent = self.friction.stiffness * abs(get["bristle"])
+            low, high = self.friction.bristle_range(get["sliding_speed"], get["bristle"], 10 * give)
+            self.take("friction law", inside(friction, low * normal, high * normal), LAW * normal * (bent + abs(low) + abs(high)) + 1e-300, t)
+            self.take("bristles bent by static friction", max(0.0, bent - self.friction.static),
+                      BENT * self.run.number("integrator.relative_tolerance") * self.friction.static, t)
             return
         low, high = self.friction.range(get["sliding_speed"], 10 * give)
         still = max(1e3 * give, self.run.number("integrator.relative_tolerance") * row.speed_size)   # what a step may miss of a speed
