@@ -156,7 +156,7 @@ class RowChecks:
         self.take("film force on the pin", math.hypot(row.force[0] - get["film_force_x"], row.force[1] - get["film_force_y"]), row.law_noise, t)
         self.take("no contact force in a film", abs(get["normal_force"]) + abs(get["friction_force"]), 0.0, t)
         if self.film == "oscillating_film":
-            self.take("no load along the line of centres", abs(row.force[0] * n[0] + row.force[1] * n[1]), SUM * math.hypot(*row.force), t)
+            self.take("no load along the line of centres", abs(row.force[0] * n[0] + row.force[1] * n[1]), SUM * math.hypot(*row.force) + row.law_noise, t)
             return
         eps, rate = get["eccentricity_ratio"], n[0] * row.slip[0] + n[1] * row.slip[1]
         if self.run.text("lubrication.variant") != "closed_form" or not 1e-3 < eps < 1 or abs(rate) < 1e6 * give:
