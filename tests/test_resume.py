@@ -45,7 +45,7 @@ def leftovers(folder: Path) -> list[str]:
 
 def stopped_by_limits(gudgeon: Gudgeon, work: Path) -> None:
     """Every simulation, in a batch, stopped again and again by a limit that rises."""
-    files = sorted(CASES.glob("sim_*.nml")) + sorted((CASES / "flores").glob("*.nml"))
+    files = sorted(CASES.glob("sim_*.nml")) + sorted((CASES / "flores").glob("*.nml")) + sorted((CASES / "joints").glob("*.nml"))
     whole, parts = work / "whole", work / "parts"
     status, _, err = gudgeon.run(*SHORT, "-o", whole, *files)
     check(status == 0, f"whole runs: {status} {err}")
