@@ -19,6 +19,11 @@ program=$(scripts/build.sh) || exit 1
 status=$?
 [ "$status" = 2 ] && exit 2
 
+number() {   # number FORMAT QUANTITY: of the present summary; nothing where it has none
+  found=$(value "$2" "$summary")
+  [ -z "$found" ] || printf "$1" "$found"
+}
+
 value() { sed -n "s/^$1,\([^,]*\),.*/\1/p" "$2"; }   # value QUANTITY SUMMARY: one value of a summary
 
 printf '\n%-24s %9s %9s %12s %12s %11s %10s %9s  %s\n' case contacts contact 'min film' 'peak pin' 'mean speed' residual \
@@ -32,10 +37,13 @@ for argument in "$@"; do
     printf '%-24s no result\n' "$name"
     continue
   fi
-  printf '%-24s %9s %9.4f %12.4e %12.4e %11.3f %10.1e %9.2f  %s\n' "$name" "$(value contacts "$summary")" \
-    "$(value contact_time_fraction "$summary")" "$(value min_film_thickness "$summary")" \
+  printf '%-24s %9s %9s %12s %12.4e %11.3f %10.1e %9.2f  %s\n' "$name" "$(value contacts "$summary")" \
+    "$(number %.4f contact_time_fraction)" "$(number %.4e min_film_thickness)" \
     "$(value max_pin_force "$summary")" "$(value mean_crank_speed "$summary")" \
     "$(value max_energy_residual_relative "$summary")" "$(value wall_time "$summary")" \
     "$(sed -n 's/^status,"\(.*\)",.*/\1/p' "$summary")"
+  [ -n "$(value crank_pin_contacts "$summary")" ] && printf '%-24s %9s %9s %12s %12s\n' '  its crank pin' \
+    "$(value crank_pin_contacts "$summary")" "$(number %.4f crank_pin_contact_time_fraction)" \
+    "$(number %.4e crank_pin_min_film_thickness)" "$(number %.4e crank_pin_max_pin_force)"
 done
 exit $status
