@@ -99,7 +99,8 @@ contains
     type(case_values_t), intent(in) :: values
     type(error_t), allocatable, intent(out) :: error
     if (.not. joint%has_clearance()) then
-      if (allocated(joint%contact) .or. allocated(joint%friction) .or. allocated(joint%film) .or. has_own_law(values, place)) then
+      if (allocated(joint%contact) .or. allocated(joint%friction) .or. allocated(joint%film) .or. allocated(joint%asperities) &
+          .or. has_own_law(values, place)) then
         call values%refuse(group, 'kind', 'must be clearance with contact, friction or lubrication: an ideal joint '// &
                            'has no play for them; leave those groups out, as --set contact=none does', error)
       else if (joint%clearance > 0 .and. .not. values%is_given(group, 'kind')) then
@@ -120,10 +121,28 @@ contains
     else if (allocated(joint%friction) .and. .not. allocated(joint%contact)) then
       call values%refuse(law_group(values, 'friction', place), 'law', &
                          'needs the group contact: dry friction follows the normal force', error)
+    else if (allocated(joint%asperities)) then
+      call check_asperities(joint, law_group(values, 'asperities', place), values, error)
     else if (allocated(joint%contact)) then
       call check_contact(joint, group, law_group(values, 'contact', place), values, error)
     end if
   end subroutine check_joint
+
+  !> Rough surfaces touch through a film, and no contact law is beside them.
+  subroutine check_asperities(joint, group, values, error)
+    type(joint_case_t), intent(in) :: joint
+    character(len=*), intent(in) :: group   !! of the asperities
+    type(case_values_t), intent(in) :: values
+    type(error_t), allocatable, intent(out) :: error
+    real(dp), parameter :: roughest = 0.125_dp   !! over the clearance
+    if (.not. allocated(joint%film)) then
+      call values%refuse(group, 'roughness', 'needs the group lubrication: asperities touch through a film', error)
+    else if (allocated(joint%contact)) then
+      call values%refuse(group, 'roughness', 'goes without the group contact: asperities are the contact of rough surfaces', error)
+    else if (joint%asperities%roughness > roughest*joint%clearance) then
+      call values%refuse(group, 'roughness', 'must be <= clearance/8: a centred pin may not touch', error)
+    end if
+  end subroutine check_asperities
 
   !> A contact has its loss from one key, and a bearing that its geometry can have.
   subroutine check_contact(joint, group, contact_group, values, error)
@@ -218,7 +237,7 @@ contains
         else if (norm2(rate) > 0) then
           call values%refuse('initial', key//'_rate', 'must be 0 in an ideal joint', error)
         end if
-      else if (.not. allocated(joint%contact) .and. distance >= joint%clearance) then
+      else if (.not. (allocated(joint%contact) .or. allocated(joint%asperities)) .and. distance >= joint%clearance) then
         call values%refuse('initial', key, 'must be shorter than the clearance where there is no contact', error)
       else if (distance >= joint%bearing_radius) then
         call values%refuse('initial', key, 'must be shorter than bearing_radius: the pin would be through its bearing', error)

@@ -14,6 +14,8 @@ module clearance_joint
   use contact_law, only: contact_law_t
   use friction_law, only: friction_law_t, most_friction_states
   use film_law, only: film_law_t, film_motion_t
+  use asperities, only: asperities_t
+  use mixed_film, only: mixed_forces, mixed_derivatives
   use joint_motion, only: joint_motion_t, find_polar, find_speeds, find_sliding
   implicit none
   private
@@ -45,6 +47,7 @@ module clearance_joint
     class(contact_law_t), allocatable :: contact
     class(friction_law_t), allocatable :: friction
     class(film_law_t), allocatable :: film
+    type(asperities_t), allocatable :: asperities   !! of rough surfaces, beside the film; without contact then
     type(coordinates_t) :: at               !! where the eccentricity stands in the state
     integer :: n_friction_states = 0        !! of the friction law
     type(slice_t) :: friction_states        !! where they stand
@@ -182,7 +185,8 @@ contains
     distance_squared = e(1)**2 + e(2)**2
     admits = distance_squared < self%bearing%radius**2
     if (self%phase == phase_film) &
-      admits = admits .and. (distance_squared < self%bearing%clearance**2 .or. .not. self%film%singular_at_wall)
+      admits = admits .and. (distance_squared < self%bearing%clearance**2 .or. .not. self%film%singular_at_wall &
+                         .or. allocated(self%asperities))
   end function admits
 
   !> The loads of the present phase, also among those of the chain, and their power on the bodies. What the phase does not have is
@@ -206,6 +210,9 @@ contains
       if (self%phase == phase_contact) then
         call find_contact(self, y, joint, own)
         force = own%contact
+      else if (allocated(self%asperities)) then
+        call find_mixed(self, film_motion(self, bodies, motion, joint), joint, own)
+        force = own%film + own%contact
       else
         call self%film%film_force(film_motion(self, bodies, motion, joint), own%film, own%moment)
         force = own%film
@@ -245,6 +252,21 @@ contains
     end associate
   end subroutine find_contact
 
+  !> A film between rough surfaces, and the contact of their asperities.
+  pure subroutine find_mixed(self, motion, joint, own)
+    type(clearance_joint_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    type(joint_motion_t), intent(inout) :: joint
+    type(joint_loads_t), intent(inout) :: own
+    call mixed_forces(self%film, self%asperities, self%pin_radius, motion, own%film, own%moment, own%normal_force, &
+      own%friction_force)
+    call find_polar(self%bearing%clearance, joint)
+    associate (n => joint%normal)
+      own%contact = -own%normal_force*n + own%friction_force*[-n(2), n(1)]
+    end associate
+    own%moment = own%moment + own%friction_force*self%pin_radius
+  end subroutine find_mixed
+
   !> Friction of a law with states.
   pure subroutine find_state_friction(self, y, joint, own)
     type(clearance_joint_t), intent(in) :: self
@@ -269,7 +291,7 @@ contains
     type(joint_motion_t), intent(inout) :: joint
     type(joint_loads_t), intent(inout) :: own
     if (self%phase /= phase_film) own%film = 0
-    if (self%phase /= phase_contact) then
+    if (self%phase /= phase_contact .and. .not. allocated(self%asperities)) then
       own%contact = 0
       own%normal_force = 0
       own%friction_force = 0
@@ -327,7 +349,12 @@ contains
     real(dp), intent(out) :: derivatives(3, 5)
     derivatives = 0
     if (self%phase == phase_contact) call contact_slopes(self, joint, own, derivatives)
-    if (self%phase == phase_film) call self%film%force_derivatives(film_motion(self, bodies, motion, joint), derivatives)
+    if (self%phase /= phase_film) return
+    if (allocated(self%asperities)) then
+      call mixed_derivatives(self%film, self%asperities, self%pin_radius, film_motion(self, bodies, motion, joint), derivatives)
+    else
+      call self%film%force_derivatives(film_motion(self, bodies, motion, joint), derivatives)
+    end if
   end subroutine slopes
 
   pure subroutine contact_slopes(self, joint, own, derivatives)
@@ -430,7 +457,7 @@ contains
     real(dp), intent(in) :: y(:)
     real(dp), parameter :: thin = 1e-6_dp   !! of the clearance
     is_singular = .false.
-    if (self%phase == phase_film) is_singular = self%film%singular_at_wall .and. &
+    if (self%phase == phase_film .and. .not. allocated(self%asperities)) is_singular = self%film%singular_at_wall .and. &
       norm2(y(self%at%position:self%at%position + 1)) > (1 - thin)*self%bearing%clearance
   end function is_singular
 

@@ -38,7 +38,13 @@ contains
     if (allocated(joint%film)) then
       call row%put('film_force_x[N]', loads%film(1))
       call row%put('film_force_y[N]', loads%film(2))
-      if (joint%film%film_moment) call row%put('film_moment[N.m]', merge(loads%moment, 0.0_dp, joint%phase == phase_film))
+      if (allocated(joint%asperities)) then
+        call row%put('asperity_force[N]', loads%normal_force)
+        call row%put('friction_force[N]', loads%friction_force)
+        call row%put('sliding_speed[m/s]', motion%sliding_speed)
+      end if
+      if (joint%film%film_moment) call row%put('film_moment[N.m]', merge(loads%moment, 0.0_dp, joint%phase == phase_film) &
+        - merge(loads%friction_force*joint%pin_radius, 0.0_dp, allocated(joint%asperities)))
     end if
     row%place = ''
   end subroutine put_joint_columns

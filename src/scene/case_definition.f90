@@ -14,6 +14,7 @@ module case_definition
   use friction_laws, only: offer_friction_laws
   use film_law, only: film_law_t
   use films, only: offer_film_laws
+  use asperities, only: asperities_t
   use gas_cycle, only: gas_cycle_t
   implicit none
   private
@@ -50,6 +51,7 @@ module case_definition
     class(friction_law_t), allocatable :: friction
     logical :: reports_friction_work = .false.
     class(film_law_t), allocatable :: film
+    type(asperities_t), allocatable :: asperities
   contains
     procedure :: parameters => joint_parameters
     procedure :: has_clearance
@@ -155,6 +157,7 @@ contains
     call visit_contact(joint%contact, place, list)
     call visit_friction(joint%friction, joint%reports_friction_work, place, list)
     call visit_film(joint%film, place, list)
+    call visit_asperities(joint%asperities, place, list)
   end subroutine visit_joint
 
   !> Of laws for every joint an ideal one has none, if the other joint has clearance.
@@ -165,6 +168,7 @@ contains
     if (allocated(joint%contact)) deallocate (joint%contact)
     if (allocated(joint%friction)) deallocate (joint%friction)
     if (allocated(joint%film)) deallocate (joint%film)
+    if (allocated(joint%asperities)) deallocate (joint%asperities)
   end subroutine drop_laws
 
   subroutine visit_contact(law, place, list)
@@ -225,6 +229,23 @@ contains
       allocate (law, source=chosen)
     end select
   end subroutine visit_film
+
+  subroutine visit_asperities(asperities, place, list)
+    type(asperities_t), allocatable, intent(inout) :: asperities
+    character(len=*), intent(in) :: place
+    class(parameter_list_t), intent(inout) :: list
+    type(asperities_t) :: described
+    call list%group('asperities', 'rough surfaces that touch through the film, instead of contact; left out: smooth', &
+      .true., place)
+    if (.not. list%sets) then
+      call described%parameters(list)
+      return
+    end if
+    if (allocated(asperities)) deallocate (asperities)
+    if (.not. list%is_present) return
+    allocate (asperities)
+    call asperities%parameters(list)
+  end subroutine visit_asperities
 
   subroutine visit_gas(gas, list)
     type(gas_cycle_t), allocatable, intent(inout) :: gas

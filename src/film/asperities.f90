@@ -1,0 +1,198 @@
+!> Rough surfaces that touch through a film: Greenwood and Tripp's pairs of paraboloids with Gaussian heights, and the mean gap that
+!> they leave to the oil (Patir and Cheng).
+module asperities
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: pi
+  use gudgeon_parameters, only: has_parameters_t, parameter_list_t
+  use gudgeon_bearing, only: bearing_t
+  use uniform_spline, only: spline_weights, through_values, before, after
+  implicit none
+  private
+  public :: asperities_t, pressure_integral
+
+  !> Pressure p = K' E* F52(h/s), h = c - |e| cos theta, K' = (16 sqrt(2) pi/15) (eta beta s)^2 sqrt(s/beta), F52(H) the mean of
+  !> (u - H)^(5/2) over u > H for Gaussian u; its resultant F_a = R_b L Int p cos theta dtheta is a function of |e| alone.
+  type, extends(has_parameters_t) :: asperities_t
+    real(dp) :: roughness = 0              !! s, of both surfaces together (root of the sum of squares) [m]
+    real(dp) :: density_product = 0        !! eta beta s [-]
+    real(dp) :: sharpness = 0              !! s/beta [-]
+    character(len=:), allocatable :: integral   !! exact, or fit: F52 as 4.4086e-5 (4 - H)^6.804
+    real(dp) :: youngs_modulus(2) = 0, poissons_ratio(2) = 0   !! of pin and bearing
+    real(dp) :: coefficient = 0            !! of boundary friction [-]
+    real(dp) :: transition_speed = 0       !! of its change of sign [m/s]
+    type(bearing_t), private :: bearing
+    logical, private :: is_fit = .false.
+    real(dp), private :: scale = 0         !! K' E* R_b L [N]
+    real(dp), allocatable, private :: c(:) !! coefficients of the spline through the forces, by depth, as `folded`
+  contains
+    procedure :: parameters
+    procedure :: prepare
+    procedure :: force
+    procedure :: integrated_force
+    procedure :: mean_gap
+    procedure :: friction_force
+  end type asperities_t
+
+  real(dp), parameter :: farthest(2) = [8.0_dp, 4.0_dp]   !! h/s beyond which nothing touches: exact, fit
+  real(dp), parameter :: deepest = -20                    !! of the table
+  integer, parameter :: per_roughness = 8                 !! values of the table
+  real(dp), parameter :: fit_power = 6.804_dp
+
+contains
+
+  subroutine parameters(self, list)
+    class(asperities_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%add('roughness', self%roughness, 'of both surfaces, the root of the sum of their squares', 'm', '> 0', &
+      example='0.4e-6')
+    call list%add('density_product', self%density_product, 'asperities in an area, by their radius and the roughness', &
+      range='> 0 and <= 1', default='0.05')
+    call list%add('sharpness', self%sharpness, 'roughness over the radius of the asperities', range='> 0 and <= 1', &
+      default='1.0e-2')
+    call list%word('integral', self%integral, 'exact, fit', 'exact', 'fit: the power (4 - h/s)^6.804 in common use')
+    call list%add('youngs_modulus', self%youngs_modulus, 'of pin and bearing', 'Pa', '> 0', default='207.0e9')
+    call list%add('poissons_ratio', self%poissons_ratio, 'of pin and bearing', range='>= 0 and <= 0.5', default='0.3')
+    call list%add('coefficient', self%coefficient, 'of boundary friction', range='>= 0 and <= 10', default='0.1')
+    call list%add('transition_speed', self%transition_speed, 'of sliding, at which friction is 0.76 of its full size', 'm/s', &
+      '> 0', default='0.01')
+  end subroutine parameters
+
+  !> The table of forces of a bearing.
+  subroutine prepare(self, bearing)
+    class(asperities_t), intent(inout) :: self
+    type(bearing_t), intent(in) :: bearing
+    real(dp), allocatable :: values(:, :), coefficients(:, :)
+    integer :: i, n
+    self%bearing = bearing
+    self%is_fit = self%integral == 'fit'
+    self%scale = 16*sqrt(2.0_dp)*pi/15*self%density_product**2*sqrt(self%sharpness) &
+      /sum((1 - self%poissons_ratio**2)/self%youngs_modulus)*bearing%radius*bearing%length
+    n = nint((farthest_of(self) - deepest)*per_roughness) + 1
+    allocate (values(n, 1))
+    do i = 1, n
+      values(i, 1) = folded(self, self%integrated_force(bearing%clearance - self%roughness*(farthest_of(self) - depth_at(i))))
+    end do
+    coefficients = through_values(values)
+    if (allocated(self%c)) deallocate (self%c)
+    allocate (self%c(1 - before:n + after))
+    self%c = coefficients(:, 1)
+
+  contains
+
+    !> Depth of a value of the table below the farthest touch, over the roughness; the first is a little inside.
+    pure real(dp) function depth_at(i)
+      integer, intent(in) :: i
+      depth_at = (i - 1)/real(per_roughness, dp)
+      if (i == 1) depth_at = 1e-3_dp/per_roughness
+    end function depth_at
+  end subroutine prepare
+
+  pure real(dp) function farthest_of(self)
+    type(asperities_t), intent(in) :: self
+    farthest_of = merge(farthest(2), farthest(1), self%is_fit)
+  end function farthest_of
+
+  !> A force in the form that a spline follows best: the logarithm of the exact one, the root of the fit that begins straight.
+  pure real(dp) function folded(self, force)
+    type(asperities_t), intent(in) :: self
+    real(dp), intent(in) :: force
+    if (self%is_fit) then
+      folded = max(force/self%scale, 0.0_dp)**(1/(fit_power + 0.5_dp))
+    else
+      folded = log(max(force/self%scale, tiny(force)))
+    end if
+  end function folded
+
+  !> Force that presses the pin to the middle at the eccentricity |e| [m], as a spline through the forces of the table [N].
+  pure real(dp) function force(self, distance)
+    class(asperities_t), intent(in) :: self
+    real(dp), intent(in) :: distance
+    real(dp) :: depth, value
+    integer :: i
+    force = 0
+    depth = (farthest_of(self) - (self%bearing%clearance - distance)/self%roughness)*per_roughness
+    if (depth <= 0) return
+    i = int(depth) + 1
+    if (i > ubound(self%c, 1) - after - 1) then
+      force = self%integrated_force(distance)
+      return
+    end if
+    value = dot_product(spline_weights(depth - (i - 1)), self%c(i - before:i + 3))
+    if (self%is_fit) then
+      force = self%scale*max(value, 0.0_dp)**(fit_power + 0.5_dp)
+    else
+      force = self%scale*exp(value)
+    end if
+  end function force
+
+  !> The same by the trapezoidal rule round the arc that touches: even in the middle and flat at the end, where it converges fast.
+  pure real(dp) function integrated_force(self, distance) result(force)
+    class(asperities_t), intent(in) :: self
+    real(dp), intent(in) :: distance
+    integer, parameter :: points = 200
+    real(dp) :: last, angle
+    integer :: i
+    force = 0
+    associate (c => self%bearing%clearance, s => self%roughness)
+      if (c - distance >= farthest_of(self)*s) return
+      last = pi
+      if (c - farthest_of(self)*s > -distance) last = acos((c - farthest_of(self)*s)/distance)
+      do i = 0, points
+        angle = last*i/points
+        force = force + merge(0.5_dp, 1.0_dp, i == 0 .or. i == points)*cos(angle)* &
+          pressure_integral((c - distance + 2*distance*sin(0.5_dp*angle)**2)/s, self%is_fit)
+      end do
+    end associate
+    force = 2*self%scale*force*last/points
+  end function integrated_force
+
+  !> F52(H): by a Chebyshev series of its logarithm within 7e-7 from -4 to 8, below by its asymptotic series; or the fit.
+  pure real(dp) function pressure_integral(h, is_fit) result(f)
+    real(dp), intent(in) :: h   !! H = h/s
+    logical, intent(in) :: is_fit
+    real(dp), parameter :: series(0:16) = [-11.61231074891603_dp, -20.617452832288585_dp, -6.2634546415843744_dp, &
+      -0.73646689340233418_dp, 0.11947790516206643_dp, 0.0087308609636478785_dp, &
+      -0.011751921480713065_dp, 0.0023312950554783981_dp, 0.00076238873116151601_dp, &
+      -0.00056371973327111588_dp, 7.1620434114969174e-05_dp, 6.5262407002420522e-05_dp, &
+      -3.4923242743502115e-05_dp, 1.3368426203381316e-06_dp, 5.710616981672648e-06_dp, &
+      -2.3828726060054943e-06_dp, -1.5139969508450551e-07_dp]
+    real(dp) :: x, b(0:2)
+    integer :: k
+    if (is_fit) then
+      f = 4.4086e-5_dp*max(4 - h, 0.0_dp)**fit_power
+    else if (h >= 8) then
+      f = 0
+    else if (h < -4) then
+      x = 1/h**2   ! of the mean of (u - H)^(5/2), u Gaussian
+      f = (-h)**2.5_dp*(1 + x*(1.875_dp + x*(-0.1171875_dp + x*(-0.0732421875_dp - x*0.144195556640625_dp))))
+    else
+      x = (h - 2)/6
+      b = 0
+      do k = 16, 1, -1
+        b(2) = b(1)
+        b(1) = b(0)
+        b(0) = 2*x*b(1) - b(2) + series(k)
+      end do
+      f = exp(x*b(0) - b(1) + series(0))
+    end if
+  end function pressure_integral
+
+  !> Mean gap of the surfaces where the smooth ones are h apart, h/2 (1 + erf(h/(sqrt2 s))) + s/sqrt(2 pi) exp(-h^2/(2 s^2)) > 0 [m],
+  !> and its slope by h.
+  pure subroutine mean_gap(self, h, gap, slope)
+    class(asperities_t), intent(in) :: self
+    real(dp), intent(in) :: h   !! [m]
+    real(dp), intent(out) :: gap, slope
+    real(dp) :: x
+    x = h/self%roughness
+    slope = 0.5_dp*erfc(-x/sqrt(2.0_dp))
+    gap = h*slope + self%roughness/sqrt(2*pi)*exp(-0.5_dp*x**2)
+  end subroutine mean_gap
+
+  !> Boundary friction against a sliding speed [m/s] under a force of the asperities [N].
+  pure real(dp) function friction_force(self, sliding_speed, pressing)
+    class(asperities_t), intent(in) :: self
+    real(dp), intent(in) :: sliding_speed, pressing
+    friction_force = -self%coefficient*pressing*tanh(sliding_speed/self%transition_speed)
+  end function friction_force
+end module asperities

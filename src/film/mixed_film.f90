@@ -1,0 +1,84 @@
+!> Mixed lubrication: a film between rough surfaces, and the asperities that touch through it. Both act together, so that nothing
+!> happens at |e| = c.
+module mixed_film
+  use gudgeon_kinds, only: dp
+  use film_law, only: film_law_t, film_motion_t
+  use asperities, only: asperities_t
+  implicit none
+  private
+  public :: mixed_forces, mixed_derivatives
+
+contains
+
+  !> The film acts in the mean gap h_T of the surfaces: at the eccentricity ratio 1 - h_T/c, which grows towards 1 as the smooth surfaces
+  !> would touch and pass, with its true turning. Beside it the asperities press the pin to the middle and rub.
+  pure subroutine mixed_forces(film, rough, pin_radius, motion, film_force, film_moment, pressing, friction)
+    class(film_law_t), intent(in) :: film
+    type(asperities_t), intent(in) :: rough
+    real(dp), intent(in) :: pin_radius                 !! [m]
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(out) :: film_force(2), film_moment   !! of the film on the pin [N], [N m]
+    real(dp), intent(out) :: pressing, friction           !! of the asperities: to the middle, along t [N]
+    type(film_motion_t) :: seen
+    real(dp) :: distance, n(2), gap, slope, ratio, radial, tangential, journal_speed, bearing_speed
+    seen = motion
+    associate (e => motion%eccentricity, v => motion%eccentricity_rate)
+      distance = sqrt(e(1)**2 + e(2)**2)
+      n = [1.0_dp, 0.0_dp]
+      if (distance > 0) n = e*(1/distance)
+      radial = n(1)*v(1) + n(2)*v(2)
+      tangential = n(1)*v(2) - n(2)*v(1)
+      call rough%mean_gap(film%clearance - distance, gap, slope)
+      ratio = slope
+      if (distance > 0) ratio = max(film%clearance - gap, 0.0_dp)/distance
+      seen%eccentricity = ratio*e
+      seen%eccentricity_rate = slope*radial*n + ratio*tangential*[-n(2), n(1)]
+      journal_speed = 0.5_dp*(motion%pin_speed + motion%turning_speed)
+      bearing_speed = 0.5_dp*(motion%pin_speed - motion%turning_speed)
+      pressing = rough%force(distance)
+      friction = rough%friction_force(tangential + journal_speed*pin_radius - bearing_speed*(distance + pin_radius), pressing)
+    end associate
+    call film%film_force(seen, film_force, film_moment)
+  end subroutine mixed_forces
+
+  !> Derivatives of the whole force and moment on the pin (rows F_x, F_y, moment) by e_x, e_y, e_x', e_y' and the pin's speed (columns),
+  !> by central differences.
+  pure subroutine mixed_derivatives(film, rough, pin_radius, motion, derivatives)
+    class(film_law_t), intent(in) :: film
+    type(asperities_t), intent(in) :: rough
+    real(dp), intent(in) :: pin_radius
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(out) :: derivatives(3, 5)
+    real(dp) :: room, rate, step(5), above(3), below(3)
+    integer :: i
+    room = max(film%clearance - norm2(motion%eccentricity), rough%roughness)
+    rate = norm2(motion%eccentricity_rate) + film%clearance*abs(motion%pin_speed) + tiny(1.0_dp)**0.25_dp
+    step = 1e-5_dp*[room, room, rate*room/film%clearance, rate*room/film%clearance, rate/film%clearance]
+    do i = 1, 5
+      call moved(i, step(i), above)
+      call moved(i, -step(i), below)
+      derivatives(:, i) = (above - below)/(2*step(i))
+    end do
+
+  contains
+
+    pure subroutine moved(i, by, values)
+      integer, intent(in) :: i
+      real(dp), intent(in) :: by
+      real(dp), intent(out) :: values(3)
+      type(film_motion_t) :: other
+      real(dp) :: pressing, friction, distance, n(2)
+      other = motion
+      if (i <= 2) other%eccentricity(i) = other%eccentricity(i) + by
+      if (i == 3 .or. i == 4) other%eccentricity_rate(i - 2) = other%eccentricity_rate(i - 2) + by
+      if (i == 5) other%pin_speed = other%pin_speed + by
+      if (i == 5) other%turning_speed = other%turning_speed + by
+      call mixed_forces(film, rough, pin_radius, other, values(1:2), values(3), pressing, friction)
+      distance = norm2(other%eccentricity)
+      n = [1.0_dp, 0.0_dp]
+      if (distance > 0) n = other%eccentricity/distance
+      values(1:2) = values(1:2) - pressing*n + friction*[-n(2), n(1)]
+      values(3) = values(3) + friction*pin_radius
+    end subroutine moved
+  end subroutine mixed_derivatives
+end module mixed_film

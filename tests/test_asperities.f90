@@ -1,0 +1,281 @@
+!> Rough surfaces: the integral of Greenwood and Tripp and the mean gap against tables, the force on the pin against another quadrature;
+!> mixed lubrication against its limits, in runs by every method, and what a case may not ask of it.
+module test_asperities
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: pi
+  use gudgeon_errors, only: error_t
+  use gudgeon_bearing, only: bearing_t
+  use checks, only: checks_t
+  use asperities, only: asperities_t, pressure_integral
+  use mixed_film, only: mixed_forces, mixed_derivatives
+  use film_law, only: film_law_t, film_motion_t
+  use laws, only: film_law_of
+  use case_definition, only: case_t
+  use case_file, only: parse_case
+  use collecting_sink, only: trace_t, run_case, column
+  implicit none
+  private
+  public :: run_test_asperities
+
+  real(dp), parameter :: c = 20e-6_dp
+
+contains
+
+  subroutine run_test_asperities(check)
+    class(checks_t), intent(inout) :: check
+    call integral_of_the_table(check)
+    call force_of_the_table(check)
+    call table_meets_quadrature(check)
+    call smooth_where_far(check)
+    call derivatives_by_steps(check)
+    call rubs(check)
+    call methods_agree(check)
+    call goes_beyond_the_clearance(check)
+    call refuses(check)
+  end subroutine run_test_asperities
+
+  !> Exact (parabolic cylinder function, 25 digits) and by the fit, with the mean gap and its slope.
+  subroutine integral_of_the_table(check)
+    class(checks_t), intent(inout) :: check
+    type(asperities_t) :: rough
+    character(len=200) :: line
+    real(dp) :: h, exact, fit, rest, gap, slope, got, got_slope
+    integer :: unit, status, rows
+    rough%roughness = 0.3e-6_dp
+    rows = 0
+    open (newunit=unit, file='data/film/greenwood_tripp_f52.csv', status='old', action='read')
+    read (unit, '(a)') line
+    do
+      read (unit, '(a)', iostat=status) line
+      if (status /= 0) exit
+      read (line, *) h, exact, fit, rest, gap, slope
+      rows = rows + 1
+      call check%relative(pressure_integral(h, .false.), exact, 1e-6_dp, 'F52')
+      if (fit > 0) call check%relative(pressure_integral(h, .true.), fit, 1e-9_dp, 'the fit of F52')
+      call rough%mean_gap(h*rough%roughness, got, got_slope)
+      call check%relative(got, gap*rough%roughness, 1e-9_dp, 'mean gap')
+      call check%relative(got_slope, slope, 1e-9_dp, 'slope of the mean gap')
+    end do
+    close (unit)
+    call check%that(rows >= 8, 'the table was read')
+    call check%relative(pressure_integral(-4 - 1e-12_dp, .false.), pressure_integral(-4.0_dp, .false.), 2e-6_dp, &
+      'F52 goes on where its series ends')
+    got = 0   ! the mean of (u + 10)^2.5 by the trapezoidal rule
+    do unit = -1000, 1000
+      got = got + 0.01_dp*(10 + 0.01_dp*unit)**2.5_dp*exp(-0.5_dp*(0.01_dp*unit)**2)/sqrt(2*pi)
+    end do
+    call check%relative(pressure_integral(-10.0_dp, .false.), got, 1e-9_dp, 'F52 of surfaces pressed deep')
+  end subroutine integral_of_the_table
+
+  !> Force on the pin by the fit, and exactly where an arc cut at 4 s loses nothing.
+  subroutine force_of_the_table(check)
+    class(checks_t), intent(inout) :: check
+    type(asperities_t) :: fit, exact
+    character(len=200) :: line
+    real(dp) :: ratio, by_fit, by_exact, quadrature, seen, factor, gap, slope
+    integer :: unit, status
+    fit = rough_bearing('fit', 0.8e-6_dp)
+    exact = rough_bearing('exact', 0.8e-6_dp)
+    open (newunit=unit, file='data/film/asperity_force.csv', status='old', action='read')
+    read (unit, '(a)') line
+    do
+      read (unit, '(a)', iostat=status) line
+      if (status /= 0) exit
+      read (line, *) ratio, by_fit, by_exact, quadrature, seen, factor
+      if (by_fit > 1) call check%relative(fit%integrated_force(ratio*c), by_fit, 1e-8_dp, 'force of the fit')
+      if (ratio > 0.91_dp) call check%relative(exact%integrated_force(ratio*c), by_exact, 2e-4_dp, 'exact force')
+      call exact%mean_gap(c*(1 - ratio), gap, slope)
+      call check%close_to(1 - gap/c, seen, 1e-11_dp, 'eccentricity ratio that the film sees')
+      call check%close_to(slope, factor, 1e-11_dp, 'share of the radial rate')
+    end do
+    close (unit)
+  end subroutine force_of_the_table
+
+  !> The spline of the forces against the quadrature itself, and beyond its last value.
+  subroutine table_meets_quadrature(check)
+    class(checks_t), intent(inout) :: check
+    type(asperities_t) :: rough
+    real(dp) :: distance, want
+    integer :: i, j
+    do j = 1, 2
+      rough = rough_bearing(merge('exact', 'fit  ', j == 1), 0.5e-6_dp)
+      do i = 1, 200
+        distance = c - rough%roughness*(7.0_dp - 0.15_dp*i)
+        want = rough%integrated_force(distance)
+        if (want < 1e-2_dp) cycle
+        call check%relative(rough%force(distance), want, 2e-6_dp, 'the table meets the quadrature')
+      end do
+      call check%that(abs(rough%force(0.0_dp)) <= 0, 'a centred pin does not touch')
+    end do
+  end subroutine table_meets_quadrature
+
+  !> Where the surfaces are far apart the film is the smooth one.
+  subroutine smooth_where_far(check)
+    class(checks_t), intent(inout) :: check
+    class(film_law_t), allocatable :: film
+    type(asperities_t) :: rough
+    type(film_motion_t) :: motion
+    real(dp) :: smooth(2), force(2), moment, pressing, friction
+    call new_film(check, film)
+    rough = rough_bearing('exact', 0.1e-6_dp)
+    motion = motion_of([9e-6_dp, -4e-6_dp], [3e-3_dp, 1e-3_dp])
+    call film%film_force(motion, smooth, moment)
+    call mixed_forces(film, rough, 1e-2_dp, motion, force, moment, pressing, friction)
+    call check%that(norm2(force - smooth) <= 1e-12_dp*norm2(smooth) .and. pressing <= 0, 'far apart the surfaces are smooth')
+  end subroutine smooth_where_far
+
+  !> The derivatives for implicit integration against steps of another size, inside and beyond the clearance.
+  subroutine derivatives_by_steps(check)
+    class(checks_t), intent(inout) :: check
+    class(film_law_t), allocatable :: film
+    type(asperities_t) :: rough
+    type(film_motion_t) :: motion, other
+    real(dp) :: derivatives(3, 5), above(3), below(3), step
+    integer :: i, k
+    call new_film(check, film)
+    rough = rough_bearing('exact', 0.4e-6_dp)
+    do k = 1, 2
+      motion = motion_of([0.97_dp, 1.01_dp]*c*[cos(0.4_dp*k), sin(0.4_dp*k)], [1e-3_dp, -2e-3_dp])
+      call mixed_derivatives(film, rough, 1e-2_dp, motion, derivatives)
+      do i = 1, 2
+        step = 1e-10_dp
+        other = motion
+        other%eccentricity(i) = motion%eccentricity(i) + step
+        call whole(film, rough, other, above)
+        other%eccentricity(i) = motion%eccentricity(i) - step
+        call whole(film, rough, other, below)
+        call check%that(maxval(abs(derivatives(:2, i) - (above(:2) - below(:2))/(2*step))) <= 1e-4_dp*maxval(abs(derivatives)), &
+          'derivatives by the eccentricity')
+      end do
+    end do
+  end subroutine derivatives_by_steps
+
+  subroutine whole(film, rough, motion, values)
+    class(film_law_t), intent(in) :: film
+    type(asperities_t), intent(in) :: rough
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(out) :: values(3)
+    real(dp) :: pressing, friction, n(2)
+    call mixed_forces(film, rough, 1e-2_dp, motion, values(:2), values(3), pressing, friction)
+    n = motion%eccentricity/norm2(motion%eccentricity)
+    values(:2) = values(:2) - pressing*n + friction*[-n(2), n(1)]
+    values(3) = values(3) + 1e-2_dp*friction
+  end subroutine whole
+
+  !> Boundary friction is against the sliding of the surfaces and no more than the coefficient allows.
+  subroutine rubs(check)
+    class(checks_t), intent(inout) :: check
+    class(film_law_t), allocatable :: film
+    type(asperities_t) :: rough
+    type(film_motion_t) :: motion
+    real(dp) :: force(2), moment, pressing, friction
+    integer :: way
+    call new_film(check, film)
+    rough = rough_bearing('exact', 0.4e-6_dp)
+    do way = -1, 1, 2
+      motion = motion_of([0.0_dp, 0.99_dp*c], [0.0_dp, 0.0_dp])
+      motion%pin_speed = way*50.0_dp
+      motion%turning_speed = motion%pin_speed
+      call mixed_forces(film, rough, 1e-2_dp, motion, force, moment, pressing, friction)
+      call check%that(pressing > 100 .and. way*friction < 0, 'friction is against the sliding')
+      call check%relative(abs(friction), 0.1_dp*pressing, 1e-6_dp, 'and full where that is fast')
+    end do
+  end subroutine rubs
+
+  !> A piston on a thin oil between rough surfaces by each method.
+  subroutine methods_agree(check)
+    class(checks_t), intent(inout) :: check
+    character(len=60) :: set(7)
+    character(len=6), parameter :: methods(3) = [character(len=6) :: 'adams', 'radau', 'auto']
+    type(trace_t) :: trace, first
+    integer :: at
+    integer :: i
+    do i = 1, 3
+      set = [character(len=60) :: 'integrator.method='//methods(i), 'lubrication.law=pinkus_sternlicht', &
+        'lubrication.variant=closed_form', 'integrator.revolutions=0.4', 'integrator.relative_tolerance=1e-9', &
+        'initial.crank_angle_deg=330', 'lubrication.viscosity=0.002']
+      trace = run_case('cases/film/sim_IV_mixed.nml', set)
+      call check%that(.not. allocated(trace%error), 'mixed lubrication runs by '//methods(i))
+      if (allocated(trace%error)) return
+      call check%that(trace%report%figures%max_energy_residual < 1e-8_dp*trace%report%figures%max_energy, 'and keeps the energy')
+      at = column(trace, 'film_thickness[m]')
+      if (i == 1) first = trace
+      call check%close_to(maxval(abs(trace%values(at, :) - first%values(at, :))), 0.0_dp, 1e-6_dp*c, 'methods agree on the film')
+    end do
+    call check%that(maxval(trace%values(column(trace, 'asperity_force[N]'), :)) > 100, 'the asperities carry')
+  end subroutine methods_agree
+
+  !> A pin that starts pressed beyond the clearance is driven back.
+  subroutine goes_beyond_the_clearance(check)
+    class(checks_t), intent(inout) :: check
+    character(len=60) :: set(6)
+    type(trace_t) :: trace
+    integer :: at
+    set = [character(len=60) :: 'lubrication.law=pinkus_sternlicht', 'lubrication.variant=closed_form', &
+      'initial.eccentricity=20.1e-6,0', 'integrator.revolutions=0.05', 'integrator.relative_tolerance=1e-8', &
+      'initial.crank_speed=100']
+    trace = run_case('cases/film/sim_IV_mixed.nml', set)
+    call check%that(.not. allocated(trace%error), 'a start beyond the clearance')
+    if (allocated(trace%error)) return
+    at = column(trace, 'film_thickness[m]')
+    call check%that(trace%values(at, 1) < 0 .and. trace%values(at, size(trace%values, 2)) > trace%values(at, 1), 'is driven back')
+    call check%that(trace%report%figures%max_energy_residual < 1e-7_dp*trace%report%figures%max_energy, 'with its energy known')
+  end subroutine goes_beyond_the_clearance
+
+  subroutine refuses(check)
+    class(checks_t), intent(inout) :: check
+    call expect(check, "&lubrication viscosity=0.01 / &contact / &asperities roughness=1e-7 /", &
+      '&asperities roughness = 1e-7: goes without the group contact', 'asperities beside a contact law')
+    call expect(check, "&contact / &asperities roughness=1e-7 /", &
+      '&asperities roughness = 1e-7: needs the group lubrication', 'asperities without a film')
+    call expect(check, "&lubrication viscosity=0.01 / &asperities roughness=1e-5 /", &
+      '&asperities roughness = 1e-5: must be <= clearance/8', 'surfaces as rough as the clearance is wide')
+    call expect(check, "&lubrication viscosity=0.01 / &asperities /", '&asperities roughness', 'no roughness')
+  end subroutine refuses
+
+  subroutine expect(check, groups, wanted, name)
+    class(checks_t), intent(inout) :: check
+    character(len=*), intent(in) :: groups, wanted, name
+    character(len=*), parameter :: bodies = '&mechanism crank_length=0.05 crank_mass=1 crank_inertia=1 rod_length=0.2 '// &
+      'rod_mass=1 rod_inertia=1 piston_mass=1 / &initial crank_speed=100 / &integrator revolutions=1 / '// &
+      '&joint kind=''clearance'' clearance=20e-6 bearing_radius=10e-3 bearing_length=15e-3 / '
+    character(len=1) :: nothing(0)
+    type(case_t) :: case
+    type(error_t), allocatable :: error
+    call parse_case(bodies//groups, 'x.nml', nothing, case, error)
+    call check%that(allocated(error), name//' is refused')
+    if (allocated(error)) call check%that(index(error%message, wanted) > 0, name//' is refused in words')
+  end subroutine expect
+
+  function rough_bearing(integral, roughness) result(rough)
+    character(len=*), intent(in) :: integral
+    real(dp), intent(in) :: roughness
+    type(asperities_t) :: rough
+    rough%integral = trim(integral)
+    rough%roughness = roughness
+    rough%density_product = 0.05_dp
+    rough%sharpness = 1e-2_dp
+    rough%youngs_modulus = 207e9_dp
+    rough%poissons_ratio = 0.3_dp
+    rough%coefficient = 0.1_dp
+    rough%transition_speed = 0.01_dp
+    call rough%prepare(bearing_t(1e-2_dp, 15e-3_dp, c, 0.2_dp))
+  end function rough_bearing
+
+  subroutine new_film(check, film)
+    class(checks_t), intent(inout) :: check
+    class(film_law_t), allocatable, intent(out) :: film
+    type(error_t), allocatable :: error
+    call film_law_of("viscosity=0.0117 variant='closed_form'", 1e-6_dp, film, error)
+    call check%that(.not. allocated(error), 'a film')
+  end subroutine new_film
+
+  pure function motion_of(eccentricity, rate) result(motion)
+    real(dp), intent(in) :: eccentricity(2), rate(2)
+    type(film_motion_t) :: motion
+    motion%eccentricity = eccentricity
+    motion%eccentricity_rate = rate
+    motion%pin_speed = 100
+    motion%turning_speed = 100
+  end function motion_of
+end module test_asperities
