@@ -62,13 +62,13 @@ contains
 
   !> A group: of a joint's place that of this place, or else, for laws, that of every place. A law of a joint that is ideal is
   !> not set.
-  subroutine load_group(self, name, says, is_model, place)
+  subroutine load_group(self, name, says, is_model, place, instead_of)
     class(loader_t), intent(inout) :: self
     character(len=*), intent(in) :: name, says
     logical, intent(in) :: is_model
-    character(len=*), intent(in), optional :: place
+    character(len=*), intent(in), optional :: place, instead_of
     integer :: of_place
-    associate (unused => says)
+    associate (unused => says, unused_group => present(instead_of))
     end associate
     self%at = find_group(self%values%groups, name)
     if (present(place)) then

@@ -17,6 +17,7 @@ module case_schema
     character(len=12) :: place = ''       !! of the joint that it belongs to
     logical :: is_law = .false.           !! of a law for every joint that has none of its own
     logical :: is_model = .false.
+    character(len=24) :: instead_of = ''  !! group that a case cannot have beside it
     character(len=100) :: description = ''
     integer :: first = 1, last = 0        !! its keys in the table
   end type group_definition_t
@@ -126,14 +127,15 @@ contains
   end function shown_group
 
   !> A group; those of the second joint are groups of their own, and may all be left out.
-  subroutine collect_group(self, name, says, is_model, place)
+  subroutine collect_group(self, name, says, is_model, place, instead_of)
     class(schema_t), intent(inout) :: self
     character(len=*), intent(in) :: name, says
     logical, intent(in) :: is_model
-    character(len=*), intent(in), optional :: place
+    character(len=*), intent(in), optional :: place, instead_of
     self%n_groups = self%n_groups + 1
     associate (group => self%groups(self%n_groups))
       group = group_definition_t(name=name, is_model=is_model, description=says, first=self%n_keys + 1, last=self%n_keys)
+      if (present(instead_of)) group%instead_of = instead_of
       if (present(place)) then
         group%place = place
         if (place /= piston_pin_place) then

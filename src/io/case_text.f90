@@ -19,18 +19,25 @@ contains
     type(group_definition_t), intent(in) :: groups(:)
     type(key_t), intent(in) :: keys(:)
     character(len=:), allocatable :: text
+    character(len=:), allocatable :: out
     integer :: group, i
     text = '! '//first_line//newline
     do group = 1, size(groups)
       if (index(groups(group)%name, '.') > 0) cycle   ! the same once more, for another joint
-      text = text//newline//'! '//trim(groups(group)%description)//newline//'&'//trim(groups(group)%name)//newline
+      out = ''
+      text = text//newline//'! '//trim(groups(group)%description)//newline
+      if (groups(group)%instead_of /= '') then
+        text = text//'! (not beside &'//trim(groups(group)%instead_of)//', so out of this case)'//newline
+        out = '! '
+      end if
+      text = text//out//'&'//trim(groups(group)%name)//newline
       if (groups(group)%place /= '' .or. groups(group)%is_law) text = text//'  ! place = ''crank_pin''                   '// &
         'in a second group of this name: '//trim(merge('the joint of crank and rod', 'laws for that joint alone ', &
         groups(group)%place /= ''))//newline
       do i = 1, size(keys)
-        if (keys(i)%group == groups(group)%name) text = text//template_line(keys, keys(i))//newline
+        if (keys(i)%group == groups(group)%name) text = text//out//template_line(keys, keys(i))//newline
       end do
-      text = text//'/'//newline
+      text = text//out//'/'//newline
     end do
   end function template_text
 

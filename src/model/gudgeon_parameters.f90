@@ -93,12 +93,14 @@ contains
 
   !> What follows belongs to this group. A model's group may be left out of a case, and the model is then absent from its scene.
   !> A group with a place may stand in a case once for each place.
-  subroutine pass_group(self, name, says, is_model, place)
+  subroutine pass_group(self, name, says, is_model, place, instead_of)
     class(parameter_list_t), intent(inout) :: self
     character(len=*), intent(in) :: name, says
     logical, intent(in) :: is_model
     character(len=*), intent(in), optional :: place
-    associate (unused => self, unused_name => name, unused_text => says, unused_switch => is_model, unused_place => present(place))
+    character(len=*), intent(in), optional :: instead_of   !! group that a case cannot have beside it
+    associate (unused => self, unused_name => name, unused_text => says, unused_switch => is_model, &
+               unused_place => present(place), unused_group => present(instead_of))
     end associate
   end subroutine pass_group
 

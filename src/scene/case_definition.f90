@@ -235,8 +235,8 @@ contains
     character(len=*), intent(in) :: place
     class(parameter_list_t), intent(inout) :: list
     type(asperities_t) :: described
-    call list%group('asperities', 'rough surfaces that touch through the film, instead of contact; left out: smooth', &
-      .true., place)
+    call list%group('asperities', 'rough surfaces that touch through the film: leave the group out for smooth ones', .true., &
+      place, instead_of='contact')
     if (.not. list%sets) then
       call described%parameters(list)
       return
