@@ -7,7 +7,7 @@ module test_friction_runs
   use case_file, only: read_case
   use ode_problem, only: difference_jacobian
   use gudgeon_scene, only: scene_t, phase_contact
-  use chain_motion, only: piston_pin
+  use chain_motion, only: piston_pin, crank_pin
   use scene_builder, only: build_scene
   use collecting_sink, only: trace_t, run_case, column
   use state_making, only: put_crank, put_pin
@@ -29,6 +29,7 @@ contains
     call bristles_live_in_contact(check)
     call work_of_friction(check)
     call stiff_bristles_are_found(check)
+    call bristles_at_both_pins(check)
   end subroutine run_test_friction_runs
 
   !> While the surfaces slide, the friction is that of sliding; while they stick it may be larger, up to that of rest.
@@ -246,4 +247,33 @@ contains
     call check%that(auto%report%statistics%evaluations < 0.2_dp*adams%report%statistics%evaluations, &
       'and needs a small part of the evaluations of Adams')
   end subroutine stiff_bristles_are_found
+
+  !> Bristles at both pins, a state at each: two methods give the same contacts, and each pin has its own bristles and its own work.
+  subroutine bristles_at_both_pins(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace(2)
+    character(len=long) :: overrides(8)
+    integer :: i, n
+    overrides = [character(len=long) :: 'friction.law=elasto_plastic', 'friction.coefficient=0.1', &
+      'friction.static_coefficient=0.15', 'friction.bristle_stiffness=2e4', 'friction.stribeck_speed=1e-2', &
+      'integrator.relative_tolerance=1e-10', 'integrator.revolutions=0.15', 'integrator.method=adams']
+    trace(1) = run_case('cases/joints/both_pins.nml', overrides)
+    overrides(8) = 'integrator.method=radau'
+    trace(2) = run_case('cases/joints/both_pins.nml', overrides)
+    call check%that(.not. (allocated(trace(1)%error) .or. allocated(trace(2)%error)), 'bristles at both pins run')
+    if (allocated(trace(1)%error) .or. allocated(trace(2)%error)) return
+    n = size(trace(1)%event)
+    call check%that(n > 8 .and. size(trace(2)%event) == n, 'with as many contacts by either method')
+    if (size(trace(2)%event) == n) call check%close_to(maxval(abs(trace(2)%event%time - trace(1)%event%time)), 0.0_dp, 1e-8_dp, &
+      'at the same instants')
+    do i = 1, 2
+      associate (z => trace(i)%values(column(trace(i), 'bristle[m]'), :), &
+                 z_crank => trace(i)%values(column(trace(i), 'crank_pin_bristle[m]'), :), f => trace(i)%report%figures)
+        call check%that(maxval(abs(z)) > 1e-6_dp .and. maxval(abs(z_crank)) > 1e-6_dp, 'bristles bend at both pins')
+        call check%that(maxval(abs(z - z_crank)) > 1e-6_dp, 'each pin has its own')
+        call check%that(f%pin(piston_pin)%friction_work < 0 .and. f%pin(crank_pin)%friction_work < 0, 'and its own work')
+        call check%close_to(f%max_energy_residual/f%max_energy, 0.0_dp, 1e-8_dp, 'energy with bristles at both pins')
+      end associate
+    end do
+  end subroutine bristles_at_both_pins
 end module test_friction_runs

@@ -4,6 +4,9 @@
 !> over the normal force (the parameters of Canudas de Wit et al. divided by it), so that |z| <= c_s/s_0 whatever the load, and the
 !> friction vanishes with the load. The price: the energy of the bristles, F_N s_0 z^2/2, follows the load, so where the load swings
 !> while they are bent, friction may give energy, up to this much in each swing.
+!> Measured in cases/friction/lugre over a revolution, as a share of what friction takes: 1e-4 at 5000 rpm, 3e-3 at 500 rpm, 1e-2
+!> at 50 rpm; 1e-5 with five times the stiffness. Bristles that unbend as the load grows (z' less z F_N'/F_N while that is positive)
+!> give none, but friction then takes 3, 14 and 9 % less: they are not offered.
 module bristle_law
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: parameter_list_t
