@@ -27,10 +27,11 @@ program measure_costs
 
   integer, parameter :: n_states = 64, blocks = 31, calls = 6400, steps_in_block = 2000
   real(dp), parameter :: no_difference = 1e-200_dp   !! times any result: added to an angle or a state it changes nothing
-  integer, parameter :: name_length = 28, n_scenes = 16, n_quantities = 8
+  integer, parameter :: name_length = 28, n_scenes = 20, n_quantities = 8
   character(len=name_length), parameter :: scenes(n_scenes) = [character(len=name_length) :: 'ideal', 'ideal+gas', 'free', &
-    'free+gas', 'contact_hertz', 'contact', 'contact+quadrature', 'contact+ambrosio', 'contact+coulomb', 'closed_form', &
-    'closed_form+quadrature', 'closed_form+gas', 'as_printed', 'half_film', 'oscillating', 'oscillating_as_printed']
+    'free+gas', 'contact_hertz', 'contact', 'contact+quadrature', 'contact+ambrosio', 'contact+coulomb', &
+    'contact+brown_mcphee', 'contact+stribeck', 'contact+lugre', 'contact+elasto_plastic', &
+    'closed_form', 'closed_form+quadrature', 'closed_form+gas', 'as_printed', 'half_film', 'oscillating', 'oscillating_as_printed']
   character(len=name_length), parameter :: quantities(n_quantities) = [character(len=name_length) :: 'rhs', &
     'rhs_in_turn', 'step', 'events', 'step+figures', 'row', 'row_no_reactions', 'row_time_and_angle']
   character(len=name_length) :: scene_name, quantity, text
@@ -67,25 +68,30 @@ contains
     type(error_t), allocatable :: error
     character(len=*), parameter :: oscillating(2) = [character(len=40) :: 'lubrication.law=oscillating_film', &
       'lubrication.kinematic_viscosity=1.38e-5']
-    character(len=40) :: law
+    character(len=*), parameter :: friction(3) = [character(len=40) :: &
+      'friction.transition_speed=1e-3', 'friction.stribeck_speed=1e-2', 'friction.bristle_stiffness=2e4']
+    character(len=40) :: law, friction_law, at_rest
     logical :: dry
 
     law = 'contact.law=lankarani_nikravesh'
     if (index(name, 'hertz') > 0) law = 'contact.law=hertz'
-    if (index(name, 'coulomb') > 0) law = 'friction.law=coulomb'
+    friction_law = 'friction.law=ambrosio'
+    if (index(name, 'contact+') == 1 .and. index(name, 'quadrature') == 0) friction_law = 'friction.law='//name(9:)
+    at_rest = 'friction.static_coefficient=0.1'
+    if (index(name, 'coulomb') > 0) at_rest = 'friction.static_coefficient=0.0'
     if (index(name, 'as_printed') > 0) law = 'lubrication.variant=as_printed'
     if (index(name, 'half_film') > 0) law = 'lubrication.variant=half_film'
     dry = index(name, 'contact') == 1
     if (dry .and. along_case(quantity)) then
-      call read_case('cases/flores/friction_050.nml', [law], case, error)
+      call read_case('cases/flores/friction_050.nml', [law, friction_law, at_rest, friction], case, error)
     else if (index(name, 'oscillating') == 1) then
       call read_case('cases/sim_IV.nml', [law, oscillating], case, error)
     else
-      call read_case('cases/sim_IV.nml', [law], case, error)
+      call read_case('cases/sim_IV.nml', [law, friction_law, at_rest, friction], case, error)
     end if
     if (allocated(error)) error stop 'measure_costs: run it from the top of the checkout'
     if (index(name, '+gas') == 0 .and. allocated(case%combustion)) deallocate (case%combustion)
-    if (index(name, 'ambrosio') + index(name, 'coulomb') == 0) deallocate (case%joint%friction)
+    if (index(name, 'contact+') /= 1 .or. index(name, 'quadrature') > 0) deallocate (case%joint%friction)
     if (dry .or. index(name, 'free') == 1 .or. index(name, 'ideal') == 1) then
       if (allocated(case%joint%film)) deallocate (case%joint%film)
     end if
@@ -122,6 +128,7 @@ contains
       associate (at => scene%joints(1)%at)
         y(at%position:at%position + 1, i) = reach*[cos(turn), sin(turn)]
         y(at%rate:at%rate + 1, i) = 2e-3_dp*[cos(3*turn), sin(5*turn)]
+        if (scene%n_states() > 0) y(scene%joints(1)%friction_states%first, i) = 1e-6_dp*cos(7*turn)
       end associate
     end do
   end subroutine make_states
