@@ -5,7 +5,7 @@ module case_file
   use text_tools, only: lowercase, printable, integer_text, case_name
   use text_file, only: read_text_file
   use case_definition, only: case_t, piston_pin_place, crank_pin_place
-  use case_schema, only: key_t, group_definition_t, case_schema_of, find_group, is_listed, shown_group
+  use case_schema, only: key_t, group_definition_t, case_schema_of, find_group, is_listed, shown_group, text_kind
   use case_values, only: case_values_t
   use case_loader, only: load_case
   use case_rules, only: check_rules
@@ -57,8 +57,11 @@ contains
     character(len=*), intent(in) :: text, path, overrides(:)
     type(case_values_t), intent(out) :: values
     type(error_t), allocatable, intent(out) :: error
+    type(group_definition_t), allocatable :: groups(:)
+    type(key_t), allocatable :: keys(:)
     integer :: i
-    call values%set_defaults(path)
+    call case_schema_of(groups, keys)
+    call values%set_schema(path, groups, keys)
     call take_file(values, text, error)
     if (allocated(error)) return
     do i = 1, size(overrides)
@@ -211,7 +214,7 @@ contains
     call values%find(group, key, at, place, error)
     if (allocated(error)) return
     text = trim(adjustl(override(equals + 1:)))
-    if (values%takes_bare_text(place) .and. verify(text//' ', '''"') == 1) then
+    if (values%keys(place)%kind == text_kind .and. verify(text//' ', '''"') == 1) then
       allocate (tokens(1))
       tokens(1)%text = text
     else

@@ -2,7 +2,8 @@
 module case_lock
   use gudgeon_errors, only: error_t, fail, status_output
   use text_tools, only: printable
-  use gudgeon_posix, only: open_to_lock, lock_file, is_file, close_file, remove_file, error_text, error_interrupted, error_locked, &
+  use result_file, only: fail_with_file
+  use gudgeon_posix, only: open_to_lock, lock_file, is_file, close_file, remove_file, error_interrupted, error_locked, &
     error_exists, error_no_entry
   implicit none
   private
@@ -36,7 +37,7 @@ contains
       if ((status == error_exists .or. status == error_no_entry) .and. try < most_tries) cycle   ! another run is just beginning
       if (status /= 0) then
         self%descriptor = -1
-        call fail(error, printable(self%path, 200)//': '//error_text(status), status_output)
+        call fail_with_file(self%path, status, error)
         return
       end if
       call lock_file(self%descriptor, status)

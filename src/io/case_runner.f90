@@ -12,7 +12,7 @@ module case_runner
   use gudgeon_scene, only: scene_t
   use scene_builder, only: build_scene
   use case_run, only: case_run_t, name_file
-  use result_file, only: result_file_t
+  use result_file, only: result_file_t, fail_with_file
   use run_identity, only: identity_length, identity_of, twin_identity
   use case_lock, only: case_lock_t
   use gudgeon_posix, only: make_directory, synchronise_folder, file_length, interrupted, error_text
@@ -151,7 +151,7 @@ contains
     self%has_place = .true.
     call make_directory(options%out, status)
     if (status /= 0) then
-      call fail(self%error, printable(options%out, 200)//': '//error_text(status), status_output)
+      call fail_with_file(options%out, status, self%error)
     else
       call self%lock%take(self%run%base, self%error)
     end if

@@ -3,8 +3,8 @@
 module case_values
   use gudgeon_errors, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text, nearest_word
-  use case_schema, only: key_t, group_definition_t, case_schema_of, find_key, find_group, is_listed, shown_group, &
-    real_kind, integer_kind, text_kind
+  use case_schema, only: key_t, group_definition_t, find_key, find_group, is_listed, shown_group, &
+    real_kind, integer_kind
   use namelist_reader, only: token_t
   use case_value, only: value_t, set_to_default, convert, find_decimal_comma, is_default, element_is_within, unit_of, most_reals
   implicit none
@@ -18,7 +18,6 @@ module case_values
     logical, allocatable :: is_present(:)          !! by group
     type(value_t), allocatable :: values(:)        !! by key
   contains
-    procedure :: set_defaults
     procedure :: set_schema
     procedure :: find         !! the place of a key
     procedure :: assign       !! values as written, to a key
@@ -35,20 +34,9 @@ module case_values
     procedure :: is_in_range
     procedure :: refuse       !! the error for a value
     procedure :: is_given
-    procedure :: takes_bare_text
   end type case_values_t
 
 contains
-
-  !> Every key of a case at its default, every group absent.
-  subroutine set_defaults(self, file)
-    class(case_values_t), intent(inout) :: self
-    character(len=*), intent(in) :: file
-    type(group_definition_t), allocatable :: groups(:)
-    type(key_t), allocatable :: keys(:)
-    call case_schema_of(groups, keys)
-    call self%set_schema(file, groups, keys)
-  end subroutine set_defaults
 
   !> Every key of a schema at its default, every group absent.
   subroutine set_schema(self, file, groups, keys)
@@ -378,11 +366,4 @@ contains
     character(len=*), intent(in) :: group, name
     given = self%values(find_key(self%keys, group, name))%given(1)
   end function is_given
-
-  !> Whether the key at `place` is a text, which an override may give without quotes.
-  pure logical function takes_bare_text(self, place) result(answer)
-    class(case_values_t), intent(in) :: self
-    integer, intent(in) :: place
-    answer = self%keys(place)%kind == text_kind
-  end function takes_bare_text
 end module case_values

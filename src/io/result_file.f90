@@ -10,7 +10,7 @@ module result_file
     error_no_entry, error_is_directory
   implicit none
   private
-  public :: result_file_t, write_text, remove_result
+  public :: result_file_t, write_text, remove_result, fail_with_file
 
   integer, parameter :: buffer_size = 65536   !! bytes; larger ones take longer, by the first use of their pages
 
@@ -58,7 +58,7 @@ contains
       call open_for_writing(path//'.part', self%descriptor, status)
       if (status /= error_interrupted) exit
     end do
-    if (status /= 0) call report(self, status, error)
+    if (status /= 0) call fail_with_file(self%path, status, error)
   end subroutine open_result
 
   !> Go on with the file that is to be called `path` from its first `length` bytes. What there is of it has the name `present`.
@@ -75,7 +75,7 @@ contains
     call open_for_appending(present, self%descriptor, status)
     if (status == 0) call truncate_file(self%descriptor, length, status)
     if (status == 0 .and. present /= path//'.part') call rename_file(present, path//'.part', status)
-    if (status /= 0) call report(self, status, error)
+    if (status /= 0) call fail_with_file(self%path, status, error)
   end subroutine reopen
 
   !> Add whole rows; `text` ends with an end of line.
@@ -110,7 +110,7 @@ contains
     if (self%descriptor < 0) return
     call reserve_file(self%descriptor, int(length, c_long), status)
     self%is_reserved = status == 0
-    if (status /= 0) call report(self, status, error)
+    if (status /= 0) call fail_with_file(self%path, status, error)
   end subroutine reserve
 
   !> Write out what waits in the buffer.
@@ -157,7 +157,7 @@ contains
   subroutine tell_error(self, error)
     class(result_file_t), intent(in) :: self
     type(error_t), allocatable, intent(out) :: error
-    if (self%status /= 0) call report(self, self%status, error)
+    if (self%status /= 0) call fail_with_file(self%path, self%status, error)
   end subroutine tell_error
 
   !> Write out the rest and give the file its final name. After a failed write it holds the whole rows that fitted (there
@@ -261,11 +261,11 @@ contains
     if (last < at) call truncate_file(self%descriptor, self%written, status)
   end subroutine write_rows
 
-  !> The error for an error number of the system.
-  subroutine report(self, status, error)
-    class(result_file_t), intent(in) :: self
+  !> The error for an error number of the system, met with a result.
+  subroutine fail_with_file(path, status, error)
+    character(len=*), intent(in) :: path
     integer, intent(in) :: status
     type(error_t), allocatable, intent(out) :: error
-    call fail(error, printable(self%path, 200)//': '//error_text(status), status_output)
-  end subroutine report
+    call fail(error, printable(path, 200)//': '//error_text(status), status_output)
+  end subroutine fail_with_file
 end module result_file

@@ -62,10 +62,6 @@ contains
     character(len=:), allocatable :: shown
     character(len=4) :: escaped
     integer :: i, bytes
-    if (len(text) <= limit .and. is_plain(text)) then
-      shown = text
-      return
-    end if
     shown = ''
     i = 1
     do while (i <= len(text))
@@ -84,17 +80,6 @@ contains
       i = i + max(bytes, 1)
     end do
   end function printable
-
-  !> Whether the text is ASCII without control characters, as nearly all are.
-  pure logical function is_plain(text)
-    character(len=*), intent(in) :: text
-    integer :: i
-    is_plain = .false.
-    do i = 1, len(text)
-      if (ichar(text(i:i)) < 32 .or. ichar(text(i:i)) > 126) return
-    end do
-    is_plain = .true.
-  end function is_plain
 
   !> Whether a character of UTF-8 beyond ASCII is a blank, has no width or turns the direction of writing: U+00A0, U+00AD,
   !> U+2000-200F, U+2028-202F, U+205F-206F, U+3000, U+FEFF.

@@ -99,30 +99,18 @@ contains
     class(archive_t), intent(inout) :: self
     real(dp), intent(inout) :: values(:)
     character(len=8*size(values)) :: block
-    integer :: i
-    do i = 1, size(values)
-      block(8*i - 7:8*i) = transfer(values(i), block(:8))
-    end do
+    block = transfer(values, block)
     call exchange_block(self, 'r', size(values), block)
-    if (.not. self%is_reading) return
-    do i = 1, size(values)
-      values(i) = transfer(block(8*i - 7:8*i), values(i))
-    end do
+    if (self%is_reading) values = transfer(block, values)
   end subroutine exchange_reals
 
   subroutine exchange_integers(self, values)
     class(archive_t), intent(inout) :: self
     integer, intent(inout) :: values(:)
     character(len=4*size(values)) :: block
-    integer :: i
-    do i = 1, size(values)
-      block(4*i - 3:4*i) = transfer(values(i), block(:4))
-    end do
+    block = transfer(values, block)
     call exchange_block(self, 'i', size(values), block)
-    if (.not. self%is_reading) return
-    do i = 1, size(values)
-      values(i) = transfer(block(4*i - 3:4*i), values(i))
-    end do
+    if (self%is_reading) values = transfer(block, values)
   end subroutine exchange_integers
 
   subroutine exchange_long(self, value)

@@ -2,17 +2,18 @@
 !> end; at the end rows stand in the order of the runs. What a killed program or a power cut has left can be taken up again.
 !>
 !> The first field of a row is the number of its run. Only where each run's rows stand in the file is kept in memory, and the
-!> rows that wait to be written: whoever has several files decides which is on the disk before another.
+!> rows that wait to be written: whoever has several files decides which is on the disk before another. A file that was not
+!> prepared is not wanted: nothing is done with it.
 module row_file
   use, intrinsic :: iso_fortran_env, only: int64
   use, intrinsic :: iso_c_binding, only: c_long
   use gudgeon_errors, only: error_t, fail, status_output, status_integration
   use text_tools, only: printable, whole_number
   use growing_text, only: growing_text_t
-  use result_file, only: result_file_t
+  use result_file, only: result_file_t, fail_with_file
   use gudgeon_posix, only: open_for_reading, open_for_appending, read_at, read_bytes, write_bytes, truncate_file, &
     synchronise_file, &
-    synchronise_folder, close_file, error_text, error_interrupted, error_no_entry, interrupted
+    synchronise_folder, close_file, error_interrupted, error_no_entry, interrupted
   implicit none
   private
   public :: row_file_t
@@ -81,6 +82,7 @@ contains
   pure subroutine drop(self, run)
     class(row_file_t), intent(inout) :: self
     integer, intent(in) :: run
+    if (.not. allocated(self%length)) return
     self%length(run) = 0
     self%rows(run) = 0
   end subroutine drop
@@ -92,10 +94,11 @@ contains
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: buffer, line
     integer :: descriptor, status, done, ignored, first, next, previous
+    if (.not. allocated(self%path)) return
     call open_for_reading(self%path, descriptor, status)
     if (status == error_no_entry) return
     if (status /= 0) then
-      call report(self, status, error)
+      call fail_with_file(self%path, status, error)
       return
     end if
     allocate (character(len=65536) :: buffer)
@@ -121,7 +124,7 @@ contains
     self%size = self%size + len(line)
     self%written = self%size
     call close_file(descriptor, ignored)
-    if (status /= 0) call report(self, status, error)
+    if (status /= 0) call fail_with_file(self%path, status, error)
   end subroutine take_up
 
   !> One line, ended, at the end of what has been read. `previous` is the run of the line before.
@@ -190,6 +193,7 @@ contains
     class(row_file_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
     integer :: status
+    if (.not. allocated(self%path)) return
     status = error_no_entry
     if (self%size == len(self%header) + sum(int(self%length, int64))) &
       call open_for_appending(self%path, self%descriptor, status)
@@ -197,7 +201,7 @@ contains
     call self%rewrite(error)
     if (allocated(error)) return
     call open_for_appending(self%path, self%descriptor, status)
-    if (status /= 0) call report(self, status, error)
+    if (status /= 0) call fail_with_file(self%path, status, error)
   end subroutine begin
 
   !> Add all rows of a run to those that wait.
@@ -234,7 +238,7 @@ contains
     self%waiting%used = 0
     if (self%status /= 0) then
       if (at > 0) call truncate_file(self%descriptor, int(self%written, c_long), ignored)
-      call report(self, self%status, error)
+      call fail_with_file(self%path, self%status, error)
     else
       self%written = self%written + at
     end if
@@ -246,7 +250,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     if (self%descriptor < 0) return
     if (self%status == 0) call synchronise_file(self%descriptor, self%status)
-    if (self%status /= 0) call report(self, self%status, error)
+    if (self%status /= 0) call fail_with_file(self%path, self%status, error)
   end subroutine synchronise
 
   !> Close the file; where the study is `complete`, with its rows in order.
@@ -259,7 +263,7 @@ contains
     call close_file(self%descriptor, status)
     self%descriptor = -1
     if (status /= 0 .and. status /= error_interrupted) then
-      call report(self, status, error)
+      call fail_with_file(self%path, status, error)
     else if (complete .and. .not. self%is_in_order()) then
       call self%rewrite(error)
     end if
@@ -292,7 +296,7 @@ contains
     status = 0
     if (any(self%length > 0)) call open_for_reading(self%path, descriptor, status)
     if (status == 0) call file%open(self%path, error)
-    if (status /= 0) call report(self, status, error)
+    if (status /= 0) call fail_with_file(self%path, status, error)
     if (.not. allocated(error)) call file%put(self%header)
     at = len(self%header)
     allocate (character(len=max(1, maxval(self%length))) :: buffer)
@@ -303,7 +307,7 @@ contains
         call read_at(descriptor, int(self%at(run), c_long), rows, done, status)
         if (done == len(rows)) call file%put(rows)
         if (done < len(rows)) call fail(error, printable(self%path, 200)//': changed while it was written', status_output)
-        if (status /= 0) call report(self, status, error)
+        if (status /= 0) call fail_with_file(self%path, status, error)
       end associate
       if (mod(run, 1000) == 0) then
         if (interrupted()) call fail(error, printable(self%path, 200)//': interrupted while its rows were put in order; the '// &
@@ -320,17 +324,9 @@ contains
       call file%synchronise()
       call file%close(error, whole_only=.true.)
       call synchronise_folder(self%path, status)
-      if (status /= 0 .and. .not. allocated(error)) call report(self, status, error)
+      if (status /= 0 .and. .not. allocated(error)) call fail_with_file(self%path, status, error)
     end if
     self%size = at
     self%written = at
   end subroutine rewrite
-
-  !> The error for an error number of the system.
-  subroutine report(self, status, error)
-    class(row_file_t), intent(in) :: self
-    integer, intent(in) :: status
-    type(error_t), allocatable, intent(out) :: error
-    call fail(error, printable(self%path, 200)//': '//error_text(status), status_output)
-  end subroutine report
 end module row_file

@@ -6,14 +6,14 @@ module study_runner
   use gudgeon_errors, only: error_t, fail, status_output, status_integration
   use text_tools, only: printable, integer_text
   use number_text, only: short_text
-  use result_file, only: write_text
+  use result_file, only: write_text, fail_with_file
   use command_line, only: command_line_t
   use gudgeon_progress, only: rate_text
   use case_runner, only: tell_warning
-  use gudgeon_posix, only: make_directory, synchronise_folder, error_text, interrupted, signal_set_t, hold_interrupts, &
+  use gudgeon_posix, only: make_directory, synchronise_folder, interrupted, signal_set_t, hold_interrupts, &
     restore_interrupts
   use text_file, only: read_text_file
-  use study_sweep, only: sweep_t, read_sweep, check_rows, study_checksum
+  use study_sweep, only: sweep_t, read_sweep, check_rows, study_checksum, file_cycles, file_strobes, file_runs
   use study_worker, only: study_worker_t
   use study_rows, only: run_header, cycle_header, strobe_header, cycles_column, strobes_column
   implicit none
@@ -74,12 +74,12 @@ contains
     character(len=:), allocatable :: label, before
     type(error_t), allocatable :: nothing_there
     logical :: resumes
-    integer :: status
+    integer :: status, i
 
     call make_directory(options%out, status)
     if (status == 0 .and. sweep%study%traces /= 'none') call make_directory(sweep%path, status)
     if (status /= 0) then
-      call fail(error, printable(options%out, 200)//': '//error_text(status), status_output)
+      call fail_with_file(options%out, status, error)
       return
     end if
     call sweep%lock%take(sweep%path, error)
@@ -94,9 +94,9 @@ contains
     end if
     call prepare_files(sweep)
     if (resumes) call take_up(sweep, error)
-    if (.not. allocated(error)) call sweep%runs%begin(error)
-    if (.not. allocated(error) .and. sweep%study%cycles) call sweep%cycles%begin(error)
-    if (.not. allocated(error) .and. sweep%has_strobes) call sweep%strobes%begin(error)
+    do i = size(sweep%files), 1, -1
+      if (.not. allocated(error)) call sweep%files(i)%begin(error)
+    end do
     if (allocated(error)) return
     call write_text(sweep%path//'.study.nml', label//sweep%study%resolved, error)
     if (.not. allocated(error)) call synchronise_folder(sweep%path, status)
@@ -106,11 +106,11 @@ contains
     type(sweep_t), intent(inout) :: sweep
     integer, parameter :: none(0) = 0
     associate (first => sweep%first, last => sweep%last, keys => sweep%design%keys)
-      call sweep%runs%prepare(sweep%path//'.runs.csv', run_header(keys, sweep%has_strobes), first, last, &
+      call sweep%files(file_runs)%prepare(sweep%path//'.runs.csv', run_header(keys, sweep%has_strobes), first, last, &
         [cycles_column(keys), strobes_column(keys)])
-      if (sweep%study%cycles) call sweep%cycles%prepare(sweep%path//'.cycles.csv', cycle_header(), first, last, none)
+      if (sweep%study%cycles) call sweep%files(file_cycles)%prepare(sweep%path//'.cycles.csv', cycle_header(), first, last, none)
       if (sweep%has_strobes) &
-        call sweep%strobes%prepare(sweep%path//'.strobe.csv', strobe_header(sweep%strobe_list), first, last, none)
+        call sweep%files(file_strobes)%prepare(sweep%path//'.strobe.csv', strobe_header(sweep%strobe_list), first, last, none)
     end associate
   end subroutine prepare_files
 
@@ -119,19 +119,19 @@ contains
   subroutine take_up(sweep, error)
     type(sweep_t), intent(inout) :: sweep
     type(error_t), allocatable, intent(out) :: error
-    integer :: run, cycles, strobes
+    integer :: run, cycles, strobes, i
     logical :: fits
-    call sweep%runs%take_up(error)
-    if (.not. allocated(error) .and. sweep%study%cycles) call sweep%cycles%take_up(error)
-    if (.not. allocated(error) .and. sweep%has_strobes) call sweep%strobes%take_up(error)
-    if (allocated(error)) return
+    do i = size(sweep%files), 1, -1
+      call sweep%files(i)%take_up(error)
+      if (allocated(error)) return
+    end do
     do run = sweep%first, sweep%last
-      fits = sweep%runs%has(run)
+      fits = sweep%files(file_runs)%has(run)
       if (fits) then
-        cycles = sweep%runs%numbers(1, run)   ! none of a run that failed
-        strobes = sweep%runs%numbers(2, run)
-        if (sweep%study%cycles) fits = sweep%cycles%rows(run) == cycles
-        if (sweep%has_strobes) fits = fits .and. sweep%strobes%rows(run) == strobes
+        cycles = sweep%files(file_runs)%numbers(1, run)   ! none of a run that failed
+        strobes = sweep%files(file_runs)%numbers(2, run)
+        if (sweep%study%cycles) fits = sweep%files(file_cycles)%rows(run) == cycles
+        if (sweep%has_strobes) fits = fits .and. sweep%files(file_strobes)%rows(run) == strobes
         if (fits .and. cycles > 0 .and. sweep%study%traces == 'all') &
           inquire (file=sweep%path//'/'//integer_text(run)//'.csv', exist=fits)
         if (.not. fits) sweep%incomplete = sweep%incomplete + 1
@@ -140,9 +140,9 @@ contains
         sweep%began = sweep%began + 1
         if (cycles == 0) sweep%failed = sweep%failed + 1
       else
-        call sweep%runs%drop(run)
-        if (sweep%study%cycles) call sweep%cycles%drop(run)
-        if (sweep%has_strobes) call sweep%strobes%drop(run)
+        do i = 1, size(sweep%files)
+          call sweep%files(i)%drop(run)
+        end do
       end if
     end do
     sweep%done = sweep%began
@@ -178,7 +178,7 @@ contains
       !$omp atomic read
       is_over = sweep%is_over
       if (is_over .or. run > sweep%last) exit
-      if (sweep%runs%has(run)) cycle
+      if (sweep%files(file_runs)%has(run)) cycle
       call worker%run(sweep%design, run)
       !$omp critical (study_results)
       call take_results(sweep, worker, run)
@@ -197,12 +197,13 @@ contains
     if (allocated(worker%output_error) .and. .not. allocated(sweep%error)) call move_alloc(worker%output_error, sweep%error)
     if (.not. (worker%was_interrupted .or. allocated(sweep%error))) then
       !$omp critical (texts)
-      call sweep%cycles%append(run, worker%cycle_rows%text(:worker%cycle_rows%used))
-      call sweep%strobes%append(run, worker%strobe_rows%text(:worker%strobe_rows%used))
-      call sweep%runs%append(run, worker%run_row%text(:worker%run_row%used))
+      call sweep%files(file_cycles)%append(run, worker%cycle_rows%text(:worker%cycle_rows%used))
+      call sweep%files(file_strobes)%append(run, worker%strobe_rows%text(:worker%strobe_rows%used))
+      call sweep%files(file_runs)%append(run, worker%run_row%text(:worker%run_row%used))
       sweep%done = sweep%done + 1
       if (.not. worker%is_done) sweep%failed = sweep%failed + 1
-      if (clock() > sweep%next_write .or. sweep%cycles%bytes_waiting() + sweep%strobes%bytes_waiting() > most_waiting) &
+      if (clock() > sweep%next_write .or. &
+          sweep%files(file_cycles)%bytes_waiting() + sweep%files(file_strobes)%bytes_waiting() > most_waiting) &
         call write_rows(sweep, sweep%error)
       call sweep%progress%update_runs(sweep%done, sweep%last - sweep%first + 1, sweep%began)
       !$omp end critical (texts)
@@ -219,15 +220,13 @@ contains
     type(sweep_t), intent(inout) :: sweep
     type(error_t), allocatable, intent(inout) :: error
     real(dp) :: began, ended
-    integer :: unimportant
+    integer :: unimportant, i
     began = clock()
     if (sweep%study%traces /= 'none') call synchronise_folder(sweep%path//'/', unimportant)
-    call sweep%cycles%write(error)
-    if (.not. allocated(error)) call sweep%strobes%write(error)
-    if (.not. allocated(error)) call sweep%cycles%synchronise(error)
-    if (.not. allocated(error)) call sweep%strobes%synchronise(error)
-    if (.not. allocated(error)) call sweep%runs%write(error)
-    if (.not. allocated(error)) call sweep%runs%synchronise(error)
+    do i = 1, size(sweep%files)
+      if (.not. allocated(error)) call sweep%files(i)%write(error)
+      if (.not. allocated(error)) call sweep%files(i)%synchronise(error)
+    end do
     ended = clock()
     sweep%next_write = ended + min(most_interval, max(least_interval, intervals*(ended - began)))
   end subroutine write_rows
@@ -244,15 +243,14 @@ contains
     type(sweep_t), intent(inout) :: sweep
     type(error_t), allocatable :: error
     logical :: complete
+    integer :: i
     call write_rows(sweep, error)
     call keep_first(error, sweep%error)
     complete = sweep%done == sweep%last - sweep%first + 1 .and. .not. allocated(sweep%error)
-    call sweep%cycles%finish(complete, error)
-    call keep_first(error, sweep%error)
-    call sweep%strobes%finish(complete, error)
-    call keep_first(error, sweep%error)
-    call sweep%runs%finish(complete, error)
-    call keep_first(error, sweep%error)
+    do i = 1, size(sweep%files)
+      call sweep%files(i)%finish(complete, error)
+      call keep_first(error, sweep%error)
+    end do
   end subroutine close_files
 
   subroutine keep_first(error, kept)

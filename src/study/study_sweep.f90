@@ -22,8 +22,9 @@ module study_sweep
   use case_lock, only: case_lock_t
   implicit none
   private
-  public :: sweep_t, read_sweep, check_rows, study_checksum
+  public :: sweep_t, read_sweep, check_rows, study_checksum, file_cycles, file_strobes, file_runs
 
+  integer, parameter :: file_cycles = 1, file_strobes = 2, file_runs = 3   !! of a sweep's files, the first two where they are wanted
   integer, parameter :: most_checked = 100000   !! runs of a design that a check looks at
 
   !> A study under way, shared by the threads that run it.
@@ -35,7 +36,7 @@ module study_sweep
     character(len=:), allocatable :: path          !! of the results, without their endings
     integer :: first = 1, last = 0                 !! runs to run
     logical :: is_drawn = .false.                  !! the design is a smaller one that stands for that of the study in a check
-    type(row_file_t) :: runs, cycles, strobes
+    type(row_file_t) :: files(3)                   !! in the order in which their rows go to the disk; see file_...
     type(progress_t) :: progress
     type(case_lock_t) :: lock
     logical :: has_strobes = .false.
