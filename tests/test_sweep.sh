@@ -48,6 +48,45 @@ for kind in runs cycles strobe; do
 done
 same "chunks" "$work/chunks"
 
+# the crank pin: its columns behind those of every study, empty where it is ideal
+cp cases/joints/both_pins.nml "$work/both.nml"
+study pins <<'END'
+&study case = 'both.nml', cycles = T /
+&parameter key = 'crank_pin.joint.clearance', values = 5e-5, 1e-4 /
+END
+run sweep -j 1 -o "$work/pins" "$work/pins.nml"
+check "a study of the crank pin runs, status $status" [ "$status" = 0 ]
+check "every row of it has every column" [ "$(awk -F, '{print NF}' "$work/pins/pins.runs.csv" | sort -u)" = 25 ]
+check "and every revolution" [ "$(awk -F, '{print NF}' "$work/pins/pins.cycles.csv" | sort -u)" = 17 ]
+run -q -o "$work/single" -s crank_pin.joint.clearance=1e-4 "$work/both.nml"
+named() { awk -F, -v row="$2" -v name="$3" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) k = i } NR == row + 1 { print $k }' "$1"; }
+for quantity in 'min_film_thickness m' 'max_penetration m' 'max_pin_force N'; do
+  for pin in '' crank_pin_; do
+    check "the run is the case: $pin${quantity% *}" [ "$(named "$work/pins/pins.runs.csv" 2 "$pin${quantity% *}[${quantity#* }]")" = \
+      "$(field "$work/single/both.summary.csv" "$pin${quantity% *}")" ]
+  done
+done
+check "two pins, two forces" [ "$(named "$work/pins/pins.runs.csv" 2 'mean_pin_force[N]')" != \
+  "$(named "$work/pins/pins.runs.csv" 2 'crank_pin_mean_pin_force[N]')" ]
+# the integral of the force against the trace, whose rows are close where the pins rest
+close() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a - b < 0.02 * b && b - a < 0.02 * b) }'; }
+run -q -o "$work/fine" -s crank_pin.joint.clearance=1e-4 -s output.samples_per_revolution=100000 "$work/both.nml"
+for names in 'pin_force_x[N] pin_force_y[N] mean_pin_force[N]' \
+    'crank_pin_normal_force[N] crank_pin_friction_force[N] crank_pin_mean_pin_force[N]'; do
+  set -- $names
+  mean=$(awk -F, -v x="$1" -v y="$2" 'NR == 1 { for (i = 1; i <= NF; i++) { if ($i == x) a = i; if ($i == y) b = i }; next }
+    { sum += sqrt($a * $a + $b * $b) } END { print sum / (NR - 1) }' "$work/fine/both.csv")
+  check "$3: rows of the trace say $mean" close "$mean" "$(named "$work/pins/pins.runs.csv" 2 "$3")"
+done
+study pins <<'END'
+&study case = 'both.nml', cycles = T /
+&parameter key = 'crank_pin.joint.kind', values = 'clearance', 'ideal' /
+END
+run sweep -j 1 -o "$work/ideal" "$work/pins.nml"
+check "an ideal crank pin among them, status $status" [ "$status" = 0 ]
+check "has no figures" [ -z "$(named "$work/ideal/pins.runs.csv" 2 'crank_pin_max_pin_force[N]')" ]
+check "the piston pin has" [ -n "$(named "$work/ideal/pins.runs.csv" 2 'max_penetration[m]')" ]
+
 # what a killed program leaves: whole rows in any order, a torn one, revolutions of a run that has no row
 mkdir "$work/torn"
 cp "$work/one/grid.study.nml" "$work/torn"

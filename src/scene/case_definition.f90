@@ -93,6 +93,7 @@ module case_definition
     type(output_case_t) :: output
   contains
     procedure :: has_contact
+    procedure :: has_play
   end type case_t
 
   !> The places of joints, as a case names them. A group &joint without a place is the first's, a law's group without one is for
@@ -106,6 +107,12 @@ contains
     class(case_t), intent(in) :: self
     has_contact = allocated(self%joint%contact) .or. allocated(self%crank_pin%contact)
   end function has_contact
+
+  !> Whether there is a joint with clearance.
+  pure logical function has_play(self)
+    class(case_t), intent(in) :: self
+    has_play = self%joint%has_clearance() .or. self%crank_pin%has_clearance()
+  end function has_play
 
   !> Whether the joint has clearance.
   pure logical function has_clearance(self)

@@ -16,7 +16,7 @@ module study_worker
   use study_design, only: study_design_t
   use study_case, only: study_case_t
   use row_text, only: row_text_t
-  use study_rows, only: write_run, write_failure, write_cycles, write_strobes
+  use study_rows, only: may_have_crank_pin, write_run, write_failure, write_cycles, write_strobes
   implicit none
   private
   public :: study_worker_t
@@ -41,6 +41,7 @@ module study_worker
     type(number_writer_t), private :: numbers
     character(len=:), allocatable, private :: values(:)
     character(len=:), allocatable, private :: trace_folder
+    logical, private :: has_crank_pin = .false.            !! the columns
     logical, private :: traces_all = .false., traces_failed = .false., writes_cycles = .false., writes_strobes = .false.
   contains
     procedure :: prepare
@@ -59,6 +60,7 @@ contains
     type(column_list_t), intent(in) :: strobe_list
     character(len=*), intent(in) :: trace_folder
     self%base = base
+    self%has_crank_pin = may_have_crank_pin(design%keys, base%case)
     self%trace_folder = trace_folder
     self%traces_all = study%traces == 'all'
     self%traces_failed = study%traces == 'failed'
@@ -107,17 +109,17 @@ contains
     if (self%was_interrupted .or. allocated(self%output_error)) return
     call self%cycle_rows%clear()
     call self%strobe_rows%clear()
-    associate (has_clearance => self%base%case%joint%has_clearance())
+    associate (case => self%base%case, has_crank_pin => self%has_crank_pin)
       if (allocated(error)) then
         call write_failure(self%run_row, self%numbers, number, self%values, reason_of(error%message), has_begun, &
-          self%writes_strobes, report)
+          self%writes_strobes, has_crank_pin, report)
       else if (self%watch%statistics%cycles == 0) then
         call write_failure(self%run_row, self%numbers, number, self%values, 'no whole revolution after settle_cycles', &
-          has_begun, self%writes_strobes, report)
+          has_begun, self%writes_strobes, has_crank_pin, report)
       else
         self%is_done = .true.
-        call write_run(self%run_row, self%numbers, number, self%values, self%watch, report, has_clearance)
-        if (self%writes_cycles) call write_cycles(self%cycle_rows, self%numbers, number, self%watch, has_clearance)
+        call write_run(self%run_row, self%numbers, number, self%values, self%watch, report, case, has_crank_pin)
+        if (self%writes_cycles) call write_cycles(self%cycle_rows, self%numbers, number, self%watch, case, has_crank_pin)
         if (self%writes_strobes) call write_strobes(self%strobe_rows, self%numbers, number, self%watch)
       end if
     end associate
