@@ -1,8 +1,9 @@
-!> What is written of a run of a study: its row among all runs, one for each of its revolutions, one for each strobe.
+!> What is written of a run of a study: its row among all runs, one for each of its revolutions, one for each strobe. The first row of
+!> each file, which names its columns, is put together by the same procedure as the others: name and value stand in one place.
 module study_rows
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
-  use chain_motion, only: crank_pin, piston_pin, name_prefix
+  use chain_motion, only: crank_pin, piston_pin
   use case_definition, only: case_t, crank_pin_place
   use gudgeon_columns, only: column_list_t, column_name
   use cycle_statistics, only: cycle_t, cycle_statistics_t
@@ -13,15 +14,52 @@ module study_rows
   use row_text, only: row_text_t
   implicit none
   private
-  public :: run_header, cycle_header, strobe_header, cycles_column, strobes_column, may_have_crank_pin
-  public :: write_run, write_failure, write_cycles, write_strobes
+  public :: study_row_t, run_header, cycle_header, strobe_header, cycles_column, strobes_column, may_have_crank_pin
+  public :: put_run, put_cycles, put_strobes
 
-  character(len=*), parameter :: newline = achar(10)
-  integer, parameter :: statistics_columns = 11   !! of a run, from the cycles to the dissipated energy
-  integer, parameter :: work_columns = 3          !! behind them
-  integer, parameter :: pin_columns = 8           !! of one pin among them
+  character(len=*), parameter :: crank_pin_prefix = crank_pin_place//'_'
+
+  !> A row, or several.
+  type, extends(row_text_t) :: study_row_t
+    logical :: is_header = .false.       !! it has the names of the columns
+    logical :: has_strobes = .false.     !! the study takes strobes
+    logical :: has_crank_pin = .false.   !! and has columns of the crank pin
+    type(number_writer_t) :: numbers
+  contains
+    procedure, private :: put_real, put_whole
+    generic :: put => put_real, put_whole
+  end type study_row_t
 
 contains
+
+  !> Put a number, or its column's name; an empty field where the scene does not have it.
+  pure subroutine put_real(self, name, value, is_there)
+    class(study_row_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    real(dp), intent(in) :: value
+    logical, intent(in) :: is_there
+    if (self%is_header) then
+      call self%add_text(name)
+    else if (is_there) then
+      call self%add_number(self%numbers, value)
+    else
+      call self%add_text('')
+    end if
+  end subroutine put_real
+
+  pure subroutine put_whole(self, name, number, is_there)
+    class(study_row_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: number
+    logical, intent(in) :: is_there
+    if (self%is_header) then
+      call self%add_text(name)
+    else if (is_there) then
+      call self%add_whole(number)
+    else
+      call self%add_text('')
+    end if
+  end subroutine put_whole
 
   !> Whether runs of a study may have clearance at the crank pin, and so its columns: those of the base case do, or a parameter is of
   !> that joint.
@@ -31,33 +69,21 @@ contains
     may_have_crank_pin = base%crank_pin%has_clearance() .or. any(index(keys, crank_pin_place//'.') == 1)
   end function may_have_crank_pin
 
-  !> First row of NAME.runs.csv. Behind what every study has stand how many strobes were taken, where there are any to take, and the
-  !> crank pin.
+  !> First row of NAME.runs.csv.
   function run_header(keys, has_strobes, has_crank_pin) result(text)
     character(len=*), intent(in) :: keys(:)
     logical, intent(in) :: has_strobes, has_crank_pin
     character(len=:), allocatable :: text
-    type(row_text_t) :: row
-    integer :: i
-    call row%add_text('run')
-    do i = 1, size(keys)
-      call row%add_text(keys(i))
-    end do
-    text = row%text(:row%used)//',status,cycles[-]'//run_columns('')//',mean_crank_speed[rad/s],'// &
-      'dissipated_energy[J],energy_residual[-],rhs_evaluations[-],simulated_time[s]'
-    if (has_strobes) text = text//',strobes[-]'
-    if (has_crank_pin) text = text//run_columns(name_prefix(crank_pin))
-    text = text//newline
+    type(study_row_t) :: row
+    type(cycle_watch_t) :: no_watch
+    type(run_report_t) :: no_report
+    type(case_t) :: no_case
+    row%is_header = .true.
+    row%has_strobes = has_strobes
+    row%has_crank_pin = has_crank_pin
+    call put_run(row, 0, keys, 'status', .false., no_watch, no_report, no_case)
+    text = row%text(:row%used)
   end function run_header
-
-  !> The columns of one pin there.
-  pure function run_columns(prefix) result(text)
-    character(len=*), intent(in) :: prefix
-    character(len=:), allocatable :: text
-    text = ','//prefix//'min_film_thickness[m],'//prefix//'min_film_thickness_mean[m],'//prefix//'contact_time_fraction[-],'// &
-      prefix//'impacts[-],'//prefix//'max_penetration[m],'//prefix//'max_pin_force[N],'//prefix//'max_pin_force_mean[N],'// &
-      prefix//'mean_pin_force[N]'
-  end function run_columns
 
   !> The column of cycles[-] in NAME.runs.csv: empty where a run has failed.
   pure integer function cycles_column(keys)
@@ -68,25 +94,20 @@ contains
   !> The column of strobes[-], where there is one.
   pure integer function strobes_column(keys)
     character(len=*), intent(in) :: keys(:)
-    strobes_column = cycles_column(keys) + statistics_columns + work_columns
+    strobes_column = cycles_column(keys) + 14
   end function strobes_column
 
   !> First row of NAME.cycles.csv.
   function cycle_header(has_crank_pin) result(text)
     logical, intent(in) :: has_crank_pin
     character(len=:), allocatable :: text
-    text = 'run,cycle,duration[s]'//cycle_columns('')//',mean_crank_speed[rad/s],dissipated_energy[J]'
-    if (has_crank_pin) text = text//cycle_columns(name_prefix(crank_pin))
-    text = text//newline
+    type(study_row_t) :: row
+    type(case_t) :: no_case
+    row%is_header = .true.
+    row%has_crank_pin = has_crank_pin
+    call put_cycle(row, 0, 0, cycle_t(duration=1.0_dp), 1.0_dp, no_case)
+    text = row%text(:row%used)
   end function cycle_header
-
-  !> The columns of one pin there.
-  pure function cycle_columns(prefix) result(text)
-    character(len=*), intent(in) :: prefix
-    character(len=:), allocatable :: text
-    text = ','//prefix//'min_film_thickness[m],'//prefix//'contact_time_fraction[-],'//prefix//'impacts[-],'// &
-      prefix//'max_penetration[m],'//prefix//'max_pin_force[N],'//prefix//'mean_pin_force[N]'
-  end function cycle_columns
 
   !> First row of NAME.strobe.csv.
   function strobe_header(list) result(text)
@@ -97,175 +118,127 @@ contains
     do i = 1, size(list%id)
       text = text//','//column_name(list, i)
     end do
-    text = text//newline
+    text = text//achar(10)
   end function strobe_header
 
-  !> The row of a run that is done, with at least one revolution.
-  subroutine write_run(row, numbers, run, values, watch, report, case, has_crank_pin)
-    type(row_text_t), intent(inout) :: row
-    type(number_writer_t), intent(in) :: numbers
+  !> The row of a run: what it came to if it began, its statistics if it is done, with at least one revolution. Behind what every
+  !> study has stand how many strobes were taken, where there are any to take, and the crank pin.
+  subroutine put_run(row, run, values, outcome, has_begun, watch, report, case)
+    class(study_row_t), intent(inout) :: row
     integer, intent(in) :: run
-    character(len=*), intent(in) :: values(:)
+    character(len=*), intent(in) :: values(:)   !! of the parameters; their keys in a first row
+    character(len=*), intent(in) :: outcome     !! done, or why not
+    logical, intent(in) :: has_begun
     type(cycle_watch_t), intent(in) :: watch
     type(run_report_t), intent(in) :: report
     type(case_t), intent(in) :: case
-    logical, intent(in) :: has_crank_pin   !! the columns
-    call begin_row(row, run, values)
-    call row%add_text('done')
-    associate (s => watch%statistics, total => watch%statistics%total)
-      call row%add_whole(s%cycles)
-      call add_run_columns(row, numbers, s, piston_pin, case%joint%has_clearance(), .true.)
-      call row%add_number(numbers, watch%direction*two_pi*s%cycles/total%duration)
-      call add(row, numbers, s%dissipated_energy_mean(), case%has_play())
-    end associate
-    call add_work(row, numbers, report)
-    if (size(watch%strobe_list%id) > 0) call row%add_whole(watch%strobes)
-    if (has_crank_pin) call add_run_columns(row, numbers, watch%statistics, crank_pin, case%crank_pin%has_clearance(), &
-      case%crank_pin%has_clearance())
-    call row%end_row()
-  end subroutine write_run
-
-  !> What `run_columns` names.
-  subroutine add_run_columns(row, numbers, statistics, pin, has_clearance, has_force)
-    type(row_text_t), intent(inout) :: row
-    type(number_writer_t), intent(in) :: numbers
-    type(cycle_statistics_t), intent(in) :: statistics
-    integer, intent(in) :: pin
-    logical, intent(in) :: has_clearance, has_force
-    associate (total => statistics%total%pin(pin), duration => statistics%total%duration)
-      call add(row, numbers, total%min_film_thickness, has_clearance)
-      call add(row, numbers, statistics%min_film_thickness_mean(pin), has_clearance)
-      call add(row, numbers, total%contact_time/duration, has_clearance)
-      call add(row, numbers, statistics%impacts_mean(pin), has_clearance)
-      call add(row, numbers, total%max_penetration, has_clearance)
-      call add(row, numbers, total%max_force, has_force)
-      call add(row, numbers, statistics%max_force_mean(pin), has_force)
-      call add(row, numbers, total%force_integral/duration, has_force)
-    end associate
-  end subroutine add_run_columns
-
-  !> The row of a run that is not done: why, and what it came to if it began.
-  subroutine write_failure(row, numbers, run, values, reason, has_begun, has_strobes, has_crank_pin, report)
-    type(row_text_t), intent(inout) :: row
-    type(number_writer_t), intent(in) :: numbers
-    integer, intent(in) :: run
-    character(len=*), intent(in) :: values(:), reason
-    logical, intent(in) :: has_begun, has_strobes, has_crank_pin
-    type(run_report_t), intent(in) :: report
+    type(cycle_statistics_t) :: s
+    logical :: is_done
     integer :: i
-    call begin_row(row, run, values)
-    call row%add_text(reason)
-    call leave_out(statistics_columns)
-    if (has_begun) then
-      call add_work(row, numbers, report)
-    else
-      call leave_out(work_columns)
-    end if
-    if (has_strobes) call leave_out(1)
-    if (has_crank_pin) call leave_out(pin_columns)
-    call row%end_row()
 
-  contains
-
-    subroutine leave_out(n)
-      integer, intent(in) :: n
-      do i = 1, n
-        call row%add_text('')
-      end do
-    end subroutine leave_out
-  end subroutine write_failure
-
-  subroutine begin_row(row, run, values)
-    type(row_text_t), intent(inout) :: row
-    integer, intent(in) :: run
-    character(len=*), intent(in) :: values(:)
-    integer :: i
+    is_done = outcome == 'done'
+    s = watch%statistics
+    if (.not. is_done) call s%add(cycle_t(duration=1.0_dp))   ! what is divided by is not 0
     call row%clear()
-    call row%add_whole(run)
+    call row%put('run', run, .true.)
     do i = 1, size(values)
       call row%add_text(values(i))
     end do
-  end subroutine begin_row
-
-  !> A number that the scene may not have.
-  subroutine add(row, numbers, value, is_there)
-    type(row_text_t), intent(inout) :: row
-    type(number_writer_t), intent(in) :: numbers
-    real(dp), intent(in) :: value
-    logical, intent(in) :: is_there
-    if (is_there) then
-      call row%add_number(numbers, value)
-    else
-      call row%add_text('')
-    end if
-  end subroutine add
-
-  !> Energy residual, evaluations, simulated time.
-  subroutine add_work(row, numbers, report)
-    type(row_text_t), intent(inout) :: row
-    type(number_writer_t), intent(in) :: numbers
-    type(run_report_t), intent(in) :: report
-    call row%add_number(numbers, relative_residual(report))
-    call row%add_whole(report%statistics%evaluations)
-    call row%add_number(numbers, report%figures%time)
-  end subroutine add_work
-
-  !> A row for each revolution counted.
-  subroutine write_cycles(row, numbers, run, watch, case, has_crank_pin)
-    type(row_text_t), intent(inout) :: row
-    type(number_writer_t), intent(in) :: numbers
-    integer, intent(in) :: run
-    type(cycle_watch_t), intent(in) :: watch
-    type(case_t), intent(in) :: case
-    logical, intent(in) :: has_crank_pin   !! the columns
-    integer :: i
-    call row%clear()
-    do i = 1, watch%statistics%cycles
-      associate (c => watch%cycles(i))
-        call row%add_whole(run)
-        call row%add_whole(watch%settle + i)
-        call row%add_number(numbers, c%duration)
-        call add_cycle_columns(piston_pin, case%joint%has_clearance(), .true.)
-        call row%add_number(numbers, watch%direction*two_pi/c%duration)
-        call add(row, numbers, c%dissipated_energy, case%has_play())
-        if (has_crank_pin) call add_cycle_columns(crank_pin, case%crank_pin%has_clearance(), case%crank_pin%has_clearance())
-        call row%end_row()
-      end associate
-    end do
+    call row%add_text(outcome)
+    call row%put('cycles[-]', s%cycles, is_done)
+    call put_pin('', piston_pin, is_done .and. case%joint%has_clearance(), is_done)
+    call row%put('mean_crank_speed[rad/s]', watch%direction*two_pi*s%cycles/s%total%duration, is_done)
+    call row%put('dissipated_energy[J]', s%dissipated_energy_mean(), is_done .and. case%has_play())
+    call row%put('energy_residual[-]', relative_residual(report), has_begun)
+    call row%put('rhs_evaluations[-]', report%statistics%evaluations, has_begun)
+    call row%put('simulated_time[s]', report%figures%time, has_begun)
+    if (row%has_strobes) call row%put('strobes[-]', watch%strobes, is_done)
+    associate (has_clearance => is_done .and. case%crank_pin%has_clearance())
+      if (row%has_crank_pin) call put_pin(crank_pin_prefix, crank_pin, has_clearance, has_clearance)
+    end associate
+    call row%end_row()
 
   contains
 
-    !> What `cycle_columns` names.
-    subroutine add_cycle_columns(pin, has_clearance, has_force)
+    subroutine put_pin(prefix, pin, has_clearance, has_force)
+      character(len=*), intent(in) :: prefix
       integer, intent(in) :: pin
       logical, intent(in) :: has_clearance, has_force
-      associate (c => watch%cycles(i)%pin(pin), duration => watch%cycles(i)%duration)
-        call add(row, numbers, c%min_film_thickness, has_clearance)
-        call add(row, numbers, c%contact_time/duration, has_clearance)
-        if (has_clearance) call row%add_whole(c%impacts)
-        if (.not. has_clearance) call row%add_text('')
-        call add(row, numbers, c%max_penetration, has_clearance)
-        call add(row, numbers, c%max_force, has_force)
-        call add(row, numbers, c%force_integral/duration, has_force)
+      associate (total => s%total%pin(pin), duration => s%total%duration)
+        call row%put(prefix//'min_film_thickness[m]', total%min_film_thickness, has_clearance)
+        call row%put(prefix//'min_film_thickness_mean[m]', s%min_film_thickness_mean(pin), has_clearance)
+        call row%put(prefix//'contact_time_fraction[-]', total%contact_time/duration, has_clearance)
+        call row%put(prefix//'impacts[-]', s%impacts_mean(pin), has_clearance)
+        call row%put(prefix//'max_penetration[m]', total%max_penetration, has_clearance)
+        call row%put(prefix//'max_pin_force[N]', total%max_force, has_force)
+        call row%put(prefix//'max_pin_force_mean[N]', s%max_force_mean(pin), has_force)
+        call row%put(prefix//'mean_pin_force[N]', total%force_integral/duration, has_force)
       end associate
-    end subroutine add_cycle_columns
-  end subroutine write_cycles
+    end subroutine put_pin
+  end subroutine put_run
+
+  !> A row for each revolution counted.
+  subroutine put_cycles(rows, run, watch, case)
+    class(study_row_t), intent(inout) :: rows
+    integer, intent(in) :: run
+    type(cycle_watch_t), intent(in) :: watch
+    type(case_t), intent(in) :: case
+    integer :: i
+    call rows%clear()
+    do i = 1, watch%statistics%cycles
+      call put_cycle(rows, run, watch%settle + i, watch%cycles(i), watch%direction, case)
+    end do
+  end subroutine put_cycles
+
+  !> The row of one revolution, `number` from the start of the run.
+  subroutine put_cycle(row, run, number, cycle, direction, case)
+    class(study_row_t), intent(inout) :: row
+    integer, intent(in) :: run, number
+    type(cycle_t), intent(in) :: cycle
+    real(dp), intent(in) :: direction   !! in which the crank turns
+    type(case_t), intent(in) :: case
+    call row%put('run', run, .true.)
+    call row%put('cycle', number, .true.)
+    call row%put('duration[s]', cycle%duration, .true.)
+    call put_pin('', piston_pin, case%joint%has_clearance(), .true.)
+    call row%put('mean_crank_speed[rad/s]', direction*two_pi/cycle%duration, .true.)
+    call row%put('dissipated_energy[J]', cycle%dissipated_energy, case%has_play())
+    associate (has_clearance => case%crank_pin%has_clearance())
+      if (row%has_crank_pin) call put_pin(crank_pin_prefix, crank_pin, has_clearance, has_clearance)
+    end associate
+    call row%end_row()
+
+  contains
+
+    subroutine put_pin(prefix, pin, has_clearance, has_force)
+      character(len=*), intent(in) :: prefix
+      integer, intent(in) :: pin
+      logical, intent(in) :: has_clearance, has_force
+      associate (c => cycle%pin(pin))
+        call row%put(prefix//'min_film_thickness[m]', c%min_film_thickness, has_clearance)
+        call row%put(prefix//'contact_time_fraction[-]', c%contact_time/cycle%duration, has_clearance)
+        call row%put(prefix//'impacts[-]', c%impacts, has_clearance)
+        call row%put(prefix//'max_penetration[m]', c%max_penetration, has_clearance)
+        call row%put(prefix//'max_pin_force[N]', c%max_force, has_force)
+        call row%put(prefix//'mean_pin_force[N]', c%force_integral/cycle%duration, has_force)
+      end associate
+    end subroutine put_pin
+  end subroutine put_cycle
 
   !> A row for each strobe.
-  subroutine write_strobes(row, numbers, run, watch)
-    type(row_text_t), intent(inout) :: row
-    type(number_writer_t), intent(in) :: numbers
+  subroutine put_strobes(rows, run, watch)
+    class(study_row_t), intent(inout) :: rows
     integer, intent(in) :: run
     type(cycle_watch_t), intent(in) :: watch
     integer :: i, k
-    call row%clear()
+    call rows%clear()
     do i = 1, watch%strobes
-      call row%add_whole(run)
-      call row%add_whole(watch%settle + i)
+      call rows%add_whole(run)
+      call rows%add_whole(watch%settle + i)
       do k = 1, size(watch%strobe_list%id)
-        call row%add_number(numbers, watch%strobe_values(k, i))
+        call rows%add_number(rows%numbers, watch%strobe_values(k, i))
       end do
-      call row%end_row()
+      call rows%end_row()
     end do
-  end subroutine write_strobes
+  end subroutine put_strobes
 end module study_rows

@@ -9,14 +9,12 @@ module study_worker
   use gudgeon_simulation, only: simulate, run_report_t, interrupted_text
   use trace_sink, only: trace_sink_t, trace_event_t
   use trace_files, only: trace_files_t
-  use number_writer, only: number_writer_t
   use gudgeon_posix, only: interrupted
   use gudgeon_kinds, only: dp
   use study_definition, only: study_t
   use study_design, only: study_design_t
   use study_case, only: study_case_t
-  use row_text, only: row_text_t
-  use study_rows, only: may_have_crank_pin, write_run, write_failure, write_cycles, write_strobes
+  use study_rows, only: study_row_t, may_have_crank_pin, put_run, put_cycles, put_strobes
   implicit none
   private
   public :: study_worker_t
@@ -30,7 +28,7 @@ module study_worker
   end type patient_sink_t
 
   type :: study_worker_t
-    type(row_text_t) :: run_row, cycle_rows, strobe_rows   !! of the last run
+    type(study_row_t) :: run_row, cycle_rows, strobe_rows  !! of the last run
     logical :: is_done = .false.                           !! the last run came to its end
     logical :: was_interrupted = .false.                   !! it was given up, and has no row
     type(error_t), allocatable :: output_error             !! its trace could not be written
@@ -38,11 +36,9 @@ module study_worker
     type(cycle_watch_t), allocatable, private :: watch
     class(trace_sink_t), allocatable, private :: sink
     type(column_list_t), private :: no_columns
-    type(number_writer_t), private :: numbers
     character(len=:), allocatable, private :: values(:)
     character(len=:), allocatable, private :: trace_folder
-    logical, private :: has_crank_pin = .false.            !! the columns
-    logical, private :: traces_all = .false., traces_failed = .false., writes_cycles = .false., writes_strobes = .false.
+    logical, private :: traces_all = .false., traces_failed = .false., writes_cycles = .false.
   contains
     procedure :: prepare
     procedure :: run
@@ -60,12 +56,15 @@ contains
     type(column_list_t), intent(in) :: strobe_list
     character(len=*), intent(in) :: trace_folder
     self%base = base
-    self%has_crank_pin = may_have_crank_pin(design%keys, base%case)
+    self%run_row%has_strobes = size(strobe_list%id) > 0
+    self%run_row%has_crank_pin = may_have_crank_pin(design%keys, base%case)
+    call self%run_row%numbers%prepare(base%case%output%digits)
+    self%cycle_rows = self%run_row
+    self%strobe_rows = self%run_row
     self%trace_folder = trace_folder
     self%traces_all = study%traces == 'all'
     self%traces_failed = study%traces == 'failed'
     self%writes_cycles = study%cycles
-    self%writes_strobes = size(strobe_list%id) > 0
     allocate (self%watch)
     self%watch%settle = study%settle_cycles
     self%watch%keeps_cycles = study%cycles
@@ -74,7 +73,6 @@ contains
     self%watch%most_strobes = study%strobe_cycles
     allocate (patient_sink_t :: self%sink)
     allocate (self%no_columns%id(0))
-    call self%numbers%prepare(base%case%output%digits)
     allocate (character(len=design%text_length) :: self%values(size(design%keys)))
   end subroutine prepare
 
@@ -109,18 +107,17 @@ contains
     if (self%was_interrupted .or. allocated(self%output_error)) return
     call self%cycle_rows%clear()
     call self%strobe_rows%clear()
-    associate (case => self%base%case, has_crank_pin => self%has_crank_pin)
+    associate (case => self%base%case)
       if (allocated(error)) then
-        call write_failure(self%run_row, self%numbers, number, self%values, reason_of(error%message), has_begun, &
-          self%writes_strobes, has_crank_pin, report)
+        call put_run(self%run_row, number, self%values, reason_of(error%message), has_begun, self%watch, report, case)
       else if (self%watch%statistics%cycles == 0) then
-        call write_failure(self%run_row, self%numbers, number, self%values, 'no whole revolution after settle_cycles', &
-          has_begun, self%writes_strobes, has_crank_pin, report)
+        call put_run(self%run_row, number, self%values, 'no whole revolution after settle_cycles', has_begun, self%watch, report, &
+          case)
       else
         self%is_done = .true.
-        call write_run(self%run_row, self%numbers, number, self%values, self%watch, report, case, has_crank_pin)
-        if (self%writes_cycles) call write_cycles(self%cycle_rows, self%numbers, number, self%watch, case, has_crank_pin)
-        if (self%writes_strobes) call write_strobes(self%strobe_rows, self%numbers, number, self%watch)
+        call put_run(self%run_row, number, self%values, 'done', has_begun, self%watch, report, case)
+        if (self%writes_cycles) call put_cycles(self%cycle_rows, number, self%watch, case)
+        call put_strobes(self%strobe_rows, number, self%watch)
       end if
     end associate
   end subroutine run
