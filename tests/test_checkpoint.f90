@@ -5,8 +5,7 @@ module test_checkpoint
   use gudgeon_errors, only: error_t, status_case_file
   use gudgeon_archive, only: archive_t
   use gudgeon_checksum, only: checksum_t
-  use file_mark, only: file_mark_t
-  use gudgeon_checkpoint, only: checkpoint_t
+  use gudgeon_checkpoint, only: checkpoint_t, file_mark_t
   use run_identity, only: program_identity, identity_of, twin_identity, compare_cases
   use text_file, only: read_whole
   use result_file, only: result_file_t

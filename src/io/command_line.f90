@@ -103,18 +103,14 @@ contains
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: text, name, near
     character(len=10) :: names(size(options))
-    integer :: equals, place, k
+    integer :: equals, place
     text = trim(arguments(i))
     equals = index(text, '=')
     name = text(3:)
     if (equals > 0) name = text(3:equals - 1)
-    do place = size(options), 1, -1
-      if (options(place)%long == name .and. name /= '') exit
-    end do
+    place = findloc(options%long == name, .true., 1)
     if (place == 0) then
-      do k = 1, size(options)
-        names(k) = options(k)%long
-      end do
+      names = options%long
       near = nearest_word(name, names)
       if (near /= '') near = '; did you mean --'//near//'?'
       call fail(error, '--'//printable(name, 40)//': unknown option'//near//hint, status_command_line)
@@ -143,9 +139,7 @@ contains
     if (len(text) == 1) call fail(error, '-: a case is read from a file, not from standard input'//hint, &
                                   status_command_line)
     do k = 2, len(text)
-      do place = size(options), 1, -1
-        if (options(place)%short == text(k:k) .and. text(k:k) /= ' ') exit
-      end do
+      place = findloc(options%short == text(k:k) .and. options%short /= '', .true., 1)
       if (place == 0) then
         call fail(error, printable(text, 40)//': unknown option'//hint, status_command_line)
         return

@@ -3,23 +3,36 @@
 !>
 !> The file holds a line that says what it is, an archive and a checksum of all that.
 module gudgeon_checkpoint
+  use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_case_file
   use gudgeon_archive, only: archive_t
   use gudgeon_checksum, only: checksum_t
-  use file_mark, only: file_mark_t
-  use gudgeon_posix, only: remove_file, synchronise_folder, error_text, error_no_entry
+  use gudgeon_posix, only: open_for_reading, read_at, close_file, remove_file, synchronise_folder, error_text, error_no_entry, &
+    error_interrupted
   use result_file, only: result_file_t
   use run_identity, only: identity_length
   use text_file, only: read_whole
   use text_tools, only: printable
   implicit none
   private
-  public :: checkpoint_t, restart_hint
+  public :: checkpoint_t, file_mark_t, restart_hint
 
   character(len=*), parameter :: newline = achar(10), title = 'gudgeon checkpoint'//newline
   integer, parameter :: format_version = 2
   character(len=*), parameter :: restart_hint = '; without --resume the run starts from the beginning'
+
+  integer, parameter :: buffer_size = 65536   !! bytes: it stays in the cache
+
+  !> How far a file has come: its length and a checksum of all bytes up to there.
+  type :: file_mark_t
+    integer(int64) :: length = 0
+    integer(int64) :: checksum = 0
+    type(checksum_t), private :: sum
+  contains
+    procedure :: move_to
+    procedure :: exchange => exchange_mark
+  end type file_mark_t
 
   type :: checkpoint_t
     character(len=:), allocatable :: path        !! of the file
@@ -122,4 +135,38 @@ contains
     call self%event_list%exchange(archive)
     call archive%exchange_text(self%state)
   end subroutine exchange
+
+  !> Move on to `length`, reading the file in between. `is_there` is false where it cannot be read so far; the mark is then
+  !> of no use any more.
+  subroutine move_to(self, path, length, is_there)
+    class(file_mark_t), intent(inout) :: self
+    character(len=*), intent(in) :: path
+    integer(int64), intent(in) :: length
+    logical, intent(out) :: is_there
+    character(len=buffer_size) :: buffer
+    integer :: descriptor, status, wanted, done, ignored
+
+    call open_for_reading(path, descriptor, status)
+    is_there = status == 0
+    if (.not. is_there) return
+    do while (self%length < length)
+      wanted = int(min(int(buffer_size, int64), length - self%length))
+      call read_at(descriptor, self%length, buffer(:wanted), done, status)
+      if (status == error_interrupted) cycle
+      is_there = status == 0 .and. done > 0
+      if (.not. is_there) exit
+      call self%sum%add(buffer(:done))
+      self%length = self%length + done
+    end do
+    call close_file(descriptor, ignored)
+    self%checksum = self%sum%value()
+  end subroutine move_to
+
+  !> Length and checksum to or from an archive. What is read is a mark to compare with, not one to move on.
+  subroutine exchange_mark(self, archive)
+    class(file_mark_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    call archive%exchange(self%length)
+    call archive%exchange(self%checksum)
+  end subroutine exchange_mark
 end module gudgeon_checkpoint

@@ -12,8 +12,7 @@ module trace_files
   use chain_motion, only: pin_names
   use trace_sink, only: trace_sink_t, trace_event_t
   use result_file, only: result_file_t
-  use file_mark, only: file_mark_t
-  use gudgeon_checkpoint, only: checkpoint_t, restart_hint
+  use gudgeon_checkpoint, only: checkpoint_t, file_mark_t, restart_hint
   use number_writer, only: longest_number
   use trace_table, only: trace_table_t
   use gudgeon_progress, only: progress_t
