@@ -3,7 +3,9 @@ module gudgeon_checksum
   use, intrinsic :: iso_fortran_env, only: int64
   implicit none
   private
-  public :: checksum_t
+  public :: checksum_t, mark_of, mark_length
+
+  integer, parameter :: mark_length = 8   !! bytes of a checksum behind what it is of
 
   integer(int64), parameter :: polynomial = ior(shiftl(int(z'C96C5795', int64), 32), int(z'D7870F42', int64))
   integer(int64), parameter :: byte = 255
@@ -55,4 +57,13 @@ contains
     character(len=16) :: text
     write (text, '(z16.16)') self%sum
   end function hexadecimal
+
+  !> The checksum of some bytes as bytes.
+  pure function mark_of(bytes) result(mark)
+    character(len=*), intent(in) :: bytes
+    character(len=mark_length) :: mark
+    type(checksum_t) :: sum
+    call sum%add(bytes)
+    mark = transfer(sum%value(), mark)
+  end function mark_of
 end module gudgeon_checksum

@@ -7,20 +7,19 @@ module film_tables
   use gudgeon_errors, only: error_t, fail, status_integration
   use gudgeon_archive, only: archive_t
   use gudgeon_bearing, only: bearing_t
-  use gudgeon_checksum, only: checksum_t
+  use gudgeon_checksum, only: checksum_t, mark_of, mark_length
   use case_definition, only: case_t, joint_case_t
   use film_law, only: film_law_t, table_watch_t
   use gudgeon_posix, only: make_directory
   use posix_signals, only: interrupted
   use gudgeon_progress, only: progress_t
-  use result_file, only: result_file_t
+  use result_file, only: write_text
   use text_file, only: read_whole
   implicit none
   private
   public :: provide_tables
 
   character(len=*), parameter :: newline = achar(10), title = 'gudgeon film table'//newline
-  integer, parameter :: mark_length = 8   !! bytes of the checksum
 
   !> Shows how far a table is, and gives it up when the user interrupts.
   type, extends(table_watch_t) :: progress_watch_t
@@ -141,7 +140,6 @@ contains
     character(len=*), intent(in) :: path, key
     class(film_law_t), intent(inout) :: film
     type(archive_t) :: archive
-    type(result_file_t) :: file
     type(error_t), allocatable :: error
     character(len=:), allocatable :: bytes
     if (path == '') return
@@ -149,18 +147,6 @@ contains
     call film%exchange_table(archive)
     call archive%contents(bytes)
     bytes = title//key//newline//bytes
-    call file%open(path, error)
-    if (allocated(error)) return
-    call file%put(bytes//mark_of(bytes))
-    call file%close(error, whole_only=.true.)
+    call write_text(path, bytes//mark_of(bytes), error)
   end subroutine save
-
-  !> The checksum as bytes.
-  function mark_of(bytes) result(mark)
-    character(len=*), intent(in) :: bytes
-    character(len=mark_length) :: mark
-    type(checksum_t) :: sum
-    call sum%add(bytes)
-    mark = transfer(sum%value(), mark)
-  end function mark_of
 end module film_tables

@@ -7,10 +7,10 @@ module gudgeon_checkpoint
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_case_file
   use gudgeon_archive, only: archive_t
-  use gudgeon_checksum, only: checksum_t
+  use gudgeon_checksum, only: checksum_t, mark_of, mark_length
   use gudgeon_posix, only: open_for_reading, read_at, close_file, remove_file, synchronise_folder, error_text, error_no_entry, &
     error_interrupted
-  use result_file, only: result_file_t
+  use result_file, only: write_text
   use run_identity, only: identity_length
   use text_file, only: read_whole
   use text_tools, only: printable
@@ -55,23 +55,14 @@ contains
     class(checkpoint_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
     type(archive_t) :: archive
-    type(checksum_t) :: sum
-    type(result_file_t) :: file
     character(len=:), allocatable :: bytes
-    character(len=8) :: mark
     integer :: ignored
 
     call archive%begin_writing()
     call self%exchange(archive)
     call archive%contents(bytes)
     bytes = title//bytes
-    call sum%add(bytes)
-    mark = transfer(sum%value(), mark)
-    call file%open(self%path, error)
-    if (allocated(error)) return
-    call file%put(bytes//mark)
-    call file%synchronise()
-    call file%close(error, whole_only=.true.)
+    call write_text(self%path, bytes//mark_of(bytes), error)
     if (.not. allocated(error)) call synchronise_folder(self%path, ignored)
   end subroutine save_checkpoint
 
@@ -81,31 +72,25 @@ contains
     logical, intent(out) :: found
     type(error_t), allocatable, intent(out) :: error
     type(archive_t) :: archive
-    type(checksum_t) :: sum
     character(len=:), allocatable :: bytes, wrong
     integer :: status, last
-    character(len=8) :: mark
 
     found = .false.
     call read_whole(self%path, bytes, status)
     if (status == error_no_entry) return
-    last = len(bytes) - len(mark)
+    last = len(bytes) - mark_length
     if (status /= 0) then
       wrong = error_text(status)
     else if (last < len(title)) then
       wrong = 'damaged'//restart_hint
     else if (bytes(:len(title)) /= title) then
       wrong = 'not a checkpoint of gudgeon'//restart_hint
+    else if (bytes(last + 1:) /= mark_of(bytes(:last))) then
+      wrong = 'damaged'//restart_hint
     else
-      call sum%add(bytes(:last))
-      mark = transfer(sum%value(), mark)
-      if (bytes(last + 1:) /= mark) then
-        wrong = 'damaged'//restart_hint
-      else
-        call archive%begin_reading(bytes(len(title) + 1:last))
-        call self%exchange(archive)
-        if (archive%failed .or. .not. archive%is_at_end()) wrong = 'written by another version of gudgeon'//restart_hint
-      end if
+      call archive%begin_reading(bytes(len(title) + 1:last))
+      call self%exchange(archive)
+      if (archive%failed .or. .not. archive%is_at_end()) wrong = 'written by another version of gudgeon'//restart_hint
     end if
     if (allocated(wrong)) call fail(error, printable(self%path, 200)//': '//wrong, status_case_file)
     found = .not. allocated(wrong)
