@@ -61,12 +61,11 @@ module chain_bodies
 contains
 
   !> The bodies with what follows from their constants. Limits: rod%length > 0, piston%mass > 0.
-  pure function new_bodies(crank, rod, piston, gravity) result(b)
+  pure type(bodies_t) function new_bodies(crank, rod, piston, gravity) result(b)
     type(crank_t), intent(in) :: crank
     type(rod_t), intent(in) :: rod
     type(piston_t), intent(in) :: piston
     real(dp), intent(in) :: gravity(2)   !! (x, y) [m/s^2]
-    type(bodies_t) :: b
     real(dp) :: moment(2)
     b%crank = crank
     b%rod = rod
@@ -97,9 +96,8 @@ contains
   end function new_bodies
 
   !> The same bodies without gravity.
-  pure function weightless(bodies) result(b)
+  pure type(bodies_t) function weightless(bodies) result(b)
     type(bodies_t), intent(in) :: bodies
-    type(bodies_t) :: b
     b = bodies
     b%gravity = 0
     b%crank_weight = 0

@@ -21,12 +21,11 @@ module chain_reactions
 contains
 
   !> The moments of the pins' joints are given, those on the rod at an ideal pin 0.
-  pure function reactions_of(bodies, loads, motion, accelerations) result(reactions)
+  pure type(reactions_t) function reactions_of(bodies, loads, motion, accelerations) result(reactions)
     type(bodies_t), intent(in) :: bodies
     type(loads_t), intent(in) :: loads
     type(motion_t), intent(in) :: motion
     type(accelerations_t), intent(in) :: accelerations
-    type(reactions_t) :: reactions
     real(dp) :: rod(2), crank(2), u, v, f1, f2, f3, f4, f5, f6, f7, on_rod
 
     call centre_forces(bodies, motion, accelerations, crank, rod)

@@ -25,11 +25,10 @@ module crank_rod_tangent
 contains
 
   !> Change of the motion with changes of q, q', e_y, e_y' (e_x and e_x' move the piston only).
-  pure function motion_change(bodies, motion, crank_angle, crank_speed, e_y, e_y_rate) result(change)
+  pure type(motion_change_t) function motion_change(bodies, motion, crank_angle, crank_speed, e_y, e_y_rate) result(change)
     type(bodies_t), intent(in) :: bodies
     type(motion_t), intent(in) :: motion
     real(dp), intent(in) :: crank_angle, crank_speed, e_y, e_y_rate
-    type(motion_change_t) :: change
     associate (r => bodies%crank%length, arm => bodies%rod%length*motion%cos_rod)
       change%crank_angle = crank_angle
       change%crank_speed = crank_speed

@@ -11,10 +11,9 @@ module ideal_chain
 contains
 
   !> Positions and speeds of all bodies at crank angle q [rad] and crank speed [rad/s].
-  pure function ideal_motion(bodies, q, crank_speed) result(motion)
+  pure type(motion_t) function ideal_motion(bodies, q, crank_speed) result(motion)
     type(bodies_t), intent(in) :: bodies
     real(dp), intent(in) :: q, crank_speed
-    type(motion_t) :: motion
     logical :: reachable
     call turn_crank(motion, q, crank_speed)
     motion%crank_pin = 0

@@ -13,7 +13,7 @@ module trace_files
   use trace_sink, only: trace_sink_t, trace_event_t
   use result_file, only: result_file_t
   use gudgeon_checkpoint, only: checkpoint_t, file_mark_t, restart_hint
-  use number_writer, only: longest_number
+  use row_text, only: row_text_t
   use trace_table, only: trace_table_t
   use gudgeon_progress, only: progress_t
   use stability_advice, only: stability_advice_t
@@ -25,7 +25,6 @@ module trace_files
   public :: trace_files_t
 
   character(len=*), parameter :: newline = achar(10)
-  integer, parameter :: event_fields = 9   !! at most, in a line
 
   !> A sink that writes. It asks for the end of the run when the user interrupts it or a file cannot be written.
   type, extends(trace_sink_t) :: trace_files_t
@@ -40,7 +39,7 @@ module trace_files
     integer(int64), private :: began = 0, saved = 0       !! ticks of the clock
     character(len=:), allocatable, private :: path        !! of the files, without their endings
     integer, private :: rows = 0
-    character(len=:), allocatable, private :: line   !! the row being written
+    type(row_text_t), private :: event   !! the row of the last one
   contains
     procedure :: open
     procedure :: synchronise
@@ -97,7 +96,6 @@ contains
     integer, intent(in) :: digits
     self%path = path
     call self%trace%prepare(list, digits)
-    allocate (character(len=(longest_number + 1)*event_fields) :: self%line)
     call system_clock(self%began)
     self%saved = self%began
   end subroutine prepare
@@ -256,37 +254,20 @@ contains
   subroutine take_event(self, event)
     class(trace_files_t), intent(inout) :: self
     type(trace_event_t), intent(in) :: event
-    integer :: used
-
-    used = 0
-    call self%trace%numbers%append(self%line, used, event%time)
-    call append(self%line, used, ',')
-    call self%trace%numbers%append(self%line, used, event%crank_angle)
-    call append(self%line, used, merge(',contact_begins,', ',contact_ends,  ', event%kind == event_contact_begins))
-    if (event%kind /= event_contact_begins) used = used - 2   ! the blanks that merge needs
-    call self%trace%numbers%append(self%line, used, event%normal_speed)
-    if (event%kind == event_contact_begins) then
-      call append(self%line, used, ',,,')
-    else
-      call append(self%line, used, ',')
-      call self%trace%numbers%append(self%line, used, event%duration)
-      call append(self%line, used, ',')
-      call self%trace%numbers%append(self%line, used, event%max_penetration)
-      call append(self%line, used, ',')
-      call self%trace%numbers%append(self%line, used, event%max_normal_force)
-    end if
-    call append(self%line, used, ','//trim(pin_names(event%pin))//newline)
-    call self%event_list%put(self%line(:used))
+    associate (row => self%event, numbers => self%trace%numbers, has_ended => event%kind /= event_contact_begins)
+      call row%clear()
+      call row%add_number(numbers, event%time)
+      call row%add_number(numbers, event%crank_angle)
+      call row%add_text(merge('contact_ends  ', 'contact_begins', has_ended))
+      call row%add_number(numbers, event%normal_speed)
+      call row%add_number(numbers, event%duration, has_ended)
+      call row%add_number(numbers, event%max_penetration, has_ended)
+      call row%add_number(numbers, event%max_normal_force, has_ended)
+      call row%add_text(pin_names(event%pin))
+      call row%end_row()
+      call self%event_list%put(row%text(:row%used))
+    end associate
   end subroutine take_event
-
-  !> Append a text to the first `used` characters of a line.
-  pure subroutine append(line, used, text)
-    character(len=*), intent(inout) :: line
-    integer, intent(inout) :: used
-    character(len=*), intent(in) :: text
-    line(used + 1:used + len(text)) = text
-    used = used + len(text)
-  end subroutine append
 
   subroutine take_progress(self, time)
     class(trace_files_t), intent(inout) :: self

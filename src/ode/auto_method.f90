@@ -230,9 +230,8 @@ contains
   end subroutine count_time
 
   !> The counts of both methods together.
-  pure function totals(self) result(statistics)
+  pure type(step_statistics_t) function totals(self) result(statistics)
     class(auto_t), intent(in) :: self
-    type(step_statistics_t) :: statistics
     if (self%stiff) then
       statistics = self%radau%statistics
     else

@@ -250,13 +250,12 @@ contains
   end function passage
 
   !> The extremum between two samples whose rates have opposite signs.
-  function extremum(self, method, problem, index, left, right) result(here)
+  type(sample_t) function extremum(self, method, problem, index, left, right) result(here)
     class(event_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     class(ode_problem_t), intent(in) :: problem
     integer, intent(in) :: index
     type(sample_t), intent(in) :: left, right
-    type(sample_t) :: here
     type(bracket_t) :: bracket
     real(dp) :: t, direction
 

@@ -17,9 +17,8 @@ module gudgeon_roots
 contains
 
   !> Where to evaluate next. Equal to an end where the bracket cannot be divided any more.
-  pure function next_abscissa(bracket) result(x)
+  pure real(dp) function next_abscissa(bracket) result(x)
     type(bracket_t), intent(in) :: bracket
-    real(dp) :: x
     real(dp) :: middle, secant, truncated, sigma, radius, resolution
     integer, parameter :: slack = 1
 

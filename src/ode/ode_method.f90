@@ -207,9 +207,8 @@ contains
   end subroutine count_time
 
   !> The counts of the whole integration so far.
-  pure function totals(self) result(statistics)
+  pure type(step_statistics_t) function totals(self) result(statistics)
     class(ode_method_t), intent(in) :: self
-    type(step_statistics_t) :: statistics
     statistics = self%statistics
   end function totals
 end module ode_method

@@ -40,10 +40,8 @@ contains
     logical, intent(in) :: is_there
     if (self%is_header) then
       call self%add_text(name)
-    else if (is_there) then
-      call self%add_number(self%numbers, value)
     else
-      call self%add_text('')
+      call self%add_number(self%numbers, value, is_there)
     end if
   end subroutine put_real
 

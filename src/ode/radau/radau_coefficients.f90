@@ -24,9 +24,8 @@ module radau_coefficients
 contains
 
   !> The formula of 3, 5 or 7 stages.
-  pure function radau_formula(stages) result(formula)
+  pure type(radau_formula_t) function radau_formula(stages) result(formula)
     integer, intent(in) :: stages
-    type(radau_formula_t) :: formula
     select case (stages)
     case (3)
       call stages_3(formula)

@@ -75,14 +75,19 @@ contains
     call self%add_text(digits)
   end subroutine add_whole
 
-  pure subroutine add_number(self, numbers, value)
+  !> A number, or an empty field where it is said not to be there.
+  pure subroutine add_number(self, numbers, value, is_there)
     class(row_text_t), intent(inout) :: self
     type(number_writer_t), intent(in) :: numbers
     real(dp), intent(in) :: value
+    logical, intent(in), optional :: is_there
     if (self%is_open) call self%append(',')
+    self%is_open = .true.
+    if (present(is_there)) then
+      if (.not. is_there) return
+    end if
     call self%make_room(longest_number)
     call numbers%append(self%text, self%used, value)
-    self%is_open = .true.
   end subroutine add_number
 
   pure subroutine end_row(self)
