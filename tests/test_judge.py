@@ -148,7 +148,7 @@ LIARS = [
 #: (what is broken, file, what it says, what it says in the mutant, scene, what the verdict must say)
 MUTANTS = [
     ("contact damping gives energy", "contact_law.f90", "1 + self%damping*min(", "1 - self%damping*min(", "dry", "contact law"),
-    ("dissipation gives energy", "restitution_law.f90", "max(0.0_dp, 1 + self%dissipation*", "max(0.0_dp, 1 - self%dissipation*", "dissipation", "contact law"),
+    ("a thousandth more dissipation", "restitution_law.f90", "max(0.0_dp, 1 + self%dissipation*", "max(0.0_dp, 1 + 1.001_dp*self%dissipation*", "dissipation", "contact law"),
     ("exact gives back a little less", "exact_restitution.f90", "damping = one_minus_exp(y)/e", "damping = 1.001_dp*one_minus_exp(y)/e", "conformal", "contact law"),
     ("Johnson's cylinder without the one", "johnson.f90", "m = log(4.0_dp) - 1 - log(d)", "m = log(4.0_dp) - 1.001_dp - log(d)", "johnson", "contact law"),
     ("a coefficient of the conformal fit off", "conformal.f90", "-1.52090276_dp", "-1.52190276_dp", "conformal", "contact law"),
