@@ -3,7 +3,7 @@ module case_text
   use text_tools, only: integer_text, quoted
   use number_text, only: exact_text
   use gudgeon_parameters, only: key_t, real_kind, integer_kind, logical_kind
-  use case_schema, only: group_definition_t, find_key
+  use case_schema, only: group_definition_t, find_key, is_listed
   use case_values, only: case_values_t, value_t
   implicit none
   private
@@ -61,8 +61,33 @@ contains
     if (note /= '') line = line//note(3:)//': '
     line = line//trim(key%description)
     if (.not. allocated(key%laws)) return
-    if (key%laws /= keys(find_key(keys, trim(key%group), key%choice))%words) line = line//' ('//key%laws//')'
+    associate (all_laws => keys(find_key(keys, trim(key%group), key%choice))%words)
+      if (key%laws /= all_laws) line = line//' ('//shorter(key%laws, others(all_laws, key%laws))//')'
+    end associate
   end function template_line
+
+  !> The laws of a list that another one does not have.
+  pure function others(all_laws, some) result(list)
+    character(len=*), intent(in) :: all_laws, some   !! separated by a comma and a blank
+    character(len=:), allocatable :: list
+    integer :: first, length
+    list = ''
+    first = 1
+    do while (first <= len(all_laws))
+      length = index(all_laws(first:)//',', ',') - 1
+      if (.not. is_listed(all_laws(first:first + length - 1), some)) list = list//', '//all_laws(first:first + length - 1)
+      first = first + length + 2
+    end do
+    list = list(3:)
+  end function others
+
+  !> These laws, or `not` and the others where that is the shorter text.
+  pure function shorter(laws, the_others) result(text)
+    character(len=*), intent(in) :: laws, the_others
+    character(len=:), allocatable :: text
+    text = laws
+    if (len(the_others) + 4 < len(laws)) text = 'not '//the_others
+  end function shorter
 
   !> A case file with every key that the models of the case have, of every group that is present, reals with 17 significant digits.
   function resolved_text(values) result(text)

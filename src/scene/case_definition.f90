@@ -318,7 +318,8 @@ contains
       example='2.0e-5')
     call list%add('bearing_radius', self%bearing_radius, 'radius of the bearing around the pin', 'm', '> 0', default='0.0', &
       example='0.010')
-    call list%add('bearing_length', self%bearing_length, 'its width, for a film', 'm', '> 0', default='0.0', example='0.015')
+    call list%add('bearing_length', self%bearing_length, 'its width, for a film, or a contact that is not of spheres', &
+      'm', '> 0', default='0.0', example='0.015')
   end subroutine joint_parameters
 
   subroutine integrator_parameters(self, list)
