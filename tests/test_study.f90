@@ -35,6 +35,7 @@ contains
     call test_hypercube(check)
     call test_sobol_design(check)
     call test_tables(check)
+    call a_long_table_takes_time_as_its_length(check)
     call test_row_text(check)
     call test_row_file(check)
   end subroutine run_test_study
@@ -234,6 +235,24 @@ contains
     call refused(check, 'a.b,clearance'//n//'1,2'//n, 't.csv:1: column 2: '//q//'clearance'//q//' must have the form GROUP.KEY')
     call refused(check, 'a.b,A.B'//n//'1,2'//n, 't.csv:1: column 2: a.b stands here twice')
   end subroutine test_tables
+
+  !> The time for a table of 50,000 rows is no more than 40 times that for one of 5,000, and some tenths of a second.
+  subroutine a_long_table_takes_time_as_its_length(check)
+    class(checks_t), intent(inout) :: check
+    type(study_table_t) :: table
+    type(error_t), allocatable :: error
+    character(len=:), allocatable :: text
+    real(dp) :: times(0:2)
+    integer :: i
+    call cpu_time(times(0))
+    do i = 1, 2
+      text = 'a.b,c.d'//n//repeat('1.234567e-5, '//q//'2'//q//n, merge(5000, 50000, i == 1))
+      call parse_table(text, 'long.csv', table, error)
+      call cpu_time(times(i))
+    end do
+    call check%that(.not. allocated(error) .and. table%rows == 50000, 'a long table')
+    call check%that(times(2) - times(1) < 40*(times(1) - times(0)) + 0.5_dp, 'takes time as its length')
+  end subroutine a_long_table_takes_time_as_its_length
 
   subroutine refused(check, text, message)
     class(checks_t), intent(inout) :: check

@@ -154,7 +154,8 @@ contains
     integer :: ending, next
     logical :: is_quoted
 
-    first = at - 1 + verify(text(at:)//'.', ' ')
+    next = verify(text(at:), ' ')
+    first = merge(at - 1 + next, len(text) + 1, next > 0)
     is_quoted = index(text(first:min(first, len(text))), quote) == 1
     is_last = .false.
     last = first
@@ -170,7 +171,8 @@ contains
     end do
     last = at - 1
     line = line + count_of(text(first:last), newline)
-    ending = at - 1 + scan(text(at:)//newline, ','//newline)
+    next = scan(text(at:), ','//newline)
+    ending = merge(at - 1 + next, len(text) + 1, next > 0)
     is_last = text(ending:min(ending, len(text))) /= ','
     next = ending - 1   ! the last byte before it
     if (is_last .and. text(max(next, at):next) == return) next = next - 1
