@@ -27,11 +27,12 @@ program measure_costs
 
   integer, parameter :: n_states = 64, blocks = 31, calls = 6400, steps_in_block = 2000
   real(dp), parameter :: no_difference = 1e-200_dp   !! times any result: added to an angle or a state it changes nothing
-  integer, parameter :: name_length = 28, n_scenes = 20, n_quantities = 8
+  integer, parameter :: name_length = 28, n_scenes = 25, n_quantities = 8
   character(len=name_length), parameter :: scenes(n_scenes) = [character(len=name_length) :: 'ideal', 'ideal+gas', 'free', &
-    'free+gas', 'contact_hertz', 'contact', 'contact+quadrature', 'contact+ambrosio', 'contact+coulomb', &
-    'contact+brown_mcphee', 'contact+stribeck', 'contact+lugre', 'contact+elasto_plastic', &
-    'closed_form', 'closed_form+quadrature', 'closed_form+gas', 'as_printed', 'half_film', 'oscillating', 'oscillating_as_printed']
+    'free+gas', 'contact_hertz', 'contact', 'contact_johnson', 'contact_conformal', 'contact+quadrature', 'contact+ambrosio', &
+    'contact+coulomb', 'contact+brown_mcphee', 'contact+stribeck', 'contact+lugre', 'contact+elasto_plastic', &
+    'closed_form', 'closed_form+quadrature', 'closed_form+gas', 'as_printed', 'half_film', 'oscillating', &
+    'oscillating_as_printed', 'finite_short', 'finite_table', 'finite_mixed']
   character(len=name_length), parameter :: quantities(n_quantities) = [character(len=name_length) :: 'rhs', &
     'rhs_in_turn', 'step', 'events', 'step+figures', 'row', 'row_no_reactions', 'row_time_and_angle']
   character(len=name_length) :: scene_name, quantity, text
@@ -81,9 +82,16 @@ contains
     if (index(name, 'coulomb') > 0) at_rest = 'friction.static_coefficient=0.0'
     if (index(name, 'as_printed') > 0) law = 'lubrication.variant=as_printed'
     if (index(name, 'half_film') > 0) law = 'lubrication.variant=half_film'
+    if (index(name, 'johnson') > 0) law = 'contact.geometry=johnson'
+    if (index(name, 'conformal') > 0) law = 'contact.geometry=conformal'
+    if (index(name, 'finite') == 1) law = 'lubrication.variant=table'
+    if (index(name, 'short') > 0) law = 'lubrication.variant=short'
     dry = index(name, 'contact') == 1
     if (dry .and. along_case(quantity)) then
-      call read_case('cases/flores/friction_050.nml', [law, friction_law, at_rest, friction], case, error)
+      call read_case('cases/flores/friction_050.nml', [character(len=40) :: law, friction_law, at_rest, friction, &
+        'joint.bearing_length=0.04'], case, error)
+    else if (index(name, 'finite') == 1) then
+      call read_case('cases/film/sim_IV_'//trim(merge('mixed ', 'finite', index(name, 'mixed') > 0))//'.nml', [law], case, error)
     else if (index(name, 'oscillating') == 1) then
       call read_case('cases/sim_IV.nml', [law, oscillating], case, error)
     else
@@ -91,7 +99,9 @@ contains
     end if
     if (allocated(error)) error stop 'measure_costs: run it from the top of the checkout'
     if (index(name, '+gas') == 0 .and. allocated(case%combustion)) deallocate (case%combustion)
-    if (index(name, 'contact+') /= 1 .or. index(name, 'quadrature') > 0) deallocate (case%joint%friction)
+    if (index(name, 'contact+') /= 1 .or. index(name, 'quadrature') > 0) then
+      if (allocated(case%joint%friction)) deallocate (case%joint%friction)
+    end if
     if (dry .or. index(name, 'free') == 1 .or. index(name, 'ideal') == 1) then
       if (allocated(case%joint%film)) deallocate (case%joint%film)
     end if
