@@ -12,6 +12,7 @@ from .trace import Run
 FREE, FILM, CONTACT = 0, 1, 2
 SUM = 1e-9        # of a sum's terms: what may be left of one that vanishes
 LAW = 1e-6        # of a force: what a law may be missed by, beyond the rounding of the speeds it was given
+STICKS = 10       # tolerances of the speeds: how fast surfaces that stick may seem to slide
 BENT = 1000       # tolerances of the static friction: what bristles may be bent beyond it in rows between the steps
 
 
@@ -136,10 +137,12 @@ class RowChecks:
                       BENT * self.run.number("integrator.relative_tolerance") * self.friction.static, t)
             return
         low, high = self.friction.range(get["sliding_speed"], 10 * give)
-        still = max(1e3 * give, self.run.number("integrator.relative_tolerance") * row.speed_size)   # what a step may miss of a speed
-        if self.friction.coulomb and abs(sliding) <= still:   # sticking, or about to
+        drift = STICKS * self.run.number("integrator.relative_tolerance")
+        law = LAW
+        if self.friction.coulomb and abs(sliding) <= max(1e3 * give, drift * row.speed_size):   # sticking, or about to
             low, high = -self.friction.static, self.friction.static
-        self.take("friction law", inside(friction, low * normal, high * normal), LAW * normal * (abs(low) + abs(high)) / 2 + 1e-300, t)
+            law = max(LAW, drift)   # the row where they slip stands where the friction has passed its limit
+        self.take("friction law", inside(friction, low * normal, high * normal), law * normal * (abs(low) + abs(high)) / 2 + 1e-300, t)
 
     def check_arc(self, row: Row, depth: float, normal: float, blur: float, t: float) -> None:
         """The load that has such an arc is that of the penetration, and the pressures over the arc carry the pressing force."""
