@@ -126,7 +126,7 @@ contains
       depth = c*(g + 0.7_dp*x)
       force = law%geometry%elastic_force(depth)
       call check%relative(force, pi*e_star*length*c*x, 6e-5_dp, 'conformal force against the collocation')
-      row = trace_row_t()
+      row%n = 0
       row%wanted = .true.
       call law%geometry%put_columns(depth, force, row)
       call check%relative(row%values(1), angle*pi/180, 4e-5_dp, 'contact half-angle against the collocation')

@@ -21,8 +21,8 @@ module trace_row
     integer :: n = 0                            !! columns so far
     logical :: is_naming = .false.              !! this pass collects names
     character(len=12) :: place = ''             !! in front of the names that follow, with an underscore behind
-    logical :: wanted(most_columns) = .false.   !! columns whose values the trace has
-    real(dp) :: values(most_columns) = 0
+    logical :: wanted(most_columns)             !! columns whose values the trace has
+    real(dp) :: values(most_columns)            !! of the columns so far (without an initial value, which every row would pay for)
     character(len=name_length), allocatable :: names(:)   !! in the pass that collects them
   contains
     procedure, non_overridable :: put
@@ -38,6 +38,7 @@ contains
     class(trace_row_t), intent(inout) :: self
     self%n = 0
     self%is_naming = .true.
+    self%wanted = .false.
     allocate (self%names(most_columns))
   end subroutine collect_names
 
@@ -47,6 +48,7 @@ contains
     type(column_list_t), intent(in) :: list
     integer :: i
     self%n = 0
+    self%wanted = .false.
     do i = 1, size(list%id)
       self%wanted(list%id(i)) = .true.
     end do
