@@ -93,7 +93,7 @@ class Cache(unittest.TestCase):
         process = subprocess.Popen([GUDGEON, "-o", self.folder / "stopped", "-s", "lubrication.table_points=129", CASE],
                                    env=environment, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
         time.sleep(1)
-        process.send_signal(signal.SIGINT)
+        process.send_signal(signal.SIGTERM)   # (a shell has its background jobs ignore SIGINT)
         _, said = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 4, said)
         self.assertIn("interrupted before it began", said)
@@ -120,7 +120,7 @@ class References(unittest.TestCase):
     def test_short_bearing(self) -> None:
         self.compare("short_bearing_sim_I", {"crank_angle[rad]": 1e-8, "piston_velocity[m/s]": 1e-8, "eccentricity_x[m]": 1e-6,
                                              "eccentricity_y[m]": 1e-6, "pin_force_x[N]": 3e-5, "pin_force_y[N]": 3e-5,
-                                             "film_moment[N.m]": 1e-5})
+                                             "film_moment[N.m]": 3e-5})
 
     def test_mixed(self) -> None:
         self.compare("mixed_sim_I", {"crank_angle[rad]": 1e-8, "piston_velocity[m/s]": 1e-8, "eccentricity_x[m]": 1e-7,
