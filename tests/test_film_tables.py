@@ -76,6 +76,29 @@ class Cache(unittest.TestCase):
         self.run_case("half", "-s", "lubrication.cavitation=gumbel")
         self.assertEqual(len(list((self.cache / "gudgeon").iterdir())), 3, "but on length and cavitation")
 
+    def test_sweep(self) -> None:
+        """The runs of a sweep have each its own table, and leave no other in the cache."""
+        case = self.folder / "short.nml"
+        case.write_text(CASE.read_text().replace("law = 'finite_bearing'", "law = 'finite_bearing', cavitation = 'gumbel'")
+                        .replace("revolutions = 4.0", "revolutions = 2.0"))
+        study = self.folder / "study.nml"
+        for key, values in (("joint.bearing_length", "0.010, 0.020"), ("integrator.relative_tolerance", "1e-4, 1e-6")):
+            study.write_text(f"&study title = 'tables', case = '{case}', settle_cycles = 0 /\n"
+                             f"&parameter key = '{key}', values = {values} /\n")
+            self.run_program(self.cache, "sweep", "--fresh", "-j", "1", "-o", self.folder, study)
+            with (self.folder / "study.runs.csv").open() as file:
+                swept = [float(row["min_film_thickness[m]"]) for row in csv.DictReader(file)]
+            for cache in (self.cache, self.folder / "another"):
+                for value, thickness in zip(values.split(", "), swept):
+                    with self.subTest(key=key, value=value, cache=cache.name):
+                        self.run_program(cache, "-o", self.folder / "single", "-s", f"{key}={value}", case)
+                        with (self.folder / "single" / "short.summary.csv").open() as file:
+                            single = {row[0]: row[1] for row in csv.reader(file)}["min_film_thickness"]
+                        self.assertAlmostEqual(thickness, float(single), delta=1e-9 * thickness)
+
+    def run_program(self, cache: Path, *options: str | Path) -> None:
+        subprocess.run([GUDGEON, *options, "-q"], env={**os.environ, "XDG_CACHE_HOME": str(cache)}, check=True)
+
     def test_no_cache(self) -> None:
         self.cache.write_text("a file in the place of the folder")
         done, trace = self.run_case("none")

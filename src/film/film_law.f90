@@ -34,6 +34,7 @@ module film_law
     logical :: needs_ideal_motion = .false.   !! whether the ideal_* fields and the frequency are read
     logical :: film_moment = .false.          !! its shear acts on the pin
     logical :: singular_at_wall = .true.      !! the force is infinite at |e| = c: the state may not reach it
+    character(len=100) :: table_of = ''       !! the `table_key` of the table that the law has; empty: it has none
   contains
     procedure(prepare), deferred :: prepare
     procedure(film_force), deferred :: film_force
@@ -88,8 +89,8 @@ contains
     end associate
   end function shear_moment
 
-  !> What the law's table is of, where it has one that takes long to make: laws with the same key have the same table. Somebody may
-  !> keep it (`exchange_table`) and put it there before it is made.
+  !> What the law's table is to be of, where it needs one that takes long to make: laws with the same key have the same table.
+  !> Somebody may keep it (`exchange_table`) and put it there, with its key in `table_of`, before it is made.
   function no_key(self, bearing, tolerance) result(key)
     class(film_law_t), intent(in) :: self
     type(bearing_t), intent(in) :: bearing
@@ -100,7 +101,8 @@ contains
     key = ''
   end function no_key
 
-  !> Make the table where it is not there. Without one the law does what it takes at every evaluation.
+  !> Make the table where the law has none, or one of something else: its bearing may have changed since. Without a table the law
+  !> does what it takes at every evaluation. If `watch` wants to stop, there is none.
   subroutine no_table(self, bearing, tolerance, watch)
     class(film_law_t), intent(inout) :: self
     type(bearing_t), intent(in) :: bearing

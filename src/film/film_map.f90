@@ -249,8 +249,10 @@ contains
     if (archive%failed .or. self%points < 8) return
     self%per_tau = (self%points - 1)/tau_of(last_gap)
     self%per_chi = (self%points - 1)/pi
-    if (.not. allocated(self%c)) &
-      allocate (self%c(2, 1 - before:self%points + after, 1 - before:self%points + after), source=0.0_dp)
+    if (archive%is_reading) then
+      if (allocated(self%c)) deallocate (self%c)
+      allocate (self%c(2, 1 - before:self%points + after, 1 - before:self%points + after))
+    end if
     do i = lbound(self%c, 3), ubound(self%c, 3)
       call archive%exchange(self%c(:, :, i))
     end do

@@ -85,8 +85,10 @@ contains
     class(finite_bearing_t), intent(inout) :: self
     type(bearing_t), intent(in) :: bearing
     real(dp), intent(in) :: tolerance
+    integer :: table_points, film_points
     call set_scales(self, bearing)
-    if (self%film_points == 0) self%film_points = film_points_for(tolerance)
+    call choose_points(self, tolerance, table_points, film_points)
+    self%film_points = film_points
   end subroutine prepare
 
   subroutine set_scales(self, bearing)
@@ -115,32 +117,47 @@ contains
     table_points_for = merge(33, 65, tolerance > 3e-5_dp)
   end function table_points_for
 
+  !> The numbers of points as the case gives them, or from the tolerance.
+  pure subroutine choose_points(self, tolerance, table_points, film_points)
+    class(finite_bearing_t), intent(in) :: self
+    real(dp), intent(in) :: tolerance
+    integer, intent(out) :: table_points, film_points
+    table_points = self%table_points
+    if (table_points == 0) table_points = table_points_for(tolerance)
+    film_points = self%film_points
+    if (film_points == 0) film_points = film_points_for(tolerance)
+  end subroutine choose_points
+
   !> What a table is of: two laws with the same key have the same table.
   function table_key(self, bearing, tolerance) result(key)
     class(finite_bearing_t), intent(in) :: self
     type(bearing_t), intent(in) :: bearing
     real(dp), intent(in) :: tolerance
     character(len=:), allocatable :: key
-    character(len=100) :: text
+    character(len=len(self%table_of)) :: text
+    integer :: table_points, film_points
     key = ''
     if (self%variant /= 'table') return
-    write (text, '(a,es24.16e3,a,i0,a,i0)') 'finite_bearing 1 '//self%cavitation//' ', 0.5_dp*bearing%length/bearing%pin_radius(), &
-      ' ', merge(self%table_points, table_points_for(tolerance), self%table_points > 0), &
-      ' ', merge(self%film_points, film_points_for(tolerance), self%film_points > 0)
+    call choose_points(self, tolerance, table_points, film_points)
+    write (text, '(a,es24.16e3,a,i0,a,i0)') 'finite_bearing 2 '//self%cavitation//' ', 0.5_dp*bearing%length/bearing%pin_radius(), &
+      ' ', table_points, ' ', film_points
     key = trim(text)
   end function table_key
 
-  !> Make the table where the variant has one that is not there.
   subroutine make_table(self, bearing, tolerance, watch)
     class(finite_bearing_t), intent(inout) :: self
     type(bearing_t), intent(in) :: bearing
     real(dp), intent(in) :: tolerance
     class(table_watch_t), intent(inout), optional :: watch
-    if (self%variant /= 'table' .or. self%map%points > 0) return
+    character(len=:), allocatable :: key
+    integer :: table_points, film_points
+    key = self%table_key(bearing, tolerance)
+    if (key == self%table_of) return
     call set_scales(self, bearing)
-    call self%map%build(self%half_length, self%condition, &
-      merge(self%table_points, table_points_for(tolerance), self%table_points > 0), &
-      merge(self%film_points, film_points_for(tolerance), self%film_points > 0), watch)
+    call choose_points(self, tolerance, table_points, film_points)
+    call self%map%build(self%half_length, self%condition, table_points, film_points, watch)
+    self%table_of = ''
+    if (self%map%points > 0) self%table_of = key
   end subroutine make_table
 
   subroutine exchange_table(self, archive)

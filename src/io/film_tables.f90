@@ -56,7 +56,7 @@ contains
     bearing = joint%bearing(case%mechanism%rod_length)
     associate (tolerance => case%integrator%relative_tolerance)
       key = joint%film%table_key(bearing, tolerance)
-      if (key == '') return
+      if (key == joint%film%table_of) return
       !$omp critical (film_tables)
       path = path_for(key)
       call load(path, key, joint%film, is_there)
@@ -112,7 +112,6 @@ contains
     character(len=*), intent(in) :: path, key
     class(film_law_t), intent(inout) :: film
     logical, intent(out) :: is_there
-    class(film_law_t), allocatable :: filled
     type(archive_t) :: archive
     character(len=:), allocatable :: bytes, head
     integer :: status, last
@@ -127,12 +126,10 @@ contains
     if (bytes(:len(head)) /= head) return
     if (bytes(last + 1:) /= mark_of(bytes(:last))) return
     call archive%begin_reading(bytes(len(head) + 1:last))
-    allocate (filled, source=film)
-    call filled%exchange_table(archive)
-    if (archive%failed .or. .not. archive%is_at_end()) return
-    call archive%begin_reading(bytes(len(head) + 1:last))
+    film%table_of = ''
     call film%exchange_table(archive)
-    is_there = .true.
+    is_there = archive%is_at_end() .and. .not. archive%failed
+    if (is_there) film%table_of = key
   end subroutine load
 
   !> Keep a table, if that is possible: first under another name.
