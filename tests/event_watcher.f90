@@ -2,8 +2,7 @@
 module event_watcher
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t
-  use ode_method, only: ode_method_t
-  use gudgeon_solver, only: observer_t
+  use gudgeon_solver, only: silent_observer_t
   use gudgeon_scene, only: scene_t, event_none
   implicit none
   private
@@ -11,24 +10,14 @@ module event_watcher
 
   integer, parameter :: most_instants = 1000
 
-  type, extends(observer_t) :: event_watcher_t
+  type, extends(silent_observer_t) :: event_watcher_t
     real(dp) :: instant(most_instants) = 0   !! [s]
     integer :: n = 0
   contains
-    procedure :: step_taken
     procedure :: event_taken
   end type event_watcher_t
 
 contains
-
-  subroutine step_taken(self, method, problem, t_to)
-    class(event_watcher_t), intent(inout) :: self
-    class(ode_method_t), intent(inout) :: method
-    class(ode_problem_t), intent(in) :: problem
-    real(dp), intent(in) :: t_to
-    associate (unused_self => self, unused_method => method, unused_problem => problem, unused_t => t_to)
-    end associate
-  end subroutine step_taken
 
   subroutine event_taken(self, problem, index, t, y)
     class(event_watcher_t), intent(inout) :: self

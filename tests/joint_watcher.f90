@@ -2,32 +2,21 @@
 module joint_watcher
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t
-  use ode_method, only: ode_method_t
-  use gudgeon_solver, only: observer_t
+  use gudgeon_solver, only: silent_observer_t
   use clearance_joint, only: most_joints
   use gudgeon_scene, only: scene_t, event_none, event_contact_begins
   implicit none
   private
   public :: joint_watcher_t
 
-  type, extends(observer_t) :: joint_watcher_t
+  type, extends(silent_observer_t) :: joint_watcher_t
     integer :: begun(most_joints) = 0, ended(most_joints) = 0
     real(dp) :: first_begin(most_joints) = huge(1.0_dp)   !! [s]
   contains
-    procedure :: step_taken
     procedure :: event_taken
   end type joint_watcher_t
 
 contains
-
-  subroutine step_taken(self, method, problem, t_to)
-    class(joint_watcher_t), intent(inout) :: self
-    class(ode_method_t), intent(inout) :: method
-    class(ode_problem_t), intent(in) :: problem
-    real(dp), intent(in) :: t_to
-    associate (unused_self => self, unused_method => method, unused_problem => problem, unused_t => t_to)
-    end associate
-  end subroutine step_taken
 
   subroutine event_taken(self, problem, index, t, y)
     class(joint_watcher_t), intent(inout) :: self

@@ -1,7 +1,7 @@
 !> Contact that gives back what the coefficient of restitution says.
 module exact_restitution
   use gudgeon_kinds, only: dp
-  use restitution_law, only: restitution_law_t
+  use restitution_law, only: restitution_law_t, one_percent
   implicit none
   private
   public :: exact_restitution_t
@@ -11,7 +11,7 @@ module exact_restitution
   contains
     procedure, nopass :: name
     procedure, nopass :: damping_for
-    procedure, nopass :: least_restitution
+    procedure, nopass :: least_restitution => one_percent
   end type exact_restitution_t
 
 contains
@@ -20,11 +20,6 @@ contains
     character(len=:), allocatable :: name
     name = 'exact'
   end function name
-
-  !> chi grows as 1/e: a hundredth is nearly a wall of e already.
-  pure real(dp) function least_restitution()
-    least_restitution = 0.01_dp
-  end function least_restitution
 
   !> With d = chi e and y = -ln(1 - d) the equation is d (1 + 1/e) - ln(1 + d/e) - y = 0: by bisection. Where e is next to 1 the
   !> terms cancel, and two terms of the series of chi say it closer.

@@ -10,7 +10,7 @@ module restitution_law
   use contact_law, only: contact_law_t
   implicit none
   private
-  public :: restitution_law_t
+  public :: restitution_law_t, one_percent
 
   type, abstract, extends(contact_law_t) :: restitution_law_t
     real(dp) :: restitution = 1   !! e of the case [-], 0 to 1
@@ -59,14 +59,21 @@ contains
   pure subroutine conflict(self, key, wanted)
     class(restitution_law_t), intent(in) :: self
     character(len=:), allocatable, intent(out) :: key, wanted
+    character(len=4) :: least
     key = ''
-    wanted = 'must be >= 0.01 with law = '''//self%name()//''''
+    write (least, '(f4.2)') self%least_restitution()
+    wanted = 'must be >= '//least//' with law = '''//self%name()//''''
     if (self%restitution < self%least_restitution() .and. .not. self%dissipation > 0) key = 'restitution'
   end subroutine conflict
 
   pure real(dp) function zero()
     zero = 0
   end function zero
+
+  !> Least coefficient of restitution of laws whose chi grows as 1/e: a hundredth is nearly a wall of e already.
+  pure real(dp) function one_percent()
+    one_percent = 0.01_dp
+  end function one_percent
 
   !> f (1 + a delta_dot), a the dissipation: the impact speed does not matter.
   pure function damped_force(self, elastic_force, penetration, penetration_rate) result(force)

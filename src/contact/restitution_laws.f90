@@ -2,7 +2,7 @@
 !> impact really gives back for e = 0.9, 0.5 and 0.1.
 module restitution_laws
   use gudgeon_kinds, only: dp
-  use restitution_law, only: restitution_law_t
+  use restitution_law, only: restitution_law_t, one_percent
   implicit none
   private
   public :: lankarani_nikravesh_t, hunt_crossley_t, herbert_mcwhannell_t, gonthier_t, zhiying_qishao_t, flores_t, carvalho_martins_t
@@ -135,9 +135,4 @@ contains
       damping = gonthier_damping(restitution)
     end if
   end function carvalho_martins_damping
-
-  !> Least e of laws whose chi grows as 1/e.
-  pure real(dp) function one_percent()
-    one_percent = 0.01_dp
-  end function one_percent
 end module restitution_laws

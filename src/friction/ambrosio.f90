@@ -9,7 +9,6 @@ module ambrosio
 
   !> F_T = -c_f c_d F_N sign(v_T), c_d rising from 0 at |v_T| = v0 to 1 at v1. Without a ramp, v0 = v1 = 0, it is Coulomb's law.
   type, extends(friction_law_t) :: ambrosio_t
-    real(dp) :: coefficient = 0   !! c_f [-], >= 0
     real(dp) :: v0 = 0            !! no friction up to this sliding speed [m/s], >= 0
     real(dp) :: v1 = 0            !! full friction from this sliding speed on [m/s], >= v0
   contains
@@ -31,7 +30,7 @@ contains
   subroutine parameters(self, list)
     class(ambrosio_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('coefficient', self%coefficient, 'of sliding friction', range='>= 0', example='0.03')
+    call self%add_coefficient(list)
     call list%add('v0', self%v0, 'no friction up to this sliding speed', 'm/s', '>= 0', example='0.001')
     call list%add('v1', self%v1, 'full friction from this sliding speed on', 'm/s', '>= 0', example='0.010')
   end subroutine parameters

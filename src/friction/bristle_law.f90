@@ -11,21 +11,17 @@ module bristle_law
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: parameter_list_t
   use trace_row, only: trace_row_t
-  use friction_law, only: friction_law_t, static_or_sliding, static_conflict
+  use static_friction, only: static_friction_t
   implicit none
   private
   public :: bristle_law_t
 
   !> F_T/F_N = -(s_0 z + s_1(v) z' + s_2 v), s_1(v) = s_1 exp(-(v/v_d)^2), v = v_T. How z follows v is each law's own.
-  type, abstract, extends(friction_law_t) :: bristle_law_t
-    real(dp) :: coefficient = 0           !! c_f of sliding [-], > 0
-    real(dp) :: static_coefficient = 0    !! c_s of break-away [-], >= c_f; 0: as c_f
+  type, abstract, extends(static_friction_t) :: bristle_law_t
     real(dp) :: stribeck_speed = 1        !! v_s, over which c_s falls to c_f [m/s], > 0
     real(dp) :: bristle_stiffness = 0     !! s_0 [1/m], > 0
     real(dp) :: bristle_damping = 0       !! s_1 [s/m], >= 0
     real(dp) :: damping_speed = 0         !! v_d, beyond which the damping falls [m/s]; 0: it is constant
-    real(dp) :: viscous_coefficient = 0   !! s_2 [s/m], >= 0
-    real(dp) :: static_part = 0           !! c_s - c_f [-], once prepared
   contains
     procedure :: conflict
     procedure :: touch_down_limit
@@ -66,7 +62,7 @@ contains
   subroutine add_common(self, list)
     class(bristle_law_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('coefficient', self%coefficient, 'of sliding friction', range='>= 0', example='0.03')
+    call self%add_coefficient(list)
     call list%add('bristle_stiffness', self%bristle_stiffness, 'friction over normal force by the bristles'' deflection', &
       '1/m', '> 0', example='2.0e4')
   end subroutine add_common
@@ -75,16 +71,14 @@ contains
   subroutine add_sliding(self, list)
     class(bristle_law_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('static_coefficient', self%static_coefficient, 'of friction at rest; 0: as coefficient', range='>= 0', &
-      default='0.0')
+    call self%add_static(list)
     call list%add('stribeck_speed', self%stribeck_speed, 'sliding speed over which the static part of the friction falls', 'm/s', &
       '> 0', example='0.010')
     call list%add('bristle_damping', self%bristle_damping, 'friction over normal force by the bristles'' rate', 's/m', &
       '>= 0', default='0.0')
     call list%add('damping_speed', self%damping_speed, 'sliding speed over which the bristles'' damping falls; 0: it does not', &
       'm/s', '>= 0', default='0.0')
-    call list%add('viscous_coefficient', self%viscous_coefficient, 'friction over normal force that grows with the sliding speed', &
-      's/m', '>= 0', default='0.0')
+    call self%add_viscous(list)
   end subroutine add_sliding
 
   pure subroutine conflict(self, key, wanted)
@@ -92,8 +86,8 @@ contains
     character(len=:), allocatable, intent(out) :: key, wanted
     real(dp), parameter :: largest = 0.42888194248035344_dp   !! of x exp(-x^2)
     real(dp) :: static
-    static = static_or_sliding(self%static_coefficient, self%coefficient)
-    call static_conflict(self%static_coefficient, self%coefficient, key, wanted)
+    static = self%holding_coefficient()
+    call self%static_conflict(key, wanted)
     if (key /= '') return
     if (.not. self%coefficient > 0) then
       key = 'coefficient'
@@ -110,13 +104,13 @@ contains
     class(bristle_law_t), intent(in) :: self
     touch_down_limit = huge(touch_down_limit)
     if (self%damping_speed > 0 .or. .not. self%bristle_damping > 0) return
-    touch_down_limit = static_or_sliding(self%static_coefficient, self%coefficient)/self%bristle_damping
+    touch_down_limit = self%holding_coefficient()/self%bristle_damping
   end function touch_down_limit
 
   subroutine prepare(self)
     class(bristle_law_t), intent(inout) :: self
     self%n_states = 1
-    self%static_part = static_or_sliding(self%static_coefficient, self%coefficient) - self%coefficient
+    call self%find_static_part()
   end subroutine prepare
 
   !> The deflection at break-away [m].

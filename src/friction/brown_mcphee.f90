@@ -2,24 +2,18 @@
 module brown_mcphee
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: parameter_list_t
-  use friction_law, only: friction_law_t, static_or_sliding, static_conflict
+  use static_friction, only: static_friction_t
   implicit none
   private
   public :: brown_mcphee_t
 
   !> F_T = -F_N [c_f tanh(4 u) + (c_s - c_f) u/(u^2/4 + 3/4)^2 + s_2 v_T], u = v_T/v_t. The largest friction, some 0.9995 c_s
   !> without the viscous part, is at u = 1.00 to 1.02. At rest there is none: a load at rest creeps.
-  type, extends(friction_law_t) :: brown_mcphee_t
-    real(dp) :: coefficient = 0          !! c_f of sliding [-], >= 0
-    real(dp) :: static_coefficient = 0   !! c_s [-], >= c_f; 0: as c_f
+  type, extends(static_friction_t) :: brown_mcphee_t
     real(dp) :: transition_speed = 0     !! v_t, where the friction is largest [m/s], > 0
-    real(dp) :: viscous_coefficient = 0  !! s_2 [s/m], >= 0
-    real(dp), private :: static_part = 0 !! c_s - c_f [-]
   contains
     procedure, nopass :: name
     procedure :: parameters
-    procedure :: conflict
-    procedure :: prepare
     procedure :: friction_ratio
     procedure :: friction_ratio_slope
   end type brown_mcphee_t
@@ -34,25 +28,12 @@ contains
   subroutine parameters(self, list)
     class(brown_mcphee_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('coefficient', self%coefficient, 'of sliding friction', range='>= 0', example='0.03')
-    call list%add('static_coefficient', self%static_coefficient, 'of friction at rest; 0: as coefficient', range='>= 0', &
-      default='0.0')
+    call self%add_coefficient(list)
+    call self%add_static(list)
     call list%add('transition_speed', self%transition_speed, 'sliding speed that turns the friction round', 'm/s', '> 0', &
       example='0.010')
-    call list%add('viscous_coefficient', self%viscous_coefficient, 'friction over normal force that grows with the sliding speed', &
-      's/m', '>= 0', default='0.0')
+    call self%add_viscous(list)
   end subroutine parameters
-
-  pure subroutine conflict(self, key, wanted)
-    class(brown_mcphee_t), intent(in) :: self
-    character(len=:), allocatable, intent(out) :: key, wanted
-    call static_conflict(self%static_coefficient, self%coefficient, key, wanted)
-  end subroutine conflict
-
-  subroutine prepare(self)
-    class(brown_mcphee_t), intent(inout) :: self
-    self%static_part = static_or_sliding(self%static_coefficient, self%coefficient) - self%coefficient
-  end subroutine prepare
 
   !> Beyond u = 1 the static part is found from 1/u, which does not overflow.
   pure function friction_ratio(self, sliding_speed, direction) result(ratio)

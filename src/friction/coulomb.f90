@@ -2,19 +2,16 @@
 module coulomb
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: parameter_list_t
-  use friction_law, only: friction_law_t, static_or_sliding, static_conflict
+  use static_friction, only: static_friction_t
   implicit none
   private
   public :: coulomb_t
 
   !> F_T = -c_f F_N sign(v_T), set-valued at v_T = 0: surfaces that stick hold up to |F_T| = c_s F_N.
-  type, extends(friction_law_t) :: coulomb_t
-    real(dp) :: coefficient = 0          !! c_f of sliding [-], >= 0
-    real(dp) :: static_coefficient = 0   !! c_s of sticking [-], >= c_f; 0: as c_f
+  type, extends(static_friction_t) :: coulomb_t
   contains
     procedure, nopass :: name
     procedure :: parameters
-    procedure :: conflict
     procedure :: prepare
     procedure :: friction_ratio
     procedure :: holding_ratio
@@ -30,16 +27,9 @@ contains
   subroutine parameters(self, list)
     class(coulomb_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('coefficient', self%coefficient, 'of sliding friction', range='>= 0', example='0.03')
-    call list%add('static_coefficient', self%static_coefficient, 'of friction at rest; 0: as coefficient', range='>= 0', &
-      default='0.0')
+    call self%add_coefficient(list)
+    call self%add_static(list)
   end subroutine parameters
-
-  pure subroutine conflict(self, key, wanted)
-    class(coulomb_t), intent(in) :: self
-    character(len=:), allocatable, intent(out) :: key, wanted
-    call static_conflict(self%static_coefficient, self%coefficient, key, wanted)
-  end subroutine conflict
 
   subroutine prepare(self)
     class(coulomb_t), intent(inout) :: self
@@ -60,6 +50,6 @@ contains
 
   pure real(dp) function holding_ratio(self)
     class(coulomb_t), intent(in) :: self
-    holding_ratio = static_or_sliding(self%static_coefficient, self%coefficient)
+    holding_ratio = self%holding_coefficient()
   end function holding_ratio
 end module coulomb

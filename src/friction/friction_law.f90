@@ -1,17 +1,18 @@
 !> What every dry friction law answers.
 module friction_law
   use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: law_t
+  use gudgeon_parameters, only: law_t, parameter_list_t
   use trace_row, only: trace_row_t
   implicit none
   private
-  public :: friction_law_t, most_friction_states, static_or_sliding, static_conflict
+  public :: friction_law_t, most_friction_states
 
   integer, parameter :: most_friction_states = 1   !! of a law
 
   !> Dry friction between pin and bearing surfaces. A law may have first-order states of its own, which live in contact
   !> only: they are 0 when a contact begins. Such a law answers `state_friction`; its `friction_ratio` is that of steady sliding.
   type, abstract, extends(law_t) :: friction_law_t
+    real(dp) :: coefficient = 0       !! c_f of sliding [-], >= 0
     logical :: set_valued = .false.   !! the law jumps at zero sliding speed: the scene must resolve sticking
     integer :: n_states = 0           !! of its own, 0 to most_friction_states; set by `prepare`
   contains
@@ -24,6 +25,7 @@ module friction_law
     procedure :: state_friction => steady_friction
     procedure :: state_slopes => steady_slopes
     procedure :: put_columns => no_columns
+    procedure, non_overridable :: add_coefficient
   end type friction_law_t
 
   abstract interface
@@ -112,19 +114,10 @@ contains
     end associate
   end subroutine no_columns
 
-  !> Coefficient of friction at rest as it is meant: a case that gives none, 0, means that of sliding.
-  pure real(dp) function static_or_sliding(static, sliding)
-    real(dp), intent(in) :: static, sliding
-    static_or_sliding = sliding
-    if (static > 0) static_or_sliding = static
-  end function static_or_sliding
-
-  !> Refuse, in the way of `conflict`, friction at rest that is smaller than that of sliding.
-  pure subroutine static_conflict(static, sliding, key, wanted)
-    real(dp), intent(in) :: static, sliding
-    character(len=:), allocatable, intent(out) :: key, wanted
-    key = ''
-    wanted = 'must be >= coefficient, or 0: as coefficient'
-    if (static_or_sliding(static, sliding) < sliding) key = 'static_coefficient'
-  end subroutine static_conflict
+  !> The key of the coefficient of sliding.
+  subroutine add_coefficient(self, list)
+    class(friction_law_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%add('coefficient', self%coefficient, 'of sliding friction', range='>= 0', example='0.03')
+  end subroutine add_coefficient
 end module friction_law

@@ -9,7 +9,6 @@ module threlfall
 
   !> F_T = -c_f F_N sign(v_T) (1 - exp(-3 |v_T|/v1)) up to |v_T| = v1, from there on what it is at v1: 95 % of c_f F_N.
   type, extends(friction_law_t) :: threlfall_t
-    real(dp) :: coefficient = 0   !! c_f [-], >= 0
     real(dp) :: v1 = 0            !! the friction grows up to this sliding speed [m/s], > 0
   contains
     procedure, nopass :: name
@@ -29,7 +28,7 @@ contains
   subroutine parameters(self, list)
     class(threlfall_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('coefficient', self%coefficient, 'of sliding friction', range='>= 0', example='0.03')
+    call self%add_coefficient(list)
     call list%add('v1', self%v1, 'full friction from this sliding speed on', 'm/s', '>= 0', example='0.010')
   end subroutine parameters
 

@@ -1,0 +1,65 @@
+!> What friction laws have in common that hold more at rest than in sliding.
+module static_friction
+  use gudgeon_kinds, only: dp
+  use gudgeon_parameters, only: parameter_list_t
+  use friction_law, only: friction_law_t
+  implicit none
+  private
+  public :: static_friction_t
+
+  !> A law with a coefficient of friction at rest, c_s, beside that of sliding, c_f, and perhaps a part that grows with the sliding
+  !> speed.
+  type, abstract, extends(friction_law_t) :: static_friction_t
+    real(dp) :: static_coefficient = 0    !! c_s [-], >= c_f; 0: as c_f
+    real(dp) :: viscous_coefficient = 0   !! s_2, friction over normal force by the sliding speed [s/m], >= 0
+    real(dp) :: static_part = 0           !! c_s - c_f [-], once prepared
+  contains
+    procedure :: conflict => static_conflict
+    procedure :: prepare => find_static_part
+    procedure, non_overridable :: static_conflict
+    procedure, non_overridable :: find_static_part
+    procedure, non_overridable :: holding_coefficient
+    procedure, non_overridable :: add_static
+    procedure, non_overridable :: add_viscous
+  end type static_friction_t
+
+contains
+
+  !> Coefficient of friction at rest as it is meant: a case that gives none, 0, means that of sliding.
+  pure real(dp) function holding_coefficient(self)
+    class(static_friction_t), intent(in) :: self
+    holding_coefficient = self%coefficient
+    if (self%static_coefficient > 0) holding_coefficient = self%static_coefficient
+  end function holding_coefficient
+
+  !> Friction at rest that is smaller than that of sliding.
+  pure subroutine static_conflict(self, key, wanted)
+    class(static_friction_t), intent(in) :: self
+    character(len=:), allocatable, intent(out) :: key, wanted
+    key = ''
+    wanted = 'must be >= coefficient, or 0: as coefficient'
+    if (self%holding_coefficient() < self%coefficient) key = 'static_coefficient'
+  end subroutine static_conflict
+
+  !> What friction at rest has more than in sliding.
+  subroutine find_static_part(self)
+    class(static_friction_t), intent(inout) :: self
+    self%static_part = self%holding_coefficient() - self%coefficient
+  end subroutine find_static_part
+
+  !> The key of the coefficient at rest.
+  subroutine add_static(self, list)
+    class(static_friction_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%add('static_coefficient', self%static_coefficient, 'of friction at rest; 0: as coefficient', range='>= 0', &
+      default='0.0')
+  end subroutine add_static
+
+  !> The key of the part that grows with the sliding speed.
+  subroutine add_viscous(self, list)
+    class(static_friction_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%add('viscous_coefficient', self%viscous_coefficient, 'friction over normal force that grows with the sliding speed', &
+      's/m', '>= 0', default='0.0')
+  end subroutine add_viscous
+end module static_friction
