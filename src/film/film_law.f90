@@ -7,7 +7,7 @@ module film_law
   use gudgeon_archive, only: archive_t
   implicit none
   private
-  public :: film_law_t, film_motion_t, table_watch_t, difference_derivatives
+  public :: film_law_t, film_motion_t, table_watch_t, difference_derivatives, difference_steps, moved
 
   !> Somebody who waits for a table to be made.
   type, abstract :: table_watch_t
@@ -127,35 +127,45 @@ contains
     class(film_law_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
     real(dp), intent(out) :: derivatives(3, 5)
-    real(dp) :: room, rate, step(5), above(3), below(3)
+    type(film_motion_t) :: other
+    real(dp) :: step(5), above(3), below(3)
     integer :: i
 
-    room = max(self%clearance - norm2(motion%eccentricity), 1e-6_dp*self%clearance)
-    rate = norm2(motion%eccentricity_rate) + self%clearance*abs(motion%pin_speed) + tiny(1.0_dp)**0.25_dp
-    step = 1e-5_dp*[room, room, rate*room/self%clearance, rate*room/self%clearance, rate/self%clearance]
+    step = difference_steps(self%clearance, max(self%clearance - norm2(motion%eccentricity), 1e-6_dp*self%clearance), motion)
     do i = 1, 5
-      call moved(step(i), above)
-      call moved(-step(i), below)
+      other = moved(motion, i, step(i))
+      call self%film_force(other, above(1:2), above(3))
+      other = moved(motion, i, -step(i))
+      call self%film_force(other, below(1:2), below(3))
       derivatives(:, i) = (above - below)/(2*step(i))
     end do
-
-  contains
-
-    pure subroutine moved(by, values)
-      real(dp), intent(in) :: by
-      real(dp), intent(out) :: values(3)
-      type(film_motion_t) :: other
-      other = motion
-      select case (i)
-      case (1, 2)
-        other%eccentricity(i) = other%eccentricity(i) + by
-      case (3, 4)
-        other%eccentricity_rate(i - 2) = other%eccentricity_rate(i - 2) + by
-      case default
-        other%pin_speed = other%pin_speed + by
-        other%turning_speed = other%turning_speed + by
-      end select
-      call self%film_force(other, values(1:2), values(3))
-    end subroutine moved
   end subroutine difference_derivatives
+
+  !> Steps of central differences by e_x, e_y [m], e_x', e_y' [m/s] and the pin speed [rad/s].
+  pure function difference_steps(clearance, room, motion) result(step)
+    real(dp), intent(in) :: clearance   !! [m]
+    real(dp), intent(in) :: room        !! over which the force changes [m]
+    type(film_motion_t), intent(in) :: motion
+    real(dp) :: step(5)
+    real(dp) :: rate
+    rate = norm2(motion%eccentricity_rate) + clearance*abs(motion%pin_speed) + tiny(1.0_dp)**0.25_dp
+    step = 1e-5_dp*[room, room, rate*room/clearance, rate*room/clearance, rate/clearance]
+  end function difference_steps
+
+  !> A motion that differs in one of e_x, e_y, e_x', e_y' and the pin speed.
+  pure type(film_motion_t) function moved(motion, which, by)
+    type(film_motion_t), intent(in) :: motion
+    integer, intent(in) :: which    !! of the five, 1 to 5
+    real(dp), intent(in) :: by
+    moved = motion
+    select case (which)
+    case (1, 2)
+      moved%eccentricity(which) = moved%eccentricity(which) + by
+    case (3, 4)
+      moved%eccentricity_rate(which - 2) = moved%eccentricity_rate(which - 2) + by
+    case default
+      moved%pin_speed = moved%pin_speed + by
+      moved%turning_speed = moved%turning_speed + by
+    end select
+  end function moved
 end module film_law

@@ -2,7 +2,7 @@
 !> happens at |e| = c.
 module mixed_film
   use gudgeon_kinds, only: dp
-  use film_law, only: film_law_t, film_motion_t
+  use film_law, only: film_law_t, film_motion_t, difference_steps, moved
   use asperities, only: asperities_t
   implicit none
   private
@@ -49,36 +49,27 @@ contains
     real(dp), intent(in) :: pin_radius
     type(film_motion_t), intent(in) :: motion
     real(dp), intent(out) :: derivatives(3, 5)
-    real(dp) :: room, rate, step(5), above(3), below(3)
+    real(dp) :: step(5), above(3), below(3)
     integer :: i
-    room = max(film%clearance - norm2(motion%eccentricity), rough%roughness)
-    rate = norm2(motion%eccentricity_rate) + film%clearance*abs(motion%pin_speed) + tiny(1.0_dp)**0.25_dp
-    step = 1e-5_dp*[room, room, rate*room/film%clearance, rate*room/film%clearance, rate/film%clearance]
+    step = difference_steps(film%clearance, max(film%clearance - norm2(motion%eccentricity), rough%roughness), motion)
     do i = 1, 5
-      call moved(i, step(i), above)
-      call moved(i, -step(i), below)
+      call find_whole(moved(motion, i, step(i)), above)
+      call find_whole(moved(motion, i, -step(i)), below)
       derivatives(:, i) = (above - below)/(2*step(i))
     end do
 
   contains
 
-    pure subroutine moved(i, by, values)
-      integer, intent(in) :: i
-      real(dp), intent(in) :: by
+    pure subroutine find_whole(at, values)
+      type(film_motion_t), intent(in) :: at
       real(dp), intent(out) :: values(3)
-      type(film_motion_t) :: other
       real(dp) :: pressing, friction, distance, n(2)
-      other = motion
-      if (i <= 2) other%eccentricity(i) = other%eccentricity(i) + by
-      if (i == 3 .or. i == 4) other%eccentricity_rate(i - 2) = other%eccentricity_rate(i - 2) + by
-      if (i == 5) other%pin_speed = other%pin_speed + by
-      if (i == 5) other%turning_speed = other%turning_speed + by
-      call mixed_forces(film, rough, pin_radius, other, values(1:2), values(3), pressing, friction)
-      distance = norm2(other%eccentricity)
+      call mixed_forces(film, rough, pin_radius, at, values(1:2), values(3), pressing, friction)
+      distance = norm2(at%eccentricity)
       n = [1.0_dp, 0.0_dp]
-      if (distance > 0) n = other%eccentricity/distance
+      if (distance > 0) n = at%eccentricity/distance
       values(1:2) = values(1:2) - pressing*n + friction*[-n(2), n(1)]
       values(3) = values(3) + friction*pin_radius
-    end subroutine moved
+    end subroutine find_whole
   end subroutine mixed_derivatives
 end module mixed_film

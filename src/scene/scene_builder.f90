@@ -47,10 +47,13 @@ contains
     type(scene_t), allocatable, intent(out) :: scene
     type(error_t), allocatable, intent(out) :: error
     logical, intent(in), optional :: without_tables   !! films make no tables: the scene is not to be integrated
+    logical :: makes_tables
 
     call assemble_scene(case, ideal_joint, scene)
     call prepare_joints(case, scene)
-    if (.not. present(without_tables)) call make_tables(case, scene)
+    makes_tables = .true.
+    if (present(without_tables)) makes_tables = .not. without_tables
+    if (makes_tables) call make_tables(case, scene)
     associate (m => case%mechanism)
       scene%chain%bodies = new_bodies(crank_t(m%crank_length, m%crank_mass, m%crank_inertia, m%crank_com), &
         rod_t(m%rod_length, m%rod_mass, m%rod_inertia, m%rod_com), piston_t(m%piston_mass), gravity_of(case))
