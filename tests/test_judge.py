@@ -158,7 +158,7 @@ MUTANTS = [
     ("friction drives", "ambrosio.f90", "ratio = -sign(ratio, sliding_speed)", "ratio = sign(ratio, sliding_speed)", "dry", "friction law"),
     ("static friction grips too early", "brown_mcphee.f90", "0.25_dp*u**2 + 0.75_dp)**2", "0.25_dp*u**2 + 0.76_dp)**2", "brown_mcphee", "friction law"),
     ("bristles give way too late", "lugre.f90", "abs(v)*z/g\n  end function", "0.99_dp*abs(v)*z/g\n  end function", "lugre", "bristle is not the integral"),
-    ("film holds too much as it withdraws", "pinkus_sternlicht.f90", "withdrawal_sign*radial", "withdrawal_sign*(1.001_dp*radial)", "film", "film law"),
+    ("film holds too much as it withdraws", "pinkus_sternlicht.f90", "if (eps_dot < 0) radial = self%withdrawal_sign*radial", "if (eps_dot < 0) radial = self%withdrawal_sign*(1.001_dp*radial)", "film", "film law"),
     ("the crank pin slides without its bearing's turning", "joint_motion.f90", "- joint%bearing_speed*(joint%distance + pin_radius)",
      "- joint%bearing_speed*pin_radius", "both", "crank pin: sliding speed"),
     ("angular momentum from nowhere", "chain_loads.f90", "-(moment + eccentricity(1)", "-(moment + 0*eccentricity(1)", "both", "Euler, rod"),
