@@ -69,6 +69,8 @@ contains
     type(error_t), allocatable :: error
     character(len=*), parameter :: oscillating(2) = [character(len=40) :: 'lubrication.law=oscillating_film', &
       'lubrication.kinematic_viscosity=1.38e-5']
+    character(len=*), parameter :: small_table(3) = [character(len=40) :: 'lubrication.cavitation=gumbel', &   ! its size costs nothing
+      'lubrication.table_points=17', 'lubrication.film_points=32']
     character(len=*), parameter :: friction(3) = [character(len=40) :: &
       'friction.transition_speed=1e-3', 'friction.stribeck_speed=1e-2', 'friction.bristle_stiffness=2e4']
     character(len=40) :: law, friction_law, at_rest
@@ -91,7 +93,8 @@ contains
       call read_case('cases/flores/friction_050.nml', [character(len=40) :: law, friction_law, at_rest, friction, &
         'joint.bearing_length=0.04'], case, error)
     else if (index(name, 'finite') == 1) then
-      call read_case('cases/film/sim_IV_'//trim(merge('mixed ', 'finite', index(name, 'mixed') > 0))//'.nml', [law], case, error)
+      call read_case('cases/film/sim_IV_'//trim(merge('mixed ', 'finite', index(name, 'mixed') > 0))//'.nml', &
+        [character(len=40) :: law, small_table], case, error)
     else if (index(name, 'oscillating') == 1) then
       call read_case('cases/sim_IV.nml', [law, oscillating], case, error)
     else
