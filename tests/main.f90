@@ -27,6 +27,7 @@ program gudgeon_tests
   use test_events, only: run_test_events
   use test_findings, only: run_test_findings
   use test_finite_bearing, only: run_test_finite_bearing
+  use test_film_moment, only: run_test_film_moment
   use test_friction, only: run_test_friction
   use test_friction_runs, only: run_test_friction_runs
   use test_joint, only: run_test_joint
@@ -85,6 +86,7 @@ program gudgeon_tests
   call run('events', run_test_events)
   call run('findings', run_test_findings)
   call run('finite_bearing', run_test_finite_bearing)
+  call run('film_moment', run_test_film_moment)
   call run('friction', run_test_friction)
   call run('friction_runs', run_test_friction_runs)
   call run('joint', run_test_joint)

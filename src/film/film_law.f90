@@ -40,6 +40,7 @@ module film_law
     procedure(film_force), deferred :: film_force
     procedure :: force_derivatives => difference_derivatives
     procedure, non_overridable :: shear_moment
+    procedure, non_overridable :: shear_moment_slopes
     procedure :: table_key => no_key
     procedure :: make_table => no_table
     procedure :: exchange_table => nothing_to_exchange
@@ -88,6 +89,22 @@ contains
       moment = -two_pi*force_scale*self%clearance*motion%turning_speed/sqrt(1 - square) - 0.5_dp*(e(1)*force(2) - e(2)*force(1))
     end associate
   end function shear_moment
+
+  !> Derivatives of `shear_moment` by e_x, e_y, e_x', e_y' and the pin speed, with those of the force (rows F_x, F_y).
+  pure function shear_moment_slopes(self, force_scale, motion, force, force_slopes) result(slopes)
+    class(film_law_t), intent(in) :: self
+    real(dp), intent(in) :: force_scale   !! mu L R^3/c^2 [N s]
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: force(2), force_slopes(:, :)
+    real(dp) :: slopes(5), gap, drag
+    associate (e => motion%eccentricity)
+      gap = 1 - min((e(1)**2 + e(2)**2)*self%per_clearance**2, 1 - 2*epsilon(1.0_dp))
+      drag = -two_pi*force_scale*self%clearance/sqrt(gap)
+      slopes = -0.5_dp*(e(1)*force_slopes(2, :5) - e(2)*force_slopes(1, :5))
+      slopes(:2) = slopes(:2) + drag*motion%turning_speed*e*self%per_clearance**2/gap - 0.5_dp*[force(2), -force(1)]
+      slopes(5) = slopes(5) + drag
+    end associate
+  end function shear_moment_slopes
 
   !> What the law's table is to be of, where it needs one that takes long to make: laws with the same key have the same table.
   !> Somebody may keep it (`exchange_table`) and put it there, with its key in `table_of`, before it is made.

@@ -63,7 +63,8 @@ contains
     call list%word('cavitation', self%cavitation, 'reynolds, gumbel, none', 'reynolds', &
       'where the pressure would be negative: reynolds: the film ruptures with pressure and slope 0; gumbel: it is cut off')
     call list%add('viscosity', self%viscosity, 'dynamic viscosity', 'Pa s', '> 0', example='0.0117')
-    call list%add('film_moment', self%film_moment, 'the film''s shear acts on the pin', '.true.')
+    call list%add('film_moment', self%film_moment, 'its shear turns the pin; not given: .true. of finite_bearing, else .false.', &
+      '.true.')
     call list%add('table_points', self%table_points, &
       'of the table in each direction; 0: from the tolerance, 33 above 3e-5, else 65', '>= 17 and <= 513', '0')
     call list%add('film_points', self%film_points, &

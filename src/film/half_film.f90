@@ -35,7 +35,7 @@ contains
   !>     f_t = 6P/(2+eps^2) [ 2A (g/sqrt(1-eps^2) - s c/u) + B c(2c - eps)/u ]
   !>
   !> between the arc's ends: Booker's integrals, arranged so that nothing cancels as eps -> 0. While the pin leaves the
-  !> wall some digits cancel as eps -> 1: the relative error is about 1e-15/(1 - eps). No moment.
+  !> wall some digits cancel as eps -> 1: the relative error is about 1e-15/(1 - eps).
   !>
   !> Times eps^3 the brackets hold nothing but eps^2, eps A, eps B, eps c and eps s, and n is e/(c eps): no root of the
   !> eccentricity is needed.
@@ -51,12 +51,14 @@ contains
     real(dp) :: cosine(2), sine(2), terms(2, 4)
     force = 0
     moment = 0
+    if (self%film_moment) moment = self%shear_moment(self%force_scale, motion, force)
     e = motion%eccentricity*self%per_clearance
     v = motion%eccentricity_rate*self%per_clearance
     square = e(1)**2 + e(2)**2
     if (square < centred) then
       force(1) = -6*pi*self%force_scale*(v(1) + 0.5_dp*motion%pin_speed*e(2))
       force(2) = -6*pi*self%force_scale*(v(2) - 0.5_dp*motion%pin_speed*e(1))
+      if (self%film_moment) moment = self%shear_moment(self%force_scale, motion, force)
       return
     end if
     if (square > held**2) then
@@ -83,6 +85,7 @@ contains
     if (arc < 0) arc = arc + two_pi
     force(1) = force(1) + (radial*e(1) - tangential*e(2))*arc
     force(2) = force(2) + (radial*e(2) + tangential*e(1))*arc
+    if (self%film_moment) moment = self%shear_moment(self%force_scale, motion, force)
   end subroutine film_force
 
   !> The zeros on the unit circle of Im[conj(d)(4z + eps z^2)], nearest to d and to -d, for eps d = x + i y, and what the

@@ -61,6 +61,8 @@ contains
     call list%word('variant', self%variant, 'closed_form, as_printed, half_film', 'closed_form', &
       'how its pressure is integrated', example='closed_form')
     call list%add('viscosity', self%viscosity, 'dynamic viscosity', 'Pa s', '> 0', example='0.0117')
+    call list%add('film_moment', self%film_moment, 'its shear turns the pin; not given: .true. of finite_bearing, else .false.', &
+      '.false.', example='.false.')
   end subroutine parameters
 
   !> The scales of pressure and force, and the sign of (5.36), misprinted where the variant is `as_printed`.
@@ -112,7 +114,7 @@ contains
 
   !> (5.34-5.37), (5.36) with its sign corrected unless `as_printed`. With S = sqrt((1-eps^2)((eps W)^2 + 4 eps_dot^2)),
   !> |eps_dot| k eps = S/2 and both quotients of k are (S + 6 eps max(eps_dot, 0))/(S + 3 eps |eps_dot|), so that nothing
-  !> is singular at eps = 0 or eps_dot = 0. The theory has pressure only: no moment about the pin centre.
+  !> is singular at eps = 0 or eps_dot = 0. The theory has pressure only; the moment is that of `shear_moment`, where it is asked for.
   pure subroutine film_force(self, motion, force, moment)
     class(pinkus_sternlicht_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
@@ -137,6 +139,7 @@ contains
       force(1) = radial*n(1) - tangential*n(2)
       force(2) = radial*n(2) + tangential*n(1)
     end associate
+    if (self%film_moment) moment = self%shear_moment(self%force_scale, motion, force)
   end subroutine film_force
 
   !> Derivatives of `film_force`, for implicit integration (see `difference_derivatives`): of the polar forms by (eps,
@@ -171,6 +174,11 @@ contains
           derivatives(:, i) = [f_r*n(1) - f_t*n(2), f_r*n(2) + f_t*n(1), 0.0_dp]
         end associate
       end do
+    end associate
+    if (.not. self%film_moment) return
+    associate (n => state%normal)
+      derivatives(3, :) = self%shear_moment_slopes(self%force_scale, motion, &
+        [radial(0)*n(1) - tangential(0)*n(2), radial(0)*n(2) + tangential(0)*n(1)], derivatives)
     end associate
   end subroutine force_derivatives
 

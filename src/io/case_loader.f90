@@ -5,6 +5,7 @@ module case_loader
   use gudgeon_parameters, only: parameter_list_t, has_parameters_t, law_t, key_t, word_kind
   use case_definition, only: case_t, visit_case
   use case_schema, only: find_group, is_listed
+  use case_value, only: set_to_default
   use case_values, only: case_values_t
   implicit none
   private
@@ -126,7 +127,7 @@ contains
     place_of = 0
   end function place_of
 
-  !> A word or a text that is not given has the default of the law that asks for it, which goes into the values too.
+  !> A word, a text or a switch that is not given has the default of the law that asks for it, which goes into the values too.
   subroutine load_parameter(self, key, reals, whole, switch, text)
     class(loader_t), intent(inout) :: self
     type(key_t), intent(in) :: key
@@ -138,7 +139,10 @@ contains
     associate (value => self%values%values(self%place_of(trim(key%name))))
       if (present(reals)) reals = value%reals(:size(reals))
       if (present(whole)) whole = value%whole
-      if (present(switch)) switch = value%switch
+      if (present(switch)) then
+        if (.not. value%given(1)) call set_to_default(key, value)
+        switch = value%switch
+      end if
       if (.not. present(text)) return
       if (.not. value%given(1) .or. key%kind == word_kind .and. value%text == '') value%text = trim(key%default)
       text = value%text

@@ -201,8 +201,8 @@ contains
     end if
     if (self%law_name == '') return
     call add_word(self%keys(place)%laws, self%law_name)
-    if (key%kind /= word_kind) return
     if (self%keys(place)%default /= key%default) self%keys(place)%default = ''   ! each law has its own
+    if (key%kind /= word_kind) return
     call add_words(self%keys(place)%words, key%words)
   end subroutine collect
 
@@ -214,11 +214,12 @@ contains
     call move_alloc(larger, keys)
   end subroutine make_room
 
-  !> Whether two laws mean the same by a key. A word may have other values and another default in each.
+  !> Whether two laws mean the same by a key. A word may have other values and another default in each, a switch another
+  !> default.
   pure logical function same_meaning(a, b)
     type(key_t), intent(in) :: a, b
     same_meaning = a%kind == b%kind .and. a%count == b%count .and. (a%required .eqv. b%required) .and. a%unit == b%unit .and. &
-      a%range == b%range .and. (a%default == b%default .or. a%kind == word_kind)
+      a%range == b%range .and. (a%default == b%default .or. a%kind == word_kind .or. a%kind == logical_kind)
   end function same_meaning
 
   !> Add the words of a list to another one.

@@ -164,13 +164,14 @@ contains
     call self%visit(described(key, integer_kind, says, range=range, default=default, example=example), whole=value)
   end subroutine add_integer
 
-  !> A switch, .true. or .false.
-  subroutine add_logical(self, key, value, says, default)
+  !> A switch, .true. or .false. Where laws of one group have other defaults for it, the first of them has an example.
+  subroutine add_logical(self, key, value, says, default, example)
     class(parameter_list_t), intent(inout) :: self
     character(len=*), intent(in) :: key, says, default
     logical, intent(inout) :: value
+    character(len=*), intent(in), optional :: example
     if (self%passes) return
-    call self%visit(described(key, logical_kind, says, default=default), switch=value)
+    call self%visit(described(key, logical_kind, says, default=default, example=example), switch=value)
   end subroutine add_logical
 
   !> One of several words, separated by a comma and a blank.
