@@ -54,8 +54,7 @@ module collocation
     real(dp), allocatable, private :: f_stage(:, :) !! right-hand side at the stages, (n, most_stages)
     real(dp), allocatable, private :: y_stage(:)    !! (n)
     real(dp), allocatable, private :: e1(:, :)      !! real matrix, (k, k)
-    complex(dp), allocatable, private :: e2(:, :, :)   !! complex matrices, (k, k, pairs)
-    complex(dp), allocatable, private :: right(:)      !! (k)
+    real(dp), allocatable, private :: e2(:, :, :)   !! complex matrices, real and imaginary parts in turn, (k, k, 2 pairs)
     integer, allocatable, private :: pivot1(:), pivot2(:, :)
   contains
     procedure :: prepare
@@ -132,10 +131,10 @@ contains
       self%per_node(:, i) = inverse_node_products(self%formula(i))
     end do
     if (allocated(self%z)) deallocate (self%z, self%z_new, self%w, self%dw, self%rates, self%f_stage, self%y_stage, &
-      self%base, self%a_p, self%a_v, self%e1, self%e2, self%right, self%pivot1, self%pivot2, self%inverse_weight)
+      self%base, self%a_p, self%a_v, self%e1, self%e2, self%pivot1, self%pivot2, self%inverse_weight)
     allocate (self%z(n, most_stages), self%z_new(n, most_stages), self%w(k, most_stages), self%dw(k, most_stages), &
       self%rates(k, most_stages), self%f_stage(n, most_stages), self%y_stage(n), self%base(n), &
-      self%a_p(k, m), self%a_v(k, k), self%e1(k, k), self%e2(k, k, most_pairs), self%right(k), self%pivot1(k), &
+      self%a_p(k, m), self%a_v(k, k), self%e1(k, k), self%e2(k, k, 2*most_pairs), self%pivot1(k), &
       self%pivot2(k, most_pairs), self%inverse_weight(n))
     self%z = 0
     self%w = 0    ! the columns beyond the stages in use take part in halvings
@@ -238,7 +237,7 @@ contains
   pure subroutine filtered_error(self, f_0, error)
     class(collocation_t), intent(in) :: self
     real(dp), intent(in) :: f_0(:)
-    real(dp), intent(out) :: error(:)   !! (n)
+    real(dp), intent(out), contiguous :: error(:)   !! (n)
     integer :: i, j, m, k
     m = self%m
     k = self%k

@@ -9,26 +9,40 @@ submodule (collocation) collocation_newton
 contains
 
   module procedure decompose_matrices
-    complex(dp) :: shift
-    integer :: i, j, m
+    real(dp) :: x, y, per_x, per_y
+    integer :: i, j, l, k, m
 
+    k = self%k
     m = self%m
     associate (formula => self%formula(self%level), h => self%h)
-      self%e1 = -self%a_v
-      self%e1(:, :m) = self%e1(:, :m) - (h/formula%gamma)*self%a_p
-      do i = 1, self%k
-        self%e1(i, i) = self%e1(i, i) + formula%gamma/h
+      x = formula%gamma/h
+      per_x = h/formula%gamma
+      do l = 1, k
+        do i = 1, k
+          self%e1(i, l) = -self%a_v(i, l)
+          if (l <= m) self%e1(i, l) = self%e1(i, l) - per_x*self%a_p(i, l)
+        end do
+        self%e1(l, l) = self%e1(l, l) + x
       end do
       call decompose(self%e1, self%pivot1, singular)
       if (singular) return
       do j = 1, formula%stages/2
-        shift = cmplx(formula%alpha(j), -formula%beta(j), dp)/h
-        self%e2(:, :, j) = -self%a_v
-        self%e2(:, :m, j) = self%e2(:, :m, j) - self%a_p/shift
-        do i = 1, self%k
-          self%e2(i, i, j) = self%e2(i, i, j) + shift
+        x = formula%alpha(j)/h   ! the shift is x - i y
+        y = formula%beta(j)/h
+        per_x = formula%alpha(j)*h/(formula%alpha(j)**2 + formula%beta(j)**2)
+        per_y = formula%beta(j)*h/(formula%alpha(j)**2 + formula%beta(j)**2)
+        do l = 1, k
+          do i = 1, k
+            self%e2(i, l, 2*j - 1) = -self%a_v(i, l)
+            self%e2(i, l, 2*j) = 0
+            if (l > m) cycle
+            self%e2(i, l, 2*j - 1) = self%e2(i, l, 2*j - 1) - per_x*self%a_p(i, l)
+            self%e2(i, l, 2*j) = -per_y*self%a_p(i, l)
+          end do
+          self%e2(l, l, 2*j - 1) = self%e2(l, l, 2*j - 1) + x
+          self%e2(l, l, 2*j) = self%e2(l, l, 2*j) - y
         end do
-        call decompose(self%e2(:, :, j), self%pivot2(:, j), singular)
+        call decompose(self%e2(:, :, 2*j - 1), self%e2(:, :, 2*j), self%pivot2(:, j), singular)
         if (singular) return
       end do
     end associate
@@ -48,8 +62,7 @@ contains
     if (.not. inside) return
     do iteration = 1, most_iterations
       self%iterations = iteration
-      call newton_step(self)
-      change = change_norm(self)
+      call newton_step(self, change)
       outcome = newton_diverged
       if (.not. change < farthest) return
       if (last_change > 0) then
@@ -83,57 +96,52 @@ contains
     outcome = newton_diverged
   end procedure iterate
 
-  !> One Newton step: self%dw, added to self%w. The right-hand sides at the stages are those of self%w.
-  subroutine newton_step(self)
+  !> One Newton step: self%dw, added to self%w, and its size relative to the inner tolerance, with what it moves the positions. The
+  !> right-hand sides at the stages are those of self%w. A step beyond all measure is not made.
+  subroutine newton_step(self, change)
     class(collocation_t), intent(inout) :: self
-    complex(dp) :: shift
-    integer :: i, j, m, k
+    real(dp), intent(out) :: change
+    real(dp) :: x, y, total, weight, part
+    integer :: i, j, m, k, s
 
     m = self%m
     k = self%k
-    associate (formula => self%formula(self%level), h => self%h, s => self%formula(self%level)%stages)
-      call combine(k, s, 1.0_dp, formula%t_inverse, self%f_stage(m + 1, 1), size(self%f_stage, 1), self%dw, k)
+    s = self%formula(self%level)%stages
+    associate (formula => self%formula(self%level), h => self%h, w => self%w, dw => self%dw)
+      call combine(k, s, 1.0_dp, formula%t_inverse, self%f_stage(m + 1, 1), size(self%f_stage, 1), dw, k)
+      x = formula%gamma/h
       do i = 1, k
-        self%dw(i, 1) = self%dw(i, 1) - (formula%gamma/h)*self%w(i, 1)
+        dw(i, 1) = dw(i, 1) - x*w(i, 1)
       end do
-      call solve(self%e1, self%pivot1, self%dw(:, 1))
+      call solve(self%e1, self%pivot1, dw(:, 1))
       do j = 1, s/2
-        shift = cmplx(formula%alpha(j), -formula%beta(j), dp)/h
+        x = formula%alpha(j)/h   ! the shift is x - i y
+        y = formula%beta(j)/h
         do i = 1, k
-          self%right(i) = cmplx(self%dw(i, 2*j), self%dw(i, 2*j + 1), dp) - shift*cmplx(self%w(i, 2*j), self%w(i, 2*j + 1), dp)
+          dw(i, 2*j) = dw(i, 2*j) - (x*w(i, 2*j) + y*w(i, 2*j + 1))
+          dw(i, 2*j + 1) = dw(i, 2*j + 1) - (x*w(i, 2*j + 1) - y*w(i, 2*j))
         end do
-        call solve(self%e2(:, :, j), self%pivot2(:, j), self%right)
-        do i = 1, k
-          self%dw(i, 2*j) = real(self%right(i), dp)
-          self%dw(i, 2*j + 1) = aimag(self%right(i))
-        end do
-      end do
-      do j = 1, s
-        do i = 1, k
-          self%w(i, j) = self%w(i, j) + self%dw(i, j)
-        end do
+        call solve(self%e2(:, :, 2*j - 1), self%e2(:, :, 2*j), self%pivot2(:, j), dw(:, 2*j), dw(:, 2*j + 1))
       end do
     end associate
-  end subroutine newton_step
-
-  !> Size of a Newton step relative to the inner tolerance, with what it moves the positions.
-  pure real(dp) function change_norm(self)
-    class(collocation_t), intent(in) :: self
-    real(dp) :: total, weight
-    integer :: i, s
-    s = self%formula(self%level)%stages
-    change_norm = huge(change_norm)
-    do i = 1, self%k
-      if (.not. maxval(abs(self%dw(i, :s)))*self%inverse_weight(self%m + i) < farthest) return
-    end do
+    change = huge(change)
     total = 0
-    do i = 1, self%k
-      weight = self%inverse_weight(self%m + i)
-      if (i <= self%m) weight = max(weight, self%h*self%inverse_weight(i))
-      total = total + sum((self%dw(i, :s)*weight)**2)
+    do i = 1, k
+      weight = self%inverse_weight(m + i)
+      if (i <= m) weight = max(weight, self%h*self%inverse_weight(i))
+      do j = 1, s
+        part = abs(self%dw(i, j)*weight)
+        if (.not. part < farthest) return
+        total = total + part**2
+      end do
     end do
-    change_norm = sqrt(total/(s*max(self%k, 1)))
-  end function change_norm
+    change = sqrt(total/(s*max(k, 1)))
+    do j = 1, s
+      do i = 1, k
+        self%w(i, j) = self%w(i, j) + self%dw(i, j)
+      end do
+    end do
+  end subroutine newton_step
 
   !> Increments of all components at the stages: rates from w, positions by collocation, quadratures from the last
   !> evaluation.
@@ -146,20 +154,13 @@ contains
     m = self%m
     k = self%k
     associate (formula => self%formula(self%level), h => self%h, s => self%formula(self%level)%stages, z => self%z_new)
-      call combine(k, s, 1.0_dp, formula%t, self%w, k, self%rates, k)
+      call combine(k, s, 1.0_dp, formula%t, self%w, k, z(m + 1, 1), n)
+      call combine(m, s, h, formula%a, z(m + 1, 1), n, z, n)
       do i = 1, s
-        do j = 1, k
-          z(m + j, i) = self%rates(j, i)
+        do j = 1, m
+          z(j, i) = z(j, i) + h*formula%c(i)*self%base(m + j)
         end do
       end do
-      if (m > 0) then
-        call combine(m, s, h, formula%a, self%rates, k, z, n)
-        do i = 1, s
-          do j = 1, m
-            z(j, i) = z(j, i) + h*formula%c(i)*self%base(m + j)
-          end do
-        end do
-      end if
       if (with_quadratures .and. n > m + k) &
         call combine(n - m - k, s, h, formula%a, self%f_stage(m + k + 1, 1), size(self%f_stage, 1), z(m + k + 1, 1), n)
     end associate
@@ -183,16 +184,52 @@ contains
   module procedure combine
     real(dp) :: total
     integer :: i, j, r
-    do i = 1, stages
-      do r = 1, rows
-        total = 0
-        do j = 1, stages
-          total = total + matrix(i, j)*x(r, j)
+    select case (stages)
+    case (3)
+      call combine_3(rows, factor, matrix, x, first_x, y, first_y)
+    case (5)
+      call combine_5(rows, factor, matrix, x, first_x, y, first_y)
+    case default
+      do i = 1, stages
+        do r = 1, rows
+          total = 0
+          do j = 1, stages
+            total = total + matrix(i, j)*x(r, j)
+          end do
+          y(r, i) = factor*total
         end do
-        y(r, i) = factor*total
       end do
-    end do
+    end select
   end procedure combine
+
+  !> The common numbers of stages, without loops over them.
+  pure subroutine combine_3(rows, factor, m, x, first_x, y, first_y)
+    integer, intent(in) :: rows, first_x, first_y
+    real(dp), intent(in) :: factor, m(3, 3), x(first_x, *)
+    real(dp), intent(inout) :: y(first_y, *)
+    integer :: i, r
+    do r = 1, rows
+      associate (a => x(r, 1), b => x(r, 2), c => x(r, 3))
+        do i = 1, 3
+          y(r, i) = factor*(m(i, 1)*a + m(i, 2)*b + m(i, 3)*c)
+        end do
+      end associate
+    end do
+  end subroutine combine_3
+
+  pure subroutine combine_5(rows, factor, m, x, first_x, y, first_y)
+    integer, intent(in) :: rows, first_x, first_y
+    real(dp), intent(in) :: factor, m(5, 5), x(first_x, *)
+    real(dp), intent(inout) :: y(first_y, *)
+    integer :: i, r
+    do r = 1, rows
+      associate (a => x(r, 1), b => x(r, 2), c => x(r, 3), d => x(r, 4), e => x(r, 5))
+        do i = 1, 5
+          y(r, i) = factor*(m(i, 1)*a + m(i, 2)*b + m(i, 3)*c + m(i, 4)*d + m(i, 5)*e)
+        end do
+      end associate
+    end do
+  end subroutine combine_5
 
   !> Right-hand sides at the stages of self%w.
   subroutine evaluate_stages(self, problem, inside)

@@ -1,134 +1,196 @@
 !> LU decomposition with partial pivoting of the small dense matrices of an implicit step, real and complex.
+!>
+!> Complex numbers are pairs of reals here: a library division for each of them, and products that are looked at for what is not
+!> a number, cost more than the arithmetic. Substitution of order 3, that of one loose joint, is written out.
 module small_lu
   use gudgeon_kinds, only: dp
   implicit none
   private
   public :: decompose, solve
 
+  !> Replace a matrix (n, n) by its factors, with the reciprocals of the pivots; `pivot` (n) keeps the row exchanges. `singular`
+  !> where a pivot is 0 or not a number.
   interface decompose
     module procedure decompose_real, decompose_complex
   end interface decompose
 
+  !> Replace a right-hand side (n) by the solution.
   interface solve
     module procedure solve_real, solve_complex
   end interface solve
 
 contains
 
-  !> Replace a (n, n) by its factors; `pivot` (n) keeps the row exchanges. `singular` where a pivot is 0 or not a number.
   pure subroutine decompose_real(a, pivot, singular)
-    real(dp), intent(inout) :: a(:, :)
-    integer, intent(out) :: pivot(:)
+    real(dp), intent(inout), contiguous :: a(:, :)
+    integer, intent(out), contiguous :: pivot(:)
     logical, intent(out) :: singular
     real(dp) :: swap
-    integer :: i, j, l, n
+    integer :: i, j, l, n, p
     n = size(a, 1)
-    singular = .false.
+    singular = .true.
     do j = 1, n
-      pivot(j) = j
+      p = j
       do i = j + 1, n
-        if (abs(a(i, j)) > abs(a(pivot(j), j))) pivot(j) = i
+        if (abs(a(i, j)) > abs(a(p, j))) p = i
       end do
-      if (.not. abs(a(pivot(j), j)) > 0) then
-        singular = .true.
-        return
+      pivot(j) = p
+      if (.not. abs(a(p, j)) > 0) return
+      if (p /= j) then
+        do l = j, n   ! the factors to the left stay in the order in which they are substituted
+          swap = a(j, l)
+          a(j, l) = a(p, l)
+          a(p, l) = swap
+        end do
       end if
-      do l = j, n   ! the factors to the left stay in the order in which `solve` takes them
-        swap = a(j, l)
-        a(j, l) = a(pivot(j), l)
-        a(pivot(j), l) = swap
-      end do
+      a(j, j) = 1/a(j, j)
       do i = j + 1, n
-        a(i, j) = a(i, j)/a(j, j)
+        a(i, j) = a(i, j)*a(j, j)
         do l = j + 1, n
           a(i, l) = a(i, l) - a(i, j)*a(j, l)
         end do
       end do
     end do
+    singular = .false.
   end subroutine decompose_real
 
-  !> Replace b (n) by the solution.
   pure subroutine solve_real(a, pivot, b)
-    real(dp), intent(in) :: a(:, :)
-    integer, intent(in) :: pivot(:)
-    real(dp), intent(inout) :: b(:)
-    real(dp) :: swap
+    real(dp), intent(in), contiguous :: a(:, :)
+    integer, intent(in), contiguous :: pivot(:)
+    real(dp), intent(inout), contiguous :: b(:)
     integer :: i, j, n
     n = size(b)
-    do i = 1, n
-      swap = b(i)
-      b(i) = b(pivot(i))
-      b(pivot(i)) = swap
+    do i = 1, n - 1
+      call swap_elements(b, i, pivot(i))
       do j = i + 1, n
         b(j) = b(j) - a(j, i)*b(i)
       end do
     end do
     do i = n, 1, -1
-      do j = i + 1, n
-        b(i) = b(i) - a(i, j)*b(j)
+      b(i) = b(i)*a(i, i)
+      do j = 1, i - 1
+        b(j) = b(j) - a(j, i)*b(i)
       end do
-      b(i) = b(i)/a(i, i)
     end do
   end subroutine solve_real
 
-  !> The same for complex matrices.
-  pure subroutine decompose_complex(a, pivot, singular)
-    complex(dp), intent(inout) :: a(:, :)
-    integer, intent(out) :: pivot(:)
+  pure subroutine swap_elements(x, i, j)
+    real(dp), intent(inout), contiguous :: x(:)
+    integer, intent(in) :: i, j
+    real(dp) :: swap
+    swap = x(j)
+    x(j) = x(i)
+    x(i) = swap
+  end subroutine swap_elements
+
+  pure subroutine decompose_complex(a, b, pivot, singular)
+    real(dp), intent(inout), contiguous :: a(:, :), b(:, :)   !! real and imaginary parts
+    integer, intent(out), contiguous :: pivot(:)
     logical, intent(out) :: singular
-    complex(dp) :: swap
-    integer :: i, j, l, n
+    real(dp) :: swap, real_part
+    integer :: i, j, l, n, p
     n = size(a, 1)
-    singular = .false.
+    singular = .true.
     do j = 1, n
-      pivot(j) = j
+      p = j
       do i = j + 1, n
-        if (size_of(a(i, j)) > size_of(a(pivot(j), j))) pivot(j) = i
+        if (abs(a(i, j)) + abs(b(i, j)) > abs(a(p, j)) + abs(b(p, j))) p = i
       end do
-      if (.not. abs(a(pivot(j), j)) > 0) then
-        singular = .true.
-        return
+      pivot(j) = p
+      if (.not. abs(a(p, j)) + abs(b(p, j)) > 0) return
+      if (p /= j) then
+        do l = j, n
+          swap = a(j, l)
+          a(j, l) = a(p, l)
+          a(p, l) = swap
+          swap = b(j, l)
+          b(j, l) = b(p, l)
+          b(p, l) = swap
+        end do
       end if
-      do l = j, n   ! the factors to the left stay in the order in which `solve` takes them
-        swap = a(j, l)
-        a(j, l) = a(pivot(j), l)
-        a(pivot(j), l) = swap
-      end do
+      call invert(a(j, j), b(j, j))
       do i = j + 1, n
-        a(i, j) = a(i, j)/a(j, j)
+        real_part = a(i, j)*a(j, j) - b(i, j)*b(j, j)
+        b(i, j) = a(i, j)*b(j, j) + b(i, j)*a(j, j)
+        a(i, j) = real_part
         do l = j + 1, n
-          a(i, l) = a(i, l) - a(i, j)*a(j, l)
+          a(i, l) = a(i, l) - (a(i, j)*a(j, l) - b(i, j)*b(j, l))
+          b(i, l) = b(i, l) - (a(i, j)*b(j, l) + b(i, j)*a(j, l))
         end do
       end do
     end do
+    singular = .false.
   end subroutine decompose_complex
 
-  pure subroutine solve_complex(a, pivot, b)
-    complex(dp), intent(in) :: a(:, :)
-    integer, intent(in) :: pivot(:)
-    complex(dp), intent(inout) :: b(:)
-    complex(dp) :: swap
+  !> 1/(x + i y) in its place; measured by its size first, since squares may be beyond all numbers.
+  pure subroutine invert(x, y)
+    real(dp), intent(inout) :: x, y
+    real(dp) :: per_size, per_square
+    per_size = 1/(abs(x) + abs(y))
+    x = x*per_size
+    y = y*per_size
+    per_square = per_size/(x**2 + y**2)
+    x = x*per_square
+    y = -y*per_square
+  end subroutine invert
+
+  pure subroutine solve_complex(a, b, pivot, x, y)
+    real(dp), intent(in), contiguous :: a(:, :), b(:, :)
+    integer, intent(in), contiguous :: pivot(:)
+    real(dp), intent(inout), contiguous :: x(:), y(:)         !! real and imaginary parts
+    real(dp) :: real_part
     integer :: i, j, n
-    n = size(b)
-    do i = 1, n
-      swap = b(i)
-      b(i) = b(pivot(i))
-      b(pivot(i)) = swap
+    n = size(x)
+    if (n == 3) then
+      call solve_three(a, b, pivot, x, y)
+      return
+    end if
+    do i = 1, n - 1
+      call swap_elements(x, i, pivot(i))
+      call swap_elements(y, i, pivot(i))
       do j = i + 1, n
-        b(j) = b(j) - a(j, i)*b(i)
+        x(j) = x(j) - (a(j, i)*x(i) - b(j, i)*y(i))
+        y(j) = y(j) - (a(j, i)*y(i) + b(j, i)*x(i))
       end do
     end do
     do i = n, 1, -1
-      do j = i + 1, n
-        b(i) = b(i) - a(i, j)*b(j)
+      real_part = x(i)*a(i, i) - y(i)*b(i, i)
+      y(i) = x(i)*b(i, i) + y(i)*a(i, i)
+      x(i) = real_part
+      do j = 1, i - 1
+        x(j) = x(j) - (a(j, i)*x(i) - b(j, i)*y(i))
+        y(j) = y(j) - (a(j, i)*y(i) + b(j, i)*x(i))
       end do
-      b(i) = b(i)/a(i, i)
     end do
   end subroutine solve_complex
 
-  !> A cheap size of a complex number.
-  pure real(dp) function size_of(z)
-    complex(dp), intent(in) :: z
-    size_of = abs(real(z)) + abs(aimag(z))
-  end function size_of
+  !> Three complex unknowns.
+  pure subroutine solve_three(a, b, pivot, x, y)
+    real(dp), intent(in) :: a(3, 3), b(3, 3)
+    integer, intent(in) :: pivot(3)
+    real(dp), intent(inout), contiguous :: x(:), y(:)
+    real(dp) :: u(3), v(3)
+    call swap_elements(x, 1, pivot(1))
+    call swap_elements(y, 1, pivot(1))
+    x(2) = x(2) - (a(2, 1)*x(1) - b(2, 1)*y(1))
+    y(2) = y(2) - (a(2, 1)*y(1) + b(2, 1)*x(1))
+    x(3) = x(3) - (a(3, 1)*x(1) - b(3, 1)*y(1))
+    y(3) = y(3) - (a(3, 1)*y(1) + b(3, 1)*x(1))
+    call swap_elements(x, 2, pivot(2))
+    call swap_elements(y, 2, pivot(2))
+    u = x
+    v = y
+    u(3) = u(3) - (a(3, 2)*u(2) - b(3, 2)*v(2))
+    v(3) = v(3) - (a(3, 2)*v(2) + b(3, 2)*u(2))
+    x(3) = u(3)*a(3, 3) - v(3)*b(3, 3)
+    y(3) = u(3)*b(3, 3) + v(3)*a(3, 3)
+    u(2) = u(2) - (a(2, 3)*x(3) - b(2, 3)*y(3))
+    v(2) = v(2) - (a(2, 3)*y(3) + b(2, 3)*x(3))
+    x(2) = u(2)*a(2, 2) - v(2)*b(2, 2)
+    y(2) = u(2)*b(2, 2) + v(2)*a(2, 2)
+    u(1) = u(1) - (a(1, 2)*x(2) - b(1, 2)*y(2)) - (a(1, 3)*x(3) - b(1, 3)*y(3))
+    v(1) = v(1) - (a(1, 2)*y(2) + b(1, 2)*x(2)) - (a(1, 3)*y(3) + b(1, 3)*x(3))
+    x(1) = u(1)*a(1, 1) - v(1)*b(1, 1)
+    y(1) = u(1)*b(1, 1) + v(1)*a(1, 1)
+  end subroutine solve_three
 end module small_lu
