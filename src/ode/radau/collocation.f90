@@ -52,7 +52,8 @@ module collocation
     real(dp), allocatable :: a_p(:, :), a_v(:, :)   !! Jacobian, (k, m) and (k, k)
     real(dp), allocatable, private :: w(:, :), dw(:, :), rates(:, :)   !! (k, most_stages)
     real(dp), allocatable, private :: f_stage(:, :) !! right-hand side at the stages, (n, most_stages)
-    real(dp), allocatable, private :: y_stage(:)    !! (n)
+    real(dp), allocatable, private :: y_stage(:, :) !! (n, most_stages)
+    real(dp), allocatable, private :: step_weight(:) !! of a Newton step, with what it moves the positions, (k)
     real(dp), allocatable, private :: e1(:, :)      !! real matrix, (k, k)
     real(dp), allocatable, private :: e2(:, :, :)   !! complex matrices, real and imaginary parts in turn, (k, k, 2 pairs)
     integer, allocatable, private :: pivot1(:), pivot2(:, :)
@@ -131,9 +132,9 @@ contains
       self%per_node(:, i) = inverse_node_products(self%formula(i))
     end do
     if (allocated(self%z)) deallocate (self%z, self%z_new, self%w, self%dw, self%rates, self%f_stage, self%y_stage, &
-      self%base, self%a_p, self%a_v, self%e1, self%e2, self%pivot1, self%pivot2, self%inverse_weight)
+      self%step_weight, self%base, self%a_p, self%a_v, self%e1, self%e2, self%pivot1, self%pivot2, self%inverse_weight)
     allocate (self%z(n, most_stages), self%z_new(n, most_stages), self%w(k, most_stages), self%dw(k, most_stages), &
-      self%rates(k, most_stages), self%f_stage(n, most_stages), self%y_stage(n), self%base(n), &
+      self%rates(k, most_stages), self%f_stage(n, most_stages), self%y_stage(n, most_stages), self%step_weight(k), self%base(n), &
       self%a_p(k, m), self%a_v(k, k), self%e1(k, k), self%e2(k, k, 2*most_pairs), self%pivot1(k), &
       self%pivot2(k, most_pairs), self%inverse_weight(n))
     self%z = 0

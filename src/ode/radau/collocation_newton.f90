@@ -14,6 +14,10 @@ contains
 
     k = self%k
     m = self%m
+    do i = 1, k
+      self%step_weight(i) = self%inverse_weight(m + i)
+      if (i <= m) self%step_weight(i) = max(self%step_weight(i), self%h*self%inverse_weight(i))
+    end do
     associate (formula => self%formula(self%level), h => self%h)
       x = formula%gamma/h
       per_x = h/formula%gamma
@@ -101,54 +105,70 @@ contains
   subroutine newton_step(self, change)
     class(collocation_t), intent(inout) :: self
     real(dp), intent(out) :: change
-    real(dp) :: x, y, total, weight, part
-    integer :: i, j, m, k, s
+    integer :: j, m, k, s
 
     m = self%m
     k = self%k
     s = self%formula(self%level)%stages
-    associate (formula => self%formula(self%level), h => self%h, w => self%w, dw => self%dw)
-      call combine(k, s, 1.0_dp, formula%t_inverse, self%f_stage(m + 1, 1), size(self%f_stage, 1), dw, k)
-      x = formula%gamma/h
-      do i = 1, k
-        dw(i, 1) = dw(i, 1) - x*w(i, 1)
-      end do
-      call solve(self%e1, self%pivot1, dw(:, 1))
+    associate (formula => self%formula(self%level), h => self%h)
+      call combine(k, s, 1.0_dp, formula%t_inverse, self%f_stage(m + 1, 1), size(self%f_stage, 1), self%dw, k)
+      call subtract_shifted(k, s, formula%gamma/h, formula%alpha, formula%beta, 1/h, self%w, self%dw)
+      call solve(self%e1, self%pivot1, self%dw(:, 1))
       do j = 1, s/2
-        x = formula%alpha(j)/h   ! the shift is x - i y
-        y = formula%beta(j)/h
-        do i = 1, k
-          dw(i, 2*j) = dw(i, 2*j) - (x*w(i, 2*j) + y*w(i, 2*j + 1))
-          dw(i, 2*j + 1) = dw(i, 2*j + 1) - (x*w(i, 2*j + 1) - y*w(i, 2*j))
-        end do
-        call solve(self%e2(:, :, 2*j - 1), self%e2(:, :, 2*j), self%pivot2(:, j), dw(:, 2*j), dw(:, 2*j + 1))
+        call solve(self%e2(:, :, 2*j - 1), self%e2(:, :, 2*j), self%pivot2(:, j), self%dw(:, 2*j), self%dw(:, 2*j + 1))
       end do
     end associate
+    call add_step(k, s, self%step_weight, self%dw, self%w, change)
+  end subroutine newton_step
+
+  !> From the right-hand sides take what they are of w: the real eigenvalue times the first column, the complex ones times pairs of
+  !> columns, as (alpha - i beta) (w + i w').
+  pure subroutine subtract_shifted(k, s, gamma, alpha, beta, factor, w, dw)
+    integer, intent(in) :: k, s
+    real(dp), intent(in) :: gamma, alpha(*), beta(*), factor, w(k, s)
+    real(dp), intent(inout) :: dw(k, s)
+    real(dp) :: x, y
+    integer :: i, j
+    do i = 1, k
+      dw(i, 1) = dw(i, 1) - gamma*w(i, 1)
+    end do
+    do j = 1, s/2
+      x = factor*alpha(j)
+      y = factor*beta(j)
+      do i = 1, k
+        dw(i, 2*j) = dw(i, 2*j) - (x*w(i, 2*j) + y*w(i, 2*j + 1))
+        dw(i, 2*j + 1) = dw(i, 2*j + 1) - (x*w(i, 2*j + 1) - y*w(i, 2*j))
+      end do
+    end do
+  end subroutine subtract_shifted
+
+  !> Add a Newton step to w and find its size. A step beyond all measure is not made.
+  pure subroutine add_step(k, s, weight, dw, w, change)
+    integer, intent(in) :: k, s
+    real(dp), intent(in) :: weight(k), dw(k, s)
+    real(dp), intent(inout) :: w(k, s)
+    real(dp), intent(out) :: change
+    real(dp) :: total, part
+    integer :: i, j
     change = huge(change)
     total = 0
-    do i = 1, k
-      weight = self%inverse_weight(m + i)
-      if (i <= m) weight = max(weight, self%h*self%inverse_weight(i))
-      do j = 1, s
-        part = abs(self%dw(i, j)*weight)
+    do j = 1, s
+      do i = 1, k
+        part = abs(dw(i, j)*weight(i))
         if (.not. part < farthest) return
         total = total + part**2
       end do
     end do
     change = sqrt(total/(s*max(k, 1)))
-    do j = 1, s
-      do i = 1, k
-        self%w(i, j) = self%w(i, j) + self%dw(i, j)
-      end do
-    end do
-  end subroutine newton_step
+    w = w + dw
+  end subroutine add_step
 
   !> Increments of all components at the stages: rates from w, positions by collocation, quadratures from the last
   !> evaluation.
   subroutine expand_stages(self, with_quadratures)
     class(collocation_t), intent(inout) :: self
     logical, intent(in) :: with_quadratures
-    integer :: i, j, n, m, k
+    integer :: n, m, k
 
     n = self%n
     m = self%m
@@ -156,15 +176,26 @@ contains
     associate (formula => self%formula(self%level), h => self%h, s => self%formula(self%level)%stages, z => self%z_new)
       call combine(k, s, 1.0_dp, formula%t, self%w, k, z(m + 1, 1), n)
       call combine(m, s, h, formula%a, z(m + 1, 1), n, z, n)
-      do i = 1, s
-        do j = 1, m
-          z(j, i) = z(j, i) + h*formula%c(i)*self%base(m + j)
-        end do
-      end do
+      call add_drift(n, m, s, h, formula%c, self%base, z)
       if (with_quadratures .and. n > m + k) &
         call combine(n - m - k, s, h, formula%a, self%f_stage(m + k + 1, 1), size(self%f_stage, 1), z(m + k + 1, 1), n)
     end associate
   end subroutine expand_stages
+
+  !> What the rates at the beginning move the positions.
+  pure subroutine add_drift(n, m, s, h, c, base, z)
+    integer, intent(in) :: n, m, s
+    real(dp), intent(in) :: h, c(s), base(n)
+    real(dp), intent(inout) :: z(n, s)
+    real(dp) :: time
+    integer :: i, j
+    do i = 1, s
+      time = h*c(i)
+      do j = 1, m
+        z(j, i) = z(j, i) + time*base(m + j)
+      end do
+    end do
+  end subroutine add_drift
 
   module procedure settle_quadratures
     real(dp), parameter :: most_rest = 0.03_dp
@@ -231,21 +262,31 @@ contains
     end do
   end subroutine combine_5
 
-  !> Right-hand sides at the stages of self%w.
+  !> Right-hand sides at the stages of self%w. The states of all stages are there before the first evaluation: so evaluations do not
+  !> wait for each other.
   subroutine evaluate_stages(self, problem, inside)
     class(collocation_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
     logical, intent(out) :: inside
-    integer :: i, j
+    integer :: i, s
+    s = self%formula(self%level)%stages
     call expand_stages(self, .false.)
+    call add_base(self%n, s, self%base, self%z_new, self%y_stage)
     inside = .true.
-    do i = 1, self%formula(self%level)%stages
-      do j = 1, self%n
-        self%y_stage(j) = self%base(j) + self%z_new(j, i)
-      end do
+    do i = 1, s
       self%evaluations = self%evaluations + 1
-      call problem%derivatives(self%t + self%formula(self%level)%c(i)*self%h, self%y_stage, self%f_stage(:, i), inside)
+      call problem%derivatives(self%t + self%formula(self%level)%c(i)*self%h, self%y_stage(:, i), self%f_stage(:, i), inside)
       if (.not. inside) return
     end do
   end subroutine evaluate_stages
+
+  pure subroutine add_base(n, s, base, z, y)
+    integer, intent(in) :: n, s
+    real(dp), intent(in) :: base(n), z(n, s)
+    real(dp), intent(out) :: y(n, s)
+    integer :: i
+    do i = 1, s
+      y(:, i) = base + z(:, i)
+    end do
+  end subroutine add_base
 end submodule collocation_newton
