@@ -17,6 +17,7 @@ program gudgeon_tests
   use test_combustion, only: run_test_combustion
   use test_command_line, only: run_test_command_line
   use test_contact, only: run_test_contact
+  use test_crank_angle, only: run_test_crank_angle
   use test_crank_pin, only: run_test_crank_pin
   use test_contact_geometries, only: run_test_contact_geometries
   use test_crank_turns, only: run_test_crank_turns
@@ -75,6 +76,7 @@ program gudgeon_tests
   call run('combustion', run_test_combustion)
   call run('command_line', run_test_command_line)
   call run('contact', run_test_contact)
+  call run('crank_angle', run_test_crank_angle)
   call run('crank_pin', run_test_crank_pin)
   call run('contact_geometries', run_test_contact_geometries)
   call run('restitution', run_test_restitution)

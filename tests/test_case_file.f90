@@ -437,7 +437,25 @@ contains
     call refused_on(check, timed, [character(len=30) :: 'integrator.end_time=0'], &
                     'x.nml: &integrator revolutions: this or crank_revolutions or end_time is required, > 0')
     call test_turns(check)
+    call test_sampling(check)
   end subroutine test_ends_of_runs
+
+  !> Rows by crank angle.
+  subroutine test_sampling(check)
+    class(checks_t), intent(inout) :: check
+    character(len=40), parameter :: by_angle = 'output.sampling=crank_angle'
+    call accepted(check, whole, 'rows at crank angles', [character(len=40) :: by_angle, 'output.angle_origin_deg=-12.5'])
+    call accepted(check, bodies//'&integrator end_time=1 /', 'rows at crank angles of a crank from rest', &
+                  [character(len=40) :: by_angle, 'initial.crank_speed=0'])
+    call refused_on(check, whole, [character(len=40) :: by_angle, 'output.interval=1e-3'], &
+                    'x.nml: &output interval = 1e-3: must not be given with sampling = ''crank_angle'' (s)')
+    call refused_on(check, whole, [character(len=40) :: by_angle, 'output.every_step=T'], &
+                    'x.nml: &output every_step = T: must be .false. with sampling = ''crank_angle''')
+    call refused_on(check, whole, [character(len=40) :: 'output.angle_origin_deg=3'], &
+                    'x.nml: &output angle_origin_deg = 3: is for sampling = ''crank_angle'' alone (degrees)')
+    call refused_on(check, whole, [character(len=40) :: 'output.sampling=angle'], &
+                    'x.nml: --set output.sampling=angle: &output sampling = angle: must be one of time, crank_angle')
+  end subroutine test_sampling
 
   !> Turns counted by the crank: end_time may stand beside them, revolutions not; the file's other end goes, but not where the file
   !> gives both.

@@ -52,6 +52,8 @@ contains
     call split(check, 'cases/flores/ideal.nml', 'crank_revolutions=1', 'adams', 'drive.damping=0.1', .true.)
     call split(check, 'cases/sim_IV.nml', 'crank_revolutions=1', 'auto', 'initial.crank_angle_deg=330')
     call split(check, 'cases/sim_I.nml', 'crank_revolutions=0.1', 'auto', 'drive.torque=100', from_rest=.true.)
+    call split(check, 'cases/sim_I_oscillating.nml', 'revolutions=0.2', 'auto', 'output.sampling=crank_angle')
+    call split(check, 'cases/flores/dry_0500um.nml', 'revolutions=0.2', 'adams', 'output.sampling=crank_angle')
     call split(check, 'cases/joints/both_pins.nml', 'revolutions=0.1', 'auto', 'drive.kind=free')
     call split(check, 'cases/joints/both_pins.nml', 'revolutions=0.05', 'radau', 'friction.law=coulomb')
     call split(check, 'cases/joints/crank_pin.nml', 'revolutions=0.2', 'adams', 'crank_pin.joint.clearance=5e-5')

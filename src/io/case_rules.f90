@@ -295,10 +295,18 @@ contains
     type(error_t), allocatable, intent(out) :: error
     real(dp) :: samples, speed, end_time
     character(len=*), parameter :: letters = 'abcdefghijklmnopqrstuvwxyz0123456789_, '
-    if (c%output%interval <= 0 .and. .not. turns(c)) then
+    if (c%output%sampling == 'crank_angle') then
+      if (c%output%interval > 0) then
+        call values%refuse('output', 'interval', 'must not be given with sampling = ''crank_angle''', error)
+      else if (c%output%every_step) then
+        call values%refuse('output', 'every_step', 'must be .false. with sampling = ''crank_angle''', error)
+      end if
+    else if (abs(c%output%angle_origin_deg) > 0) then
+      call values%refuse('output', 'angle_origin_deg', 'is for sampling = ''crank_angle'' alone', error)
+    else if (c%output%interval <= 0 .and. .not. turns(c)) then
       call values%refuse('output', 'interval', 'required with crank_speed = 0', error)
-      return
     end if
+    if (allocated(error)) return
     if (c%integrator%end_time > 0 .and. c%output%start_time >= c%integrator%end_time) then
       call values%refuse('output', 'start_time', 'must be < end_time', error)
       return

@@ -69,7 +69,9 @@ module case_definition
   end type integrator_case_t
 
   type, extends(has_parameters_t) :: output_case_t
+    character(len=:), allocatable :: sampling  !! 'time' or 'crank_angle'
     integer :: samples_per_revolution = 0
+    real(dp) :: angle_origin_deg = 0
     real(dp) :: interval = 0, start_time = 0   !! interval > 0 wins over samples_per_revolution
     character(len=:), allocatable :: columns   !! 'standard' or column names without units, separated by commas
     integer :: digits = 0                      !! significant digits of the numbers in traces
@@ -355,7 +357,11 @@ contains
   subroutine output_parameters(self, list)
     class(output_case_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
+    call list%word('sampling', self%sampling, 'time, crank_angle', 'time', &
+      'rows at equal times, or at equal crank angles whenever the crank passes them')
     call list%add('samples_per_revolution', self%samples_per_revolution, 'rows in a revolution', '>= 1 and <= 1000000', '720')
+    call list%add('angle_origin_deg', self%angle_origin_deg, 'one of the angles of sampling = ''crank_angle''', 'degrees', &
+      default='0.0')
     call list%add('interval', self%interval, 'between rows; 0: samples_per_revolution counts', 's', '> 0', default='0.0')
     call list%add('start_time', self%start_time, 'of the first row', 's', '>= 0', default='0.0')
     call list%text('columns', self%columns, '''standard'', or names of columns without their units, with commas', 'standard', &

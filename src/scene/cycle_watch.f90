@@ -9,7 +9,7 @@ module cycle_watch
   use ode_method, only: ode_method_t
   use chain_motion, only: n_pins
   use gudgeon_scene, only: scene_t, evaluation_t, phase_contact
-  use gudgeon_roots, only: bracket_t, next_abscissa, narrow
+  use crank_passage, only: find_passage
   use step_peaks, only: n_peaks, of_pin_force, of_penetration
   use gudgeon_columns, only: column_list_t, row_values
   use cycle_statistics, only: cycle_t, cycle_statistics_t
@@ -98,7 +98,7 @@ contains
     travel = travel_at(self, scene, t_to, y_to)
     ends = travel >= next_end(self)
     t_end = t_to
-    if (ends) t_end = passage(self, method, scene, next_end(self), t_to, travel)
+    if (ends) t_end = passage(self, method, scene, next_end(self), t_to)
   end subroutine find_end
 
   !> The crank has passed the strobe angle before (t_to, y_to), perhaps several times.
@@ -111,7 +111,7 @@ contains
     if (.not. self%has_strobe) return
     travel = travel_at(self, scene, t_to, y_to)
     do while (travel >= next_strobe(self))
-      t = passage(self, method, scene, next_strobe(self), t_to, travel)
+      t = passage(self, method, scene, next_strobe(self), t_to)
       call strobe(self, scene, t, self%y)
     end do
   end subroutine take_strobes
@@ -198,29 +198,16 @@ contains
     next_strobe = self%strobe_offset + two_pi*self%passed
   end function next_strobe
 
-  !> The first time in the last step, up to t_to where the travel is past it, at which the travel reaches `target`; where it
-  !> was there before the step, its beginning. The state there is left in y. It is that of the interpolant: with the method's
-  !> own step to there means change by 2e-5 at most (simulation I from six crank angles, tolerance 1e-4; 2e-6 at 1e-6).
-  real(dp) function passage(self, method, scene, target, t_to, travel)
+  !> The first time in the last step, up to t_to, at which the travel reaches `target`; where it was there before the step, its
+  !> beginning. The state there is left in y. It is that of the interpolant: with the method's own step to there means change by 2e-5
+  !> at most (simulation I from six crank angles, tolerance 1e-4; 2e-6 at 1e-6).
+  real(dp) function passage(self, method, scene, target, t_to)
     class(cycle_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: target, t_to, travel
-    type(bracket_t) :: bracket
-    real(dp) :: t
-    bracket = bracket_t(method%t_old, t_to, travel_at(self, scene, method%t_old, method%y_old) - target, travel - target, 0, &
-      abs(t_to - method%t_old))
-    passage = method%t_old
-    if (bracket%fa < 0) then
-      do while (abs(bracket%b - bracket%a) > 1e-12_dp*bracket%width)
-        t = next_abscissa(bracket)
-        if (.not. (t > bracket%a .and. t < bracket%b)) exit
-        call method%interpolate(t, self%y)
-        call narrow(bracket, t, travel_at(self, scene, t, self%y) - target)
-      end do
-      passage = bracket%b
-    end if
-    call method%interpolate(passage, self%y)
+    real(dp), intent(in) :: target, t_to
+    call find_passage(method, scene, self%start_angle + self%direction*target, self%direction, method%t_old, t_to, 1e-12_dp, &
+      passage, self%y)
   end function passage
 
   !> The present revolution ends at t with the state y.

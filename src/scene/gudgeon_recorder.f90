@@ -1,4 +1,4 @@
-!> The observer of a run: samples on a fixed grid of time, events of contact, the figures of the summary and, where they are
+!> The observer of a run: samples on a fixed grid of time or of crank angles, events of contact, the figures of the summary and, where they are
 !> asked for, those of each revolution.
 !>
 !> What belongs to a pin is in its `pin_record`: the piston pin has one, and a crank pin with clearance. Peaks are searched
@@ -12,6 +12,8 @@ module gudgeon_recorder
   use chain_motion, only: crank_pin, piston_pin, most_pins => n_pins
   use gudgeon_scene, only: scene_t, evaluation_t, event_none, event_contact_begins
   use gudgeon_columns, only: column_list_t, row_values
+  use angle_grid, only: angle_grid_t
+  use crank_passage, only: find_turning
   use cycle_watch, only: cycle_watch_t
   use pin_record, only: pin_record_t
   use trace_sink, only: trace_sink_t, trace_event_t
@@ -28,6 +30,7 @@ module gudgeon_recorder
     type(cycle_watch_t), allocatable :: cycles   !! revolution by revolution
     real(dp) :: first_sample = 0      !! time of the first row [s]
     real(dp) :: interval = 0          !! from row to row [s]
+    type(angle_grid_t) :: angles      !! of the rows, where these are not spaced by time
     real(dp) :: end_time = 0          !! at the latest [s]
     real(dp) :: expected_end = 0      !! [s]
     logical :: every_step = .false.   !! a row at every accepted step instead
@@ -73,7 +76,7 @@ contains
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: y(:)
     type(evaluation_t) :: now
-    logical :: inside
+    logical :: inside, is_there
     integer :: i
 
     call look_at(self, scene, 0.0_dp, y, now, inside)
@@ -87,7 +90,9 @@ contains
       call self%pins(i)%begin(0.0_dp, now)
       if (inside) call self%pins(i)%take_values(scene, now, self%figures, self%cycles)
     end do
-    call take_point(self, scene, 0.0_dp, y, now, inside, self%first_sample <= 0)
+    is_there = .true.
+    if (self%angles%per_revolution > 0) call self%angles%begin(scene%crank_angle(0.0_dp, y), is_there)
+    call take_point(self, scene, 0.0_dp, y, now, inside, self%first_sample <= 0 .and. is_there)
     if (self%first_sample <= 0) self%next_row = 1
   end subroutine begin
 
@@ -97,19 +102,10 @@ contains
     class(ode_problem_t), intent(in) :: problem
     real(dp), intent(in) :: t_to
     integer, parameter :: steps_between_reports = 2000
-    real(dp) :: t
 
     select type (problem)
     class is (scene_t)
-      if (.not. self%every_step .and. size(self%values) > 0) then
-        do
-          t = self%first_sample + self%next_row*self%interval
-          if (t > t_to .or. t > self%end_time*(1 + 4*epsilon(t))) exit
-          call method%interpolate(t, self%y)
-          call self%write_row(problem, t, self%y)
-          self%next_row = self%next_row + 1
-        end do
-      end if
+      if (.not. self%every_step .and. size(self%values) > 0) call put_samples(self, method, problem, t_to)
       if (t_to < method%t) then
         call method%interpolate(t_to, self%y)
         call take_end(self, method, problem, t_to, self%y)
@@ -126,6 +122,40 @@ contains
     self%wants_to_stop = self%sink%wants_to_stop .or. self%over_budget
     self%wants_archive = self%sink%wants_archive
   end subroutine step_taken
+
+  !> The rows that are due in the last step, up to t_to.
+  subroutine put_samples(self, method, scene, t_to)
+    class(recorder_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t_to
+    real(dp) :: t, t_from, ends(2)
+    integer :: part
+    logical :: turns, is_found
+
+    if (.not. self%angles%per_revolution > 0) then
+      do
+        t = self%first_sample + self%next_row*self%interval
+        if (t > t_to .or. t > self%end_time*(1 + 4*epsilon(t))) exit
+        call method%interpolate(t, self%y)
+        call self%write_row(scene, t, self%y)
+        self%next_row = self%next_row + 1
+      end do
+      return
+    end if
+    ends = t_to
+    if (scene%chain%drive%free_crank) call find_turning(method, scene, method%t_old, t_to, turns, ends(1), self%y)
+    t_from = method%t_old
+    do part = 1, 2
+      do
+        call self%angles%next_passage(method, scene, t_from, ends(part), t, self%y, is_found)
+        if (.not. is_found) exit
+        if (t >= self%first_sample) call self%write_row(scene, t, self%y)
+        t_from = t
+      end do
+      t_from = ends(part)
+    end do
+  end subroutine put_samples
 
   !> Tell the sink how far the run is. Where the turns of the crank end it, that is expected to be when it has made them at its mean
   !> speed so far.
@@ -276,14 +306,31 @@ contains
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
-    real(dp) :: due
     if (allocated(self%cycles)) call self%cycles%finish(scene, t, y)
     if (self%every_step) return
-    due = self%first_sample + self%next_row*self%interval
-    if (abs(due - t) <= 1e-9_dp*self%interval) call self%write_row(scene, t, y)
+    if (self%angles%per_revolution > 0) then
+      call put_last_angle(self, scene, t, y)
+    else if (abs(self%first_sample + self%next_row*self%interval - t) <= 1e-9_dp*self%interval) then
+      call self%write_row(scene, t, y)
+    end if
     self%sink%expected_end = t
     call self%sink%take_progress(t)
   end subroutine finish
+
+  !> The row at the angle at which the run ends, where rounding left it out.
+  subroutine put_last_angle(self, scene, t, y)
+    class(recorder_t), intent(inout) :: self
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(:)
+    real(dp), parameter :: rounding = 1e-9_dp   !! of the end of a run [rad]
+    real(dp) :: crank_angle
+    logical :: is_due
+    call self%angles%is_due(scene%crank_angle(t, y), rounding, is_due, crank_angle)
+    if (.not. is_due .or. t < self%first_sample) return
+    self%y = y
+    if (scene%chain%drive%free_crank) self%y(scene%crank%position) = crank_angle
+    call self%write_row(scene, t, self%y)
+  end subroutine put_last_angle
 
   !> What has been found so far, to or from an archive; not what is set from outside.
   subroutine exchange_recorder(self, archive)
@@ -297,6 +344,7 @@ contains
     call archive%exchange(self%initial_energy)
     call archive%exchange(self%start_angle)
     call archive%exchange(self%next_row)
+    call self%angles%exchange(archive)
     call archive%exchange(self%steps)
     call archive%exchange(self%evaluations_then)
     call archive%exchange(self%time_then)

@@ -16,7 +16,7 @@ module gudgeon_simulation
   use gudgeon_recorder, only: recorder_t
   use run_figures, only: run_figures_t
   use trace_sink, only: trace_sink_t
-  use gudgeon_constants, only: two_pi
+  use gudgeon_constants, only: two_pi, degree
   use gudgeon_archive, only: archive_t
   implicit none
   private
@@ -59,7 +59,12 @@ contains
     if (.not. allocated(error)) call new_method(case%integrator%method, method, error)
     if (allocated(error)) return
     recorder%list = list
-    recorder%interval = sample_interval(case)
+    if (case%output%sampling == 'crank_angle') then
+      recorder%angles%per_revolution = case%output%samples_per_revolution
+      recorder%angles%origin = case%output%angle_origin_deg*degree
+    else
+      recorder%interval = sample_interval(case)
+    end if
     recorder%first_sample = case%output%start_time
     recorder%end_time = latest_end(case)
     recorder%expected_end = simulated_time(case)

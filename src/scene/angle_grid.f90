@@ -1,0 +1,113 @@
+!> Equal crank angles, and when the crank passes them: also one that turns back, which passes some of them again.
+module angle_grid
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: two_pi
+  use gudgeon_archive, only: archive_t
+  use ode_method, only: ode_method_t
+  use gudgeon_scene, only: scene_t
+  use crank_passage, only: find_passage
+  implicit none
+  private
+  public :: angle_grid_t
+
+  !> Angle number k of the grid is `origin` + 2 pi k/`per_revolution`.
+  type :: angle_grid_t
+    real(dp) :: origin = 0                     !! [rad]
+    real(dp) :: per_revolution = 0             !! angles in a revolution; 0: no grid
+    real(dp), private :: last = 0              !! number of the angle that the crank was at last, a whole number
+    real(dp), private :: side = 0              !! on which side of it the crank is: 1 above, -1 below, 0 there
+  contains
+    procedure :: begin
+    procedure :: next_passage
+    procedure :: is_due
+    procedure :: exchange
+    procedure, private :: angle
+    procedure, private :: find_target
+  end type angle_grid_t
+
+contains
+
+  !> Angle number k [rad].
+  pure real(dp) function angle(self, k)
+    class(angle_grid_t), intent(in) :: self
+    real(dp), intent(in) :: k
+    angle = self%origin + two_pi*(k/self%per_revolution)
+  end function angle
+
+  !> The crank starts here, and whether that is an angle of the grid, but for the rounding of degrees.
+  pure subroutine begin(self, crank_angle, is_there)
+    class(angle_grid_t), intent(inout) :: self
+    real(dp), intent(in) :: crank_angle   !! [rad]
+    logical, intent(out) :: is_there
+    real(dp) :: place
+    place = (crank_angle - self%origin)/two_pi*self%per_revolution
+    self%last = anint(place)
+    is_there = abs(crank_angle - self%angle(self%last)) <= 4*epsilon(1.0_dp)*max(1.0_dp, abs(crank_angle), abs(self%origin))
+    self%side = 0
+    if (.not. is_there) self%side = sign(1.0_dp, crank_angle - self%angle(self%last))
+  end subroutine begin
+
+  !> The next time from t_from to t_to, both inside the last step of the method and without a turn between them, at which the crank
+  !> is at an angle of the grid; ask until there is none.
+  subroutine next_passage(self, method, scene, t_from, t_to, t, y, is_found)
+    class(angle_grid_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t_from, t_to     !! [s]
+    real(dp), intent(out) :: t               !! [s]
+    real(dp), intent(inout) :: y(:)          !! the state there
+    logical, intent(out) :: is_found
+    real(dp) :: target, sense, crank_angle
+    call method%interpolate(t_to, y)
+    crank_angle = scene%crank_angle(t_to, y)
+    call self%find_target(crank_angle, target, sense, is_found)
+    t = t_to
+    if (is_found) then
+      call find_passage(method, scene, self%angle(target), sense, t_from, t_to, 0.0_dp, t, y)
+      self%last = target
+      self%side = sense
+    else if (.not. abs(self%side) > 0 .and. abs(crank_angle - self%angle(self%last)) > 0) then
+      self%side = sign(1.0_dp, crank_angle - self%angle(self%last))
+    end if
+  end subroutine next_passage
+
+  !> Which angle of the grid the crank passes next on its way to an angle, and in what sense.
+  pure subroutine find_target(self, crank_angle, target, sense, is_found)
+    class(angle_grid_t), intent(in) :: self
+    real(dp), intent(in) :: crank_angle   !! [rad]
+    real(dp), intent(out) :: target, sense
+    logical, intent(out) :: is_found
+    target = self%last
+    if (self%side >= 0) target = target + 1
+    sense = 1
+    is_found = crank_angle >= self%angle(target)
+    if (self%side < 0) is_found = crank_angle > self%angle(target)   ! back again, and not still there
+    if (is_found) return
+    target = self%last
+    if (self%side <= 0) target = target - 1
+    sense = -1
+    is_found = crank_angle <= self%angle(target)
+    if (self%side > 0) is_found = crank_angle < self%angle(target)
+  end subroutine find_target
+
+  !> Whether the crank stands at the next angle of the grid, but for `rounding`, and at which.
+  pure subroutine is_due(self, crank_angle, rounding, is_there, grid_angle)
+    class(angle_grid_t), intent(in) :: self
+    real(dp), intent(in) :: crank_angle   !! [rad]
+    real(dp), intent(in) :: rounding      !! [rad]
+    logical, intent(out) :: is_there
+    real(dp), intent(out) :: grid_angle   !! [rad]
+    real(dp) :: nearest_one
+    nearest_one = anint((crank_angle - self%origin)/two_pi*self%per_revolution)
+    grid_angle = self%angle(nearest_one)
+    is_there = abs(nearest_one - self%last) > 0 .and. abs(crank_angle - grid_angle) <= rounding
+  end subroutine is_due
+
+  !> What changes on the way, to or from an archive.
+  subroutine exchange(self, archive)
+    class(angle_grid_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    call archive%exchange(self%last)
+    call archive%exchange(self%side)
+  end subroutine exchange
+end module angle_grid
