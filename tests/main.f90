@@ -11,6 +11,7 @@ program gudgeon_tests
   use test_adams_order, only: run_test_adams_order
   use test_bristles, only: run_test_bristles
   use test_asperities, only: run_test_asperities
+  use test_film_transition, only: run_test_film_transition
   use test_case_file, only: run_test_case_file
   use test_chain, only: run_test_chain
   use test_checkpoint, only: run_test_checkpoint
@@ -70,6 +71,7 @@ program gudgeon_tests
   call run('adams_order', run_test_adams_order)
   call run('bristles', run_test_bristles)
   call run('asperities', run_test_asperities)
+  call run('film_transition', run_test_film_transition)
   call run('case_file', run_test_case_file)
   call run('chain', run_test_chain)
   call run('checkpoint', run_test_checkpoint)

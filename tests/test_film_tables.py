@@ -150,6 +150,14 @@ class References(unittest.TestCase):
                                      "eccentricity_y[m]": 1e-7, "film_force_x[N]": 1e-5, "film_force_y[N]": 1e-5,
                                      "pin_force_x[N]": 1e-5, "pin_force_y[N]": 1e-5, "friction_force[N]": 1e-5})
 
+    def test_weighted(self) -> None:
+        """Forces as the reference knows them; eccentricities and speeds a hundred times closer."""
+        self.compare("weighted_smooth", {"crank_angle[rad]": 1e-9, "piston_velocity[m/s]": 1e-8, "eccentricity_x[m]": 1e-8,
+                                         "eccentricity_y[m]": 1e-8, "film_force_x[N]": 1e-6, "film_force_y[N]": 1e-6,
+                                         "normal_force[N]": 1e-6, "friction_force[N]": 1e-6, "pin_force_x[N]": 1e-6,
+                                         "pin_force_y[N]": 1e-6, "crank_moment[N.m]": 1e-6},
+                     "-s", "integrator.relative_tolerance=1e-10")
+
     def test_finite_bearing(self) -> None:
         self.compare("finite_reynolds_engine", {"crank_angle[rad]": 1e-5, "piston_velocity[m/s]": 1e-5, "eccentricity_x[m]": 1e-3,
                                                 "eccentricity_y[m]": 1e-3, "pin_force_x[N]": 1e-2, "pin_force_y[N]": 5e-3,

@@ -49,6 +49,7 @@ SCENES = {
     "film": ("sim_V", {"integrator.method": "'auto'", "integrator.revolutions": "1.2", "initial.crank_angle_deg": "170",
                        "integrator.max_step": "5e-5"}),
     "contact": ("sim_V_oscillating", {"integrator.method": "'auto'", "integrator.revolutions": "0.25", "initial.crank_angle_deg": "340"}),
+    "weighted": ("film/weighted", {"integrator.revolutions": "0.3", "integrator.max_step": "2e-5"}),
     "both": ("joints/both_pins", {"integrator.revolutions": "0.2", "drive.kind": "'free'", "mechanism.gravity_angle_deg": "25"}),
     "crank": ("joints/crank_pin", {"integrator.revolutions": "0.2", "integrator.relative_tolerance": "1e-7"}),
     "films": ("joints/both_pins_lubricated", {"integrator.revolutions": "0.5"}),
@@ -58,7 +59,7 @@ SCENES = {
 LONG_STEPS = ("sim_V", {"integrator.method": "'auto'", "integrator.revolutions": "1.2", "initial.crank_angle_deg": "170"})
 PHASES = {"dry": {0, 2}, "sticks": {0, 2}, "threlfall": {0, 2}, "brown_mcphee": {0, 2}, "stribeck": {0, 2}, "lugre": {0, 2},
           "elasto_plastic": {0, 2}, "conformal": {0, 2}, "johnson": {0, 2},
-          "liner": {0, 2}, "pereira": {0, 2}, "dissipation": {0, 2}, "film": {1}, "contact": {1, 2},
+          "liner": {0, 2}, "pereira": {0, 2}, "dissipation": {0, 2}, "film": {1}, "contact": {1, 2}, "weighted": {1, 2},
           "both": {0, 2}, "crank": {0}, "films": {1}, "ideal": {0}}   # 0 free flight, 1 film, 2 contact
 
 #: (what is changed, scene, column, change of (value, row), what the verdict must say)
@@ -108,6 +109,8 @@ CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
     ("rod acceleration off with both pins loose", "both", "rod_acceleration", lambda v, i: v * 1.001, "Euler, rod"),
     ("crank acceleration off with both pins loose", "both", "crank_acceleration", lambda v, i: v * 1.001, "Euler, crank"),
     ("another film", "film", "film_force_x", lambda v, i: v * 1.001, "film force on the pin"),
+    ("more film beside a contact", "weighted", "film_force_y", lambda v, i: v * (1 + 1e-5), "contact force on the pin"),
+    ("harder contact beside a film", "weighted", "normal_force", lambda v, i: v * (1 + 1e-5), "contact law"),
     ("more pressure", "film", "cylinder_pressure", lambda v, i: v * 1.001, "gas law"),
     ("another gas force", "film", "gas_force", lambda v, i: -v, "gas force"),
     ("another cylinder", "film", "cylinder_volume", lambda v, i: v * 1.001, "cylinder volume"),
@@ -136,6 +139,9 @@ LIARS = [
     ("more damping", "ideal", "drive.damping", "0.031", "Euler, crank"),
     ("more heat", "film", "combustion.heat", "166.0", "gas law"),
     ("thicker oil", "film", "lubrication.viscosity", "0.0118", "film law"),
+    ("a deeper transition", "weighted", "lubrication.transition_depth", "3.001e-6", "contact law"),
+    ("a film held farther out", "weighted", "lubrication.least_film_ratio", "0.0299", "film law"),
+    ("thicker oil beside a contact", "weighted", "lubrication.viscosity", "0.0201", "film law"),
     ("a heavier piston", "ideal", "mechanism.piston_mass", "0.92", "Newton, piston"),
     ("gravity from elsewhere", "both", "mechanism.gravity_angle_deg", "25.01", "Newton, crank"),
     ("a heavier rod between two loose pins", "both", "mechanism.rod_mass", "0.2101", "energy column"),
@@ -159,6 +165,7 @@ MUTANTS = [
     ("static friction grips too early", "brown_mcphee.f90", "0.25_dp*u**2 + 0.75_dp)**2", "0.25_dp*u**2 + 0.76_dp)**2", "brown_mcphee", "friction law"),
     ("bristles give way too late", "lugre.f90", "abs(v)*z/g\n  end function", "0.99_dp*abs(v)*z/g\n  end function", "lugre", "bristle is not the integral"),
     ("film holds too much as it withdraws", "pinkus_sternlicht.f90", "if (eps_dot < 0) radial = self%withdrawal_sign*radial", "if (eps_dot < 0) radial = self%withdrawal_sign*(1.001_dp*radial)", "film", "film law"),
+    ("the film keeps a thousandth too much", "film_transition.f90", "w = s**2*(3 - 2*s)", "w = s**2*(2.999_dp - 2*s)", "weighted", "contact law"),
     ("the crank pin slides without its bearing's turning", "joint_motion.f90", "- joint%bearing_speed*(joint%distance + pin_radius)",
      "- joint%bearing_speed*pin_radius", "both", "crank pin: sliding speed"),
     ("angular momentum from nowhere", "chain_loads.f90", "-(moment + eccentricity(1)", "-(moment + 0*eccentricity(1)", "both", "Euler, rod"),

@@ -30,16 +30,16 @@ class Balances:
     scale: float = 0.0   # [J]
 
 
-def phase_key(checks: RowChecks, i: int) -> tuple[float, int, tuple[int, bool]]:
-    """Phase of a joint in a row, number of its contact, side of its friction."""
+def phase_key(checks: RowChecks, i: int) -> tuple[float, int, tuple[int, bool], tuple[bool, bool]]:
+    """Phase of a joint in a row, number of its contact, side of its friction, and of the kinks of a film that gives way to it."""
     columns = checks.run.columns
     phase = columns["phase"][i] if "phase" in columns else 0
     if phase != CONTACT:
-        return phase, -1, (0, False)
+        return phase, -1, (0, False), checks.zone(i)
     side = 0, False
     if checks.friction:
         side = checks.friction.side(columns["sliding_speed"][i], columns["bristle"][i] if "bristle" in columns else 0.0)
-    return phase, bisect.bisect_left(checks.begins, checks.run.times[i]), side
+    return phase, bisect.bisect_left(checks.begins, checks.run.times[i]), side, checks.zone(i)
 
 
 def gas_part(checks: RowChecks, i: int) -> int:

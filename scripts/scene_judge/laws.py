@@ -90,16 +90,20 @@ class Friction:
 
 
 def squeeze_film(run: Run, row: Row, slip: tuple[float, float]) -> tuple[float, float]:
-    """Force on the pin of the Pinkus-Sternlicht film, the closed form (5.34 to 5.37, the sign of 5.36 corrected) [N]."""
+    """Force on the pin of the Pinkus-Sternlicht film, the closed form (5.34 to 5.37, the sign of 5.36 corrected) [N]. One that gives way
+    to the contact over a depth is that of the eccentricity ratio 1 - q, where the pin is beyond it."""
     c, get = run.number("joint.clearance"), row.get
     e = get["eccentricity_x"], get["eccentricity_y"]
     size = math.hypot(*e)
     n = (e[0] / size, e[1] / size)
     gap = get["film_thickness"] / c
     eps = size / c
+    least = run.number("lubrication.least_film_ratio") if run.text("lubrication.transition") == "weighted" else 0.0
+    if gap < least:
+        gap, eps = least, 1 - least
     open_ = gap * (1 + eps)   # 1 - eps^2, exact near the wall
     rate = (n[0] * slip[0] + n[1] * slip[1]) / c
-    turn = row.journal_turn + row.bearing_turn - 2 * (n[0] * slip[1] - n[1] * slip[0]) / size
+    turn = row.journal_turn + row.bearing_turn - 2 * (n[0] * slip[1] - n[1] * slip[0]) / (eps * c)
     scale = run.number("lubrication.viscosity") * run.number("joint.bearing_length") * (run.number("joint.bearing_radius") - c)**3 / c**2
     k = math.sqrt(open_ * ((turn / (2 * rate))**2 + 1 / eps**2))
     if rate > 0:

@@ -56,6 +56,7 @@ class RowChecks:
         self.film = run.text("lubrication.law")
         self.contact = Contact(run) if self.has_joint and run.text("contact.law") else None
         self.friction = Friction(run) if self.has_joint and run.text("friction.law") else None
+        self.weighted = self.contact is not None and run.text("lubrication.transition") == "weighted"
         self.gas = Gas(run) if "combustion.bore" in run.case and joint == "piston_pin" else None
         tolerance = min(run.number("integrator.relative_tolerance"), 1e-3)
         self.gas_tolerance = max(10 * tolerance, 1e-9)
@@ -66,9 +67,30 @@ class RowChecks:
     def row(self, i: int) -> Row:
         return Row(self.bodies, self.run.columns, i)
 
+    def share(self, depth: float) -> float:
+        """Of the contact in the joint's load, at a penetration [m]: all of it, or as a film gives way."""
+        if not self.weighted:
+            return 1.0
+        s = min(max(depth / self.run.number("lubrication.transition_depth"), 0.0), 1.0)
+        return s if self.run.text("lubrication.transition_shape") == "linear" else 3 * s**2 - 2 * s**3
+
+    def zone(self, i: int) -> tuple[bool, bool]:
+        """Whether the pin is beyond the kinks of a film that gives way over a depth: where it is held, and where it is gone. A row on a
+        kink stands for what was before it."""
+        if not self.weighted:
+            return False, False
+        number, clearance = self.run.number, self.run.number("joint.clearance")
+        kinks = -number("lubrication.least_film_ratio") * clearance, number("lubrication.transition_depth")
+        beyond = [-self.run.columns["film_thickness"][i] - kink for kink in kinks]
+        before = self.zone(i - 1) if i and min(map(abs, beyond)) < 1e-12 * clearance else (False, False)
+        held, gone = (old if abs(d) < 1e-12 * clearance else d > 0 for d, old in zip(beyond, before))
+        return held, gone
+
     def joint_moment(self, row: Row) -> float | None:
         """Of the joint on its journal [N m]: friction at the pin's radius; none by pressure; None for the shear of a film."""
         phase = row.get.get("phase", FREE)
+        if self.weighted and self.film == "oscillating_film":
+            return None
         if phase == CONTACT and self.friction:
             return row.get["friction_force"] * self.bodies.pin_radius
         return None if phase == FILM and self.film == "oscillating_film" else 0.0
@@ -113,16 +135,21 @@ class RowChecks:
     def check_contact(self, row: Row, n: tuple[float, float], give: float, t: float) -> None:
         get = row.get
         depth, rate = -get["film_thickness"], n[0] * row.slip[0] + n[1] * row.slip[1]
-        low, high = (self.contact.force(depth, rate + d, t) for d in (-give, give))
+        share = self.share(depth)
+        low, high = (share * self.contact.force(depth, rate + d, t) for d in (-give, give))
         normal, friction = get["normal_force"], get["friction_force"]
         # the depth is the difference of two lengths
-        blur = self.contact.geometry.exponent * 1e-15 * self.run.number("joint.clearance") / depth if depth > 0 else 0.0
+        exponent = self.contact.geometry.exponent + 2 * self.weighted
+        blur = exponent * 1e-15 * self.run.number("joint.clearance") / depth if depth > 0 else 0.0
         self.take("contact law", inside(normal, low, high), (LAW + blur) * max(abs(high), abs(normal)), t)
         if "contact_half_angle" in get:
             self.check_arc(row, depth, normal, blur, t)
         want = -normal * n[0] - friction * n[1], -normal * n[1] + friction * n[0]
-        self.take("contact force on the pin", math.hypot(row.force[0] - want[0], row.force[1] - want[1]),
-                  SUM * (abs(normal) + abs(friction)) + row.law_noise, t)
+        film = (get["film_force_x"], get["film_force_y"]) if self.weighted else (0.0, 0.0)
+        self.take("contact force on the pin", math.hypot(row.force[0] - want[0] - film[0], row.force[1] - want[1] - film[1]),
+                  SUM * (abs(normal) + abs(friction) + math.hypot(*film)) + row.law_noise, t)
+        if self.weighted:
+            self.check_film_law(row, n, film, 1 - share, give, t)
         sliding = n[0] * row.slip[1] - n[1] * row.slip[0] + (row.journal_turn - row.bearing_turn) * self.bodies.pin_radius
         sliding -= row.bearing_turn * (self.run.number("joint.clearance") + depth)
         self.take("sliding speed", abs(sliding - get["sliding_speed"]), 10 * give, t)
@@ -158,17 +185,25 @@ class RowChecks:
         get = row.get
         self.take("film force on the pin", math.hypot(row.force[0] - get["film_force_x"], row.force[1] - get["film_force_y"]), row.law_noise, t)
         self.take("no contact force in a film", abs(get["normal_force"]) + abs(get["friction_force"]), 0.0, t)
+        self.check_film_law(row, n, row.force, 1.0, give, t)
+
+    def check_film_law(self, row: Row, n: tuple[float, float], force: tuple[float, float], share: float, give: float, t: float) -> None:
+        """A share of the film that the case names."""
+        get = row.get
         if self.film == "oscillating_film":
-            self.take("no load along the line of centres", abs(row.force[0] * n[0] + row.force[1] * n[1]), SUM * math.hypot(*row.force) + row.law_noise, t)
+            self.take("no load along the line of centres", abs(force[0] * n[0] + force[1] * n[1]), SUM * math.hypot(*force) + row.law_noise, t)
             return
         eps, rate = get["eccentricity_ratio"], n[0] * row.slip[0] + n[1] * row.slip[1]
-        if self.run.text("lubrication.variant") != "closed_form" or not 1e-3 < eps < 1 or abs(rate) < 1e6 * give:
+        if self.run.text("lubrication.variant") != "closed_form" or not (1e-3 < eps < 1 or self.weighted and eps > 1e-3) or abs(rate) < 1e6 * give:
             return
         want = squeeze_film(self.run, row, row.slip)
         others = [squeeze_film(self.run, row, (row.slip[0] + dx, row.slip[1] + dy)) for dx, dy in ((give, 0), (0, give))]
         blur = sum(math.hypot(other[0] - want[0], other[1] - want[1]) for other in others)
-        blur += 1e-15 / (1 - eps) * math.hypot(*want)
-        self.take("film law", math.hypot(row.force[0] - want[0], row.force[1] - want[1]), LAW * math.hypot(*want) + 10 * blur, t)
+        least = self.run.number("lubrication.least_film_ratio") if self.weighted else 0.0
+        blur += 1e-15 / max(1 - eps, least) * math.hypot(*want)
+        if self.weighted:   # the share is a difference of two lengths over another
+            blur += 4e-15 * self.run.number("joint.clearance") / self.run.number("lubrication.transition_depth") * math.hypot(*want)
+        self.take("film law", math.hypot(force[0] - share * want[0], force[1] - share * want[1]), LAW * share * math.hypot(*want) + 10 * blur, t)
 
     def check_gas(self, row: Row, t: float) -> None:
         get, gas = row.get, self.gas

@@ -2,7 +2,7 @@
 module film_law
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
-  use gudgeon_parameters, only: law_t
+  use gudgeon_parameters, only: law_t, parameter_list_t
   use gudgeon_bearing, only: bearing_t
   use gudgeon_archive, only: archive_t
   implicit none
@@ -33,12 +33,14 @@ module film_law
     real(dp) :: per_clearance = 1             !! 1/c [1/m]
     logical :: needs_ideal_motion = .false.   !! whether the ideal_* fields and the frequency are read
     logical :: film_moment = .false.          !! its shear acts on the pin
+    real(dp) :: least_film_ratio = 0          !! the film is taken no thinner than this part of the clearance, where it is held [-]
     logical :: singular_at_wall = .true.      !! the force is infinite at |e| = c: the state may not reach it
     character(len=100) :: table_of = ''       !! the `table_key` of the table that the law has; empty: it has none
   contains
     procedure(prepare), deferred :: prepare
     procedure(film_force), deferred :: film_force
     procedure :: force_derivatives => difference_derivatives
+    procedure, non_overridable :: add_least_film
     procedure, non_overridable :: shear_moment
     procedure, non_overridable :: shear_moment_slopes
     procedure :: table_key => no_key
@@ -74,6 +76,15 @@ module film_law
   end interface
 
 contains
+
+  !> The parameter that says where a film is held, with any law that can be.
+  subroutine add_least_film(self, list)
+    class(film_law_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%add('least_film_ratio', self%least_film_ratio, &
+      'part of the clearance below which an oscillating or a weighted film is no thinner', range='>= 0.000001 and <= 0.5', &
+      default='0.001')
+  end subroutine add_least_film
 
   !> Moment of the film on the pin about its centre [N m] of the shear u = U y/h + y (y - h) p'/(2 mu) in a film whose pressure gives
   !> `force`: -2 pi mu omega R^3 L/(c sqrt(1 - eps^2)) - e x F/2. (The gap counts as full, where the film has ruptured too.) With it

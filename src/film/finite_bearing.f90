@@ -69,6 +69,7 @@ contains
       'of the table in each direction; 0: from the tolerance, 33 above 3e-5, else 65', '>= 17 and <= 513', '0')
     call list%add('film_points', self%film_points, &
       'round the film, divisible by 4; 0: from the tolerance, 64 above 3e-5, 128, 256 below 1e-8', '>= 32 and <= 1024', '0')
+    call self%add_least_film(list)
   end subroutine parameters
 
   !> A number of nodes that cannot be halved twice.

@@ -20,7 +20,6 @@ module oscillating_film
   type, extends(film_law_t) :: oscillating_film_t
     character(len=:), allocatable :: variant   !! bearing_frame or as_printed
     integer :: quadrature_points = 0      !! round the film; 0: what the tolerance asks for
-    real(dp) :: least_film_ratio = 0      !! the film is taken no thinner than this part of the clearance [-]
     type(oscillating_response_t) :: response
     real(dp) :: pin_radius = 0            !! R [m]
     real(dp) :: viscosity = 0             !! mu [Pa s]
@@ -57,8 +56,7 @@ contains
     call list%add('kinematic_viscosity', self%kinematic_viscosity, 'kinematic viscosity', 'm^2/s', '> 0', example='1.38e-5')
     call list%add('quadrature_points', self%quadrature_points, '0: chosen from the tolerance', '>= 4 and <= 1000000', &
       default='0')
-    call list%add('least_film_ratio', self%least_film_ratio, 'taken no thinner than this part of the clearance', &
-      range='>= 0.000001 and <= 0.5', default='0.001')
+    call self%add_least_film(list)
   end subroutine parameters
 
   !> The scales, and the response of the film, whose means are finer than the run by `mean_margin`. The variant `as_printed` has

@@ -63,6 +63,7 @@ contains
     call list%add('viscosity', self%viscosity, 'dynamic viscosity', 'Pa s', '> 0', example='0.0117')
     call list%add('film_moment', self%film_moment, 'its shear turns the pin; not given: .true. of finite_bearing, else .false.', &
       '.false.', example='.false.')
+    call self%add_least_film(list)
   end subroutine parameters
 
   !> The scales of pressure and force, and the sign of (5.36), misprinted where the variant is `as_printed`.

@@ -126,7 +126,29 @@ contains
     else if (allocated(joint%contact)) then
       call check_contact(joint, group, law_group(values, 'contact', place), values, error)
     end if
+    if (.not. allocated(error) .and. allocated(joint%film)) &
+      call check_transition(joint, law_group(values, 'lubrication', place), values, error)
   end subroutine check_joint
+
+  !> Film and contact that share the load are both there, and share it over a depth.
+  subroutine check_transition(joint, own, values, error)
+    type(joint_case_t), intent(in) :: joint
+    character(len=*), intent(in) :: own   !! group of the film
+    type(case_values_t), intent(in) :: values
+    type(error_t), allocatable, intent(out) :: error
+    if (.not. joint%transition%is_weighted()) then
+      if (joint%transition%depth > 0 .and. .not. values%is_given(own, 'transition')) &
+        call values%refuse(own, 'transition_depth', 'needs transition = ''weighted''; the default is switch', error)
+    else if (allocated(joint%asperities)) then
+      call values%refuse(own, 'transition', 'must be switch with asperities: they carry with the film at every depth', error)
+    else if (.not. allocated(joint%contact)) then
+      call values%refuse(own, 'transition', 'needs the group contact: film and contact share the load', error)
+    else if (.not. joint%transition%depth > 0) then
+      call values%refuse(own, 'transition_depth', needed(own, 'transition_depth', values, 'with transition = ''weighted'''), error)
+    else if (joint%transition%depth > joint%clearance) then
+      call values%refuse(own, 'transition_depth', 'must be <= clearance', error)
+    end if
+  end subroutine check_transition
 
   !> Rough surfaces touch through a film, and no contact law is beside them.
   subroutine check_asperities(joint, group, values, error)

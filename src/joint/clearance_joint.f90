@@ -14,6 +14,7 @@ module clearance_joint
   use contact_law, only: contact_law_t
   use friction_law, only: friction_law_t, most_friction_states
   use film_law, only: film_law_t, film_motion_t
+  use film_transition, only: film_transition_t
   use asperities, only: asperities_t
   use mixed_film, only: mixed_forces, mixed_derivatives
   use joint_motion, only: joint_motion_t, find_polar, find_speeds, find_sliding
@@ -48,6 +49,7 @@ module clearance_joint
     class(friction_law_t), allocatable :: friction
     class(film_law_t), allocatable :: film
     type(asperities_t), allocatable :: asperities   !! of rough surfaces, beside the film; without contact then
+    type(film_transition_t), allocatable :: transition   !! film and contact share the load beyond the clearance
     type(coordinates_t) :: at               !! where the eccentricity stands in the state
     integer :: n_friction_states = 0        !! of the friction law
     type(slice_t) :: friction_states        !! where they stand
@@ -71,6 +73,7 @@ module clearance_joint
     procedure, non_overridable :: read_state
     procedure, non_overridable :: admits
     procedure, non_overridable :: loads
+    procedure :: contact_weight
     procedure :: complete
     procedure :: look
     procedure :: slopes
@@ -185,9 +188,17 @@ contains
     distance_squared = e(1)**2 + e(2)**2
     admits = distance_squared < self%bearing%radius**2
     if (self%phase == phase_film) &
-      admits = admits .and. (distance_squared < self%bearing%clearance**2 .or. .not. self%film%singular_at_wall &
-                         .or. allocated(self%asperities))
+      admits = admits .and. (distance_squared < self%bearing%clearance**2 .or. .not. is_unbounded(self))
   end function admits
+
+  !> Whether the film of the present phase grows without bound at the wall.
+  pure logical function is_unbounded(joint)
+    type(clearance_joint_t), intent(in) :: joint
+    is_unbounded = .false.
+    if (joint%phase /= phase_film .or. allocated(joint%asperities)) return
+    is_unbounded = joint%film%singular_at_wall
+    if (allocated(joint%transition)) is_unbounded = is_unbounded .and. .not. joint%transition%film_is_held
+  end function is_unbounded
 
   !> The loads of the present phase, also among those of the chain, and their power on the bodies. What the phase does not have is
   !> left as it is.
@@ -210,11 +221,19 @@ contains
       if (self%phase == phase_contact) then
         call find_contact(self, y, joint, own)
         force = own%contact
+        if (allocated(self%transition)) then
+          call share_with_film(self, film_motion(self, bodies, motion, joint), joint, own)
+          force = own%film + own%contact
+        end if
       else if (allocated(self%asperities)) then
         call find_mixed(self, film_motion(self, bodies, motion, joint), joint, own)
         force = own%film + own%contact
       else
-        call self%film%film_force(film_motion(self, bodies, motion, joint), own%film, own%moment)
+        if (allocated(self%transition)) then
+          call self%transition%film_force(self%film, film_motion(self, bodies, motion, joint), own%film, own%moment)
+        else
+          call self%film%film_force(film_motion(self, bodies, motion, joint), own%film, own%moment)
+        end if
         force = own%film
       end if
       own%power = (force(1)*joint%eccentricity_rate(1) + force(2)*joint%eccentricity_rate(2)) + own%moment*joint%journal_speed
@@ -251,6 +270,32 @@ contains
       own%moment = friction*self%pin_radius
     end associate
   end subroutine find_contact
+
+  !> The contact, which has been found as if it were alone, bears its share, the film the rest.
+  pure subroutine share_with_film(self, motion, joint, own)
+    type(clearance_joint_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    type(joint_motion_t), intent(in) :: joint
+    type(joint_loads_t), intent(inout) :: own
+    real(dp) :: w, force(2), moment
+    own%film = 0
+    if (self%transition%film_is_gone) return
+    call self%transition%weight(joint%penetration, w)
+    call self%transition%film_force(self%film, motion, force, moment)
+    own%film = (1 - w)*force
+    own%contact = w*own%contact
+    own%moment = w*own%moment + (1 - w)*moment
+    own%normal_force = w*own%normal_force
+    own%friction_force = w*own%friction_force
+  end subroutine share_with_film
+
+  !> Share of the contact in the loads of a joint with a weighted transition, at a penetration [m]; 0 while apart.
+  pure real(dp) function contact_weight(self, penetration) result(w)
+    class(clearance_joint_t), intent(in) :: self
+    real(dp), intent(in) :: penetration
+    w = 0
+    if (self%phase == phase_contact) call self%transition%weight(penetration, w)
+  end function contact_weight
 
   !> A film between rough surfaces, and the contact of their asperities.
   pure subroutine find_mixed(self, motion, joint, own)
@@ -290,7 +335,7 @@ contains
     logical, intent(in) :: is_known
     type(joint_motion_t), intent(inout) :: joint
     type(joint_loads_t), intent(inout) :: own
-    if (self%phase /= phase_film) own%film = 0
+    if (self%phase == phase_free .or. (self%phase == phase_contact .and. .not. allocated(self%transition))) own%film = 0
     if (self%phase /= phase_contact .and. .not. allocated(self%asperities)) then
       own%contact = 0
       own%normal_force = 0
@@ -313,8 +358,9 @@ contains
     call self%read_state(y, joint)
     call find_polar(self%bearing%clearance, joint)
     normal_force = 0
-    if (self%phase == phase_contact) &
-      normal_force = self%contact%normal_force(joint%penetration, joint%penetration_rate, self%impact_speed)
+    if (self%phase /= phase_contact) return
+    normal_force = self%contact%normal_force(joint%penetration, joint%penetration_rate, self%impact_speed)
+    if (allocated(self%transition)) normal_force = normal_force*self%contact_weight(joint%penetration)
   end subroutine look
 
   !> The motion as a film sees it. Where both bodies turn the film is drawn along by the sum of their speeds.
@@ -348,14 +394,50 @@ contains
     type(joint_loads_t), intent(in) :: own
     real(dp), intent(out) :: derivatives(3, 5)
     derivatives = 0
-    if (self%phase == phase_contact) call contact_slopes(self, joint, own, derivatives)
+    if (self%phase == phase_contact) then
+      if (allocated(self%transition)) then
+        call weighted_slopes(self, film_motion(self, bodies, motion, joint), joint, derivatives)
+      else
+        call contact_slopes(self, joint, own, derivatives)
+      end if
+    end if
     if (self%phase /= phase_film) return
-    if (allocated(self%asperities)) then
+    if (allocated(self%transition)) then
+      call self%transition%film_derivatives(self%film, film_motion(self, bodies, motion, joint), derivatives)
+    else if (allocated(self%asperities)) then
       call mixed_derivatives(self%film, self%asperities, self%pin_radius, film_motion(self, bodies, motion, joint), derivatives)
     else
       call self%film%force_derivatives(film_motion(self, bodies, motion, joint), derivatives)
     end if
   end subroutine slopes
+
+  !> Those of a contact and a film that share the load: of both, weighted, and of the weights.
+  pure subroutine weighted_slopes(self, motion, joint, derivatives)
+    type(clearance_joint_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    type(joint_motion_t), intent(in) :: joint
+    real(dp), intent(out) :: derivatives(3, 5)
+    type(joint_loads_t) :: full
+    real(dp) :: w, slope, of_film(3, 5), change(3), force(2), moment, ratio
+    real(dp) :: friction_slopes(1 + most_friction_states, 1 + most_friction_states)
+    integer :: i
+    ratio = 0
+    if (allocated(self%friction)) call find_friction_slopes(self, joint, ratio, friction_slopes)
+    full%normal_force = self%contact%normal_force(joint%penetration, joint%penetration_rate, self%impact_speed)
+    full%friction_force = ratio*full%normal_force
+    call contact_slopes(self, joint, full, derivatives)
+    if (self%transition%film_is_gone) return
+    call self%transition%weight(joint%penetration, w, slope)
+    call self%transition%film_force(self%film, motion, force, moment)
+    call self%transition%film_derivatives(self%film, motion, of_film)
+    associate (n => joint%normal, pressing => full%normal_force, friction => full%friction_force)
+      change = [-pressing*n(1) - friction*n(2), friction*n(1) - pressing*n(2), friction*self%pin_radius] - [force, moment]
+      derivatives = w*derivatives + (1 - w)*of_film
+      do i = 1, 2
+        derivatives(:, i) = derivatives(:, i) + slope*n(i)*change
+      end do
+    end associate
+  end subroutine weighted_slopes
 
   pure subroutine contact_slopes(self, joint, own, derivatives)
     class(clearance_joint_t), intent(in) :: self
@@ -446,9 +528,7 @@ contains
   pure real(dp) function reach(self)
     class(clearance_joint_t), intent(in) :: self
     reach = self%bearing%radius
-    if (self%phase == phase_film) then
-      if (self%film%singular_at_wall) reach = min(reach, self%bearing%clearance)
-    end if
+    if (is_unbounded(self)) reach = min(reach, self%bearing%clearance)
   end function reach
 
   !> Whether the film grows without bound at the wall, and has next to no thickness.
@@ -457,8 +537,7 @@ contains
     real(dp), intent(in) :: y(:)
     real(dp), parameter :: thin = 1e-6_dp   !! of the clearance
     is_singular = .false.
-    if (self%phase == phase_film .and. .not. allocated(self%asperities)) is_singular = self%film%singular_at_wall .and. &
-      norm2(y(self%at%position:self%at%position + 1)) > (1 - thin)*self%bearing%clearance
+    if (is_unbounded(self)) is_singular = norm2(y(self%at%position:self%at%position + 1)) > (1 - thin)*self%bearing%clearance
   end function is_singular
 
   !> The discrete state, to or from an archive.
@@ -468,5 +547,6 @@ contains
     call archive%exchange(self%phase)
     call archive%exchange(self%impact_speed)
     call archive%exchange(self%sliding)
+    if (allocated(self%transition)) call self%transition%exchange(archive)
   end subroutine exchange
 end module clearance_joint

@@ -38,6 +38,7 @@ contains
     if (allocated(joint%film)) then
       call row%put('film_force_x[N]', loads%film(1))
       call row%put('film_force_y[N]', loads%film(2))
+      if (allocated(joint%transition)) call row%put('contact_weight[-]', joint%contact_weight(motion%penetration))
       if (allocated(joint%asperities)) then
         call row%put('asperity_force[N]', loads%normal_force)
         call row%put('friction_force[N]', loads%friction_force)

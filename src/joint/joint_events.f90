@@ -7,13 +7,14 @@ module joint_events
   use joint_motion, only: joint_motion_t, sliding_acceleration
   implicit none
   private
-  public :: n_events, contact_changes, sliding_changes
+  public :: n_events, may_stick, contact_changes, sliding_changes, film_held_changes, film_gone_changes
   public :: contact_event, sliding_event, judge_entry, rough_end, begin_contact, end_contact, choose_sliding
-  public :: penetration_and_rate
+  public :: penetration_and_rate, transition_events, pass_kink
 
   !> The events of a joint, in this order. One without contact has none, and only set-valued friction has the second. A contact
-  !> begins where journal and bearing are apart, and ends where they touch.
-  integer, parameter :: contact_changes = 1, sliding_changes = 2
+  !> begins where journal and bearing are apart, and ends where they touch. Only one where film and contact share the load has
+  !> the others, the kinks of its forces.
+  integer, parameter :: contact_changes = 1, sliding_changes = 2, film_held_changes = 3, film_gone_changes = 4
 
 contains
 
@@ -21,10 +22,16 @@ contains
     type(clearance_joint_t), intent(in) :: joint
     n_events = 0
     if (allocated(joint%contact)) n_events = contact_changes
-    if (allocated(joint%friction)) then
-      if (joint%friction%set_valued) n_events = sliding_changes
-    end if
+    if (may_stick(joint)) n_events = sliding_changes
+    if (allocated(joint%transition)) n_events = film_gone_changes
   end function n_events
+
+  !> Whether the joint has set-valued friction.
+  pure logical function may_stick(joint)
+    type(clearance_joint_t), intent(in) :: joint
+    may_stick = .false.
+    if (allocated(joint%friction)) may_stick = joint%friction%set_valued
+  end function may_stick
 
   !> Penetration [m] and its rate [m/s].
   pure function penetration_and_rate(joint, y) result(values)
@@ -55,6 +62,36 @@ contains
       g_rate = -g_rate
     end associate
   end subroutine contact_event
+
+  !> Event functions of the kinks of a weighted transition, and their rates: half of what e . e is beyond the kink [m^2], signed so that the
+  !> passage to the other side is from negative to positive. (At the end of a smooth share it is the bend that jumps; the event costs no more than it spares.)
+  pure subroutine transition_events(joint, y, g, g_rate)
+    type(clearance_joint_t), intent(in) :: joint
+    real(dp), intent(in) :: y(*)
+    real(dp), intent(out) :: g(2), g_rate(2)
+    associate (x => y(joint%at%position), x_rate => y(joint%at%rate), &
+               across => y(joint%at%position + 1), across_rate => y(joint%at%rate + 1), kinks => joint%transition)
+      g = 0.5_dp*(x**2 + across**2 - [kinks%film_reach, kinks%contact_reach]**2)
+      g_rate = x*x_rate + across*across_rate
+      where ([kinks%film_is_held, kinks%film_is_gone])
+        g = -g
+        g_rate = -g_rate
+      end where
+    end associate
+  end subroutine transition_events
+
+  !> The journal passes a kink of a weighted transition.
+  pure subroutine pass_kink(joint, event)
+    type(clearance_joint_t), intent(inout) :: joint
+    integer, intent(in) :: event   !! film_held_changes or film_gone_changes
+    associate (kinks => joint%transition)
+      if (event == film_held_changes) then
+        kinks%film_is_held = .not. kinks%film_is_held
+      else
+        kinks%film_is_gone = .not. kinks%film_is_gone
+      end if
+    end associate
+  end subroutine pass_kink
 
   !> Event function of set-valued friction in contact: surfaces slip that stuck, or the sliding speed passes zero.
   pure subroutine sliding_event(joint, motion, own, accelerations, g, g_rate)

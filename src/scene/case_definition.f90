@@ -14,6 +14,7 @@ module case_definition
   use friction_laws, only: offer_friction_laws
   use film_law, only: film_law_t
   use films, only: offer_film_laws
+  use film_transition, only: film_transition_t
   use asperities, only: asperities_t
   use gas_cycle, only: gas_cycle_t
   implicit none
@@ -51,6 +52,7 @@ module case_definition
     class(friction_law_t), allocatable :: friction
     logical :: reports_friction_work = .false.
     class(film_law_t), allocatable :: film
+    type(film_transition_t) :: transition
     type(asperities_t), allocatable :: asperities
   contains
     procedure :: parameters => joint_parameters
@@ -165,7 +167,7 @@ contains
     call joint%parameters(list)
     call visit_contact(joint%contact, place, list)
     call visit_friction(joint%friction, joint%reports_friction_work, place, list)
-    call visit_film(joint%film, place, list)
+    call visit_film(joint%film, joint%transition, place, list)
     call visit_asperities(joint%asperities, place, list)
   end subroutine visit_joint
 
@@ -223,12 +225,14 @@ contains
     end select
   end subroutine visit_friction
 
-  subroutine visit_film(law, place, list)
+  subroutine visit_film(law, transition, place, list)
     class(film_law_t), allocatable, intent(inout) :: law
+    type(film_transition_t), intent(inout) :: transition
     character(len=*), intent(in) :: place
     class(parameter_list_t), intent(inout) :: list
     call list%group('lubrication', 'oil film in the clearance: leave the group out for a dry joint', .true., place)
     call list%choice('law', 'pinkus_sternlicht', 'journal bearing or oscillating film')
+    call transition%parameters(list)
     call offer_film_laws(list)
     if (.not. list%sets) return
     if (allocated(law)) deallocate (law)

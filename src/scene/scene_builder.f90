@@ -128,6 +128,7 @@ contains
         if (allocated(joint%contact)) call joint%contact%prepare(joint%bearing)
         if (allocated(joint%friction)) call joint%friction%prepare()
         if (allocated(joint%film)) call joint%film%prepare(joint%bearing, case%integrator%relative_tolerance)
+        if (allocated(joint%transition)) call joint%transition%prepare(joint%bearing, joint%film%least_film_ratio)
         if (allocated(joint%asperities)) call joint%asperities%prepare(joint%bearing)
         if (allocated(joint%contact) .and. case%integrator%contact_entry == 'step_rejection') scene%refuses_steps = .true.
       end associate
@@ -159,6 +160,8 @@ contains
     if (allocated(wanted%contact)) allocate (joint%contact, source=wanted%contact)
     if (allocated(wanted%friction)) allocate (joint%friction, source=wanted%friction)
     if (allocated(wanted%film)) allocate (joint%film, source=wanted%film)
+    if (allocated(wanted%film) .and. allocated(wanted%contact) .and. wanted%transition%is_weighted()) &
+      allocate (joint%transition, source=wanted%transition)
     if (allocated(wanted%asperities)) allocate (joint%asperities, source=wanted%asperities)
     joint%reports_friction_work = wanted%reports_friction_work
   end subroutine build_joint

@@ -1,8 +1,8 @@
 !> Events of a scene: each is its owner's, a joint's, the gas's or that of the crank's turns.
 submodule (gudgeon_scene) scene_events
   use ode_problem, only: step_admitted, event_continue
-  use joint_events, only: n_events, contact_changes, sliding_changes, contact_event, sliding_event, judge_entry, &
-    rough_end, begin_contact, end_contact, choose_sliding
+  use joint_events, only: n_events, may_stick, contact_changes, sliding_changes, film_held_changes, film_gone_changes, &
+    contact_event, sliding_event, transition_events, judge_entry, rough_end, begin_contact, end_contact, pass_kink, choose_sliding
   use joint_motion, only: outward_acceleration
   use working_gas, only: n_gas_events
   use crank_turns, only: n_turn_events
@@ -19,7 +19,7 @@ contains
     scene%n_events = 0
     scene%may_stick = .false.
     do i = 1, size(scene%joints)
-      scene%may_stick = scene%may_stick .or. n_events(scene%joints(i)) >= sliding_changes
+      scene%may_stick = scene%may_stick .or. may_stick(scene%joints(i))
       call number(i, n_events(scene%joints(i)))
     end do
     if (allocated(scene%gas)) call number(of_gas, n_gas_events)
@@ -46,6 +46,8 @@ contains
       if (n >= contact_changes) call contact_event(self%joints(i), y, g(k + contact_changes), g_rate(k + contact_changes))
       if (n >= sliding_changes) &
         call find_sliding_event(self, t, y, i, g(k + sliding_changes), g_rate(k + sliding_changes))
+      if (n >= film_gone_changes) call transition_events(self%joints(i), y, g(k + film_held_changes:k + film_gone_changes), &
+        g_rate(k + film_held_changes:k + film_gone_changes))
       k = k + n
     end do
     if (allocated(self%gas)) then
@@ -66,7 +68,7 @@ contains
     logical :: inside
     g = -1
     g_rate = 0
-    if (scene%joints(i)%phase /= phase_contact) return
+    if (scene%joints(i)%phase /= phase_contact .or. .not. may_stick(scene%joints(i))) return
     call scene%evaluate(t, y, now, inside)
     if (inside) call sliding_event(scene%joints(i), now%relative(i), now%joint(i), now%accelerations, g, g_rate)
   end subroutine find_sliding_event
@@ -93,6 +95,8 @@ contains
           end if
         case (sliding_changes)
           call find_sliding_direction(self, i, t, y, .false.)
+        case (film_held_changes, film_gone_changes)
+          call pass_kink(self%joints(i), event)
         end select
       end if
     end associate
@@ -118,7 +122,7 @@ contains
     logical, intent(in) :: may_slide
     type(evaluation_t) :: now
     logical :: inside, was_sliding
-    if (n_events(scene%joints(i)) < sliding_changes) return
+    if (.not. may_stick(scene%joints(i))) return
     was_sliding = scene%joints(i)%sliding /= 0
     scene%joints(i)%sliding = 0
     call scene%evaluate(t, y, now, inside)
@@ -169,6 +173,8 @@ contains
     do i = 1, self%n_joints
       self%joints(i)%phase = self%joints(i)%phase_apart()
       contact = penetration_and_rate(self%joints(i), y)
+      if (allocated(self%joints(i)%transition)) &
+        call self%joints(i)%transition%begin(contact(1) + self%joints(i)%bearing%clearance, contact(2))
       if (allocated(self%joints(i)%contact) .and. contact(1) >= 0) call begin_contact(self%joints(i), contact(2))
     end do
     do i = 1, self%n_joints   ! exactly at the wall

@@ -1,0 +1,148 @@
+!> How a film gives way to the contact: at once where journal and bearing touch, or weighted over a band of depths (chapter 7 of Reis
+!> 2013 asks for it; the weights after Flores et al. 2004).
+!>
+!> With the penetration d = |e| - c the forces are (1 - w) F_film + w F_contact, friction included: w = s, or s^2 (3 - 2 s), with
+!> s = d/e0 between 0 and 1. The film of theory is infinite at |e| = c, so beyond |e| = (1 - q) c it is that of this eccentricity, with
+!> the true direction of the eccentricity and its true rate. The depths e0 and q are no properties of the joint: results depend on them.
+module film_transition
+  use gudgeon_kinds, only: dp
+  use gudgeon_parameters, only: has_parameters_t, parameter_list_t
+  use gudgeon_bearing, only: bearing_t
+  use gudgeon_archive, only: archive_t
+  use film_law, only: film_law_t, film_motion_t
+  implicit none
+  private
+  public :: film_transition_t
+
+  !> A transition. What changes at its kinks is a discrete state, so that between two events the forces are smooth, on trial states
+  !> beyond a kink too.
+  type, extends(has_parameters_t) :: film_transition_t
+    character(len=:), allocatable :: transition   !! switch or weighted
+    character(len=:), allocatable :: shape        !! linear or smooth
+    real(dp) :: depth = 0                         !! e0 [m], > 0 where it is weighted
+    logical :: is_smooth = .false.                !! the shape
+    real(dp) :: film_reach = 0                    !! (1 - q) c, eccentricity beyond which the film is held [m]
+    real(dp) :: contact_reach = 0                 !! c + e0, eccentricity beyond which there is no film [m]
+    logical :: film_is_held = .false.             !! the pin is beyond film_reach
+    logical :: film_is_gone = .false.             !! and beyond contact_reach
+  contains
+    procedure :: parameters
+    procedure :: is_weighted
+    procedure :: prepare
+    procedure :: begin
+    procedure :: weight
+    procedure :: film_force
+    procedure :: film_derivatives
+    procedure :: exchange
+  end type film_transition_t
+
+contains
+
+  subroutine parameters(self, list)
+    class(film_transition_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%word('transition', self%transition, 'switch, weighted', 'switch', &
+      'from film to contact: at the clearance, or shared over transition_depth')
+    call list%add('transition_depth', self%depth, 'weighted: penetration from which on the contact bears all', 'm', '> 0', &
+      default='0.0')
+    call list%word('transition_shape', self%shape, 'linear, smooth', 'linear', &
+      'weighted: how the contact''s share grows with the penetration')
+  end subroutine parameters
+
+  pure logical function is_weighted(self)
+    class(film_transition_t), intent(in) :: self
+    is_weighted = .false.
+    if (allocated(self%transition)) is_weighted = self%transition == 'weighted'
+  end function is_weighted
+
+  !> The kinks in a bearing.
+  subroutine prepare(self, bearing, least_film_ratio)
+    class(film_transition_t), intent(inout) :: self
+    type(bearing_t), intent(in) :: bearing
+    real(dp), intent(in) :: least_film_ratio   !! q [-]
+    self%is_smooth = self%shape == 'smooth'
+    self%film_reach = (1 - least_film_ratio)*bearing%clearance
+    self%contact_reach = bearing%clearance + self%depth
+  end subroutine prepare
+
+  !> The discrete state at an eccentricity and its rate.
+  pure subroutine begin(self, distance, rate)
+    class(film_transition_t), intent(inout) :: self
+    real(dp), intent(in) :: distance   !! |e| [m]
+    real(dp), intent(in) :: rate       !! its rate [m/s]: at a kink it decides
+    self%film_is_held = is_beyond(self%film_reach)
+    self%film_is_gone = is_beyond(self%contact_reach)
+
+  contains
+
+    pure logical function is_beyond(kink)
+      real(dp), intent(in) :: kink
+      is_beyond = distance > kink .or. (distance >= kink .and. rate >= 0)
+    end function is_beyond
+  end subroutine begin
+
+  !> Share w of the contact in a penetration [m], and its slope [1/m]. A linear share goes on beyond its ends on trial states; its kinks
+  !> are events. The smooth one is held there: its slope has no kink.
+  pure subroutine weight(self, penetration, w, slope)
+    class(film_transition_t), intent(in) :: self
+    real(dp), intent(in) :: penetration
+    real(dp), intent(out) :: w
+    real(dp), intent(out), optional :: slope
+    real(dp) :: s, w_slope
+    s = penetration/self%depth
+    w = 1
+    w_slope = 0
+    if (.not. self%film_is_gone) then
+      w = s
+      w_slope = 1/self%depth
+      if (self%is_smooth) then
+        s = min(max(s, 0.0_dp), 1.0_dp)
+        w = s**2*(3 - 2*s)
+        w_slope = 6*s*(1 - s)/self%depth
+      end if
+    end if
+    if (present(slope)) slope = w_slope
+  end subroutine weight
+
+  !> Force of the whole film on the pin [N] and its moment [N m], held where it would grow without bound.
+  pure subroutine film_force(self, film, motion, force, moment)
+    class(film_transition_t), intent(in) :: self
+    class(film_law_t), intent(in) :: film
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(out) :: force(2), moment
+    call film%film_force(held_motion(self, motion), force, moment)
+  end subroutine film_force
+
+  !> Its derivatives, as a film law gives them: a film that is held turns with the eccentricity and does not grow with it.
+  pure subroutine film_derivatives(self, film, motion, derivatives)
+    class(film_transition_t), intent(in) :: self
+    class(film_law_t), intent(in) :: film
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(out) :: derivatives(3, 5)
+    real(dp) :: distance, along(3)
+    call film%force_derivatives(held_motion(self, motion), derivatives)
+    if (.not. self%film_is_held) return
+    associate (e => motion%eccentricity)
+      distance = norm2(e)
+      along = (derivatives(:, 2)*e(1) - derivatives(:, 1)*e(2))*self%film_reach/distance**3
+      derivatives(:, 1) = -along*e(2)
+      derivatives(:, 2) = along*e(1)
+    end associate
+  end subroutine film_derivatives
+
+  !> The motion that the film sees.
+  pure type(film_motion_t) function held_motion(self, motion) result(held)
+    type(film_transition_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    held = motion
+    if (self%film_is_held) held%eccentricity = motion%eccentricity*(self%film_reach/norm2(motion%eccentricity))
+  end function held_motion
+
+  !> The discrete state, to or from an archive.
+  subroutine exchange(self, archive)
+    class(film_transition_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    call archive%exchange(self%film_is_held)
+    call archive%exchange(self%film_is_gone)
+  end subroutine exchange
+end module film_transition

@@ -1,0 +1,358 @@
+!> A film that gives way to the contact over a band of depths: weights, kinks, derivatives, a whole mechanism against an independent
+!> program, every method, and what a case may not ask of it.
+module test_film_transition
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t
+  use gudgeon_bearing, only: bearing_t
+  use checks, only: checks_t
+  use film_transition, only: film_transition_t
+  use film_law, only: film_law_t, film_motion_t
+  use laws, only: film_law_of
+  use case_definition, only: case_t
+  use case_file, only: parse_case, read_case
+  use chain_motion, only: piston_pin
+  use clearance_joint, only: phase_film, phase_contact
+  use gudgeon_scene, only: scene_t, evaluation_t
+  use scene_builder, only: build_scene
+  use ode_problem, only: difference_jacobian
+  use state_making, only: put_crank, put_pin
+  use collecting_sink, only: trace_t, run_case, column
+  implicit none
+  private
+  public :: run_test_film_transition
+
+  character(len=*), parameter :: file = 'cases/film/weighted.nml'
+  integer, parameter :: long = 60
+  real(dp), parameter :: c = 0.2e-3_dp, q = 0.03_dp, depth = 3e-6_dp   !! of the case
+
+contains
+
+  subroutine run_test_film_transition(check)
+    class(checks_t), intent(inout) :: check
+    call shares(check)
+    call film_is_held(check)
+    call forces_have_no_jumps(check)
+    call derivatives(check)
+    call meets_the_reference(check)
+    call methods_agree(check)
+    call kinks_are_events(check)
+    call starts_anywhere(check)
+    call sticks(check)
+    call refuses(check)
+  end subroutine run_test_film_transition
+
+  !> Values and slopes of both shapes, and all for the contact beyond the depth.
+  subroutine shares(check)
+    class(checks_t), intent(inout) :: check
+    type(film_transition_t) :: transition
+    real(dp) :: w, slope
+    transition = new_transition('linear')
+    call transition%weight(0.25_dp*depth, w, slope)
+    call check%relative(w, 0.25_dp, 1e-12_dp, 'linear share')
+    call check%relative(slope, 1/depth, 1e-12_dp, 'linear slope')
+    transition = new_transition('smooth')
+    call transition%weight(0.25_dp*depth, w, slope)
+    call check%relative(w, 0.15625_dp, 1e-12_dp, 'smooth share')
+    call check%relative(slope, 1.125_dp/depth, 1e-12_dp, 'smooth slope')
+    call transition%weight(-depth, w, slope)
+    call check%that(abs(w) + abs(slope) <= 0, 'a smooth share is none while apart')
+    transition%film_is_gone = .true.
+    call transition%weight(2*depth, w, slope)
+    call check%that(abs(w - 1) + abs(slope) <= 0, 'deep down the contact has all')
+  end subroutine shares
+
+  !> Beyond the eccentricity ratio 1 - q a film is that of 1 - q with the same direction, rate and speeds.
+  subroutine film_is_held(check)
+    class(checks_t), intent(inout) :: check
+    class(film_law_t), allocatable :: film
+    type(error_t), allocatable :: error
+    type(film_transition_t) :: transition
+    type(film_motion_t) :: motion
+    real(dp) :: want(2), force(2), moment, want_moment, n(2)
+    integer :: i
+    call film_law_of("law='finite_bearing' variant='short' viscosity=0.02", 1e-6_dp, film, error)
+    call check%that(.not. allocated(error), 'a film')
+    call transition%prepare(bearing_t(1e-2_dp, 2e-2_dp, 20e-6_dp, 0.12_dp), q)
+    do i = 1, 3
+      n = [cos(1.1_dp*i), sin(1.1_dp*i)]
+      motion%eccentricity_rate = [3e-3_dp, -2e-3_dp]*i
+      motion%pin_speed = 80
+      motion%turning_speed = 80
+      motion%eccentricity = 0.97_dp*20e-6_dp*n
+      call film%film_force(motion, want, want_moment)
+      motion%eccentricity = (0.95_dp + 0.03_dp*i)*20e-6_dp*n
+      transition%film_is_held = .true.
+      call transition%film_force(film, motion, force, moment)
+      call check%close_to(norm2(force - want), 0.0_dp, 1e-11_dp*norm2(want), 'a held film')
+      call check%relative(moment, want_moment, 1e-11_dp, 'moment of a held film')
+    end do
+    transition%film_is_held = .false.
+    motion%eccentricity = 0.5_dp*20e-6_dp*n
+    call film%film_force(motion, want, want_moment)
+    call transition%film_force(film, motion, force, moment)
+    call check%that(all(abs(force - want) <= 0), 'a film that is not held is the law''s own')
+  end subroutine film_is_held
+
+  !> On both sides of each kink, and of the clearance, the loads on the pin are the same.
+  subroutine forces_have_no_jumps(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: kinks(3) = [c*(1 - q), c, c + depth]
+    character(len=*), parameter :: names(3) = [character(len=20) :: 'where film is held', 'at the clearance', 'where film is gone']
+    character(len=long) :: shape(1)
+    real(dp) :: inner(3), outer(3)
+    integer :: i, k
+    do k = 1, 2
+      shape(1) = 'lubrication.transition_shape='//merge('linear', 'smooth', k == 1)
+      do i = 1, 3
+        inner = loads_at(shape, kinks(i)*(1 - 1e-13_dp))
+        outer = loads_at(shape, kinks(i)*(1 + 1e-13_dp))
+        call check%close_to(norm2(outer - inner), 0.0_dp, 1e-8_dp*norm2(outer), 'no jump '//trim(names(i)))
+      end do
+      ! half way the loads are the sum of those weighted in the columns
+      call check%relative(pressing_at(shape, c + 0.5_dp*depth), 0.5_dp*hertz(0.5_dp*depth), 1e-6_dp, &
+        'half of Hertz''s force half way')
+    end do
+
+  contains
+
+    !> Hertz's force of steel spheres of 10 mm and 9.8 mm [N].
+    pure real(dp) function hertz(d)
+      real(dp), intent(in) :: d
+      hertz = 4.0_dp/3*207e9_dp/(2*(1 - 0.3_dp**2))*sqrt(10e-3_dp*9.8e-3_dp/c)*d**1.5_dp
+    end function hertz
+  end subroutine forces_have_no_jumps
+
+  !> Force and moment on the pin at an eccentricity, with some motion.
+  function loads_at(overrides, distance) result(loads)
+    character(len=*), intent(in) :: overrides(:)
+    real(dp), intent(in) :: distance
+    real(dp) :: loads(3)
+    type(evaluation_t) :: now
+    call evaluate_at(overrides, distance, [0.06_dp, 0.17_dp], now)
+    loads = [now%loads%force(:, piston_pin), now%loads%moment(piston_pin)]
+  end function loads_at
+
+  !> The pressing force at an eccentricity that does not grow [N].
+  real(dp) function pressing_at(overrides, distance)
+    character(len=*), intent(in) :: overrides(:)
+    real(dp), intent(in) :: distance
+    type(evaluation_t) :: now
+    call evaluate_at(overrides, distance, [-0.08_dp, 0.06_dp], now)
+    pressing_at = now%joint(1)%normal_force
+  end function pressing_at
+
+  subroutine evaluate_at(overrides, distance, rate, now)
+    character(len=*), intent(in) :: overrides(:)
+    real(dp), intent(in) :: distance, rate(2)
+    type(evaluation_t), intent(out) :: now
+    type(scene_t), allocatable :: scene
+    real(dp), allocatable :: y(:)
+    logical :: inside
+    call make_scene(overrides, distance, scene)
+    y = scene%initial_state()
+    call put_crank(scene, y, 0.3_dp, 520.0_dp)
+    call put_pin(scene, y, distance*[0.6_dp, 0.8_dp], rate)
+    call scene%evaluate(0.0_dp, y, now, inside)
+  end subroutine evaluate_at
+
+  !> The scene of the case with its pin in the zone of an eccentricity.
+  subroutine make_scene(overrides, distance, scene)
+    character(len=*), intent(in) :: overrides(:)
+    real(dp), intent(in) :: distance
+    type(scene_t), allocatable, intent(out) :: scene
+    type(case_t) :: case
+    type(error_t), allocatable :: error
+    call read_case(file, overrides, case, error)
+    if (.not. allocated(error)) call build_scene(case, .false., scene, error)
+    if (allocated(error)) error stop 'test_film_transition: the case cannot be built'
+    scene%joints(1)%phase = merge(phase_contact, phase_film, distance > c)
+    scene%joints(1)%impact_speed = 0.4_dp
+    scene%joints(1)%sliding = 1
+    call scene%joints(1)%transition%begin(distance, 0.0_dp)
+  end subroutine make_scene
+
+  !> The closed-form Jacobian against differences, in each zone, for each film.
+  subroutine derivatives(check)
+    class(checks_t), intent(inout) :: check
+    character(len=long), parameter :: films(4) = [character(len=long) :: 'lubrication.variant=closed_form', &
+      'lubrication.variant=half_film', 'lubrication.law=oscillating_film', 'lubrication.law=finite_bearing']
+    character(len=long), parameter :: others(4) = [character(len=long) :: 'friction.law=brown_mcphee', 'friction.law=ambrosio', &
+      'friction.law=brown_mcphee', 'friction.law=lugre']
+    real(dp), parameter :: distances(4) = [0.9_dp*c, 0.985_dp*c, c + 0.4_dp*depth, c + 1.5_dp*depth]
+    character(len=long) :: set(12)
+    type(scene_t), allocatable :: scene
+    real(dp), allocatable :: y(:), a_p(:, :), a_v(:, :), d_p(:, :), d_v(:, :)
+    integer :: i, j, m, k
+    do i = 1, size(films)
+      set = [character(len=long) :: films(i), others(i), 'drive.kind='//merge('constant_speed', 'free          ', i == 3), &
+        'lubrication.kinematic_viscosity=1e-5', &
+        'friction.static_coefficient=0.08', 'friction.transition_speed=0.3', 'friction.stribeck_speed=0.4', &
+        'friction.bristle_stiffness=2e4', 'lubrication.transition_shape='//merge('linear', 'smooth', mod(i, 2) == 0), &
+        'friction.damping_speed=0.3', 'friction.bristle_damping=0.1', '']
+      set(12) = merge('lubrication.variant=short', 'lubrication.film_points=0', i == 4)
+      do j = 1, size(distances)
+        call make_scene(set, distances(j), scene)
+        y = scene%initial_state()
+        m = scene%n_positions
+        k = m + scene%n_states()
+        if (allocated(a_p)) deallocate (a_p, a_v, d_p, d_v)
+        allocate (a_p(k, m), a_v(k, k), d_p(k, m), d_v(k, k))
+        call put_crank(scene, y, 0.3_dp, 520.0_dp)
+        call put_pin(scene, y, distances(j)*[cos(1.3_dp*j), sin(1.3_dp*j)], [0.11_dp, 0.07_dp])
+        call scene%jacobian(0.0_dp, y, a_p, a_v)
+        call difference_jacobian(scene, 0.0_dp, y, d_p, d_v)
+        call check%close_to(maxval(abs(a_p - d_p)), 0.0_dp, 2e-4_dp*maxval(abs(d_p)), 'slopes by positions: '//films(i))
+        call check%close_to(maxval(abs(a_v - d_v)), 0.0_dp, 2e-4_dp*maxval(abs(d_v)), 'slopes by rates: '//films(i))
+      end do
+    end do
+  end subroutine derivatives
+
+  !> Instants and speeds of contacts by an independent program (Python, SciPy's DOP853 with events by root finding), which knows them to
+  !> 3.1e-11 s.
+  subroutine meets_the_reference(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: instants(5) = [0.000771425953518_dp, 0.00267020412613_dp, 0.00414047530389_dp, 0.0096517489615_dp, &
+      0.0109421795383_dp]
+    real(dp), parameter :: speeds(5) = [0.0203970365_dp, -0.0974650053_dp, 0.011820603_dp, -0.111840953_dp, 0.0177224925_dp]
+    type(trace_t) :: trace
+    integer :: i
+    trace = run_case(file, [character(len=long) :: 'integrator.relative_tolerance=1e-10', 'integrator.revolutions=1'])
+    call check%that(.not. allocated(trace%error), 'the weighted case runs')
+    if (allocated(trace%error)) return
+    call check%that(size(trace%event) == 5, 'the number of contacts')
+    if (size(trace%event) /= 5) return
+    do i = 1, 5
+      call check%close_to(trace%event(i)%time, instants(i), 3e-10_dp, 'when a contact begins or ends')
+      call check%relative(trace%event(i)%normal_speed, speeds(i), 1e-6_dp, 'and how fast')
+    end do
+  end subroutine meets_the_reference
+
+  subroutine methods_agree(check)
+    class(checks_t), intent(inout) :: check
+    character(len=6), parameter :: methods(3) = [character(len=6) :: 'adams', 'radau', 'auto']
+    character(len=long) :: set(4)
+    type(trace_t) :: trace, first
+    integer :: i, k, at
+    do k = 1, 2
+      do i = 1, 3
+        set = [character(len=long) :: 'integrator.method='//methods(i), 'integrator.relative_tolerance=1e-9', &
+          'integrator.revolutions=0.7', 'lubrication.transition_shape='//merge('linear', 'smooth', k == 1)]
+        trace = run_case(file, set)
+        call check%that(.not. allocated(trace%error), 'a weighted transition runs by '//methods(i))
+        if (allocated(trace%error)) return
+        associate (figures => trace%report%figures)
+          call check%that(figures%max_energy_residual < 1e-8_dp*figures%max_energy, 'and keeps the energy')
+        end associate
+        if (i == 1) first = trace
+        at = column(trace, 'film_thickness[m]')
+        call check%close_to(maxval(abs(trace%values(at, :) - first%values(at, :))), 0.0_dp, 1e-6_dp*c, 'methods agree on the film')
+      end do
+      call share_of_columns(check, trace)
+    end do
+  end subroutine methods_agree
+
+  !> Rows in which film and contact both bear, with the share that belongs to their depth; and none of the film beyond the depth.
+  subroutine share_of_columns(check, trace)
+    class(checks_t), intent(inout) :: check
+    type(trace_t), intent(in) :: trace
+    real(dp), dimension(size(trace%values, 2)) :: w, penetration, film, pressing
+    w = trace%values(column(trace, 'contact_weight[-]'), :)
+    penetration = -trace%values(column(trace, 'film_thickness[m]'), :)
+    film = abs(trace%values(column(trace, 'film_force_x[N]'), :))
+    pressing = trace%values(column(trace, 'normal_force[N]'), :)
+    call check%that(any(w > 0 .and. w < 1 .and. film > 0 .and. pressing > 0), 'film and contact bear together')
+    call check%that(all((w > 0) .eqv. (penetration > 0)), 'the contact has a share where it touches')
+    call check%that(all(film <= 0 .or. penetration < depth), 'no film deep down')
+    call check%that(any(penetration > depth .and. pressing > 0 .and. w >= 1), 'where the contact bears all')
+  end subroutine share_of_columns
+
+  !> The pin passes the kink before each touch, that behind the full contact, and back: each is a restart.
+  subroutine kinks_are_events(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    trace = run_case(file, [character(len=long) :: 'integrator.method=adams', 'integrator.relative_tolerance=1e-7', &
+      'integrator.revolutions=0.7'])
+    call check%that(.not. allocated(trace%error), 'a run')
+    if (allocated(trace%error)) return
+    call check%that(trace%report%statistics%restarts >= size(trace%event) + 4, 'kinks are events beside those of the contact')
+  end subroutine kinks_are_events
+
+  !> In each zone, on each kink, at rest and on the way to either side.
+  subroutine starts_anywhere(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: starts(6) = [0.98_dp*c, 0.97_dp*c, c, c + 0.5_dp*depth, c + depth, c + 2*depth]
+    character(len=long) :: set(5)
+    type(trace_t) :: trace
+    integer :: i, j
+    do i = 1, size(starts)
+      do j = -1, 1
+        set(1:3) = [character(len=long) :: 'integrator.revolutions=0.02', 'lubrication.transition_shape=linear', &
+          'integrator.relative_tolerance=1e-8']
+        write (set(4), '(a,es23.16,a)') 'initial.eccentricity=', starts(i), ',0'
+        write (set(5), '(a,es23.16,a)') 'initial.eccentricity_rate=', 0.05_dp*j, ',0.01'
+        trace = run_case(file, set)
+        call check%that(.not. allocated(trace%error), 'starts at '//set(4)//set(5))
+        if (allocated(trace%error)) cycle
+        associate (figures => trace%report%figures)
+          call check%that(figures%max_energy_residual < 1e-6_dp*figures%max_energy, 'with its energy known, '//set(4)//set(5))
+        end associate
+      end do
+    end do
+  end subroutine starts_anywhere
+
+  !> Set-valued friction holds and slides by the contact's share, and the energy is known.
+  subroutine sticks(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    trace = run_case(file, [character(len=long) :: 'friction.law=coulomb', 'friction.coefficient=0.1', &
+      'integrator.revolutions=0.6', 'integrator.relative_tolerance=1e-8', 'initial.crank_speed=100', 'lubrication.viscosity=0.002'])
+    call check%that(.not. allocated(trace%error), 'set-valued friction with a weighted transition')
+    if (allocated(trace%error)) return
+    associate (figures => trace%report%figures)
+      call check%that(figures%max_energy_residual < 1e-6_dp*figures%max_energy, 'keeps the energy')
+    end associate
+    associate (friction => trace%values(column(trace, 'friction_force[N]'), :), &
+               pressing => trace%values(column(trace, 'normal_force[N]'), :))
+      call check%that(maxval(abs(friction) - 0.1_dp*pressing) < 1e-6_dp*maxval(pressing), 'within its limit')
+    end associate
+  end subroutine sticks
+
+  subroutine refuses(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: weighted = "&lubrication viscosity=0.01 transition='weighted' transition_depth=1e-6 / "
+    call expect(check, weighted, '&lubrication transition = weighted: needs the group contact', 'no contact to share with')
+    call expect(check, weighted//"&asperities roughness=1e-7 /", &
+      '&lubrication transition = weighted: must be switch with asperities', 'asperities beside a weighted transition')
+    call expect(check, "&contact / &lubrication viscosity=0.01 transition='weighted' /", &
+      '&lubrication transition_depth: required with transition = ''weighted''', 'a transition without a depth')
+    call expect(check, "&contact / &lubrication viscosity=0.01 transition='weighted' transition_depth=1e-3 /", &
+      '&lubrication transition_depth = 1e-3: must be <= clearance', 'a transition deeper than the clearance')
+    call expect(check, "&contact / &lubrication viscosity=0.01 transition_depth=1e-6 /", &
+      '&lubrication transition_depth = 1e-6: needs transition = ''weighted''', 'a depth with a switch')
+    call expect(check, "&contact / &lubrication viscosity=0.01 transition='weighted' transition_depth=-1e-6 /", &
+      '&lubrication transition_depth = -1e-6: must be > 0', 'a negative depth')
+    call expect(check, "&contact / "//weighted//" &friction law='coulomb' coefficient=0.1 /", '', 'a good case')
+  end subroutine refuses
+
+  subroutine expect(check, groups, wanted, name)
+    class(checks_t), intent(inout) :: check
+    character(len=*), intent(in) :: groups, wanted, name
+    character(len=*), parameter :: bodies = '&mechanism crank_length=0.05 crank_mass=1 crank_inertia=1 rod_length=0.2 '// &
+      'rod_mass=1 rod_inertia=1 piston_mass=1 / &initial crank_speed=100 / &integrator revolutions=1 / '// &
+      '&joint kind=''clearance'' clearance=20e-6 bearing_radius=10e-3 bearing_length=15e-3 / '
+    character(len=1) :: nothing(0)
+    type(case_t) :: case
+    type(error_t), allocatable :: error
+    call parse_case(bodies//groups, 'x.nml', nothing, case, error)
+    call check%that(allocated(error) .neqv. wanted == '', name//' is judged')
+    if (allocated(error)) call check%that(index(error%message, wanted) > 0, name//' is refused in words: '//error%message)
+  end subroutine expect
+
+  function new_transition(shape) result(transition)
+    character(len=*), intent(in) :: shape
+    type(film_transition_t) :: transition
+    transition%depth = depth
+    transition%shape = shape
+    call transition%prepare(bearing_t(1e-2_dp, 2e-2_dp, c, 0.12_dp), q)
+  end function new_transition
+end module test_film_transition
