@@ -35,6 +35,7 @@ contains
     call derivatives(check)
     call meets_the_reference(check)
     call methods_agree(check)
+    call moment_has_its_share(check)
     call kinks_are_events(check)
     call starts_anywhere(check)
     call sticks(check)
@@ -265,6 +266,24 @@ contains
     call check%that(all(film <= 0 .or. penetration < depth), 'no film deep down')
     call check%that(any(penetration > depth .and. pressing > 0 .and. w >= 1), 'where the contact bears all')
   end subroutine share_of_columns
+
+  !> The film's moment on the pin is that of the held film by its share.
+  subroutine moment_has_its_share(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    real(dp), dimension(:), allocatable :: w, moment
+    trace = run_case(file, [character(len=long) :: 'lubrication.film_moment=T', 'integrator.revolutions=0.5', &
+      'output.samples_per_revolution=20000'])
+    call check%that(.not. allocated(trace%error), 'a run with the moment of the film')
+    if (allocated(trace%error)) return
+    allocate (w, source=trace%values(column(trace, 'contact_weight[-]'), :))
+    allocate (moment, source=abs(trace%values(column(trace, 'film_moment[N.m]'), :)))
+    call check%that(all(moment <= 0 .or. w < 1) .and. any(moment > 0 .and. w > 0.9_dp), 'the moment of a film goes with its share')
+    call check%that(maxval(moment, mask=w <= 0) > maxval(moment, mask=w > 0.5_dp), 'and is greatest without contact')
+    associate (power => trace%report%figures)
+      call check%that(power%max_energy_residual < 1e-6_dp*power%max_energy, 'the work of the moment is in the energy')
+    end associate
+  end subroutine moment_has_its_share
 
   !> The pin passes the kink before each touch, that behind the full contact, and back: each is a restart.
   subroutine kinks_are_events(check)

@@ -44,9 +44,19 @@ contains
         call row%put('friction_force[N]', loads%friction_force)
         call row%put('sliding_speed[m/s]', motion%sliding_speed)
       end if
-      if (joint%film%film_moment) call row%put('film_moment[N.m]', merge(loads%moment, 0.0_dp, joint%phase == phase_film) &
-        - merge(loads%friction_force*joint%pin_radius, 0.0_dp, allocated(joint%asperities)))
+      if (joint%film%film_moment) call row%put('film_moment[N.m]', film_moment(joint, loads))
     end if
     row%place = ''
   end subroutine put_joint_columns
+
+  !> Moment of the film's shear on the journal [N m]: what friction has no part in.
+  pure real(dp) function film_moment(joint, loads)
+    type(clearance_joint_t), intent(in) :: joint
+    type(joint_loads_t), intent(in) :: loads
+    logical :: has_film
+    has_film = joint%phase == phase_film
+    if (allocated(joint%transition)) has_film = .not. joint%transition%film_is_gone
+    film_moment = 0
+    if (has_film) film_moment = loads%moment - loads%friction_force*joint%pin_radius
+  end function film_moment
 end module joint_columns
