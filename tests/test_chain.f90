@@ -63,7 +63,7 @@ contains
     chain%is_loose = [modulo(piece, 2) == 1, piece > 1]
     z(1) = between(random, -10.0_dp, 10.0_dp)
     z_rate(1) = between(random, -300.0_dp, 300.0_dp)
-    loads%gas_force = between(random, -1e3_dp, 1e4_dp)
+    loads%axial_force = between(random, -1e3_dp, 1e4_dp)
     do pin = 1, 2
       z(2*pin:2*pin + 1) = merge(1, 0, chain%is_loose(pin))*1e-3_dp*[between(random, -1.0_dp, 1.0_dp), &
         between(random, -1.0_dp, 1.0_dp)]
@@ -157,7 +157,7 @@ contains
         found = loads
         call chain%accelerate(motion, found, a, moment)
         associate (q_rate => motion%crank_speed, rod_spin => -motion%rod_speed)
-          terms = [(moment - chain%drive%damping*q_rate)*q_rate, -loads%gas_force*motion%piston_velocity, &
+          terms = [(moment - chain%drive%damping*q_rate)*q_rate, -loads%axial_force*motion%piston_velocity, &
             dot_product(loads%force(:, crank_pin), z_rate(2:3)), dot_product(loads%force(:, piston_pin), z_rate(4:5)), &
             loads%moment(crank_pin)*q_rate, &
             (loads%moment(piston_pin) + bearing_moment(z(2:3), loads%force(:, crank_pin), loads%moment(crank_pin)))*rod_spin]
@@ -229,10 +229,13 @@ contains
       worst_moment = 0
       do i = 1, trials
         call draw(random, piece, chain, motion, loads, z, z_rate)
-        added%gas_force = 700
+        added%axial_force = 700
         added%force = merge(1, 0, spread(chain%is_loose, 1, 2))*reshape([500.0_dp, -300.0_dp, 200.0_dp, 900.0_dp], [2, 2])
         added%moment = merge(1, 0, chain%is_loose)*[3.0_dp, -2.0_dp]
-        more = loads_t(loads%force + added%force, loads%moment + added%moment, loads%gas_force + added%gas_force)
+        more = loads
+        more%force = loads%force + added%force
+        more%moment = loads%moment + added%moment
+        more%axial_force = loads%axial_force + added%axial_force
         call chain%accelerate(motion, loads, a, moment)
         call chain%accelerate(motion, more, b, same)
         call chain%response(motion, added, difference, change)
@@ -286,7 +289,7 @@ contains
     subroutine accelerate_at(angle)
       real(dp), intent(in) :: angle
       chain = flores()
-      loads = loads_t(0.0_dp, 0.0_dp, 0.0_dp)
+      loads = loads_t(0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp)
       call chain%accelerate(ideal_motion(chain%bodies, angle*degree, 5000*pi/30), loads, a, moment)
     end subroutine accelerate_at
   end subroutine published_values

@@ -47,13 +47,13 @@ contains
     type(joint_motion_t) :: before, now, after
     type(accelerations_t) :: a
     integer :: place
-    a = accelerations_t(300.0_dp, -700.0_dp, 50.0_dp, reshape([4.0_dp, -7.0_dp, 9.0_dp, 3.0_dp], [2, 2]))
+    a = accelerations_t(300.0_dp, -700.0_dp, 50.0_dp, reshape([4.0_dp, -7.0_dp, 9.0_dp, 3.0_dp], [2, 2]), 0.0_dp, 0.0_dp)
     do place = crank_pin, piston_pin
       before = joint_after(-dt)
       now = joint_after(0.0_dp)
       after = joint_after(dt)
       call check%close_to((after%sliding_speed - before%sliding_speed)/(2*dt), &
-        sliding_acceleration(place, radius, now, a, at_rest=.false.), 1e-3_dp, 'sliding acceleration [m/s2]')
+        sliding_acceleration(place, .false., radius, now, a, at_rest=.false.), 1e-3_dp, 'sliding acceleration [m/s2]')
       call check%close_to((after%penetration_rate - before%penetration_rate)/(2*dt), outward_acceleration(place, now, a), 1e-3_dp, &
         'outward acceleration [m/s2]')
     end do

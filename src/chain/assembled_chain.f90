@@ -6,6 +6,7 @@ module assembled_chain
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, n_pins
   use chain_bodies, only: bodies_t, drive_t
   use chain_loads, only: loads_t, bearing_moment
+  use loose_piston, only: pin_eccentricity
   use gudgeon_assembly, only: equations_t, body_t
   implicit none
   private
@@ -15,6 +16,7 @@ module assembled_chain
   type :: coordinates_t
     integer :: n = 1
     integer :: pin(n_pins) = 0   !! the first of the two of a pin with clearance
+    integer :: piston = 0        !! the offset of a piston with clearance in its bore; its tilt follows
   end type coordinates_t
 
 contains
@@ -32,7 +34,7 @@ contains
     type(equations_t) :: equations
     type(body_t) :: crank, rod, piston
     type(loads_t) :: acting
-    real(dp) :: z(5), holding
+    real(dp) :: z(7), holding
     logical :: definite
     integer :: pin
 
@@ -41,6 +43,10 @@ contains
       at%pin(pin) = at%n + 1
       at%n = at%n + 2
     end do
+    if (bodies%piston%is_loose) then
+      at%piston = at%n + 1
+      at%n = at%n + 2
+    end if
     acting = loads
     do pin = 1, n_pins
       if (is_loose(pin)) cycle
@@ -59,6 +65,13 @@ contains
     accelerations%crank = z(1)
     accelerations%rod = dot_product(rod%map(3, :at%n), z(:at%n)) + rod%bias(3)
     accelerations%piston = dot_product(piston%map(1, :at%n), z(:at%n)) + piston%bias(1)
+    if (at%piston > 0) then
+      accelerations%offset = z(at%piston)
+      accelerations%tilt = z(at%piston + 1)
+      associate (tilting => motion%tilting)   ! from the centre of mass to the pin's bearing
+        accelerations%piston = accelerations%piston + tilting%com(2)*accelerations%tilt + tilting%com(1)*tilting%tilt_rate**2
+      end associate
+    end if
     accelerations%pin = 0
     do pin = 1, n_pins
       if (is_loose(pin)) accelerations%pin(:, pin) = z(at%pin(pin):at%pin(pin) + 1)
@@ -107,6 +120,11 @@ contains
       do pin = 1, n_pins
         if (at%pin(pin) > 0) body%map(3, at%pin(pin) + 1) = -per_arm
       end do
+      if (at%piston > 0) then   ! o_y'' has y'' - p_x b'' + p_y b'^2
+        body%map(3, at%piston) = -per_arm
+        body%map(3, at%piston + 1) = per_arm*motion%tilting%com(1)
+        body%bias(3) = body%bias(3) - per_arm*motion%tilting%com(2)*motion%tilting%tilt_rate**2
+      end if
       if (at%pin(crank_pin) > 0) then
         body%map(1, at%pin(crank_pin)) = -1
         body%map(2, at%pin(crank_pin) + 1) = -1
@@ -126,7 +144,7 @@ contains
     end associate
   end subroutine make_rod
 
-  !> The piston on its guide: x', x = B_x + L cos A - e_x.
+  !> The piston on its guide: x', x = B_x + L cos A - e_x. With clearance in its bore: (x', y', b') of its centre of mass.
   pure subroutine make_piston(bodies, loads, motion, at, rod, body)
     type(bodies_t), intent(in) :: bodies
     type(loads_t), intent(in) :: loads
@@ -137,11 +155,23 @@ contains
     real(dp) :: across, along
     along = bodies%rod%length*motion%cos_rod
     across = bodies%rod%length*motion%sin_rod
-    call body%begin(1, at%n)
+    call body%begin(merge(3, 1, at%piston > 0), at%n)
     body%map(1, :at%n) = rod%map(1, :at%n) - across*rod%map(3, :at%n)
     body%bias(1) = rod%bias(1) - across*rod%bias(3) - along*motion%rod_speed**2
     if (at%pin(piston_pin) > 0) body%map(1, at%pin(piston_pin)) = body%map(1, at%pin(piston_pin)) - 1
     body%mass(1, 1) = bodies%piston%mass
-    body%load(1) = bodies%piston%mass*bodies%gravity(1) - loads%gas_force - loads%force(1, piston_pin)
+    body%load(1) = bodies%piston%mass*bodies%gravity(1) - loads%axial_force - loads%force(1, piston_pin)
+    if (at%piston == 0) return
+    associate (p => motion%tilting%com, f => loads%force(:, piston_pin))
+      body%map(1, at%piston + 1) = body%map(1, at%piston + 1) - p(2)
+      body%bias(1) = body%bias(1) - p(1)*motion%tilting%tilt_rate**2
+      body%map(2, at%piston) = 1
+      body%map(3, at%piston + 1) = 1
+      body%mass(2, 2) = bodies%piston%mass
+      body%mass(3, 3) = bodies%piston%inertia
+      body%load(2) = bodies%piston%mass*bodies%gravity(2) + loads%bore_force - f(2)
+      body%load(3) = loads%bore_moment + p(1)*f(2) - p(2)*f(1) &
+        + bearing_moment(pin_eccentricity(motion), f, loads%moment(piston_pin))
+    end associate
   end subroutine make_piston
 end module assembled_chain

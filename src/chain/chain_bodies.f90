@@ -25,8 +25,12 @@ module chain_bodies
     real(dp) :: com(2) = 0    !! its centre of mass (U_r, V_r) [m]
   end type rod_t
 
+  !> The piston. Its frame begins at the centre of the pin's bearing, the first axis away from the crank.
   type :: piston_t
-    real(dp) :: mass = 0      !! [kg], > 0
+    real(dp) :: mass = 0          !! [kg], > 0
+    logical :: is_loose = .false. !! it has clearance in its bore; the rest counts only then
+    real(dp) :: inertia = 0       !! about its centre of mass [kg m^2], > 0
+    real(dp) :: com(2) = 0        !! its centre of mass (U_p, V_p) [m]
   end type piston_t
 
   !> How the crank is driven.

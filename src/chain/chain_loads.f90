@@ -6,11 +6,13 @@ module chain_loads
   private
   public :: loads_t, force_size, bearing_moment
 
-  !> Loads of the pins and of the gas. Of an ideal pin the force is found with the accelerations.
+  !> Loads of the pins, of the gas and of the bore. Of an ideal pin the force is found with the accelerations.
   type :: loads_t
     real(dp) :: force(2, n_pins)    !! (:, pin): of the pin's joint on its journal [N]; the bearing receives the opposite
     real(dp) :: moment(n_pins)      !! on the journal about its centre, from x to y [N m]; the bearing's is `bearing_moment`
-    real(dp) :: gas_force           !! on the piston along -x [N]
+    real(dp) :: axial_force         !! on the piston along -x: of the gas, less the bore's friction [N]
+    real(dp) :: bore_force          !! of the bore on a piston with clearance there, along y [N]; of an ideal guide it is a reaction
+    real(dp) :: bore_moment         !! and its moment about the piston's centre of mass, from x to y [N m]
   end type loads_t
 
 contains

@@ -9,11 +9,14 @@
 !>     x = R cos q + L cos A - o_x,  x' = -R sin q q' - L sin A A' - o_x'
 !>
 !> In (q, A, x) an eccentricity is a difference of numbers 10^4 times larger; here it is known to full precision.
+!>
+!> A piston with clearance in its bore has two coordinates more: y of its centre of mass and the angle b of its tilt. With
+!> p = Rot(b) (U_p, V_p), the centre of mass from the pin's bearing, that bearing is at y - p_y across, and o = c + e + (0, y - p_y).
 module chain_motion
   use gudgeon_kinds, only: dp
   implicit none
   private
-  public :: motion_t, accelerations_t, crank_pin, piston_pin, n_pins, pin_names, name_prefix
+  public :: motion_t, tilting_t, accelerations_t, crank_pin, piston_pin, n_pins, pin_names, name_prefix
   public :: turn_crank, follow_rod, follow_piston
 
   !> The pins of the chain.
@@ -21,6 +24,18 @@ module chain_motion
   integer, parameter :: piston_pin = 2   !! journal on the rod, bearing in the piston
   integer, parameter :: n_pins = 2
   character(len=*), parameter :: pin_names(n_pins) = [character(len=10) :: 'crank_pin', 'piston_pin']   !! in cases and results
+
+  !> How a piston with clearance in its bore is placed there. What follows from the two coordinates is found by `loose_piston`.
+  type :: tilting_t
+    real(dp) :: offset              !! y of its centre of mass [m]
+    real(dp) :: offset_rate         !! [m/s]
+    real(dp) :: tilt                !! b, from x to y [rad]
+    real(dp) :: tilt_rate           !! [rad/s]
+    real(dp) :: com(2)              !! p, centre of mass from the pin's bearing, along x and y [m]
+    real(dp) :: across              !! y of the pin's bearing [m]
+    real(dp) :: across_rate         !! [m/s]
+    real(dp) :: com_velocity        !! of the centre of mass along x [m/s]
+  end type tilting_t
 
   !> Positions and speeds of the three bodies at one instant.
   type :: motion_t
@@ -33,8 +48,9 @@ module chain_motion
     real(dp) :: piston_velocity     !! [m/s]
     real(dp) :: crank_pin(2)        !! c, eccentricity at the crank pin [m], 0 where it is ideal
     real(dp) :: crank_pin_rate(2)   !! [m/s]
-    real(dp) :: offset(2)           !! o = c + e [m]
+    real(dp) :: offset(2)           !! o = c + e, and across what the bore leaves free [m]
     real(dp) :: offset_rate(2)      !! [m/s]
+    type(tilting_t) :: tilting      !! of a piston with clearance in its bore
   end type motion_t
 
   !> Accelerations of the three bodies.
@@ -43,6 +59,7 @@ module chain_motion
     real(dp) :: rod                 !! d2A/dt2 [rad/s^2]
     real(dp) :: piston              !! [m/s^2]
     real(dp) :: pin(2, n_pins)      !! (:, pin): of its eccentricity [m/s^2]; 0 of an ideal pin
+    real(dp) :: offset, tilt        !! of a piston with clearance in its bore [m/s^2], [rad/s^2]
   end type accelerations_t
 
 contains

@@ -4,6 +4,7 @@ module chain_reactions
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin
   use chain_bodies, only: bodies_t
   use chain_loads, only: loads_t, bearing_moment
+  use loose_piston, only: centre_acceleration
   implicit none
   private
   public :: reactions_t, reactions_of
@@ -26,23 +27,26 @@ contains
     type(loads_t), intent(in) :: loads
     type(motion_t), intent(in) :: motion
     type(accelerations_t), intent(in) :: accelerations
-    real(dp) :: rod(2), crank(2), u, v, f1, f2, f3, f4, f5, f6, f7, on_rod
+    real(dp) :: rod(2), crank(2), piston(2), u, v, f1, f2, f3, f4, f5, f6, f7, on_rod
 
     call centre_forces(bodies, motion, accelerations, crank, rod)
+    piston = [accelerations%piston, 0.0_dp]
+    if (bodies%piston%is_loose) piston = centre_acceleration(motion, accelerations)
+    piston = bodies%piston%mass*(piston - bodies%gravity)
     u = bodies%rod%com(1)
     v = bodies%rod%com(2)
-    associate (g => bodies%gravity, l => bodies%rod%length, sin_a => motion%sin_rod, cos_a => motion%cos_rod)
+    associate (l => bodies%rod%length, sin_a => motion%sin_rod, cos_a => motion%cos_rod)
       on_rod = loads%moment(piston_pin) + bearing_moment(motion%crank_pin, loads%force(:, crank_pin), loads%moment(crank_pin))
-      f5 = loads%gas_force + bodies%piston%mass*(accelerations%piston - g(1))
+      f5 = loads%axial_force + piston(1)
       f3 = f5 + rod(1)
       f1 = f3 + crank(1)
       f6 = (bodies%rod%inertia*accelerations%rod + on_rod - rod(2)*(u*cos_a + v*sin_a) &
         - f3*(u*sin_a - v*cos_a) - f5*((l - u)*sin_a + v*cos_a))/(l*cos_a)
       f4 = f6 + rod(2)
       f2 = f4 + crank(2)
-      f7 = f6 + bodies%piston%mass*g(2)
+      f7 = f6 - piston(2)
     end associate
-    reactions = reactions_t([f1, f2], [f3, f4], [f5, f6], f7, [f1 - loads%gas_force, f2 - f7])
+    reactions = reactions_t([f1, f2], [f3, f4], [f5, f6], f7, [f1 - loads%axial_force, f2 - f7])
   end function reactions_of
 
   !> Mass times acceleration less weight (x, y) of crank and rod [N].

@@ -49,7 +49,7 @@ contains
         accelerations%rod = on_rod/b%rod_term
         crank_moment = m12*accelerations%rod - (on_crank - drive%torque)
       end if
-      accelerations%piston = b%gravity(1) - (loads%gas_force + f_x)*b%per_piston_mass
+      accelerations%piston = b%gravity(1) - (loads%axial_force + f_x)*b%per_piston_mass
       accelerations%pin(:, crank_pin) = 0
       accelerations%pin(1, piston_pin) = -(crank(1)*motion%crank_speed**2 + rod(1)*motion%rod_speed**2 + accelerations%piston) &
         - (crank(2)*accelerations%crank + rod(2)*accelerations%rod)
@@ -79,7 +79,7 @@ contains
       if (drive%free_crank) accelerations%crank = (on_crank*bodies%rod_term - on_rod*m12)/(bodies%inertia_product - m12**2)
       accelerations%rod = (on_rod - m12*accelerations%crank)/bodies%rod_term
       if (.not. drive%free_crank) crank_moment = m12*accelerations%rod - on_crank
-      accelerations%piston = -(loads%gas_force + f(1))*bodies%per_piston_mass
+      accelerations%piston = -(loads%axial_force + f(1))*bodies%per_piston_mass
       accelerations%pin(:, crank_pin) = 0
       accelerations%pin(1, piston_pin) = -(crank(2)*accelerations%crank + rod(2)*accelerations%rod) - accelerations%piston
       accelerations%pin(2, piston_pin) = crank(1)*accelerations%crank - rod(1)*accelerations%rod

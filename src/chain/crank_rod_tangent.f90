@@ -19,7 +19,7 @@ module crank_rod_tangent
   type :: load_change_t
     real(dp) :: force(2) = 0    !! on the piston pin
     real(dp) :: moment = 0      !! on it
-    real(dp) :: gas_force = 0
+    real(dp) :: axial_force = 0   !! on the piston along -x
   end type load_change_t
 
 contains
@@ -71,7 +71,7 @@ contains
       a(1) = crank
       a(2) = r*(sq*qd**2 - cq*accelerations%crank)*change%crank_angle - 2*r*cq*qd*change%crank_speed - r*sq*crank &
         + l*(sa*ad**2 - ca*accelerations%rod)*change%rod_angle - 2*l*ca*ad*change%rod_speed - l*sa*rod &
-        + (load_change%gas_force + df(1))/bodies%piston%mass
+        + (load_change%axial_force + df(1))/bodies%piston%mass
       a(3) = -r*(cq*qd**2 + sq*accelerations%crank)*change%crank_angle - 2*r*sq*qd*change%crank_speed + r*cq*crank &
         + l*(ca*ad**2 + sa*accelerations%rod)*change%rod_angle + 2*l*sa*ad*change%rod_speed - l*ca*rod
     end associate

@@ -40,7 +40,7 @@ contains
       centre = (f - j)/rod%mass + bodies%gravity
       accelerations%rod = (f(1)*small(2) - f(2)*small(1) - (j(1)*big(2) - j(2)*big(1)) - loads%moment(piston_pin) &
         - bearing_moment(motion%crank_pin, j, loads%moment(crank_pin)))/rod%inertia
-      accelerations%piston = bodies%gravity(1) - (loads%gas_force + f(1))*bodies%per_piston_mass
+      accelerations%piston = bodies%gravity(1) - (loads%axial_force + f(1))*bodies%per_piston_mass
       accelerations%pin(:, crank_pin) = crank_pin_acceleration(bodies, motion, accelerations%crank) &
         - (centre + accelerations%rod*[big(2), -big(1)] - speed_square*big)
       accelerations%pin(:, piston_pin) = centre + accelerations%rod*[small(2), -small(1)] - speed_square*small

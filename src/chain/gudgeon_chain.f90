@@ -11,6 +11,7 @@ module gudgeon_chain
   use rod_piston, only: accelerate_rod_piston
   use free_rod, only: accelerate_free_rod
   use assembled_chain, only: accelerate_assembled
+  use loose_piston, only: free_piston, kinetic_energy_beside, height_beside
   implicit none
   private
   public :: chain_t
@@ -39,7 +40,9 @@ contains
     type(loads_t), intent(inout) :: loads
     type(accelerations_t), intent(out) :: accelerations
     real(dp), intent(out) :: crank_moment
-    if (self%is_loose(crank_pin)) then
+    if (self%bodies%piston%is_loose) then
+      call accelerate_with_loose_piston(self, motion, loads, accelerations, crank_moment)
+    else if (self%is_loose(crank_pin)) then
       if (self%is_loose(piston_pin)) then
         call accelerate_free_rod(self%bodies, self%drive, loads, motion, accelerations, crank_moment)
       else
@@ -51,6 +54,26 @@ contains
       call accelerate_ideal_chain(self%bodies, self%drive, motion, loads, accelerations, crank_moment)
     end if
   end subroutine accelerate
+
+  !> The same where the piston has clearance in its bore: with clearance at its pin too it is a piece of its own.
+  pure subroutine accelerate_with_loose_piston(chain, motion, loads, accelerations, crank_moment)
+    type(chain_t), intent(in) :: chain
+    type(motion_t), intent(in) :: motion
+    type(loads_t), intent(inout) :: loads
+    type(accelerations_t), intent(out) :: accelerations
+    real(dp), intent(out) :: crank_moment
+    if (.not. chain%is_loose(piston_pin)) then
+      call accelerate_assembled(chain%bodies, chain%drive, chain%is_loose, loads, motion, accelerations, crank_moment)
+      call chain%complete_loads(motion, accelerations, loads)
+      return
+    end if
+    if (chain%is_loose(crank_pin)) then
+      call accelerate_free_rod(chain%bodies, chain%drive, loads, motion, accelerations, crank_moment)
+    else
+      call accelerate_crank_rod(chain%bodies, chain%drive, loads, motion, accelerations, crank_moment)
+    end if
+    call free_piston(chain%bodies, motion, loads, accelerations)
+  end subroutine accelerate_with_loose_piston
 
   !> The rod of a motion whose crank and offset are known. `reachable` is false where it cannot be.
   pure subroutine move_rod(self, motion, reachable)
@@ -76,13 +99,14 @@ contains
     type(accelerations_t), intent(out) :: accelerations
     real(dp), intent(out) :: crank_moment
     type(motion_t) :: rest
-    if (self%is_loose(piston_pin) .and. .not. self%is_loose(crank_pin)) then
+    if (self%is_loose(piston_pin) .and. .not. (self%is_loose(crank_pin) .or. self%bodies%piston%is_loose)) then
       call respond_crank_rod(self%bodies, self%drive, loads, motion, accelerations, crank_moment)
       return
     end if
     rest = motion
     rest%crank_speed = 0
     rest%rod_speed = 0
+    rest%tilting%tilt_rate = 0
     call accelerate_assembled(weightless(self%bodies), drive_t(self%drive%free_crank), self%is_loose, loads, rest, accelerations, &
       crank_moment)
   end subroutine response
@@ -119,5 +143,9 @@ contains
     class(chain_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
     energy = self%bodies%kinetic_energy(motion) + self%bodies%potential_energy(motion)
+    if (.not. self%bodies%piston%is_loose) return
+    associate (b => self%bodies)
+      energy = energy + kinetic_energy_beside(b%piston, motion) - b%piston%mass*dot_product(b%gravity, height_beside(motion))
+    end associate
   end function energy
 end module gudgeon_chain

@@ -62,7 +62,7 @@ contains
       on_crank = drive%torque - drive%damping*motion%crank_speed &
         + (b%crank_weight(1)*motion%sin_crank + b%crank_weight(2)*motion%cos_crank)
       on_rod = b%rod_weight(1)*motion%sin_rod - b%rod_weight(2)*motion%cos_rod
-      on_piston = b%gravity(1)*b%piston%mass - loads%gas_force
+      on_piston = b%gravity(1)*b%piston%mass - loads%axial_force
       inertia = b%crank_term + ratio*(2*m12 + ratio*m22) + b%piston%mass*rate**2
       total = on_crank + ratio*on_rod + rate*on_piston &
         - speed_square*(slope*ratio*(1 + ratio) + (m12 + ratio*m22)*ratio_slope + b%piston%mass*rate*rate_slope)

@@ -41,7 +41,7 @@ contains
       mass = rod%mass + piston_mass
       coupling = rod%mass*k
       inertia = rod%inertia + rod%mass*(h**2 + k**2)
-      on_piston = rod%mass*h*speed_square + b(1) - loads%gas_force + mass*g(1)
+      on_piston = rod%mass*h*speed_square + b(1) - loads%axial_force + mass*g(1)
       on_rod = b(1)*chord(2) + b(2)*chord(1) - bearing_moment(c, j, loads%moment(crank_pin)) + rod%mass*(g(1)*k - g(2)*h)
       per_determinant = 1/(mass*inertia - coupling**2)
       accelerations%piston = (on_piston*inertia - on_rod*coupling)*per_determinant
@@ -51,7 +51,7 @@ contains
         - [accelerations%piston + chord(2)*accelerations%rod + chord(1)*speed_square, &
         chord(1)*accelerations%rod - chord(2)*speed_square]
       loads%moment(piston_pin) = 0
-      loads%force(1, piston_pin) = piston_mass*(g(1) - accelerations%piston) - loads%gas_force
+      loads%force(1, piston_pin) = piston_mass*(g(1) - accelerations%piston) - loads%axial_force
       loads%force(2, piston_pin) = -rod%mass*(h*accelerations%rod + k*speed_square + g(2)) - b(2)
     end associate
   end subroutine accelerate_rod_piston

@@ -11,7 +11,7 @@ module friction_laws
   use elasto_plastic, only: elasto_plastic_t
   implicit none
   private
-  public :: offer_friction_laws
+  public :: offer_friction_laws, offer_speed_laws
 
 contains
 
@@ -27,4 +27,13 @@ contains
     call list%law(dahl_t())
     call list%law(elasto_plastic_t())
   end subroutine offer_friction_laws
+
+  !> The same of those whose friction follows from the sliding speed alone: without states, and none that surfaces stick by.
+  subroutine offer_speed_laws(list)
+    class(parameter_list_t), intent(inout) :: list
+    call list%law(ambrosio_t())
+    call list%law(threlfall_t())
+    call list%law(brown_mcphee_t())
+    call list%law(stribeck_t())
+  end subroutine offer_speed_laws
 end module friction_laws

@@ -49,17 +49,17 @@ contains
     force = self%cycle%gas_force(pressure)
   end function force
 
-  !> Pressure [Pa] and force [N], and the volume at a crank angle of this sine and cosine.
-  pure subroutine put_columns(self, sin_crank, cos_crank, pressure, force, row)
+  !> Pressure [Pa] and its force, and the volume at a crank angle of this sine and cosine.
+  pure subroutine put_columns(self, sin_crank, cos_crank, pressure, row)
     class(working_gas_t), intent(in) :: self
-    real(dp), intent(in) :: sin_crank, cos_crank, pressure, force
+    real(dp), intent(in) :: sin_crank, cos_crank, pressure
     type(trace_row_t), intent(inout) :: row
     real(dp) :: volume
     call row%put('cylinder_pressure[Pa]', pressure)
     volume = 0
     if (row%wants(1)) volume = self%cycle%cylinder%volume_at(sin_crank, cos_crank)
     call row%put('cylinder_volume[m3]', volume)
-    call row%put('gas_force[N]', force)
+    call row%put('gas_force[N]', self%force(pressure))
   end subroutine put_columns
 
   !> Derivative of the force by the crank angle [N/rad].

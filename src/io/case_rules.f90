@@ -7,6 +7,7 @@ module case_rules
   use case_definition, only: case_t, joint_case_t, piston_pin_place, crank_pin_place
   use case_schema, only: find_group, find_key
   use case_values, only: case_values_t
+  use guide_rules, only: check_guide, bore_reach
   implicit none
   private
   public :: check_rules, case_warning
@@ -29,6 +30,8 @@ contains
     call check_friction(c, c%joint, piston_pin_place, values, error)
     if (allocated(error)) return
     call check_friction(c, c%crank_pin, crank_pin_place, values, error)
+    if (allocated(error)) return
+    call check_guide(c, values, error)
     if (allocated(error)) return
     call check_start(c, values, error)
     if (allocated(error)) return
@@ -59,6 +62,7 @@ contains
       reach = m%crank_length
       if (c%joint%has_clearance()) reach = reach + c%joint%clearance
       if (c%crank_pin%has_clearance()) reach = reach + c%crank_pin%clearance
+      reach = reach + bore_reach(c)
       if (m%rod_length <= reach) then
         if (reach > m%crank_length) then
           call values%refuse('mechanism', 'rod_length', 'must be > crank_length + clearance', error)

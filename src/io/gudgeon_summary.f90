@@ -5,7 +5,8 @@ module gudgeon_summary
   use gudgeon_constants, only: two_pi
   use ode_method, only: highest_order, with_adams, with_radau, n_limits, limit_names, limit_stability
   use gudgeon_simulation, only: run_report_t
-  use run_figures, only: pin_figures_t
+  use run_figures, only: pin_figures_t, corner_figures_t
+  use piston_guide, only: n_corners, corner_names
   use chain_motion, only: crank_pin, piston_pin, name_prefix
   use case_definition, only: case_t, joint_case_t
   use number_text, only: real_text, short_text
@@ -28,7 +29,7 @@ contains
     integer(int64), intent(in) :: trace_length, events_length       !! of the files [bytes]; 0: there is none
     character(len=:), allocatable :: text
     character(len=5), parameter :: method_names(2) = ['adams', 'radau']
-    integer :: order, limit, mode, method
+    integer :: order, limit, mode, method, corner
 
     text = 'quantity,value,unit'//newline
     call add('status', quoted(report%status, '"'), '')
@@ -83,6 +84,11 @@ contains
         call add(name_prefix(crank_pin)//'max_pin_force', real_text(f%pin(crank_pin)%max_force, case%output%digits), 'N')
         call add_joint(name_prefix(crank_pin), f%pin(crank_pin))
       end if
+      if (case%has_loose_guide()) then
+        do corner = 1, n_corners
+          call add_corner(corner_names(corner)//'_', f%corner(corner))
+        end do
+      end if
     end associate
     if (trace_length > 0) call add('trace_bytes', bytes_text(trace_length), 'B')
     if (events_length > 0) call add('events_bytes', bytes_text(events_length), 'B')
@@ -108,25 +114,42 @@ contains
       if (pin%friction_work < huge(pin%friction_work)) call add(prefix//'friction_work', real_text(pin%friction_work), 'J')
     end subroutine add_joint
 
+    !> What a corner of the skirt in the bore has.
+    subroutine add_corner(prefix, corner)
+      character(len=*), intent(in) :: prefix
+      type(corner_figures_t), intent(in) :: corner
+      call add(prefix//'contacts', integer_text(corner%contacts), '1')
+      if (report%figures%time > 0) &
+        call add(prefix//'contact_time_fraction', real_text(corner%contact_time/report%figures%time), '1')
+      call add(prefix//'max_penetration', real_text(corner%max_penetration, case%output%digits), 'm')
+      call add(prefix//'max_force', real_text(corner%max_force, case%output%digits), 'N')
+    end subroutine add_corner
+
     subroutine add(quantity, value, unit)
       character(len=*), intent(in) :: quantity, value, unit
       text = text//quantity//','//value//','//unit//newline
     end subroutine add
   end function summary_table
 
-  !> The phases of the joints with clearance in a mode, the piston pin's first: its digits to the base of three.
+  !> The phases of the joints with clearance in a mode, the piston pin's first: its digits to the base of three; before them that of a
+  !> guide with clearance, which counts last.
   function phases_of(case, mode) result(text)
     type(case_t), intent(in) :: case
     integer, intent(in) :: mode   !! from 0 on
     character(len=:), allocatable :: text
     character(len=7), parameter :: names(0:2) = ['free   ', 'film   ', 'contact']
-    text = trim(names(mod(mode, size(names))))
-    if (.not. case%crank_pin%has_clearance()) return
-    if (case%joint%has_clearance()) then
-      text = text//'_'//trim(names(mode/size(names)))
-    else
-      text = name_prefix(crank_pin)//text
+    integer :: pins
+    pins = mode
+    text = ''
+    if (case%has_loose_guide()) then
+      pins = mod(mode, size(names)**count([case%joint%has_clearance(), case%crank_pin%has_clearance()]))
+      text = trim(merge('guide_free   ', 'guide_contact', pins == mode))
+      if (.not. case%has_play()) return
+      text = text//'_'
     end if
+    if (case%crank_pin%has_clearance() .and. .not. case%joint%has_clearance()) text = text//name_prefix(crank_pin)
+    text = text//trim(names(mod(pins, size(names))))
+    if (case%crank_pin%has_clearance() .and. case%joint%has_clearance()) text = text//'_'//trim(names(pins/size(names)))
   end function phases_of
 
   !> The value of a quantity in such a table, as it stands there; empty where there is none.
@@ -196,6 +219,8 @@ contains
         integer_text(s%accepted)//' steps, '//integer_text(s%evaluations)//' evaluations; '
       text = text//pin_text(case%joint, f%pin(piston_pin))
       if (case%crank_pin%has_clearance()) text = text//'; crank pin: '//pin_text(case%crank_pin, f%pin(crank_pin))
+      if (case%has_loose_guide()) text = text//'; piston in its bore: '//integer_text(sum(f%corner%contacts))// &
+        ' contacts, up to '//short_text(maxval(f%corner%max_force))//' N'
       text = text//', energy residual '//short_text(relative_residual(report))
       if (report%energy_is_poor) text = text//' ('//energy_warning(case, report)//')'
       text = text//'; '//path//'.csv'

@@ -9,8 +9,7 @@ module trace_files
   use gudgeon_archive, only: archive_t
   use gudgeon_columns, only: column_list_t, column_name
   use gudgeon_scene, only: event_contact_begins
-  use chain_motion, only: pin_names
-  use trace_sink, only: trace_sink_t, trace_event_t
+  use trace_sink, only: trace_sink_t, trace_event_t, joint_names
   use result_file, only: result_file_t
   use gudgeon_checkpoint, only: checkpoint_t, file_mark_t, restart_hint
   use row_text, only: row_text_t
@@ -263,7 +262,7 @@ contains
       call row%add_number(numbers, event%duration, has_ended)
       call row%add_number(numbers, event%max_penetration, has_ended)
       call row%add_number(numbers, event%max_normal_force, has_ended)
-      call row%add_text(pin_names(event%pin))
+      call row%add_text(joint_names(event%pin))
       call row%end_row()
       call self%event_list%put(row%text(:row%used))
     end associate

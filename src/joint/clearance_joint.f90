@@ -43,6 +43,7 @@ module clearance_joint
 
   type :: clearance_joint_t
     integer :: place = piston_pin           !! pin of the chain
+    logical :: bearing_turns = .false.      !! that of the crank pin does, that of the piston pin in a piston loose in its bore
     type(bearing_t) :: bearing
     real(dp) :: pin_radius = 0              !! of the journal [m]
     class(contact_law_t), allocatable :: contact
@@ -97,6 +98,7 @@ contains
     type(layout_t), intent(inout) :: layout
     real(dp), intent(in) :: crank_speed   !! natural size of it [rad/s]
     real(dp), intent(in) :: span          !! of the simulation [s]
+    if (self%place /= piston_pin) self%bearing_turns = .true.
     call layout%claim_positions(2, self%bearing%clearance, max(self%bearing%clearance*crank_speed, norm2(self%start_rate), &
       0.01_dp*crossing_speed(self, span)), self%at, grows=.false.)
     if (.not. allocated(self%friction)) return
@@ -218,6 +220,7 @@ contains
     force = 0
     if (self%phase /= phase_free) then
       call find_speeds(self%place, motion, joint)
+      if (self%bearing_turns .and. self%place == piston_pin) joint%bearing_speed = motion%tilting%tilt_rate
       if (self%phase == phase_contact) then
         call find_contact(self, y, joint, own)
         force = own%contact
@@ -237,7 +240,7 @@ contains
         force = own%film
       end if
       own%power = (force(1)*joint%eccentricity_rate(1) + force(2)*joint%eccentricity_rate(2)) + own%moment*joint%journal_speed
-      if (self%place /= piston_pin) &
+      if (self%bearing_turns) &
         own%power = own%power + bearing_moment(joint%eccentricity, force, own%moment)*joint%bearing_speed
     end if
     all%force(1, self%place) = force(1)
@@ -345,6 +348,7 @@ contains
     call find_polar(self%bearing%clearance, joint)
     if (.not. is_known) return
     call find_speeds(self%place, motion, joint)
+    if (self%bearing_turns .and. self%place == piston_pin) joint%bearing_speed = motion%tilting%tilt_rate
     call find_sliding(self%pin_radius, joint)
   end subroutine complete
 

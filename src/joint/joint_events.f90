@@ -105,7 +105,8 @@ contains
       g_rate = 0
     else
       g = -joint%sliding*motion%sliding_speed
-      g_rate = -joint%sliding*sliding_acceleration(joint%place, joint%pin_radius, motion, accelerations, at_rest=.false.)
+      g_rate = -joint%sliding*sliding_acceleration(joint%place, joint%bearing_turns, joint%pin_radius, motion, &
+        accelerations, at_rest=.false.)
     end if
   end subroutine sliding_event
 

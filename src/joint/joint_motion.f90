@@ -41,7 +41,7 @@ contains
     end associate
   end subroutine find_polar
 
-  !> Turning speeds of the bodies on both sides of a pin of the chain.
+  !> Turning speeds of the bodies on both sides of a pin of the chain, the piston on an ideal guide.
   pure subroutine find_speeds(place, motion, joint)
     integer, intent(in) :: place   !! crank_pin or piston_pin
     type(motion_t), intent(in) :: motion
@@ -66,8 +66,9 @@ contains
 
   !> v_T' [m/s^2] = t . e'' - gamma' n . e' + omega_journal' R - omega_bearing' (|e| + R) - omega_bearing |e|', with
   !> gamma' = t . e'/|e|; `at_rest` what the accelerations alone make of it.
-  pure real(dp) function sliding_acceleration(place, pin_radius, joint, accelerations, at_rest) result(a)
+  pure real(dp) function sliding_acceleration(place, bearing_turns, pin_radius, joint, accelerations, at_rest) result(a)
     integer, intent(in) :: place
+    logical, intent(in) :: bearing_turns   !! that of the piston pin: the piston has clearance in its bore
     real(dp), intent(in) :: pin_radius
     type(joint_motion_t), intent(in) :: joint
     type(accelerations_t), intent(in) :: accelerations
@@ -80,6 +81,7 @@ contains
         a = a + accelerations%crank*pin_radius + accelerations%rod*(joint%distance + pin_radius)
       else
         a = a - accelerations%rod*pin_radius
+        if (bearing_turns) a = a - accelerations%tilt*(joint%distance + pin_radius)
       end if
     end associate
   end function sliding_acceleration

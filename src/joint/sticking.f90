@@ -38,10 +38,11 @@ contains
       if (.not. own(k)%sticks) cycle
       unit(k) = unit_friction(joints(k), relative(k))
       call chain%response(motion, unit(k), change(k), moment(k))
-      wanted(k) = -sliding_acceleration(joints(k)%place, joints(k)%pin_radius, relative(k), accelerations, at_rest=.false.)
+      wanted(k) = -sliding_acceleration(joints(k)%place, joints(k)%bearing_turns, joints(k)%pin_radius, relative(k), &
+        accelerations, at_rest=.false.)
       do i = 1, size(joints)
-        if (own(i)%sticks) by_friction(i, k) = sliding_acceleration(joints(i)%place, joints(i)%pin_radius, relative(i), &
-          change(k), at_rest=.true.)
+        if (own(i)%sticks) by_friction(i, k) = sliding_acceleration(joints(i)%place, joints(i)%bearing_turns, &
+          joints(i)%pin_radius, relative(i), change(k), at_rest=.true.)
       end do
     end do
     force(1) = wanted(1)*by_friction(2, 2) - wanted(2)*by_friction(1, 2)
@@ -62,6 +63,9 @@ contains
         accelerations%rod = accelerations%rod + f*change(k)%rod
         accelerations%piston = accelerations%piston + f*change(k)%piston
         accelerations%pin = accelerations%pin + f*change(k)%pin
+        if (.not. chain%bodies%piston%is_loose) cycle
+        accelerations%offset = accelerations%offset + f*change(k)%offset
+        accelerations%tilt = accelerations%tilt + f*change(k)%tilt
       end associate
     end do
   end subroutine hold_surfaces
@@ -73,7 +77,9 @@ contains
     type(loads_t) :: loads
     loads%force = 0
     loads%moment = 0
-    loads%gas_force = 0
+    loads%axial_force = 0
+    loads%bore_force = 0
+    loads%bore_moment = 0
     loads%force(:, joint%place) = [-relative%normal(2), relative%normal(1)]
     loads%moment(joint%place) = joint%pin_radius
   end function unit_friction

@@ -40,6 +40,7 @@ module gudgeon_parameters
     logical :: sets = .false.             !! this visitor sets the parameters of the present group, and `chosen`
     logical :: is_present = .false.       !! while it sets them: the case has the present group
     logical :: passes = .false.           !! this visitor has no use for the parameters of the present group
+    character(len=32), private :: amount = ''   !! see `make_optional`; empty: laws are not optional
   contains
     procedure(visit_parameter), deferred :: visit
     procedure :: group => pass_group
@@ -49,6 +50,7 @@ module gudgeon_parameters
     generic :: add => add_real, add_pair, add_integer, add_logical
     procedure, non_overridable :: word
     procedure, non_overridable :: text
+    procedure, non_overridable :: make_optional
   end type parameter_list_t
 
   type, abstract :: has_parameters_t
@@ -134,6 +136,11 @@ contains
     if (self%passes) return
     values = value
     new = described(key, real_kind, says, unit, range, default, example)
+    if (self%amount /= '' .and. new%required) then
+      new%required = .false.
+      new%default = new%example
+      if (key == self%amount) new%default = '0.0'
+    end if
     if (present(family)) new%family = family
     if (present(beside)) new%beside = beside
     if (present(only_here)) new%only_here = only_here
@@ -200,6 +207,14 @@ contains
     if (present(many)) new%count = merge(1000, 1, many)
     call self%visit(new, text=value)
   end subroutine text
+
+  !> The laws that follow are optional: a case that gives nothing of theirs has 0 of this key, the amount of what they do, and their
+  !> examples for whatever else they require. An empty key ends that.
+  subroutine make_optional(self, amount)
+    class(parameter_list_t), intent(inout) :: self
+    character(len=*), intent(in) :: amount
+    self%amount = amount
+  end subroutine make_optional
 
   pure type(key_t) function described(name, kind, says, unit, range, default, example) result(key)
     character(len=*), intent(in) :: name, says

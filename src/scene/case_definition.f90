@@ -11,7 +11,8 @@ module case_definition
   use contact_geometry, only: contact_geometry_t
   use contact_laws, only: offer_contact_laws, offer_contact_geometries
   use friction_law, only: friction_law_t
-  use friction_laws, only: offer_friction_laws
+  use friction_laws, only: offer_friction_laws, offer_speed_laws
+  use guide_case, only: guide_case_t, guide_clearance
   use film_law, only: film_law_t
   use films, only: offer_film_laws
   use film_transition, only: film_transition_t
@@ -40,6 +41,7 @@ module case_definition
     real(dp) :: crank_angle_deg = 0, crank_speed = 0
     real(dp) :: eccentricity(2) = 0, eccentricity_rate(2) = 0   !! of the piston pin in its bearing
     real(dp) :: crank_pin_eccentricity(2) = 0, crank_pin_eccentricity_rate(2) = 0   !! of the crank pin in its bearing
+    real(dp) :: piston_offset = 0, piston_offset_rate = 0, piston_tilt = 0, piston_tilt_rate = 0   !! of a piston loose in its bore
   contains
     procedure :: parameters => initial_parameters
   end type initial_case_t
@@ -92,12 +94,15 @@ module case_definition
     type(initial_case_t) :: initial
     type(joint_case_t) :: joint        !! of rod and piston, at the piston pin
     type(joint_case_t) :: crank_pin    !! of crank and rod
+    type(guide_case_t), allocatable :: guide   !! not allocated: an ideal one
     type(gas_cycle_t), allocatable :: combustion
     type(integrator_case_t) :: integrator
     type(output_case_t) :: output
   contains
     procedure :: has_contact
     procedure :: has_play
+    procedure :: has_loose_guide
+    procedure :: has_clearance => has_clearance_anywhere
   end type case_t
 
   !> The places of joints, as a case names them. A group &joint without a place is the first's, a law's group without one is for
@@ -106,10 +111,10 @@ module case_definition
 
 contains
 
-  !> Whether there is a joint with a contact law.
+  !> Whether there is a joint with a contact law, or a piston with clearance in its bore.
   pure logical function has_contact(self)
     class(case_t), intent(in) :: self
-    has_contact = allocated(self%joint%contact) .or. allocated(self%crank_pin%contact)
+    has_contact = allocated(self%joint%contact) .or. allocated(self%crank_pin%contact) .or. self%has_loose_guide()
   end function has_contact
 
   !> Whether there is a joint with clearance.
@@ -117,6 +122,19 @@ contains
     class(case_t), intent(in) :: self
     has_play = self%joint%has_clearance() .or. self%crank_pin%has_clearance()
   end function has_play
+
+  !> Whether the piston has clearance in its bore.
+  pure logical function has_loose_guide(self)
+    class(case_t), intent(in) :: self
+    has_loose_guide = .false.
+    if (allocated(self%guide)) has_loose_guide = self%guide%kind == guide_clearance
+  end function has_loose_guide
+
+  !> Whether there is clearance at a pin or in the bore, which the ideal twin does not have.
+  pure logical function has_clearance_anywhere(self)
+    class(case_t), intent(in) :: self
+    has_clearance_anywhere = self%has_play() .or. self%has_loose_guide()
+  end function has_clearance_anywhere
 
   !> Whether the joint has clearance.
   pure logical function has_clearance(self)
@@ -151,6 +169,7 @@ contains
       call drop_laws(case%joint, case%crank_pin)
       call drop_laws(case%crank_pin, case%joint)
     end if
+    call visit_guide(case%guide, list)
     call visit_gas(case%combustion, list)
     call list%group('integrator', 'how it is integrated; the run''s end by revolutions, crank_revolutions or end_time', .false.)
     call case%integrator%parameters(list)
@@ -260,6 +279,27 @@ contains
     call asperities%parameters(list)
   end subroutine visit_asperities
 
+  subroutine visit_guide(guide, list)
+    type(guide_case_t), allocatable, intent(inout) :: guide
+    class(parameter_list_t), intent(inout) :: list
+    call list%group('guide', 'the piston in its bore: leave the group out for an ideal guide', .true.)
+    if (list%sets) then
+      if (allocated(guide)) deallocate (guide)
+      if (.not. list%is_present) return
+    end if
+    if (.not. allocated(guide)) allocate (guide)
+    call guide%parameters(list)
+    call list%choice('law', 'ambrosio', 'friction on the bore; coefficient = 0: none')
+    call list%make_optional('coefficient')
+    call offer_speed_laws(list)
+    call list%make_optional('')
+    call guide%take_friction(list%chosen)
+    call list%choice('contact_law', 'exact', 'how an impact of the skirt is damped, with kind = ''clearance''')
+    call offer_contact_laws(list)
+    call guide%take_contact(list%chosen)
+    if (.not. list%sets) deallocate (guide)
+  end subroutine visit_guide
+
   subroutine visit_gas(gas, list)
     type(gas_cycle_t), allocatable, intent(inout) :: gas
     class(parameter_list_t), intent(inout) :: list
@@ -314,6 +354,11 @@ contains
     call list%add('eccentricity_rate', self%eccentricity_rate, 'its rate', 'm/s', default='0.0')
     call list%add('crank_pin_eccentricity', self%crank_pin_eccentricity, 'crank pin from its bearing''s centre', 'm', default='0.0')
     call list%add('crank_pin_eccentricity_rate', self%crank_pin_eccentricity_rate, 'its rate', 'm/s', default='0.0')
+    call list%add('piston_offset', self%piston_offset, 'piston''s centre of mass across its bore, with clearance there', 'm', &
+      default='0.0')
+    call list%add('piston_offset_rate', self%piston_offset_rate, 'its rate', 'm/s', default='0.0')
+    call list%add('piston_tilt', self%piston_tilt, 'of the piston in its bore, from x to y', 'rad', default='0.0')
+    call list%add('piston_tilt_rate', self%piston_tilt_rate, 'its rate', 'rad/s', default='0.0')
   end subroutine initial_parameters
 
   subroutine joint_parameters(self, list)

@@ -16,6 +16,7 @@ module gudgeon_recorder
   use crank_passage, only: find_turning
   use cycle_watch, only: cycle_watch_t
   use pin_record, only: pin_record_t
+  use guide_record, only: guide_record_t
   use trace_sink, only: trace_sink_t, trace_event_t
   use run_figures, only: run_figures_t
   use gudgeon_archive, only: archive_t
@@ -43,6 +44,7 @@ module gudgeon_recorder
     real(dp), private :: time_then = 0, angle_then = 0   !! [s], [rad]
     integer, private :: n_pins = 1                 !! that have a record
     type(pin_record_t), private :: pins(most_pins)
+    type(guide_record_t), private :: guide         !! of a piston with clearance in its bore
     real(dp), allocatable, private :: y(:), values(:)
   contains
     procedure :: prepare
@@ -66,6 +68,7 @@ contains
       self%n_pins = 2
       call self%pins(2)%prepare(crank_pin, scene)
     end if
+    call self%guide%prepare(scene)
     allocate (self%y(scene%n), self%values(size(self%list%id)))
     self%keeps_archives = self%sink%keeps_archives .and. .not. allocated(self%cycles)   ! whose state is not put away
   end subroutine prepare
@@ -90,6 +93,13 @@ contains
       call self%pins(i)%begin(0.0_dp, now)
       if (inside) call self%pins(i)%take_values(scene, now, self%figures, self%cycles)
     end do
+    if (inside .and. self%guide%is_there) then
+      call self%guide%stand_at(0.0_dp, now)
+      do i = 1, size(scene%guide%touches)
+        if (scene%guide%touches(i)) call take_corner_contact(self, i, event_contact_begins, 0.0_dp, now)
+      end do
+      call self%guide%take_values(scene, now, self%figures)
+    end if
     is_there = .true.
     if (self%angles%per_revolution > 0) call self%angles%begin(scene%crank_angle(0.0_dp, y), is_there)
     call take_point(self, scene, 0.0_dp, y, now, inside, self%first_sample <= 0 .and. is_there)
@@ -208,6 +218,7 @@ contains
     do i = 1, self%n_pins
       call self%pins(i)%search(method, scene, t, now, self%figures, self%cycles)
     end do
+    call self%guide%search(method, scene, t, now, self%figures)
   end subroutine search_peaks
 
   !> Whether the present revolution costs more than it may. One that takes longer than the first would have ends there: a crank
@@ -260,6 +271,7 @@ contains
           if (joint%has_own_rates) figures%friction_work = joint%work_of_friction(y)
         end associate
       end do
+      call self%guide%take_time(scene, t - f%time, f)
       f%time = t
     end associate
     if (allocated(self%cycles)) call self%cycles%take_point(scene, t)
@@ -286,6 +298,8 @@ contains
         if (self%pins(i)%joint == problem%event_of(index)%joint) &
           call take_contact(self, self%pins(i), problem%reported_event(index), t, now)
       end do
+      if (problem%is_of_guide(index)) &
+        call take_corner_contact(self, problem%event_of(index)%event, problem%reported_event(index), t, now)
     end select
   end subroutine event_taken
 
@@ -300,6 +314,17 @@ contains
     call pin%take_contact(kind, t, now, self%figures, event, self%cycles)
     call self%sink%take_event(event)
   end subroutine take_contact
+
+  !> A contact of corner i of the skirt begins or ends at time t; `now` is evaluated before that.
+  subroutine take_corner_contact(self, i, kind, t, now)
+    class(recorder_t), intent(inout) :: self
+    integer, intent(in) :: i, kind
+    real(dp), intent(in) :: t
+    type(evaluation_t), intent(in) :: now
+    type(trace_event_t) :: event
+    call self%guide%take_contact(i, kind, t, now, self%figures, event)
+    call self%sink%take_event(event)
+  end subroutine take_corner_contact
 
   !> The run ended at (t, y): with a row at every step, and for the last of a grid that rounding left out.
   subroutine finish(self, scene, t, y)
@@ -341,6 +366,7 @@ contains
     do i = 1, self%n_pins
       call self%pins(i)%exchange(archive)
     end do
+    call self%guide%exchange(archive)
     call archive%exchange(self%initial_energy)
     call archive%exchange(self%start_angle)
     call archive%exchange(self%next_row)
@@ -372,6 +398,7 @@ contains
     do i = 1, self%n_pins   ! for no revolution: these must not depend on whether anybody wants rows
       call self%pins(i)%take_values(scene, now, self%figures)
     end do
+    call self%guide%take_values(scene, now, self%figures)
     call put_row(self, scene, t, y, now)
   end subroutine write_row
 

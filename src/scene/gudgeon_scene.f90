@@ -11,6 +11,7 @@ module gudgeon_scene
   use clearance_joint, only: clearance_joint_t, joint_loads_t, most_joints, n_phases, phase_free, phase_film, phase_contact
   use joint_events, only: penetration_and_rate
   use sticking, only: hold_surfaces
+  use piston_guide, only: piston_guide_t, guide_loads_t
   use working_gas, only: working_gas_t
   use crank_turns, only: crank_turns_t
   implicit none
@@ -36,6 +37,7 @@ module gudgeon_scene
     type(loads_t) :: loads
     type(joint_motion_t) :: relative(most_joints)
     type(joint_loads_t) :: joint(most_joints)
+    type(guide_loads_t) :: guide    !! of a guide that is not ideal
     real(dp) :: crank_moment        !! moment of the drive on the crank [N m]
     real(dp) :: cylinder_pressure   !! [Pa]
     real(dp) :: power               !! of all non-conservative forces and the drive [W]
@@ -43,7 +45,7 @@ module gudgeon_scene
 
   !> Whose event an event function of the integrator is.
   type :: event_owner_t
-    integer :: joint = 0            !! 0: the gas's, -1: that of the crank's turns
+    integer :: joint = 0            !! 0: the gas's, -1: that of the crank's turns, -2: the guide's
     integer :: event = 0            !! by the owner's own count
   end type event_owner_t
 
@@ -56,6 +58,7 @@ module gudgeon_scene
     integer :: n_joints = 0         !! with clearance: 0, 1 or 2
     type(clearance_joint_t), allocatable :: joints(:)
     integer :: joint_of_pin(n_pins) = 0   !! which of them is at each pin; 0: it is ideal
+    type(piston_guide_t), allocatable :: guide   !! not allocated: an ideal one
     type(working_gas_t), allocatable :: gas
     type(crank_turns_t), allocatable :: turns   !! of a free crank, where they end the run
     real(dp) :: start_angle = 0     !! crank angle at t = 0 [rad]
@@ -80,6 +83,7 @@ module gudgeon_scene
     procedure :: events => all_events
     procedure :: handle_event
     procedure :: reported_event
+    procedure :: is_of_guide
     procedure :: judge_step
     procedure :: lands_on_step_end
     procedure :: rough_time
@@ -128,6 +132,12 @@ module gudgeon_scene
       integer, intent(in) :: index
     end function reported_event
 
+    !> Whether event `index` of the integrator is the guide's: that of a corner of the skirt.
+    pure logical module function is_of_guide(self, index)
+      class(scene_t), intent(in) :: self
+      integer, intent(in) :: index
+    end function is_of_guide
+
     !> A step goes no deeper into contact than each joint allows.
     pure module subroutine judge_step(self, t_old, y_old, t, y, verdict, fraction)
       class(scene_t), intent(in) :: self
@@ -152,6 +162,23 @@ module gudgeon_scene
     module subroutine prepare_start(self)
       class(scene_t), intent(inout) :: self
     end subroutine prepare_start
+
+    !> Where the piston is in its bore. `inside` is false where it cannot be.
+    pure module subroutine place_in_bore(self, y, now, inside)
+      class(scene_t), intent(in) :: self
+      real(dp), intent(in) :: y(self%n)
+      type(evaluation_t), intent(inout) :: now
+      logical, intent(out) :: inside
+    end subroutine place_in_bore
+
+    !> Accelerations under the loads of joints and gas and those of the guide, whose power comes to that of the joints. `inside` is
+    !> false where friction would jam the piston.
+    pure module subroutine accelerate_on_guide(self, joints, now, inside)
+      class(scene_t), intent(in) :: self
+      type(clearance_joint_t), intent(in) :: joints(:)
+      type(evaluation_t), intent(inout) :: now
+      logical, intent(out) :: inside
+    end subroutine accelerate_on_guide
   end interface
 
 contains
@@ -169,6 +196,8 @@ contains
       dydt(self%crank%rate) = now%accelerations%crank
     end if
     call put_rates(self%n_joints, self%joints, now, dydt)
+    if (allocated(self%guide)) call self%guide%put_rates(now%motion%tilting, now%accelerations%offset, now%accelerations%tilt, &
+      dydt)
     dydt(self%work_at) = now%power
     if (.not. self%has_more_rates) return
     call put_own_rates(self%n_joints, self%joints, now, dydt)
@@ -245,6 +274,10 @@ contains
     call read_crank(self, t, y, now%motion)
     call place_journals(n, joints, y, now, inside)
     if (.not. inside) return
+    if (allocated(self%guide)) then
+      call place_in_bore(self, y, now, inside)
+      if (.not. inside) return
+    end if
     call self%chain%move_rod(now%motion, inside)
     if (.not. inside) return
     now%power = 0
@@ -252,20 +285,25 @@ contains
       call joints(i)%loads(self%chain%bodies, now%motion, y, now%relative(i), now%joint(i), now%loads)
       now%power = now%power + now%joint(i)%power
     end do
-    now%loads%gas_force = 0
+    now%loads%axial_force = 0
     if (allocated(self%gas)) then
       now%cylinder_pressure = self%gas%pressure(now%motion%crank_angle)
-      now%loads%gas_force = self%gas%force(now%cylinder_pressure)
+      now%loads%axial_force = self%gas%force(now%cylinder_pressure)
     end if
-    call self%chain%accelerate(now%motion, now%loads, now%accelerations, now%crank_moment)
-    if (self%may_stick) call hold_surfaces(self%chain, joints, now%motion, now%relative, now%joint, now%loads, &
-      now%accelerations, now%crank_moment, now%power)
+    if (allocated(self%guide)) then
+      call accelerate_on_guide(self, joints, now, inside)
+      if (.not. inside) return
+    else
+      call self%chain%accelerate(now%motion, now%loads, now%accelerations, now%crank_moment)
+      if (self%may_stick) call hold_surfaces(self%chain, joints, now%motion, now%relative, now%joint, now%loads, &
+        now%accelerations, now%crank_moment, now%power)
+    end if
     associate (crank_speed => now%motion%crank_speed)
       now%power = (now%crank_moment - self%chain%drive%damping*crank_speed)*crank_speed + now%power
     end associate
-    if (.not. allocated(self%gas)) return
+    if (.not. allocated(self%gas) .or. allocated(self%guide)) return
     call self%chain%move_piston(now%motion)
-    now%power = now%power - now%loads%gas_force*now%motion%piston_velocity
+    now%power = now%power - now%loads%axial_force*now%motion%piston_velocity
   end subroutine find_accelerations
 
   !> The crank.
@@ -320,16 +358,19 @@ contains
       self%joint_of_pin(self%joints(i)%place) = i
     end do
     self%highest_mode = n_phases**self%n_joints - 1
+    if (allocated(self%guide)) self%highest_mode = 2*(self%highest_mode + 1) - 1
     if (self%chain%drive%free_crank) &
       call self%layout%claim_positions(1, 1.0_dp, self%speed_scale(self%span), self%crank, grows=.true.)
     do i = 1, self%n_joints
       call self%joints(i)%claim(self%layout, self%speed_scale(self%span), self%span)
     end do
+    if (allocated(self%guide)) call self%guide%claim(self%layout, self%speed_scale(self%span), self%span)
     call self%layout%claim_quadratures(1, self%energy_scale(self%span), work)
     call self%layout%settle(self%crank)
     do i = 1, self%n_joints
       call self%joints(i)%settle(self%layout)
     end do
+    if (allocated(self%guide)) call self%guide%settle(self%layout)
     self%has_more_rates = any(self%joints%has_own_rates)
     call self%layout%settle(work)
     self%work_at = work%first
@@ -369,7 +410,8 @@ contains
   !> Whether the work of all forces tells what the joints take: nothing else but a constant torque does work.
   pure logical function work_tells(self)
     class(scene_t), intent(in) :: self
-    work_tells = self%chain%drive%free_crank .and. .not. (self%chain%drive%damping > 0 .or. allocated(self%gas))
+    work_tells = self%chain%drive%free_crank .and. .not. (self%chain%drive%damping > 0 .or. allocated(self%gas) &
+                                                         .or. allocated(self%guide))
   end function work_tells
 
   !> Integrals of the sizes of the forces on the pins so far, in a scene that measures them [N s]; 0 of an ideal crank pin.
@@ -409,6 +451,7 @@ contains
     do i = 1, self%n_joints
       call self%joints(i)%put_start(y)
     end do
+    if (allocated(self%guide)) call self%guide%put_start(y)
   end function initial_state
 
   !> Whether the forces of a film have no bound next to this state.
@@ -478,6 +521,7 @@ contains
       do i = 1, self%n_joints
         energy_scale = energy_scale + 0.5_dp*(b%rod%mass + b%piston%mass)*self%joints(i)%own_speed(span)**2
       end do
+      if (allocated(self%guide)) energy_scale = energy_scale + 0.5_dp*(b%rod%mass + b%piston%mass)*self%guide%own_speed(span)**2
     end associate
   end function energy_scale
 
@@ -508,6 +552,7 @@ contains
     do i = 1, self%n_joints
       call self%joints(i)%exchange(archive)
     end do
+    if (allocated(self%guide)) call self%guide%exchange(archive)
     if (allocated(self%gas)) call self%gas%exchange(archive)
     if (allocated(self%turns)) call self%turns%exchange(archive)
   end subroutine exchange

@@ -3,9 +3,10 @@ module run_figures
   use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
   use chain_motion, only: n_pins
+  use piston_guide, only: n_corners
   implicit none
   private
-  public :: run_figures_t, pin_figures_t
+  public :: run_figures_t, pin_figures_t, corner_figures_t
 
   !> Those of one pin. Without clearance there is no more than the force, and of an ideal crank pin not even that.
   type :: pin_figures_t
@@ -22,8 +23,17 @@ module run_figures
     procedure :: exchange => exchange_pin
   end type pin_figures_t
 
+  !> Those of a corner of the skirt, where the piston has clearance in its bore.
+  type :: corner_figures_t
+    integer :: contacts = 0                   !! contacts begun
+    real(dp) :: contact_time = 0              !! [s]
+    real(dp) :: max_penetration = 0           !! [m]
+    real(dp) :: max_force = 0                 !! normal to the wall [N]
+  end type corner_figures_t
+
   type :: run_figures_t
     type(pin_figures_t) :: pin(n_pins)        !! crank_pin, piston_pin
+    type(corner_figures_t) :: corner(n_corners)
     integer :: evaluations = 0                !! of the scene for rows, events and these figures
     integer :: peak_evaluations = 0           !! of them for peaks between accepted points
     real(dp) :: max_energy = 0                !! largest |kinetic + potential energy| [J]
@@ -40,9 +50,15 @@ contains
   subroutine exchange_figures(self, archive)
     class(run_figures_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
-    integer :: pin
+    integer :: pin, i
     do pin = 1, n_pins
       call self%pin(pin)%exchange(archive)
+    end do
+    do i = 1, n_corners
+      call archive%exchange(self%corner(i)%contacts)
+      call archive%exchange(self%corner(i)%contact_time)
+      call archive%exchange(self%corner(i)%max_penetration)
+      call archive%exchange(self%corner(i)%max_force)
     end do
     call archive%exchange(self%evaluations)
     call archive%exchange(self%peak_evaluations)

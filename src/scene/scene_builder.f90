@@ -56,7 +56,7 @@ contains
     if (makes_tables) call make_tables(case, scene)
     associate (m => case%mechanism)
       scene%chain%bodies = new_bodies(crank_t(m%crank_length, m%crank_mass, m%crank_inertia, m%crank_com), &
-        rod_t(m%rod_length, m%rod_mass, m%rod_inertia, m%rod_com), piston_t(m%piston_mass), gravity_of(case))
+        rod_t(m%rod_length, m%rod_mass, m%rod_inertia, m%rod_com), piston_of(case, scene), gravity_of(case))
     end associate
     scene%chain%drive = drive_t(case%drive%kind == 'free', case%drive%torque, case%drive%damping)
     scene%start_angle = case%initial%crank_angle_deg*degree
@@ -73,6 +73,16 @@ contains
       allocate (scene%turns, source=new_crank_turns(case%integrator%crank_revolutions, scene%start_angle, scene%start_speed))
     call scene%prepare_start()
   end subroutine build_scene
+
+  !> The piston, with its inertia where it has clearance in its bore.
+  pure type(piston_t) function piston_of(case, scene) result(piston)
+    type(case_t), intent(in) :: case
+    type(scene_t), intent(in) :: scene
+    piston = piston_t(case%mechanism%piston_mass)
+    if (.not. allocated(scene%guide)) return
+    if (scene%guide%is_loose) piston = piston_t(case%mechanism%piston_mass, .true., case%guide%piston_inertia, &
+      case%guide%piston_com)
+  end function piston_of
 
   !> Gravity (x, y) [m/s^2]: from the cylinder to the crank, turned towards -y.
   pure function gravity_of(case) result(gravity)
@@ -111,6 +121,15 @@ contains
     scene%chain%is_loose(piston_pin) = is_loose(1)
     scene%chain%is_loose(crank_pin) = is_loose(2)
     scene%n_joints = size(scene%joints)
+    if (allocated(case%guide) .and. .not. (ideal_joint .and. case%has_loose_guide())) then
+      allocate (scene%guide)
+      call case%guide%build(scene%guide)
+      scene%guide%start = [case%initial%piston_offset, case%initial%piston_tilt]
+      scene%guide%start_rate = [case%initial%piston_offset_rate, case%initial%piston_tilt_rate]
+      do n = 1, scene%n_joints
+        scene%joints(n)%bearing_turns = scene%guide%is_loose
+      end do
+    end if
     if (.not. allocated(case%combustion)) return
     allocate (scene%gas)
     scene%gas%cycle = case%combustion
@@ -121,6 +140,7 @@ contains
     type(case_t), intent(in) :: case
     type(scene_t), intent(inout) :: scene
     integer :: i
+    if (allocated(scene%guide)) call scene%guide%prepare()
     scene%refuses_steps = .false.
     do i = 1, size(scene%joints)
       associate (joint => scene%joints(i))

@@ -4,11 +4,14 @@ submodule (gudgeon_scene) scene_events
   use joint_events, only: n_events, may_stick, contact_changes, sliding_changes, film_held_changes, film_gone_changes, &
     contact_event, sliding_event, transition_events, judge_entry, rough_end, begin_contact, end_contact, pass_kink, choose_sliding
   use joint_motion, only: outward_acceleration
+  use guide_events, only: n_guide_events, corner_events, change_contact, begin_corner_contact, contact_is_rough, rough_corner_end, &
+    inward_acceleration
+  use piston_guide, only: corner_t, n_corners
   use working_gas, only: n_gas_events
   use crank_turns, only: n_turn_events
   implicit none
 
-  integer, parameter :: of_gas = 0, of_turns = -1   !! owners that are no joint
+  integer, parameter :: of_gas = 0, of_turns = -1, of_guide = -2   !! owners that are no joint
 
 contains
 
@@ -24,6 +27,7 @@ contains
     end do
     if (allocated(scene%gas)) call number(of_gas, n_gas_events)
     if (allocated(scene%turns)) call number(of_turns, n_turn_events)
+    if (allocated(scene%guide)) call number(of_guide, n_guide_events(scene%guide))
 
   contains
 
@@ -54,8 +58,13 @@ contains
       call self%gas%events(self%crank_angle(t, y), self%crank_speed(y), g(k + 1:k + n_gas_events), g_rate(k + 1:k + n_gas_events))
       k = k + n_gas_events
     end if
-    if (allocated(self%turns)) call self%turns%events(self%crank_angle(t, y), self%crank_speed(y), &
-      g(k + 1:k + n_turn_events), g_rate(k + 1:k + n_turn_events))
+    if (allocated(self%turns)) then
+      call self%turns%events(self%crank_angle(t, y), self%crank_speed(y), g(k + 1:k + n_turn_events), &
+        g_rate(k + 1:k + n_turn_events))
+      k = k + n_turn_events
+    end if
+    if (.not. allocated(self%guide)) return
+    if (self%guide%is_loose) call corner_events(self%guide, y, g(k + 1:k + n_corners), g_rate(k + 1:k + n_corners))
   end procedure all_events
 
   !> That of set-valued friction, which hangs on the accelerations.
@@ -81,6 +90,9 @@ contains
         call self%gas%pass_bound(event)
       else if (i == of_turns) then
         call self%turns%pass(event, self%crank_angle(t, y), action)
+      else if (i == of_guide) then
+        if (contact_is_rough(self%guide) .and. .not. self%guide%touches(event)) self%entry_time = t
+        call change_contact(self%guide, event, y)
       else
         select case (event)
         case (contact_changes)
@@ -112,6 +124,8 @@ contains
     do i = 1, size(scene%joints)
       mode_of = mode_of + scene%joints(i)%phase*n_phases**(i - 1)
     end do
+    if (.not. allocated(scene%guide)) return
+    if (any(scene%guide%touches)) mode_of = mode_of + n_phases**size(scene%joints)
   end function mode_of
 
   !> Set-valued friction of one joint: which way it slides, or that it sticks.
@@ -132,10 +146,18 @@ contains
   module procedure reported_event
     reported_event = event_none
     associate (i => self%event_of(index)%joint)
+      if (i == of_guide) then
+        reported_event = merge(event_contact_ends, event_contact_begins, self%guide%touches(self%event_of(index)%event))
+        return
+      end if
       if (i <= 0 .or. self%event_of(index)%event /= contact_changes) return
       reported_event = merge(event_contact_ends, event_contact_begins, self%joints(i)%phase == phase_contact)
     end associate
   end procedure reported_event
+
+  module procedure is_of_guide
+    is_of_guide = self%event_of(index)%joint == of_guide
+  end procedure is_of_guide
 
   module procedure judge_step
     integer :: i, judged
@@ -151,7 +173,8 @@ contains
   end procedure judge_step
 
   module procedure lands_on_step_end
-    lands_on_step_end = self%refuses_steps .and. self%reported_event(index) == event_contact_begins
+    lands_on_step_end = self%refuses_steps .and. self%event_of(index)%joint > 0 .and. &
+      self%reported_event(index) == event_contact_begins
   end procedure lands_on_step_end
 
   module procedure rough_time
@@ -160,6 +183,7 @@ contains
     do i = 1, self%n_joints
       if (self%joints(i)%phase == phase_contact) rough_time = min(rough_time, rough_end(self%joints(i), t, y))
     end do
+    if (allocated(self%guide)) rough_time = min(rough_time, rough_corner_end(self%guide, t, y))
   end procedure rough_time
 
   module procedure prepare_start
@@ -177,6 +201,7 @@ contains
         call self%joints(i)%transition%begin(contact(1) + self%joints(i)%bearing%clearance, contact(2))
       if (allocated(self%joints(i)%contact) .and. contact(1) >= 0) call begin_contact(self%joints(i), contact(2))
     end do
+    if (allocated(self%guide)) call prepare_corners(self, y)
     do i = 1, self%n_joints   ! exactly at the wall
       contact = penetration_and_rate(self%joints(i), y)
       if (self%joints(i)%phase /= phase_contact .or. contact(1) > 0) cycle
@@ -193,4 +218,27 @@ contains
       if (self%joints(i)%phase == phase_contact) call find_sliding_direction(self, i, 0.0_dp, y, .true.)
     end do
   end procedure prepare_start
+
+  !> Which corners of the skirt touch at t = 0: those in the wall, and those exactly at it that go on into it or, at rest, are pressed
+  !> into it.
+  subroutine prepare_corners(scene, y)
+    class(scene_t), intent(inout) :: scene
+    real(dp), intent(in) :: y(:)
+    type(corner_t) :: corner(n_corners)
+    type(evaluation_t) :: now
+    real(dp) :: onwards
+    logical :: inside
+    integer :: i
+    scene%guide%touches = .false.
+    if (.not. scene%guide%is_loose) return
+    call scene%guide%look(y, corner)
+    call scene%evaluate(0.0_dp, y, now, inside)
+    do i = 1, n_corners
+      if (corner(i)%depth < 0) cycle
+      onwards = corner(i)%depth_rate
+      if (inside .and. .not. abs(onwards) > 0) onwards = inward_acceleration(i, corner(i), now%motion, now%accelerations)
+      if (corner(i)%depth > 0 .or. onwards >= 0) call begin_corner_contact(scene%guide, i, corner(i)%depth_rate)
+      if (.not. corner(i)%depth > 0 .and. corner(i)%depth_rate > 0 .and. contact_is_rough(scene%guide)) scene%entry_time = 0
+    end do
+  end subroutine prepare_corners
 end submodule scene_events

@@ -18,7 +18,7 @@ contains
     logical :: has_closed_form
     integer :: i, skip, m, n
 
-    has_closed_form = self%chain%is_loose(piston_pin) .and. .not. self%chain%is_loose(crank_pin)
+    has_closed_form = self%chain%is_loose(piston_pin) .and. .not. (self%chain%is_loose(crank_pin) .or. allocated(self%guide))
     if (has_closed_form) then
       call self%evaluate(t, y, now, has_closed_form)
       if (has_closed_form) has_closed_form = .not. now%joint(1)%sticks
@@ -40,7 +40,7 @@ contains
         change = motion_change(bodies, now%motion, direction(1), direction(4), direction(3), direction(6))
         loads = matmul(force(:, 1:2), direction(2:3)) + matmul(force(:, 3:4), direction(5:6)) - force(:, 5)*change%rod_speed
         load_change = load_change_t(loads(1:2), loads(3))
-        if (allocated(self%gas) .and. i == 1) load_change%gas_force = self%gas%force_slope(now%motion%crank_angle)
+        if (allocated(self%gas) .and. i == 1) load_change%axial_force = self%gas%force_slope(now%motion%crank_angle)
         a = acceleration_change(bodies, drive, now%loads, now%motion, now%accelerations, change, load_change)
         if (n > 0) rates = matmul(of_rates(:, 1:2), direction(2:3)) + matmul(of_rates(:, 3:4), direction(5:6)) &
           - of_rates(:, 5)*change%rod_speed

@@ -3,10 +3,14 @@ module trace_sink
   use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
   use ode_method, only: step_statistics_t
-  use chain_motion, only: piston_pin
+  use chain_motion, only: piston_pin, pin_names, n_pins
+  use piston_guide, only: corner_names, n_corners
   implicit none
   private
-  public :: trace_sink_t, trace_event_t
+  public :: trace_sink_t, trace_event_t, joint_names
+
+  !> Of the pins, and of the corners of the skirt in the bore.
+  character(len=*), parameter :: joint_names(n_pins + n_corners) = [character(len=10) :: pin_names, corner_names]
 
   !> One event of the trace.
   type :: trace_event_t
@@ -17,7 +21,7 @@ module trace_sink
     real(dp) :: duration = 0               !! of the contact that ends [s]
     real(dp) :: max_penetration = 0        !! in it [m]
     real(dp) :: max_normal_force = 0       !! in it [N]
-    integer :: pin = piston_pin            !! whose joint it is
+    integer :: pin = piston_pin            !! whose joint it is, by its place among `joint_names`
   contains
     procedure :: exchange
   end type trace_event_t

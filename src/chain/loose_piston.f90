@@ -1,0 +1,99 @@
+!> A piston with clearance in its bore: where it is, how it is accelerated, its energy.
+!>
+!> Its coordinates are y of its centre of mass and the tilt b, from x to y. What its bore does to it is known from them: a force along
+!> x that is part of `axial_force`, `bore_force` along y and `bore_moment` about the centre of mass. The gas acts along x on the
+!> piston's axis, which goes through the centre of mass.
+!>
+!>     m x_c'' = -F_axial - F_x + m g_x,    m y_c'' = F_bore - F_y + m g_y
+!>     I b'' = M_bearing + p_x F_y - p_y F_x + M_bore
+!>
+!> F is the force on the piston pin, whose opposite acts at the pin's bearing, at -p from the centre of mass c.
+module loose_piston
+  use gudgeon_kinds, only: dp
+  use chain_motion, only: motion_t, accelerations_t, piston_pin
+  use chain_bodies, only: bodies_t, piston_t
+  use chain_loads, only: loads_t, bearing_moment
+  implicit none
+  private
+  public :: place_piston, move_centre, centre_acceleration, pin_eccentricity, free_piston, kinetic_energy_beside, height_beside
+
+contains
+
+  !> The pin's bearing, from the coordinates of the piston and their rates; it adds to the offset of the chain.
+  pure subroutine place_piston(piston, motion)
+    type(piston_t), intent(in) :: piston
+    type(motion_t), intent(inout) :: motion
+    real(dp) :: sine, cosine
+    associate (at => motion%tilting)
+      sine = sin(at%tilt)
+      cosine = cos(at%tilt)
+      at%com = [piston%com(1)*cosine - piston%com(2)*sine, piston%com(1)*sine + piston%com(2)*cosine]
+      at%across = at%offset - at%com(2)
+      at%across_rate = at%offset_rate - at%com(1)*at%tilt_rate
+      motion%offset(2) = motion%offset(2) + at%across
+      motion%offset_rate(2) = motion%offset_rate(2) + at%across_rate
+    end associate
+  end subroutine place_piston
+
+  !> The velocity of the centre of mass along x, where that of the pin's bearing is known.
+  pure subroutine move_centre(motion)
+    type(motion_t), intent(inout) :: motion
+    motion%tilting%com_velocity = motion%piston_velocity - motion%tilting%com(2)*motion%tilting%tilt_rate
+  end subroutine move_centre
+
+  !> Of the centre of mass (x, y) [m/s^2].
+  pure function centre_acceleration(motion, accelerations) result(a)
+    type(motion_t), intent(in) :: motion
+    type(accelerations_t), intent(in) :: accelerations
+    real(dp) :: a(2)
+    associate (at => motion%tilting)
+      a(1) = accelerations%piston - at%com(2)*accelerations%tilt - at%com(1)*at%tilt_rate**2
+      a(2) = accelerations%offset
+    end associate
+  end function centre_acceleration
+
+  !> e of the piston pin [m].
+  pure function pin_eccentricity(motion) result(e)
+    type(motion_t), intent(in) :: motion
+    real(dp) :: e(2)
+    e = motion%offset - motion%crank_pin
+    e(2) = e(2) - motion%tilting%across
+  end function pin_eccentricity
+
+  !> Put the piston by itself, where its pin has clearance and so the force on it is known, in the place of one on an ideal guide.
+  pure subroutine free_piston(bodies, motion, loads, accelerations)
+    type(bodies_t), intent(in) :: bodies
+    type(motion_t), intent(in) :: motion
+    type(loads_t), intent(in) :: loads
+    type(accelerations_t), intent(inout) :: accelerations   !! in: of a piston on an ideal guide
+    real(dp) :: centre(2), bearing(2)
+    associate (at => motion%tilting, f => loads%force(:, piston_pin), piston => bodies%piston)
+      centre = bodies%gravity + [-(loads%axial_force + f(1)), loads%bore_force - f(2)]*bodies%per_piston_mass
+      accelerations%tilt = (bearing_moment(pin_eccentricity(motion), f, loads%moment(piston_pin)) + at%com(1)*f(2) &
+        - at%com(2)*f(1) + loads%bore_moment)/piston%inertia
+      accelerations%offset = centre(2)
+      bearing = centre + [at%com(2), -at%com(1)]*accelerations%tilt + at%com*at%tilt_rate**2
+      accelerations%pin(1, piston_pin) = accelerations%pin(1, piston_pin) + (accelerations%piston - bearing(1))
+      accelerations%pin(2, piston_pin) = accelerations%pin(2, piston_pin) - bearing(2)
+      accelerations%piston = bearing(1)
+    end associate
+  end subroutine free_piston
+
+  !> Kinetic energy of the piston beside that of all its mass moving along x with the pin's bearing [J].
+  pure real(dp) function kinetic_energy_beside(piston, motion) result(energy)
+    type(piston_t), intent(in) :: piston
+    type(motion_t), intent(in) :: motion
+    real(dp) :: turn
+    associate (at => motion%tilting)
+      turn = at%com(2)*at%tilt_rate   ! x' of the bearing less that of the centre of mass
+      energy = 0.5_dp*(piston%mass*(at%offset_rate**2 + turn*(turn - 2*motion%piston_velocity)) + piston%inertia*at%tilt_rate**2)
+    end associate
+  end function kinetic_energy_beside
+
+  !> The centre of mass (x, y) from the point at the height of the pin's bearing on the cylinder's axis [m].
+  pure function height_beside(motion) result(way)
+    type(motion_t), intent(in) :: motion
+    real(dp) :: way(2)
+    way = [motion%tilting%com(1), motion%tilting%offset]
+  end function height_beside
+end module loose_piston

@@ -1,0 +1,132 @@
+!> What must hold between the values of a case with a guide that is not ideal.
+module guide_rules
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: two_pi
+  use gudgeon_errors, only: error_t
+  use number_text, only: short_text
+  use case_definition, only: case_t
+  use case_values, only: case_values_t
+  use case_schema, only: find_key
+  use ambrosio, only: ambrosio_t
+  use piston_guide, only: piston_guide_t, corner_t, n_corners
+  use chain_motion, only: tilting_t
+  implicit none
+  private
+  public :: check_guide, bore_reach
+
+contains
+
+  !> How far from the cylinder's axis the bore leaves the pin's bearing [m].
+  pure real(dp) function bore_reach(c)
+    type(case_t), intent(in) :: c
+    bore_reach = 0
+    if (.not. c%has_loose_guide()) return
+    associate (guide => c%guide)   ! tilted until top and bottom of the skirt touch opposite walls
+      bore_reach = guide%bore_clearance + abs(guide%piston_com(2))
+      if (guide%skirt_top + guide%skirt_bottom > 0) &
+        bore_reach = bore_reach + abs(guide%piston_com(1))*2*guide%bore_clearance/(guide%skirt_top + guide%skirt_bottom)
+    end associate
+  end function bore_reach
+
+  !> A guide has what its kind needs, friction that does not jam the piston, and a piston that starts in its bore.
+  subroutine check_guide(c, values, error)
+    type(case_t), intent(in) :: c
+    type(case_values_t), intent(in) :: values
+    type(error_t), allocatable, intent(out) :: error
+    if (c%has_loose_guide()) then
+      call check_clearance(values, error)
+      if (.not. allocated(error)) call check_piston_start(c, values, error)
+    else
+      call check_on_axis(c, values, error)
+    end if
+    if (allocated(error) .or. .not. allocated(c%guide)) return
+    if (allocated(c%guide%friction)) call check_friction(c, values, error)
+  end subroutine check_guide
+
+  !> Clearance needs the dimensions of the skirt, the piston's inertia and a stiffness.
+  subroutine check_clearance(values, error)
+    type(case_values_t), intent(in) :: values
+    type(error_t), allocatable, intent(out) :: error
+    character(len=*), parameter :: needed(6) = [character(len=14) :: 'bore_clearance', 'skirt_top', 'skirt_bottom', &
+      'piston_radius', 'piston_inertia', 'stiffness']
+    integer :: i
+    do i = 1, size(needed)
+      if (values%is_said(find_key(values%keys, 'guide', trim(needed(i))))) cycle
+      if (values%is_given('guide', trim(needed(i)))) then
+        call values%refuse('guide', trim(needed(i)), 'must be > 0', error)
+      else
+        call values%refuse('guide', trim(needed(i)), 'required with kind = ''clearance''', error)
+      end if
+      return
+    end do
+    if (values%is_said(find_key(values%keys, 'guide', 'dissipation'))) call values%check_family('guide', 'dissipation', error)
+  end subroutine check_clearance
+
+  !> Without clearance the piston is on the cylinder's axis.
+  subroutine check_on_axis(c, values, error)
+    type(case_t), intent(in) :: c
+    type(case_values_t), intent(in) :: values
+    type(error_t), allocatable, intent(out) :: error
+    character(len=*), parameter :: keys(4) = [character(len=18) :: 'piston_offset', 'piston_offset_rate', 'piston_tilt', &
+      'piston_tilt_rate']
+    integer :: i
+    do i = 1, size(keys)
+      if (.not. values%is_said(find_key(values%keys, 'initial', trim(keys(i))))) cycle
+      call values%refuse('initial', trim(keys(i)), 'must be 0 without clearance in the bore (&guide kind = ''clearance'')', error)
+      return
+    end do
+    if (.not. allocated(c%guide)) return
+    if (values%is_said(find_key(values%keys, 'guide', 'bore_clearance')) .and. .not. values%is_given('guide', 'kind')) &
+      call values%refuse('guide', 'bore_clearance', 'needs kind = ''clearance''; the default is friction', error)
+  end subroutine check_on_axis
+
+  !> No surfaces stick on the guide, and where the piston pin is ideal the friction must not jam the piston: the side force that a
+  !> force along the cylinder raises is tan A of it where the crank does not yield, A at most arcsin R/L.
+  subroutine check_friction(c, values, error)
+    type(case_t), intent(in) :: c
+    type(case_values_t), intent(in) :: values
+    type(error_t), allocatable, intent(out) :: error
+    real(dp) :: most, speed
+    select type (law => c%guide%friction)
+    type is (ambrosio_t)
+      if (law%coefficient > 0 .and. .not. law%v1 > 0) then
+        call values%refuse('guide', 'v1', 'must be > 0: friction on the guide is a function of the speed', error)
+        return
+      end if
+    end select
+    if (c%has_loose_guide() .or. c%joint%has_clearance()) return
+    associate (m => c%mechanism)
+      speed = 2*m%crank_length*max(abs(c%initial%crank_speed), two_pi)
+      most = sqrt((m%rod_length - m%crank_length)*(m%rod_length + m%crank_length))/m%crank_length
+    end associate
+    if (c%guide%most_friction(speed) < most) return
+    call values%refuse('guide', 'coefficient', 'friction over normal force must stay < '//short_text(most)// &
+      ', the least of rod_length cos A/(crank_length sin q): more would jam the piston', error)
+  end subroutine check_friction
+
+  !> The piston starts in its bore, or with corners pressed into the wall, but not through it.
+  subroutine check_piston_start(c, values, error)
+    type(case_t), intent(in) :: c
+    type(case_values_t), intent(in) :: values
+    type(error_t), allocatable, intent(out) :: error
+    type(piston_guide_t) :: guide
+    type(corner_t) :: corner(n_corners)
+    type(tilting_t) :: at
+    call c%guide%build(guide)
+    at%offset = c%initial%piston_offset
+    at%tilt = c%initial%piston_tilt
+    at%offset_rate = 0
+    at%tilt_rate = 0
+    call guide%place_corners(at, corner)
+    if (.not. guide%admits(at)) then
+      if (abs(at%tilt) < 1) then
+        call values%refuse('initial', 'piston_offset', 'must be shorter than bore_clearance + piston_radius', error)
+      else
+        call values%refuse('initial', 'piston_tilt', 'must be > -1 and < 1', error)
+      end if
+    else if (maxval(corner%depth) > c%guide%piston_radius) then
+      call values%refuse('initial', 'piston_tilt', 'must not put a corner of the skirt into the bore''s wall by more than '// &
+        'piston_radius', error)
+    end if
+  end subroutine check_piston_start
+end module guide_rules

@@ -1,0 +1,39 @@
+!> The columns of the piston's guide.
+module guide_columns
+  use gudgeon_kinds, only: dp
+  use trace_row, only: trace_row_t
+  use chain_motion, only: motion_t, accelerations_t
+  use piston_guide, only: piston_guide_t, guide_loads_t, n_corners, corner_names
+  implicit none
+  private
+  public :: put_guide_columns
+
+contains
+
+  !> Friction on the piston along x; with clearance in the bore where the piston is there, and each corner of its skirt.
+  pure subroutine put_guide_columns(guide, motion, accelerations, loads, row)
+    type(piston_guide_t), intent(in) :: guide
+    type(motion_t), intent(in) :: motion
+    type(accelerations_t), intent(in) :: accelerations
+    type(guide_loads_t), intent(in) :: loads
+    type(trace_row_t), intent(inout) :: row
+    integer :: i
+    call row%put('guide_friction_force[N]', loads%friction_force)
+    if (.not. guide%is_loose) return
+    associate (at => motion%tilting)
+      call row%put('piston_offset[m]', at%offset)
+      call row%put('piston_tilt[rad]', at%tilt)
+      call row%put('piston_offset_rate[m/s]', at%offset_rate)
+      call row%put('piston_tilt_rate[rad/s]', at%tilt_rate)
+      call row%put('piston_offset_acceleration[m/s2]', accelerations%offset)
+      call row%put('piston_tilt_acceleration[rad/s2]', accelerations%tilt)
+    end associate
+    do i = 1, n_corners
+      row%place = corner_names(i)//'_'
+      call row%put('gap[m]', -loads%corner(i)%depth)
+      call row%put('force[N]', loads%corner(i)%normal_force)
+      call row%put('friction[N]', loads%corner(i)%friction_force)
+    end do
+    row%place = ''
+  end subroutine put_guide_columns
+end module guide_columns

@@ -1,0 +1,108 @@
+!> What a case says of the piston's guide.
+module guide_case
+  use gudgeon_kinds, only: dp
+  use gudgeon_parameters, only: has_parameters_t, parameter_list_t, law_t
+  use contact_law, only: contact_law_t
+  use friction_law, only: friction_law_t
+  use hertz_sphere, only: hertz_sphere_t
+  use piston_guide, only: piston_guide_t
+  implicit none
+  private
+  public :: guide_case_t, guide_clearance, guide_friction
+
+  character(len=*), parameter :: guide_friction = 'friction', guide_clearance = 'clearance'   !! the kinds
+
+  type, extends(has_parameters_t) :: guide_case_t
+    character(len=:), allocatable :: kind
+    real(dp) :: viscous = 0
+    real(dp) :: bore_clearance = 0, skirt_top = 0, skirt_bottom = 0, piston_radius = 0
+    real(dp) :: piston_inertia = 0, piston_com(2) = 0
+    real(dp) :: stiffness = 0, exponent = 1
+    class(friction_law_t), allocatable :: friction
+    class(contact_law_t), allocatable :: contact
+  contains
+    procedure :: parameters
+    procedure :: take_friction
+    procedure :: take_contact
+    procedure :: build
+    procedure :: most_friction
+  end type guide_case_t
+
+contains
+
+  !> All but those of its laws.
+  subroutine parameters(self, list)
+    class(guide_case_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%word('kind', self%kind, guide_friction//', '//guide_clearance, guide_friction, &
+      'friction: on the cylinder''s axis; clearance: the piston moves across and tilts')
+    call list%add('viscous', self%viscous, 'force over piston velocity, as of a ring pack', 'N s/m', '>= 0', default='0.0')
+    call list%add('bore_clearance', self%bore_clearance, &
+      'kind clearance needs it, and the next five keys: half of bore less piston diameter', 'm', '> 0', default='0.0')
+    call list%add('skirt_top', self%skirt_top, 'upper corners of the skirt above the pin, along the piston', 'm', '> 0', &
+      default='0.0')
+    call list%add('skirt_bottom', self%skirt_bottom, 'its lower corners below the pin', 'm', '> 0', default='0.0')
+    call list%add('piston_radius', self%piston_radius, 'corners from the piston''s axis, on which its centre of mass is', &
+      'm', '> 0', default='0.0')
+    call list%add('piston_inertia', self%piston_inertia, 'of the piston about its centre of mass', 'kg m^2', '> 0', default='0.0')
+    call list%add('stiffness', self%stiffness, 'of a corner on the bore', 'N/m^exponent', '> 0', default='0.0')
+    call list%add('piston_com', self%piston_com, 'centre of mass from the pin, along and across the piston (pin offset)', 'm', &
+      default='0.0')
+    call list%add('exponent', self%exponent, 'of the depth', range='>= 1', default='1.0')
+  end subroutine parameters
+
+  !> The friction law that the case names.
+  subroutine take_friction(self, law)
+    class(guide_case_t), intent(inout) :: self
+    class(law_t), allocatable, intent(in) :: law
+    if (.not. allocated(law)) return
+    select type (law)
+    class is (friction_law_t)
+      allocate (self%friction, source=law)
+    end select
+  end subroutine take_friction
+
+  !> The contact law that the case names.
+  subroutine take_contact(self, law)
+    class(guide_case_t), intent(inout) :: self
+    class(law_t), allocatable, intent(in) :: law
+    if (.not. allocated(law)) return
+    select type (law)
+    class is (contact_law_t)
+      allocate (self%contact, source=law)
+    end select
+  end subroutine take_contact
+
+  !> Largest friction over normal force [-] at speeds up to one [m/s], to 2 %: the laws are looked at in steps of a tenth of a speed.
+  real(dp) function most_friction(self, highest_speed)
+    class(guide_case_t), intent(in) :: self
+    real(dp), intent(in) :: highest_speed
+    real(dp), parameter :: lowest = 1e-12_dp
+    class(friction_law_t), allocatable :: law
+    real(dp) :: speed
+    most_friction = 0
+    if (.not. allocated(self%friction)) return
+    allocate (law, source=self%friction)
+    call law%prepare()
+    speed = highest_speed
+    do while (speed > lowest)
+      most_friction = max(most_friction, abs(law%friction_ratio(speed, 1)))
+      speed = speed/1.1_dp
+    end do
+  end function most_friction
+
+  !> The guide, all but its start.
+  subroutine build(self, guide)
+    class(guide_case_t), intent(in) :: self
+    type(piston_guide_t), intent(inout) :: guide
+    guide%viscous = self%viscous
+    if (allocated(self%friction)) allocate (guide%friction, source=self%friction)
+    guide%is_loose = self%kind == guide_clearance
+    if (.not. guide%is_loose) return
+    guide%clearance = self%bore_clearance
+    guide%radius = self%piston_radius
+    guide%height = [self%skirt_top, -self%skirt_bottom] - self%piston_com(1)
+    allocate (guide%contact, source=self%contact)
+    guide%contact%geometry = hertz_sphere_t(given_stiffness=self%stiffness, exponent=self%exponent)
+  end subroutine build
+end module guide_case

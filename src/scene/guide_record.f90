@@ -1,0 +1,213 @@
+!> What a run does at the corners of a skirt in its bore: their contacts, how deep they go and how hard they press.
+!>
+!> Depths and forces follow from the place of the piston alone, so that peaks inside a step are searched on the interpolant of the
+!> method, without evaluations of the scene.
+module guide_record
+  use gudgeon_kinds, only: dp
+  use gudgeon_archive, only: archive_t
+  use ode_method, only: ode_method_t
+  use chain_motion, only: n_pins
+  use piston_guide, only: corner_t, n_corners
+  use gudgeon_scene, only: scene_t, evaluation_t, event_contact_begins
+  use peak_search, only: sample_t, peak_search_t, may_peak
+  use trace_sink, only: trace_event_t
+  use run_figures, only: run_figures_t
+  implicit none
+  private
+  public :: guide_record_t
+
+  integer, parameter :: of_depth = 1, of_force = 2, n_peaks = 2
+  real(dp), parameter :: short = 1e-4_dp      !! part of a piece over which the slope of a force is taken
+
+  type :: guide_record_t
+    logical :: is_there = .false.      !! the scene has a piston with clearance in its bore
+    type(trace_event_t), private :: contact(n_corners)   !! the present or the last one of each corner
+    real(dp), private :: t = 0         !! end of the last piece of the run that was searched [s]
+    real(dp), private :: last(n_peaks, n_corners) = 0    !! depths and forces there
+    real(dp), private :: rate(n_corners) = 0             !! rates of the depths there
+  contains
+    procedure, non_overridable :: prepare
+    procedure, non_overridable :: stand_at
+    procedure, non_overridable :: search
+    procedure, non_overridable :: take_values
+    procedure, non_overridable :: take_time
+    procedure, non_overridable :: take_contact
+    procedure :: exchange
+  end type guide_record_t
+
+contains
+
+  !> The record of this scene.
+  subroutine prepare(self, scene)
+    class(guide_record_t), intent(out) :: self
+    type(scene_t), intent(in) :: scene
+    integer :: i
+    if (allocated(scene%guide)) self%is_there = scene%guide%is_loose
+    do i = 1, n_corners
+      self%contact(i)%pin = n_pins + i
+    end do
+  end subroutine prepare
+
+  !> The next piece begins at t, with what has been evaluated there.
+  pure subroutine stand_at(self, t, now)
+    class(guide_record_t), intent(inout) :: self
+    real(dp), intent(in) :: t
+    type(evaluation_t), intent(in) :: now
+    if (.not. self%is_there) return
+    self%t = t
+    self%last(of_depth, :) = now%guide%corner%depth
+    self%last(of_force, :) = now%guide%corner%normal_force
+    self%rate = now%guide%corner%depth_rate
+  end subroutine stand_at
+
+  !> Peaks of corners that touch, between the end of the last piece and t, inside the last step of the method, where the scene is
+  !> evaluated.
+  subroutine search(self, method, scene, t, now, figures)
+    class(guide_record_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t
+    type(evaluation_t), intent(in) :: now
+    type(run_figures_t), intent(inout) :: figures
+    real(dp) :: largest(n_peaks)
+    integer :: i
+    if (.not. self%is_there) return
+    do i = 1, n_corners
+      if (.not. (scene%guide%touches(i) .and. t > self%t)) cycle
+      largest = 0
+      associate (corner => now%guide%corner(i))
+        call search_between(method, scene, i, of_depth, sample_t(self%t, self%last(of_depth, i), self%rate(i)), &
+          sample_t(t, corner%depth, corner%depth_rate), self%contact(i)%max_penetration, largest(of_depth))
+        call search_between(method, scene, i, of_force, sample_t(self%t, self%last(of_force, i), slope_at(self%t, 1)), &
+          sample_t(t, corner%normal_force, slope_at(t, -1)), self%contact(i)%max_normal_force, largest(of_force))
+      end associate
+      call put_values(self, i, largest, figures)
+    end do
+    call self%take_values(scene, now, figures)
+    call self%stand_at(t, now)
+
+  contains
+
+    !> Slope of the force at one end of the piece, by two values `short` of it apart, to the side (1 or -1) that is inside.
+    real(dp) function slope_at(at, way) result(slope)
+      real(dp), intent(in) :: at
+      integer, intent(in) :: way
+      real(dp) :: step
+      step = way*short*(t - self%t)
+      slope = 0
+      if (abs((at + step) - at) > 0) slope = (value_at(method, scene, i, of_force, at + step) - &
+        value_at(method, scene, i, of_force, at))/((at + step) - at)
+    end function slope_at
+  end subroutine search
+
+  !> The peak of one quantity between two samples, if it is above `known`.
+  subroutine search_between(method, scene, corner, quantity, left, right, known, largest)
+    class(ode_method_t), intent(inout) :: method
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: corner, quantity
+    type(sample_t), intent(in) :: left, right
+    real(dp), intent(in) :: known
+    real(dp), intent(inout) :: largest
+    type(peak_search_t) :: peak
+    real(dp) :: t
+    logical :: is_done
+    if (.not. may_peak(left%t, left%value, left%slope, right%t, right%value, right%slope, known)) return
+    call peak%begin(left, right)
+    do
+      call peak%next_time(t, is_done)
+      if (is_done) exit
+      call peak%take(t, value_at(method, scene, corner, quantity, t))
+    end do
+    largest = max(largest, peak%value(1))
+  end subroutine search_between
+
+  !> A quantity of a corner inside the last step.
+  real(dp) function value_at(method, scene, corner, quantity, t) result(value)
+    class(ode_method_t), intent(inout) :: method
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: corner, quantity
+    real(dp), intent(in) :: t
+    type(corner_t) :: corners(n_corners)
+    real(dp) :: y(scene%n)
+    call method%interpolate(t, y)
+    call scene%guide%look(y, corners)
+    value = merge(corners(corner)%depth, corners(corner)%normal_force, quantity == of_depth)
+  end function value_at
+
+  !> Depths and forces in one evaluation.
+  subroutine take_values(self, scene, now, figures)
+    class(guide_record_t), intent(inout) :: self
+    type(scene_t), intent(in) :: scene
+    type(evaluation_t), intent(in) :: now
+    type(run_figures_t), intent(inout) :: figures
+    integer :: i
+    if (.not. self%is_there) return
+    do i = 1, n_corners
+      if (scene%guide%touches(i)) &
+        call put_values(self, i, [now%guide%corner(i)%depth, now%guide%corner(i)%normal_force], figures)
+    end do
+  end subroutine take_values
+
+  !> The largest of a corner, for its contact and for the run.
+  pure subroutine put_values(self, i, values, figures)
+    type(guide_record_t), intent(inout) :: self
+    integer, intent(in) :: i
+    real(dp), intent(in) :: values(n_peaks)
+    type(run_figures_t), intent(inout) :: figures
+    associate (contact => self%contact(i), f => figures%corner(i))
+      contact%max_penetration = max(contact%max_penetration, values(of_depth))
+      contact%max_normal_force = max(contact%max_normal_force, values(of_force))
+      f%max_penetration = max(f%max_penetration, values(of_depth))
+      f%max_force = max(f%max_force, values(of_force))
+    end associate
+  end subroutine put_values
+
+  !> Time [s] that has passed since the last point looked at.
+  pure subroutine take_time(self, scene, passed, figures)
+    class(guide_record_t), intent(in) :: self
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: passed
+    type(run_figures_t), intent(inout) :: figures
+    if (.not. self%is_there) return
+    where (scene%guide%touches) figures%corner%contact_time = figures%corner%contact_time + passed
+  end subroutine take_time
+
+  !> A contact of corner i begins or ends at time t; `now` is evaluated before that. `event` is what the trace tells of it.
+  subroutine take_contact(self, i, kind, t, now, figures, event)
+    class(guide_record_t), intent(inout) :: self
+    integer, intent(in) :: i, kind
+    real(dp), intent(in) :: t
+    type(evaluation_t), intent(in) :: now
+    type(run_figures_t), intent(inout) :: figures
+    type(trace_event_t), intent(out) :: event
+    associate (contact => self%contact(i))
+      contact%kind = kind
+      if (kind == event_contact_begins) then
+        figures%corner(i)%contacts = figures%corner(i)%contacts + 1
+        contact%duration = 0
+        contact%max_penetration = 0
+        contact%max_normal_force = 0
+      else
+        contact%duration = t - contact%time
+      end if
+      contact%time = t
+      contact%crank_angle = now%motion%crank_angle
+      contact%normal_speed = now%guide%corner(i)%depth_rate
+      event = contact
+    end associate
+  end subroutine take_contact
+
+  !> What has been found so far, to or from an archive.
+  subroutine exchange(self, archive)
+    class(guide_record_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    integer :: i
+    if (.not. self%is_there) return
+    do i = 1, n_corners
+      call self%contact(i)%exchange(archive)
+    end do
+    call archive%exchange(self%t)
+    call archive%exchange(self%last)
+    call archive%exchange(self%rate)
+  end subroutine exchange
+end module guide_record
