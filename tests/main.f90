@@ -32,7 +32,9 @@ program gudgeon_tests
   use test_film_moment, only: run_test_film_moment
   use test_friction, only: run_test_friction
   use test_friction_runs, only: run_test_friction_runs
+  use test_guide, only: run_test_guide
   use test_joint, only: run_test_joint
+  use test_loose_piston, only: run_test_loose_piston
   use test_number_text, only: run_test_number_text
   use test_number_writer, only: run_test_number_writer
   use test_oscillating_film, only: run_test_oscillating_film
@@ -93,7 +95,9 @@ program gudgeon_tests
   call run('film_moment', run_test_film_moment)
   call run('friction', run_test_friction)
   call run('friction_runs', run_test_friction_runs)
+  call run('guide', run_test_guide)
   call run('joint', run_test_joint)
+  call run('loose_piston', run_test_loose_piston)
   call run('number_text', run_test_number_text)
   call run('number_writer', run_test_number_writer)
   call run('oscillating_film', run_test_oscillating_film)

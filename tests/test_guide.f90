@@ -1,0 +1,365 @@
+!> Runs of a piston whose guide has friction, or with clearance in its bore.
+module test_guide
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: two_pi, degree
+  use checks, only: checks_t
+  use gudgeon_errors, only: error_t
+  use case_definition, only: case_t
+  use case_file, only: read_case
+  use collecting_sink, only: trace_t, run_case, load_table, column
+  use chain_motion, only: n_pins, tilting_t
+  use piston_guide, only: piston_guide_t, corner_t, n_corners
+  implicit none
+  private
+  public :: run_test_guide
+
+  integer, parameter :: long = 60
+  character(len=*), parameter :: slap = 'cases/joints/slider_clearance.nml', ideal = 'cases/flores/ideal.nml'
+
+contains
+
+  subroutine run_test_guide(check)
+    class(checks_t), intent(inout) :: check
+    call massless_rod_with_friction(check)
+    call friction_of_an_ideal_guide(check)
+    call friction_follows_the_law_of_the_pin(check)
+    call corners_are_where_they_are(check)
+    call one_impact_gives_back_its_share(check)
+    call energy_of_elastic_corners(check)
+    call energy_with_all_losses(check)
+    call no_event_is_lost(check)
+    call methods_agree(check)
+    call narrow_bore_is_an_ideal_guide(check)
+    call compare_with_siconos(check)
+    call refusals(check)
+  end subroutine run_test_guide
+
+  !> Values of a column of a trace.
+  function values_of(trace, name) result(values)
+    type(trace_t), intent(in) :: trace
+    character(len=*), intent(in) :: name
+    real(dp) :: values(size(trace%values, 2))
+    values = trace%values(column(trace, name), :)
+  end function values_of
+
+  !> A rod without mass is a bar with a force S along it, so that with friction mu |N| against the motion, N = S sin A, the piston's
+  !> equation is m x'' = S cos A - mu |S sin A| sign x'. The crank is held, so that x'' is known.
+  subroutine massless_rod_with_friction(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: r = 0.05_dp, l = 0.12_dp, m = 0.14_dp, speed = 200, mu = 0.3_dp
+    type(trace_t) :: got
+    real(dp), allocatable :: q(:), guide(:), friction(:)
+    real(dp) :: sine, cosine, x_rate, x_acceleration, bar, rate, worst, s_over_n
+    integer :: i
+    got = run_case(ideal, [character(len=long) :: 'mechanism.rod_mass=0', 'mechanism.rod_inertia=0', 'mechanism.gravity=0', &
+      'initial.crank_speed=200', 'guide.coefficient=0.3', 'guide.v0=0', 'guide.v1=1e-6', 'integrator.revolutions=1', &
+      'output.samples_per_revolution=360'])
+    q = values_of(got, 'crank_angle[rad]')
+    guide = values_of(got, 'guide_force[N]')
+    friction = values_of(got, 'guide_friction_force[N]')
+    worst = 0
+    do i = 1, size(q)
+      sine = r*sin(q(i))/l
+      cosine = sqrt(1 - sine**2)
+      rate = r*cos(q(i))*speed/(l*cosine)
+      x_rate = -r*sin(q(i))*speed - l*sine*rate
+      if (abs(x_rate) < 1e-3_dp) cycle
+      x_acceleration = -r*cos(q(i))*speed**2 - l*cosine*rate**2 - l*sine*(l*sine*rate**2 - r*sin(q(i))*speed**2)/(l*cosine)
+      bar = m*x_acceleration/(cosine - mu*sign(1.0_dp, x_rate)*abs(sine)*sign(1.0_dp, x_acceleration))
+      s_over_n = -sine   ! the rod leans to -y of the piston: it presses it there
+      worst = max(worst, abs(guide(i) - bar*s_over_n), abs(friction(i) + mu*abs(bar*sine)*sign(1.0_dp, x_rate)))
+    end do
+    call check%that(size(q) == 361 .and. maxval(abs(friction)) > 20, 'a massless rod runs, with friction')
+    call check%close_to(worst, 0.0_dp, 1e-9_dp, 'normal force and friction of a massless rod [N]')
+  end subroutine massless_rod_with_friction
+
+  !> With ideal pins, a free crank, gravity and heavy bodies: the law of friction holds in every row for the guide's force that Newton
+  !> finds, the energy balances, the piston obeys Newton, and friction takes energy.
+  subroutine friction_of_an_ideal_guide(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: got, without
+    real(dp), allocatable :: v(:), friction(:), normal(:), ramp(:)
+    character(len=long), parameter :: common(5) = [character(len=long) :: 'drive.kind=free', 'mechanism.gravity=50', &
+      'mechanism.gravity_angle_deg=40', 'integrator.relative_tolerance=1e-11', 'mechanism.crank_inertia=1e-3']
+    got = run_case(ideal, [common, [character(len=long) :: 'guide.coefficient=0.2', 'guide.v0=0.01', 'guide.v1=0.5', &
+      'guide.viscous=3']])
+    without = run_case(ideal, common)
+    v = values_of(got, 'piston_velocity[m/s]')
+    normal = values_of(got, 'guide_force[N]')
+    friction = values_of(got, 'guide_friction_force[N]')
+    ramp = min(1.0_dp, max(0.0_dp, (abs(v) - 0.01_dp)/0.49_dp))
+    call check%close_to(maxval(abs(friction + sign(0.2_dp*ramp*abs(normal), v) + 3*v)), 0.0_dp, 1e-9_dp, &
+      'friction by law and normal force [N]')
+    call check%close_to(maxval(abs(0.14_dp*(values_of(got, 'piston_acceleration[m/s2]') + 50*cos(40*degree)) &
+      + values_of(got, 'pin_force_x[N]') - friction)), 0.0_dp, 1e-9_dp, 'Newton along the cylinder [N]')
+    call check%close_to(maxval(abs(values_of(got, 'frame_force_x[N]') - values_of(got, 'crank_bearing_force_x[N]') - friction)), &
+      0.0_dp, 1e-9_dp, 'the frame takes the friction [N]')
+    call check%close_to(got%report%figures%max_energy_residual/got%report%figures%max_energy, 0.0_dp, 1e-10_dp, &
+      'energy residual of friction on an ideal guide')
+    associate (speed => column(got, 'crank_speed[rad/s]'), last => size(got%values, 2))
+      call check%that(got%values(speed, last) < 0.99_dp*without%values(speed, last), 'friction slows the crank')
+    end associate
+  end subroutine friction_of_an_ideal_guide
+
+  !> With clearance at the piston pin the normal force is the pin's across, also where the pin's surfaces stick.
+  subroutine friction_follows_the_law_of_the_pin(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: got
+    character(len=*), parameter :: cases(3) = [character(len=40) :: 'cases/flores/friction_050.nml', &
+      'cases/friction/coulomb_static.nml', 'cases/joints/both_pins.nml']
+    integer :: i
+    do i = 1, size(cases)
+      got = run_case(trim(cases(i)), [character(len=long) :: 'drive.kind=free', 'mechanism.gravity_angle_deg=70', &
+        'mechanism.gravity=30', 'integrator.revolutions=0.5', 'guide.law=threlfall', 'guide.coefficient=0.1', 'guide.v1=0.1', &
+        'integrator.relative_tolerance=1e-10'])
+      associate (normal => values_of(got, 'guide_force[N]'), v => values_of(got, 'piston_velocity[m/s]'))
+        call check%close_to(maxval(abs(values_of(got, 'guide_friction_force[N]') + 0.1_dp*(1 - exp(-3*min(1.0_dp, abs(v)/0.1_dp))) &
+          *sign(abs(normal), v)))/maxval(abs(normal)), 0.0_dp, 1e-9_dp, trim(cases(i))//': friction by law and normal force')
+      end associate
+      call check%close_to(got%report%figures%max_energy_residual/got%report%figures%max_energy, 0.0_dp, 1e-8_dp, &
+        trim(cases(i))//': energy residual with friction on the guide')
+    end do
+  end subroutine friction_follows_the_law_of_the_pin
+
+  !> Corners by turning a rectangle, the gap by their distance from the wall; rates by differences.
+  subroutine corners_are_where_they_are(check)
+    class(checks_t), intent(inout) :: check
+    type(piston_guide_t) :: guide
+    type(corner_t) :: now(n_corners), later(n_corners)
+    type(tilting_t) :: at
+    real(dp) :: y, h(4), b(4), worst
+    real(dp), parameter :: tilt = 0.03_dp, offset = 2e-4_dp, dt = 1e-6_dp
+    integer :: i
+    guide%clearance = 1e-3_dp
+    guide%radius = 0.025_dp
+    guide%height = [0.05_dp, -0.04_dp]
+    at%offset = offset
+    at%tilt = tilt
+    at%offset_rate = 0.7_dp
+    at%tilt_rate = -3
+    call guide%place_corners(at, now)
+    h = [0.05_dp, -0.04_dp, 0.05_dp, -0.04_dp]
+    b = [0.025_dp, 0.025_dp, -0.025_dp, -0.025_dp]
+    worst = 0
+    do i = 1, 4
+      y = offset + h(i)*sin(tilt) + b(i)*cos(tilt)
+      worst = max(worst, abs((0.026_dp - sign(y, y*b(i))) + now(i)%depth))
+    end do
+    call check%close_to(worst, 0.0_dp, 1e-16_dp, 'gaps of the corners [m]')
+    at%offset = offset + at%offset_rate*dt
+    at%tilt = tilt + at%tilt_rate*dt
+    call guide%place_corners(at, later)
+    call check%close_to(maxval(abs((later%depth - now%depth)/dt - now%depth_rate)), 0.0_dp, 1e-5_dp, 'rates of the gaps [m/s]')
+  end subroutine corners_are_where_they_are
+
+  !> A corner hits the wall alone, and gives back the coefficient of restitution, the nearer the stiffer it is: the time in
+  !> contact, in which everything else pulls on it, falls with the root of the stiffness.
+  subroutine one_impact_gives_back_its_share(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: got
+    character(len=long) :: stiffness
+    real(dp) :: miss(4)
+    integer :: i, k
+    do k = 1, 4
+      write (stiffness, '(a,i0)') 'guide.stiffness=1e', 4 + 2*k
+      got = run_case(slap, [character(len=long) :: stiffness, 'initial.piston_tilt=0.015', 'initial.piston_tilt_rate=0', &
+        'integrator.relative_tolerance=1e-10', 'integrator.end_time=0.004', 'guide.coefficient=0'])
+      miss(k) = huge(1.0_dp)
+      do i = 1, size(got%event) - 1
+        if (got%event(i)%kind /= 1) cycle
+        miss(k) = abs(-got%event(i + 1)%normal_speed/got%event(i)%normal_speed - 0.4_dp)
+        call check%that(got%event(i + 1)%kind == 2 .and. got%event(i + 1)%pin == got%event(i)%pin, 'one corner touches alone')
+        call check%that(got%event(i)%pin == n_pins + 1, 'the corner at the top, towards +y')
+        exit
+      end do
+    end do
+    call check%that(miss(4) < 1e-3_dp, 'a stiff corner gives back its coefficient of restitution')
+    do k = 2, 4
+      call check%relative(miss(k)/miss(k - 1), 0.1_dp, 0.35_dp, 'the miss falls with the root of the stiffness')
+    end do
+  end subroutine one_impact_gives_back_its_share
+
+  !> Energy with corners that take none: clearance at the piston pin, pin offset, gravity across, hundreds of events.
+  subroutine energy_of_elastic_corners(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: got
+    real(dp) :: drift(2)
+    integer :: i
+    character(len=long), parameter :: tolerance(2) = [character(len=long) :: 'integrator.relative_tolerance=1e-8', &
+      'integrator.relative_tolerance=1e-10']
+    do i = 1, 2
+      got = run_case('cases/joints/piston_slap.nml', [character(len=long) :: tolerance(i), 'contact.law=hertz', &
+        'friction=none', 'guide.contact_law=hertz', 'guide.coefficient=0', 'guide.exponent=1.5', 'guide.stiffness=1e10', &
+        'integrator.method=adams', 'drive.kind=free', 'guide.viscous=0'])
+      call check%that(size(got%event) > 200, 'elastic corners touch often')
+      drift(i) = got%report%figures%max_energy_residual/got%report%figures%max_energy
+    end do
+    call check%close_to(drift(1), 0.0_dp, 3e-7_dp, 'energy drift of elastic corners at 1e-8')
+    call check%close_to(drift(2), 0.0_dp, 3e-9_dp, 'energy drift of elastic corners at 1e-10')
+  end subroutine energy_of_elastic_corners
+
+  !> With friction and losses at the pin and at the corners, and a ring pack: the energy lost is the work of all these forces.
+  subroutine energy_with_all_losses(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: got
+    integer :: i
+    character(len=long), parameter :: scenes(4) = [character(len=long) :: 'integrator.method=adams', 'integrator.method=radau', &
+      'contact.restitution=0.5', 'joint.clearance=5e-4']
+    do i = 1, size(scenes)
+      got = run_case('cases/joints/piston_slap.nml', [character(len=long) :: 'integrator.relative_tolerance=1e-11', scenes(i), &
+        'drive.kind=free', 'integrator.revolutions=0.5'])
+      associate (energy => values_of(got, 'energy[J]'))
+        call check%that(energy(1) - energy(size(energy)) > 0.02_dp*energy(1), 'losses take energy')
+      end associate
+      call check%close_to(got%report%figures%max_energy_residual/got%report%figures%max_energy, 0.0_dp, 2e-9_dp, &
+        'energy lost is the work of all forces: '//trim(scenes(i)))
+    end do
+  end subroutine energy_with_all_losses
+
+  !> Every row in which a corner is in the wall has a contact there, contacts of each corner begin and end in turn, and they begin
+  !> and end at the wall; corners of both ends that hit it at the same instant are two contacts.
+  subroutine no_event_is_lost(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: got
+    character(len=7) :: name
+    integer :: i, pin, kind
+    got = run_case('cases/joints/piston_slap.nml', [character(len=long) :: 'output.every_step=T', &
+      'guide.contact_law=hertz'])
+    do pin = n_pins + 1, n_pins + n_corners
+      kind = 2
+      do i = 1, size(got%event)
+        if (got%event(i)%pin /= pin) cycle
+        call check%that(got%event(i)%kind /= kind, 'contacts of a corner begin and end in turn')
+        kind = got%event(i)%kind
+      end do
+      write (name, '(a,i0)') 'guide_', pin - n_pins
+      associate (gap => values_of(got, name//'_gap[m]'), force => values_of(got, name//'_force[N]'), &
+          f => got%report%figures%corner(pin - n_pins))
+        call check%that(.not. any(gap < -1e-9_dp .and. .not. abs(force) > 0), 'a corner in the wall is pressed')
+        call check%that(.not. any(gap > 1e-12_dp .and. abs(force) > 0), 'a corner apart is not')
+        call check%that(count(got%event%pin == pin .and. got%event%kind == 1) == f%contacts, 'contacts are counted')
+        call check%that(f%contacts > 0, 'every corner touches')
+        call check%that(f%max_force >= maxval(force) .and. f%max_penetration >= maxval(-gap), 'no row is above the peaks')
+        call check%relative(f%max_penetration, maxval(got%event%max_penetration, got%event%pin == pin), 1e-12_dp, &
+          'the deepest contact is the run''s')
+      end associate
+    end do
+    got = run_case(slap, [character(len=long) :: 'initial.piston_tilt_rate=0', 'integrator.end_time=0.003', &
+      'guide.coefficient=0'])
+    call check%that(got%event(1)%pin + got%event(2)%pin == 2*n_pins + 3 .and. all(got%event(:2)%kind == 1), 'both ends touch')
+    call check%close_to(got%event(2)%time - got%event(1)%time, 0.0_dp, 1e-12_dp, 'at the same instant [s]')
+    call check%relative(got%event(3)%max_normal_force, got%event(4)%max_normal_force, 1e-6_dp, 'and with the same force')
+  end subroutine no_event_is_lost
+
+  !> The same motion by both methods, at ideal and at loose pins.
+  subroutine methods_agree(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: one, other
+    character(len=*), parameter :: common(1) = [character(len=long) :: 'integrator.relative_tolerance=1e-10']
+    integer :: i
+    character(len=*), parameter :: files(2) = [character(len=long) :: slap, 'cases/joints/piston_slap.nml']
+    character(len=*), parameter :: short(2) = [character(len=long) :: 'integrator.end_time=0.004', 'integrator.revolutions=0.1']
+    do i = 1, 2
+      one = run_case(trim(files(i)), [character(len=long) :: common, short(i), 'integrator.method=adams'])
+      other = run_case(trim(files(i)), [character(len=long) :: common, short(i), 'integrator.method=radau'])
+      associate (a => values_of(one, 'piston_offset[m]'), b => values_of(other, 'piston_offset[m]'))
+        call check%that(size(one%event) > 3 .and. size(one%event) == size(other%event), 'both methods find the same events')
+        call check%close_to(maxval(abs(a - b)), 0.0_dp, 1e-4_dp*maxval(abs(a)), trim(files(i))//': Adams and Radau [m]')
+      end associate
+    end do
+  end subroutine methods_agree
+
+  !> A bore without room is an ideal guide.
+  subroutine narrow_bore_is_an_ideal_guide(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: got, want
+    integer :: i
+    real(dp) :: miss(2)
+    character(len=long), parameter :: narrow(2) = [character(len=long) :: 'guide.bore_clearance=1e-5', 'guide.bore_clearance=1e-6']
+    character(len=long), parameter :: common(4) = [character(len=long) :: 'guide.coefficient=0', 'integrator.end_time=0.02', &
+      'initial.piston_tilt_rate=0', 'guide.stiffness=1e10']
+    want = run_case(slap, [character(len=long) :: 'guide=none', 'integrator.end_time=0.02', 'initial.piston_tilt_rate=0', &
+      'integrator.relative_tolerance=1e-10'])
+    do i = 1, 2
+      got = run_case(slap, [common, narrow(i)])
+      associate (a => column(got, 'crank_angle[rad]'), b => column(want, 'crank_angle[rad]'))
+        miss(i) = maxval(abs(got%values(a, :) - want%values(b, :)))
+      end associate
+    end do
+    call check%that(miss(1) < 2e-3_dp .and. miss(2) < 2e-4_dp, 'a narrow bore is nearly an ideal guide')
+  end subroutine narrow_bore_is_an_ideal_guide
+
+  !> The benchmark of Flores, Leine and Glocker (2010) against Siconos, whose walls are rigid: the same motion up to the first impact,
+  !> and near to it after that.
+  subroutine compare_with_siconos(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: got
+    character(len=40), allocatable :: names(:)
+    real(dp), allocatable :: want(:, :)
+    character(len=*), parameter :: methods(2) = [character(len=long) :: 'integrator.method=auto', &
+      'integrator.relative_tolerance=1e-8']
+    integer :: i, before, early
+    call load_table('siconos_guide_clearance.csv', names, want)
+    do i = 1, size(methods)
+      got = run_case(slap, [methods(i)])
+      call check%that(size(got%values, 2) == size(want, 2), 'as many rows as Siconos has')
+      before = count(want(1, :) <= got%event(1)%time)
+      early = count(want(1, :) <= 0.04_dp)
+      call check%that(before > 12, 'the first impact comes late enough')
+      associate (across => values_of(got, 'piston_offset[m]')/1e-3_dp, angle => values_of(got, 'rod_angle[rad]'), &
+          revolutions => values_of(got, 'crank_angle[rad]')/two_pi)
+        call check%close_to(maxval(abs(across(:before) - want(8, :before))), 0.0_dp, 5e-4_dp, 'y/c before the first impact')
+        call check%close_to(maxval(abs(angle(2:before) + want(4, 2:before))), 0.0_dp, 2e-6_dp, &
+          'rod angle before the first impact [rad]')
+        call check%close_to(maxval(abs(revolutions - want(2, :))), 0.0_dp, 0.005_dp, 'crank angle over 0.2 s [revolutions]')
+        call check%close_to(sum(abs(across(:early) - want(8, :early)))/early, 0.0_dp, 0.1_dp, 'y/c over 40 ms, on average')
+      end associate
+    end do
+  end subroutine compare_with_siconos
+
+  subroutine refusals(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: lost = ': must be > 0', needs = ': required with kind = ''clearance'''
+    call refused(slap, 'guide.stiffness=0', 'slider_clearance.nml: &guide stiffness = 0'//lost//' (N/m^exponent)')
+    call refused(slap, 'guide.skirt_top=-1', 'slider_clearance.nml: &guide skirt_top = -1'//lost//' (m)')
+    call refused(ideal, 'guide.kind=clearance', 'ideal.nml: &guide bore_clearance'//needs//' (m)')
+    call refused(ideal, 'guide.bore_clearance=1e-4', 'ideal.nml: &guide bore_clearance = 1e-4: needs kind = ''clearance''; the '// &
+      'default is friction (m)')
+    call refused(ideal, 'guide.v1=0 guide.coefficient=0.1 guide.v0=0', 'ideal.nml: &guide v1 = 0: must be > 0: friction on the '// &
+      'guide is a function of the speed (m/s)')
+    call refused(ideal, 'guide.coefficient=2.2', 'ideal.nml: &guide coefficient = 2.2: friction over normal force must stay < '// &
+      '2.18174, the least of rod_length cos A/(crank_length sin q): more would jam the piston')
+    call refused(ideal, 'initial.piston_tilt=0.1', 'ideal.nml: &initial piston_tilt = 0.1: must be 0 without clearance in the '// &
+      'bore (&guide kind = ''clearance'') (rad)')
+    call refused(slap, 'initial.piston_tilt=2', 'slider_clearance.nml: &initial piston_tilt = 2: must be > -1 and < 1 (rad)')
+    call refused(slap, 'initial.piston_offset=0.03', 'slider_clearance.nml: &initial piston_offset = 0.03: must be shorter '// &
+      'than bore_clearance + piston_radius (m)')
+    call refused(slap, 'initial.piston_tilt=0.9', 'slider_clearance.nml: &initial piston_tilt = 0.9: must not put a corner of '// &
+      'the skirt into the bore''s wall by more than piston_radius (rad)')
+    call refused(ideal, 'guide.law=coulomb', 'ideal.nml: --set guide.law=coulomb: &guide law = coulomb: must be one of '// &
+      'ambrosio, threlfall, brown_mcphee, stribeck')
+
+  contains
+
+    !> A case with overrides, separated by blanks, is refused with this message.
+    subroutine refused(file, overrides, message)
+      character(len=*), intent(in) :: file, overrides, message
+      type(case_t) :: case
+      type(error_t), allocatable :: error
+      character(len=long) :: words(3)
+      integer :: n, first, last
+      n = 0
+      first = 1
+      do while (first <= len(overrides))
+        last = first + index(overrides(first:)//' ', ' ') - 2
+        n = n + 1
+        words(n) = overrides(first:last)
+        first = last + 2
+      end do
+      call read_case(file, words(:n), case, error)
+      call check%that(allocated(error), 'refused: '//overrides)
+      if (.not. allocated(error)) return
+      call check%equal_text(error%message(index(file, '/', back=.true.) + 1:), message, 'message')
+    end subroutine refused
+  end subroutine refusals
+end module test_guide
