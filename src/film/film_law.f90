@@ -43,6 +43,11 @@ module film_law
     procedure, non_overridable :: add_least_film
     procedure, non_overridable :: shear_moment
     procedure, non_overridable :: shear_moment_slopes
+    procedure :: gives_pressure => no
+    procedure :: gives_side_flow => no
+    procedure :: drag_moment => none
+    procedure :: pressure => nowhere
+    procedure :: peak_and_flow => peak_without_flow
     procedure :: table_key => no_key
     procedure :: make_table => no_table
     procedure :: exchange_table => nothing_to_exchange
@@ -116,6 +121,81 @@ contains
       slopes(5) = slopes(5) + drag
     end associate
   end function shear_moment_slopes
+
+  !> Whether the law has a pressure above that at the film's ends, and a flow out of these. The default has neither.
+  pure logical function no(self)
+    class(film_law_t), intent(in) :: self
+    associate (unused => self)
+    end associate
+    no = .false.
+  end function no
+
+  !> Moment of the film on the pin [N m] that the law leaves out of `film_force` where `film_moment` is .false.
+  pure real(dp) function none(self, motion, force)
+    class(film_law_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: force(2)   !! of the film on the pin [N]
+    associate (unused => self, unused_too => motion, also_unused => force)
+    end associate
+    none = 0
+  end function none
+
+  !> Pressure in the middle of the film [Pa], where the law has it in closed form, at the angle theta [rad] from the thinnest place (the
+  !> direction of the eccentricity), x towards y.
+  pure real(dp) function nowhere(self, motion, theta)
+    class(film_law_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: theta
+    associate (unused => self, unused_too => motion, also_unused => theta)
+    end associate
+    nowhere = 0
+  end function nowhere
+
+  !> Largest pressure [Pa], and the flow out of both ends [m^3/s]. The default is the largest of `pressure`.
+  pure subroutine peak_without_flow(self, motion, most, flow)
+    class(film_law_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(out) :: most, flow
+    real(dp) :: eps
+    flow = 0
+    eps = min(norm2(motion%eccentricity)*self%per_clearance, 1 - epsilon(1.0_dp))
+    most = max(largest_pressure(self, motion, 1.0_dp), largest_pressure(self, motion, sqrt((1 - eps)/(1 + eps))))
+  end subroutine peak_without_flow
+
+  !> The largest of `pressure` at angles theta, tan(theta/2) = scale tan(s/2), uniform in s, and round the best of them.
+  pure real(dp) function largest_pressure(self, motion, scale) result(most)
+    class(film_law_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: scale
+    integer, parameter :: first_places = 90, thirds = 40
+    real(dp) :: at(0:3), value
+    integer :: i, best
+    most = -huge(most)
+    best = 0
+    do i = 1, first_places
+      value = at_place(two_pi*i/first_places)
+      if (value > most) best = i
+      most = max(most, value)
+    end do
+    at(0) = two_pi*(best - 1)/first_places
+    at(3) = two_pi*(best + 1)/first_places
+    do i = 1, thirds
+      at(1:2) = at(0) + (at(3) - at(0))*[1, 2]/3
+      if (at_place(at(1)) > at_place(at(2))) then
+        at(3) = at(2)
+      else
+        at(0) = at(1)
+      end if
+    end do
+    most = max(most, at_place(at(1)))
+
+  contains
+
+    pure real(dp) function at_place(s)
+      real(dp), intent(in) :: s
+      at_place = self%pressure(motion, 2*atan2(scale*sin(0.5_dp*s), cos(0.5_dp*s)))
+    end function at_place
+  end function largest_pressure
 
   !> What the law's table is to be of, where it needs one that takes long to make: laws with the same key have the same table.
   !> Somebody may keep it (`exchange_table`) and put it there, with its key in `table_of`, before it is made.

@@ -9,7 +9,8 @@
 !>     tau = atan2(eps, w),  chi = atan2(|T| B (1 + w), B^2 - w T^2)/2 in [0, pi]
 !>
 !> leave two smooth and bounded functions G of tau and chi, even and odd about chi = 0 and pi, which are splines of the fifth
-!> degree here. They depend on L/(2R) and on the cavitation.
+!> degree here. They depend on L/(2R) and on the cavitation. So do two more, even both: the largest pressure over mu R^2/c^2 is
+!> M q^2 G_p, the flow out of both ends over c R^2 is V G_q.
 module film_map
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
@@ -19,7 +20,7 @@ module film_map
   use uniform_spline, only: spline_weights, through_values, through_mirrored, before, after
   implicit none
   private
-  public :: film_map_t, solved_force
+  public :: film_map_t, solved_force, solved_film
 
   type :: film_map_t
     real(dp) :: half_length = 0            !! L/(2R) of the table
@@ -28,9 +29,11 @@ module film_map
     integer :: points = 0                  !! values of the table in each direction; 0: there is none
     real(dp), private :: per_tau = 0, per_chi = 0   !! intervals per radian
     real(dp), allocatable, private :: c(:, :, :)    !! coefficients: of G_r and G_t, by chi, by tau
+    real(dp), allocatable, private :: more(:, :, :) !! the same of G_p and G_q
   contains
     procedure :: build
     procedure :: force
+    procedure :: peak_and_flow
     procedure :: exchange
   end type film_map_t
 
@@ -55,7 +58,7 @@ contains
     self%film_points = film_points
     self%per_tau = (points - 1)/tau_of(last_gap)
     self%per_chi = (points - 1)/pi
-    allocate (g(points, points, 2))   ! by chi, tau
+    allocate (g(points, points, 4))   ! by chi, tau
     done = 0
     stops = .false.
     !$omp parallel do schedule(dynamic)
@@ -72,43 +75,55 @@ contains
     end do
     if (stops) self%points = 0
     if (stops) return
-    if (allocated(self%c)) deallocate (self%c)
-    allocate (self%c(2, 1 - before:points + after, 1 - before:points + after))
-    do k = 1, 2
-      by_chi = through_mirrored(g(:, :, k), merge(1, -1, k == 1))
-      self%c(k, :, :) = transpose(through_values(transpose(by_chi)))
+    call make_room(self)
+    do k = 1, 4
+      by_chi = through_mirrored(g(:, :, k), merge(-1, 1, k == 2))
+      by_chi = transpose(through_values(transpose(by_chi)))
+      if (k <= 2) self%c(k, :, :) = by_chi
+      if (k > 2) self%more(k - 2, :, :) = by_chi
     end do
   end subroutine build
+
+  subroutine make_room(self)
+    class(film_map_t), intent(inout) :: self
+    if (allocated(self%c)) deallocate (self%c, self%more)
+    associate (first => 1 - before, last => self%points + after)
+      allocate (self%c(2, first:last, first:last), self%more(2, first:last, first:last))
+    end associate
+  end subroutine make_room
 
   pure real(dp) function tau_of(gap)
     real(dp), intent(in) :: gap   !! 1 - eps
     tau_of = 0.5_dp*pi - 2*asin(sqrt(0.5_dp*gap))
   end function tau_of
 
-  !> G_r and G_t at one tau, for every chi.
+  !> G_r, G_t, G_p and G_q at one tau, for every chi.
   subroutine solve_row(self, tau, g)
     class(film_map_t), intent(in) :: self
     real(dp), intent(in) :: tau
     real(dp), intent(out) :: g(:, :)
     type(film_solver_t) :: fine, coarse
-    real(dp) :: gap, w, alpha, force(2), s_r, s_t
+    type(film_answer_t) :: film
+    real(dp) :: gap, w, alpha, s_r, s_t
     integer :: j, nodes
 
     gap = 2*sin(0.5_dp*(0.5_dp*pi - tau))**2
     w = cos(tau)
     nodes = nodes_at(self%film_points, gap)
     call begin_pair(nodes, gap, self%half_length, fine, coarse)
-    if (gap >= 1) call extrapolated(fine, coarse, 0.0_dp, self%cavitation, .false., force)
+    if (gap >= 1) call extrapolated(fine, coarse, 0.0_dp, self%cavitation, .false., film)
     do j = 1, self%points
       alpha = direction_at((j - 1)/self%per_chi, w)
       if (gap >= 1) then   ! a centred film: alike in every direction
-        g(j, :) = force(1)*[cos(alpha), sin(alpha)]
+        g(j, :2) = film%force(1)*[cos(alpha), sin(alpha)]
       else
-        call extrapolated(fine, coarse, alpha, self%cavitation, j > 1, force)
-        g(j, :) = force
+        call extrapolated(fine, coarse, alpha, self%cavitation, j > 1, film)
+        g(j, :2) = film%force
       end if
       call find_scales(cos(alpha), sin(alpha), w**2, s_r, s_t)
-      g(j, :) = g(j, :)/[s_r, s_t]
+      g(j, :2) = g(j, :2)/[s_r, s_t]
+      g(j, 3) = film%most/(s_r**2/s_t)
+      g(j, 4) = film%flow
     end do
     g([1, self%points], 2) = 0
   end subroutine solve_row
@@ -134,27 +149,39 @@ contains
     call coarse%begin(nodes/2, along/2, gap, half_length)
   end subroutine begin_pair
 
-  !> The force over mu V L R^3/c^2 from both: errors of the second order cancel.
-  pure subroutine extrapolated(fine, coarse, alpha, cavitation, warm, force)
+  !> The film from both: errors of the second order cancel.
+  pure subroutine extrapolated(fine, coarse, alpha, cavitation, warm, film)
     type(film_solver_t), intent(inout) :: fine, coarse
     real(dp), intent(in) :: alpha
     integer, intent(in) :: cavitation
     logical, intent(in) :: warm
-    real(dp), intent(out) :: force(2)
+    type(film_answer_t), intent(out) :: film
     type(film_answer_t) :: by_fine, by_coarse
     call fine%solve(alpha, cavitation, warm, by_fine)
     call coarse%solve(alpha, cavitation, warm, by_coarse)
-    force = (4*by_fine%force - by_coarse%force)/3
+    film%force = (4*by_fine%force - by_coarse%force)/3
+    film%flow = (4*by_fine%flow - by_coarse%flow)/3
+    film%most = (4*by_fine%most - by_coarse%most)/3
   end subroutine extrapolated
 
   !> The same without a table, for one eccentricity ratio and direction [rad].
+  pure subroutine solved_film(film_points, half_length, cavitation, gap, alpha, film)
+    integer, intent(in) :: film_points, cavitation
+    real(dp), intent(in) :: half_length, gap, alpha
+    type(film_answer_t), intent(out) :: film
+    type(film_solver_t) :: fine, coarse
+    call begin_pair(film_points, gap, half_length, fine, coarse)
+    call extrapolated(fine, coarse, alpha, cavitation, .false., film)
+  end subroutine solved_film
+
+  !> Its force alone, over mu V L R^3/c^2.
   pure subroutine solved_force(film_points, half_length, cavitation, gap, alpha, force)
     integer, intent(in) :: film_points, cavitation
     real(dp), intent(in) :: half_length, gap, alpha
     real(dp), intent(out) :: force(2)
-    type(film_solver_t) :: fine, coarse
-    call begin_pair(film_points, gap, half_length, fine, coarse)
-    call extrapolated(fine, coarse, alpha, cavitation, .false., force)
+    type(film_answer_t) :: film
+    call solved_film(film_points, half_length, cavitation, gap, alpha, film)
+    force = film%force
   end subroutine solved_force
 
   !> Scales of the radial and of the tangential force for the velocity (B, A), A >= 0, not both 0; w2 = 1 - eps^2.
@@ -237,6 +264,31 @@ contains
     if (t < 0) tangential = -tangential
   end subroutine force
 
+  !> Largest pressure over mu R^2/c^2 and flow out of both ends over c R^2 [1/s], as `force`.
+  pure subroutine peak_and_flow(self, eps_squared, b, t, most, flow)
+    class(film_map_t), intent(in) :: self
+    real(dp), intent(in) :: eps_squared, b, t
+    real(dp), intent(out) :: most, flow
+    real(dp) :: w, s_r, s_t, x, y, by_tau(6), line(2, 6), g(2)
+    integer :: i, j, k
+    most = 0
+    flow = 0
+    if (.not. (abs(t) > 0 .or. abs(b) > 0)) return
+    w = sqrt(1 - eps_squared)
+    call find_scales(b, abs(t), w**2, s_r, s_t)
+    x = min(atan2(sqrt(eps_squared), w)*self%per_tau, real(self%points - 1, dp))
+    y = chi_of(b, abs(t), w)*self%per_chi
+    i = min(int(x), self%points - 2)
+    j = min(int(y), self%points - 2)
+    by_tau = spline_weights(x - i)
+    do k = 1, 6
+      line(:, k) = matmul(self%more(:, j + k - before, i + 1 - before:i + 6 - before), by_tau)
+    end do
+    g = matmul(line, spline_weights(y - j))
+    most = g(1)*s_r**2/s_t
+    flow = g(2)*sqrt(b**2 + t**2)
+  end subroutine peak_and_flow
+
   !> The table, to or from an archive.
   subroutine exchange(self, archive)
     class(film_map_t), intent(inout) :: self
@@ -249,12 +301,10 @@ contains
     if (archive%failed .or. self%points < 8) return
     self%per_tau = (self%points - 1)/tau_of(last_gap)
     self%per_chi = (self%points - 1)/pi
-    if (archive%is_reading) then
-      if (allocated(self%c)) deallocate (self%c)
-      allocate (self%c(2, 1 - before:self%points + after, 1 - before:self%points + after))
-    end if
+    if (archive%is_reading) call make_room(self)
     do i = lbound(self%c, 3), ubound(self%c, 3)
       call archive%exchange(self%c(:, :, i))
+      call archive%exchange(self%more(:, :, i))
     end do
   end subroutine exchange
 end module film_map

@@ -32,6 +32,7 @@ module film_transition
     procedure :: begin
     procedure :: weight
     procedure :: film_force
+    procedure :: held_motion
     procedure :: film_derivatives
     procedure :: exchange
   end type film_transition_t
@@ -110,7 +111,7 @@ contains
     class(film_law_t), intent(in) :: film
     type(film_motion_t), intent(in) :: motion
     real(dp), intent(out) :: force(2), moment
-    call film%film_force(held_motion(self, motion), force, moment)
+    call film%film_force(self%held_motion(motion), force, moment)
   end subroutine film_force
 
   !> Its derivatives, as a film law gives them: a film that is held turns with the eccentricity and does not grow with it.
@@ -120,7 +121,7 @@ contains
     type(film_motion_t), intent(in) :: motion
     real(dp), intent(out) :: derivatives(3, 5)
     real(dp) :: distance, along(3)
-    call film%force_derivatives(held_motion(self, motion), derivatives)
+    call film%force_derivatives(self%held_motion(motion), derivatives)
     if (.not. self%film_is_held) return
     associate (e => motion%eccentricity)
       distance = norm2(e)
@@ -132,7 +133,7 @@ contains
 
   !> The motion that the film sees.
   pure type(film_motion_t) function held_motion(self, motion) result(held)
-    type(film_transition_t), intent(in) :: self
+    class(film_transition_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
     held = motion
     if (self%film_is_held) held%eccentricity = motion%eccentricity*(self%film_reach/norm2(motion%eccentricity))

@@ -9,8 +9,8 @@ module finite_bearing
   use gudgeon_bearing, only: bearing_t
   use gudgeon_archive, only: archive_t
   use film_law, only: film_law_t, film_motion_t, table_watch_t
-  use finite_film, only: cavitation_none, cavitation_gumbel, cavitation_reynolds
-  use film_map, only: film_map_t, solved_force
+  use finite_film, only: film_answer_t, cavitation_none, cavitation_gumbel, cavitation_reynolds
+  use film_map, only: film_map_t, solved_force, solved_film
   implicit none
   private
   public :: finite_bearing_t
@@ -25,6 +25,7 @@ module finite_bearing
     type(film_map_t) :: map          !! of the variant `table`; without points the film is solved at every evaluation
     real(dp) :: half_length = 0      !! L/(2R)
     real(dp) :: force_scale = 0      !! mu L R^3/c^2 [N s]
+    real(dp) :: pin_radius = 0       !! R [m]
     integer :: condition = 0         !! the cavitation, as finite_film counts it
   contains
     procedure, nopass :: name
@@ -34,6 +35,11 @@ module finite_bearing
     procedure :: prepare
     procedure :: film_force
     procedure :: reduced_force
+    procedure :: drag_moment
+    procedure :: gives_pressure
+    procedure :: gives_side_flow => gives_pressure
+    procedure :: peak_and_flow
+    procedure :: reduced_peak_and_flow
     procedure :: table_key
     procedure :: make_table
     procedure :: exchange_table
@@ -100,6 +106,7 @@ contains
       self%clearance = c
       self%per_clearance = 1/c
       self%half_length = 0.5_dp*bearing%length/r
+      self%pin_radius = r
       self%force_scale = self%viscosity*bearing%length*r**3/c**2
     end associate
     self%condition = cavitation_reynolds
@@ -141,7 +148,7 @@ contains
     key = ''
     if (self%variant /= 'table') return
     call choose_points(self, tolerance, table_points, film_points)
-    write (text, '(a,es24.16e3,a,i0,a,i0)') 'finite_bearing 2 '//self%cavitation//' ', 0.5_dp*bearing%length/bearing%pin_radius(), &
+    write (text, '(a,es24.16e3,a,i0,a,i0)') 'finite_bearing 3 '//self%cavitation//' ', 0.5_dp*bearing%length/bearing%pin_radius(), &
       ' ', table_points, ' ', film_points
     key = trim(text)
   end function table_key
@@ -173,27 +180,34 @@ contains
     class(finite_bearing_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
     real(dp), intent(out) :: force(2), moment
-    real(dp), parameter :: centred = 1e-200_dp          !! below this square of eps n is the direction of x
-    real(dp), parameter :: largest_square = 1 - 2*epsilon(1.0_dp)
-    real(dp) :: e(2), v(2), n(2), square, eps, radial, tangential
-    e = motion%eccentricity*self%per_clearance
-    v = motion%eccentricity_rate*self%per_clearance
-    v = [v(1) + 0.5_dp*motion%pin_speed*e(2), v(2) - 0.5_dp*motion%pin_speed*e(1)]   ! v*/c
-    square = e(1)**2 + e(2)**2
-    eps = 0
-    n = [1.0_dp, 0.0_dp]
-    if (square > centred) then
-      eps = sqrt(square)
-      n = e/eps
-    end if
-    square = min(square, largest_square)
-    call self%reduced_force(square, n(1)*v(1) + n(2)*v(2), n(1)*v(2) - n(2)*v(1), radial, tangential)
+    real(dp) :: n(2), square, b, t, radial, tangential
+    call reduce(self, motion, n, square, b, t)
+    call self%reduced_force(square, b, t, radial, tangential)
     radial = self%force_scale*radial
     tangential = self%force_scale*tangential
     force = [radial*n(1) - tangential*n(2), radial*n(2) + tangential*n(1)]
     moment = 0
     if (self%film_moment) moment = self%shear_moment(self%force_scale, motion, force)
   end subroutine film_force
+
+  !> The direction n of the eccentricity, the square of its ratio (< 1), and v*/c along n and across [1/s].
+  pure subroutine reduce(self, motion, n, square, b, t)
+    class(finite_bearing_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(out) :: n(2), square, b, t
+    real(dp), parameter :: centred = 1e-200_dp          !! below this square of eps n is the direction of x
+    real(dp), parameter :: largest_square = 1 - 2*epsilon(1.0_dp)
+    real(dp) :: e(2), v(2)
+    e = motion%eccentricity*self%per_clearance
+    v = motion%eccentricity_rate*self%per_clearance
+    v = [v(1) + 0.5_dp*motion%pin_speed*e(2), v(2) - 0.5_dp*motion%pin_speed*e(1)]   ! v*/c
+    square = e(1)**2 + e(2)**2
+    n = [1.0_dp, 0.0_dp]
+    if (square > centred) n = e/sqrt(square)
+    square = min(square, largest_square)
+    b = n(1)*v(1) + n(2)*v(2)
+    t = n(1)*v(2) - n(2)*v(1)
+  end subroutine reduce
 
   !> Force over mu L R^3/c^2 along n and t [1/s] for the velocity (B, T) = v*/c [1/s] at eps^2.
   pure subroutine reduced_force(self, eps_squared, b, t, radial, tangential)
@@ -210,8 +224,61 @@ contains
     v = sqrt(b**2 + t**2)
     if (.not. v > 0) return
     call solved_force(self%film_points, self%half_length, self%condition, &
-      max((1 - eps_squared)/(1 + sqrt(eps_squared)), least_gap), atan2(t, b), force)
+      gap_of(eps_squared), atan2(t, b), force)
     radial = v*force(1)
     tangential = v*force(2)
   end subroutine reduced_force
+
+  !> That of the shear.
+  pure real(dp) function drag_moment(self, motion, force)
+    class(finite_bearing_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: force(2)
+    drag_moment = self%shear_moment(self%force_scale, motion, force)
+  end function drag_moment
+
+  pure logical function gives_pressure(self)
+    class(finite_bearing_t), intent(in) :: self
+    associate (unused => self)
+    end associate
+    gives_pressure = .true.
+  end function gives_pressure
+
+  !> Largest pressure [Pa], and the flow out of both ends [m^3/s].
+  pure subroutine peak_and_flow(self, motion, most, flow)
+    class(finite_bearing_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(out) :: most, flow
+    real(dp) :: n(2), square, b, t
+    call reduce(self, motion, n, square, b, t)
+    call self%reduced_peak_and_flow(square, b, t, most, flow)
+    most = self%force_scale/(2*self%half_length*self%pin_radius**2)*most
+    flow = self%clearance*self%pin_radius**2*flow
+  end subroutine peak_and_flow
+
+  !> The same over mu R^2/c^2 and over c R^2 [1/s], as `reduced_force`.
+  pure subroutine reduced_peak_and_flow(self, eps_squared, b, t, most, flow)
+    class(finite_bearing_t), intent(in) :: self
+    real(dp), intent(in) :: eps_squared, b, t
+    real(dp), intent(out) :: most, flow
+    type(film_answer_t) :: film
+    real(dp) :: v
+    if (self%map%points > 0) then
+      call self%map%peak_and_flow(eps_squared, b, t, most, flow)
+      return
+    end if
+    most = 0
+    flow = 0
+    v = sqrt(b**2 + t**2)
+    if (.not. v > 0) return
+    call solved_film(self%film_points, self%half_length, self%condition, gap_of(eps_squared), atan2(t, b), film)
+    most = v*film%most
+    flow = v*film%flow
+  end subroutine reduced_peak_and_flow
+
+  !> 1 - eps, where the equation is solved.
+  pure real(dp) function gap_of(eps_squared)
+    real(dp), intent(in) :: eps_squared
+    gap_of = max((1 - eps_squared)/(1 + sqrt(eps_squared)), least_gap)
+  end function gap_of
 end module finite_bearing

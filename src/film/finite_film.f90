@@ -1,6 +1,7 @@
 !> The pressure of a film of finite length, and what it does: the solver from which the table of the law `finite_bearing` is made.
 module finite_film
   use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: pi
   use reynolds_grid, only: reynolds_grid_t, new_reynolds_grid
   implicit none
   private
@@ -236,7 +237,7 @@ contains
           answer%force(1) = answer%force(1) - g%width(j)*sum(line*g%sine)
           answer%force(2) = answer%force(2) - g%width(j)*sum(line*g%cosine)
         end if
-        answer%most = max(answer%most, maxval(line))
+        answer%most = max(answer%most, peak_of(g%angle, line))
       end do
       answer%force = answer%force/g%half_length
       do i = 1, g%n   ! `line` is the last one before the end
@@ -246,6 +247,24 @@ contains
       end do
     end associate
   end subroutine sum_up
+
+  !> Largest value of a pressure round the film: of the parabola through the largest node and its neighbours.
+  pure real(dp) function peak_of(angle, pressure) result(peak)
+    real(dp), intent(in) :: angle(:), pressure(:)
+    real(dp) :: left, right, rise, fall, slope, bend
+    integer :: i, n
+    n = size(angle)
+    i = maxloc(pressure, 1)
+    peak = pressure(i)
+    left = modulo(angle(i) - angle(modulo(i - 2, n) + 1), 2*pi)
+    right = modulo(angle(modulo(i, n) + 1) - angle(i), 2*pi)
+    rise = (peak - pressure(modulo(i - 2, n) + 1))/left
+    fall = (peak - pressure(modulo(i, n) + 1))/right
+    bend = (rise + fall)/(left + right)
+    if (.not. bend > 0) return
+    slope = (rise*right - fall*left)/(left + right)
+    peak = peak + slope**2/(4*bend)
+  end function peak_of
 
   !> Integrals of the positive part of a pressure, linear between the nodes of the ring, times cos phi and sin phi.
   pure function positive_force(angle, pressure) result(force)

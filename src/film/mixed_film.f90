@@ -6,12 +6,11 @@ module mixed_film
   use asperities, only: asperities_t
   implicit none
   private
-  public :: mixed_forces, mixed_derivatives
+  public :: mixed_forces, mixed_derivatives, motion_in_gap
 
 contains
 
-  !> The film acts in the mean gap h_T of the surfaces: at the eccentricity ratio 1 - h_T/c, which grows towards 1 as the smooth surfaces
-  !> would touch and pass, with its true turning. Beside it the asperities press the pin to the middle and rub.
+  !> The film acts in the mean gap of the surfaces. Beside it the asperities press the pin to the middle and rub.
   pure subroutine mixed_forces(film, rough, pin_radius, motion, film_force, film_moment, pressing, friction)
     class(film_law_t), intent(in) :: film
     type(asperities_t), intent(in) :: rough
@@ -20,7 +19,34 @@ contains
     real(dp), intent(out) :: film_force(2), film_moment   !! of the film on the pin [N], [N m]
     real(dp), intent(out) :: pressing, friction           !! of the asperities: to the middle, along t [N]
     type(film_motion_t) :: seen
-    real(dp) :: distance, n(2), gap, slope, ratio, radial, tangential, journal_speed, bearing_speed
+    real(dp) :: distance, tangential, journal_speed, bearing_speed
+    call see_gap(film, rough, motion, seen, distance, tangential)
+    journal_speed = 0.5_dp*(motion%pin_speed + motion%turning_speed)
+    bearing_speed = 0.5_dp*(motion%pin_speed - motion%turning_speed)
+    pressing = rough%force(distance)
+    friction = rough%friction_force(tangential + journal_speed*pin_radius - bearing_speed*(distance + pin_radius), pressing)
+    call film%film_force(seen, film_force, film_moment)
+  end subroutine mixed_forces
+
+  !> The motion that the film of rough surfaces sees.
+  pure type(film_motion_t) function motion_in_gap(film, rough, motion) result(seen)
+    class(film_law_t), intent(in) :: film
+    type(asperities_t), intent(in) :: rough
+    type(film_motion_t), intent(in) :: motion
+    real(dp) :: distance, tangential
+    call see_gap(film, rough, motion, seen, distance, tangential)
+  end function motion_in_gap
+
+  !> It is that in the mean gap h_T of the surfaces: at the eccentricity ratio 1 - h_T/c, which grows towards 1 as the smooth surfaces
+  !> would touch and pass, with its true turning.
+  pure subroutine see_gap(film, rough, motion, seen, distance, tangential)
+    class(film_law_t), intent(in) :: film
+    type(asperities_t), intent(in) :: rough
+    type(film_motion_t), intent(in) :: motion
+    type(film_motion_t), intent(out) :: seen
+    real(dp), intent(out) :: distance      !! |e| [m]
+    real(dp), intent(out) :: tangential    !! e' across the eccentricity [m/s]
+    real(dp) :: n(2), gap, slope, ratio, radial
     seen = motion
     associate (e => motion%eccentricity, v => motion%eccentricity_rate)
       distance = sqrt(e(1)**2 + e(2)**2)
@@ -33,13 +59,8 @@ contains
       if (distance > 0) ratio = max(film%clearance - gap, 0.0_dp)/distance
       seen%eccentricity = ratio*e
       seen%eccentricity_rate = slope*radial*n + ratio*tangential*[-n(2), n(1)]
-      journal_speed = 0.5_dp*(motion%pin_speed + motion%turning_speed)
-      bearing_speed = 0.5_dp*(motion%pin_speed - motion%turning_speed)
-      pressing = rough%force(distance)
-      friction = rough%friction_force(tangential + journal_speed*pin_radius - bearing_speed*(distance + pin_radius), pressing)
     end associate
-    call film%film_force(seen, film_force, film_moment)
-  end subroutine mixed_forces
+  end subroutine see_gap
 
   !> Derivatives of the whole force and moment on the pin (rows F_x, F_y, moment) by e_x, e_y, e_x', e_y' and the pin's speed (columns),
   !> by central differences.

@@ -35,6 +35,8 @@ module pinkus_sternlicht
     procedure :: prepare
     procedure :: film_force
     procedure :: force_derivatives
+    procedure :: drag_moment
+    procedure :: gives_pressure
     procedure :: pressure
     procedure, non_overridable :: reduced
   end type pinkus_sternlicht_t
@@ -219,6 +221,21 @@ contains
       tangential(3) = tangential(3) + scale(0)*gap*pi*quotient(0)
     end associate
   end subroutine polar_forces
+
+  !> That of the shear.
+  pure real(dp) function drag_moment(self, motion, force)
+    class(pinkus_sternlicht_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: force(2)
+    drag_moment = self%shear_moment(self%force_scale, motion, force)
+  end function drag_moment
+
+  pure logical function gives_pressure(self)
+    class(pinkus_sternlicht_t), intent(in) :: self
+    associate (unused => self)
+    end associate
+    gives_pressure = .true.
+  end function gives_pressure
 
   !> Pressure of the film [Pa] (5.20), 0 where it would be negative, at the angle theta [rad] from the thinnest place
   !> (the direction of the eccentricity), x towards y:

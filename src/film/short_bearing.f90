@@ -14,6 +14,7 @@ module short_bearing
     procedure :: serves
     procedure :: conflict
     procedure :: reduced_force
+    procedure :: reduced_peak_and_flow
   end type short_bearing_t
 
 contains
@@ -62,6 +63,35 @@ contains
     radial = -4*self%half_length**2*(b*cc + t*cs)
     tangential = -4*self%half_length**2*(b*cs + t*ss)
   end subroutine reduced_force
+
+  !> The largest of 6 lambda^2 cos(phi - alpha)/H^3, and 4 lambda, over V. At the peak d ln P/dphi = 0, that is
+  !> (1 - eps cos phi) sin(phi - alpha) + 3 eps sin phi cos(phi - alpha) = 0; between the end of the positive arc on the thick film's
+  !> side of the thinnest place and that place, or alpha, there is one.
+  pure subroutine reduced_peak_and_flow(self, eps_squared, b, t, most, flow)
+    class(short_bearing_t), intent(in) :: self
+    real(dp), intent(in) :: eps_squared, b, t
+    real(dp), intent(out) :: most, flow
+    real(dp) :: speed, eps, alpha, lower, upper, phi
+    integer :: i
+    most = 0
+    speed = sqrt(b**2 + t**2)
+    flow = 4*self%half_length*speed
+    if (.not. speed > 0) return
+    eps = sqrt(eps_squared)
+    alpha = atan2(abs(t), b)
+    lower = max(alpha - 0.5_dp*pi, 0.0_dp)
+    upper = alpha
+    do i = 1, 200   ! halved until nothing is left between
+      phi = 0.5_dp*(lower + upper)
+      if (.not. (phi > lower .and. phi < upper)) exit
+      if ((1 - eps*cos(phi))*sin(phi - alpha) + 3*eps*sin(phi)*cos(phi - alpha) < 0) then
+        lower = phi
+      else
+        upper = phi
+      end if
+    end do
+    most = speed*6*self%half_length**2*cos(phi - alpha)/(1 - eps + 2*eps*sin(0.5_dp*phi)**2)**3
+  end subroutine reduced_peak_and_flow
 
   !> The brackets above at a = alpha + beyond, `beyond` being pi/2 or 3 pi/2.
   pure function primitives(eps, w, alpha, cos_alpha, sin_alpha, beyond) result(brackets)

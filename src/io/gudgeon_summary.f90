@@ -79,10 +79,10 @@ contains
       call add('max_energy_residual', real_text(f%max_energy_residual), 'J')
       call add('max_energy_residual_relative', real_text(relative_residual(report)), '1')
       if (report%energy_is_poor) call add('energy_warning', quoted(energy_warning(case, report), '"'), '')
-      if (case%joint%has_clearance()) call add_joint('', f%pin(piston_pin))
+      if (case%joint%has_clearance()) call add_joint('', case%joint, f%pin(piston_pin))
       if (case%crank_pin%has_clearance()) then
         call add(name_prefix(crank_pin)//'max_pin_force', real_text(f%pin(crank_pin)%max_force, case%output%digits), 'N')
-        call add_joint(name_prefix(crank_pin), f%pin(crank_pin))
+        call add_joint(name_prefix(crank_pin), case%crank_pin, f%pin(crank_pin))
       end if
       if (case%has_loose_guide()) then
         do corner = 1, n_corners
@@ -100,8 +100,9 @@ contains
   contains
 
     !> What a joint with clearance has, its names after a prefix.
-    subroutine add_joint(prefix, pin)
+    subroutine add_joint(prefix, joint, pin)
       character(len=*), intent(in) :: prefix
+      type(joint_case_t), intent(in) :: joint
       type(pin_figures_t), intent(in) :: pin
       call add(prefix//'min_film_thickness', real_text(pin%min_film_thickness, case%output%digits), 'm')
       call add(prefix//'contacts', integer_text(pin%contacts), '1')
@@ -112,6 +113,7 @@ contains
       call add(prefix//'impacts_beyond_validity', integer_text(pin%impacts_beyond_validity), '1')
       call add(prefix//'contacts_beyond_validity', integer_text(pin%contacts_beyond_validity), '1')
       if (pin%friction_work < huge(pin%friction_work)) call add(prefix//'friction_work', real_text(pin%friction_work), 'J')
+      if (joint%reports_film .and. allocated(joint%film)) call add_film(prefix, joint, pin)
     end subroutine add_joint
 
     !> What a corner of the skirt in the bore has.
@@ -124,6 +126,17 @@ contains
       call add(prefix//'max_penetration', real_text(corner%max_penetration, case%output%digits), 'm')
       call add(prefix//'max_force', real_text(corner%max_force, case%output%digits), 'N')
     end subroutine add_corner
+
+    subroutine add_film(prefix, joint, pin)
+      character(len=*), intent(in) :: prefix
+      type(joint_case_t), intent(in) :: joint
+      type(pin_figures_t), intent(in) :: pin
+      call add(prefix//'film_energy_lost', real_text(pin%film_energy_lost), 'J')
+      if (joint%film%gives_pressure()) &
+        call add(prefix//'max_film_pressure', real_text(pin%max_film_pressure, case%output%digits), 'Pa')
+      if (joint%film%gives_side_flow() .and. report%figures%time > 0) &
+        call add(prefix//'mean_film_side_flow', real_text(pin%film_volume/report%figures%time), 'm3/s')
+    end subroutine add_film
 
     subroutine add(quantity, value, unit)
       character(len=*), intent(in) :: quantity, value, unit

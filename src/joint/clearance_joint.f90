@@ -55,6 +55,7 @@ module clearance_joint
     integer :: n_friction_states = 0        !! of the friction law
     type(slice_t) :: friction_states        !! where they stand
     logical :: reports_friction_work = .false.   !! integrate it, also where the friction law has no states
+    logical :: reports_film = .false.       !! its figures are in the summary
     type(slice_t) :: friction_work          !! where the work of friction stands, if anywhere [J]
     logical :: has_own_rates = .false.      !! one of these
     integer :: phase = phase_free

@@ -5,6 +5,7 @@ module joint_columns
   use chain_motion, only: piston_pin, name_prefix
   use joint_motion, only: joint_motion_t
   use clearance_joint, only: clearance_joint_t, joint_loads_t, phase_contact, phase_film
+  use film_figures, only: film_figures_t, film_figures_of, film_moment
   implicit none
   private
   public :: put_joint_columns
@@ -45,18 +46,32 @@ contains
         call row%put('sliding_speed[m/s]', motion%sliding_speed)
       end if
       if (joint%film%film_moment) call row%put('film_moment[N.m]', film_moment(joint, loads))
+      call put_film_figures(joint, motion, loads, row)
     end if
     row%place = ''
   end subroutine put_joint_columns
 
-  !> Moment of the film's shear on the journal [N m]: what friction has no part in.
-  pure real(dp) function film_moment(joint, loads)
+  !> The columns of a film that take more work than its force, each only where the case names it.
+  pure subroutine put_film_figures(joint, motion, loads, row)
     type(clearance_joint_t), intent(in) :: joint
+    type(joint_motion_t), intent(in) :: motion
     type(joint_loads_t), intent(in) :: loads
-    logical :: has_film
-    has_film = joint%phase == phase_film
-    if (allocated(joint%transition)) has_film = .not. joint%transition%film_is_gone
-    film_moment = 0
-    if (has_film) film_moment = loads%moment - loads%friction_force*joint%pin_radius
-  end function film_moment
+    type(trace_row_t), intent(inout) :: row
+    type(film_figures_t) :: figures
+    integer :: columns
+    columns = 1
+    if (.not. joint%film%film_moment) columns = columns + 1
+    if (joint%film%gives_pressure()) columns = columns + 1
+    if (joint%film%gives_side_flow()) columns = columns + 1
+    if (row%wants(columns)) then
+      figures = film_figures_of(joint, motion, loads)
+    else if (.not. row%is_naming) then
+      call row%skip(columns)
+      return
+    end if
+    if (.not. joint%film%film_moment) call row%put_on_request('film_moment[N.m]', figures%moment)
+    call row%put_on_request('film_power[W]', figures%power)
+    if (joint%film%gives_pressure()) call row%put_on_request('max_film_pressure[Pa]', figures%max_pressure)
+    if (joint%film%gives_side_flow()) call row%put_on_request('film_side_flow[m3/s]', figures%side_flow)
+  end subroutine put_film_figures
 end module joint_columns

@@ -24,8 +24,11 @@ module trace_row
     logical :: wanted(most_columns)             !! columns whose values the trace has
     real(dp) :: values(most_columns)            !! of the columns so far (without an initial value, which every row would pay for)
     character(len=name_length), allocatable :: names(:)   !! in the pass that collects them
+    logical, allocatable :: on_request(:)       !! then: columns that are not standard
   contains
     procedure, non_overridable :: put
+    procedure, non_overridable :: put_on_request
+    procedure, non_overridable :: skip
     procedure, non_overridable :: wants
     procedure, non_overridable :: collect_names
     procedure, non_overridable :: choose
@@ -40,6 +43,7 @@ contains
     self%is_naming = .true.
     self%wanted = .false.
     allocate (self%names(most_columns))
+    allocate (self%on_request(most_columns), source=.false.)
   end subroutine collect_names
 
   !> Begin a row of the trace.
@@ -66,6 +70,22 @@ contains
       self%values(self%n) = value
     end if
   end subroutine put
+
+  !> The next column, which a trace has only if the case names it.
+  pure subroutine put_on_request(self, name, value)
+    class(trace_row_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
+    real(dp), intent(in) :: value
+    call self%put(name, value)
+    if (self%is_naming) self%on_request(self%n) = .true.
+  end subroutine put_on_request
+
+  !> Pass over the next `count` columns, none of which is in the trace. Not while names are collected.
+  pure subroutine skip(self, count)
+    class(trace_row_t), intent(inout) :: self
+    integer, intent(in) :: count
+    self%n = self%n + count
+  end subroutine skip
 
   !> Whether one of the next `count` columns is in the trace. While names are collected none is.
   pure logical function wants(self, count)

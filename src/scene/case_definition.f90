@@ -55,6 +55,7 @@ module case_definition
     logical :: reports_friction_work = .false.
     class(film_law_t), allocatable :: film
     type(film_transition_t) :: transition
+    logical :: reports_film = .false.
     type(asperities_t), allocatable :: asperities
   contains
     procedure :: parameters => joint_parameters
@@ -186,7 +187,7 @@ contains
     call joint%parameters(list)
     call visit_contact(joint%contact, place, list)
     call visit_friction(joint%friction, joint%reports_friction_work, place, list)
-    call visit_film(joint%film, joint%transition, place, list)
+    call visit_film(joint%film, joint%transition, joint%reports_film, place, list)
     call visit_asperities(joint%asperities, place, list)
   end subroutine visit_joint
 
@@ -244,14 +245,16 @@ contains
     end select
   end subroutine visit_friction
 
-  subroutine visit_film(law, transition, place, list)
+  subroutine visit_film(law, transition, reports, place, list)
     class(film_law_t), allocatable, intent(inout) :: law
     type(film_transition_t), intent(inout) :: transition
+    logical, intent(inout) :: reports
     character(len=*), intent(in) :: place
     class(parameter_list_t), intent(inout) :: list
     call list%group('lubrication', 'oil film in the clearance: leave the group out for a dry joint', .true., place)
     call list%choice('law', 'pinkus_sternlicht', 'journal bearing or oscillating film')
     call transition%parameters(list)
+    call list%add('report', reports, 'energy lost in it, largest pressure and mean side flow in the summary', '.false.')
     call offer_film_laws(list)
     if (.not. list%sets) return
     if (allocated(law)) deallocate (law)
@@ -413,8 +416,8 @@ contains
       default='0.0')
     call list%add('interval', self%interval, 'between rows; 0: samples_per_revolution counts', 's', '> 0', default='0.0')
     call list%add('start_time', self%start_time, 'of the first row', 's', '>= 0', default='0.0')
-    call list%text('columns', self%columns, '''standard'', or names of columns without their units, with commas', 'standard', &
-      many=.true.)
+    call list%text('columns', self%columns, '''standard'', names of columns without their units, or both, with commas', &
+      'standard', many=.true.)
     call list%add('digits', self%digits, 'significant, of every number in a trace; 17 read back exactly', '>= 9 and <= 17', '10')
     call list%add('every_step', self%every_step, 'a row also at each step of the integrator', '.false.')
     call list%add('ideal_twin', self%ideal_twin, 'run the same scene with an ideal joint too', '.false.')

@@ -33,15 +33,17 @@ contains
     call row%collect_names()
     call put_columns(scene, 0.0_dp, nothing, 0.0_dp, 0.0_dp, row)
     list%names = row%names(:row%n)
-    allocate (wanted(row%n), source=.true.)
-    if (case%output%columns /= 'standard') call read_names(case%output%columns, list%names, ideal_joint, wanted, error)
+    allocate (wanted(row%n), source=.not. row%on_request(:row%n))
+    if (case%output%columns /= 'standard') &
+      call read_names(case%output%columns, list%names, row%on_request(:row%n), ideal_joint, wanted, error)
     list%id = pack([(i, i=1, row%n)], wanted)
   end subroutine choose_columns
 
-  !> Mark the columns named in a text such as 'time, crank_angle'.
-  subroutine read_names(text, names, ignores_missing, wanted, error)
+  !> Mark the columns named in a text such as 'time, crank_angle' or 'standard, film_power'.
+  subroutine read_names(text, names, on_request, ignores_missing, wanted, error)
     character(len=*), intent(in) :: text
     character(len=name_length), intent(in) :: names(:)   !! of the scene
+    logical, intent(in) :: on_request(:)   !! those that are not standard
     logical, intent(in) :: ignores_missing
     logical, intent(out) :: wanted(:)
     type(error_t), allocatable, intent(out) :: error
@@ -56,7 +58,8 @@ contains
       if (comma == 0) exit
       name = trim(adjustl(rest(:comma - 1)))
       rest = rest(comma + 1:)
-      found = ignores_missing
+      found = ignores_missing .or. name == 'standard'
+      if (name == 'standard') wanted = wanted .or. .not. on_request
       do i = 1, size(names)
         if (name /= names(i) .and. name /= names(i)(:scan(names(i), '[') - 1)) cycle
         found = .true.

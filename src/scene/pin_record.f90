@@ -8,6 +8,7 @@ module pin_record
   use step_peaks, only: peak_watch_t, of_pin_force, of_penetration, of_normal_force, n_peaks
   use cycle_watch, only: cycle_watch_t
   use trace_sink, only: trace_event_t
+  use film_figures, only: film_figures_t, film_figures_of
   use run_figures, only: run_figures_t
   implicit none
   private
@@ -20,6 +21,8 @@ module pin_record
     real(dp) :: deepest = huge(1.0_dp)         !! largest penetration that its geometry is meant for [m]
     type(trace_event_t), private :: contact    !! the present or the last one
     type(peak_watch_t), private :: peaks
+    logical, private :: reports_film = .false.
+    real(dp), private :: film_time = 0         !! up to which its film has been summed up [s]
   contains
     procedure, non_overridable :: prepare
     procedure, non_overridable :: begin
@@ -44,6 +47,7 @@ contains
     self%peaks%pin = self%pin
     self%peaks%joint = self%joint
     if (self%joint == 0) return
+    self%reports_film = scene%joints(self%joint)%reports_film
     if (.not. allocated(scene%joints(self%joint)%contact)) return
     associate (geometry => scene%joints(self%joint)%contact%geometry)
       self%validity_limit = geometry%fastest_impact()
@@ -100,7 +104,40 @@ contains
     figures%evaluations = figures%evaluations + (self%peaks%evaluations - before)
     figures%peak_evaluations = figures%peak_evaluations + (self%peaks%evaluations - before)
     call put_values(self, touches, largest, figures, cycles)
+    if (self%reports_film) call sum_film(self, method, scene, t, now, figures)
   end subroutine search
+
+  !> What the film does from where it was left to t: the rule of Gauss with three points.
+  subroutine sum_film(self, method, scene, t, now, figures)
+    class(pin_record_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t
+    type(evaluation_t), intent(in) :: now
+    type(run_figures_t), intent(inout) :: figures
+    real(dp), parameter :: place(3) = 0.5_dp + sqrt(0.15_dp)*[-1, 0, 1], weight(3) = [5, 8, 5]/18.0_dp
+    type(evaluation_t) :: inside_step
+    type(film_figures_t) :: film
+    real(dp) :: y(size(method%y)), span
+    logical :: inside
+    integer :: i
+    span = t - self%film_time
+    associate (f => figures%pin(self%pin), joint => scene%joints(self%joint), k => self%joint)
+      do i = 1, merge(3, 0, span > 0)
+        call method%interpolate(self%film_time + place(i)*span, y)
+        call scene%evaluate(self%film_time + place(i)*span, y, inside_step, inside)
+        figures%evaluations = figures%evaluations + 1
+        if (.not. inside) cycle
+        film = film_figures_of(joint, inside_step%relative(k), inside_step%joint(k))
+        f%film_energy_lost = f%film_energy_lost + weight(i)*span*film%power
+        f%film_volume = f%film_volume + weight(i)*span*film%side_flow
+        f%max_film_pressure = max(f%max_film_pressure, film%max_pressure)
+      end do
+      film = film_figures_of(joint, now%relative(k), now%joint(k))
+      f%max_film_pressure = max(f%max_film_pressure, film%max_pressure)
+    end associate
+    self%film_time = t
+  end subroutine sum_film
 
   !> The quantities that have peaks in one evaluation, for the run, for the present contact and, where it is given, for the present
   !> revolution.
@@ -110,7 +147,11 @@ contains
     type(evaluation_t), intent(in) :: now
     type(run_figures_t), intent(inout) :: figures
     type(cycle_watch_t), intent(inout), optional :: cycles
+    type(film_figures_t) :: film
     call put_values(self, self%is_touching(scene), self%peaks%values(now), figures, cycles)
+    if (.not. self%reports_film) return
+    film = film_figures_of(scene%joints(self%joint), now%relative(self%joint), now%joint(self%joint))
+    figures%pin(self%pin)%max_film_pressure = max(figures%pin(self%pin)%max_film_pressure, film%max_pressure)
   end subroutine take_values
 
   subroutine put_values(self, touches, values, figures, cycles)
@@ -169,5 +210,6 @@ contains
     type(archive_t), intent(inout) :: archive
     call self%contact%exchange(archive)
     call self%peaks%exchange(archive)
+    call archive%exchange(self%film_time)
   end subroutine exchange
 end module pin_record

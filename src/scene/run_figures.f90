@@ -18,6 +18,9 @@ module run_figures
     real(dp) :: max_entry_penetration = 0     !! penetration at the beginning of a contact [m]
     real(dp) :: max_force = 0                 !! size of the joint's force on the pin [N]
     real(dp) :: min_film_thickness = huge(1.0_dp)  !! c - |e| [m]
+    real(dp) :: film_energy_lost = 0          !! of the bodies, by a film whose figures are asked for [J]
+    real(dp) :: film_volume = 0               !! that has left it at its ends [m^3]
+    real(dp) :: max_film_pressure = 0         !! [Pa]
     real(dp) :: friction_work = huge(1.0_dp)  !! of friction on the bodies so far [J]; huge: it is not integrated
   contains
     procedure :: exchange => exchange_pin
@@ -81,5 +84,8 @@ contains
     call archive%exchange(self%max_force)
     call archive%exchange(self%min_film_thickness)
     call archive%exchange(self%friction_work)
+    call archive%exchange(self%film_energy_lost)
+    call archive%exchange(self%film_volume)
+    call archive%exchange(self%max_film_pressure)
   end subroutine exchange_pin
 end module run_figures

@@ -184,6 +184,7 @@ contains
       allocate (joint%transition, source=wanted%transition)
     if (allocated(wanted%asperities)) allocate (joint%asperities, source=wanted%asperities)
     joint%reports_friction_work = wanted%reports_friction_work
+    joint%reports_film = wanted%reports_film .and. allocated(wanted%film)
   end subroutine build_joint
 
   !> Time to simulate [s], as far as the case tells: revolutions take what they do at the starting speed, and so, for the time

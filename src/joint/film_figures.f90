@@ -1,0 +1,68 @@
+!> What a film does in a joint beyond its force: moment, power, largest pressure, flow out of its ends. It takes work that the right-hand
+!> side does not need: it is found where somebody asks for it.
+module film_figures
+  use gudgeon_kinds, only: dp
+  use film_law, only: film_motion_t
+  use joint_motion, only: joint_motion_t
+  use clearance_joint, only: clearance_joint_t, joint_loads_t, phase_contact, phase_film
+  use chain_loads, only: bearing_moment
+  use mixed_film, only: motion_in_gap
+  implicit none
+  private
+  public :: film_figures_t, film_figures_of, film_moment
+
+  type :: film_figures_t
+    real(dp) :: moment = 0        !! on the pin about its centre, whether or not the case lets the shear act [N m]
+    real(dp) :: power = 0         !! taken from the bodies by the film's force and that moment [W]
+    real(dp) :: max_pressure = 0  !! [Pa]
+    real(dp) :: side_flow = 0     !! out of both ends [m^3/s]
+  end type film_figures_t
+
+contains
+
+  !> Those of a joint with a film; all 0 while it does not act. Where film and contact share the load they are its share.
+  pure type(film_figures_t) function film_figures_of(joint, motion, loads) result(figures)
+    type(clearance_joint_t), intent(in) :: joint
+    type(joint_motion_t), intent(in) :: motion
+    type(joint_loads_t), intent(in) :: loads
+    type(film_motion_t) :: seen
+    real(dp) :: share
+    share = film_share(joint, motion)
+    if (.not. share > 0) return
+    seen%eccentricity = motion%eccentricity
+    seen%eccentricity_rate = motion%eccentricity_rate
+    seen%pin_speed = motion%journal_speed + motion%bearing_speed
+    seen%turning_speed = motion%journal_speed - motion%bearing_speed
+    if (allocated(joint%asperities)) seen = motion_in_gap(joint%film, joint%asperities, seen)
+    if (allocated(joint%transition)) seen = joint%transition%held_motion(seen)
+    figures%moment = film_moment(joint, loads)
+    if (.not. joint%film%film_moment) &
+      figures%moment = figures%moment + share*joint%film%drag_moment(seen, loads%film/share)
+    figures%power = -(dot_product(loads%film, motion%eccentricity_rate) + figures%moment*motion%journal_speed &
+      + bearing_moment(motion%eccentricity, loads%film, figures%moment)*motion%bearing_speed)
+    if (.not. joint%film%gives_pressure()) return
+    call joint%film%peak_and_flow(seen, figures%max_pressure, figures%side_flow)
+    figures%max_pressure = share*figures%max_pressure
+    figures%side_flow = share*figures%side_flow
+  end function film_figures_of
+
+  !> The part of the whole film that acts.
+  pure real(dp) function film_share(joint, motion)
+    type(clearance_joint_t), intent(in) :: joint
+    type(joint_motion_t), intent(in) :: motion
+    film_share = merge(1.0_dp, 0.0_dp, joint%phase == phase_film)
+    if (.not. allocated(joint%transition) .or. joint%phase /= phase_contact) return
+    if (.not. joint%transition%film_is_gone) film_share = 1 - joint%contact_weight(motion%penetration)
+  end function film_share
+
+  !> Moment on the journal [N m] of a film's shear that acts: what friction has no part in.
+  pure real(dp) function film_moment(joint, loads)
+    type(clearance_joint_t), intent(in) :: joint
+    type(joint_loads_t), intent(in) :: loads
+    logical :: has_film
+    has_film = joint%phase == phase_film
+    if (allocated(joint%transition)) has_film = .not. joint%transition%film_is_gone
+    film_moment = 0
+    if (has_film) film_moment = loads%moment - loads%friction_force*joint%pin_radius
+  end function film_moment
+end module film_figures
