@@ -4,7 +4,7 @@ module joint_columns
   use trace_row, only: trace_row_t
   use chain_motion, only: piston_pin, name_prefix
   use joint_motion, only: joint_motion_t
-  use clearance_joint, only: clearance_joint_t, joint_loads_t, phase_contact, phase_film
+  use clearance_joint, only: clearance_joint_t, joint_loads_t, phase_contact
   use film_figures, only: film_figures_t, film_figures_of, film_moment
   implicit none
   private
