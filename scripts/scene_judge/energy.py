@@ -7,7 +7,7 @@ import math
 
 from .mechanics import Row
 from .quadrature import Stencil, integral, stencils
-from .rows import CONTACT, RowChecks
+from .rows import CONTACT, LEAST_BEND, RowChecks
 from .trace import Run
 
 SAFETY = 4.0   # the difference of two quadratures bounds the error of the better one where the rows resolve the motion; where
@@ -149,7 +149,7 @@ def balances(checks: RowChecks) -> Balances:
         rates |= {f"crank_pin_eccentricity_{axis}": f"crank_pin_eccentricity_rate_{axis}" for axis in "xy"}
     found.drift, found.drift_bound, found.worst = worst_drift(run, rates, stencil)
     for joint in (checks, checks.crank_pin):
-        if joint and joint.friction and joint.friction.has_bristles:
+        if joint and joint.friction and joint.friction.has_bristles and joint.friction.gives_way >= LEAST_BEND:
             drift = bristle_drift(joint, pieces)
             if not drift[0] <= found.drift:
                 found.drift, found.drift_bound, found.worst = drift

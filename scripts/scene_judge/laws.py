@@ -23,6 +23,7 @@ class Friction:
         self.v0, self.v1 = self.number("v0"), self.number("v1")
         self.has_bristles = self.law in ("lugre", "dahl", "elasto_plastic")
         self.stiffness = self.number("bristle_stiffness")
+        self.gives_way = self.static / self.stiffness if self.has_bristles else 0.0   # deflection at break-away [m]
         self.elastic = self.number("breakaway_ratio", 0.7) * self.coefficient / self.stiffness if self.has_bristles else 0.0
         self.coulomb = self.law == "coulomb" or self.law == "ambrosio" and self.v1 <= 0
         self.grip = {"ambrosio": self.ramp, "threlfall": self.eased, "brown_mcphee": self.peaked, "stribeck": self.falling}.get(self.law)

@@ -13,6 +13,7 @@ FREE, FILM, CONTACT = 0, 1, 2
 SUM = 1e-9        # of a sum's terms: what may be left of one that vanishes
 LAW = 1e-6        # of a force: what a law may be missed by, beyond the rounding of the speeds it was given
 STICKS = 10       # tolerances of the speeds: how fast surfaces that stick may seem to slide
+LEAST_BEND = 5e-9  # [m] bristles that give way sooner do so within a step: rows between the steps cannot tell how
 BENT = 1000       # tolerances of the static friction: what bristles may be bent beyond it in rows between the steps
 
 
@@ -160,6 +161,8 @@ class RowChecks:
             bent = self.friction.stiffness * abs(get["bristle"])
             low, high = self.friction.bristle_range(get["sliding_speed"], get["bristle"], 10 * give)
             self.take("friction law", inside(friction, low * normal, high * normal), LAW * normal * (bent + abs(low) + abs(high)) + 1e-300, t)
+            if self.friction.gives_way < LEAST_BEND:
+                return
             self.take("bristles bent by static friction", max(0.0, bent - self.friction.static),
                       BENT * self.run.number("integrator.relative_tolerance") * self.friction.static, t)
             return

@@ -18,7 +18,7 @@ module auto_method
   integer, parameter :: first_patience = 40    !! steps bound by stability, more than not, before Radau takes over
   real(dp), parameter :: adams_price = 1.3_dp  !! of Adams where it is bound, in evaluations per 1/rate of the fastest mode
   real(dp), parameter :: step_overhead = 5     !! of a Radau step, Jacobian and algebra, in evaluations
-  real(dp), parameter :: most_loss = 150       !! by Radau in a mode, in evaluations, before Adams is back
+  real(dp), parameter :: most_loss = 80       !! by Radau in a mode, in evaluations, before Adams is back
 
   type, extends(ode_method_t) :: auto_t
     private
@@ -127,7 +127,7 @@ contains
     status = step_done
     associate (mode => self%mode)
       if (self%stiff .and. self%loss(mode) > most_loss) then
-        self%patience(mode) = 2*self%patience(mode)
+        self%patience(mode) = 4*self%patience(mode)
         call change_over(self, problem, .false., status)
       else if (.not. self%stiff .and. self%bound >= self%patience(mode)) then
         self%loss(mode) = 0
