@@ -33,6 +33,7 @@ module film_law
     real(dp) :: per_clearance = 1             !! 1/c [1/m]
     logical :: needs_ideal_motion = .false.   !! whether the ideal_* fields and the frequency are read
     logical :: film_moment = .false.          !! its shear acts on the pin
+    real(dp) :: viscosity = 0                 !! mu, dynamic [Pa s], > 0
     real(dp) :: least_film_ratio = 0          !! the film is taken no thinner than this part of the clearance, where it is held [-]
     logical :: singular_at_wall = .true.      !! the force is infinite at |e| = c: the state may not reach it
     character(len=100) :: table_of = ''       !! the `table_key` of the table that the law has; empty: it has none
@@ -40,6 +41,8 @@ module film_law
     procedure(prepare), deferred :: prepare
     procedure(film_force), deferred :: film_force
     procedure :: force_derivatives => difference_derivatives
+    procedure, non_overridable :: add_viscosity
+    procedure :: take_oil
     procedure, non_overridable :: add_least_film
     procedure, non_overridable :: shear_moment
     procedure, non_overridable :: shear_moment_slopes
@@ -81,6 +84,24 @@ module film_law
   end interface
 
 contains
+
+  !> The viscosity, which every law has, unless an oil at a temperature gives it.
+  subroutine add_viscosity(self, list)
+    class(film_law_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%add('viscosity', self%viscosity, 'dynamic viscosity, required unless viscosity_law gives it', 'Pa s', '> 0', &
+      default='0.0', example='0.0117')
+  end subroutine add_viscosity
+
+  !> The viscosity of an oil, before the law is prepared.
+  subroutine take_oil(self, viscosity, kinematic_viscosity)
+    class(film_law_t), intent(inout) :: self
+    real(dp), intent(in) :: viscosity             !! [Pa s]
+    real(dp), intent(in) :: kinematic_viscosity   !! [m^2/s]
+    associate (unused => kinematic_viscosity)
+    end associate
+    self%viscosity = viscosity
+  end subroutine take_oil
 
   !> The parameter that says where a film is held, with any law that can be.
   subroutine add_least_film(self, list)

@@ -19,7 +19,6 @@ module finite_bearing
 
   type, extends(film_law_t) :: finite_bearing_t
     character(len=:), allocatable :: variant, cavitation
-    real(dp) :: viscosity = 0        !! mu [Pa s], > 0
     integer :: table_points = 0      !! values of the table in each direction; 0: from the tolerance
     integer :: film_points = 0       !! nodes round the film where it is solved; 0: from the tolerance
     type(film_map_t) :: map          !! of the variant `table`; without points the film is solved at every evaluation
@@ -68,7 +67,7 @@ contains
       'table: made once, then fast; direct: solved at every evaluation; short: Ocvirk''s closed form', example='table')
     call list%word('cavitation', self%cavitation, 'reynolds, gumbel, none', 'reynolds', &
       'where the pressure would be negative: reynolds: the film ruptures with pressure and slope 0; gumbel: it is cut off')
-    call list%add('viscosity', self%viscosity, 'dynamic viscosity', 'Pa s', '> 0', example='0.0117')
+    call self%add_viscosity(list)
     call list%add('film_moment', self%film_moment, 'its shear turns the pin; not given: .true. of finite_bearing, else .false.', &
       '.true.')
     call list%add('table_points', self%table_points, &

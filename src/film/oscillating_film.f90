@@ -22,7 +22,6 @@ module oscillating_film
     integer :: quadrature_points = 0      !! round the film; 0: what the tolerance asks for
     type(oscillating_response_t) :: response
     real(dp) :: pin_radius = 0            !! R [m]
-    real(dp) :: viscosity = 0             !! mu [Pa s]
     real(dp) :: kinematic_viscosity = 0   !! nu [m^2/s]
     real(dp) :: inertia_scale = 0         !! c^2/(4 nu), Q over the frequency [s]
     real(dp) :: largest_ratio = 1         !! eccentricity ratio beyond which the film does not change: the film of real surfaces is
@@ -33,6 +32,7 @@ module oscillating_film
     procedure, nopass :: name
     procedure :: parameters
     procedure :: prepare
+    procedure :: take_oil
     procedure :: film_force
     procedure :: phasors
     procedure, non_overridable :: surface_speed
@@ -52,12 +52,20 @@ contains
     class(parameter_list_t), intent(inout) :: list
     call list%word('variant', self%variant, 'bearing_frame, as_printed', 'bearing_frame', &
       'the frame of the fluid''s acceleration')
-    call list%add('viscosity', self%viscosity, 'dynamic viscosity', 'Pa s', '> 0', example='0.0117')
-    call list%add('kinematic_viscosity', self%kinematic_viscosity, 'kinematic viscosity', 'm^2/s', '> 0', example='1.38e-5')
+    call self%add_viscosity(list)
+    call list%add('kinematic_viscosity', self%kinematic_viscosity, &
+      'kinematic viscosity, required unless viscosity_law gives it', 'm^2/s', '> 0', default='0.0', example='1.38e-5')
     call list%add('quadrature_points', self%quadrature_points, '0: chosen from the tolerance', '>= 4 and <= 1000000', &
       default='0')
     call self%add_least_film(list)
   end subroutine parameters
+
+  subroutine take_oil(self, viscosity, kinematic_viscosity)
+    class(oscillating_film_t), intent(inout) :: self
+    real(dp), intent(in) :: viscosity, kinematic_viscosity
+    self%viscosity = viscosity
+    self%kinematic_viscosity = kinematic_viscosity
+  end subroutine take_oil
 
   !> The scales, and the response of the film, whose means are finer than the run by `mean_margin`. The variant `as_printed` has
   !> the acceleration terms of (5.4), with the rod's length as their L.

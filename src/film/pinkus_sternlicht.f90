@@ -24,7 +24,6 @@ module pinkus_sternlicht
   !> The closed form of the force (5.34-5.37).
   type, extends(film_law_t) :: pinkus_sternlicht_t
     character(len=:), allocatable :: variant   !! closed_form, as_printed or (half_film_t) half_film
-    real(dp) :: viscosity = 0        !! mu [Pa s], > 0
     real(dp) :: pressure_scale = 0   !! mu R^2/c^2 [Pa s], R of the pin
     real(dp) :: force_scale = 0      !! mu w R^3/c^2 [N s]
     real(dp) :: withdrawal_sign = 1  !! factor of the radial force for eps_dot < 0: 1 corrected, -1 as printed
@@ -62,7 +61,7 @@ contains
     class(parameter_list_t), intent(inout) :: list
     call list%word('variant', self%variant, 'closed_form, as_printed, half_film', 'closed_form', &
       'how its pressure is integrated', example='closed_form')
-    call list%add('viscosity', self%viscosity, 'dynamic viscosity', 'Pa s', '> 0', example='0.0117')
+    call self%add_viscosity(list)
     call list%add('film_moment', self%film_moment, 'its shear turns the pin; not given: .true. of finite_bearing, else .false.', &
       '.false.', example='.false.')
     call self%add_least_film(list)

@@ -112,6 +112,8 @@ contains
       end if
       return
     end if
+    if (allocated(joint%film)) call check_oil(joint, law_group(values, 'lubrication', place), values, error)
+    if (allocated(error)) return
     if (joint%clearance <= 0) then
       call values%refuse(group, 'clearance', needed(group, 'clearance', values, 'with kind = ''clearance'''), error)
     else if (joint%bearing_radius <= 0) then
@@ -133,6 +135,35 @@ contains
     if (.not. allocated(error) .and. allocated(joint%film)) &
       call check_transition(joint, law_group(values, 'lubrication', place), values, error)
   end subroutine check_joint
+
+  !> The film has its viscosity from one source.
+  subroutine check_oil(joint, group, values, error)
+    type(joint_case_t), intent(in) :: joint
+    character(len=*), intent(in) :: group   !! of the film
+    type(case_values_t), intent(in) :: values
+    type(error_t), allocatable, intent(out) :: error
+    character(len=*), parameter :: names(2) = [character(len=19) :: 'viscosity', 'kinematic_viscosity']
+    character(len=:), allocatable :: key, wanted
+    integer :: i, place
+    logical :: is_said
+    do i = 1, size(names)
+      place = find_key(values%keys, group, trim(names(i)))
+      is_said = values%is_said(place)
+      if (joint%oil%is_known() .and. is_said) then
+        call values%refuse(group, trim(names(i)), 'must not be given where viscosity_law = '''//joint%oil%law//''' gives it', error)
+      else if (.not. joint%oil%is_known() .and. values%is_used(place) .and. .not. is_said) then
+        call values%refuse(group, trim(names(i)), needed(group, trim(names(i)), values, &
+          adjustl(values%by_law(values%keys(place)))), error)
+      end if
+      if (allocated(error)) return
+    end do
+    if (joint%oil%is_known()) then
+      call joint%oil%conflict(key, wanted)
+      if (key /= '') call values%refuse(group, key, wanted, error)
+    else if (joint%oil%temperature > 0 .and. .not. values%is_given(group, 'viscosity_law')) then
+      call values%refuse(group, 'temperature', 'needs viscosity_law = ''walther'' or ''vogel''; the default is given', error)
+    end if
+  end subroutine check_oil
 
   !> Film and contact that share the load are both there, and share it over a depth.
   subroutine check_transition(joint, own, values, error)
@@ -276,7 +307,7 @@ contains
     character(len=*), intent(in) :: group, name, why
     type(case_values_t), intent(in) :: values
     character(len=:), allocatable :: wanted
-    wanted = 'required '//why
+    wanted = trim('required '//why)
     if (values%is_given(group, name)) wanted = 'must be > 0'
   end function needed
 

@@ -29,6 +29,7 @@ module case_values
     procedure :: check        !! required keys and ranges
     procedure :: check_required
     procedure :: check_absent
+    procedure :: by_law       !! which law wants a key
     procedure :: is_used      !! the law that the case names has this key
     procedure :: check_range  !! the range of one key
     procedure :: is_in_range
@@ -272,7 +273,7 @@ contains
       if (.not. key%required .or. self%values(place)%given(1)) return
       group = find_group(self%groups, trim(key%group))
       if (self%is_present(group)) then
-        call fail(error, self%file//': '//shown_group(trim(key%group))//' '//trim(key%name)//': required'//by_law(self, key)// &
+        call fail(error, self%file//': '//shown_group(trim(key%group))//' '//trim(key%name)//': required'//self%by_law(key)// &
                   unit_of(key), status_case_file)
       else if (.not. self%groups(group)%is_model) then
         call fail(error, self%file//': '//shown_group(trim(key%group))//': this group is required', status_case_file)

@@ -104,6 +104,8 @@ contains
       character(len=*), intent(in) :: prefix
       type(joint_case_t), intent(in) :: joint
       type(pin_figures_t), intent(in) :: pin
+      if (allocated(joint%film) .and. joint%oil%is_known()) &
+        call add(prefix//'viscosity', real_text(joint%oil%dynamic_viscosity(), case%output%digits), 'Pa s')
       call add(prefix//'min_film_thickness', real_text(pin%min_film_thickness, case%output%digits), 'm')
       call add(prefix//'contacts', integer_text(pin%contacts), '1')
       if (report%figures%time > 0) &

@@ -16,6 +16,7 @@ module case_definition
   use film_law, only: film_law_t
   use films, only: offer_film_laws
   use film_transition, only: film_transition_t
+  use oil_viscosity, only: oil_t
   use asperities, only: asperities_t
   use gas_cycle, only: gas_cycle_t
   implicit none
@@ -56,6 +57,7 @@ module case_definition
     class(film_law_t), allocatable :: film
     type(film_transition_t) :: transition
     logical :: reports_film = .false.
+    type(oil_t) :: oil
     type(asperities_t), allocatable :: asperities
   contains
     procedure :: parameters => joint_parameters
@@ -187,7 +189,7 @@ contains
     call joint%parameters(list)
     call visit_contact(joint%contact, place, list)
     call visit_friction(joint%friction, joint%reports_friction_work, place, list)
-    call visit_film(joint%film, joint%transition, joint%reports_film, place, list)
+    call visit_film(joint%film, joint%transition, joint%oil, joint%reports_film, place, list)
     call visit_asperities(joint%asperities, place, list)
   end subroutine visit_joint
 
@@ -245,14 +247,16 @@ contains
     end select
   end subroutine visit_friction
 
-  subroutine visit_film(law, transition, reports, place, list)
+  subroutine visit_film(law, transition, oil, reports, place, list)
     class(film_law_t), allocatable, intent(inout) :: law
     type(film_transition_t), intent(inout) :: transition
+    type(oil_t), intent(inout) :: oil
     logical, intent(inout) :: reports
     character(len=*), intent(in) :: place
     class(parameter_list_t), intent(inout) :: list
     call list%group('lubrication', 'oil film in the clearance: leave the group out for a dry joint', .true., place)
     call list%choice('law', 'pinkus_sternlicht', 'journal bearing or oscillating film')
+    call oil%parameters(list)
     call transition%parameters(list)
     call list%add('report', reports, 'energy lost in it, largest pressure and mean side flow in the summary', '.false.')
     call offer_film_laws(list)

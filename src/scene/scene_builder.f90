@@ -179,7 +179,10 @@ contains
     joint%pin_radius = joint%bearing%pin_radius()
     if (allocated(wanted%contact)) allocate (joint%contact, source=wanted%contact)
     if (allocated(wanted%friction)) allocate (joint%friction, source=wanted%friction)
-    if (allocated(wanted%film)) allocate (joint%film, source=wanted%film)
+    if (allocated(wanted%film)) then
+      allocate (joint%film, source=wanted%film)
+      if (wanted%oil%is_known()) call joint%film%take_oil(wanted%oil%dynamic_viscosity(), wanted%oil%kinematic_viscosity())
+    end if
     if (allocated(wanted%film) .and. allocated(wanted%contact) .and. wanted%transition%is_weighted()) &
       allocate (joint%transition, source=wanted%transition)
     if (allocated(wanted%asperities)) allocate (joint%asperities, source=wanted%asperities)

@@ -1,0 +1,141 @@
+!> The viscosity of an oil at the temperature of the film, from two that its data sheet gives.
+!>
+!> walther (ASTM D341): lg lg Z = A - B lg T, Z = nu + 0.7 + exp(-1.47 - 1.84 nu - 0.51 nu^2), nu in mm^2/s, T in K, for 0.21 mm^2/s
+!> and more. vogel: nu = a exp(b/(T - T0)), T0 = 178.15 K (-95 degrees C) unless given (Cameron 1966). The density follows the temperature
+!> as that of lubricating oils (ASTM D1250, table 54D): rho = rho_15 exp(-k (1 + 0.8 k)), k = 0.6278 (T - 288.15)/rho_15 in kg/m^3.
+module oil_viscosity
+  use gudgeon_kinds, only: dp
+  use gudgeon_parameters, only: has_parameters_t, parameter_list_t
+  implicit none
+  private
+  public :: oil_t
+
+  type, extends(has_parameters_t) :: oil_t
+    character(len=:), allocatable :: law      !! given, walther or vogel
+    real(dp) :: temperature = 0               !! T, of the film [K]
+    real(dp) :: known_temperatures(2) = 0     !! [K]
+    real(dp) :: known_viscosities(2) = 0      !! kinematic, at these temperatures [m^2/s]
+    real(dp) :: density = 0                   !! rho_15, at 288.15 K [kg/m^3]
+    real(dp) :: vogel_temperature = 0         !! T0 [K]
+  contains
+    procedure :: parameters
+    procedure :: is_known
+    procedure :: conflict
+    procedure :: kinematic_viscosity
+    procedure :: density_at
+    procedure :: dynamic_viscosity
+  end type oil_t
+
+  real(dp), parameter :: mm2 = 1e-6_dp   !! [m^2]
+  real(dp), parameter :: density_temperature = 288.15_dp   !! 15 degrees C [K]
+
+contains
+
+  subroutine parameters(self, list)
+    class(oil_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    character(len=*), parameter :: temperatures = '>= 200 and <= 700'
+    call list%word('viscosity_law', self%law, 'given, walther, vogel', 'given', &
+      'given: as viscosity says; walther (ASTM D341), vogel: at the film''s temperature')
+    call list%add('temperature', self%temperature, 'of the film', 'K', temperatures, default='0.0')
+    call list%add('known_temperatures', self%known_temperatures, 'where the oil''s viscosity is known, as 313.15, 373.15', 'K', &
+      temperatures, default='0.0')
+    call list%add('known_viscosities', self%known_viscosities, 'kinematic, at these two temperatures', 'm^2/s', '> 0', &
+      default='0.0')
+    call list%add('density', self%density, 'of the oil at 288.15 K (15 degrees C)', 'kg/m^3', '>= 500 and <= 2000', default='0.0')
+    call list%add('vogel_temperature', self%vogel_temperature, 'vogel: where the viscosity would be infinite', 'K', '>= 0', &
+      default='178.15')
+  end subroutine parameters
+
+  !> Whether the viscosity follows from that of the oil.
+  pure logical function is_known(self)
+    class(oil_t), intent(in) :: self
+    is_known = .false.
+    if (allocated(self%law)) is_known = self%law /= 'given'
+  end function is_known
+
+  !> What does not fit between the parameters of an oil: the key of the wrong one and what is wanted of it. An empty key means that all
+  !> is well.
+  pure subroutine conflict(self, key, wanted)
+    class(oil_t), intent(in) :: self
+    character(len=:), allocatable, intent(out) :: key, wanted
+    real(dp), parameter :: thinnest = 0.21_dp*mm2
+    key = ''
+    if (.not. self%temperature > 0) then
+      key = 'temperature'
+      wanted = 'required with viscosity_law = '''//self%law//''''
+    else if (.not. minval(self%known_temperatures) > 0) then
+      key = 'known_temperatures'
+      wanted = 'required with viscosity_law = '''//self%law//''''
+    else if (.not. minval(self%known_viscosities) > 0) then
+      key = 'known_viscosities'
+      wanted = 'required with viscosity_law = '''//self%law//''''
+    else if (.not. self%density > 0) then
+      key = 'density'
+      wanted = 'required with viscosity_law = '''//self%law//''''
+    else if (.not. abs(self%known_temperatures(2) - self%known_temperatures(1)) >= 1) then
+      key = 'known_temperatures'
+      wanted = 'must be 1 K apart or more'
+    else if (.not. (self%known_viscosities(2) - self%known_viscosities(1)) &
+             *(self%known_temperatures(2) - self%known_temperatures(1)) < 0) then
+      key = 'known_viscosities'
+      wanted = 'must be smaller at the higher temperature'
+    else if (self%law == 'walther' .and. minval(self%known_viscosities) < thinnest) then
+      key = 'known_viscosities'
+      wanted = 'must be >= 2.1e-7 with viscosity_law = ''walther'''
+    else if (self%law == 'vogel' .and. &
+             self%vogel_temperature > min(minval(self%known_temperatures), self%temperature) - 10) then
+      key = 'vogel_temperature'
+      wanted = 'must be 10 K or more below temperature and known_temperatures'
+    end if
+  end subroutine conflict
+
+  !> nu at the film's temperature [m^2/s].
+  pure real(dp) function kinematic_viscosity(self) result(nu)
+    class(oil_t), intent(in) :: self
+    real(dp) :: x(2), logs(2), b
+    if (self%law == 'walther') then
+      x = log(self%known_temperatures)
+      logs = [log(log(z_of(self%known_viscosities(1)/mm2))), log(log(z_of(self%known_viscosities(2)/mm2)))]
+      b = (logs(2) - logs(1))/(x(2) - x(1))
+      nu = mm2*viscosity_of(exp(exp(logs(1) + b*(log(self%temperature) - x(1)))))
+    else
+      x = 1/(self%known_temperatures - self%vogel_temperature)
+      b = log(self%known_viscosities(2)/self%known_viscosities(1))/(x(2) - x(1))
+      nu = self%known_viscosities(1)*exp(b*(1/(self%temperature - self%vogel_temperature) - x(1)))
+    end if
+  end function kinematic_viscosity
+
+  !> Z of a viscosity in mm^2/s.
+  pure real(dp) function z_of(nu)
+    real(dp), intent(in) :: nu
+    z_of = nu + 0.7_dp + exp(-1.47_dp - 1.84_dp*nu - 0.51_dp*nu**2)
+  end function z_of
+
+  !> The viscosity in mm^2/s that has this Z > 1, by Newton's method: Z rises with it everywhere.
+  pure real(dp) function viscosity_of(z) result(nu)
+    real(dp), intent(in) :: z
+    real(dp) :: rest
+    integer :: i
+    nu = max(z - 0.7_dp, 0.1_dp)
+    do i = 1, 30
+      rest = exp(-1.47_dp - 1.84_dp*nu - 0.51_dp*nu**2)
+      nu = nu - (nu + 0.7_dp + rest - z)/(1 - (1.84_dp + 1.02_dp*nu)*rest)
+    end do
+  end function viscosity_of
+
+  !> Density at the film's temperature [kg/m^3].
+  pure real(dp) function density_at(self)
+    class(oil_t), intent(in) :: self
+    real(dp), parameter :: expansion = 0.6278_dp   !! by the density [kg/(m^3 K)]
+    real(dp) :: k
+    k = expansion/self%density*(self%temperature - density_temperature)
+    density_at = self%density*exp(-k*(1 + 0.8_dp*k))
+  end function density_at
+
+  !> mu = rho nu at the film's temperature [Pa s].
+  pure real(dp) function dynamic_viscosity(self)
+    class(oil_t), intent(in) :: self
+    dynamic_viscosity = self%density_at()*self%kinematic_viscosity()
+  end function dynamic_viscosity
+end module oil_viscosity

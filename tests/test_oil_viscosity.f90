@@ -1,0 +1,192 @@
+!> Viscosity of an oil at a temperature: against values worked out at 30 digits from the published equations, and a published example;
+!> in a run; and what a case may not say of it.
+module test_oil_viscosity
+  use, intrinsic :: iso_fortran_env, only: int64
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t
+  use checks, only: checks_t
+  use oil_viscosity, only: oil_t
+  use case_definition, only: case_t
+  use case_file, only: parse_case, read_case
+  use gudgeon_summary, only: summary_table, summary_value
+  use number_text, only: real_text
+  use collecting_sink, only: trace_t, run_case
+  implicit none
+  private
+  public :: run_test_oil_viscosity
+
+  integer, parameter :: long = 60
+  character(len=*), parameter :: vg32 = ' known_temperatures=313.15,373.15 known_viscosities=32e-6,5.4e-6 density=865 '
+
+contains
+
+  subroutine run_test_oil_viscosity(check)
+    class(checks_t), intent(inout) :: check
+    call walther(check)
+    call vogel(check)
+    call density(check)
+    call known_points(check)
+    call every_film(check)
+    call refuses(check)
+  end subroutine run_test_oil_viscosity
+
+  !> An ISO VG 32 oil (32 and 5.4 mm^2/s at 40 and 100 degrees C has 8.5 at 80, as a published table of ASTM D341 says), one of SAE
+  !> 15W-40, and a fuel that is thinner than 2 mm^2/s, where the exponential in Z counts.
+  subroutine walther(check)
+    class(checks_t), intent(inout) :: check
+    type(oil_t) :: oil
+    oil = new_oil('walther', 353.15_dp, [32e-6_dp, 5.4e-6_dp])
+    call check%relative(oil%kinematic_viscosity(), 8.53321469154105e-6_dp, 1e-12_dp, 'ISO VG 32 at 80 degrees C')
+    oil = new_oil('walther', 323.15_dp, [30e-6_dp, 5.23e-6_dp])
+    call check%relative(oil%kinematic_viscosity(), 20.3141340985244e-6_dp, 1e-12_dp, 'a spindle oil at 50 degrees C')
+    oil = new_oil('walther', 453.15_dp, [105e-6_dp, 14e-6_dp])
+    call check%relative(oil%kinematic_viscosity(), 3.60858370848609e-6_dp, 1e-12_dp, 'SAE 15W-40 at 180 degrees C')
+    oil = new_oil('walther', 423.15_dp, [1.8e-6_dp, 0.8e-6_dp])
+    call check%relative(oil%kinematic_viscosity(), 0.50463430301132e-6_dp, 1e-12_dp, 'a fuel at 150 degrees C')
+  end subroutine walther
+
+  !> nu = a exp(b/(T - T0)) by hand: b = 884.038700262919 K.
+  subroutine vogel(check)
+    class(checks_t), intent(inout) :: check
+    type(oil_t) :: oil
+    oil = new_oil('vogel', 453.15_dp, [105e-6_dp, 14e-6_dp])
+    call check%relative(oil%kinematic_viscosity(), 3.74421400399834e-6_dp, 1e-12_dp, 'Vogel''s equation')
+    call check%relative(oil%kinematic_viscosity(), 105e-6_dp*exp(884.038700262919_dp*(1/275.0_dp - 1/135.0_dp)), 1e-12_dp, &
+      'Vogel''s equation by its constant')
+  end subroutine vogel
+
+  !> A lubricating oil of 880 kg/m^3 at 15 degrees C, and mu = rho nu.
+  subroutine density(check)
+    class(checks_t), intent(inout) :: check
+    type(oil_t) :: oil
+    oil = new_oil('walther', 363.15_dp, [105e-6_dp, 14e-6_dp])
+    oil%density = 880
+    call check%relative(oil%density_at(), 832.24422654321_dp, 1e-12_dp, 'density at 90 degrees C')
+    oil = new_oil('walther', 353.15_dp, [32e-6_dp, 5.4e-6_dp])
+    call check%relative(oil%dynamic_viscosity(), 823.67278491013_dp*8.53321469154105e-6_dp, 1e-12_dp, 'dynamic viscosity')
+    oil%temperature = 288.15_dp
+    call check%relative(oil%density_at(), 865.0_dp, 1e-15_dp, 'density where it is known')
+  end subroutine density
+
+  !> Both laws give back what they were given, in either order, and less the hotter the oil.
+  subroutine known_points(check)
+    class(checks_t), intent(inout) :: check
+    character(len=7), parameter :: laws(2) = [character(len=7) :: 'walther', 'vogel']
+    type(oil_t) :: oil
+    real(dp) :: before
+    integer :: i, k
+    do i = 1, 2
+      oil = new_oil(trim(laws(i)), 313.15_dp, [105e-6_dp, 14e-6_dp])
+      call check%relative(oil%kinematic_viscosity(), 105e-6_dp, 1e-12_dp, 'the first known point')
+      oil%temperature = 373.15_dp
+      call check%relative(oil%kinematic_viscosity(), 14e-6_dp, 1e-12_dp, 'the second known point')
+      oil%known_temperatures = oil%known_temperatures([2, 1])
+      oil%known_viscosities = oil%known_viscosities([2, 1])
+      call check%relative(oil%kinematic_viscosity(), 14e-6_dp, 1e-12_dp, 'points in the other order')
+      before = huge(before)
+      do k = 0, 50
+        oil%temperature = 200 + 10*k
+        call check%that(oil%kinematic_viscosity() > 0 .and. oil%kinematic_viscosity() < before, 'a hotter oil is thinner')
+        before = oil%kinematic_viscosity()
+      end do
+    end do
+  end subroutine known_points
+
+  !> A run with an oil is the run with the viscosities that it has then, for every film; the summary says the viscosity.
+  subroutine every_film(check)
+    class(checks_t), intent(inout) :: check
+    character(len=long), parameter :: films(5) = [character(len=long) :: 'lubrication.variant=closed_form', &
+      'lubrication.variant=half_film', 'lubrication.law=oscillating_film', 'lubrication.variant=short', 'lubrication.variant=table']
+    character(len=long) :: oil(13), plain(13), table
+    type(trace_t) :: by_oil, by_hand
+    type(case_t) :: case
+    type(error_t), allocatable :: error
+    integer :: i
+    oil = ''
+    oil(1:10) = [character(len=long) :: 'lubrication.viscosity=0', 'lubrication.viscosity_law=walther', &
+      'lubrication.temperature=353.15', 'lubrication.known_temperatures=313.15,373.15', 'lubrication.density=865', &
+      'lubrication.known_viscosities=32e-6,5.4e-6', 'integrator.revolutions=0.05', 'lubrication.film_points=32', &
+      'lubrication.table_points=17', 'integrator.relative_tolerance=1e-10']
+    oil(13) = 'integrator.method=auto'
+    plain = oil
+    plain(1:6) = [character(len=long) :: 'lubrication.viscosity=7.0285767E-3', 'output.digits=17', 'joint.kind=clearance', &
+      'joint.clearance=20e-6', 'lubrication.kinematic_viscosity=8.53321469154105e-6', 'initial.crank_angle_deg=0']
+    write (plain(1), '(a,es23.16)') 'lubrication.viscosity=', 823.67278491013_dp*8.53321469154105e-6_dp
+    do i = 1, size(films)
+      oil(11) = merge('lubrication.law=finite_bearing   ', 'lubrication.law=pinkus_sternlicht', i >= 4)
+      oil(12) = films(i)
+      if (i == 3) oil(11) = 'lubrication.kinematic_viscosity=0'
+      plain(11:12) = oil(11:12)
+      if (i == 3) plain(11) = 'mechanism.gravity_angle_deg=0'
+      by_oil = run_case('cases/sim_I.nml', oil)
+      by_hand = run_case('cases/sim_I.nml', plain)
+      call check%that(.not. (allocated(by_oil%error) .or. allocated(by_hand%error)), 'runs with an oil: '//films(i))
+      if (allocated(by_oil%error) .or. allocated(by_hand%error)) cycle
+      call check%close_to(maxval(abs(by_oil%values - by_hand%values)/(1 + abs(by_hand%values))), 0.0_dp, 1e-6_dp, &
+        'an oil is its viscosity: '//films(i))
+      if (i > 1) cycle
+      call read_case('cases/sim_I.nml', oil, case, error)
+      table = summary_value(summary_table(case, by_oil%report, 0.0_dp, '0', 1_int64, 1_int64), 'viscosity')
+      call check%equal_text(trim(table), real_text(823.67278491013_dp*8.53321469154105e-6_dp, 10), 'the summary says it')
+      call read_case('cases/sim_I.nml', plain, case, error)
+      table = summary_value(summary_table(case, by_hand%report, 0.0_dp, '0', 1_int64, 1_int64), 'viscosity')
+      call check%equal_text(trim(table), '', 'but not what the case says')
+    end do
+  end subroutine every_film
+
+  subroutine refuses(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: warm = " viscosity_law='walther' temperature=353.15 "
+    call expect(check, vg32//warm, '', 'an oil')
+    call expect(check, '', 'viscosity: required (Pa s)', 'no viscosity')
+    call expect(check, 'viscosity=0', 'viscosity = 0: must be > 0 (Pa s)', 'no viscosity at all')
+    call expect(check, "law='oscillating_film' viscosity=1", &
+      "kinematic_viscosity: required with law = 'oscillating_film' (m^2/s)", 'no kinematic viscosity')
+    call expect(check, vg32//warm//'viscosity=0.01', &
+      "viscosity = 0.01: must not be given where viscosity_law = 'walther' gives it", 'two viscosities')
+    call expect(check, vg32//"viscosity_law='vogel'", "temperature: required with viscosity_law = 'vogel' (K)", 'no temperature')
+    call expect(check, warm//'density=865 known_viscosities=2e-5,1e-5', 'known_temperatures(1): required', 'no temperatures')
+    call expect(check, warm//'density=865 known_temperatures=313.15,373.15', 'known_viscosities(1): required', 'no points')
+    call expect(check, warm//'known_temperatures=313.15,373.15 known_viscosities=2e-5,1e-5', 'density: required', 'no density')
+    call expect(check, warm//'density=865 known_temperatures=313.15,313.2 known_viscosities=2e-5,1e-5', &
+      'known_temperatures(1) = 313.15: must be 1 K apart', 'one point twice')
+    call expect(check, warm//'density=865 known_temperatures=313.15,373.15 known_viscosities=1e-5,2e-5', &
+      'known_viscosities(1) = 1e-5: must be smaller at the higher temperature', 'an oil that thickens')
+    call expect(check, warm//'density=865 known_temperatures=313.15,373.15 known_viscosities=1e-6,1e-7', &
+      'known_viscosities(1) = 1e-6: must be >= 2.1e-7', 'thinner than the standard')
+    call expect(check, vg32//"viscosity_law='walther' temperature=90", &
+      'temperature = 90: must be >= 200 and <= 700 (K)', 'degrees Celsius')
+    call expect(check, vg32//"viscosity_law='vogel' temperature=353.15 vogel_temperature=310", &
+      'vogel_temperature = 310: must be 10 K or more below', 'a pole next to the points')
+    call expect(check, 'viscosity=0.01 temperature=353.15', "temperature = 353.15: needs viscosity_law = 'walther' or 'vogel'", &
+      'a temperature without a law')
+    call expect(check, warm//"viscosity_law='reynolds'", 'viscosity_law', 'an unknown law')
+  end subroutine refuses
+
+  subroutine expect(check, keys, wanted, name)
+    class(checks_t), intent(inout) :: check
+    character(len=*), intent(in) :: keys, wanted, name
+    character(len=*), parameter :: bodies = '&mechanism crank_length=0.05 crank_mass=1 crank_inertia=1 rod_length=0.2 '// &
+      'rod_mass=1 rod_inertia=1 piston_mass=1 / &initial crank_speed=100 / &integrator revolutions=1 / '// &
+      '&joint kind=''clearance'' clearance=20e-6 bearing_radius=10e-3 bearing_length=15e-3 / &lubrication '
+    character(len=1) :: nothing(0)
+    type(case_t) :: case
+    type(error_t), allocatable :: error
+    call parse_case(bodies//keys//' /', 'x.nml', nothing, case, error)
+    call check%that(allocated(error) .neqv. wanted == '', name//' is judged')
+    if (allocated(error)) call check%that(index(error%message, '&lubrication '//wanted) > 0, name//' in words: '//error%message)
+  end subroutine expect
+
+  !> An oil known at 40 and 100 degrees C.
+  pure function new_oil(law, temperature, viscosities) result(oil)
+    character(len=*), intent(in) :: law
+    real(dp), intent(in) :: temperature, viscosities(2)
+    type(oil_t) :: oil
+    oil%law = law
+    oil%temperature = temperature
+    oil%known_temperatures = [313.15_dp, 373.15_dp]
+    oil%known_viscosities = viscosities
+    oil%density = 865
+    oil%vogel_temperature = 178.15_dp
+  end function new_oil
+end module test_oil_viscosity
