@@ -40,6 +40,7 @@ program gudgeon_tests
   use test_number_text, only: run_test_number_text
   use test_number_writer, only: run_test_number_writer
   use test_oscillating_film, only: run_test_oscillating_film
+  use test_periodic, only: run_test_periodic
   use test_pinkus_sternlicht, only: run_test_pinkus_sternlicht
   use test_radau, only: run_test_radau
   use test_reference, only: run_test_reference
@@ -105,6 +106,7 @@ program gudgeon_tests
   call run('number_text', run_test_number_text)
   call run('number_writer', run_test_number_writer)
   call run('oscillating_film', run_test_oscillating_film)
+  call run('periodic', run_test_periodic)
   call run('pinkus_sternlicht', run_test_pinkus_sternlicht)
   call run('radau', run_test_radau)
   call run('reference', run_test_reference)

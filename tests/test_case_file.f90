@@ -171,7 +171,7 @@ contains
   subroutine test_names(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: groups = ' (allowed: case, mechanism, drive, initial, joint, contact, friction, '// &
-      'lubrication, asperities, guide, combustion, integrator, output)'
+      'lubrication, asperities, guide, combustion, run, integrator, output)'
     call refused(check, '&jiont /', 'x.nml:1: &jiont: unknown group; did you mean joint?'//groups)
     call refused(check, '&joint /'//n//'&joint /', 'x.nml:2: &joint: this group stands here twice')
     call refused(check, '&joint'//n//'clearnce=1 /', 'x.nml:2: &joint clearnce: unknown key; did you mean clearance?'//joint_keys)
@@ -438,7 +438,34 @@ contains
                     'x.nml: &integrator revolutions: this or crank_revolutions or end_time is required, > 0')
     call test_turns(check)
     call test_sampling(check)
+    call test_periods(check)
   end subroutine test_ends_of_runs
+
+  !> Runs until the motion repeats.
+  subroutine test_periods(check)
+    class(checks_t), intent(inout) :: check
+    character(len=40), parameter :: until = 'run.until=periodic', window = 'output.window=last_period'
+    call accepted(check, bodies, 'no end but a motion that repeats', [character(len=40) :: until])
+    call refused_on(check, whole, [character(len=40) :: until, 'initial.crank_speed=0'], &
+                    'x.nml: &run until = periodic: needs crank_speed other than 0')
+    call refused_on(check, whole, [character(len=40) :: window], &
+                    'x.nml: &output window = last_period: is for &run until = ''periodic'' alone')
+    call refused_on(check, whole, [character(len=40) :: until, window, 'run.most_revolutions=16'], &
+                    'x.nml: &run most_revolutions = 16: must be > period_revolutions with window = ''last_period''')
+    call refused_on(check, whole, [character(len=40) :: until, window, 'output.start_time=1e-3'], &
+                    'x.nml: &output start_time = 1e-3: must be 0 with window = ''last_period'' (s)')
+    call refused_on(check, whole, [character(len=40) :: 'run.period_revolutions=17'], &
+                    'x.nml: &run period_revolutions = 17: must be >= 1 and <= 16')
+    call refused_on(check, whole, [character(len=40) :: 'run.periodic_tolerance=0'], &
+                    'x.nml: &run periodic_tolerance = 0: must be > 0 and <= 0.1')
+    call refused_on(check, bodies//'&integrator end_time=1 /', [character(len=40) :: 'run.lyapunov_revolutions=10', &
+                    'drive.kind=constant_speed'], &
+                    'x.nml: &run lyapunov_revolutions = 10: needs crank_speed other than 0, and clearance at a joint or a '// &
+                    'free crank')
+    call refused_on(check, whole, [character(len=40) :: until, 'run.most_revolutions=1000000', &
+                    'output.samples_per_revolution=2000'], &
+                    'x.nml: &output samples_per_revolution = 2000: asks for more than 1e9 rows')
+  end subroutine test_periods
 
   !> Rows by crank angle.
   subroutine test_sampling(check)
@@ -508,7 +535,7 @@ contains
       '&friction law=''coulomb'' coefficient=0.3 /'//n//'&drive kind=''constant_speed'' /'
     character(len=*), parameter :: long = 'joint.bearing_length=0.015'
     character(len=*), parameter :: unknown = ' (allowed: case, mechanism, drive, initial, joint, contact, friction, '// &
-      'lubrication, asperities, guide, combustion, integrator, output)'
+      'lubrication, asperities, guide, combustion, run, integrator, output)'
     type(case_t) :: c
     type(error_t), allocatable :: error
     character(len=:), allocatable :: resolved

@@ -87,6 +87,24 @@ check "an ideal crank pin among them, status $status" [ "$status" = 0 ]
 check "has no figures" [ -z "$(named "$work/ideal/pins.runs.csv" 2 'crank_pin_max_pin_force[N]')" ]
 check "the piston pin has" [ -n "$(named "$work/ideal/pins.runs.csv" 2 'max_penetration[m]')" ]
 
+# runs until the motion repeats: its period, its exponent, the statistics of the last period alone
+cp cases/flores/lubricated_400cP.nml "$work/film.nml"
+study periods <<'END'
+&study case = 'film.nml', cycles = T /
+&parameter key = 'joint.clearance', values = 4e-4, 5e-4 /
+END
+run sweep -j 1 -o "$work/periods" -s run.until=periodic -s output.window=last_period -s run.lyapunov_revolutions=5 \
+  -s integrator.method=auto "$work/periods.nml"
+check "runs until they repeat, status $status" [ "$status" = 0 ]
+check "every row has every column" [ "$(awk -F, '{print NF}' "$work/periods/periods.runs.csv" | sort -u)" = 20 ]
+for row in 1 2; do
+  check "run $row repeats every revolution" [ "$(named "$work/periods/periods.runs.csv" $row 'period_revolutions[-]')" = 1 ]
+  check "run $row: neighbours come together" awk -v a="$(named "$work/periods/periods.runs.csv" $row 'lyapunov_exponent[1/revolution]')" \
+    'BEGIN { exit !(a < -5 && a > -15) }'
+  check "run $row: one revolution counts" [ "$(named "$work/periods/periods.runs.csv" $row 'cycles[-]')" = 1 ]
+done
+check "by its number" [ "$(awk -F, 'NR > 1 && $2 < 5' "$work/periods/periods.cycles.csv" | wc -l)" = 0 ]
+
 # what a killed program leaves: whole rows in any order, a torn one, revolutions of a run that has no row
 mkdir "$work/torn"
 cp "$work/one/grid.study.nml" "$work/torn"

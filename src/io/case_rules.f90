@@ -37,6 +37,8 @@ contains
     if (allocated(error)) return
     call check_combustion(c, values, error)
     if (allocated(error)) return
+    call check_periods(c, values, error)
+    if (allocated(error)) return
     call check_run(c, values, error)
     if (allocated(error)) return
     call check_output(c, values, error)
@@ -326,7 +328,7 @@ contains
     type(case_values_t), intent(in) :: values
     type(error_t), allocatable, intent(out) :: error
     associate (run => c%integrator)
-      call values%check_family('integrator', 'revolutions', error)
+      if (.not. c%run%is_until_periodic()) call values%check_family('integrator', 'revolutions', error)
       if (allocated(error)) return
       if (run%revolutions > 0 .and. .not. turns(c)) then
         call values%refuse('integrator', 'revolutions', 'needs crank_speed other than 0; give end_time', error)
@@ -344,6 +346,29 @@ contains
       end if
     end associate
   end subroutine check_run
+
+  !> A run until the motion repeats has a crank that turns, and time to find out.
+  subroutine check_periods(c, values, error)
+    type(case_t), intent(in) :: c
+    type(case_values_t), intent(in) :: values
+    type(error_t), allocatable, intent(out) :: error
+    if (c%run%lyapunov_revolutions > 0) then
+      if (.not. (turns(c) .and. (c%has_play() .or. c%drive%kind == 'free'))) call values%refuse('run', 'lyapunov_revolutions', &
+        'needs crank_speed other than 0, and clearance at a joint or a free crank', error)
+      if (allocated(error)) return
+    end if
+    if (.not. c%run%is_until_periodic()) then
+      if (c%output%window == 'last_period') call values%refuse('output', 'window', 'is for &run until = ''periodic'' alone', error)
+    else if (.not. turns(c)) then
+      call values%refuse('run', 'until', 'needs crank_speed other than 0', error)
+    else if (allocated(c%combustion) .and. c%run%period_revolutions < 2) then
+      call values%refuse('run', 'period_revolutions', 'must be >= 2, what the gas takes to repeat', error)
+    else if (c%output%window == 'last_period' .and. c%output%start_time > 0) then
+      call values%refuse('output', 'start_time', 'must be 0 with window = ''last_period''', error)
+    else if (c%output%window == 'last_period' .and. c%run%most_revolutions <= c%run%period_revolutions) then
+      call values%refuse('run', 'most_revolutions', 'must be > period_revolutions with window = ''last_period''', error)
+    end if
+  end subroutine check_periods
 
   !> Rows have a spacing, and there are not too many of them.
   subroutine check_output(c, values, error)
@@ -364,7 +389,7 @@ contains
       call values%refuse('output', 'interval', 'required with crank_speed = 0', error)
     end if
     if (allocated(error)) return
-    if (c%integrator%end_time > 0 .and. c%output%start_time >= c%integrator%end_time) then
+    if (c%integrator%end_time > 0 .and. c%output%start_time >= c%integrator%end_time .and. .not. c%run%is_until_periodic()) then
       call values%refuse('output', 'start_time', 'must be < end_time', error)
       return
     end if
@@ -375,6 +400,8 @@ contains
     speed = abs(c%initial%crank_speed)
     end_time = c%integrator%end_time
     if (turns(c)) end_time = max(end_time, max(c%integrator%revolutions, c%integrator%crank_revolutions)*two_pi/speed)
+    if (c%run%is_until_periodic()) end_time = c%run%most_revolutions*two_pi/speed
+    if (c%output%window == 'last_period') end_time = c%run%period_revolutions*two_pi/speed
     if (c%output%interval > 0) then
       samples = end_time/c%output%interval
       if (samples > most_samples) call values%refuse('output', 'interval', 'asks for more than 1e9 rows', error)

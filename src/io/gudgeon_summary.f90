@@ -7,6 +7,7 @@ module gudgeon_summary
   use gudgeon_simulation, only: run_report_t
   use run_figures, only: pin_figures_t, corner_figures_t
   use piston_guide, only: n_corners, corner_names
+  use period_watch, only: period_watch_t
   use chain_motion, only: crank_pin, piston_pin, name_prefix
   use case_definition, only: case_t, joint_case_t
   use number_text, only: real_text, short_text
@@ -17,6 +18,7 @@ module gudgeon_summary
   public :: summary_table, summary_value, summary_line, energy_warning, build_advice, relative_residual
 
   character(len=*), parameter :: newline = achar(10)
+  character(len=*), parameter :: no_exponent = 'no Lyapunov exponent: the runs that it is measured with could not go on'
 
 contains
 
@@ -76,6 +78,14 @@ contains
       call add('max_pin_force', real_text(f%pin(piston_pin)%max_force, case%output%digits), 'N')
       call add('crank_revolutions', real_text(f%crank_travel/two_pi), '1')
       if (f%time > 0) call add('mean_crank_speed', real_text(f%crank_travel/f%time), 'rad/s')
+      if (report%periods%is_on) call add_period(report%periods)
+      if (report%exponent%is_known) then
+        call add('lyapunov_exponent', real_text(report%exponent%mean), '1/revolution')
+        call add('lyapunov_exponent_error', real_text(report%exponent%error), '1/revolution')
+        call add('lyapunov_revolutions', integer_text(report%exponent%revolutions), '1')
+      else if (case%run%lyapunov_revolutions > 0 .and. report%status == 'done') then
+        call add('lyapunov_warning', '"'//no_exponent//'"', '')
+      end if
       call add('max_energy_residual', real_text(f%max_energy_residual), 'J')
       call add('max_energy_residual_relative', real_text(relative_residual(report)), '1')
       if (report%energy_is_poor) call add('energy_warning', quoted(energy_warning(case, report), '"'), '')
@@ -98,6 +108,19 @@ contains
     call add('compiler_options', quoted(compiler_options(), '"'), '')
 
   contains
+
+    !> What a run until the motion repeats has found.
+    subroutine add_period(periods)
+      type(period_watch_t), intent(in) :: periods
+      call add('motion', trim(merge('periodic    ', 'not_periodic', periods%period > 0)), '')
+      call add('period_revolutions', integer_text(periods%period), '1')
+      if (periods%period > 0) then
+        call add('periodic_after', integer_text(periods%found_after), '1')
+        call add('period', real_text(periods%duration), 's')
+        call add('periodic_difference', real_text(periods%difference), '1')
+      end if
+      if (periods%window_after >= 0) call add('window_start', real_text(periods%window_start), 's')
+    end subroutine add_period
 
     !> What a joint with clearance has, its names after a prefix.
     subroutine add_joint(prefix, joint, pin)
@@ -230,7 +253,14 @@ contains
     character(len=*), intent(in) :: path   !! of the results, without their endings
     character(len=:), allocatable :: text
     associate (s => report%statistics, f => report%figures)
-      text = case%name//': '//report%status//'; '//short_text(f%time)//' s in '//short_text(wall_time)//' s, '// &
+      text = case%name//': '//report%status//'; '
+      if (report%periods%is_on .and. report%status == 'done') text = text//period_text(report%periods)//'; '
+      if (report%exponent%is_known) then
+        text = text//'Lyapunov exponent '//short_text(report%exponent%mean)//' per revolution; '
+      else if (case%run%lyapunov_revolutions > 0 .and. report%status == 'done') then
+        text = text//no_exponent//'; '
+      end if
+      text = text//short_text(f%time)//' s in '//short_text(wall_time)//' s, '// &
         integer_text(s%accepted)//' steps, '//integer_text(s%evaluations)//' evaluations; '
       text = text//pin_text(case%joint, f%pin(piston_pin))
       if (case%crank_pin%has_clearance()) text = text//'; crank pin: '//pin_text(case%crank_pin, f%pin(crank_pin))
@@ -241,6 +271,21 @@ contains
       text = text//'; '//path//'.csv'
     end associate
   end function summary_line
+
+  !> What it says of a run until the motion repeats.
+  function period_text(periods) result(text)
+    type(period_watch_t), intent(in) :: periods
+    character(len=:), allocatable :: text
+    select case (periods%period)
+    case (0)
+      text = 'not periodic within '//integer_text(periods%most_revolutions)//' revolutions'
+    case (1)
+      text = 'repeats every revolution'
+    case default
+      text = 'repeats every '//integer_text(periods%period)//' revolutions'
+    end select
+    if (periods%period > 0) text = text//', found after '//integer_text(periods%found_after)
+  end function period_text
 
   !> What it says of a pin.
   function pin_text(joint, pin) result(text)

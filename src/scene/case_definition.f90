@@ -6,6 +6,7 @@ module case_definition
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t
   use gudgeon_bearing, only: bearing_t
+  use run_length, only: run_length_t
   use chain_motion, only: crank_pin, piston_pin, pin_names
   use contact_law, only: contact_law_t
   use contact_geometry, only: contact_geometry_t
@@ -83,6 +84,7 @@ module case_definition
     character(len=:), allocatable :: columns   !! 'standard' or column names without units, separated by commas
     integer :: digits = 0                      !! significant digits of the numbers in traces
     logical :: every_step = .false., ideal_twin = .false.
+    character(len=:), allocatable :: window    !! 'all' or 'last_period'
   contains
     procedure :: parameters => output_parameters
   end type output_case_t
@@ -99,6 +101,7 @@ module case_definition
     type(joint_case_t) :: crank_pin    !! of crank and rod
     type(guide_case_t), allocatable :: guide   !! not allocated: an ideal one
     type(gas_cycle_t), allocatable :: combustion
+    type(run_length_t) :: run
     type(integrator_case_t) :: integrator
     type(output_case_t) :: output
   contains
@@ -174,6 +177,8 @@ contains
     end if
     call visit_guide(case%guide, list)
     call visit_gas(case%combustion, list)
+    call list%group('run', 'how long it lasts: until = ''periodic'' stands instead of the end that &integrator gives', .false.)
+    call case%run%parameters(list)
     call list%group('integrator', 'how it is integrated; the run''s end by revolutions, crank_revolutions or end_time', .false.)
     call case%integrator%parameters(list)
     call list%group('output', 'what is written', .false.)
@@ -425,5 +430,7 @@ contains
     call list%add('digits', self%digits, 'significant, of every number in a trace; 17 read back exactly', '>= 9 and <= 17', '10')
     call list%add('every_step', self%every_step, 'a row also at each step of the integrator', '.false.')
     call list%add('ideal_twin', self%ideal_twin, 'run the same scene with an ideal joint too', '.false.')
+    call list%word('window', self%window, 'all, last_period', 'all', &
+      'last_period: of a run until = ''periodic'' rows and events of its last period alone')
   end subroutine output_parameters
 end module case_definition

@@ -18,6 +18,7 @@ module crank_turns
 
   type :: crank_turns_t
     real(dp) :: wanted = 0         !! turns
+    character(len=29) :: key = '&integrator crank_revolutions'   !! that wants them
     integer :: outcome = on_the_way
     real(dp), private :: start_angle = 0
     integer, private :: sense = 0  !! in which the crank turns: 1, -1 or, of a crank that has not left its start yet, 0

@@ -21,14 +21,15 @@ module cycle_watch
 
   !> A watch over one run. It can be used for the next one, and keeps its memory.
   type :: cycle_watch_t
-    integer :: settle = 0                          !! revolutions at the start that are not counted
+    integer :: settle = 0                          !! revolutions at the start that are not to be counted
+    integer :: uncounted = 0                       !! that are not, in the present run
     logical :: keeps_cycles = .false.              !! keep the figures of every revolution counted
     type(cycle_statistics_t) :: statistics         !! of the revolutions counted
     type(cycle_t), allocatable :: cycles(:)        !! them, statistics%cycles of them, where they are kept
     type(column_list_t) :: strobe_list             !! columns to be taken at one angle
     real(dp) :: strobe_angle = 0                   !! that crank angle [rad]
     integer :: most_strobes = 0                    !! how many times, from the first revolution counted on; 0: to the end
-    integer :: strobes = 0                         !! times taken; strobe i is in revolution settle + i
+    integer :: strobes = 0                         !! times taken; strobe i is in revolution uncounted + i
     real(dp), allocatable :: strobe_values(:, :)   !! (columns, strobes)
     real(dp) :: direction = 1                      !! sense in which the crank turns
     type(cycle_t), private :: present
@@ -42,6 +43,7 @@ module cycle_watch
     real(dp), allocatable :: y(:)                  !! state at the end of the present revolution, from `find_end`
   contains
     procedure :: begin
+    procedure :: count_from
     procedure :: find_end
     procedure :: end_cycle
     procedure :: take_strobes
@@ -62,6 +64,7 @@ contains
     real(dp), intent(in) :: initial_energy   !! [J]
     self%statistics = cycle_statistics_t()
     self%present = cycle_t()
+    self%uncounted = self%settle
     self%ended = 0
     self%passed = 0
     self%strobes = 0
@@ -84,6 +87,15 @@ contains
     end if
     if (.not. allocated(self%y)) allocate (self%y(size(y)))
   end subroutine begin
+
+  !> Forget the revolutions so far, and count those after this number of them.
+  pure subroutine count_from(self, revolutions)
+    class(cycle_watch_t), intent(inout) :: self
+    integer, intent(in) :: revolutions
+    self%uncounted = revolutions
+    self%statistics = cycle_statistics_t()
+    self%strobes = 0
+  end subroutine count_from
 
   !> The solution is final up to (t_to, y_to), inside the last step of the method: whether the present revolution `ends` before, and
   !> when. A step may pass several ends: take what is before this one, end the revolution, and ask again.
@@ -121,7 +133,7 @@ contains
     class(cycle_watch_t), intent(in) :: self
     integer, intent(in) :: pin
     real(dp), intent(inout) :: known(n_peaks)   !! huge: not of interest at all
-    if (self%ended < self%settle) return
+    if (self%ended < self%uncounted) return
     associate (c => self%present%pin(pin))
       known(of_pin_force) = min(known(of_pin_force), c%max_force)
       if (known(of_penetration) < huge(known)) known(of_penetration) = min(known(of_penetration), -c%min_film_thickness)
@@ -224,7 +236,7 @@ contains
     self%present%pin%force_integral = force_integral - self%force_integral
     self%present%dissipated_energy = loss - self%loss
     self%ended = self%ended + 1
-    if (self%ended > self%settle) then
+    if (self%ended > self%uncounted) then
       call self%statistics%add(self%present)
       if (self%keeps_cycles) then
         associate (n => self%statistics%cycles)
@@ -252,7 +264,7 @@ contains
     type(evaluation_t) :: now
     logical :: inside
     self%passed = self%passed + 1
-    if (self%passed <= self%settle) return
+    if (self%passed <= self%uncounted) return
     if (self%most_strobes > 0 .and. self%strobes >= self%most_strobes) return
     self%strobes = self%strobes + 1
     if (self%strobes > size(self%strobe_values, 2)) then

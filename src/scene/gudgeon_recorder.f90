@@ -14,6 +14,7 @@ module gudgeon_recorder
   use gudgeon_columns, only: column_list_t, row_values
   use angle_grid, only: angle_grid_t
   use crank_passage, only: find_turning
+  use period_watch, only: period_watch_t
   use cycle_watch, only: cycle_watch_t
   use pin_record, only: pin_record_t
   use guide_record, only: guide_record_t
@@ -29,6 +30,8 @@ module gudgeon_recorder
     type(run_figures_t) :: figures
     class(trace_sink_t), allocatable :: sink
     type(cycle_watch_t), allocatable :: cycles   !! revolution by revolution
+    type(period_watch_t) :: periods   !! whether the motion repeats, where that ends the run
+    type(scene_t), allocatable :: scene_at_end   !! where it does: as it was then
     real(dp) :: first_sample = 0      !! time of the first row [s]
     real(dp) :: interval = 0          !! from row to row [s]
     type(angle_grid_t) :: angles      !! of the rows, where these are not spaced by time
@@ -71,6 +74,8 @@ contains
     call self%guide%prepare(scene)
     allocate (self%y(scene%n), self%values(size(self%list%id)))
     self%keeps_archives = self%sink%keeps_archives .and. .not. allocated(self%cycles)   ! whose state is not put away
+    if (self%periods%is_on) call self%periods%begin(scene)
+    if (self%periods%keeps_one_more) self%first_sample = huge(self%first_sample)        ! until the window begins
   end subroutine prepare
 
   !> Look at the initial state, and write the first row if it is due.
@@ -112,13 +117,16 @@ contains
     class(ode_problem_t), intent(in) :: problem
     real(dp), intent(in) :: t_to
     integer, parameter :: steps_between_reports = 2000
+    real(dp) :: t_end
 
     select type (problem)
     class is (scene_t)
-      if (.not. self%every_step .and. size(self%values) > 0) call put_samples(self, method, problem, t_to)
-      if (t_to < method%t) then
-        call method%interpolate(t_to, self%y)
-        call take_end(self, method, problem, t_to, self%y)
+      t_end = t_to
+      if (self%periods%is_on) call watch_periods(self, method, problem, t_end)
+      if (.not. self%every_step .and. size(self%values) > 0) call put_samples(self, method, problem, t_end)
+      if (t_end < method%t) then
+        call method%interpolate(t_end, self%y)
+        call take_end(self, method, problem, t_end, self%y)
       else
         call take_end(self, method, problem, method%t, method%y)
       end if
@@ -129,9 +137,33 @@ contains
       if (method%statistics%time_limited_by(limit_stability) > 0.5_dp*t_to) call self%sink%take_cost(t_to, method%statistics)
     end if
     call keep_budget(self, method%statistics%evaluations)
-    self%wants_to_stop = self%sink%wants_to_stop .or. self%over_budget
+    self%wants_to_stop = self%sink%wants_to_stop .or. self%over_budget .or. self%periods%has_ended
     self%wants_archive = self%sink%wants_archive
+    if (self%periods%has_ended) self%keeps_archives = .false.
   end subroutine step_taken
+
+  !> Whether the motion repeats: the run may end before t_end, or its window begin.
+  subroutine watch_periods(self, method, scene, t_end)
+    class(recorder_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(inout) :: t_end   !! in: of the last step, as far as it stands
+    call self%periods%follow(method, scene, t_end)
+    if (self%periods%has_ended) then
+      t_end = self%periods%t
+      allocate (self%scene_at_end)
+      self%scene_at_end = scene
+    end if
+    if (t_end < method%t) then
+      call method%interpolate(t_end, self%y)
+      call self%periods%take_point(self%y)
+    else
+      call self%periods%take_point(method%y)
+    end if
+    if (self%periods%window_after < 0 .or. self%first_sample <= self%periods%window_start) return
+    self%first_sample = self%periods%window_start
+    if (allocated(self%cycles)) call self%cycles%count_from(self%periods%window_after)
+  end subroutine watch_periods
 
   !> The rows that are due in the last step, up to t_to.
   subroutine put_samples(self, method, scene, t_to)
@@ -287,6 +319,7 @@ contains
     logical :: inside
     integer :: i
 
+    if (self%periods%has_ended) return
     select type (problem)
     class is (scene_t)
       do i = 1, self%n_pins
@@ -312,6 +345,7 @@ contains
     type(evaluation_t), intent(in) :: now
     type(trace_event_t) :: event
     call pin%take_contact(kind, t, now, self%figures, event, self%cycles)
+    if (self%periods%keeps_one_more .and. self%periods%window_after < 0) return
     call self%sink%take_event(event)
   end subroutine take_contact
 
@@ -371,6 +405,8 @@ contains
     call archive%exchange(self%start_angle)
     call archive%exchange(self%next_row)
     call self%angles%exchange(archive)
+    call self%periods%exchange(archive)
+    call archive%exchange(self%first_sample)
     call archive%exchange(self%steps)
     call archive%exchange(self%evaluations_then)
     call archive%exchange(self%time_then)

@@ -99,6 +99,7 @@ module gudgeon_scene
     procedure :: speed_scale
     procedure :: joint_at
     procedure :: phase_at
+    procedure :: forcing_revolutions
     procedure :: exchange
   end type scene_t
 
@@ -541,6 +542,13 @@ contains
     phase_at = phase_free
     if (i > 0) phase_at = self%joints(i)%phase
   end function phase_at
+
+  !> After how many revolutions what drives the motion repeats: the gas of a four-stroke cycle after two.
+  pure integer function forcing_revolutions(self)
+    class(scene_t), intent(in) :: self
+    forcing_revolutions = 1
+    if (allocated(self%gas)) forcing_revolutions = 2
+  end function forcing_revolutions
 
   !> The discrete state, to or from an archive.
   subroutine exchange(self, archive)

@@ -13,6 +13,8 @@ module gudgeon_simulation
   use crank_turns, only: all_made, turned_back
   use gudgeon_columns, only: choose_columns, column_list_t
   use cycle_watch, only: cycle_watch_t
+  use period_watch, only: period_watch_t
+  use lyapunov, only: exponent_t, measure_exponent
   use gudgeon_recorder, only: recorder_t
   use run_figures, only: run_figures_t
   use trace_sink, only: trace_sink_t
@@ -30,6 +32,8 @@ module gudgeon_simulation
     real(dp), allocatable :: time_with(:, :)     !! by method auto: time with Adams and with Radau in each mode, (2, 0:highest mode) [s]
     logical :: can_go_on = .false.               !! stopped from outside or by a limit: the sink was given its state
     logical :: energy_is_poor = .false.          !! done, but with a residual that somebody should know of
+    type(period_watch_t) :: periods              !! whether the motion repeats, where that was to end the run
+    type(exponent_t) :: exponent                 !! of Lyapunov, where it is asked for
     real(dp) :: auto_saves = 0                   !! > 0: evaluations of this run over those that method auto needs, measured
   end type run_report_t
 
@@ -54,6 +58,7 @@ contains
     real(dp), allocatable :: y(:)
     real(dp) :: t
     integer :: status
+    logical :: has_come_to_its_end
 
     call build_scene(case, ideal_joint, scene, error)
     if (.not. allocated(error)) call new_method(case%integrator%method, method, error)
@@ -66,6 +71,11 @@ contains
       recorder%interval = sample_interval(case)
     end if
     recorder%first_sample = case%output%start_time
+    recorder%periods%is_on = case%run%is_until_periodic()
+    recorder%periods%longest = case%run%period_revolutions
+    recorder%periods%tolerance = case%run%periodic_tolerance
+    recorder%periods%most_revolutions = case%run%most_revolutions
+    recorder%periods%keeps_one_more = recorder%periods%is_on .and. case%output%window == 'last_period'
     recorder%end_time = latest_end(case)
     recorder%expected_end = simulated_time(case)
     recorder%every_step = case%output%every_step
@@ -83,16 +93,29 @@ contains
     call recorder%prepare(scene)
     if (.not. present(archive)) call recorder%begin(scene, y)
     call integrate(scene, method, t, y, recorder%end_time, case%integrator%max_steps, recorder, status, archive)
-    if (status == integration_interrupted .and. recorder%over_budget) status = revolution_budget_spent
-    call judge_turns(scene, t, y, status)
+    if (recorder%periods%has_ended) then
+      status = integration_done
+      t = recorder%periods%t
+      y = recorder%periods%y
+      call move_alloc(recorder%scene_at_end, scene)
+    else
+      if (status == integration_interrupted .and. recorder%over_budget) status = revolution_budget_spent
+      call judge_turns(scene, t, y, status)
+    end if
     if (status /= unreadable_archive) call recorder%finish(scene, t, y)
+    report%periods = recorder%periods
+    has_come_to_its_end = status == integration_done
+    if (status == integration_done .and. case%run%lyapunov_revolutions > 0 .and. .not. ideal_joint) then
+      call measure_exponent(case, scene, t, y, report%periods%period, recorder%sink, report%exponent)
+      if (.not. report%exponent%is_known .and. recorder%sink%wants_to_stop) status = integration_interrupted
+    end if
     call move_alloc(recorder%sink, sink)
     if (present(cycles)) call move_alloc(recorder%cycles, cycles)
     report%statistics = method%totals()
     if (allocated(method%time_with)) report%time_with = method%time_with
     report%figures = recorder%figures
     report%can_go_on = any(status == [integration_interrupted, step_limit_reached, evaluation_limit_reached, &
-      revolution_budget_spent])
+      revolution_budget_spent]) .and. .not. has_come_to_its_end
     if (status == integration_done .and. case%integrator%method == 'adams' .and. .not. (ideal_joint .or. present(cycles))) &
       call measure_auto(case, report)
     !$omp critical (texts)
@@ -149,8 +172,11 @@ contains
     type(case_t), intent(in) :: case
     type(run_report_t), intent(inout) :: report
     integer :: needed
+    real(dp) :: time
     if (report%statistics%time_limited_by(limit_stability) < 0.5_dp*report%figures%time) return
-    call try_auto(case, latest_end(case), report%statistics%accepted/10 + 1, needed)
+    time = latest_end(case)
+    if (report%periods%is_on) time = report%figures%time
+    call try_auto(case, time, report%statistics%accepted/10 + 1, needed)
     if (needed > 0) report%auto_saves = real(report%statistics%evaluations, dp)/needed
   end subroutine measure_auto
 

@@ -69,8 +69,12 @@ contains
       if (allocated(error)) return
       call scene%gas%find_part(scene%start_angle, scene%start_speed)
     end if
-    if (case%integrator%crank_revolutions > 0 .and. scene%chain%drive%free_crank) &
+    if (scene%chain%drive%free_crank .and. case%run%is_until_periodic()) then
+      allocate (scene%turns, source=new_crank_turns(real(case%run%most_revolutions, dp), scene%start_angle, scene%start_speed))
+      scene%turns%key = '&run most_revolutions'
+    else if (scene%chain%drive%free_crank .and. case%integrator%crank_revolutions > 0) then
       allocate (scene%turns, source=new_crank_turns(case%integrator%crank_revolutions, scene%start_angle, scene%start_speed))
+    end if
     call scene%prepare_start()
   end subroutine build_scene
 
@@ -197,6 +201,7 @@ contains
     real(dp) :: revolutions
     simulated_time = case%integrator%end_time
     revolutions = max(case%integrator%revolutions, case%integrator%crank_revolutions)   ! one of them alone is given
+    if (case%run%is_until_periodic()) revolutions = case%run%most_revolutions
     if (revolutions > 0 .and. abs(case%initial%crank_speed) > 0) simulated_time = revolutions*two_pi/abs(case%initial%crank_speed)
   end function simulated_time
 
@@ -205,9 +210,13 @@ contains
   pure real(dp) function latest_end(case)
     type(case_t), intent(in) :: case
     latest_end = simulated_time(case)
-    if (.not. case%integrator%crank_revolutions > 0 .or. case%drive%kind == 'constant_speed') return
-    latest_end = most_patience*latest_end
-    if (case%integrator%end_time > 0) latest_end = case%integrator%end_time
+    if (case%drive%kind == 'constant_speed') return
+    if (case%run%is_until_periodic()) then
+      latest_end = most_patience*latest_end
+    else if (case%integrator%crank_revolutions > 0) then
+      latest_end = most_patience*latest_end
+      if (case%integrator%end_time > 0) latest_end = case%integrator%end_time
+    end if
   end function latest_end
 
   !> Time from sample to sample [s].

@@ -63,7 +63,7 @@ contains
     real(dp), intent(in) :: t, y(:)
     character(len=:), allocatable :: text
     text = decimal_text(scene%turns%made(scene%crank_angle(t, y)))//' of '//decimal_text(scene%turns%wanted)// &
-      ' revolutions (&integrator crank_revolutions)'
+      ' revolutions ('//trim(scene%turns%key)//')'
   end function turns_text
 
   !> A number from 0 on with four decimals at most.

@@ -14,7 +14,8 @@ module study_rows
   use row_text, only: row_text_t
   implicit none
   private
-  public :: study_row_t, run_header, cycle_header, strobe_header, cycles_column, strobes_column, may_have_crank_pin
+  public :: study_row_t, run_header, cycle_header, strobe_header, cycles_column, strobes_column, may_have_crank_pin, &
+    looks_at_motion
   public :: put_run, put_cycles, put_strobes
 
   character(len=*), parameter :: crank_pin_prefix = crank_pin_place//'_'
@@ -24,6 +25,7 @@ module study_rows
     logical :: is_header = .false.       !! it has the names of the columns
     logical :: has_strobes = .false.     !! the study takes strobes
     logical :: has_crank_pin = .false.   !! and has columns of the crank pin
+    logical :: has_motion = .false.      !! and of the period or of the Lyapunov exponent of the motion
     type(number_writer_t) :: numbers
   contains
     procedure, private :: put_real, put_whole
@@ -67,10 +69,18 @@ contains
     may_have_crank_pin = base%crank_pin%has_clearance() .or. any(index(keys, crank_pin_place//'.') == 1)
   end function may_have_crank_pin
 
+  !> Whether runs of a study may go on until their motion repeats, or have their Lyapunov exponent measured.
+  pure logical function looks_at_motion(keys, base)
+    character(len=*), intent(in) :: keys(:)   !! of the parameters
+    type(case_t), intent(in) :: base
+    looks_at_motion = base%run%is_until_periodic() .or. base%run%lyapunov_revolutions > 0 .or. &
+      any(keys == 'run.until') .or. any(keys == 'run.lyapunov_revolutions')
+  end function looks_at_motion
+
   !> First row of NAME.runs.csv.
-  function run_header(keys, has_strobes, has_crank_pin) result(text)
+  function run_header(keys, has_strobes, has_crank_pin, has_motion) result(text)
     character(len=*), intent(in) :: keys(:)
-    logical, intent(in) :: has_strobes, has_crank_pin
+    logical, intent(in) :: has_strobes, has_crank_pin, has_motion
     character(len=:), allocatable :: text
     type(study_row_t) :: row
     type(cycle_watch_t) :: no_watch
@@ -79,6 +89,7 @@ contains
     row%is_header = .true.
     row%has_strobes = has_strobes
     row%has_crank_pin = has_crank_pin
+    row%has_motion = has_motion
     call put_run(row, 0, keys, 'status', .false., no_watch, no_report, no_case)
     text = row%text(:row%used)
   end function run_header
@@ -154,6 +165,11 @@ contains
     associate (has_clearance => is_done .and. case%crank_pin%has_clearance())
       if (row%has_crank_pin) call put_pin(crank_pin_prefix, crank_pin, has_clearance, has_clearance)
     end associate
+    if (row%has_motion) then
+      call row%put('period_revolutions[-]', report%periods%period, is_done .and. report%periods%is_on)
+      call row%put('lyapunov_exponent[1/revolution]', report%exponent%mean, is_done .and. report%exponent%is_known)
+      call row%put('lyapunov_exponent_error[1/revolution]', report%exponent%error, is_done .and. report%exponent%is_known)
+    end if
     call row%end_row()
 
   contains
@@ -184,7 +200,7 @@ contains
     integer :: i
     call rows%clear()
     do i = 1, watch%statistics%cycles
-      call put_cycle(rows, run, watch%settle + i, watch%cycles(i), watch%direction, case)
+      call put_cycle(rows, run, watch%uncounted + i, watch%cycles(i), watch%direction, case)
     end do
   end subroutine put_cycles
 
@@ -232,7 +248,7 @@ contains
     call rows%clear()
     do i = 1, watch%strobes
       call rows%add_whole(run)
-      call rows%add_whole(watch%settle + i)
+      call rows%add_whole(watch%uncounted + i)
       do k = 1, size(watch%strobe_list%id)
         call rows%add_number(rows%numbers, watch%strobe_values(k, i))
       end do

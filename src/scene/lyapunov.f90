@@ -1,0 +1,247 @@
+!> The largest Lyapunov exponent of the motion that a run has come to: the rate at which two neighbouring motions part, or come
+!> together, per revolution of the crank.
+!>
+!> Two scenes run on from where the run ended, the second one with its state a little beside. Each quarter of a revolution their
+!> difference is measured when the crank of each is at the same angle, and brought back to its first size in the direction that it
+!> has (Benettin, Galgani, Giorgilli and Strelcyn 1980, Meccanica 15, 9-20). Both go through every contact by themselves, so no
+!> derivative of an impact is needed. The exponent is the mean of the logarithms of the growth. States at the same crank angle leave
+!> out the difference along the motion itself, which would keep the exponent of a periodic motion of a free crank at 0.
+!>
+!> Both runs are integrated at the tolerance 1e-11; differences are 1e-7 of the natural sizes of the state. A quarter in which a
+!> difference shrinks by more than a factor of some 1e3 is lost in the errors of the integration: exponents below -30 are upper bounds.
+module lyapunov
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: two_pi
+  use gudgeon_errors, only: error_t
+  use gudgeon_archive, only: archive_t
+  use case_definition, only: case_t
+  use ode_method, only: ode_method_t, ode_settings_t
+  use ode_problem, only: ode_problem_t
+  use gudgeon_methods, only: new_method
+  use gudgeon_solver, only: integrate, observer_t, integration_interrupted
+  use gudgeon_scene, only: scene_t
+  use scene_builder, only: settings_for
+  use crank_passage, only: find_passage
+  use clearance_joint, only: most_joints
+  use trace_sink, only: trace_sink_t
+  implicit none
+  private
+  public :: exponent_t, measure_exponent
+
+  integer, parameter :: per_revolution = 4             !! measurements
+  real(dp), parameter :: tolerance = 1e-11_dp          !! relative, of both runs
+  real(dp), parameter :: first_size = 1e-7_dp          !! of the difference, over the natural sizes
+  real(dp), parameter :: smallest_growth = 1e-12_dp    !! that is told from nothing
+  real(dp), parameter :: patience = 100                !! times what a revolution takes at the speed at which it begins
+
+  !> What is found.
+  type :: exponent_t
+    logical :: is_known = .false.
+    real(dp) :: mean = 0          !! per revolution
+    real(dp) :: error = 0         !! standard error of the mean, from the scatter of the periods, or else of the revolutions
+    integer :: revolutions = 0    !! that it is the mean of
+  end type exponent_t
+
+  !> One of the two.
+  type, extends(observer_t) :: companion_t
+    type(scene_t), allocatable :: scene
+    class(ode_method_t), allocatable :: method
+    real(dp) :: t = 0                        !! [s]
+    real(dp), allocatable :: y(:)
+    real(dp) :: target = 0, direction = 1    !! crank angle to which it runs [rad]
+    logical :: is_there = .false.
+    type(archive_t) :: there                 !! its discrete state there
+    type(scene_t), allocatable :: kept       !! itself there, before an event that the last step ends with
+  contains
+    procedure :: run_to
+    procedure :: step_taken
+    procedure :: event_taken
+  end type companion_t
+
+contains
+
+  !> Measure over so many revolutions, or a few more that make whole periods, after those that the difference needs to find its
+  !> direction. `sink` is asked whether to go on.
+  subroutine measure_exponent(case, scene, t, y, period, sink, exponent)
+    type(case_t), intent(in) :: case
+    type(scene_t), intent(in) :: scene         !! as the run left it
+    real(dp), intent(in) :: t, y(:)            !! where the run ended
+    integer, intent(in) :: period              !! of the motion [revolutions]; 0: it has none
+    class(trace_sink_t), intent(inout) :: sink
+    type(exponent_t), intent(out) :: exponent
+    type(companion_t) :: one, other
+    real(dp), allocatable :: difference(:), scale(:)
+    integer, allocatable :: at(:)
+    real(dp) :: growth, sum_of, sum_of_squares, angle
+    integer :: revolutions, block, blocks, skipped, i, k
+
+    block = max(1, period)
+    blocks = (case%run%lyapunov_revolutions - 1)/block + 1
+    revolutions = block*blocks
+    call prepare(case, scene, t, y, one)
+    call prepare(case, scene, t, y, other)
+    call choose_components(scene, at, scale)
+    difference = first_direction(size(at))*scale
+    skipped = max(2, min(20, revolutions/5))
+    sum_of = 0
+    sum_of_squares = 0
+    growth = 0
+    do i = 1 - skipped, revolutions
+      do k = 1, per_revolution
+        call put_beside(one, other, at, difference*(first_size/size_of(difference, scale)))
+        angle = one%scene%crank_angle(one%t, one%y) + one%direction*two_pi/per_revolution
+        call one%run_to(angle)
+        if (one%is_there) call other%run_to(angle)
+        if (.not. (one%is_there .and. other%is_there)) return
+        difference = other%y(at) - one%y(at)
+        growth = growth + log(max(size_of(difference, scale)/first_size, smallest_growth))
+        if (.not. size_of(difference, scale) > 0) difference = first_direction(size(at))*scale
+      end do
+      call sink%take_progress(t)
+      if (sink%wants_to_stop) return
+      if (i >= 1 .and. mod(i, block) == 0) then
+        sum_of = sum_of + growth
+        sum_of_squares = sum_of_squares + growth**2
+      end if
+      if (i < 1 .or. mod(i, block) == 0) growth = 0
+    end do
+    exponent%is_known = .true.
+    exponent%revolutions = revolutions
+    exponent%mean = sum_of/revolutions
+    if (blocks > 1) exponent%error = sqrt(max(0.0_dp, sum_of_squares/blocks - (sum_of/blocks)**2)/(blocks - 1))/block
+  end subroutine measure_exponent
+
+  !> A companion of the run at its end.
+  subroutine prepare(case, scene, t, y, companion)
+    type(case_t), intent(in) :: case
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(:)
+    type(companion_t), intent(inout) :: companion
+    type(case_t) :: close
+    type(error_t), allocatable :: ignored
+    close = case
+    close%integrator%relative_tolerance = tolerance
+    close%integrator%absolute_tolerance = 0
+    allocate (companion%scene, source=scene)
+    companion%scene%refuses_steps = .false.   ! contacts begin at the root
+    if (allocated(companion%scene%turns)) companion%scene%turns%wanted = 1e30_dp   ! never made
+    call new_method('auto', companion%method, ignored)
+    companion%method%settings = settings_for(close, companion%scene)
+    companion%method%settings%max_evaluations = 0
+    companion%t = t
+    companion%y = y
+    companion%direction = sign(1.0_dp, companion%scene%crank_speed(y))
+  end subroutine prepare
+
+  !> What of the state is compared: all but the crank angle and the quadratures; and its natural sizes.
+  subroutine choose_components(scene, at, scale)
+    type(scene_t), intent(in) :: scene
+    integer, allocatable, intent(out) :: at(:)
+    real(dp), allocatable, intent(out) :: scale(:)
+    real(dp) :: scales(scene%n)
+    logical :: growing(scene%n)
+    integer :: i, n
+    n = scene%n - scene%n_quadratures
+    call scene%layout%natural_scales(scales, growing)
+    at = pack([(i, i=1, n)], [(i /= scene%crank%position, i=1, n)])
+    scale = scales(at)
+  end subroutine choose_components
+
+  !> A direction that is no direction of the state's own: parts of multiples of the golden ratio.
+  pure function first_direction(n) result(direction)
+    integer, intent(in) :: n
+    real(dp) :: direction(n)
+    integer :: i
+    direction = [(modulo(i*0.6180339887498949_dp, 1.0_dp) - 0.45_dp, i=1, n)]
+  end function first_direction
+
+  !> Size of a difference, over the natural sizes.
+  pure real(dp) function size_of(difference, scale)
+    real(dp), intent(in) :: difference(:), scale(:)
+    size_of = norm2(difference/scale)
+  end function size_of
+
+  !> Put the other one beside the first: its discrete state too. Where both touch, the speeds of their impacts differ as they did, by
+  !> as much less or more as the states.
+  subroutine put_beside(one, other, at, difference)
+    type(companion_t), intent(inout) :: one, other
+    integer, intent(in) :: at(:)
+    real(dp), intent(in) :: difference(:)
+    real(dp) :: impact_speed(most_joints), factor
+    integer :: phase(most_joints), i
+    character(len=:), allocatable :: bytes
+    do i = 1, one%scene%n_joints
+      impact_speed(i) = other%scene%joints(i)%impact_speed - one%scene%joints(i)%impact_speed
+      phase(i) = other%scene%joints(i)%phase
+    end do
+    factor = 0
+    if (maxval(abs(other%y(at) - one%y(at))) > 0) factor = maxval(abs(difference))/maxval(abs(other%y(at) - one%y(at)))
+    call one%there%begin_writing()
+    call one%scene%exchange(one%there)
+    call one%there%contents(bytes)
+    call other%there%begin_reading(bytes)
+    call other%scene%exchange(other%there)
+    other%t = one%t
+    other%y = one%y
+    other%y(at) = one%y(at) + difference
+    do i = 1, one%scene%n_joints
+      if (phase(i) == one%scene%joints(i)%phase .and. factor > 0) other%scene%joints(i)%impact_speed = &
+        max(0.0_dp, one%scene%joints(i)%impact_speed + factor*impact_speed(i))
+    end do
+  end subroutine put_beside
+
+  !> Run until the crank is at an angle; `is_there` tells whether it comes there.
+  subroutine run_to(self, angle)
+    class(companion_t), intent(inout) :: self
+    real(dp), intent(in) :: angle   !! [rad]
+    type(scene_t), allocatable :: scene
+    class(ode_method_t), allocatable :: method
+    real(dp), allocatable :: y(:)
+    real(dp) :: t
+    integer :: status
+    self%target = angle
+    self%is_there = .false.
+    self%wants_to_stop = .false.
+    call move_alloc(self%scene, scene)
+    call move_alloc(self%method, method)
+    t = self%t
+    y = self%y
+    call integrate(scene, method, t, y, self%t + patience*two_pi/scene%speed_scale(scene%span), 0, self, status)
+    if (status /= integration_interrupted) self%is_there = .false.
+    call move_alloc(scene, self%scene)
+    call move_alloc(method, self%method)
+    if (allocated(self%kept)) call move_alloc(self%kept, self%scene)
+  end subroutine run_to
+
+  subroutine step_taken(self, method, problem, t_to)
+    class(companion_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    class(ode_problem_t), intent(in) :: problem
+    real(dp), intent(in) :: t_to
+    real(dp) :: y(problem%n)
+    select type (problem)
+    type is (scene_t)
+      call method%interpolate(t_to, y)
+      if (self%direction*(problem%crank_angle(t_to, y) - self%target) < 0) return
+      call find_passage(method, problem, self%target, self%direction, method%t_old, t_to, 0.0_dp, self%t, self%y)
+      self%is_there = .true.
+      self%wants_to_stop = .true.
+      call keep(problem, self%kept)
+    end select
+  end subroutine step_taken
+
+  subroutine keep(scene, kept)
+    type(scene_t), intent(in) :: scene
+    type(scene_t), allocatable, intent(out) :: kept
+    allocate (kept, source=scene)
+  end subroutine keep
+
+  subroutine event_taken(self, problem, index, t, y)
+    class(companion_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    integer, intent(in) :: index
+    real(dp), intent(in) :: t, y(:)
+    associate (unused_self => self, unused_problem => problem, unused_index => index, unused_t => t, unused_y => y)
+    end associate
+  end subroutine event_taken
+end module lyapunov

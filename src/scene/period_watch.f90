@@ -1,0 +1,207 @@
+!> Looks whether the motion repeats: compares the state each time that the crank has made a whole revolution with the states one to
+!> sixteen revolutions before.
+!>
+!> Compared are positions, rates and first-order states, but for the crank angle and the quadratures, each over its range in the last
+!> revolutions. The motion has the period p, the shortest one, when for three periods on end every state differs from that p revolutions
+!> before by the tolerance at most, and when what is still to come is no more: differences that shrink by the factor q from period to
+!> period leave d q/(1 - q). A motion that creeps towards its end is so not taken for one that is there. Differences below a hundredth
+!> of the tolerance may do as they like: they are those of the integration. Periods are multiples of that of the gas.
+module period_watch
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: two_pi
+  use gudgeon_archive, only: archive_t
+  use ode_method, only: ode_method_t
+  use gudgeon_scene, only: scene_t
+  use crank_passage, only: find_passage
+  use run_length, only: longest_period
+  implicit none
+  private
+  public :: period_watch_t, repeats_needed
+
+  integer, parameter :: repeats_needed = 3                                !! periods on end that must repeat
+  integer, parameter :: depth = (repeats_needed + 1)*longest_period       !! revolutions that are remembered
+  real(dp), parameter :: least_range = 1e-3_dp      !! of a component, over its natural size, so that rest is not resolved
+  real(dp), parameter :: noise = 1e-2_dp            !! differences of the integration itself, over the tolerance
+
+  type :: period_watch_t
+    logical :: is_on = .false.
+    integer :: longest = longest_period    !! period looked for [revolutions]
+    real(dp) :: tolerance = 0
+    integer :: most_revolutions = 0        !! of the run
+    logical :: keeps_one_more = .false.    !! the run goes on for one period, which is its window
+    integer :: period = 0                  !! found [revolutions]; 0: none
+    integer :: found_after = 0             !! revolutions made when it was found
+    real(dp) :: difference = 0             !! of states a period apart then, over their ranges
+    real(dp) :: duration = 0               !! of the period [s]
+    logical :: has_ended = .false.         !! the run is to end at (t, y)
+    integer :: window_after = -1           !! revolutions made when the window began; -1: not yet
+    real(dp) :: window_start = huge(1.0_dp)   !! [s]
+    real(dp) :: t = 0                      !! when the crank has made the last whole revolution [s]
+    real(dp), allocatable :: y(:)          !! the state then
+    integer, private :: forcing = 1        !! period of what drives the motion [revolutions]
+    integer, private :: made = 0           !! whole revolutions
+    real(dp), private :: start_angle = 0, direction = 1
+    integer, allocatable, private :: at(:)       !! components that are compared
+    real(dp), allocatable, private :: smallest_range(:)
+    real(dp), allocatable, private :: states(:, :), low(:, :), high(:, :)   !! of revolution k in column mod(k, depth)
+    real(dp), private :: times(0:depth - 1) = 0
+  contains
+    procedure :: begin
+    procedure :: take_point
+    procedure :: follow
+    procedure :: exchange
+    procedure, private :: close_revolution
+    procedure, private :: look_for_period
+    procedure, private :: difference_at
+  end type period_watch_t
+
+contains
+
+  !> Before the run, for a scene that is ready.
+  subroutine begin(self, scene)
+    class(period_watch_t), intent(inout) :: self
+    type(scene_t), intent(in) :: scene
+    real(dp) :: scales(scene%n)
+    logical :: growing(scene%n)
+    integer :: i, n
+    n = scene%n - scene%n_quadratures
+    self%at = pack([(i, i=1, n)], [(i /= scene%crank%position, i=1, n)])
+    call scene%layout%natural_scales(scales, growing)
+    self%smallest_range = least_range*scales(self%at)
+    self%forcing = scene%forcing_revolutions()
+    self%start_angle = scene%start_angle
+    self%direction = sign(1.0_dp, scene%start_speed)
+    allocate (self%states(size(self%at), 0:depth - 1), source=0.0_dp)
+    allocate (self%low(size(self%at), 0:depth - 1), source=huge(1.0_dp))
+    allocate (self%high(size(self%at), 0:depth - 1), source=-huge(1.0_dp))
+    allocate (self%y(scene%n), source=0.0_dp)
+  end subroutine begin
+
+  !> An accepted point of the present revolution.
+  pure subroutine take_point(self, y)
+    class(period_watch_t), intent(inout) :: self
+    real(dp), intent(in) :: y(:)
+    integer :: place, i
+    place = mod(self%made + 1, depth)
+    do i = 1, size(self%at)
+      self%low(i, place) = min(self%low(i, place), y(self%at(i)))
+      self%high(i, place) = max(self%high(i, place), y(self%at(i)))
+    end do
+  end subroutine take_point
+
+  !> The solution is final up to t_to, inside the last step: close the revolutions that end before, and find out whether the run is to
+  !> end (`has_ended`), or its window to begin (`window_start`).
+  subroutine follow(self, method, scene, t_to)
+    class(period_watch_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t_to
+    real(dp) :: target
+    do while (.not. self%has_ended)
+      target = self%start_angle + self%direction*two_pi*(self%made + 1)
+      if (t_to < method%t) then
+        call method%interpolate(t_to, self%y)
+      else
+        self%y = method%y
+      end if
+      if (self%direction*(scene%crank_angle(t_to, self%y) - target) < 0) exit
+      call find_passage(method, scene, target, self%direction, method%t_old, t_to, 0.0_dp, self%t, self%y)
+      call self%close_revolution()
+    end do
+  end subroutine follow
+
+  !> The crank has made one more revolution, at (t, y).
+  subroutine close_revolution(self)
+    class(period_watch_t), intent(inout) :: self
+    integer :: next
+    self%made = self%made + 1
+    self%states(:, mod(self%made, depth)) = self%y(self%at)
+    self%times(mod(self%made, depth)) = self%t
+    next = mod(self%made + 1, depth)
+    self%low(:, next) = self%y(self%at)
+    self%high(:, next) = self%y(self%at)
+    if (self%window_after >= 0) then
+      if (self%period > 0) self%has_ended = self%made >= self%window_after + self%period
+      return
+    end if
+    call self%look_for_period()
+    if (.not. self%keeps_one_more) then
+      self%has_ended = self%period > 0
+    else if (self%period > 0 .or. self%made >= self%most_revolutions - self%longest) then
+      self%window_after = self%made
+      self%window_start = self%t
+    end if
+  end subroutine close_revolution
+
+  !> The shortest period that the states so far have.
+  subroutine look_for_period(self)
+    class(period_watch_t), intent(inout) :: self
+    real(dp) :: range(size(self%at)), newest, oldest, any_of_them, factor
+    integer :: p, k
+    do p = self%forcing, self%longest, self%forcing
+      if (self%made < (repeats_needed + 1)*p) return
+      range = self%smallest_range
+      do k = self%made - p + 1, self%made
+        range = max(range, self%high(:, mod(k, depth)) - self%low(:, mod(k, depth)))
+      end do
+      newest = largest(self%made - p + 1, self%made)
+      if (newest > self%tolerance) cycle
+      any_of_them = largest(self%made - repeats_needed*p + 1, self%made)
+      if (any_of_them > self%tolerance) cycle
+      oldest = largest(self%made - repeats_needed*p + 1, self%made - (repeats_needed - 1)*p)
+      if (newest > noise*self%tolerance) then
+        if (.not. newest < oldest) cycle
+        factor = (newest/oldest)**(1.0_dp/(repeats_needed - 1))
+        if (newest*factor > self%tolerance*(1 - factor)) cycle
+      end if
+      self%period = p
+      self%found_after = self%made
+      self%difference = newest
+      self%duration = self%times(mod(self%made, depth)) - self%times(mod(self%made - p, depth))
+      return
+    end do
+
+  contains
+
+    !> Largest difference of the states first to last from those a period before.
+    real(dp) function largest(first, last)
+      integer, intent(in) :: first, last
+      integer :: j
+      largest = 0
+      do j = first, last
+        largest = max(largest, self%difference_at(j, p, range))
+      end do
+    end function largest
+  end subroutine look_for_period
+
+  !> Largest difference of any component of state k from state k - p, over its range.
+  pure real(dp) function difference_at(self, k, p, range)
+    class(period_watch_t), intent(in) :: self
+    integer, intent(in) :: k, p
+    real(dp), intent(in) :: range(:)
+    integer :: i
+    difference_at = 0
+    do i = 1, size(self%at)
+      difference_at = max(difference_at, abs(self%states(i, mod(k, depth)) - self%states(i, mod(k - p, depth)))/range(i))
+    end do
+  end function difference_at
+
+  !> What has been found so far, to or from an archive.
+  subroutine exchange(self, archive)
+    class(period_watch_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    if (.not. self%is_on) return
+    call archive%exchange(self%period)
+    call archive%exchange(self%found_after)
+    call archive%exchange(self%difference)
+    call archive%exchange(self%duration)
+    call archive%exchange(self%window_after)
+    call archive%exchange(self%window_start)
+    call archive%exchange(self%t)
+    call archive%exchange(self%made)
+    call archive%exchange(self%states)
+    call archive%exchange(self%low)
+    call archive%exchange(self%high)
+    call archive%exchange(self%times)
+  end subroutine exchange
+end module period_watch

@@ -1,0 +1,46 @@
+!> How long a run lasts: to the end that the integrator is given, or until the motion repeats; and what is to be found out of the motion
+!> that it has come to.
+module run_length
+  use gudgeon_kinds, only: dp
+  use gudgeon_parameters, only: has_parameters_t, parameter_list_t
+  implicit none
+  private
+  public :: run_length_t, longest_period
+
+  integer, parameter :: longest_period = 16   !! that is looked for [revolutions]
+
+  type, extends(has_parameters_t) :: run_length_t
+    character(len=:), allocatable :: until   !! 'end' or 'periodic'
+    integer :: period_revolutions = 0        !! longest period looked for
+    real(dp) :: periodic_tolerance = 0       !! of a state that repeats, over the ranges of its components
+    integer :: most_revolutions = 0          !! of a run until 'periodic'
+    integer :: lyapunov_revolutions = 0      !! over which the Lyapunov exponent is measured, after the run; 0: it is not
+  contains
+    procedure :: parameters
+    procedure :: is_until_periodic
+  end type run_length_t
+
+contains
+
+  subroutine parameters(self, list)
+    class(run_length_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%word('until', self%until, 'end, periodic', 'end', &
+      'end: what &integrator says; periodic: the motion repeats, or most_revolutions')
+    call list%add('period_revolutions', self%period_revolutions, 'longest period looked for, in revolutions', '>= 1 and <= 16', &
+      '16')
+    call list%add('periodic_tolerance', self%periodic_tolerance, 'of the state a period later, over the range of each component', &
+      range='> 0 and <= 0.1', default='1.0e-4')
+    call list%add('most_revolutions', self%most_revolutions, 'of a run until = ''periodic'', at which it ends in any case', &
+      '>= 1 and <= 1000000', '1000')
+    call list%add('lyapunov_revolutions', self%lyapunov_revolutions, &
+      'revolutions after the end over which the largest Lyapunov exponent is measured; 0: none', '>= 0 and <= 1000000', '0')
+  end subroutine parameters
+
+  !> Whether the run goes on until the motion repeats.
+  pure logical function is_until_periodic(self)
+    class(run_length_t), intent(in) :: self
+    is_until_periodic = .false.
+    if (allocated(self%until)) is_until_periodic = self%until == 'periodic'
+  end function is_until_periodic
+end module run_length

@@ -1,0 +1,199 @@
+!> Runs until the motion repeats, and the exponents of motions that do or do not: against the traces of other runs.
+module test_periodic
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: two_pi
+  use checks, only: checks_t
+  use collecting_sink, only: trace_t, run_case, column, last_row_time
+  implicit none
+  private
+  public :: run_test_periodic
+
+  integer, parameter :: long = 60
+  character(len=long), parameter :: until = 'run.until=periodic', window = 'output.window=last_period', auto = &
+    'integrator.method=auto', exponent = 'run.lyapunov_revolutions=20'
+  character(len=*), parameter :: dry = 'cases/flores/dry_0500um.nml', film = 'cases/flores/lubricated_400cP.nml'
+
+contains
+
+  subroutine run_test_periodic(check)
+    class(checks_t), intent(inout) :: check
+    call held_crank_with_film(check)
+    call period_two(check)
+    call chaos(check)
+    call gas_takes_two_revolutions(check)
+    call free_crank(check)
+    call exponent_is_the_decay(check)
+    call exponent_is_the_growth(check)
+  end subroutine run_test_periodic
+
+  !> The film forgets within a revolution. The run ends where it should, with the rows of one revolution, and the state then goes on
+  !> to repeat in a run that does not stop.
+  subroutine held_crank_with_film(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: whole, last, plain
+    real(dp) :: turn
+    integer :: n
+    turn = two_pi/523.5987755982989_dp
+    whole = run_case(film, [character(len=long) :: until, auto])
+    last = run_case(film, [character(len=long) :: until, auto, window, 'output.samples_per_revolution=90'])
+    associate (a => whole%report%periods, b => last%report%periods)
+      call check%that(whole%report%status == 'done' .and. a%period == 1, 'film: period of one revolution')
+      call check%that(a%found_after >= 4 .and. a%found_after <= 6, 'film: found soon')
+      call check%close_to(last_row_time(whole), a%found_after*turn, 1e-12_dp, 'film: the run ends at the angle where it began')
+      call check%close_to(whole%report%figures%time, a%found_after*turn, 1e-12_dp, 'film: and so do its figures')
+      call check%relative(a%duration, turn, 1e-10_dp, 'film: duration of the period')
+      call check%that(b%found_after == a%found_after .and. b%window_after == a%found_after, 'film: the window begins there')
+      call check%close_to(last_row_time(last), (a%found_after + 1)*turn, 1e-12_dp, 'film: and is a period')
+      call check%that(size(last%values, 2) == 91, 'film: rows of one period')
+      call check%close_to(last%values(1, 1), a%found_after*turn, 1e-12_dp, 'film: from its first instant')
+      call closes(check, last, 1, 91, 1e-4_dp, .true., 'film')
+      plain = run_case(film, [character(len=long) :: auto, 'integrator.revolutions=20', 'output.samples_per_revolution=90', &
+        'integrator.relative_tolerance=1e-9'])
+      n = size(plain%values, 2)
+      call closes(check, plain, a%found_after*90 + 1, n, 1e-4_dp, .true., 'film, 20 revolutions')
+    end associate
+  end subroutine held_crank_with_film
+
+  !> Whether the coordinates and speeds of two rows agree within a share of their ranges.
+  subroutine closes(check, trace, first, last, tolerance, wanted, what)
+    class(checks_t), intent(inout) :: check
+    type(trace_t), intent(in) :: trace
+    integer, intent(in) :: first, last
+    real(dp), intent(in) :: tolerance
+    logical, intent(in) :: wanted
+    character(len=*), intent(in) :: what
+    character(len=24), parameter :: names(4) = [character(len=24) :: 'piston_velocity[m/s]', 'eccentricity_x[m]', &
+      'eccentricity_y[m]', 'rod_speed[rad/s]']
+    real(dp) :: difference
+    integer :: i, c
+    difference = 0
+    do i = 1, size(names)
+      c = column(trace, trim(names(i)))
+      difference = max(difference, abs(trace%values(c, last) - trace%values(c, first))/ &
+        (maxval(trace%values(c, :)) - minval(trace%values(c, :))))
+    end do
+    call check%that((difference <= tolerance) .eqv. wanted, what//': rows a period apart')
+  end subroutine closes
+
+  !> A dry joint of the bifurcation picture with two revolutions: not one, and the second is not the first.
+  subroutine period_two(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    trace = run_case(dry, [character(len=long) :: until, auto, window, 'joint.clearance=55e-6', 'run.most_revolutions=200', &
+      'output.samples_per_revolution=20', exponent])
+    associate (p => trace%report%periods)
+      call check%that(p%period == 2, 'dry, 55 um: period of two revolutions')
+      call check%that(size(trace%values, 2) == 41, 'dry, 55 um: rows of two revolutions')
+    end associate
+    if (size(trace%values, 2) /= 41) return
+    call closes(check, trace, 1, 41, 2e-4_dp, .true., 'dry, 55 um, two revolutions')
+    call closes(check, trace, 1, 21, 1e-2_dp, .false., 'dry, 55 um, one revolution')
+    call check%that(trace%report%exponent%is_known .and. trace%report%exponent%mean < -0.2_dp, 'dry, 55 um: negative exponent')
+  end subroutine period_two
+
+  !> 0.5 mm of clearance: it does not repeat, and ends at most_revolutions, with the rows and events of the last of them.
+  subroutine chaos(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace, plain
+    real(dp) :: turn
+    turn = two_pi/523.5987755982989_dp
+    trace = run_case(dry, [character(len=long) :: until, auto, window, 'run.most_revolutions=30', 'run.period_revolutions=2', &
+      'output.samples_per_revolution=20'])
+    plain = run_case(dry, [character(len=long) :: auto, 'integrator.revolutions=30', 'output.samples_per_revolution=20'])
+    call check%that(trace%report%periods%period == 0 .and. trace%report%status == 'done', 'dry, 0.5 mm: no period')
+    call check%relative(last_row_time(trace), 30*turn, 1e-12_dp, 'dry, 0.5 mm: as many revolutions as allowed')
+    call check%that(size(trace%values, 2) == 41, 'dry, 0.5 mm: rows of the last two')
+    call check%that(size(trace%event) > 4 .and. all(trace%event%time >= 28*turn) .and. &
+      size(trace%event) == count(plain%event%time >= 28*turn), 'dry, 0.5 mm: events of the last two')
+    call check%that(trace%report%figures%pin(2)%contacts == plain%report%figures%pin(2)%contacts .or. &
+      trace%report%statistics%evaluations == plain%report%statistics%evaluations, 'dry, 0.5 mm: the run is the plain one')
+  end subroutine chaos
+
+  !> The four-stroke cycle has two revolutions, and no period is shorter, though the dead centres look alike.
+  subroutine gas_takes_two_revolutions(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    trace = run_case('cases/sim_IV.nml', [character(len=long) :: until, auto, 'drive.kind=constant_speed', &
+      'run.periodic_tolerance=1e-2'])
+    call check%that(trace%report%periods%period == 2, 'gas: period of two revolutions')
+  end subroutine gas_takes_two_revolutions
+
+  !> A damped crank driven by the gas comes to a speed at which it stays; an undriven one with a film slows for ever, and one that
+  !> stops says how far it came.
+  subroutine free_crank(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    integer :: n, speed
+    trace = run_case('cases/sim_IV.nml', [character(len=long) :: until, auto, 'drive.damping=0.03', 'output.sampling=crank_angle', &
+      'output.samples_per_revolution=4', window], ideal_joint=.true.)
+    call check%that(trace%report%periods%period == 2, 'free crank: period of two revolutions')
+    call check%that(trace%report%status == 'done', 'free crank: '//trace%report%status)
+    n = size(trace%values, 2)
+    speed = column(trace, 'crank_speed[rad/s]')
+    call check%that(n == 9, 'free crank: rows of the period')
+    call check%relative(trace%values(speed, n), trace%values(speed, 1), 1e-4_dp, 'free crank: comes back to its speed')
+    call check%relative(trace%report%periods%duration, trace%values(1, n) - trace%values(1, 1), 1e-3_dp, 'free crank: duration')
+    trace = run_case('cases/sim_I.nml', [character(len=long) :: until, auto, 'run.most_revolutions=20', 'output.ideal_twin=F'])
+    call check%that(trace%report%periods%period == 0, 'undriven crank: no period')
+    call check%relative(abs(trace%report%figures%crank_travel), 20*two_pi, 1e-9_dp, 'undriven crank: as many as allowed')
+    trace = run_case('cases/sim_I.nml', [character(len=long) :: until, auto, 'drive.damping=1'])
+    call check%that(index(trace%report%status, '&run most_revolutions') > 0, 'a crank that stops: '//trace%report%status)
+  end subroutine free_crank
+
+  !> A damped crank without clearance: its speed, the only state, goes to its mean as the damping over the inertia tells, and so do
+  !> neighbours. Measured by the differences of the speed from revolution to revolution.
+  subroutine exponent_is_the_decay(check)
+    class(checks_t), intent(inout) :: check
+    character(len=long), parameter :: driven(6) = [character(len=long) :: auto, 'drive.damping=0.05', 'drive.torque=10', &
+      'integrator.relative_tolerance=1e-11', 'output.sampling=crank_angle', 'output.samples_per_revolution=1']
+    character(len=long), parameter :: ideal(4) = [character(len=long) :: 'joint.kind=ideal', 'lubrication=none', 'contact=none', &
+      'friction=none']
+    type(trace_t) :: trace
+    real(dp) :: first, second
+    integer :: n, speed
+    trace = run_case('cases/sim_I.nml', [character(len=long) :: driven, 'integrator.crank_revolutions=40', exponent, ideal])
+    call check%that(.not. allocated(trace%error), 'damped crank: runs')
+    speed = column(trace, 'crank_speed[rad/s]')
+    n = size(trace%values, 2)
+    first = trace%values(speed, 21) - trace%values(speed, 20)
+    second = trace%values(speed, 31) - trace%values(speed, 30)
+    call check%that(trace%report%exponent%is_known, 'damped crank: an exponent')
+    call check%close_to(trace%report%exponent%mean, log(second/first)/10, 0.02_dp*abs(log(second/first)/10), &
+      'damped crank: the exponent is the rate at which the speed settles')
+  end subroutine exponent_is_the_decay
+
+  !> Two runs at 1e-12, one with its pin 1e-12 m aside: their difference grows as the exponent says, where the motion does not
+  !> repeat. From several starts, since both are means over what the motion happens to do.
+  subroutine exponent_is_the_growth(check)
+    class(checks_t), intent(inout) :: check
+    character(len=long), parameter :: close(4) = [character(len=long) :: auto, 'integrator.relative_tolerance=1e-12', &
+      'integrator.revolutions=4', 'output.samples_per_revolution=1']
+    real(dp), parameter :: aside = 1e-12_dp, saturated = 1e-2_dp*500e-6_dp
+    character(len=60) :: first, second
+    type(trace_t) :: one, other
+    real(dp) :: rates(16), difference, mean, error
+    integer :: i, k, x, n
+    one = run_case(dry, [character(len=long) :: auto, 'integrator.revolutions=12', 'run.lyapunov_revolutions=120'])
+    mean = one%report%exponent%mean
+    error = one%report%exponent%error
+    n = 0
+    do i = 1, size(rates)
+      write (first, '(a,es12.5,a)') 'initial.eccentricity=', i*2e-5_dp, ',1e-4'
+      write (second, '(a,es22.15,a)') 'initial.eccentricity=', i*2e-5_dp + aside, ',1e-4'
+      one = run_case(dry, [character(len=long) :: close, first])
+      other = run_case(dry, [character(len=long) :: close, second])
+      x = column(one, 'eccentricity_x[m]')
+      rates(i) = 0
+      do k = 2, 5
+        difference = norm2(one%values(x:x + 1, k) - other%values(x:x + 1, k))
+        if (difference > saturated .or. .not. difference > 0) exit
+        rates(i) = log(difference/aside)/(k - 1)
+        n = k
+      end do
+    end do
+    associate (measured => sum(rates)/size(rates), scatter => sqrt(sum((rates - sum(rates)/size(rates))**2))/size(rates))
+      call check%that(mean > 3*error .and. n > 1, 'chaos: positive exponent')
+      call check%close_to(mean, measured, 3*(error + scatter) + 0.15_dp*mean, 'chaos: the exponent is the growth of a difference')
+    end associate
+  end subroutine exponent_is_the_growth
+end module test_periodic
