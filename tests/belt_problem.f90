@@ -92,7 +92,7 @@ contains
     motion%sliding_speed = y(2)
     own%normal_force = load
     own%friction_force = -pull(t, y)
-    accelerations%rod = 0
+    accelerations%rod_end = 0
     accelerations%pin = 0
     accelerations%pin(2, piston_pin) = dydt(2)
   end subroutine see_as_joint

@@ -25,6 +25,8 @@ program gudgeon_tests
   use test_crank_turns, only: run_test_crank_turns
   use test_cycle_watch, only: run_test_cycle_watch
   use test_coordinates, only: run_test_coordinates
+  use test_elastic_rod, only: run_test_elastic_rod
+  use test_elastic_runs, only: run_test_elastic_runs
   use test_energy_kept, only: run_test_energy_kept
   use test_error_growth, only: run_test_error_growth
   use test_events, only: run_test_events
@@ -91,6 +93,8 @@ program gudgeon_tests
   call run('crank_turns', run_test_crank_turns)
   call run('cycle_watch', run_test_cycle_watch)
   call run('coordinates', run_test_coordinates)
+  call run('elastic_rod', run_test_elastic_rod)
+  call run('elastic_runs', run_test_elastic_runs)
   call run('energy_kept', run_test_energy_kept)
   call run('error_growth', run_test_error_growth)
   call run('events', run_test_events)

@@ -47,7 +47,10 @@ contains
     type(joint_motion_t) :: before, now, after
     type(accelerations_t) :: a
     integer :: place
-    a = accelerations_t(300.0_dp, -700.0_dp, 50.0_dp, reshape([4.0_dp, -7.0_dp, 9.0_dp, 3.0_dp], [2, 2]), 0.0_dp, 0.0_dp)
+    a%crank = 300
+    a%rod_end = [700.0_dp, 600.0_dp]
+    a%tilt = 0
+    a%pin = reshape([4.0_dp, -7.0_dp, 9.0_dp, 3.0_dp], [2, 2])
     do place = crank_pin, piston_pin
       before = joint_after(-dt)
       now = joint_after(0.0_dp)
@@ -64,7 +67,7 @@ contains
       real(dp), intent(in) :: t
       type(motion_t) :: motion
       motion%crank_speed = 20 + a%crank*t
-      motion%rod_speed = 40 + a%rod*t
+      motion%rod_end_speed = -40 + a%rod_end*t
       joint_after%eccentricity = [3e-4_dp, -4e-4_dp] + [0.02_dp, 0.01_dp]*t + 0.5_dp*a%pin(:, place)*t**2
       joint_after%eccentricity_rate = [0.02_dp, 0.01_dp] + a%pin(:, place)*t
       call find_speeds(place, motion, joint_after)

@@ -33,6 +33,8 @@ contains
     call compare_events(check, 'cases/contact/flores_brown_mcphee.nml', 'flores_brown_mcphee', '1e-11', 7, 2e-10_dp)
     call compare_columns(check, 'cases/contact/conformal_lugre.nml', 'conformal_lugre', 8.7e-9_dp, 2.4e-7_dp)
     call compare_events(check, 'cases/contact/conformal_lugre.nml', 'conformal_lugre', '1e-11', 5, 2.5e-12_dp)
+    call compare_columns(check, 'cases/elastic/dry_friction.nml', 'elastic_rod_dry', 1.3e-9_dp, 7.7e-9_dp)
+    call compare_events(check, 'cases/elastic/dry_friction.nml', 'elastic_rod_dry', '1e-11', 15, 1.3e-12_dp)
     call compare_events(check, 'cases/flores/friction_010.nml', 'flores_friction_010', '1e-10', 100, 1e-6_dp)
     call compare_events(check, 'cases/flores/friction_050.nml', 'flores_friction_050', '1e-10', 100, 1e-6_dp)
     call compare_events(check, 'cases/flores/friction_100.nml', 'flores_friction_100', '1e-10', 100, 1e-6_dp)

@@ -7,7 +7,9 @@ module assembled_chain
   use chain_bodies, only: bodies_t, drive_t
   use chain_loads, only: loads_t, bearing_moment
   use loose_piston, only: pin_eccentricity
-  use gudgeon_assembly, only: equations_t, body_t
+  use gudgeon_assembly, only: equations_t, body_t, most_coordinates
+  use elastic_rod, only: elastic_rod_t
+  use elastic_rod_body, only: put_own_equations, put_elastic_map, put_chord
   implicit none
   private
   public :: accelerate_assembled
@@ -17,12 +19,14 @@ module assembled_chain
     integer :: n = 1
     integer :: pin(n_pins) = 0   !! the first of the two of a pin with clearance
     integer :: piston = 0        !! the offset of a piston with clearance in its bore; its tilt follows
+    integer :: shape = 0         !! the first shape of an elastic rod
   end type coordinates_t
 
 contains
 
   !> Accelerations, and the moment on the crank (see `accelerate_crank_rod`). Loads of ideal pins are not read: they do no work.
-  pure subroutine accelerate_assembled(bodies, drive, is_loose, loads, motion, accelerations, crank_moment)
+  !> With an `elastic_rod` it takes the rigid one's place. `solvable` is false where the mass matrix is not positive definite.
+  pure subroutine accelerate_assembled(bodies, drive, is_loose, loads, motion, accelerations, crank_moment, elastic_rod, solvable)
     type(bodies_t), intent(in) :: bodies
     type(drive_t), intent(in) :: drive
     logical, intent(in) :: is_loose(n_pins)   !! pins with clearance
@@ -30,11 +34,13 @@ contains
     type(motion_t), intent(in) :: motion
     type(accelerations_t), intent(out) :: accelerations
     real(dp), intent(out) :: crank_moment
+    type(elastic_rod_t), intent(in), optional :: elastic_rod
+    logical, intent(out), optional :: solvable
     type(coordinates_t) :: at
     type(equations_t) :: equations
     type(body_t) :: crank, rod, piston
     type(loads_t) :: acting
-    real(dp) :: z(7), holding
+    real(dp) :: z(most_coordinates), holding
     logical :: definite
     integer :: pin
 
@@ -47,6 +53,10 @@ contains
       at%piston = at%n + 1
       at%n = at%n + 2
     end if
+    if (present(elastic_rod)) then
+      at%shape = at%n + 1
+      at%n = at%n + elastic_rod%n
+    end if
     acting = loads
     do pin = 1, n_pins
       if (is_loose(pin)) cycle
@@ -55,12 +65,19 @@ contains
     end do
     call equations%begin(at%n)
     call make_crank(bodies, drive, acting, motion, at, crank)
-    call make_rod(bodies, acting, motion, at, rod)
-    call make_piston(bodies, acting, motion, at, rod, piston)
+    if (present(elastic_rod)) then
+      call make_elastic_rod(elastic_rod, bodies, acting, motion, at, rod)
+      call make_piston(bodies, acting, motion, at, rod, piston, motion%chord)
+      call stretch_to_piston(elastic_rod, motion, at, piston)
+    else
+      call make_rod(bodies, acting, motion, at, rod)
+      call make_piston(bodies, acting, motion, at, rod, piston, bodies%rod%length)
+    end if
     call equations%add(crank)
     call equations%add(rod)
     call equations%add(piston)
     call equations%solve(.not. drive%free_crank, z(:at%n), holding, definite)
+    if (present(solvable)) solvable = definite
     crank_moment = drive%torque + holding
     accelerations%crank = z(1)
     accelerations%rod = dot_product(rod%map(3, :at%n), z(:at%n)) + rod%bias(3)
@@ -76,6 +93,7 @@ contains
     do pin = 1, n_pins
       if (is_loose(pin)) accelerations%pin(:, pin) = z(at%pin(pin):at%pin(pin) + 1)
     end do
+    if (present(elastic_rod)) accelerations%shape(:elastic_rod%n) = z(at%shape:at%shape + elastic_rod%n - 1)
   end subroutine accelerate_assembled
 
   !> The crank: q'.
@@ -113,22 +131,15 @@ contains
     associate (r => bodies%crank%length, rod => bodies%rod, sq => motion%sin_crank, cq => motion%cos_crank, &
                sa => motion%sin_rod, ca => motion%cos_rod)
       call body%begin(3, at%n)
+      call move_big_end(bodies, motion, at, body)
       ! A by L sin A = R sin q - o_y
       per_arm = 1/(rod%length*ca)
-      body%map(:3, 1) = [-r*sq, r*cq, r*cq*per_arm]
-      body%bias(:3) = [-r*cq*q_rate**2, -r*sq*q_rate**2, (rod%length*sa*a_rate**2 - r*sq*q_rate**2)*per_arm]
+      body%map(3, 1) = r*cq*per_arm
+      body%bias(3) = (rod%length*sa*a_rate**2 - r*sq*q_rate**2)*per_arm
       do pin = 1, n_pins
         if (at%pin(pin) > 0) body%map(3, at%pin(pin) + 1) = -per_arm
       end do
-      if (at%piston > 0) then   ! o_y'' has y'' - p_x b'' + p_y b'^2
-        body%map(3, at%piston) = -per_arm
-        body%map(3, at%piston + 1) = per_arm*motion%tilting%com(1)
-        body%bias(3) = body%bias(3) - per_arm*motion%tilting%com(2)*motion%tilting%tilt_rate**2
-      end if
-      if (at%pin(crank_pin) > 0) then
-        body%map(1, at%pin(crank_pin)) = -1
-        body%map(2, at%pin(crank_pin) + 1) = -1
-      end if
+      call move_by_bore(motion, at, per_arm, body)
       com = [rod%com(1)*ca + rod%com(2)*sa, rod%com(2)*ca - rod%com(1)*sa]
       com_by_angle = [com(2), -com(1)]
       tip_by_angle = -rod%length*[sa, ca]
@@ -144,17 +155,73 @@ contains
     end associate
   end subroutine make_rod
 
+  !> B_x' and B_y' of a rod's big end.
+  pure subroutine move_big_end(bodies, motion, at, body)
+    type(bodies_t), intent(in) :: bodies
+    type(motion_t), intent(in) :: motion
+    type(coordinates_t), intent(in) :: at
+    type(body_t), intent(inout) :: body
+    real(dp) :: radius(2)
+    radius = bodies%crank%length*[motion%cos_crank, motion%sin_crank]
+    body%map(:2, 1) = [-radius(2), radius(1)]
+    body%bias(:2) = -radius*motion%crank_speed**2
+    if (at%pin(crank_pin) == 0) return
+    body%map(1, at%pin(crank_pin)) = -1
+    body%map(2, at%pin(crank_pin) + 1) = -1
+  end subroutine move_big_end
+
+  !> What a piston with clearance in its bore adds to A: o_y'' has y'' - p_x b'' + p_y b'^2.
+  pure subroutine move_by_bore(motion, at, per_arm, body)
+    type(motion_t), intent(in) :: motion
+    type(coordinates_t), intent(in) :: at
+    real(dp), intent(in) :: per_arm   !! 1/(rod's length . cos A) [1/m]
+    type(body_t), intent(inout) :: body
+    if (at%piston == 0) return
+    body%map(3, at%piston) = -per_arm
+    body%map(3, at%piston + 1) = per_arm*motion%tilting%com(1)
+    body%bias(3) = body%bias(3) - per_arm*motion%tilting%com(2)*motion%tilting%tilt_rate**2
+  end subroutine move_by_bore
+
+  !> An elastic rod: (B_x', B_y', A') of its big end and its chord, and its shapes.
+  pure subroutine make_elastic_rod(elastic_rod, bodies, loads, motion, at, body)
+    type(elastic_rod_t), intent(in) :: elastic_rod
+    type(bodies_t), intent(in) :: bodies
+    type(loads_t), intent(in) :: loads
+    type(motion_t), intent(in) :: motion
+    type(coordinates_t), intent(in) :: at
+    type(body_t), intent(out) :: body
+    call body%begin(3 + elastic_rod%n, at%n)
+    call move_big_end(bodies, motion, at, body)
+    call put_elastic_map(elastic_rod, bodies%crank%length, motion, at%pin, at%shape, body)
+    call move_by_bore(motion, at, 1/(motion%chord*motion%cos_rod), body)
+    call put_own_equations(elastic_rod, bodies, loads, motion, body)
+  end subroutine make_elastic_rod
+
+  !> What an elastic rod's change of length does to a piston on its guide.
+  pure subroutine stretch_to_piston(elastic_rod, motion, at, piston)
+    type(elastic_rod_t), intent(in) :: elastic_rod
+    type(motion_t), intent(in) :: motion
+    type(coordinates_t), intent(in) :: at
+    type(body_t), intent(inout) :: piston
+    real(dp) :: by_chord(most_coordinates), bias
+    by_chord = 0
+    call put_chord(elastic_rod, motion, at%shape, by_chord, bias)
+    piston%map(1, :at%n) = piston%map(1, :at%n) + motion%cos_rod*by_chord(:at%n)
+    piston%bias(1) = piston%bias(1) + motion%cos_rod*bias - 2*motion%chord_rate*motion%sin_rod*motion%rod_speed
+  end subroutine stretch_to_piston
+
   !> The piston on its guide: x', x = B_x + L cos A - e_x. With clearance in its bore: (x', y', b') of its centre of mass.
-  pure subroutine make_piston(bodies, loads, motion, at, rod, body)
+  pure subroutine make_piston(bodies, loads, motion, at, rod, body, rod_length)
     type(bodies_t), intent(in) :: bodies
     type(loads_t), intent(in) :: loads
     type(motion_t), intent(in) :: motion
     type(coordinates_t), intent(in) :: at
     type(body_t), intent(in) :: rod
     type(body_t), intent(out) :: body
+    real(dp), intent(in) :: rod_length   !! from pin to pin [m]
     real(dp) :: across, along
-    along = bodies%rod%length*motion%cos_rod
-    across = bodies%rod%length*motion%sin_rod
+    along = rod_length*motion%cos_rod
+    across = rod_length*motion%sin_rod
     call body%begin(merge(3, 1, at%piston > 0), at%n)
     body%map(1, :at%n) = rod%map(1, :at%n) - across*rod%map(3, :at%n)
     body%bias(1) = rod%bias(1) - across*rod%bias(3) - along*motion%rod_speed**2

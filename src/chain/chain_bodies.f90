@@ -60,6 +60,7 @@ module chain_bodies
     procedure :: coupling
     procedure :: kinetic_energy
     procedure :: potential_energy
+    procedure :: energy_beside_rod
   end type bodies_t
 
 contains
@@ -152,4 +153,16 @@ contains
         + self%gravity(1)*self%piston%mass*motion%piston_position)
     end associate
   end function potential_energy
+
+  !> Kinetic and potential energy of crank and piston [J].
+  pure real(dp) function energy_beside_rod(self, motion) result(energy)
+    class(bodies_t), intent(in) :: self
+    type(motion_t), intent(in) :: motion
+    real(dp) :: crank(2)
+    associate (c => self%crank%com)
+      crank = [c(1)*motion%cos_crank - c(2)*motion%sin_crank, c(1)*motion%sin_crank + c(2)*motion%cos_crank]
+    end associate
+    energy = 0.5_dp*(self%crank_inertia*motion%crank_speed**2 + self%piston%mass*motion%piston_velocity**2) &
+      - dot_product(self%gravity, self%crank%mass*crank) - self%gravity(1)*self%piston%mass*motion%piston_position
+  end function energy_beside_rod
 end module chain_bodies

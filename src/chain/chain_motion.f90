@@ -16,7 +16,7 @@ module chain_motion
   use gudgeon_kinds, only: dp
   implicit none
   private
-  public :: motion_t, tilting_t, accelerations_t, crank_pin, piston_pin, n_pins, pin_names, name_prefix
+  public :: motion_t, tilting_t, accelerations_t, crank_pin, piston_pin, n_pins, pin_names, name_prefix, most_shapes
   public :: turn_crank, follow_rod, follow_piston
 
   !> The pins of the chain.
@@ -24,6 +24,8 @@ module chain_motion
   integer, parameter :: piston_pin = 2   !! journal on the rod, bearing in the piston
   integer, parameter :: n_pins = 2
   character(len=*), parameter :: pin_names(n_pins) = [character(len=10) :: 'crank_pin', 'piston_pin']   !! in cases and results
+
+  integer, parameter :: most_shapes = 16   !! in which an elastic rod bends and stretches
 
   !> How a piston with clearance in its bore is placed there. What follows from the two coordinates is found by `loose_piston`.
   type :: tilting_t
@@ -51,6 +53,14 @@ module chain_motion
     real(dp) :: offset(2)           !! o = c + e, and across what the bore leaves free [m]
     real(dp) :: offset_rate(2)      !! [m/s]
     type(tilting_t) :: tilting      !! of a piston with clearance in its bore
+    real(dp) :: rod_end_speed(n_pins)       !! turning speed of the rod at its ends, from x to y [rad/s]
+    ! of elastic members alone
+    real(dp) :: chord                       !! from pin to pin of an elastic rod, whose angle is A [m]
+    real(dp) :: chord_rate                  !! [m/s]
+    real(dp) :: shape(most_shapes)          !! how far an elastic rod is bent and stretched: amplitude of each of its shapes [m]
+    real(dp) :: shape_rate(most_shapes)     !! [m/s]
+    real(dp) :: flywheel_angle              !! at the other end of an elastic crankshaft [rad]
+    real(dp) :: flywheel_speed              !! [rad/s]
   end type motion_t
 
   !> Accelerations of the three bodies.
@@ -60,6 +70,9 @@ module chain_motion
     real(dp) :: piston              !! [m/s^2]
     real(dp) :: pin(2, n_pins)      !! (:, pin): of its eccentricity [m/s^2]; 0 of an ideal pin
     real(dp) :: offset, tilt        !! of a piston with clearance in its bore [m/s^2], [rad/s^2]
+    real(dp) :: rod_end(n_pins)     !! of the rod's turning at its ends, from x to y [rad/s^2]; where surfaces may stick
+    real(dp) :: shape(most_shapes)  !! of the shapes of an elastic rod [m/s^2]
+    real(dp) :: flywheel            !! at the other end of an elastic crankshaft [rad/s^2]
   end type accelerations_t
 
 contains
@@ -97,6 +110,7 @@ contains
     ! over cos A = cos A/gap: the division need not wait for the root
     motion%rod_speed = (crank_length*motion%cos_crank*motion%crank_speed - motion%offset_rate(2))*per_rod_length/gap &
       *motion%cos_rod
+    motion%rod_end_speed = -motion%rod_speed
   end subroutine follow_rod
 
   !> The piston of a motion whose crank and rod are known.

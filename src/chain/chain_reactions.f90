@@ -7,7 +7,7 @@ module chain_reactions
   use loose_piston, only: centre_acceleration
   implicit none
   private
-  public :: reactions_t, reactions_of
+  public :: reactions_t, reactions_of, elastic_reactions
 
   !> Forces [N] found from the bodies' accelerations alone, so F5 = -F_x and F6 = -F_y of the joint's law are a check, and with
   !> clearance at the crank pin F3 = -J_x and F4 = -J_y too.
@@ -30,9 +30,7 @@ contains
     real(dp) :: rod(2), crank(2), piston(2), u, v, f1, f2, f3, f4, f5, f6, f7, on_rod
 
     call centre_forces(bodies, motion, accelerations, crank, rod)
-    piston = [accelerations%piston, 0.0_dp]
-    if (bodies%piston%is_loose) piston = centre_acceleration(motion, accelerations)
-    piston = bodies%piston%mass*(piston - bodies%gravity)
+    piston = piston_force(bodies, motion, accelerations)
     u = bodies%rod%com(1)
     v = bodies%rod%com(2)
     associate (l => bodies%rod%length, sin_a => motion%sin_rod, cos_a => motion%cos_rod)
@@ -48,6 +46,38 @@ contains
     end associate
     reactions = reactions_t([f1, f2], [f3, f4], [f5, f6], f7, [f1 - loads%axial_force, f2 - f7])
   end function reactions_of
+
+  !> With an elastic rod, from what its motion asks of its ends (`elastic_end_forces`).
+  pure type(reactions_t) function elastic_reactions(bodies, loads, motion, accelerations, on_ends, turning) result(reactions)
+    type(bodies_t), intent(in) :: bodies
+    type(loads_t), intent(in) :: loads
+    type(motion_t), intent(in) :: motion
+    type(accelerations_t), intent(in) :: accelerations
+    real(dp), intent(in) :: on_ends(2)   !! sum of the forces there [N]
+    real(dp), intent(in) :: turning      !! of them and the moments there about the big end, against A [N m]
+    real(dp) :: crank(2), rod(2), piston(2), moments, across
+    piston = piston_force(bodies, motion, accelerations)
+    call centre_forces(bodies, motion, accelerations, crank, rod)
+    moments = loads%moment(piston_pin) + bearing_moment(motion%crank_pin, loads%force(:, crank_pin), loads%moment(crank_pin))
+    across = (turning - moments)/motion%chord   ! of the piston pin's force
+    reactions%pin(1) = loads%axial_force + piston(1)
+    reactions%pin(2) = -(across + motion%sin_rod*reactions%pin(1))/motion%cos_rod
+    reactions%crankpin = on_ends + reactions%pin
+    reactions%crank_bearing = reactions%crankpin + crank
+    reactions%guide = reactions%pin(2) - piston(2)
+    reactions%frame = reactions%crank_bearing - [loads%axial_force, reactions%guide]
+  end function elastic_reactions
+
+  !> Mass times acceleration less weight (x, y) of the piston [N].
+  pure function piston_force(bodies, motion, accelerations) result(force)
+    type(bodies_t), intent(in) :: bodies
+    type(motion_t), intent(in) :: motion
+    type(accelerations_t), intent(in) :: accelerations
+    real(dp) :: force(2)
+    force = [accelerations%piston, 0.0_dp]
+    if (bodies%piston%is_loose) force = centre_acceleration(motion, accelerations)
+    force = bodies%piston%mass*(force - bodies%gravity)
+  end function piston_force
 
   !> Mass times acceleration less weight (x, y) of crank and rod [N].
   pure subroutine centre_forces(bodies, motion, accelerations, crank, rod)

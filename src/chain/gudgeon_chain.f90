@@ -5,13 +5,17 @@ module gudgeon_chain
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, n_pins, follow_rod, follow_piston
   use chain_bodies, only: bodies_t, drive_t, weightless
   use chain_loads, only: loads_t
-  use chain_reactions, only: reactions_t, reactions_of
+  use chain_reactions, only: reactions_t, reactions_of, elastic_reactions
   use ideal_chain, only: accelerate_ideal_chain
   use crank_rod, only: accelerate_crank_rod, respond_crank_rod
   use rod_piston, only: accelerate_rod_piston
   use free_rod, only: accelerate_free_rod
   use assembled_chain, only: accelerate_assembled
   use loose_piston, only: free_piston, kinetic_energy_beside, height_beside
+  use elastic_members, only: elastic_members_t
+  use elastic_rod, only: elastic_rod_t
+  use elastic_rod_piece, only: accelerate_elastic_rod
+  use elastic_rod_body, only: elastic_rod_energy, elastic_end_forces
   implicit none
   private
   public :: chain_t
@@ -20,8 +24,12 @@ module gudgeon_chain
     type(bodies_t) :: bodies
     type(drive_t) :: drive
     logical :: is_loose(n_pins) = .false.   !! pins with clearance
+    type(elastic_members_t), allocatable :: elastic   !! not allocated: all bodies are rigid
   contains
     procedure, non_overridable :: accelerate
+    procedure, non_overridable :: accelerate_elastic
+    procedure :: has_elastic_rod
+    procedure :: has_crankshaft
     procedure, non_overridable :: move_rod
     procedure, non_overridable :: move_piston
     procedure :: response
@@ -32,54 +40,129 @@ module gudgeon_chain
 
 contains
 
-  !> Accelerations under gravity, the drive and the loads of gas and loose pins; the loads of ideal pins that the piece finds with
-  !> them; and the moment on the crank [N m]: the drive's torque if the crank is free, the moment that holds its speed if not.
+  !> Accelerations of rigid bodies under gravity, the drive and the loads of gas and loose pins; the loads of ideal pins that the
+  !> piece finds with them; and the moment on the crank [N m]: the drive's torque if the crank is free, the moment that holds its
+  !> speed if not.
   pure subroutine accelerate(self, motion, loads, accelerations, crank_moment)
     class(chain_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
     type(loads_t), intent(inout) :: loads
     type(accelerations_t), intent(out) :: accelerations
     real(dp), intent(out) :: crank_moment
-    if (self%bodies%piston%is_loose) then
-      call accelerate_with_loose_piston(self, motion, loads, accelerations, crank_moment)
-    else if (self%is_loose(crank_pin)) then
-      if (self%is_loose(piston_pin)) then
-        call accelerate_free_rod(self%bodies, self%drive, loads, motion, accelerations, crank_moment)
-      else
-        call accelerate_rod_piston(self%bodies, self%drive, motion, loads, accelerations, crank_moment)
-      end if
-    else if (self%is_loose(piston_pin)) then
-      call accelerate_crank_rod(self%bodies, self%drive, loads, motion, accelerations, crank_moment)
-    else
-      call accelerate_ideal_chain(self%bodies, self%drive, motion, loads, accelerations, crank_moment)
-    end if
+    call accelerate_rigid(self, self%drive, motion, loads, accelerations, crank_moment)
   end subroutine accelerate
 
+  pure subroutine accelerate_rigid(chain, drive, motion, loads, accelerations, crank_moment)
+    class(chain_t), intent(in) :: chain
+    type(drive_t), intent(in) :: drive
+    type(motion_t), intent(in) :: motion
+    type(loads_t), intent(inout) :: loads
+    type(accelerations_t), intent(out) :: accelerations
+    real(dp), intent(out) :: crank_moment
+    if (chain%bodies%piston%is_loose) then
+      call accelerate_with_loose_piston(chain, drive, motion, loads, accelerations, crank_moment)
+    else if (chain%is_loose(crank_pin)) then
+      if (chain%is_loose(piston_pin)) then
+        call accelerate_free_rod(chain%bodies, drive, loads, motion, accelerations, crank_moment)
+      else
+        call accelerate_rod_piston(chain%bodies, drive, motion, loads, accelerations, crank_moment)
+      end if
+    else if (chain%is_loose(piston_pin)) then
+      call accelerate_crank_rod(chain%bodies, drive, loads, motion, accelerations, crank_moment)
+    else
+      call accelerate_ideal_chain(chain%bodies, drive, motion, loads, accelerations, crank_moment)
+    end if
+  end subroutine accelerate_rigid
+
   !> The same where the piston has clearance in its bore: with clearance at its pin too it is a piece of its own.
-  pure subroutine accelerate_with_loose_piston(chain, motion, loads, accelerations, crank_moment)
-    type(chain_t), intent(in) :: chain
+  pure subroutine accelerate_with_loose_piston(chain, drive, motion, loads, accelerations, crank_moment)
+    class(chain_t), intent(in) :: chain
+    type(drive_t), intent(in) :: drive
     type(motion_t), intent(in) :: motion
     type(loads_t), intent(inout) :: loads
     type(accelerations_t), intent(out) :: accelerations
     real(dp), intent(out) :: crank_moment
     if (.not. chain%is_loose(piston_pin)) then
-      call accelerate_assembled(chain%bodies, chain%drive, chain%is_loose, loads, motion, accelerations, crank_moment)
+      call accelerate_assembled(chain%bodies, drive, chain%is_loose, loads, motion, accelerations, crank_moment)
       call chain%complete_loads(motion, accelerations, loads)
       return
     end if
     if (chain%is_loose(crank_pin)) then
-      call accelerate_free_rod(chain%bodies, chain%drive, loads, motion, accelerations, crank_moment)
+      call accelerate_free_rod(chain%bodies, drive, loads, motion, accelerations, crank_moment)
     else
-      call accelerate_crank_rod(chain%bodies, chain%drive, loads, motion, accelerations, crank_moment)
+      call accelerate_crank_rod(chain%bodies, drive, loads, motion, accelerations, crank_moment)
     end if
     call free_piston(chain%bodies, motion, loads, accelerations)
   end subroutine accelerate_with_loose_piston
 
-  !> The rod of a motion whose crank and offset are known. `reachable` is false where it cannot be.
+  !> The same of a chain with elastic members. The moment is that on the flywheel where there is one. `solvable` is false where the
+  !> elastic rod's mass matrix is not positive definite.
+  pure subroutine accelerate_elastic(self, motion, loads, accelerations, crank_moment, solvable)
+    class(chain_t), intent(in) :: self
+    type(motion_t), intent(in) :: motion
+    type(loads_t), intent(inout) :: loads
+    type(accelerations_t), intent(out) :: accelerations
+    real(dp), intent(out) :: crank_moment
+    logical, intent(out) :: solvable
+    type(drive_t) :: drive
+    drive = self%drive
+    if (self%has_crankshaft()) drive = self%elastic%crankshaft%drive_of_crank(motion)
+    solvable = .true.
+    if (.not. self%has_elastic_rod()) then
+      call accelerate_rigid(self, drive, motion, loads, accelerations, crank_moment)
+      accelerations%rod_end = -accelerations%rod
+    else
+      associate (rod => self%elastic%rod)
+        if (self%is_loose(piston_pin)) then
+          call accelerate_elastic_rod(rod, self%bodies, drive, self%is_loose(crank_pin), loads, motion, accelerations, &
+            crank_moment, solvable)
+          if (.not. solvable) return
+          if (self%bodies%piston%is_loose) call free_piston(self%bodies, motion, loads, accelerations)
+        else
+          call accelerate_assembled(self%bodies, drive, self%is_loose, loads, motion, accelerations, crank_moment, rod, solvable)
+          if (.not. solvable) return
+          call self%complete_loads(motion, accelerations, loads)
+        end if
+        call turn_rod_ends(rod, accelerations)
+      end associate
+    end if
+    if (self%has_crankshaft()) &
+      call self%elastic%crankshaft%accelerate_flywheel(self%drive, motion, accelerations%flywheel, crank_moment)
+  end subroutine accelerate_elastic
+
+  !> Accelerations of the turning of an elastic rod's ends.
+  pure subroutine turn_rod_ends(rod, accelerations)
+    type(elastic_rod_t), intent(in) :: rod
+    type(accelerations_t), intent(inout) :: accelerations
+    associate (n => rod%n_bending)
+      accelerations%rod_end = matmul(accelerations%shape(:n), rod%slope(:n, :)) - accelerations%rod
+    end associate
+  end subroutine turn_rod_ends
+
+  pure logical function has_elastic_rod(self)
+    class(chain_t), intent(in) :: self
+    has_elastic_rod = .false.
+    if (allocated(self%elastic)) has_elastic_rod = allocated(self%elastic%rod)
+  end function has_elastic_rod
+
+  !> Whether the crankshaft is elastic.
+  pure logical function has_crankshaft(self)
+    class(chain_t), intent(in) :: self
+    has_crankshaft = .false.
+    if (allocated(self%elastic)) has_crankshaft = allocated(self%elastic%crankshaft)
+  end function has_crankshaft
+
+  !> The rod of a motion whose crank and offset are known, and the shapes of an elastic one. `reachable` is false where it cannot be.
   pure subroutine move_rod(self, motion, reachable)
     class(chain_t), intent(in) :: self
     type(motion_t), intent(inout) :: motion
     logical, intent(out) :: reachable
+    if (allocated(self%elastic)) then
+      if (allocated(self%elastic%rod)) then
+        call self%elastic%rod%follow(self%bodies%crank%length, motion, reachable)
+        return
+      end if
+    end if
     call follow_rod(self%bodies%crank%length, self%bodies%per_rod_length, motion, reachable)
   end subroutine move_rod
 
@@ -87,6 +170,12 @@ contains
   pure subroutine move_piston(self, motion)
     class(chain_t), intent(in) :: self
     type(motion_t), intent(inout) :: motion
+    if (allocated(self%elastic)) then
+      if (allocated(self%elastic%rod)) then
+        call self%elastic%rod%follow_piston(self%bodies%crank%length, motion)
+        return
+      end if
+    end if
     call follow_piston(self%bodies%crank%length, self%bodies%rod%length, motion)
   end subroutine move_piston
 
@@ -99,17 +188,50 @@ contains
     type(accelerations_t), intent(out) :: accelerations
     real(dp), intent(out) :: crank_moment
     type(motion_t) :: rest
-    if (self%is_loose(piston_pin) .and. .not. (self%is_loose(crank_pin) .or. self%bodies%piston%is_loose)) then
+    if (self%is_loose(piston_pin) .and. .not. (self%is_loose(crank_pin) .or. self%bodies%piston%is_loose &
+                                               .or. allocated(self%elastic))) then
       call respond_crank_rod(self%bodies, self%drive, loads, motion, accelerations, crank_moment)
+      accelerations%rod_end = -accelerations%rod
       return
     end if
     rest = motion
     rest%crank_speed = 0
     rest%rod_speed = 0
     rest%tilting%tilt_rate = 0
-    call accelerate_assembled(weightless(self%bodies), drive_t(self%drive%free_crank), self%is_loose, loads, rest, accelerations, &
-      crank_moment)
+    if (self%has_elastic_rod()) then
+      call respond_elastic_rod(self, rest, loads, accelerations, crank_moment)
+      return
+    end if
+    call accelerate_assembled(weightless(self%bodies), free_drive(self), self%is_loose, loads, rest, accelerations, crank_moment)
+    accelerations%rod_end = -accelerations%rod
+    accelerations%flywheel = 0
   end subroutine response
+
+  !> A drive without moment.
+  pure type(drive_t) function free_drive(chain) result(drive)
+    class(chain_t), intent(in) :: chain
+    drive%free_crank = chain%drive%free_crank .or. chain%has_crankshaft()
+  end function free_drive
+
+  !> The same of an elastic rod, as it is bent and stretched but without its stiffness.
+  pure subroutine respond_elastic_rod(chain, at_rest, loads, accelerations, crank_moment)
+    class(chain_t), intent(in) :: chain
+    type(motion_t), intent(in) :: at_rest
+    type(loads_t), intent(in) :: loads
+    type(accelerations_t), intent(out) :: accelerations
+    real(dp), intent(out) :: crank_moment
+    type(motion_t) :: rest
+    type(elastic_rod_t) :: slack
+    rest = at_rest
+    rest%chord_rate = 0
+    rest%shape_rate = 0
+    slack = chain%elastic%rod
+    slack%stiffness = 0
+    call accelerate_assembled(weightless(chain%bodies), free_drive(chain), chain%is_loose, loads, rest, accelerations, &
+      crank_moment, slack)
+    call turn_rod_ends(slack, accelerations)
+    accelerations%flywheel = 0
+  end subroutine respond_elastic_rod
 
   !> The loads of ideal pins, from the bodies' accelerations.
   pure subroutine complete_loads(self, motion, accelerations, loads)
@@ -135,14 +257,25 @@ contains
     type(accelerations_t), intent(in) :: accelerations
     type(loads_t), intent(in) :: loads
     type(reactions_t) :: reactions
-    reactions = reactions_of(self%bodies, loads, motion, accelerations)
+    real(dp) :: on_ends(2), turning
+    if (self%has_elastic_rod()) then
+      call elastic_end_forces(self%elastic%rod, self%bodies, motion, accelerations, on_ends, turning)
+      reactions = elastic_reactions(self%bodies, loads, motion, accelerations, on_ends, turning)
+    else
+      reactions = reactions_of(self%bodies, loads, motion, accelerations)
+    end if
   end function reactions
 
   !> Kinetic and potential energy of the bodies [J].
   pure real(dp) function energy(self, motion)
     class(chain_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
-    energy = self%bodies%kinetic_energy(motion) + self%bodies%potential_energy(motion)
+    if (self%has_elastic_rod()) then
+      energy = self%bodies%energy_beside_rod(motion) + elastic_rod_energy(self%elastic%rod, self%bodies, motion)
+    else
+      energy = self%bodies%kinetic_energy(motion) + self%bodies%potential_energy(motion)
+    end if
+    if (self%has_crankshaft()) energy = energy + self%elastic%crankshaft%energy(motion)
     if (.not. self%bodies%piston%is_loose) return
     associate (b => self%bodies)
       energy = energy + kinetic_energy_beside(b%piston, motion) - b%piston%mass*dot_product(b%gravity, height_beside(motion))

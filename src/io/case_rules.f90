@@ -8,6 +8,7 @@ module case_rules
   use case_schema, only: find_group, find_key
   use case_values, only: case_values_t
   use guide_rules, only: check_guide, bore_reach
+  use elastic_rules, only: check_elastic
   implicit none
   private
   public :: check_rules, case_warning
@@ -34,6 +35,8 @@ contains
     call check_guide(c, values, error)
     if (allocated(error)) return
     call check_start(c, values, error)
+    if (allocated(error)) return
+    call check_elastic(c, values, error)
     if (allocated(error)) return
     call check_combustion(c, values, error)
     if (allocated(error)) return

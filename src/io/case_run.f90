@@ -216,7 +216,7 @@ contains
     if (.not. files%advice%was_given) self%notice = advice(self%report%auto_saves)
     if (self%notice /= '') self%notice = printable(case%file, 200)//': '//self%notice
     call self%summary%put(summary_table(case, self%report, files%wall_time(), self%start%identity, &
-                                        int(files%trace%length(), int64), int(files%event_list%length(), int64)))
+                                        int(files%trace%length(), int64), int(files%event_list%length(), int64), self%is_twin))
   end subroutine put_summary
 
   !> The error of the run: one of the output goes before one of the integration. The checkpoint goes where all is said and done.

@@ -77,7 +77,7 @@ contains
     if (.not. options%quiet) call tell_warning(case)
     base = options%out//'/'//case%name
     text = resolved_text(values)
-    self%has_twin = case%output%ideal_twin .and. case%has_clearance()
+    self%has_twin = case%output%ideal_twin .and. (case%has_clearance() .or. case%is_elastic())
     identity = identity_of(text, program)
     call self%run%prepare(case, text, identity, .false., list, base, options%checkpoint_interval, show_progress, options%quiet)
     self%twin%base = base//'.ideal'

@@ -49,7 +49,7 @@ contains
     value = trim(key%default)
     if (key%example /= '') value = trim(key%example)
     if (key%kind > logical_kind) value = quoted(value, '''')
-    if (key%kind == real_kind .and. key%count > 1) value = value//repeat(', '//value, key%count - 1)
+    if (key%kind == real_kind .and. key%count > 1 .and. index(value, ',') == 0) value = value//repeat(', '//value, key%count - 1)
     line = '  '//trim(key%name)//' = '//value
     line = line//repeat(' ', max(1, 42 - len(line)))//'! '
     note = ''

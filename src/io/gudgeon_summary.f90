@@ -5,7 +5,7 @@ module gudgeon_summary
   use gudgeon_constants, only: two_pi
   use ode_method, only: highest_order, with_adams, with_radau, n_limits, limit_names, limit_stability
   use gudgeon_simulation, only: run_report_t
-  use run_figures, only: pin_figures_t, corner_figures_t
+  use run_figures, only: pin_figures_t, corner_figures_t, elastic_figures_t
   use piston_guide, only: n_corners, corner_names
   use period_watch, only: period_watch_t
   use chain_motion, only: crank_pin, piston_pin, name_prefix
@@ -23,12 +23,13 @@ module gudgeon_summary
 contains
 
   !> The rows `quantity,value,unit`. Peaks have as many digits as the trace, so that rounding lifts no row above them.
-  function summary_table(case, report, wall_time, identity, trace_length, events_length) result(text)
+  function summary_table(case, report, wall_time, identity, trace_length, events_length, is_twin) result(text)
     type(case_t), intent(in) :: case
     type(run_report_t), intent(in) :: report
     real(dp), intent(in) :: wall_time                               !! [s]
     character(len=*), intent(in) :: identity                        !! of the run
     integer(int64), intent(in) :: trace_length, events_length       !! of the files [bytes]; 0: there is none
+    logical, intent(in), optional :: is_twin                        !! of the ideal twin, whose bodies are rigid
     character(len=:), allocatable :: text
     character(len=5), parameter :: method_names(2) = ['adams', 'radau']
     integer :: order, limit, mode, method, corner
@@ -99,6 +100,7 @@ contains
           call add_corner(corner_names(corner)//'_', f%corner(corner))
         end do
       end if
+      if (case%is_elastic()) call add_elastic(f%elastic)
     end associate
     if (trace_length > 0) call add('trace_bytes', bytes_text(trace_length), 'B')
     if (events_length > 0) call add('events_bytes', bytes_text(events_length), 'B')
@@ -162,6 +164,33 @@ contains
       if (joint%film%gives_side_flow() .and. report%figures%time > 0) &
         call add(prefix//'mean_film_side_flow', real_text(pin%film_volume/report%figures%time), 'm3/s')
     end subroutine add_film
+
+    !> What elastic members have. The ideal twin of such a case says that it is rigid.
+    subroutine add_elastic(largest)
+      type(elastic_figures_t), intent(in) :: largest
+      logical :: is_rigid
+      is_rigid = .false.
+      if (present(is_twin)) is_rigid = is_twin
+      if (is_rigid) then
+        call add('elastic_members', 'none: the ideal twin is rigid', '')
+        return
+      end if
+      if (allocated(case%elastic_rod) .and. allocated(case%crankshaft)) then
+        call add('elastic_members', 'rod and crankshaft', '')
+      else
+        call add('elastic_members', trim(merge('rod       ', 'crankshaft', allocated(case%elastic_rod))), '')
+      end if
+      if (allocated(case%elastic_rod)) then
+        call add('rod_bending_frequency', real_text(largest%bending_frequency/two_pi), 'Hz')
+        call add('rod_axial_frequency', real_text(largest%axial_frequency/two_pi), 'Hz')
+        call add('max_rod_mid_deflection', real_text(largest%mid_deflection, case%output%digits), 'm')
+        call add('max_rod_stretch', real_text(largest%stretch, case%output%digits), 'm')
+        call add('max_rod_strain_energy', real_text(largest%strain_energy, case%output%digits), 'J')
+      end if
+      if (.not. allocated(case%crankshaft)) return
+      call add('crankshaft_frequency', real_text(largest%twist_frequency/two_pi), 'Hz')
+      call add('max_crankshaft_twist', real_text(largest%twist, case%output%digits), 'rad')
+    end subroutine add_elastic
 
     subroutine add(quantity, value, unit)
       character(len=*), intent(in) :: quantity, value, unit

@@ -1,7 +1,7 @@
 !> How journal and bearing of a joint move against each other (Reis 2013, 3.70-3.78).
 module joint_motion
   use gudgeon_kinds, only: dp
-  use chain_motion, only: motion_t, accelerations_t, crank_pin
+  use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin
   use friction_law, only: most_friction_states
   implicit none
   private
@@ -48,9 +48,9 @@ contains
     type(joint_motion_t), intent(inout) :: joint
     if (place == crank_pin) then
       joint%journal_speed = motion%crank_speed
-      joint%bearing_speed = -motion%rod_speed
+      joint%bearing_speed = motion%rod_end_speed(crank_pin)
     else
-      joint%journal_speed = -motion%rod_speed
+      joint%journal_speed = motion%rod_end_speed(piston_pin)
       joint%bearing_speed = 0
     end if
   end subroutine find_speeds
@@ -78,9 +78,9 @@ contains
       if (.not. at_rest) a = a - joint%tangential_rate*joint%penetration_rate/joint%distance &
         - joint%bearing_speed*joint%penetration_rate
       if (place == crank_pin) then
-        a = a + accelerations%crank*pin_radius + accelerations%rod*(joint%distance + pin_radius)
+        a = a + accelerations%crank*pin_radius - accelerations%rod_end(crank_pin)*(joint%distance + pin_radius)
       else
-        a = a - accelerations%rod*pin_radius
+        a = a + accelerations%rod_end(piston_pin)*pin_radius
         if (bearing_turns) a = a - accelerations%tilt*(joint%distance + pin_radius)
       end if
     end associate

@@ -63,9 +63,15 @@ contains
         accelerations%rod = accelerations%rod + f*change(k)%rod
         accelerations%piston = accelerations%piston + f*change(k)%piston
         accelerations%pin = accelerations%pin + f*change(k)%pin
-        if (.not. chain%bodies%piston%is_loose) cycle
-        accelerations%offset = accelerations%offset + f*change(k)%offset
-        accelerations%tilt = accelerations%tilt + f*change(k)%tilt
+        accelerations%rod_end = accelerations%rod_end + f*change(k)%rod_end
+        if (chain%bodies%piston%is_loose) then
+          accelerations%offset = accelerations%offset + f*change(k)%offset
+          accelerations%tilt = accelerations%tilt + f*change(k)%tilt
+        end if
+        if (.not. allocated(chain%elastic)) cycle
+        associate (n => chain%elastic%n_shapes())
+          accelerations%shape(:n) = accelerations%shape(:n) + f*change(k)%shape(:n)
+        end associate
       end associate
     end do
   end subroutine hold_surfaces

@@ -148,7 +148,7 @@ contains
     value = values(1)
   end subroutine add_real
 
-  !> Two numbers; a default or an example is that of both.
+  !> Two numbers; a default is that of both, and so is an example without a comma.
   subroutine add_pair(self, key, value, says, unit, range, default, example)
     class(parameter_list_t), intent(inout) :: self
     character(len=*), intent(in) :: key, says

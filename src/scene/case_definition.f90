@@ -20,6 +20,8 @@ module case_definition
   use oil_viscosity, only: oil_t
   use asperities, only: asperities_t
   use gas_cycle, only: gas_cycle_t
+  use elastic_rod, only: elastic_rod_t
+  use elastic_crankshaft, only: elastic_crankshaft_t
   implicit none
   private
   public :: case_t, joint_case_t, visit_case, piston_pin_place, crank_pin_place
@@ -100,6 +102,8 @@ module case_definition
     type(joint_case_t) :: joint        !! of rod and piston, at the piston pin
     type(joint_case_t) :: crank_pin    !! of crank and rod
     type(guide_case_t), allocatable :: guide   !! not allocated: an ideal one
+    type(elastic_rod_t), allocatable :: elastic_rod          !! rigid where it is not allocated
+    type(elastic_crankshaft_t), allocatable :: crankshaft    !! the same
     type(gas_cycle_t), allocatable :: combustion
     type(run_length_t) :: run
     type(integrator_case_t) :: integrator
@@ -109,6 +113,7 @@ module case_definition
     procedure :: has_play
     procedure :: has_loose_guide
     procedure :: has_clearance => has_clearance_anywhere
+    procedure :: is_elastic
   end type case_t
 
   !> The places of joints, as a case names them. A group &joint without a place is the first's, a law's group without one is for
@@ -141,6 +146,12 @@ contains
     class(case_t), intent(in) :: self
     has_clearance_anywhere = self%has_play() .or. self%has_loose_guide()
   end function has_clearance_anywhere
+
+  !> Whether there is an elastic member.
+  pure logical function is_elastic(self)
+    class(case_t), intent(in) :: self
+    is_elastic = allocated(self%elastic_rod) .or. allocated(self%crankshaft)
+  end function is_elastic
 
   !> Whether the joint has clearance.
   pure logical function has_clearance(self)
@@ -176,6 +187,8 @@ contains
       call drop_laws(case%crank_pin, case%joint)
     end if
     call visit_guide(case%guide, list)
+    call visit_elastic_rod(case%elastic_rod, list)
+    call visit_crankshaft(case%crankshaft, list)
     call visit_gas(case%combustion, list)
     call list%group('run', 'how long it lasts: until = ''periodic'' stands instead of the end that &integrator gives', .false.)
     call case%run%parameters(list)
@@ -312,6 +325,37 @@ contains
     if (.not. list%sets) deallocate (guide)
   end subroutine visit_guide
 
+  subroutine visit_elastic_rod(rod, list)
+    type(elastic_rod_t), allocatable, intent(inout) :: rod
+    class(parameter_list_t), intent(inout) :: list
+    type(elastic_rod_t) :: described
+    call list%group('elastic_rod', 'connecting rod that bends and stretches: leave the group out for a rigid one', .true.)
+    if (.not. list%sets) then
+      call described%parameters(list)
+      return
+    end if
+    if (allocated(rod)) deallocate (rod)
+    if (.not. list%is_present) return
+    allocate (rod)
+    call rod%parameters(list)
+  end subroutine visit_elastic_rod
+
+  subroutine visit_crankshaft(crankshaft, list)
+    type(elastic_crankshaft_t), allocatable, intent(inout) :: crankshaft
+    class(parameter_list_t), intent(inout) :: list
+    type(elastic_crankshaft_t) :: described
+    call list%group('crankshaft', 'elastic in torsion, with a flywheel that is driven: leave the group out for a rigid one', &
+      .true.)
+    if (.not. list%sets) then
+      call described%parameters(list)
+      return
+    end if
+    if (allocated(crankshaft)) deallocate (crankshaft)
+    if (.not. list%is_present) return
+    allocate (crankshaft)
+    call crankshaft%parameters(list)
+  end subroutine visit_crankshaft
+
   subroutine visit_gas(gas, list)
     type(gas_cycle_t), allocatable, intent(inout) :: gas
     class(parameter_list_t), intent(inout) :: list
@@ -339,7 +383,7 @@ contains
     call list%add('rod_mass', self%rod_mass, 'mass', 'kg', '>= 0', example='1.36')
     call list%add('rod_inertia', self%rod_inertia, 'moment of inertia about its centre of mass', 'kg m^2', '>= 0', &
       example='0.010')
-    call list%add('rod_com', self%rod_com, 'centre of mass from the crank pin', 'm', default='0.0')
+    call list%add('rod_com', self%rod_com, 'centre of mass from the crank pin', 'm', default='0.0', example='0.0508, 0.0')
     call list%add('piston_mass', self%piston_mass, 'mass', 'kg', '> 0', example='0.91')
     call list%add('gravity', self%gravity, 'from the cylinder to the crank, unless gravity_angle_deg turns it', 'm/s^2', &
       default='9.80665')
@@ -429,7 +473,7 @@ contains
       'standard', many=.true.)
     call list%add('digits', self%digits, 'significant, of every number in a trace; 17 read back exactly', '>= 9 and <= 17', '10')
     call list%add('every_step', self%every_step, 'a row also at each step of the integrator', '.false.')
-    call list%add('ideal_twin', self%ideal_twin, 'run the same scene with an ideal joint too', '.false.')
+    call list%add('ideal_twin', self%ideal_twin, 'run the same scene with ideal joints and rigid bodies too', '.false.')
     call list%word('window', self%window, 'all, last_period', 'all', &
       'last_period: of a run until = ''periodic'' rows and events of its last period alone')
   end subroutine output_parameters

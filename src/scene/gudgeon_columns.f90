@@ -7,6 +7,7 @@ module gudgeon_columns
   use chain_reactions, only: reactions_t
   use joint_columns, only: put_joint_columns
   use guide_columns, only: put_guide_columns
+  use elastic_columns, only: put_elastic_columns
   use case_definition, only: case_t
   use gudgeon_scene, only: scene_t, evaluation_t
   use scene_builder, only: assemble_scene
@@ -122,6 +123,7 @@ contains
       call put_joint_columns(scene%joints(i), now%relative(i), now%joint(i), row)
     end do
     if (allocated(scene%guide)) call put_guide_columns(scene%guide, now%motion, now%accelerations, now%guide, row)
+    if (allocated(scene%chain%elastic)) call put_elastic_columns(scene%chain%elastic, now%motion, row)
     if (allocated(scene%gas)) call scene%gas%put_columns(now%motion%sin_crank, now%motion%cos_crank, now%cylinder_pressure, row)
   end subroutine put_columns
 

@@ -19,7 +19,7 @@ module gudgeon_recorder
   use pin_record, only: pin_record_t
   use guide_record, only: guide_record_t
   use trace_sink, only: trace_sink_t, trace_event_t
-  use run_figures, only: run_figures_t
+  use run_figures, only: run_figures_t, elastic_figures_t
   use gudgeon_archive, only: archive_t
   implicit none
   private
@@ -72,6 +72,13 @@ contains
       call self%pins(2)%prepare(crank_pin, scene)
     end if
     call self%guide%prepare(scene)
+    if (allocated(scene%chain%elastic)) then
+      if (scene%chain%has_elastic_rod()) then
+        self%figures%elastic%bending_frequency = scene%chain%elastic%rod%bending_frequency()
+        self%figures%elastic%axial_frequency = scene%chain%elastic%rod%axial_frequency(scene%chain%bodies%piston%mass)
+      end if
+      if (scene%chain%has_crankshaft()) self%figures%elastic%twist_frequency = scene%twist_frequency()
+    end if
     allocate (self%y(scene%n), self%values(size(self%list%id)))
     self%keeps_archives = self%sink%keeps_archives .and. .not. allocated(self%cycles)   ! whose state is not put away
     if (self%periods%is_on) call self%periods%begin(scene)
@@ -186,7 +193,7 @@ contains
       return
     end if
     ends = t_to
-    if (scene%chain%drive%free_crank) call find_turning(method, scene, method%t_old, t_to, turns, ends(1), self%y)
+    if (scene%crank_moves) call find_turning(method, scene, method%t_old, t_to, turns, ends(1), self%y)
     t_from = method%t_old
     do part = 1, 2
       do
@@ -278,7 +285,25 @@ contains
     logical, intent(out) :: inside
     self%figures%evaluations = self%figures%evaluations + 1
     call scene%evaluate(t, y, now, inside)
+    if (inside .and. allocated(scene%chain%elastic)) call take_elastic(self%figures%elastic, scene, now)
   end subroutine look_at
+
+  !> The largest values of elastic members.
+  pure subroutine take_elastic(figures, scene, now)
+    type(elastic_figures_t), intent(inout) :: figures
+    type(scene_t), intent(in) :: scene
+    type(evaluation_t), intent(in) :: now
+    associate (f => figures, m => now%motion)
+      if (scene%chain%has_elastic_rod()) then
+        associate (rod => scene%chain%elastic%rod)
+          f%mid_deflection = max(f%mid_deflection, abs(rod%mid_deflection(m)))
+          if (rod%n_axial > 0) f%stretch = max(f%stretch, abs(m%shape(rod%n_bending + 1)))
+          f%strain_energy = max(f%strain_energy, rod%strain_energy(m))
+        end associate
+      end if
+      if (scene%chain%has_crankshaft()) f%twist = max(f%twist, abs(m%flywheel_angle - m%crank_angle))
+    end associate
+  end subroutine take_elastic
 
   !> The figures of one accepted point, evaluated before, and its row where one is due.
   subroutine take_point(self, scene, t, y, now, inside, has_row)
@@ -387,7 +412,7 @@ contains
     call self%angles%is_due(scene%crank_angle(t, y), rounding, is_due, crank_angle)
     if (.not. is_due .or. t < self%first_sample) return
     self%y = y
-    if (scene%chain%drive%free_crank) self%y(scene%crank%position) = crank_angle
+    if (scene%crank_moves) self%y(scene%crank%position) = crank_angle
     call self%write_row(scene, t, self%y)
   end subroutine put_last_angle
 

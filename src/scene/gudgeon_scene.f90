@@ -66,6 +66,7 @@ module gudgeon_scene
     real(dp) :: span = 1            !! of the simulation [s]
     type(layout_t) :: layout        !! of the state
     type(coordinates_t) :: crank    !! where the crank angle stands in it
+    logical :: crank_moves = .true. !! it stands there: its speed is not held
     integer :: work_at = 0          !! where the work of the forces stands
     type(slice_t) :: measures       !! quadratures of the joints
     logical :: measures_loss = .false.   !! the last of them is what the joints take
@@ -97,6 +98,7 @@ module gudgeon_scene
     procedure :: energy
     procedure :: energy_scale
     procedure :: speed_scale
+    procedure :: twist_frequency
     procedure :: joint_at
     procedure :: phase_at
     procedure :: forcing_revolutions
@@ -180,6 +182,26 @@ module gudgeon_scene
       type(evaluation_t), intent(inout) :: now
       logical, intent(out) :: inside
     end subroutine accelerate_on_guide
+
+    !> Accelerations of a chain with elastic members, and the friction of surfaces that stick. `inside` is false where its equations
+    !> cannot be solved.
+    pure module subroutine accelerate_elastic(self, joints, now, inside)
+      class(scene_t), intent(in) :: self
+      type(clearance_joint_t), intent(in) :: joints(:)
+      type(evaluation_t), intent(inout) :: now
+      logical, intent(out) :: inside
+    end subroutine accelerate_elastic
+
+    !> Let the elastic members claim their part of the state.
+    module subroutine claim_elastic(self)
+      class(scene_t), intent(inout) :: self
+    end subroutine claim_elastic
+
+    !> Frequency with which crank and flywheel of an elastic crankshaft swing against each other about the starting angle [rad/s], with
+    !> ideal joints and a rigid rod.
+    pure real(dp) module function twist_frequency(self)
+      class(scene_t), intent(in) :: self
+    end function twist_frequency
   end interface
 
 contains
@@ -192,7 +214,7 @@ contains
     type(evaluation_t) :: now
     call find_accelerations(self, self%n_joints, self%joints, t, y, now, inside)
     if (.not. inside) return
-    if (self%chain%drive%free_crank) then
+    if (self%crank_moves) then
       dydt(self%crank%position) = now%motion%crank_speed
       dydt(self%crank%rate) = now%accelerations%crank
     end if
@@ -201,6 +223,7 @@ contains
       dydt)
     dydt(self%work_at) = now%power
     if (.not. self%has_more_rates) return
+    if (allocated(self%chain%elastic)) call self%chain%elastic%put_rates(now%motion, now%accelerations, dydt)
     call put_own_rates(self%n_joints, self%joints, now, dydt)
     if (self%measures%last < self%measures%first) return
     if (self%measures_loss) dydt(self%measures%last) = -sum(now%joint(:self%n_joints)%power)
@@ -279,6 +302,13 @@ contains
       call place_in_bore(self, y, now, inside)
       if (.not. inside) return
     end if
+    if (allocated(self%chain%elastic)) then
+      if (.not. self%chain%is_loose(crank_pin)) then   ! which not every closed form reads
+        now%motion%crank_pin = 0
+        now%motion%crank_pin_rate = 0
+      end if
+      call self%chain%elastic%read_state(t, y, now%motion)
+    end if
     call self%chain%move_rod(now%motion, inside)
     if (.not. inside) return
     now%power = 0
@@ -294,14 +324,24 @@ contains
     if (allocated(self%guide)) then
       call accelerate_on_guide(self, joints, now, inside)
       if (.not. inside) return
+    else if (allocated(self%chain%elastic)) then
+      call accelerate_elastic(self, joints, now, inside)
+      if (.not. inside) return
     else
       call self%chain%accelerate(now%motion, now%loads, now%accelerations, now%crank_moment)
-      if (self%may_stick) call hold_surfaces(self%chain, joints, now%motion, now%relative, now%joint, now%loads, &
-        now%accelerations, now%crank_moment, now%power)
+      if (self%may_stick) then
+        now%accelerations%rod_end = -now%accelerations%rod
+        call hold_surfaces(self%chain, joints, now%motion, now%relative, now%joint, now%loads, now%accelerations, &
+          now%crank_moment, now%power)
+      end if
     end if
-    associate (crank_speed => now%motion%crank_speed)
-      now%power = (now%crank_moment - self%chain%drive%damping*crank_speed)*crank_speed + now%power
-    end associate
+    if (allocated(self%chain%elastic)) then
+      now%power = now%power + self%chain%elastic%power(now%motion, now%crank_moment, self%chain%drive%damping)
+    else
+      associate (crank_speed => now%motion%crank_speed)
+        now%power = (now%crank_moment - self%chain%drive%damping*crank_speed)*crank_speed + now%power
+      end associate
+    end if
     if (.not. allocated(self%gas) .or. allocated(self%guide)) return
     call self%chain%move_piston(now%motion)
     now%power = now%power - now%loads%axial_force*now%motion%piston_velocity
@@ -312,7 +352,7 @@ contains
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     type(motion_t), intent(inout) :: motion
-    if (self%chain%drive%free_crank) then
+    if (self%crank_moves) then
       call turn_crank(motion, y(self%crank%position), y(self%crank%rate))
     else
       call turn_crank(motion, self%start_angle + self%start_speed*t, self%start_speed)
@@ -360,19 +400,22 @@ contains
     end do
     self%highest_mode = n_phases**self%n_joints - 1
     if (allocated(self%guide)) self%highest_mode = 2*(self%highest_mode + 1) - 1
-    if (self%chain%drive%free_crank) &
+    self%crank_moves = self%chain%drive%free_crank .or. self%chain%has_crankshaft()
+    if (self%crank_moves) &
       call self%layout%claim_positions(1, 1.0_dp, self%speed_scale(self%span), self%crank, grows=.true.)
     do i = 1, self%n_joints
       call self%joints(i)%claim(self%layout, self%speed_scale(self%span), self%span)
     end do
     if (allocated(self%guide)) call self%guide%claim(self%layout, self%speed_scale(self%span), self%span)
+    if (allocated(self%chain%elastic)) call claim_elastic(self)
     call self%layout%claim_quadratures(1, self%energy_scale(self%span), work)
     call self%layout%settle(self%crank)
+    if (allocated(self%chain%elastic)) call self%chain%elastic%settle(self%layout)
     do i = 1, self%n_joints
       call self%joints(i)%settle(self%layout)
     end do
     if (allocated(self%guide)) call self%guide%settle(self%layout)
-    self%has_more_rates = any(self%joints%has_own_rates)
+    self%has_more_rates = any(self%joints%has_own_rates) .or. allocated(self%chain%elastic)
     call self%layout%settle(work)
     self%work_at = work%first
     call take_layout(self)
@@ -412,7 +455,7 @@ contains
   pure logical function work_tells(self)
     class(scene_t), intent(in) :: self
     work_tells = self%chain%drive%free_crank .and. .not. (self%chain%drive%damping > 0 .or. allocated(self%gas) &
-                                                         .or. allocated(self%guide))
+                                                         .or. allocated(self%guide) .or. allocated(self%chain%elastic))
   end function work_tells
 
   !> Integrals of the sizes of the forces on the pins so far, in a scene that measures them [N s]; 0 of an ideal crank pin.
@@ -445,7 +488,8 @@ contains
     real(dp) :: y(self%n)
     integer :: i
     y = 0
-    if (self%chain%drive%free_crank) then
+    if (allocated(self%chain%elastic)) call self%chain%elastic%put_start(y)
+    if (self%crank_moves) then
       y(self%crank%position) = self%start_angle
       y(self%crank%rate) = self%start_speed
     end if
@@ -470,7 +514,7 @@ contains
   pure real(dp) function crank_angle(self, t, y)
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: t, y(:)
-    if (self%chain%drive%free_crank) then
+    if (self%crank_moves) then
       crank_angle = y(self%crank%position)
     else
       crank_angle = self%start_angle + self%start_speed*t
@@ -481,7 +525,7 @@ contains
   pure real(dp) function crank_speed(self, y)
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: y(:)
-    if (self%chain%drive%free_crank) then
+    if (self%crank_moves) then
       crank_speed = y(self%crank%rate)
     else
       crank_speed = self%start_speed
@@ -519,6 +563,8 @@ contains
     associate (b => self%chain%bodies)
       energy_scale = 0.5_dp*(b%crank_term + b%piston%mass*b%crank%length**2)*self%speed_scale(span)**2 &
         + (b%crank%mass + b%rod%mass + b%piston%mass)*norm2(b%gravity)*b%crank%length
+      if (self%chain%has_crankshaft()) energy_scale = energy_scale &
+        + 0.5_dp*self%chain%elastic%crankshaft%flywheel_inertia*self%speed_scale(span)**2
       do i = 1, self%n_joints
         energy_scale = energy_scale + 0.5_dp*(b%rod%mass + b%piston%mass)*self%joints(i)%own_speed(span)**2
       end do

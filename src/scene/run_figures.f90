@@ -6,7 +6,7 @@ module run_figures
   use piston_guide, only: n_corners
   implicit none
   private
-  public :: run_figures_t, pin_figures_t, corner_figures_t
+  public :: run_figures_t, pin_figures_t, corner_figures_t, elastic_figures_t
 
   !> Those of one pin. Without clearance there is no more than the force, and of an ideal crank pin not even that.
   type :: pin_figures_t
@@ -34,9 +34,23 @@ module run_figures
     real(dp) :: max_force = 0                 !! normal to the wall [N]
   end type corner_figures_t
 
+  !> Those of elastic members: largest values of steps and rows.
+  type :: elastic_figures_t
+    real(dp) :: mid_deflection = 0            !! of the rod, across its chord [m]
+    real(dp) :: stretch = 0                   !! largest |change of its length| along its axis [m]
+    real(dp) :: strain_energy = 0             !! of the rod [J]
+    real(dp) :: twist = 0                     !! largest |twist| of the crankshaft [rad]
+    real(dp) :: bending_frequency = 0         !! of the rod on two pins that do not move [rad/s]
+    real(dp) :: axial_frequency = 0           !! of its stretch with the piston on it [rad/s]
+    real(dp) :: twist_frequency = 0           !! of the crankshaft, at the starting angle [rad/s]
+  contains
+    procedure :: exchange => exchange_elastic
+  end type elastic_figures_t
+
   type :: run_figures_t
     type(pin_figures_t) :: pin(n_pins)        !! crank_pin, piston_pin
     type(corner_figures_t) :: corner(n_corners)
+    type(elastic_figures_t) :: elastic
     integer :: evaluations = 0                !! of the scene for rows, events and these figures
     integer :: peak_evaluations = 0           !! of them for peaks between accepted points
     real(dp) :: max_energy = 0                !! largest |kinetic + potential energy| [J]
@@ -63,6 +77,7 @@ contains
       call archive%exchange(self%corner(i)%max_penetration)
       call archive%exchange(self%corner(i)%max_force)
     end do
+    call self%elastic%exchange(archive)
     call archive%exchange(self%evaluations)
     call archive%exchange(self%peak_evaluations)
     call archive%exchange(self%max_energy)
@@ -70,6 +85,16 @@ contains
     call archive%exchange(self%crank_travel)
     call archive%exchange(self%time)
   end subroutine exchange_figures
+
+  !> Those of elastic members; not what a scene has from its beginning.
+  subroutine exchange_elastic(self, archive)
+    class(elastic_figures_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    call archive%exchange(self%mid_deflection)
+    call archive%exchange(self%stretch)
+    call archive%exchange(self%strain_energy)
+    call archive%exchange(self%twist)
+  end subroutine exchange_elastic
 
   !> Those of a pin.
   subroutine exchange_pin(self, archive)

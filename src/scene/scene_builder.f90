@@ -39,7 +39,7 @@ module scene_builder
 
 contains
 
-  !> Build the scene of a case; with `ideal_joint` its twin without clearance. The case has been validated by its
+  !> Build the scene of a case; with `ideal_joint` its twin of rigid bodies without clearance. The case has been validated by its
   !> reader. Error: the gas cycle cannot be integrated.
   subroutine build_scene(case, ideal_joint, scene, error, without_tables)
     type(case_t), intent(in) :: case
@@ -58,6 +58,7 @@ contains
       scene%chain%bodies = new_bodies(crank_t(m%crank_length, m%crank_mass, m%crank_inertia, m%crank_com), &
         rod_t(m%rod_length, m%rod_mass, m%rod_inertia, m%rod_com), piston_of(case, scene), gravity_of(case))
     end associate
+    if (scene%chain%has_elastic_rod()) call scene%chain%elastic%rod%prepare(scene%chain%bodies%rod)
     scene%chain%drive = drive_t(case%drive%kind == 'free', case%drive%torque, case%drive%damping)
     scene%start_angle = case%initial%crank_angle_deg*degree
     scene%start_speed = case%initial%crank_speed
@@ -133,6 +134,11 @@ contains
       do n = 1, scene%n_joints
         scene%joints(n)%bearing_turns = scene%guide%is_loose
       end do
+    end if
+    if (case%is_elastic() .and. .not. ideal_joint) then
+      allocate (scene%chain%elastic)
+      if (allocated(case%elastic_rod)) allocate (scene%chain%elastic%rod, source=case%elastic_rod)
+      if (allocated(case%crankshaft)) allocate (scene%chain%elastic%crankshaft, source=case%crankshaft)
     end if
     if (.not. allocated(case%combustion)) return
     allocate (scene%gas)
@@ -246,7 +252,7 @@ contains
     settings%relative = merge(0.0_dp, tolerance, growing)
     settings%absolute = factor*scales
     call tighten(settings, scene%work_at, lasting_share)
-    if (scene%chain%drive%free_crank) then
+    if (scene%crank_moves) then
       call tighten(settings, scene%crank%rate, lasting_share)
       call tighten(settings, scene%crank%position, angle_share)
     end if

@@ -25,23 +25,33 @@ contains
     if (self%guide%is_loose) then
       call move_centre(now%motion)
       call self%guide%slide(now%motion, now%guide, now%loads)
-      call accelerate_once(self, joints, now)
+      call accelerate_once(self, joints, now, inside)
+      if (.not. inside) return
       associate (at => now%motion%tilting, loads => now%loads)
         now%power = now%power + (loads%bore_force*at%offset_rate + loads%bore_moment*at%tilt_rate) &
           - loads%axial_force*at%com_velocity
       end associate
     else
       call find_guide_friction(self, joints, now, inside)
+      if (.not. inside) return
       now%power = now%power - now%loads%axial_force*now%motion%piston_velocity
     end if
   end procedure accelerate_on_guide
 
-  !> Accelerations with the present loads, and the friction of surfaces that stick.
-  pure subroutine accelerate_once(scene, joints, now)
+  !> Accelerations with the present loads, and the friction of surfaces that stick. `inside` is false where the equations of elastic
+  !> members cannot be solved.
+  pure subroutine accelerate_once(scene, joints, now, inside)
     class(scene_t), intent(in) :: scene
     type(clearance_joint_t), intent(in) :: joints(:)
     type(evaluation_t), intent(inout) :: now
+    logical, intent(out) :: inside
+    inside = .true.
+    if (allocated(scene%chain%elastic)) then
+      call accelerate_elastic(scene, joints, now, inside)
+      return
+    end if
     call scene%chain%accelerate(now%motion, now%loads, now%accelerations, now%crank_moment)
+    now%accelerations%rod_end = -now%accelerations%rod
     if (scene%may_stick) call hold_surfaces(scene%chain, joints, now%motion, now%relative, now%joint, now%loads, &
       now%accelerations, now%crank_moment, now%power)
   end subroutine accelerate_once
@@ -66,12 +76,14 @@ contains
         normal = guide_force(scene, now)
       else
         trial = now
-        call accelerate_once(scene, joints, trial)
+        call accelerate_once(scene, joints, trial, inside)
+        if (.not. inside) return
         normal = guide_force(scene, trial)
         probe = max(abs(normal), 1.0_dp)
         trial = now
         trial%loads%axial_force = now%loads%axial_force - probe
-        call accelerate_once(scene, joints, trial)
+        call accelerate_once(scene, joints, trial, inside)
+        if (.not. inside) return
         slope = (guide_force(scene, trial) - normal)/probe
         inside = abs(ratio*slope) < 1
         if (.not. inside) return
@@ -80,7 +92,7 @@ contains
       now%loads%axial_force = now%loads%axial_force - ratio*abs(normal)
       now%guide%friction_force = now%guide%friction_force + ratio*abs(normal)
     end if
-    call accelerate_once(scene, joints, now)
+    call accelerate_once(scene, joints, now, inside)
   end subroutine find_guide_friction
 
   !> N of the piston on an ideal guide, from the force of the pin's joint [N].

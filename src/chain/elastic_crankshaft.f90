@@ -1,0 +1,103 @@
+!> A crankshaft that is elastic in torsion: a flywheel at its free end, where the drive turns it, the crank at the other.
+!>
+!>     J_f q_f'' = tau - D q_f' - M_s,    M_s = k_t (q_f - q) + c_t (q_f' - q')
+!>
+!> M_s turns the crank in place of the drive. Where the speed is held, it is the flywheel's, and the crank swings about it.
+module elastic_crankshaft
+  use gudgeon_kinds, only: dp
+  use gudgeon_parameters, only: has_parameters_t, parameter_list_t
+  use chain_motion, only: motion_t
+  use chain_bodies, only: drive_t
+  implicit none
+  private
+  public :: elastic_crankshaft_t
+
+  type, extends(has_parameters_t) :: elastic_crankshaft_t
+    real(dp) :: flywheel_inertia = 0      !! J_f [kg m^2]
+    real(dp) :: stiffness = 0             !! k_t [N m/rad]
+    real(dp) :: damping = 0               !! c_t [N m s/rad]
+  contains
+    procedure :: parameters
+    procedure :: moment
+    procedure :: drive_of_crank
+    procedure :: accelerate_flywheel
+    procedure :: strain_energy
+    procedure :: energy
+    procedure :: damping_power
+    procedure :: natural_frequency
+  end type elastic_crankshaft_t
+
+contains
+
+  subroutine parameters(self, list)
+    class(elastic_crankshaft_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%add('flywheel_inertia', self%flywheel_inertia, 'of what turns at the driven end', 'kg m^2', '> 0', example='0.02')
+    call list%add('torsional_stiffness', self%stiffness, 'from the flywheel to the crank', 'N m/rad', '> 0', example='2.0e4')
+    call list%add('torsional_damping', self%damping, 'moment per rate of twist', 'N m s/rad', '>= 0', default='0.0')
+  end subroutine parameters
+
+  !> Moment of the shaft on the crank [N m].
+  pure real(dp) function moment(self, motion)
+    class(elastic_crankshaft_t), intent(in) :: self
+    type(motion_t), intent(in) :: motion
+    moment = self%stiffness*(motion%flywheel_angle - motion%crank_angle) &
+      + self%damping*(motion%flywheel_speed - motion%crank_speed)
+  end function moment
+
+  !> What turns the crank: the shaft alone.
+  pure type(drive_t) function drive_of_crank(self, motion) result(drive)
+    class(elastic_crankshaft_t), intent(in) :: self
+    type(motion_t), intent(in) :: motion
+    drive%free_crank = .true.
+    drive%torque = self%moment(motion)
+    drive%damping = 0
+  end function drive_of_crank
+
+  !> Acceleration of the flywheel [rad/s^2] and the drive's moment on it [N m].
+  pure subroutine accelerate_flywheel(self, drive, motion, acceleration, drive_moment)
+    class(elastic_crankshaft_t), intent(in) :: self
+    type(drive_t), intent(in) :: drive
+    type(motion_t), intent(in) :: motion
+    real(dp), intent(out) :: acceleration, drive_moment
+    real(dp) :: against
+    against = self%moment(motion) + drive%damping*motion%flywheel_speed
+    if (drive%free_crank) then
+      drive_moment = drive%torque
+      acceleration = (drive%torque - against)/self%flywheel_inertia
+    else
+      drive_moment = against
+      acceleration = 0
+    end if
+  end subroutine accelerate_flywheel
+
+  !> Energy of the twist [J].
+  pure real(dp) function strain_energy(self, motion)
+    class(elastic_crankshaft_t), intent(in) :: self
+    type(motion_t), intent(in) :: motion
+    strain_energy = 0.5_dp*self%stiffness*(motion%flywheel_angle - motion%crank_angle)**2
+  end function strain_energy
+
+  !> Energy of the twist and of the flywheel [J].
+  pure real(dp) function energy(self, motion)
+    class(elastic_crankshaft_t), intent(in) :: self
+    type(motion_t), intent(in) :: motion
+    energy = self%strain_energy(motion) + 0.5_dp*self%flywheel_inertia*motion%flywheel_speed**2
+  end function energy
+
+  !> Power of its damping on crank and flywheel [W], <= 0.
+  pure real(dp) function damping_power(self, motion)
+    class(elastic_crankshaft_t), intent(in) :: self
+    type(motion_t), intent(in) :: motion
+    damping_power = -self%damping*(motion%flywheel_speed - motion%crank_speed)**2
+  end function damping_power
+
+  !> Frequency with which crank and flywheel swing against each other [rad/s], the crank and what moves with it having this moment of
+  !> inertia; `is_held`: with a flywheel whose speed is held.
+  pure real(dp) function natural_frequency(self, crank_inertia, is_held)
+    class(elastic_crankshaft_t), intent(in) :: self
+    real(dp), intent(in) :: crank_inertia   !! [kg m^2]
+    logical, intent(in) :: is_held
+    natural_frequency = sqrt(self%stiffness*(1/crank_inertia + merge(0.0_dp, 1/self%flywheel_inertia, is_held)))
+  end function natural_frequency
+end module elastic_crankshaft
