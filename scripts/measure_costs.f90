@@ -123,7 +123,7 @@ contains
     real(dp) :: part, turn, reach
     integer :: i
 
-    if (allocated(scene%gas)) call scene%gas%find_part(1.5_dp*pi, 250.0_dp)
+    if (allocated(scene%gas)) call scene%gas%start(1.5_dp*pi, 250.0_dp)
     if (index(name, 'contact') == 1) then
       scene%joints(1)%phase = phase_contact
       scene%joints(1)%impact_speed = 0.1_dp

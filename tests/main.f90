@@ -17,6 +17,8 @@ program gudgeon_tests
   use test_chain, only: run_test_chain
   use test_checkpoint, only: run_test_checkpoint
   use test_combustion, only: run_test_combustion
+  use test_gas_machines, only: run_test_gas_machines
+  use test_measured_curves, only: run_test_measured_curves
   use test_command_line, only: run_test_command_line
   use test_contact, only: run_test_contact
   use test_crank_angle, only: run_test_crank_angle
@@ -84,6 +86,8 @@ program gudgeon_tests
   call run('chain', run_test_chain)
   call run('checkpoint', run_test_checkpoint)
   call run('combustion', run_test_combustion)
+  call run('gas_machines', run_test_gas_machines)
+  call run('measured_curves', run_test_measured_curves)
   call run('command_line', run_test_command_line)
   call run('contact', run_test_contact)
   call run('crank_angle', run_test_crank_angle)

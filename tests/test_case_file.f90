@@ -171,7 +171,7 @@ contains
   subroutine test_names(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: groups = ' (allowed: case, mechanism, drive, initial, joint, contact, friction, '// &
-      'lubrication, asperities, guide, elastic_rod, crankshaft, combustion, run, integrator, output)'
+      'lubrication, asperities, guide, elastic_rod, crankshaft, combustion, cylinder_pressure, run, integrator, output)'
     call refused(check, '&jiont /', 'x.nml:1: &jiont: unknown group; did you mean joint?'//groups)
     call refused(check, '&joint /'//n//'&joint /', 'x.nml:2: &joint: this group stands here twice')
     call refused(check, '&joint'//n//'clearnce=1 /', 'x.nml:2: &joint clearnce: unknown key; did you mean clearance?'//joint_keys)
@@ -264,6 +264,19 @@ contains
     call refused_with(check, 'combustion.duration_deg=0', 'x.nml: &combustion duration_deg = 0: must be > 0 (degrees)', fire)
     call refused_with(check, 'combustion.duration_deg=201', 'x.nml: &combustion duration_deg = 201: '// &
                       'start_deg + duration_deg must be <= 540, where the cylinder opens (degrees)', fire)
+    call refused_with(check, 'combustion.cycle=two_stroke', 'x.nml: &combustion port_opens_deg: required with cycle = '// &
+                      '''two_stroke'' (degrees)', fire)
+    call refused_on(check, whole//fire, [character(len=40) :: 'combustion.cycle=two_stroke', 'combustion.port_opens_deg=19'], &
+      'x.nml: &combustion start_deg = 340: must be >= 360 - port_opens_deg, where the ports close (degrees)')
+    call refused_on(check, whole//fire, [character(len=40) :: 'combustion.cycle=two_stroke', 'combustion.port_opens_deg=20', &
+      'combustion.duration_deg=41'], 'x.nml: &combustion duration_deg = 41: start_deg + duration_deg must be <= 360 + '// &
+      'port_opens_deg, where the ports open (degrees)')
+    call refused_on(check, whole//fire, [character(len=40) :: 'combustion.cycle=compressor', 'combustion.dead_space=0.1', &
+      'combustion.discharge_pressure=101325', 'combustion.polytropic_exponent=1.2'], &
+      'x.nml: &combustion discharge_pressure = 101325: must be > suction_pressure (Pa)')
+    call refused_with(check, 'cylinder_pressure.bore=0.1', 'x.nml: &cylinder_pressure table: required')
+    call refused_with(check, 'cylinder_pressure.table=', 'x.nml: &cylinder_pressure table = : must be the name of a file', &
+      '&cylinder_pressure bore=0.1 /')
     call refused_with(check, 'combustion.intake_pressure=0', 'x.nml: &combustion intake_pressure = 0: must be > 0 (Pa)', fire)
   end subroutine test_ranges
 
@@ -535,7 +548,7 @@ contains
       '&friction law=''coulomb'' coefficient=0.3 /'//n//'&drive kind=''constant_speed'' /'
     character(len=*), parameter :: long = 'joint.bearing_length=0.015'
     character(len=*), parameter :: unknown = ' (allowed: case, mechanism, drive, initial, joint, contact, friction, '// &
-      'lubrication, asperities, guide, elastic_rod, crankshaft, combustion, run, integrator, output)'
+      'lubrication, asperities, guide, elastic_rod, crankshaft, combustion, cylinder_pressure, run, integrator, output)'
     type(case_t) :: c
     type(error_t), allocatable :: error
     character(len=:), allocatable :: resolved

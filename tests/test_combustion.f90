@@ -6,8 +6,9 @@ module test_combustion
   use checks, only: checks_t
   use cylinder, only: cylinder_t, new_cylinder
   use hermite_table, only: hermite_table_t, new_hermite_table
+  use working_gas, only: working_gas_t
   use gas_cycle, only: gas_cycle_t, heat_release_t, new_gas_cycle, part_compression, part_combustion, part_expansion, &
-    part_open, cycle_angle
+    part_open
   implicit none
   private
   public :: run_test_combustion
@@ -137,6 +138,7 @@ contains
   subroutine parts_join(check)
     class(checks_t), intent(inout) :: check
     type(gas_cycle_t) :: gas
+    type(working_gas_t) :: working
     type(error_t), allocatable :: error
     real(dp) :: start
     integer :: part, i
@@ -152,13 +154,14 @@ contains
       call check%that(part == i .and. start <= 0 .and. start >= 0, 'forwards a part begins at its first angle')
       call gas%part_at(angle(i)*degree, .true., part, start)
       call check%that(part == merge(4, i - 1, i == 1), 'backwards the one before it')
-      call gas%part_at(angle(i)*degree + 3*cycle_angle + 1e-9_dp, .false., part, start)
-      call check%that(part == i .and. nint(start/cycle_angle) == 3, 'and so in the fourth cycle')
+      call gas%part_at(angle(i)*degree + 3*gas%period + 1e-9_dp, .false., part, start)
+      call check%that(part == i .and. nint(start/gas%period) == 3, 'and so in the fourth cycle')
     end do
     call gas%part_at(0.0_dp, .false., part, start)
     call check%that(part == part_open .and. start < 0, 'the cycle at q = 0 is open')
     call check%relative(gas%pressure(0.0_dp, part, start), 101325.0_dp, 1e-15_dp, 'at intake pressure')
-    call check%close_to(gas%gas_force(201325.0_dp), 1e5_dp*pi*0.07_dp**2/4, 1e-10_dp, 'gas force')
+    call working%take_cycle(gas, 101325.0_dp)
+    call check%close_to(working%force(201325.0_dp), 1e5_dp*pi*0.07_dp**2/4, 1e-10_dp, 'gas force')
   end subroutine parts_join
 
   !> First law over the combustion: change of p V/(gamma-1) + work = heat released, 1 - e^-a of Q_in, also where the

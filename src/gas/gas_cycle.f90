@@ -1,30 +1,28 @@
-!> The gas pressure of the four-stroke cycle over the crank angle (Reis 2013, appendix A): Wiebe heat release in the closed
+!> The gas pressure of an engine's cycle over the crank angle (Reis 2013, appendix A): Wiebe heat release in the closed
 !> part of the cycle, intake pressure in the open part.
 !>
-!> q = 0 is the gas-exchange dead centre, 360 degrees the firing one; the cylinder is closed from 180 to 540 degrees. The
-!> cycle has four smooth parts: compression, combustion, expansion, open. The pressure depends on the crank angle
+!> 360 degrees is the firing dead centre. Of a four-stroke cycle q = 0 is the gas-exchange dead centre, and the cylinder is closed
+!> from 180 to 540 degrees; a two-stroke cycle repeats after 360 degrees. A cycle has four smooth parts: compression, combustion,
+!> expansion, open. The pressure depends on the crank angle
 !> alone, so it is integrated once, when the scene is built, and then interpolated: as a state it would cost a
 !> power function and a stiffer error control in every evaluation.
 module gas_cycle
   use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi, two_pi, degree
+  use gudgeon_constants, only: pi
   use gudgeon_errors, only: error_t, fail, status_case_file
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t
   use adams, only: adams_t
   use gudgeon_solver, only: integrate, silent_observer_t, integration_done
-  use gudgeon_parameters, only: has_parameters_t, parameter_list_t
-  use cylinder, only: cylinder_t, new_cylinder
+  use cylinder, only: cylinder_t
   use hermite_table, only: hermite_table_t, new_hermite_table
   implicit none
   private
   public :: gas_cycle_t, heat_release_t, new_gas_cycle
-  public :: n_parts, part_compression, part_combustion, part_expansion, part_open, cycle_angle
+  public :: n_parts, part_compression, part_combustion, part_expansion, part_open
 
   integer, parameter :: n_parts = 4
   integer, parameter :: part_compression = 1, part_combustion = 2, part_expansion = 3, part_open = 4
-  real(dp), parameter :: cycle_angle = 4*pi           !! one cycle [rad]
-  real(dp), parameter :: closes = pi, opens = 3*pi    !! crank angles at which the cylinder closes and opens [rad]
   integer, parameter :: fewest_intervals = 16, most_intervals = 16384
 
   !> Wiebe's heat release: x_b = 1 - exp(-a z^n), z = (q - start)/duration on [0, 1]; the rest e^-a is not burnt.
@@ -32,29 +30,24 @@ module gas_cycle
     real(dp) :: heat = 0         !! Q_in [J per cycle]
     real(dp) :: efficiency = 5   !! a [-]
     real(dp) :: form = 3         !! n [-]
-    real(dp) :: start = 0        !! [rad], pi..3 pi
+    real(dp) :: start = 0        !! [rad], while the cylinder is closed
     real(dp) :: duration = 0     !! [rad]
   end type heat_release_t
 
-  type, extends(has_parameters_t) :: gas_cycle_t
-    real(dp) :: bore = 0                          !! cylinder diameter [m]
-    real(dp) :: compression_ratio = 0             !! largest over smallest volume [-]
-    real(dp) :: start_deg = 0, duration_deg = 0   !! of combustion [degrees]
+  type :: gas_cycle_t
+    real(dp) :: period = 4*pi                     !! one cycle [rad]
+    real(dp) :: closes = pi, opens = 3*pi         !! crank angles at which the cylinder closes and opens [rad]
     type(cylinder_t) :: cylinder
     type(heat_release_t) :: release
     real(dp) :: heat_capacity_ratio = 1.4_dp      !! gamma [-]
     real(dp) :: intake_pressure = 101325          !! [Pa]
-    real(dp) :: crankcase_pressure = 101325       !! [Pa]
     real(dp) :: bound(0:n_parts) = 0              !! crank angles between the parts, in the cycle that begins at 0 [rad]
     integer :: grading = 1                        !! z = xi^grading in the combustion table
     type(hermite_table_t) :: table(3)             !! pressure of the closed parts over xi
     real(dp) :: table_error = 0                   !! largest relative error found between the points of the tables
   contains
-    procedure :: parameters
-    procedure :: prepare
     procedure :: pressure
     procedure :: pressure_slope
-    procedure :: gas_force
     procedure :: part_at
   end type gas_cycle_t
 
@@ -75,35 +68,6 @@ module gas_cycle
 
 contains
 
-  subroutine parameters(self, list)
-    class(gas_cycle_t), intent(inout) :: self
-    class(parameter_list_t), intent(inout) :: list
-    call list%add('bore', self%bore, 'cylinder diameter', 'm', '>= 1e-6 and <= 1e3', example='0.070')
-    call list%add('compression_ratio', self%compression_ratio, 'largest over smallest volume', range='> 1 and <= 1000', &
-      example='9.0')
-    call list%add('heat_capacity_ratio', self%heat_capacity_ratio, 'of the gas', range='> 1 and <= 10', example='1.4')
-    call list%add('heat', self%release%heat, 'released in a cycle', 'J', '>= 0 and <= 1e12', example='165.0')
-    call list%add('wiebe_efficiency', self%release%efficiency, 'a of the Wiebe function', range='> 0 and <= 1000', example='5.0')
-    call list%add('wiebe_form', self%release%form, 'n of the Wiebe function', range='>= 0.05 and <= 100', example='3.0')
-    call list%add('start_deg', self%start_deg, 'start of combustion; firing dead centre is 360', 'degrees', &
-      '>= 180 and < 540', example='340.0')
-    call list%add('duration_deg', self%duration_deg, 'of combustion, which ends by 540', 'degrees', '> 0', example='40.0')
-    call list%add('intake_pressure', self%intake_pressure, 'in the open cylinder', 'Pa', '> 0', default='101325.0')
-    call list%add('crankcase_pressure', self%crankcase_pressure, 'under the piston', 'Pa', '> 0', default='101325.0')
-  end subroutine parameters
-
-  !> Integrate the cycle that the parameters ask for; see `new_gas_cycle`.
-  subroutine prepare(self, crank_length, rod_length, tolerance, error)
-    class(gas_cycle_t), intent(inout) :: self
-    real(dp), intent(in) :: crank_length, rod_length   !! [m]
-    real(dp), intent(in) :: tolerance
-    type(error_t), allocatable, intent(out) :: error
-    self%cylinder = new_cylinder(self%bore, crank_length, rod_length, self%compression_ratio)
-    self%release%start = self%start_deg*degree
-    self%release%duration = self%duration_deg*degree
-    call new_gas_cycle(self, tolerance, error)
-  end subroutine prepare
-
   !> Integrate the cycle. Its relative error is at most `tolerance`, or rounding. Error: the integration fails.
   subroutine new_gas_cycle(gas, tolerance, error)
     class(gas_cycle_t), intent(inout) :: gas   !! cylinder, release, pressures and heat_capacity_ratio given
@@ -114,8 +78,8 @@ contains
 
     goal = max(tolerance, 1e-13_dp)
     associate (release => gas%release)
-      gas%bound = [closes, release%start, release%start + release%duration, opens, closes + cycle_angle]
-      gas%bound(2) = min(gas%bound(2), opens)
+      gas%bound = [gas%closes, release%start, release%start + release%duration, gas%opens, gas%closes + gas%period]
+      gas%bound(2) = min(gas%bound(2), gas%opens)
       gas%grading = 1
       if (abs(release%form - nint(release%form)) > 0 .and. release%form < 8) gas%grading = ceiling(8/release%form)
     end associate
@@ -284,7 +248,7 @@ contains
     end do
   end subroutine step_taken
 
-  !> The part of the cycle at crank angle q, and the angle at which its cycle began, a multiple of 720 degrees: the
+  !> The part of the cycle at crank angle q, and the angle at which its cycle began, a multiple of its period: the
   !> smallest part whose end is beyond q, or where the crank turns `backwards` the one that it is about to enter.
   pure subroutine part_at(self, q, backwards, part, cycle_start)
     class(gas_cycle_t), intent(in) :: self
@@ -293,11 +257,11 @@ contains
     integer, intent(out) :: part
     real(dp), intent(out) :: cycle_start
     real(dp) :: angle
-    cycle_start = cycle_angle*floor((q - closes)/cycle_angle)
+    cycle_start = self%period*floor((q - self%closes)/self%period)
     angle = q - cycle_start
-    if (backwards .and. angle <= closes) then
+    if (backwards .and. angle <= self%closes) then
       part = part_open
-      cycle_start = cycle_start - cycle_angle
+      cycle_start = cycle_start - self%period
       return
     end if
     do part = 1, n_parts - 1
@@ -333,11 +297,4 @@ contains
     reach = self%bound(part) - self%bound(part - 1)
     pressure_slope = self%table(part)%slope((q - cycle_start - self%bound(part - 1))/reach)/reach
   end function pressure_slope
-
-  !> F_gas = (p - p_crankcase) pi b^2/4 on the piston along -x [N].
-  pure real(dp) function gas_force(self, pressure)
-    class(gas_cycle_t), intent(in) :: self
-    real(dp), intent(in) :: pressure   !! [Pa]
-    gas_force = (pressure - self%crankcase_pressure)*self%cylinder%area
-  end function gas_force
 end module gas_cycle

@@ -1,52 +1,117 @@
-!> The gas in the cylinder of a running engine: its cycle, and the part of it that acts.
+!> The gas in the cylinder of a running machine: an engine's cycle and the part of it that acts, a compressor's gas and what its
+!> valves do, or a measured pressure.
 module working_gas
   use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: degree
   use gudgeon_archive, only: archive_t
   use trace_row, only: trace_row_t
-  use gas_cycle, only: gas_cycle_t, cycle_angle, n_parts
+  use monotone_cubic, only: monotone_cubic_t
+  use cylinder, only: cylinder_t
+  use gas_cycle, only: gas_cycle_t, n_parts
+  use valve_gas, only: valve_gas_t, n_valve_events
   implicit none
   private
-  public :: working_gas_t, n_gas_events
+  public :: working_gas_t
 
-  !> Passages of the crank from one part of the cycle to the next: forwards, backwards.
-  integer, parameter :: n_gas_events = 2
+  !> Of a cycle, passages of the crank from one part to the next: forwards, backwards.
+  integer, parameter :: n_cycle_events = 2
 
+  !> One of the last three is allocated.
   type :: working_gas_t
-    type(gas_cycle_t) :: cycle
+    integer :: n_events = 0          !! event functions
     integer :: part = 0              !! of the cycle
     real(dp) :: cycle_start = 0      !! crank angle at which the present cycle began [rad]
+    type(cylinder_t) :: cylinder
+    real(dp) :: crankcase_pressure = 0   !! [Pa]
+    type(gas_cycle_t), allocatable :: cycle
+    type(valve_gas_t), allocatable :: valves
+    type(monotone_cubic_t), allocatable :: curve   !! measured pressure [Pa] over the crank angle [rad]
   contains
-    procedure :: find_part
+    procedure :: take_cycle
+    procedure :: take_valves
+    procedure :: take_curve
+    procedure :: start
+    procedure :: longest_turn
     procedure, non_overridable :: pressure
     procedure, non_overridable :: force
     procedure :: force_slope
     procedure :: events
-    procedure :: pass_bound
+    procedure :: pass
     procedure :: put_columns
     procedure :: exchange
   end type working_gas_t
 
 contains
 
-  !> Find the part of the cycle that the crank is in, or about to enter.
-  subroutine find_part(self, crank_angle, crank_speed)
+  subroutine take_cycle(self, cycle, crankcase_pressure)
     class(working_gas_t), intent(inout) :: self
-    real(dp), intent(in) :: crank_angle, crank_speed
-    call self%cycle%part_at(crank_angle, crank_speed < 0, self%part, self%cycle_start)
-  end subroutine find_part
+    type(gas_cycle_t), intent(in) :: cycle
+    real(dp), intent(in) :: crankcase_pressure   !! [Pa]
+    allocate (self%cycle, source=cycle)
+    self%cylinder = cycle%cylinder
+    self%crankcase_pressure = crankcase_pressure
+    self%n_events = n_cycle_events
+  end subroutine take_cycle
+
+  subroutine take_valves(self, valves, crankcase_pressure)
+    class(working_gas_t), intent(inout) :: self
+    type(valve_gas_t), intent(in) :: valves
+    real(dp), intent(in) :: crankcase_pressure   !! [Pa]
+    allocate (self%valves, source=valves)
+    self%cylinder = valves%cylinder
+    self%crankcase_pressure = crankcase_pressure
+    self%n_events = n_valve_events
+  end subroutine take_valves
+
+  !> A measured pressure. At its points the second derivative of the pressure jumps: no event, since the control of the error
+  !> sees it, and lowers the order of the method there.
+  subroutine take_curve(self, cylinder, crankcase_pressure, curve)
+    class(working_gas_t), intent(inout) :: self
+    type(cylinder_t), intent(in) :: cylinder
+    real(dp), intent(in) :: crankcase_pressure   !! [Pa]
+    type(monotone_cubic_t), intent(in) :: curve
+    allocate (self%curve, source=curve)
+    self%cylinder = cylinder
+    self%crankcase_pressure = crankcase_pressure
+  end subroutine take_curve
+
+  !> Find the discrete state at a start: of a cycle, the part that the crank is in, or about to enter.
+  subroutine start(self, crank_angle, crank_speed)
+    class(working_gas_t), intent(inout) :: self
+    real(dp), intent(in) :: crank_angle, crank_speed   !! [rad], [rad/s]
+    if (allocated(self%cycle)) then
+      call self%cycle%part_at(crank_angle, crank_speed < 0, self%part, self%cycle_start)
+    else if (allocated(self%valves)) then
+      call self%valves%find_state(crank_angle, crank_speed)
+    end if
+  end subroutine start
+
+  !> Most that the crank may turn in a step, so that none steps over a peak [rad]; 0: no limit. A cycle needs none, being cut at
+  !> events into smooth parts; a measured pressure is looked at as often as it has points, within a quarter and five degrees.
+  pure real(dp) function longest_turn(self)
+    class(working_gas_t), intent(in) :: self
+    longest_turn = 0
+    if (allocated(self%curve)) longest_turn = min(max(self%curve%finest(), 0.25_dp*degree), 5*degree)
+  end function longest_turn
 
   !> Pressure at a crank angle [Pa].
   pure real(dp) function pressure(self, crank_angle)
     class(working_gas_t), intent(in) :: self
     real(dp), value, intent(in) :: crank_angle
-    pressure = self%cycle%pressure(crank_angle, self%part, self%cycle_start)
+    if (allocated(self%cycle)) then
+      pressure = self%cycle%pressure(crank_angle, self%part, self%cycle_start)
+    else if (allocated(self%valves)) then
+      pressure = self%valves%pressure(crank_angle)
+    else
+      pressure = self%curve%value(crank_angle)
+    end if
   end function pressure
 
-  !> Force on the piston along -x [N] at a pressure [Pa].
+  !> Force on the piston along -x [N] at a pressure [Pa]: (p - p_crankcase) pi b^2/4.
   pure real(dp) function force(self, pressure)
     class(working_gas_t), intent(in) :: self
     real(dp), value, intent(in) :: pressure
-    force = self%cycle%gas_force(pressure)
+    force = (pressure - self%crankcase_pressure)*self%cylinder%area
   end function force
 
   !> Pressure [Pa] and its force, and the volume at a crank angle of this sine and cosine.
@@ -57,7 +122,7 @@ contains
     real(dp) :: volume
     call row%put('cylinder_pressure[Pa]', pressure)
     volume = 0
-    if (row%wants(1)) volume = self%cycle%cylinder%volume_at(sin_crank, cos_crank)
+    if (row%wants(1)) volume = self%cylinder%volume_at(sin_crank, cos_crank)
     call row%put('cylinder_volume[m3]', volume)
     call row%put('gas_force[N]', self%force(pressure))
   end subroutine put_columns
@@ -66,33 +131,56 @@ contains
   pure real(dp) function force_slope(self, crank_angle)
     class(working_gas_t), intent(in) :: self
     real(dp), intent(in) :: crank_angle
-    force_slope = self%cycle%cylinder%area*self%cycle%pressure_slope(crank_angle, self%part, self%cycle_start)
+    if (allocated(self%cycle)) then
+      force_slope = self%cycle%pressure_slope(crank_angle, self%part, self%cycle_start)
+    else if (allocated(self%valves)) then
+      force_slope = self%valves%pressure_slope(crank_angle)
+    else
+      force_slope = self%curve%slope(crank_angle)
+    end if
+    force_slope = self%cylinder%area*force_slope
   end function force_slope
 
-  !> Event functions of the bounds of the present part, over the crank angle.
+  !> Event functions: of a cycle the bounds of the present part, of valves see there.
   pure subroutine events(self, crank_angle, crank_speed, g, g_rate)
     class(working_gas_t), intent(in) :: self
     real(dp), intent(in) :: crank_angle, crank_speed
-    real(dp), intent(out) :: g(n_gas_events), g_rate(n_gas_events)
+    real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
     real(dp) :: angle
-    angle = crank_angle - self%cycle_start
-    g = [angle - self%cycle%bound(self%part), self%cycle%bound(self%part - 1) - angle]
-    g_rate = [crank_speed, -crank_speed]
+    if (allocated(self%cycle)) then
+      angle = crank_angle - self%cycle_start
+      g = [angle - self%cycle%bound(self%part), self%cycle%bound(self%part - 1) - angle]
+      g_rate = [crank_speed, -crank_speed]
+    else if (allocated(self%valves)) then
+      call self%valves%events(crank_angle, crank_speed, g, g_rate)
+    end if
   end subroutine events
 
-  !> Enter the next part of the cycle that is not empty, forwards (1) or backwards (2).
-  subroutine pass_bound(self, direction)
+  !> An event happened: the crank enters the next part of the cycle, or a valve opens or closes.
+  subroutine pass(self, event, crank_angle, crank_speed)
     class(working_gas_t), intent(inout) :: self
+    integer, intent(in) :: event
+    real(dp), intent(in) :: crank_angle, crank_speed
+    if (allocated(self%cycle)) then
+      call pass_bound(self, event)
+    else if (allocated(self%valves)) then
+      call self%valves%pass(event, crank_angle, crank_speed)
+    end if
+  end subroutine pass
+
+  !> Enter the next part of the cycle that is not empty, forwards (1) or backwards (2).
+  subroutine pass_bound(gas, direction)
+    class(working_gas_t), intent(inout) :: gas
     integer, intent(in) :: direction
     integer :: way
     way = merge(1, -1, direction == 1)
     do
-      self%part = self%part + way
-      if (self%part > n_parts .or. self%part < 1) then
-        self%part = merge(1, n_parts, way > 0)
-        self%cycle_start = self%cycle_start + way*cycle_angle
+      gas%part = gas%part + way
+      if (gas%part > n_parts .or. gas%part < 1) then
+        gas%part = merge(1, n_parts, way > 0)
+        gas%cycle_start = gas%cycle_start + way*gas%cycle%period
       end if
-      if (self%cycle%bound(self%part) > self%cycle%bound(self%part - 1)) exit
+      if (gas%cycle%bound(gas%part) > gas%cycle%bound(gas%part - 1)) exit
     end do
   end subroutine pass_bound
 
@@ -100,7 +188,11 @@ contains
   subroutine exchange(self, archive)
     class(working_gas_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
-    call archive%exchange(self%part)
-    call archive%exchange(self%cycle_start)
+    if (allocated(self%valves)) then
+      call self%valves%exchange(archive)
+    else
+      call archive%exchange(self%part)
+      call archive%exchange(self%cycle_start)
+    end if
   end subroutine exchange
 end module working_gas

@@ -79,9 +79,9 @@ contains
     type(error_t), allocatable, intent(out) :: error
     call values%check(error)
     if (allocated(error)) return
+    this%file = path
     call load_case(values, this, error)
     if (allocated(error)) return
-    this%file = path
     this%name = case_name(path)
     if (this%name == '') this%name = 'case'
     call check_rules(this, values, error)

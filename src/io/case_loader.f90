@@ -7,6 +7,7 @@ module case_loader
   use case_schema, only: find_group, is_listed
   use case_value, only: set_to_default
   use case_values, only: case_values_t
+  use case_curves, only: provide_curves
   implicit none
   private
   public :: load_case, load_model
@@ -30,7 +31,8 @@ module case_loader
 contains
 
   !> Set every parameter of a case, or those of some groups. Defaults that depend on the law chosen are put into the values
-  !> too. Errors: parameters of a law that do not fit together.
+  !> too. Errors: parameters of a law that do not fit together; a measured curve that
+  !> cannot be read.
   subroutine load_case(values, into, error, only)
     type(case_values_t), intent(inout), target :: values   !! within their limits
     type(case_t), intent(inout) :: into
@@ -46,7 +48,11 @@ contains
         values%groups%is_law))
     end if
     call visit_case(into, loader)
-    if (allocated(loader%error)) call move_alloc(loader%error, error)
+    if (allocated(loader%error)) then
+      call move_alloc(loader%error, error)
+    else
+      call provide_curves(values, into, error)
+    end if
   end subroutine load_case
 
   !> Set the parameters of one model, which are those of one group.

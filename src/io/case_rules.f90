@@ -6,6 +6,7 @@ module case_rules
   use number_text, only: short_text
   use case_definition, only: case_t, joint_case_t, piston_pin_place, crank_pin_place
   use case_schema, only: find_group, find_key
+  use measured_pressure, only: measured_pressure_periods
   use case_values, only: case_values_t
   use guide_rules, only: check_guide, bore_reach
   use elastic_rules, only: check_elastic
@@ -38,7 +39,7 @@ contains
     if (allocated(error)) return
     call check_elastic(c, values, error)
     if (allocated(error)) return
-    call check_combustion(c, values, error)
+    call check_gas(c, values, error)
     if (allocated(error)) return
     call check_periods(c, values, error)
     if (allocated(error)) return
@@ -316,14 +317,18 @@ contains
     if (values%is_given(group, name)) wanted = 'must be > 0'
   end function needed
 
-  subroutine check_combustion(c, values, error)
+  !> One gas, of a period that there is.
+  subroutine check_gas(c, values, error)
     type(case_t), intent(in) :: c
     type(case_values_t), intent(in) :: values
     type(error_t), allocatable, intent(out) :: error
-    if (.not. allocated(c%combustion)) return
-    if (c%combustion%start_deg + c%combustion%duration_deg > 540) call values%refuse( &
-      'combustion', 'duration_deg', 'start_deg + duration_deg must be <= 540, where the cylinder opens', error)
-  end subroutine check_combustion
+    if (.not. allocated(c%measured)) return
+    if (allocated(c%combustion)) then
+      call values%refuse('cylinder_pressure', 'table', 'goes without the group combustion: one pressure acts on the piston', error)
+    else if (all(c%measured%period_deg /= measured_pressure_periods)) then
+      call values%refuse('cylinder_pressure', 'period_deg', 'must be 360 or 720', error)
+    end if
+  end subroutine check_gas
 
   !> The run has one end, and reaches it.
   subroutine check_run(c, values, error)

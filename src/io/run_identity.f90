@@ -14,9 +14,10 @@ module run_identity
   integer, parameter :: identity_length = 16   !! hexadecimal digits
   character(len=*), parameter :: newline = achar(10)
 
-  !> Keys of a case that only say when a run gives up: they may change between a run and its continuation.
-  character(len=*), parameter :: free_keys(3) = [character(len=30) :: 'max_steps', 'max_evaluations', &
-    'max_evaluations_per_revolution']
+  !> Keys of a case that may change between a run and its continuation: they only say when a run gives up, or where a table lies,
+  !> whose content another key tells.
+  character(len=*), parameter :: free_keys(4) = [character(len=30) :: 'max_steps', 'max_evaluations', &
+    'max_evaluations_per_revolution', 'table']
 
 contains
 

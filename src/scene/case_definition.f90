@@ -19,9 +19,11 @@ module case_definition
   use film_transition, only: film_transition_t
   use oil_viscosity, only: oil_t
   use asperities, only: asperities_t
-  use gas_cycle, only: gas_cycle_t
   use elastic_rod, only: elastic_rod_t
   use elastic_crankshaft, only: elastic_crankshaft_t
+  use gas_law, only: gas_law_t
+  use gas_laws, only: offer_gas_cycles
+  use measured_pressure, only: measured_pressure_t
   implicit none
   private
   public :: case_t, joint_case_t, visit_case, piston_pin_place, crank_pin_place
@@ -104,7 +106,8 @@ module case_definition
     type(guide_case_t), allocatable :: guide   !! not allocated: an ideal one
     type(elastic_rod_t), allocatable :: elastic_rod          !! rigid where it is not allocated
     type(elastic_crankshaft_t), allocatable :: crankshaft    !! the same
-    type(gas_cycle_t), allocatable :: combustion
+    class(gas_law_t), allocatable :: combustion
+    type(measured_pressure_t), allocatable :: measured   !! instead of combustion
     type(run_length_t) :: run
     type(integrator_case_t) :: integrator
     type(output_case_t) :: output
@@ -190,6 +193,7 @@ contains
     call visit_elastic_rod(case%elastic_rod, list)
     call visit_crankshaft(case%crankshaft, list)
     call visit_gas(case%combustion, list)
+    call visit_measured(case%measured, list)
     call list%group('run', 'how long it lasts: until = ''periodic'' stands instead of the end that &integrator gives', .false.)
     call case%run%parameters(list)
     call list%group('integrator', 'how it is integrated; the run''s end by revolutions, crank_revolutions or end_time', .false.)
@@ -357,19 +361,36 @@ contains
   end subroutine visit_crankshaft
 
   subroutine visit_gas(gas, list)
-    type(gas_cycle_t), allocatable, intent(inout) :: gas
+    class(gas_law_t), allocatable, intent(inout) :: gas
     class(parameter_list_t), intent(inout) :: list
-    type(gas_cycle_t) :: described
-    call list%group('combustion', 'four-stroke cycle on the piston: leave the group out for none', .true.)
-    if (list%sets) then
-      if (allocated(gas)) deallocate (gas)
-      if (.not. list%is_present) return
-      allocate (gas)
-      call gas%parameters(list)
-    else
-      call described%parameters(list)
-    end if
+    call list%group('combustion', 'gas on the piston, of an engine or a compressor: leave the group out for none', .true.)
+    call list%choice('cycle', 'four_stroke', 'of the gas; compressor: it is driven, and there is no combustion')
+    call offer_gas_cycles(list)
+    if (.not. list%sets) return
+    if (allocated(gas)) deallocate (gas)
+    if (.not. allocated(list%chosen)) return
+    select type (chosen => list%chosen)
+    class is (gas_law_t)
+      allocate (gas, source=chosen)
+    end select
   end subroutine visit_gas
+
+  !> A measured pressure, whose curve stays where it has been read before.
+  subroutine visit_measured(gas, list)
+    type(measured_pressure_t), allocatable, intent(inout) :: gas
+    class(parameter_list_t), intent(inout) :: list
+    type(measured_pressure_t) :: described
+    call list%group('cylinder_pressure', 'measured gas pressure on the piston: leave the group out for none', .true., &
+      instead_of='combustion')
+    if (.not. list%sets) then
+      call described%parameters(list)
+      return
+    end if
+    if (.not. list%is_present .and. allocated(gas)) deallocate (gas)
+    if (.not. list%is_present) return
+    if (.not. allocated(gas)) allocate (gas)
+    call gas%parameters(list)
+  end subroutine visit_measured
 
   subroutine mechanism_parameters(self, list)
     class(mechanism_case_t), intent(inout) :: self

@@ -64,12 +64,8 @@ contains
     scene%start_speed = case%initial%crank_speed
     scene%span = simulated_time(case)
     call scene%claim()
-    if (allocated(scene%gas)) then
-      call scene%gas%cycle%prepare(case%mechanism%crank_length, case%mechanism%rod_length, &
-        gas_margin*case%integrator%relative_tolerance, error)
-      if (allocated(error)) return
-      call scene%gas%find_part(scene%start_angle, scene%start_speed)
-    end if
+    call prepare_gas(case, scene, error)
+    if (allocated(error)) return
     if (scene%chain%drive%free_crank .and. case%run%is_until_periodic()) then
       allocate (scene%turns, source=new_crank_turns(real(case%run%most_revolutions, dp), scene%start_angle, scene%start_speed))
       scene%turns%key = '&run most_revolutions'
@@ -140,10 +136,26 @@ contains
       if (allocated(case%elastic_rod)) allocate (scene%chain%elastic%rod, source=case%elastic_rod)
       if (allocated(case%crankshaft)) allocate (scene%chain%elastic%crankshaft, source=case%crankshaft)
     end if
-    if (.not. allocated(case%combustion)) return
-    allocate (scene%gas)
-    scene%gas%cycle = case%combustion
+    if (allocated(case%combustion) .or. allocated(case%measured)) allocate (scene%gas)
   end subroutine assemble_scene
+
+  !> Make the gas ready at the start.
+  subroutine prepare_gas(case, scene, error)
+    type(case_t), intent(in) :: case
+    type(scene_t), intent(inout) :: scene
+    type(error_t), allocatable, intent(out) :: error
+    real(dp) :: tolerance
+    if (.not. allocated(scene%gas)) return
+    tolerance = gas_margin*case%integrator%relative_tolerance
+    associate (m => case%mechanism)
+      if (allocated(case%measured)) then
+        call case%measured%prepare(m%crank_length, m%rod_length, tolerance, scene%gas, error)
+      else
+        call case%combustion%prepare(m%crank_length, m%rod_length, tolerance, scene%gas, error)
+      end if
+    end associate
+    if (.not. allocated(error)) call scene%gas%start(scene%start_angle, scene%start_speed)
+  end subroutine prepare_gas
 
   !> Find what the laws need to know of their bearings.
   subroutine prepare_joints(case, scene)
@@ -259,10 +271,23 @@ contains
     where (growing .and. scales > 0) settings%relative = rounding_share
     settings%first_step = first_angle/scene%speed_scale(settings%span)
     if (case%integrator%max_step > 0) settings%max_step = case%integrator%max_step
+    if (allocated(scene%gas)) call limit_turn(settings, scene%gas%longest_turn()/scene%speed_scale(settings%span))
     settings%max_order = case%integrator%max_order
     settings%max_evaluations = case%integrator%max_evaluations
     settings%chatter_time = min(1e-6_dp*two_pi/scene%speed_scale(settings%span), longest_chatter)
   end function settings_for
+
+  !> No step is longer than this [s]; 0: no limit.
+  pure subroutine limit_turn(settings, longest)
+    type(ode_settings_t), intent(inout) :: settings
+    real(dp), intent(in) :: longest
+    if (.not. longest > 0) return
+    if (settings%max_step > 0) then
+      settings%max_step = min(settings%max_step, longest)
+    else
+      settings%max_step = longest
+    end if
+  end subroutine limit_turn
 
   !> Hold one component to a share of its tolerance, but not below the rounding.
   pure subroutine tighten(settings, i, share)

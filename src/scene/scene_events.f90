@@ -7,7 +7,6 @@ submodule (gudgeon_scene) scene_events
   use guide_events, only: n_guide_events, corner_events, change_contact, begin_corner_contact, contact_is_rough, rough_corner_end, &
     inward_acceleration
   use piston_guide, only: corner_t, n_corners
-  use working_gas, only: n_gas_events
   use crank_turns, only: n_turn_events
   implicit none
 
@@ -25,7 +24,7 @@ contains
       scene%may_stick = scene%may_stick .or. may_stick(scene%joints(i))
       call number(i, n_events(scene%joints(i)))
     end do
-    if (allocated(scene%gas)) call number(of_gas, n_gas_events)
+    if (allocated(scene%gas)) call number(of_gas, scene%gas%n_events)
     if (allocated(scene%turns)) call number(of_turns, n_turn_events)
     if (allocated(scene%guide)) call number(of_guide, n_guide_events(scene%guide))
 
@@ -55,8 +54,9 @@ contains
       k = k + n
     end do
     if (allocated(self%gas)) then
-      call self%gas%events(self%crank_angle(t, y), self%crank_speed(y), g(k + 1:k + n_gas_events), g_rate(k + 1:k + n_gas_events))
-      k = k + n_gas_events
+      n = self%gas%n_events
+      call self%gas%events(self%crank_angle(t, y), self%crank_speed(y), g(k + 1:k + n), g_rate(k + 1:k + n))
+      k = k + n
     end if
     if (allocated(self%turns)) then
       call self%turns%events(self%crank_angle(t, y), self%crank_speed(y), g(k + 1:k + n_turn_events), &
@@ -87,7 +87,7 @@ contains
     action = event_continue
     associate (i => self%event_of(index)%joint, event => self%event_of(index)%event)
       if (i == of_gas) then
-        call self%gas%pass_bound(event)
+        call self%gas%pass(event, self%crank_angle(t, y), self%crank_speed(y))
       else if (i == of_turns) then
         call self%turns%pass(event, self%crank_angle(t, y), action)
       else if (i == of_guide) then

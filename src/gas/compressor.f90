@@ -1,0 +1,71 @@
+!> A piston compressor: suction and discharge at given pressures through valves that open and close by themselves, polytropic
+!> compression, and expansion of what the dead space keeps.
+module compressor
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t
+  use gudgeon_parameters, only: parameter_list_t
+  use cylinder, only: new_cylinder
+  use gas_law, only: gas_law_t
+  use valve_gas, only: valve_gas_t
+  use working_gas, only: working_gas_t
+  implicit none
+  private
+  public :: compressor_t
+
+  type, extends(gas_law_t) :: compressor_t
+    real(dp) :: dead_space = 0             !! smallest volume over displacement [-]
+    real(dp) :: suction_pressure = 101325  !! [Pa]
+    real(dp) :: discharge_pressure = 0     !! [Pa]
+    real(dp) :: polytropic_exponent = 0    !! n in p V^n = const [-]
+  contains
+    procedure, nopass :: name
+    procedure :: parameters
+    procedure :: conflict
+    procedure :: prepare
+  end type compressor_t
+
+contains
+
+  pure function name()
+    character(len=:), allocatable :: name
+    name = 'compressor'
+  end function name
+
+  subroutine parameters(self, list)
+    class(compressor_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call self%add_bore(list)
+    call list%add('dead_space', self%dead_space, 'smallest volume over displacement', range='>= 1e-4 and <= 100', &
+      example='0.05')
+    call list%add('suction_pressure', self%suction_pressure, 'while the suction valve is open', 'Pa', '> 0', default='101325.0')
+    call list%add('discharge_pressure', self%discharge_pressure, 'while the discharge valve is open', 'Pa', '> 0', &
+      example='4.0e5')
+    call list%add('polytropic_exponent', self%polytropic_exponent, 'n of p V^n = const. with both valves closed', &
+      range='>= 0.1 and <= 10', example='1.3')
+    call self%add_crankcase_pressure(list)
+  end subroutine parameters
+
+  pure subroutine conflict(self, key, wanted)
+    class(compressor_t), intent(in) :: self
+    character(len=:), allocatable, intent(out) :: key, wanted
+    key = ''
+    wanted = 'must be > suction_pressure'
+    if (self%discharge_pressure <= self%suction_pressure) key = 'discharge_pressure'
+  end subroutine conflict
+
+  subroutine prepare(self, crank_length, rod_length, tolerance, gas, error)
+    class(compressor_t), intent(in) :: self
+    real(dp), intent(in) :: crank_length, rod_length   !! [m]
+    real(dp), intent(in) :: tolerance
+    type(working_gas_t), intent(out) :: gas
+    type(error_t), allocatable, intent(out) :: error
+    type(valve_gas_t) :: valves
+    associate (unused => tolerance, never => allocated(error))
+    end associate
+    valves%cylinder = new_cylinder(self%bore, crank_length, rod_length, 1 + 1/self%dead_space)
+    valves%suction_pressure = self%suction_pressure
+    valves%discharge_pressure = self%discharge_pressure
+    valves%exponent = self%polytropic_exponent
+    call gas%take_valves(valves, self%crankcase_pressure)
+  end subroutine prepare
+end module compressor

@@ -1,0 +1,45 @@
+!> What a case says of the gas in the cylinder: one of the cycles that it can name, or a measured pressure.
+module gas_law
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t
+  use gudgeon_parameters, only: law_t, parameter_list_t
+  use working_gas, only: working_gas_t
+  implicit none
+  private
+  public :: gas_law_t
+
+  type, abstract, extends(law_t) :: gas_law_t
+    real(dp) :: bore = 0                        !! cylinder diameter [m]
+    real(dp) :: crankcase_pressure = 101325     !! under the piston [Pa]
+  contains
+    procedure :: add_bore
+    procedure :: add_crankcase_pressure
+    procedure(prepare), deferred :: prepare
+  end type gas_law_t
+
+  abstract interface
+    !> Make the gas of a running engine. Error: the cycle cannot be integrated.
+    subroutine prepare(self, crank_length, rod_length, tolerance, gas, error)
+      import :: gas_law_t, working_gas_t, error_t, dp
+      class(gas_law_t), intent(in) :: self
+      real(dp), intent(in) :: crank_length, rod_length   !! [m]
+      real(dp), intent(in) :: tolerance                  !! relative error that the pressure may have
+      type(working_gas_t), intent(out) :: gas
+      type(error_t), allocatable, intent(out) :: error
+    end subroutine prepare
+  end interface
+
+contains
+
+  subroutine add_bore(self, list)
+    class(gas_law_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%add('bore', self%bore, 'cylinder diameter', 'm', '>= 1e-6 and <= 1e3', example='0.070')
+  end subroutine add_bore
+
+  subroutine add_crankcase_pressure(self, list)
+    class(gas_law_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%add('crankcase_pressure', self%crankcase_pressure, 'under the piston', 'Pa', '> 0', default='101325.0')
+  end subroutine add_crankcase_pressure
+end module gas_law

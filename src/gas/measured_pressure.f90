@@ -1,0 +1,64 @@
+!> What a case says of a cylinder whose pressure has been measured over the crank angle.
+module measured_pressure
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: degree
+  use gudgeon_errors, only: error_t
+  use gudgeon_parameters, only: parameter_list_t
+  use measured_curve, only: measured_curve_t
+  use monotone_cubic, only: new_periodic_cubic
+  use cylinder, only: cylinder_t, new_cylinder
+  use gas_law, only: gas_law_t
+  use working_gas, only: working_gas_t
+  implicit none
+  private
+  public :: measured_pressure_t, measured_pressure_periods
+
+  integer, parameter :: measured_pressure_periods(2) = [360, 720]   !! that there can be [degrees]
+
+  type, extends(gas_law_t) :: measured_pressure_t
+    type(measured_curve_t) :: curve          !! crank angle [degrees], pressure [Pa], within one period
+    integer :: period_deg = 720
+    real(dp) :: offset_deg = 0               !! crank angle where the table says 0 [degrees]
+    real(dp) :: compression_ratio = 0        !! largest over smallest volume; 0: not known
+  contains
+    procedure, nopass :: name
+    procedure :: parameters
+    procedure :: prepare
+  end type measured_pressure_t
+
+contains
+
+  pure function name()
+    character(len=:), allocatable :: name
+    name = 'measured'
+  end function name
+
+  subroutine parameters(self, list)
+    class(measured_pressure_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call self%curve%parameters(list, 'table', 'CSV file, relative to the case file: crank_angle[deg],pressure[bar]', &
+      example='pressure.csv')
+    call list%add('period_deg', self%period_deg, '720 (four-stroke) or 360', '>= 360 and <= 720', '720')
+    call list%add('offset_deg', self%offset_deg, 'crank angle at which the table says 0', 'degrees', '>= -1080 and <= 1080', '0.0')
+    call self%add_bore(list)
+    call list%add('compression_ratio', self%compression_ratio, &
+      'largest over smallest volume, for the column cylinder_volume; 0: swept volume', range='> 1 and <= 1000', default='0.0')
+    call self%add_crankcase_pressure(list)
+  end subroutine parameters
+
+  subroutine prepare(self, crank_length, rod_length, tolerance, gas, error)
+    class(measured_pressure_t), intent(in) :: self
+    real(dp), intent(in) :: crank_length, rod_length   !! [m]
+    real(dp), intent(in) :: tolerance
+    type(working_gas_t), intent(out) :: gas
+    type(error_t), allocatable, intent(out) :: error
+    type(cylinder_t) :: cylinder
+    associate (unused => tolerance, never => allocated(error))
+    end associate
+    cylinder = new_cylinder(self%bore, crank_length, rod_length, 2.0_dp)
+    cylinder%dead_volume = 0
+    if (self%compression_ratio > 1) cylinder%dead_volume = cylinder%displacement/(self%compression_ratio - 1)
+    call gas%take_curve(cylinder, self%crankcase_pressure, &
+      new_periodic_cubic((self%curve%x + self%offset_deg)*degree, self%curve%y, self%period_deg*degree))
+  end subroutine prepare
+end module measured_pressure

@@ -1,0 +1,69 @@
+!> The two-stroke cycle with ports that the piston controls: closed from `port_opens_deg` before the firing dead centre to as much
+!> after it, open in between, 360 degrees long.
+module two_stroke
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: two_pi, degree
+  use gudgeon_parameters, only: parameter_list_t
+  use wiebe_law, only: wiebe_law_t
+  implicit none
+  private
+  public :: two_stroke_t
+
+  type, extends(wiebe_law_t) :: two_stroke_t
+    real(dp) :: port_opens_deg = 0   !! from the firing dead centre [degrees]
+  contains
+    procedure, nopass :: name
+    procedure :: parameters
+    procedure :: conflict
+    procedure :: closes
+    procedure :: opens
+    procedure :: period
+  end type two_stroke_t
+
+contains
+
+  pure function name()
+    character(len=:), allocatable :: name
+    name = 'two_stroke'
+  end function name
+
+  subroutine parameters(self, list)
+    class(two_stroke_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call self%wiebe_parameters(list)
+    call list%add('port_opens_deg', self%port_opens_deg, &
+      'the ports open so much after the firing dead centre, and close as much before it', 'degrees', '> 0 and <= 180', &
+      example='105.0')
+  end subroutine parameters
+
+  pure subroutine conflict(self, key, wanted)
+    class(two_stroke_t), intent(in) :: self
+    character(len=:), allocatable, intent(out) :: key, wanted
+    key = ''
+    wanted = ''
+    if (self%start_deg < 360 - self%port_opens_deg) then
+      key = 'start_deg'
+      wanted = 'must be >= 360 - port_opens_deg, where the ports close'
+    else if (self%start_deg + self%duration_deg > 360 + self%port_opens_deg) then
+      key = 'duration_deg'
+      wanted = 'start_deg + duration_deg must be <= 360 + port_opens_deg, where the ports open'
+    end if
+  end subroutine conflict
+
+  pure real(dp) function closes(self)
+    class(two_stroke_t), intent(in) :: self
+    closes = two_pi - self%port_opens_deg*degree
+  end function closes
+
+  pure real(dp) function opens(self)
+    class(two_stroke_t), intent(in) :: self
+    opens = two_pi + self%port_opens_deg*degree
+  end function opens
+
+  pure real(dp) function period(self)
+    class(two_stroke_t), intent(in) :: self
+    associate (unused => self)
+    end associate
+    period = two_pi
+  end function period
+end module two_stroke

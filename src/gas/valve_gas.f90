@@ -1,0 +1,157 @@
+!> Gas in a cylinder whose valves open and close by themselves, as in a piston compressor.
+!>
+!> While both are closed the mass in the cylinder stays, and p V^n does. The discharge valve opens where the pressure
+!> reaches that of the discharge and lets out what the piston displaces, at that pressure; it closes where the piston begins to draw
+!> back. So does the suction valve at the suction pressure, where the piston begins to come in. What the valves do follows from the
+!> motion of the piston, whichever way the crank turns. At each opening and closing the slope of the pressure jumps.
+module valve_gas
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: pi, two_pi
+  use gudgeon_archive, only: archive_t
+  use cylinder, only: cylinder_t
+  implicit none
+  private
+  public :: valve_gas_t, n_valve_events
+
+  integer, parameter :: n_valve_events = 2
+
+  !> What the valves do.
+  integer, parameter :: both_closed = 1, discharge_open = 2, suction_open = 3
+
+  !> A valve opens beyond its pressure by this share of the volume, so that one that has just closed does not open at once.
+  real(dp), parameter :: opening_margin = 1e-11_dp
+
+  type :: valve_gas_t
+    type(cylinder_t) :: cylinder
+    real(dp) :: suction_pressure = 0, discharge_pressure = 0   !! [Pa]
+    real(dp) :: exponent = 1          !! n [-]
+    integer :: state = both_closed
+    real(dp) :: held_pressure = 0, held_volume = 0             !! of the gas when both valves closed last [Pa], [m^3]
+    real(dp) :: discharge_volume = 0, suction_volume = 0       !! at which a valve opens [m^3]
+    real(dp) :: sense = 1             !! of the crank since a valve opened
+    real(dp) :: dead_centre = 0       !! at which that valve closes [rad]
+  contains
+    procedure :: find_state
+    procedure :: pressure
+    procedure :: pressure_slope
+    procedure :: events
+    procedure :: pass
+    procedure :: exchange
+    procedure, private :: close_valves
+    procedure, private :: open_valve
+  end type valve_gas_t
+
+contains
+
+  !> The state at a start: that of a machine that has long been running. One at rest is filled at the suction pressure.
+  subroutine find_state(self, q, crank_speed)
+    class(valve_gas_t), intent(inout) :: self
+    real(dp), intent(in) :: q, crank_speed   !! crank angle [rad], its rate [rad/s]
+    real(dp) :: volume, largest, least, most
+    volume = self%cylinder%volume(q)
+    if (.not. abs(crank_speed) > 0) then
+      call self%close_valves(self%suction_pressure, volume)
+      return
+    end if
+    largest = self%cylinder%dead_volume + self%cylinder%displacement
+    least = self%cylinder%dead_volume
+    most = min(self%discharge_pressure, self%suction_pressure*(largest/least)**self%exponent)   ! at the inner dead centre
+    if (self%cylinder%volume_slope(q)*crank_speed < 0 .or. volume >= largest) then
+      call self%close_valves(self%suction_pressure, largest)
+      if (volume <= self%discharge_volume) call self%open_valve(discharge_open, q, crank_speed)
+    else
+      call self%close_valves(most, least)
+      if (volume >= self%suction_volume) call self%open_valve(suction_open, q, crank_speed)
+    end if
+  end subroutine find_state
+
+  !> p [Pa] at crank angle q [rad].
+  pure real(dp) function pressure(self, q)
+    class(valve_gas_t), intent(in) :: self
+    real(dp), intent(in) :: q
+    select case (self%state)
+    case (discharge_open)
+      pressure = self%discharge_pressure
+    case (suction_open)
+      pressure = self%suction_pressure
+    case default
+      pressure = self%held_pressure*(self%held_volume/self%cylinder%volume(q))**self%exponent
+    end select
+  end function pressure
+
+  !> dp/dq [Pa/rad].
+  pure real(dp) function pressure_slope(self, q)
+    class(valve_gas_t), intent(in) :: self
+    real(dp), intent(in) :: q
+    pressure_slope = 0
+    if (self%state == both_closed) pressure_slope = &
+      -self%exponent*self%pressure(q)*self%cylinder%volume_slope(q)/self%cylinder%volume(q)
+  end function pressure_slope
+
+  !> Event functions: the discharge valve or the suction valve opens; or, while one is open, it closes, at the dead centre or
+  !> because the crank turns back. The rate of the last one would take an evaluation; without it the search for events samples steps
+  !> in which the speed changes fourfold.
+  pure subroutine events(self, q, crank_speed, g, g_rate)
+    class(valve_gas_t), intent(in) :: self
+    real(dp), intent(in) :: q, crank_speed
+    real(dp), intent(out) :: g(n_valve_events), g_rate(n_valve_events)
+    real(dp) :: volume, rate
+    if (self%state == both_closed) then
+      volume = self%cylinder%volume(q)
+      rate = self%cylinder%volume_slope(q)*crank_speed
+      g = [self%discharge_volume - volume, volume - self%suction_volume]
+      g_rate = [-rate, rate]
+    else
+      g = self%sense*[q - self%dead_centre, -crank_speed]
+      g_rate = [self%sense*crank_speed, 0.0_dp]
+    end if
+  end subroutine events
+
+  !> A valve opens or closes.
+  subroutine pass(self, event, q, crank_speed)
+    class(valve_gas_t), intent(inout) :: self
+    integer, intent(in) :: event
+    real(dp), intent(in) :: q, crank_speed
+    if (self%state == both_closed) then
+      call self%open_valve(merge(discharge_open, suction_open, event == 1), q, crank_speed)
+    else
+      call self%close_valves(self%pressure(q), self%cylinder%volume(q))
+    end if
+  end subroutine pass
+
+  !> Both valves are closed on gas of this pressure [Pa] and volume [m^3].
+  subroutine close_valves(self, pressure, volume)
+    class(valve_gas_t), intent(inout) :: self
+    real(dp), intent(in) :: pressure, volume
+    self%state = both_closed
+    self%held_pressure = pressure
+    self%held_volume = volume
+    self%discharge_volume = volume*(pressure/self%discharge_pressure)**(1/self%exponent)*(1 - opening_margin)
+    self%suction_volume = volume*(pressure/self%suction_pressure)**(1/self%exponent)*(1 + opening_margin)
+  end subroutine close_valves
+
+  !> A valve is open, up to the next dead centre where the volume is least (discharge) or largest (suction).
+  subroutine open_valve(self, state, q, crank_speed)
+    class(valve_gas_t), intent(inout) :: self
+    integer, intent(in) :: state
+    real(dp), intent(in) :: q, crank_speed
+    real(dp) :: first
+    first = merge(0.0_dp, pi, state == discharge_open)
+    self%state = state
+    self%sense = sign(1.0_dp, crank_speed)
+    self%dead_centre = first + self%sense*two_pi*ceiling(self%sense*(q - first)/two_pi)
+  end subroutine open_valve
+
+  !> The discrete state, to or from an archive.
+  subroutine exchange(self, archive)
+    class(valve_gas_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    call archive%exchange(self%state)
+    call archive%exchange(self%held_pressure)
+    call archive%exchange(self%held_volume)
+    call archive%exchange(self%discharge_volume)
+    call archive%exchange(self%suction_volume)
+    call archive%exchange(self%sense)
+    call archive%exchange(self%dead_centre)
+  end subroutine exchange
+end module valve_gas

@@ -1,0 +1,76 @@
+!> What a case says of an engine with Wiebe's heat release, of whatever cycle.
+module wiebe_law
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: degree
+  use gudgeon_errors, only: error_t
+  use gudgeon_parameters, only: parameter_list_t
+  use cylinder, only: new_cylinder
+  use gas_cycle, only: gas_cycle_t, heat_release_t, new_gas_cycle
+  use gas_law, only: gas_law_t
+  use working_gas, only: working_gas_t
+  implicit none
+  private
+  public :: wiebe_law_t
+
+  type, abstract, extends(gas_law_t) :: wiebe_law_t
+    real(dp) :: compression_ratio = 0             !! largest over smallest volume [-]
+    real(dp) :: heat_capacity_ratio = 1.4_dp      !! gamma [-]
+    real(dp) :: heat = 0                          !! Q_in [J per cycle]
+    real(dp) :: efficiency = 5, form = 3          !! a and n of the Wiebe function [-]
+    real(dp) :: start_deg = 0, duration_deg = 0   !! of combustion [degrees]
+    real(dp) :: intake_pressure = 101325          !! in the open cylinder [Pa]
+  contains
+    procedure :: wiebe_parameters
+    procedure :: prepare
+    procedure(angle_of), deferred :: closes
+    procedure(angle_of), deferred :: opens
+    procedure(angle_of), deferred :: period
+  end type wiebe_law_t
+
+  abstract interface
+    !> An angle of the cycle [rad]: where the cylinder closes, where it opens, after which the cycle repeats.
+    pure real(dp) function angle_of(self)
+      import :: wiebe_law_t, dp
+      class(wiebe_law_t), intent(in) :: self
+    end function angle_of
+  end interface
+
+contains
+
+  subroutine wiebe_parameters(self, list)
+    class(wiebe_law_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call self%add_bore(list)
+    call list%add('compression_ratio', self%compression_ratio, 'largest over smallest volume', range='> 1 and <= 1000', &
+      example='9.0')
+    call list%add('heat_capacity_ratio', self%heat_capacity_ratio, 'of the gas', range='> 1 and <= 10', example='1.4')
+    call list%add('heat', self%heat, 'released in a cycle', 'J', '>= 0 and <= 1e12', example='165.0')
+    call list%add('wiebe_efficiency', self%efficiency, 'a of the Wiebe function', range='> 0 and <= 1000', example='5.0')
+    call list%add('wiebe_form', self%form, 'n of the Wiebe function', range='>= 0.05 and <= 100', example='3.0')
+    call list%add('start_deg', self%start_deg, 'start of combustion; firing dead centre is 360', 'degrees', &
+      '>= 180 and < 540', example='340.0')
+    call list%add('duration_deg', self%duration_deg, 'of combustion, which ends before the cylinder opens', 'degrees', '> 0', &
+      example='40.0')
+    call list%add('intake_pressure', self%intake_pressure, 'in the open cylinder', 'Pa', '> 0', default='101325.0')
+    call self%add_crankcase_pressure(list)
+  end subroutine wiebe_parameters
+
+  !> Integrate the cycle that the parameters ask for; see `new_gas_cycle`.
+  subroutine prepare(self, crank_length, rod_length, tolerance, gas, error)
+    class(wiebe_law_t), intent(in) :: self
+    real(dp), intent(in) :: crank_length, rod_length   !! [m]
+    real(dp), intent(in) :: tolerance
+    type(working_gas_t), intent(out) :: gas
+    type(error_t), allocatable, intent(out) :: error
+    type(gas_cycle_t) :: cycle
+    cycle%cylinder = new_cylinder(self%bore, crank_length, rod_length, self%compression_ratio)
+    cycle%release = heat_release_t(self%heat, self%efficiency, self%form, self%start_deg*degree, self%duration_deg*degree)
+    cycle%heat_capacity_ratio = self%heat_capacity_ratio
+    cycle%intake_pressure = self%intake_pressure
+    cycle%period = self%period()
+    cycle%closes = self%closes()
+    cycle%opens = self%opens()
+    call new_gas_cycle(cycle, tolerance, error)
+    if (.not. allocated(error)) call gas%take_cycle(cycle, self%crankcase_pressure)
+  end subroutine prepare
+end module wiebe_law

@@ -1,0 +1,165 @@
+!> Measured curves of a case: their files, read and checked, and what the case knows of them.
+module case_curves
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t, fail, status_case_file
+  use gudgeon_checksum, only: checksum_t
+  use gudgeon_posix, only: absolute_path
+  use measured_curve, only: measured_curve_t
+  use measured_pressure, only: measured_pressure_periods
+  use number_text, only: short_text
+  use text_tools, only: printable, integer_text
+  use text_file, only: read_text_file
+  use case_definition, only: case_t
+  use case_schema, only: find_key, shown_group
+  use case_values, only: case_values_t
+  use curve_file, only: parse_curve, quantity_t, crank_angle, pressure
+  implicit none
+  private
+  public :: provide_curves, period_fault
+
+  integer, parameter :: largest_file = 100   !! MB
+  real(dp), parameter :: widest_gap = 30     !! between two points of a pressure [degrees]
+  real(dp), parameter :: gap_ratio = 4       !! of a lone wide interval to both of its neighbours: points are missing
+  real(dp), parameter :: same_pressure = 0.01_dp   !! most that a period may be off at its end, over the largest pressure
+
+contains
+
+  !> Read the curves that a case names, unless it has them already. The values then name each file by its absolute path, and its
+  !> content by a digest, so that they hold all that a run depends on.
+  subroutine provide_curves(values, into, error)
+    type(case_values_t), intent(inout) :: values
+    type(case_t), intent(inout) :: into
+    type(error_t), allocatable, intent(out) :: error
+    if (.not. allocated(into%measured)) return
+    associate (gas => into%measured)
+      if (all(gas%period_deg /= measured_pressure_periods)) return   ! the rules refuse it
+      call provide(values, into%file, 'cylinder_pressure', 'table', crank_angle, pressure, gas%curve, error, gas%period_deg)
+    end associate
+  end subroutine provide_curves
+
+  !> One curve. With a period it is that of a pressure.
+  subroutine provide(values, case_file, group, key, x_is, y_is, curve, error, period)
+    type(case_values_t), intent(inout) :: values
+    character(len=*), intent(in) :: case_file, group, key
+    type(quantity_t), intent(in) :: x_is, y_is
+    type(measured_curve_t), intent(inout) :: curve
+    type(error_t), allocatable, intent(out) :: error
+    integer, intent(in), optional :: period   !! [degrees]
+    character(len=:), allocatable :: path, text, message, head
+    type(checksum_t) :: sum
+    integer, allocatable :: lines(:)
+    integer :: line, place
+    logical :: is_there
+
+    if (curve%file == '') then
+      call values%refuse(group, key, 'must be the name of a file', error)
+      return
+    end if
+    path = path_of(case_file, curve%file)
+    is_there = .false.
+    if (allocated(curve%path)) is_there = curve%path == path
+    head = values%file//': '//shown_group(group)//' '//key//': '
+    if (.not. is_there) then
+      if (allocated(curve%path)) deallocate (curve%path)
+      call read_text_file(path, largest_file, 'table', text, error)
+      if (allocated(error)) then
+        error%message = head//error%message
+        return
+      end if
+      call parse_curve(text, x_is, y_is, curve%x, curve%y, lines, message, line)
+      if (message == '' .and. present(period)) call close_period(curve, period, lines, message, line)
+      if (message /= '') then
+        call fail(error, head//printable(path, 200)//':'//integer_text(line)//': '//message, status_case_file)
+        return
+      end if
+      call sum%add(text)
+      curve%found = sum%hexadecimal()
+      curve%path = absolute_path(path)
+    end if
+    if (curve%digest /= '' .and. curve%digest /= curve%found) then
+      call values%refuse(group, key//'_digest', printable(path, 200)//' has other content: its digest is '//curve%found, error)
+      return
+    end if
+    place = find_key(values%keys, group, key)
+    values%values(place)%text = curve%path
+    place = find_key(values%keys, group, key//'_digest')
+    values%values(place)%text = curve%found
+  end subroutine provide
+
+  !> The path of a file that a case names: relative to the case file, whose own folder is the present one where it comes from the
+  !> standard input.
+  pure function path_of(case_file, name) result(path)
+    character(len=*), intent(in) :: case_file, name
+    character(len=:), allocatable :: path
+    path = name
+    if (index(name, '/') == 1 .or. case_file == '/dev/stdin') return
+    path = case_file(:index(case_file, '/', back=.true.))//name
+  end function path_of
+
+  !> A measured pressure over one period, without the point that stands again at its end; else what is wrong, and where.
+  subroutine close_period(curve, period, lines, message, line)
+    type(measured_curve_t), intent(inout) :: curve
+    integer, intent(in) :: period   !! [degrees]
+    integer, intent(in) :: lines(:)
+    character(len=:), allocatable, intent(out) :: message
+    integer, intent(out) :: line
+    integer :: n, at
+    call period_fault(curve%x, curve%y, period, message, at)
+    line = lines(at)
+    if (message /= '') return
+    n = size(curve%x)
+    if (curve%x(n) - curve%x(1) < period - same_angle(period)) return
+    curve%y(1) = 0.5_dp*(curve%y(1) + curve%y(n))
+    curve%x = curve%x(:n - 1)
+    curve%y = curve%y(:n - 1)
+  end subroutine close_period
+
+  !> What is wrong with a pressure over a period, and at which of its points; an empty message means that nothing is.
+  pure subroutine period_fault(angle, pressure, period, message, at)
+    real(dp), intent(in) :: angle(:), pressure(:)   !! [degrees], increasing; [Pa]
+    integer, intent(in) :: period                   !! [degrees]
+    character(len=:), allocatable, intent(out) :: message
+    integer, intent(out) :: at
+    real(dp) :: widths(0:size(angle) + 1), span
+    integer :: n
+    n = size(angle)
+    span = angle(n) - angle(1)
+    message = ''
+    do at = 1, n
+      if (pressure(at) > 0) cycle
+      message = 'pressure = '//short_text(pressure(at))//' Pa: must be > 0: absolute, not above the atmosphere''s'
+      return
+    end do
+    at = n
+    if (span > period + same_angle(period)) then
+      message = 'the table spans '//short_text(span)//' degrees, more than its period of '//integer_text(period)
+      return
+    else if (span > period - same_angle(period)) then
+      if (abs(pressure(n) - pressure(1)) > same_pressure*maxval(pressure)) then
+        message = 'pressure = '//short_text(pressure(n))//' Pa: must be that of the first row, a period before, to 1 %'
+        return
+      end if
+      n = n - 1
+    end if
+    widths(1:n) = [angle(2:n), angle(1) + period] - angle(:n)
+    widths(0) = widths(n)
+    widths(n + 1) = widths(1)
+    do at = 1, n
+      if (widths(at) > widest_gap) then
+        message = 'no row from '//short_text(angle(at))//' to '//short_text(angle(at) + widths(at))//' degrees: the table must '// &
+          'cover the period of '//integer_text(period)//' without gaps of more than 30'
+      else if (widths(at) > gap_ratio*max(widths(at - 1), widths(at + 1))) then
+        message = 'rows are missing from '//short_text(angle(at))//' to '//short_text(angle(at) + widths(at))// &
+          ' degrees, more than 4 times as far as those on both sides'
+      end if
+      if (message /= '') return
+    end do
+    at = n
+  end subroutine period_fault
+
+  !> Two angles are the same [degrees].
+  pure real(dp) function same_angle(period)
+    integer, intent(in) :: period
+    same_angle = 1e-9_dp*period
+  end function same_angle
+end module case_curves

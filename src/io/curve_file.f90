@@ -1,0 +1,221 @@
+!> Measured curves from CSV files: a header that names two columns with their units, such as crank_angle[deg],pressure[bar], and a row
+!> of two numbers for each point. Lines that are empty or begin with # are passed over.
+module curve_file
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: pi
+  use text_tools, only: printable, integer_text
+  use value_reader, only: read_real
+  implicit none
+  private
+  public :: parse_curve, quantity_t, crank_angle, pressure, turning_speed, torque
+
+  integer, parameter :: most_rows = 1000000
+
+  !> A unit, and what a number in it is times in the first unit of its quantity.
+  type :: unit_t
+    character(len=8) :: name = ''
+    real(dp) :: factor = 1
+  end type unit_t
+
+  !> What a column may hold.
+  type :: quantity_t
+    character(len=12) :: name = ''
+    type(unit_t) :: units(7)
+  end type quantity_t
+
+  type(unit_t), parameter :: none = unit_t()
+  type(quantity_t), parameter :: crank_angle = quantity_t('crank angle', [unit_t('deg'), unit_t('rad', 180/pi), none, none, none, &
+    none, none])
+  type(quantity_t), parameter :: pressure = quantity_t('pressure', [unit_t('Pa'), unit_t('hPa', 1e2_dp), unit_t('kPa', 1e3_dp), &
+    unit_t('MPa', 1e6_dp), unit_t('mbar', 1e2_dp), unit_t('bar', 1e5_dp), unit_t('psi', 6894.757293168361_dp)])
+  type(quantity_t), parameter :: turning_speed = quantity_t('speed', [unit_t('rad/s'), unit_t('rpm', pi/30), &
+    unit_t('1/min', pi/30), unit_t('1/s', 2*pi), none, none, none])
+  type(quantity_t), parameter :: torque = quantity_t('torque', [unit_t('N.m'), unit_t('Nm'), unit_t('N m'), &
+    unit_t('kN.m', 1e3_dp), unit_t('kNm', 1e3_dp), none, none])
+
+contains
+
+  !> The two columns of a text in the first units of their quantities, x increasing, at least two rows. Where it is no such table,
+  !> `message` says what is wanted and `line` where; else the message is empty. `lines` tells where each row stands.
+  subroutine parse_curve(text, x_is, y_is, x, y, lines, message, line)
+    character(len=*), intent(in) :: text
+    type(quantity_t), intent(in) :: x_is, y_is
+    real(dp), allocatable, intent(out) :: x(:), y(:)
+    integer, allocatable, intent(out) :: lines(:)
+    character(len=:), allocatable, intent(out) :: message
+    integer, intent(out) :: line
+    real(dp) :: factors(2)
+    character(len=:), allocatable :: row
+    integer :: at, n
+    logical :: has_header
+
+    message = ''
+    line = 0
+    at = 1
+    if (index(text, char(239)//char(187)//char(191)) == 1) at = 4   ! byte order mark
+    n = min(most_rows, 1 + count([(text(n:n) == achar(10), n=1, len(text))]))
+    allocate (x(n), y(n), lines(n))
+    n = 0
+    has_header = .false.
+    do while (at <= len(text) .and. message == '')
+      call next_line(text, at, row)
+      line = line + 1
+      if (row == '' .or. index(row, '#') == 1) cycle
+      if (.not. has_header) then
+        call read_header(row, x_is, y_is, factors, message)
+        has_header = .true.
+      else if (n == size(x)) then
+        message = 'the table has more than '//integer_text(most_rows)//' rows'
+      else
+        n = n + 1
+        lines(n) = line
+        call read_row(row, x_is, y_is, factors, x(n), y(n), message)
+        if (message == '' .and. n > 1) call compare_rows(x_is, row, x(n - 1), lines(n - 1), x(n), message)
+      end if
+    end do
+    if (message == '' .and. n < 2) message = 'a header and at least two rows are wanted'
+    line = max(1, line)
+    x = x(:n)
+    y = y(:n)
+    lines = lines(:n)
+  end subroutine parse_curve
+
+  !> The line at `at`, which moves behind it, without blanks around it.
+  subroutine next_line(text, at, row)
+    character(len=*), intent(in) :: text
+    integer, intent(inout) :: at
+    character(len=:), allocatable, intent(out) :: row
+    integer :: length
+    length = index(text(at:), achar(10)) - 1
+    if (length < 0) length = len(text) - at + 1
+    row = text(at:at + length - 1)
+    at = at + length + 1
+    if (len(row) > 0) then
+      if (row(len(row):) == achar(13)) row = row(:len(row) - 1)
+    end if
+    row = trim(adjustl(row))
+  end subroutine next_line
+
+  !> Two fields with a comma between them, without blanks and quotes around each.
+  subroutine split(row, fields, message)
+    character(len=*), intent(in) :: row
+    character(len=len(row)), intent(out) :: fields(2)
+    character(len=:), allocatable, intent(inout) :: message
+    integer :: comma, i, length
+    comma = index(row, ',')
+    fields = ''
+    if (comma == 0 .or. index(row(comma + 1:), ',') > 0) then
+      message = printable(row, 60)//': two columns with a comma between them are wanted'
+      return
+    end if
+    fields = [character(len=len(row)) :: adjustl(row(:comma - 1)), adjustl(row(comma + 1:))]
+    do i = 1, 2
+      length = len_trim(fields(i))
+      if (length < 2) cycle
+      if (fields(i)(1:1) == '"' .and. fields(i)(length:length) == '"') fields(i) = fields(i)(2:length - 1)
+    end do
+  end subroutine split
+
+  !> Factors of both columns by the units that the header gives them.
+  subroutine read_header(row, x_is, y_is, factors, message)
+    character(len=*), intent(in) :: row
+    type(quantity_t), intent(in) :: x_is, y_is
+    real(dp), intent(out) :: factors(2)
+    character(len=:), allocatable, intent(inout) :: message
+    character(len=len(row)) :: names(2)
+    factors = 0
+    call split(row, names, message)
+    if (message /= '') return
+    call read_unit(trim(names(1)), x_is, factors(1), message)
+    if (message == '') call read_unit(trim(names(2)), y_is, factors(2), message)
+  end subroutine read_header
+
+  subroutine read_unit(name, quantity, factor, message)
+    character(len=*), intent(in) :: name
+    type(quantity_t), intent(in) :: quantity
+    real(dp), intent(out) :: factor
+    character(len=:), allocatable, intent(inout) :: message
+    integer :: i, first, last
+    factor = 0
+    first = scan(name, '[(')
+    last = scan(name, '])', back=.true.)
+    if (first > 0 .and. last > first) then
+      do i = 1, size(quantity%units)
+        if (quantity%units(i)%name == '' .or. quantity%units(i)%name /= adjustl(name(first + 1:last - 1))) cycle
+        factor = quantity%units(i)%factor
+        return
+      end do
+    end if
+    message = printable(name, 40)//': the header must name this column with its unit, the '//trim(quantity%name)// &
+      ' in one of '//unit_list(quantity)//', as in '//underscored(trim(quantity%name))//'['//trim(quantity%units(1)%name)//']'
+  end subroutine read_unit
+
+  !> Blanks as underscores.
+  pure function underscored(name) result(text)
+    character(len=*), intent(in) :: name
+    character(len=len(name)) :: text
+    integer :: i
+    text = name
+    do i = 1, len(name)
+      if (name(i:i) == ' ') text(i:i) = '_'
+    end do
+  end function underscored
+
+  pure function unit_list(quantity) result(list)
+    type(quantity_t), intent(in) :: quantity
+    character(len=:), allocatable :: list
+    integer :: i
+    list = trim(quantity%units(1)%name)
+    do i = 2, size(quantity%units)
+      if (quantity%units(i)%name /= '') list = list//', '//trim(quantity%units(i)%name)
+    end do
+  end function unit_list
+
+  subroutine read_row(row, x_is, y_is, factors, x, y, message)
+    character(len=*), intent(in) :: row
+    type(quantity_t), intent(in) :: x_is, y_is
+    real(dp), intent(in) :: factors(2)
+    real(dp), intent(out) :: x, y
+    character(len=:), allocatable, intent(inout) :: message
+    character(len=len(row)) :: fields(2)
+    x = 0
+    y = 0
+    call split(row, fields, message)
+    if (message /= '') return
+    call read_number(trim(fields(1)), x_is, x, message)
+    if (message == '') call read_number(trim(fields(2)), y_is, y, message)
+    x = x*factors(1)
+    y = y*factors(2)
+  end subroutine read_row
+
+  subroutine read_number(field, quantity, value, message)
+    character(len=*), intent(in) :: field
+    type(quantity_t), intent(in) :: quantity
+    real(dp), intent(out) :: value
+    character(len=:), allocatable, intent(inout) :: message
+    character(len=:), allocatable :: wanted
+    value = 0
+    if (field == '') then
+      message = trim(quantity%name)//' is missing'
+      return
+    end if
+    call read_real(field, value, wanted)
+    if (allocated(wanted)) message = trim(quantity%name)//' = '//printable(field, 40)//': '//wanted
+  end subroutine read_number
+
+  !> The first column increases from row to row.
+  subroutine compare_rows(x_is, row, before, line, here, message)
+    type(quantity_t), intent(in) :: x_is
+    character(len=*), intent(in) :: row
+    real(dp), intent(in) :: before, here
+    integer, intent(in) :: line   !! of the row before
+    character(len=:), allocatable, intent(inout) :: message
+    if (here > before) return
+    message = trim(x_is%name)//' = '//printable(trim(row(:index(row, ',') - 1)), 40)
+    if (here < before) then
+      message = message//': must be larger than that of line '//integer_text(line)//': rows must be in increasing order'
+    else
+      message = message//': stands in line '//integer_text(line)//' already'
+    end if
+  end subroutine compare_rows
+end module curve_file

@@ -1,0 +1,40 @@
+!> A measured curve that a case names by its file: two columns of numbers. A model declares it as a parameter; whoever reads
+!> cases fills in the numbers.
+module measured_curve
+  use gudgeon_kinds, only: dp
+  use gudgeon_parameters, only: parameter_list_t
+  implicit none
+  private
+  public :: measured_curve_t
+
+  type :: measured_curve_t
+    character(len=:), allocatable :: file       !! path as the case gives it, relative to the case file
+    character(len=:), allocatable :: digest     !! of the file's bytes, that the case asks for; empty: any
+    character(len=:), allocatable :: path       !! of the file that the numbers are from, absolute; not allocated: none yet
+    character(len=:), allocatable :: found      !! the digest of that file
+    real(dp), allocatable :: x(:), y(:)         !! the columns, x increasing
+  contains
+    procedure :: parameters
+    procedure :: is_wanted
+  end type measured_curve_t
+
+contains
+
+  !> The keys NAME and NAME_digest. Without a default the file is required; an empty name is none.
+  subroutine parameters(self, list, name, says, default, example)
+    class(measured_curve_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    character(len=*), intent(in) :: name, says
+    character(len=*), intent(in), optional :: default, example
+    call list%text(name, self%file, says, default, example=example)
+    call list%text(name//'_digest', self%digest, &
+      'of that file, as resolved cases give it: another content is refused; '''': any', '')
+  end subroutine parameters
+
+  !> Whether the case names a file.
+  pure logical function is_wanted(self)
+    class(measured_curve_t), intent(in) :: self
+    is_wanted = .false.
+    if (allocated(self%file)) is_wanted = self%file /= ''
+  end function is_wanted
+end module measured_curve

@@ -1,0 +1,255 @@
+!> Two-stroke engines and compressors: the work of a cycle against closed forms, and what valves do whichever way the crank turns.
+module test_gas_machines
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: pi, two_pi, degree
+  use gudgeon_errors, only: error_t
+  use two_stroke, only: two_stroke_t
+  use compressor, only: compressor_t
+  use working_gas, only: working_gas_t
+  use checks, only: checks_t
+  use collecting_sink, only: trace_t, run_case, column
+  implicit none
+  private
+  public :: run_test_gas_machines
+
+  real(dp), parameter :: crank = 0.04_dp, rod = 0.13_dp, bore = 0.07_dp
+  real(dp), parameter :: displacement = 2*crank*pi*bore**2/4
+  integer, parameter :: long = 60
+
+contains
+
+  subroutine run_test_gas_machines(check)
+    class(checks_t), intent(inout) :: check
+    call otto_cycle_with_ports(check)
+    call two_strokes_repeat(check)
+    call compressor_work(check, 5e5_dp, 1.3_dp, 0.05_dp)
+    call compressor_work(check, 1.5e5_dp, 1.0_dp, 0.2_dp)
+    call compressor_work(check, 1e8_dp, 1.4_dp, 0.1_dp)
+    call compressor_gives_the_crank_its_work(check)
+    call piston_that_turns_back(check)
+    call piston_that_swings(check)
+  end subroutine run_test_gas_machines
+
+  !> Volume from the geometry of the mechanism, the piston's way from its top [m^3].
+  pure real(dp) function volume_at(q, dead)
+    real(dp), intent(in) :: q, dead
+    volume_at = dead + pi*bore**2/4*(crank + rod - crank*cos(q) - sqrt(rod**2 - (crank*sin(q))**2))
+  end function volume_at
+
+  !> Work of the gas from q1 to q2 without events between [J], by Gauss's rule of five points on 400 pieces.
+  real(dp) function work_between(gas, q1, q2) result(work)
+    type(working_gas_t), intent(in) :: gas
+    real(dp), intent(in) :: q1, q2
+    real(dp), parameter :: x(5) = [-0.906179845938663993_dp, -0.538469310105683091_dp, 0.0_dp, 0.538469310105683091_dp, &
+      0.906179845938663993_dp]
+    real(dp), parameter :: w(5) = [0.236926885056189088_dp, 0.478628670499366468_dp, 0.568888888888888889_dp, &
+      0.478628670499366468_dp, 0.236926885056189088_dp]
+    real(dp) :: h, q, slope
+    integer :: i, k
+    integer, parameter :: pieces = 400
+    work = 0
+    h = (q2 - q1)/pieces
+    do i = 1, pieces
+      do k = 1, 5
+        q = q1 + h*(i - 0.5_dp + 0.5_dp*x(k))
+        slope = pi*bore**2/4*crank*sin(q)*(1 + crank*cos(q)/sqrt(rod**2 - (crank*sin(q))**2))
+        work = work + 0.5_dp*h*w(k)*gas%pressure(q)*slope
+      end do
+    end do
+  end function work_between
+
+  !> Heat all at once at the dead centre is the Otto cycle: W = Q (1 - r^(1-gamma)), r from the volume at which the ports close.
+  subroutine otto_cycle_with_ports(check)
+    class(checks_t), intent(inout) :: check
+    type(two_stroke_t) :: engine
+    type(working_gas_t) :: gas
+    type(error_t), allocatable :: error
+    real(dp) :: dead, ratio, work, bounds(0:4), peak
+    integer :: i
+    real(dp), parameter :: gamma = 1.33_dp, burn = 1e-5_dp
+    engine%bore = bore
+    engine%compression_ratio = 9
+    engine%heat_capacity_ratio = gamma
+    engine%heat = 250
+    engine%efficiency = 100   ! what is not burnt is e^-100
+    engine%form = 2
+    engine%start_deg = 360 - 0.5_dp*burn
+    engine%duration_deg = burn
+    engine%port_opens_deg = 105
+    call engine%prepare(crank, rod, 1e-12_dp, gas, error)
+    dead = displacement/8
+    bounds = [255.0_dp, engine%start_deg, engine%start_deg + burn, 465.0_dp, 615.0_dp]*degree
+    work = 0
+    do i = 1, 4
+      call gas%start(0.5_dp*(bounds(i - 1) + bounds(i)), 1.0_dp)
+      work = work + work_between(gas, bounds(i - 1), bounds(i))
+      if (i == 3) peak = gas%pressure(bounds(2))
+    end do
+    ratio = volume_at(105*degree, dead)/dead
+    call check%relative(work, 250*(1 - ratio**(1 - gamma)), 1e-8_dp, 'Otto cycle of a two-stroke engine: work')
+    call check%relative(peak, 101325*ratio**gamma + (gamma - 1)*250/dead, 1e-6_dp, 'its peak pressure')
+    call gas%start(0.0_dp, 1.0_dp)
+    call check%that(gas%pressure(255*degree - two_pi) < 101326, 'ports that close at 255 degrees close at -105 too')
+  end subroutine otto_cycle_with_ports
+
+  !> The cycle of 360 degrees, forwards and backwards, open between the ports.
+  subroutine two_strokes_repeat(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    real(dp), allocatable :: pressure(:), angle(:)
+    character(len=long), parameter :: settings(4) = [character(len=long) :: 'output.samples_per_revolution=360', &
+      'integrator.revolutions=3', 'drive.kind=constant_speed', 'initial.crank_angle_deg=0.5']
+    integer :: i
+    trace = run_case('cases/gas/two_stroke.nml', settings, .true.)
+    pressure = values_of(trace, 'cylinder_pressure[Pa]')
+    angle = values_of(trace, 'crank_angle[rad]')
+    call check%that(size(pressure) == 1081, 'three revolutions')
+    call check%that(maxval(abs(pressure(361:720)/pressure(:360) - 1)) < 1e-8_dp, 'the pressure repeats after 360 degrees')
+    do i = 1, 360
+      if (abs(modulo(angle(i)/degree, 360.0_dp) - 180) < 75) call check%relative(pressure(i), 101325.0_dp, 1e-15_dp, 'open ports')
+      if (abs(modulo(angle(i)/degree, 360.0_dp) - 180) > 76) call check%that(pressure(i) > 101325, 'closed ports')
+    end do
+  end subroutine two_strokes_repeat
+
+  !> W = n/(n-1) p1 (V1 - V4) ((p2/p1)^((n-1)/n) - 1), with V4 = V0 (p2/p1)^(1/n) where suction begins; n = 1: p1 (V1 - V4) ln(p2/p1).
+  !> Where the pressure never reaches the discharge's, no gas goes through and the work is 0.
+  subroutine compressor_work(check, discharge, n, dead_space)
+    class(checks_t), intent(inout) :: check
+    real(dp), intent(in) :: discharge, n, dead_space
+    type(working_gas_t) :: gas
+    real(dp) :: opens, sucks, dead, work, want, ratio, bounds(0:4), way
+    integer :: i, turn
+    real(dp), parameter :: suction = 1e5_dp
+    gas = compressor_of(discharge, n, dead_space)
+    dead = dead_space*displacement
+    ratio = discharge/suction
+    opens = pi
+    sucks = two_pi
+    want = 0
+    if (ratio < ((displacement + dead)/dead)**n) then
+      opens = two_pi - angle_of((displacement + dead)*ratio**(-1/n), dead)
+      sucks = two_pi + angle_of(dead*ratio**(1/n), dead)
+      want = log(ratio)
+      if (abs(n - 1) > 0) want = n/(n - 1)*(ratio**((n - 1)/n) - 1)
+      want = -suction*(displacement + dead - dead*ratio**(1/n))*want
+    end if
+    do turn = 1, 2   ! forwards and backwards
+      way = merge(1.0_dp, -1.0_dp, turn == 1)
+      bounds = [pi, opens, two_pi, sucks, 3*pi]
+      if (turn == 2) bounds = two_pi - bounds
+      work = 0
+      do i = 1, 4
+        if (abs(bounds(i) - bounds(i - 1)) <= 0) cycle
+        call gas%start(0.5_dp*(bounds(i - 1) + bounds(i)), way)
+        work = work + work_between(gas, bounds(i - 1), bounds(i))
+      end do
+      call check%close_to(work/(suction*displacement), want/(suction*displacement), 1e-10_dp, 'work of a compressor over a turn')
+    end do
+
+  contains
+
+    !> Crank angle from the inner dead centre at which the cylinder has this volume, by bisection.
+    real(dp) function angle_of(volume, dead)
+      real(dp), intent(in) :: volume, dead
+      real(dp) :: low, high
+      integer :: k
+      low = 0
+      high = pi
+      do k = 1, 60
+        angle_of = 0.5_dp*(low + high)
+        if (volume_at(angle_of, dead) < volume) then
+          low = angle_of
+        else
+          high = angle_of
+        end if
+      end do
+    end function angle_of
+  end subroutine compressor_work
+
+  type(working_gas_t) function compressor_of(discharge, n, dead_space) result(gas)
+    real(dp), intent(in) :: discharge, n, dead_space
+    type(compressor_t) :: machine
+    type(error_t), allocatable :: error
+    machine%bore = bore
+    machine%dead_space = dead_space
+    machine%suction_pressure = 1e5_dp
+    machine%discharge_pressure = discharge
+    machine%polytropic_exponent = n
+    call machine%prepare(crank, rod, 1e-10_dp, gas, error)
+  end function compressor_of
+
+  !> A free crank loses that work in each turn of a run, to 1e-8 of it, forwards and backwards.
+  subroutine compressor_gives_the_crank_its_work(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    real(dp) :: want, volume
+    real(dp), allocatable :: energy(:)
+    integer :: i
+    real(dp), parameter :: n = 1.3_dp
+    character(len=long) :: settings(8)
+    settings = [character(len=long) :: 'drive.kind=free', 'mechanism.crank_inertia=1', 'mechanism.gravity=0', &
+      'integrator.relative_tolerance=1e-12', 'integrator.crank_revolutions=2', 'initial.crank_angle_deg=150', &
+      'initial.crank_speed=150', 'output.every_step=T']
+    volume = 0.08_dp*pi*0.07_dp**2/4
+    want = n/(n - 1)*1e5_dp*volume*(1.05_dp - 0.05_dp*5**(1/n))*(5**((n - 1)/n) - 1)
+    do i = 1, 2
+      if (i == 2) settings(7) = 'initial.crank_speed=-150'
+      trace = run_case('cases/gas/compressor.nml', settings, .true.)
+      call check%equal_text(trace%report%status, 'done', 'a compressor with a free crank makes its turns')
+      energy = values_of(trace, 'energy[J]')
+      call check%relative(energy(1) - energy(size(energy)), 2*want, 1e-8_dp, 'what its crank loses in two turns')
+      call check%that(trace%report%figures%max_energy_residual < 1e-8_dp*want, 'its energy residual')
+    end do
+  end subroutine compressor_gives_the_crank_its_work
+
+  !> A piston that turns back while it discharges leaves what is in the cylinder to expand from there; valves do not care for the
+  !> crank angle.
+  subroutine piston_that_turns_back(check)
+    class(checks_t), intent(inout) :: check
+    type(working_gas_t) :: gas
+    real(dp) :: g(2), g_rate(2), turned
+    real(dp), parameter :: n = 1.3_dp, dead = 0.05_dp*displacement
+    gas = compressor_of(5e5_dp, n, 0.05_dp)
+    turned = 340*degree
+    call gas%start(turned, 1.0_dp)
+    call check%relative(gas%pressure(turned), 5e5_dp, 1e-15_dp, 'it discharges at 340 degrees')
+    call gas%events(turned, -1e-9_dp, g, g_rate)
+    call check%that(g(1) < 0 .and. g(2) > 0, 'the crank turns back')
+    call gas%pass(2, turned, -1e-9_dp)
+    call check%relative(gas%pressure(turned), 5e5_dp, 1e-12_dp, 'the pressure does not jump')
+    call check%relative(gas%pressure(300*degree), 5e5_dp*(volume_at(turned, dead)/volume_at(300*degree, dead))**n, 1e-12_dp, &
+      'what is left expands')
+    call gas%events(turned, -1.0_dp, g, g_rate)
+    call check%that(all(g < 0), 'no valve opens at once')
+    call gas%start(200*degree, 0.0_dp)
+    call check%relative(gas%pressure(200*degree), 1e5_dp, 1e-15_dp, 'a machine at rest is filled at the suction pressure')
+  end subroutine piston_that_turns_back
+
+  !> A crank too slow to reach the discharge pressure swings back: the gas is a spring, and gives back what it took.
+  subroutine piston_that_swings(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    real(dp), allocatable :: speed(:), angle(:), pressure(:)
+    integer :: i
+    character(len=long), parameter :: settings(8) = [character(len=long) :: 'drive.kind=free', 'mechanism.gravity=0', &
+      'integrator.relative_tolerance=1e-10', 'integrator.revolutions=0', 'integrator.end_time=0.5', &
+      'initial.crank_angle_deg=180', 'initial.crank_speed=20', 'output.interval=1e-3']
+    trace = run_case('cases/gas/compressor.nml', settings, .true.)
+    call check%equal_text(trace%report%status, 'done', 'a crank that swings against the gas')
+    speed = values_of(trace, 'crank_speed[rad/s]')
+    angle = values_of(trace, 'crank_angle[rad]')
+    pressure = values_of(trace, 'cylinder_pressure[Pa]')
+    call check%that(minval(speed) < -19 .and. maxval(pressure) < 5e5_dp, 'it turns back before the valve opens')
+    i = minloc(abs(angle(2:) - pi) + merge(0.0_dp, 9.0_dp, speed(2:) < 0), 1) + 1
+    call check%relative(speed(i), -20.0_dp, 0.02_dp, 'with the speed that it had')
+    call check%that(trace%report%figures%max_energy_residual < 1e-7_dp*trace%report%figures%max_energy, 'no energy is lost')
+  end subroutine piston_that_swings
+
+  !> A column of a trace.
+  pure function values_of(trace, name) result(values)
+    type(trace_t), intent(in) :: trace
+    character(len=*), intent(in) :: name
+    real(dp) :: values(size(trace%values, 2))
+    values = trace%values(column(trace, name), :)
+  end function values_of
+end module test_gas_machines
