@@ -50,6 +50,10 @@ SCENES = {
                        "integrator.max_step": "5e-5"}),
     "contact": ("sim_V_oscillating", {"integrator.method": "'auto'", "integrator.revolutions": "0.25", "initial.crank_angle_deg": "340"}),
     "weighted": ("film/weighted", {"integrator.revolutions": "0.3", "integrator.max_step": "2e-5"}),
+    "compressor": ("gas/compressor", {"integrator.method": "'auto'", "integrator.revolutions": "1.2", "drive.kind": "'free'"}),
+    "two_stroke": ("gas/two_stroke", {"integrator.method": "'auto'", "integrator.revolutions": "1.2", "initial.crank_angle_deg": "170"}),
+    "measured": ("gas/measured", {"integrator.method": "'auto'", "integrator.revolutions": "0.5", "initial.crank_angle_deg": "300",
+                                  "cylinder_pressure.offset_deg": "-17.3"}),
     "both": ("joints/both_pins", {"integrator.revolutions": "0.2", "drive.kind": "'free'", "mechanism.gravity_angle_deg": "25"}),
     "crank": ("joints/crank_pin", {"integrator.revolutions": "0.2", "integrator.relative_tolerance": "1e-7"}),
     "films": ("joints/both_pins_lubricated", {"integrator.revolutions": "0.5"}),
@@ -60,7 +64,7 @@ LONG_STEPS = ("sim_V", {"integrator.method": "'auto'", "integrator.revolutions":
 PHASES = {"dry": {0, 2}, "sticks": {0, 2}, "threlfall": {0, 2}, "brown_mcphee": {0, 2}, "stribeck": {0, 2}, "lugre": {0, 2},
           "elasto_plastic": {0, 2}, "conformal": {0, 2}, "johnson": {0, 2},
           "liner": {0, 2}, "pereira": {0, 2}, "dissipation": {0, 2}, "film": {1}, "contact": {1, 2}, "weighted": {1, 2},
-          "both": {0, 2}, "crank": {0}, "films": {1}, "ideal": {0}}   # 0 free flight, 1 film, 2 contact
+          "compressor": {1}, "two_stroke": {1}, "measured": {1}, "both": {0, 2}, "crank": {0}, "films": {1}, "ideal": {0}}   # 0 free flight, 1 film, 2 contact
 
 #: (what is changed, scene, column, change of (value, row), what the verdict must say)
 CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
@@ -112,6 +116,9 @@ CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
     ("more film beside a contact", "weighted", "film_force_y", lambda v, i: v * (1 + 1e-5), "contact force on the pin"),
     ("harder contact beside a film", "weighted", "normal_force", lambda v, i: v * (1 + 1e-5), "contact law"),
     ("more pressure", "film", "cylinder_pressure", lambda v, i: v * 1.001, "gas law"),
+    ("more pressure in a compressor", "compressor", "cylinder_pressure", lambda v, i: v * 1.001, "gas law"),
+    ("more pressure in a two-stroke engine", "two_stroke", "cylinder_pressure", lambda v, i: v * 1.001, "gas law"),
+    ("another pressure than the measured one", "measured", "cylinder_pressure", lambda v, i: v * (1 + 1e-4), "gas law"),
     ("another gas force", "film", "gas_force", lambda v, i: -v, "gas force"),
     ("another cylinder", "film", "cylinder_volume", lambda v, i: v * 1.001, "cylinder volume"),
     ("crank speed that is not the rate of the angle", "ideal", "crank_angle", lambda v, i: v * 1.01, "is not the integral of its rate"),
@@ -169,6 +176,9 @@ MUTANTS = [
     ("the crank pin slides without its bearing's turning", "joint_motion.f90", "- joint%bearing_speed*(joint%distance + pin_radius)",
      "- joint%bearing_speed*pin_radius", "both", "crank pin: sliding speed"),
     ("angular momentum from nowhere", "chain_loads.f90", "-(moment + eccentricity(1)", "-(moment + 0*eccentricity(1)", "both", "Euler, rod"),
+    ("a valve opens too late", "valve_gas.f90", "*(1 - opening_margin)", "*0.999_dp", "compressor", "gas law"),
+    ("a measured pressure is off between its rows", "monotone_cubic.f90", "0.5_dp*abs(parabola))*2", "0.5_dp*abs(parabola))*2.2_dp",
+     "measured", "gas law"),
     ("gas loses no heat as it expands", "gas_cycle.f90", "values(i) = p*(volume", "values(i) = 1.001_dp*p*(volume", "film", "gas law"),
 ]
 

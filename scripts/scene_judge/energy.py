@@ -43,9 +43,9 @@ def phase_key(checks: RowChecks, i: int) -> tuple[float, int, tuple[int, bool], 
 
 
 def gas_part(checks: RowChecks, i: int) -> int:
-    """Part of the gas cycle; a row at a bound stands for what was before it."""
+    """Part of the gas cycle."""
     columns = checks.run.columns
-    return checks.gas.part(columns["crank_angle"][i] - math.copysign(1e-10, columns["crank_speed"][i])) if checks.gas else 0
+    return checks.gas.part_of(i, columns["crank_angle"][i], columns["crank_speed"][i]) if checks.gas else 0
 
 
 def pieces_of(checks: RowChecks, run: Run) -> list[list[int]]:

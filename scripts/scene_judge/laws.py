@@ -1,4 +1,4 @@
-"""The laws of friction, film and gas, from their published equations, against the rows of a trace."""
+"""The laws of friction and film, from their published equations, against the rows of a trace."""
 from __future__ import annotations
 
 import math
@@ -6,7 +6,6 @@ import math
 from .mechanics import Row
 from .trace import Run
 
-GAUSS_5 = ((0.0, 0.5688888888888889), (0.5384693101056831, 0.47862867049936647), (0.906179845938664, 0.23692688505618908))
 ROUNDING = 1e-14   # of a speed found from those of crank, rod and piston, in their sum
 
 
@@ -140,68 +139,3 @@ def squeeze_film(run: Run, row: Row, slip: tuple[float, float]) -> tuple[float, 
         radial = 6 * scale * rate / ((2 + eps**2) * open_**1.5) * (4 * k * eps**2 - (2 + eps**2) * math.pi * share)
     along = 6 * scale * math.pi * eps * turn / ((2 + eps**2) * math.sqrt(open_)) * share
     return radial * n[0] - along * n[1], radial * n[1] + along * n[0]
-
-
-class Gas:
-    """The four strokes of appendix A: the first law of thermodynamics for the closed cylinder, integrated in closed form.
-
-    p V^g = p_1 V_1^g + (g - 1) * integral of V^(g-1) dQ, Wiebe's release Q = Q_in (1 - exp(-a z^n))."""
-
-    def __init__(self, run: Run) -> None:
-        n = run.number
-        self.exponent, self.heat, self.a, self.n = (n("combustion.heat_capacity_ratio"), n("combustion.heat"),
-                                                    n("combustion.wiebe_efficiency"), n("combustion.wiebe_form"))
-        self.start, self.duration = math.radians(n("combustion.start_deg")), math.radians(n("combustion.duration_deg"))
-        self.intake, self.under = n("combustion.intake_pressure"), n("combustion.crankcase_pressure")
-        self.area = math.pi / 4 * n("combustion.bore")**2
-        self.crank, self.rod = n("mechanism.crank_length"), n("mechanism.rod_length")
-        self.dead = 2 * self.crank * self.area / (n("combustion.compression_ratio") - 1)
-        self.closed = self.intake * self.volume(math.pi)**self.exponent
-        self.panels = 400
-        self.grid = [0.0]
-        for i in range(self.panels):
-            self.grid.append(self.grid[-1] + self.panel(i / self.panels, (i + 1) / self.panels))
-
-    def volume(self, q: float) -> float:
-        """Dead volume, and the piston's way from its top times the area [m^3]."""
-        height = self.crank * math.cos(q) + math.sqrt((self.rod - self.crank * math.sin(q)) * (self.rod + self.crank * math.sin(q)))
-        return self.dead + self.area * (self.crank + self.rod - height)
-
-    def source(self, s: float) -> float:
-        """V^(g-1) dQ/ds, where s is z, or for a release that begins abruptly the power z^n."""
-        if self.n >= 1:
-            z, rate = s, self.n * s**(self.n - 1) if s > 0 or self.n == 1 else 0.0
-            burnt = s**self.n
-        else:
-            z, rate, burnt = s**(1 / self.n), 1.0, s
-        return self.volume(self.start + z * self.duration)**(self.exponent - 1) * self.heat * self.a * rate * math.exp(-self.a * burnt)
-
-    def panel(self, low: float, high: float) -> float:
-        middle, half = 0.5 * (low + high), 0.5 * (high - low)
-        return half * sum(w * (self.source(middle) if x == 0 else self.source(middle - x * half) + self.source(middle + x * half))
-                          for x, w in GAUSS_5)
-
-    def pressure(self, q: float) -> float:
-        """At the crank angle q [Pa]."""
-        angle = math.fmod(q, 4 * math.pi) % (4 * math.pi)
-        if not math.pi < angle < 3 * math.pi:
-            return self.intake
-        added = 0.0
-        z = min((angle - self.start) / self.duration, 1.0)
-        if z > 0:
-            s = z if self.n >= 1 else z**self.n
-            whole = min(int(s * self.panels), self.panels)
-            added = self.grid[whole] + (self.panel(whole / self.panels, s) if whole < self.panels else 0.0)
-        return (self.closed + (self.exponent - 1) * added) / self.volume(angle)**self.exponent
-
-    def jumps_near(self, q: float, margin: float) -> bool:
-        """Whether a part of the cycle begins or ends so near that a row stands for either side."""
-        angle = q % (4 * math.pi)
-        bounds = (math.pi, self.start, self.start + self.duration, 3 * math.pi)
-        return any(abs(angle - bound) < margin for bound in bounds)
-
-    def part(self, q: float) -> int:
-        """Number of the part of the cycle, counted on over the cycles."""
-        cycle, angle = divmod(q - math.pi, 4 * math.pi)
-        bounds = (self.start, min(self.start + self.duration, 3 * math.pi), 3 * math.pi)
-        return 4 * int(cycle) + sum(angle + math.pi >= bound for bound in bounds)

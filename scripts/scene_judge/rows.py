@@ -5,7 +5,8 @@ import dataclasses
 import math
 
 from .contact import Contact
-from .laws import ROUNDING, Friction, Gas, squeeze_film
+from .gas import gas_of
+from .laws import ROUNDING, Friction, squeeze_film
 from .mechanics import Bodies, Row
 from .trace import Run
 
@@ -58,7 +59,7 @@ class RowChecks:
         self.contact = Contact(run) if self.has_joint and run.text("contact.law") else None
         self.friction = Friction(run) if self.has_joint and run.text("friction.law") else None
         self.weighted = self.contact is not None and run.text("lubrication.transition") == "weighted"
-        self.gas = Gas(run) if "combustion.bore" in run.case and joint == "piston_pin" else None
+        self.gas = gas_of(run) if joint == "piston_pin" else None
         tolerance = min(run.number("integrator.relative_tolerance"), 1e-3)
         self.gas_tolerance = max(10 * tolerance, 1e-9)
 
@@ -109,7 +110,7 @@ class RowChecks:
             if self.has_joint:
                 self.check_joint(row, t)
             if self.gas:
-                self.check_gas(row, t)
+                self.check_gas(row, i, t)
         if self.crank_pin:
             self.misses |= {f"crank pin: {name}": dataclasses.replace(miss, check=f"crank pin: {name}")
                             for name, miss in self.crank_pin.misses.items()}
@@ -208,13 +209,13 @@ class RowChecks:
             blur += 4e-15 * self.run.number("joint.clearance") / self.run.number("lubrication.transition_depth") * math.hypot(*want)
         self.take("film law", math.hypot(force[0] - share * want[0], force[1] - share * want[1]), LAW * share * math.hypot(*want) + 10 * blur, t)
 
-    def check_gas(self, row: Row, t: float) -> None:
+    def check_gas(self, row: Row, i: int, t: float) -> None:
         get, gas = row.get, self.gas
         self.take("gas force", abs((get["cylinder_pressure"] - gas.under) * gas.area - get["gas_force"]),
                   SUM * (get["cylinder_pressure"] + gas.under) * gas.area, t)
         volume = gas.volume(row.q)
         self.take("cylinder volume", abs(volume - get["cylinder_volume"]), SUM * volume, t)
-        if not gas.jumps_near(row.q, 1e-7):
-            want = gas.pressure(row.q)
+        want = gas.wanted(i, row.q)
+        if want is not None:
             # an angle of many turns is rounded, and where the cylinder opens abruptly a little goes a long way
             self.take("gas law", abs(get["cylinder_pressure"] - want), self.gas_tolerance * want, t)
