@@ -18,6 +18,7 @@ class Cylinder:
         self.area = math.pi / 4 * run.number(f"{group}.bore")**2
         self.crank, self.rod = run.number("mechanism.crank_length"), run.number("mechanism.rod_length")
         self.dead = 0.0
+        self.rounding = 1e-15 * self.area * (self.crank + self.rod)   # of `volume`, a difference of lengths
 
     def volume(self, q: float) -> float:
         """Dead volume, and the piston's way from its top times the area [m^3]."""

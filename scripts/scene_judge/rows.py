@@ -214,7 +214,7 @@ class RowChecks:
         self.take("gas force", abs((get["cylinder_pressure"] - gas.under) * gas.area - get["gas_force"]),
                   SUM * (get["cylinder_pressure"] + gas.under) * gas.area, t)
         volume = gas.volume(row.q)
-        self.take("cylinder volume", abs(volume - get["cylinder_volume"]), SUM * volume, t)
+        self.take("cylinder volume", abs(volume - get["cylinder_volume"]), SUM * volume + gas.rounding, t)
         want = gas.wanted(i, row.q)
         if want is not None:
             # an angle of many turns is rounded, and where the cylinder opens abruptly a little goes a long way
