@@ -10,13 +10,12 @@ module monotone_cubic
   public :: monotone_cubic_t, new_monotone_cubic, new_periodic_cubic
 
   type :: monotone_cubic_t
-    private
-    real(dp) :: first = 0, last = 0           !! where the points begin and end
-    real(dp) :: period = 0                    !! 0: not periodic, and constant beyond the points
-    real(dp), allocatable :: point(:)         !! (0:n), increasing
-    real(dp), allocatable :: coefficient(:, :) !! of x - point(i) between points i and i + 1, (0:3, 0:n - 1)
-    integer, allocatable :: place(:)          !! (0:n): interval in which the k-th of n equal parts begins
-    real(dp) :: per_part = 0
+    real(dp) :: period = 0                             !! 0: not periodic, and constant beyond the points
+    real(dp), private :: first = 0, last = 0           !! where the points begin and end
+    real(dp), allocatable, private :: point(:)         !! (0:n), increasing
+    real(dp), allocatable, private :: coefficient(:, :) !! of x - point(i) between points i and i + 1, (0:3, 0:n - 1)
+    integer, allocatable, private :: place(:)          !! (0:n): interval in which the k-th of n equal parts begins
+    real(dp), private :: per_part = 0
   contains
     procedure :: value
     procedure :: slope

@@ -2,7 +2,7 @@
 !> valves do, or a measured pressure.
 module working_gas
   use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: degree
+  use gudgeon_constants, only: degree, two_pi
   use gudgeon_archive, only: archive_t
   use trace_row, only: trace_row_t
   use monotone_cubic, only: monotone_cubic_t
@@ -32,6 +32,7 @@ module working_gas
     procedure :: take_curve
     procedure :: start
     procedure :: longest_turn
+    procedure :: revolutions
     procedure, non_overridable :: pressure
     procedure, non_overridable :: force
     procedure :: force_slope
@@ -93,6 +94,14 @@ contains
     longest_turn = 0
     if (allocated(self%curve)) longest_turn = min(max(self%curve%finest(), 0.25_dp*degree), 5*degree)
   end function longest_turn
+
+  !> After how many revolutions the pressure repeats.
+  pure integer function revolutions(self)
+    class(working_gas_t), intent(in) :: self
+    revolutions = 1
+    if (allocated(self%cycle)) revolutions = nint(self%cycle%period/two_pi)
+    if (allocated(self%curve)) revolutions = nint(self%curve%period/two_pi)
+  end function revolutions
 
   !> Pressure at a crank angle [Pa].
   pure real(dp) function pressure(self, crank_angle)

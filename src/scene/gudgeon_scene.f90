@@ -589,11 +589,11 @@ contains
     if (i > 0) phase_at = self%joints(i)%phase
   end function phase_at
 
-  !> After how many revolutions what drives the motion repeats: the gas of a four-stroke cycle after two.
+  !> After how many revolutions what drives the motion repeats: that of the gas, or one.
   pure integer function forcing_revolutions(self)
     class(scene_t), intent(in) :: self
     forcing_revolutions = 1
-    if (allocated(self%gas)) forcing_revolutions = 2
+    if (allocated(self%gas)) forcing_revolutions = self%gas%revolutions()
   end function forcing_revolutions
 
   !> The discrete state, to or from an archive.
