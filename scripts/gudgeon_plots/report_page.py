@@ -39,6 +39,7 @@ MOTION = (
     "phase",
     "normal_force",
     "cylinder_pressure",
+    *(f"rod_mode_{k}" for k in range(1, 9)),
 )
 
 #: Plots over time: column, title, unit shown, factor; the ideal joint's curve overlaid where there is a twin.
@@ -52,6 +53,10 @@ OVER_TIME = (
     ("crank_acceleration", "Crank angular acceleration", "10³ rad/s²", 1e-3),
     ("rod_acceleration", "Rod angular acceleration", "10³ rad/s²", 1e-3),
     ("piston_acceleration", "Piston acceleration", "10³ m/s²", 1e-3),
+    ("rod_mid_deflection", "Rod: deflection half way", "µm", 1e6),
+    ("rod_stretch", "Rod: stretch", "µm", 1e6),
+    ("rod_strain_energy", "Rod: strain energy", "mJ", 1e3),
+    ("crankshaft_twist", "Crankshaft: twist", "mrad", 1e3),
     ("crank_moment", "Crank moment", "N m", 1.0),
     ("guide_force", "Guide force", "kN", 1e-3),
     ("gas_force", "Gas force", "kN", 1e-3),
@@ -253,6 +258,16 @@ def film_columns(run: Run, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, bo
     return np.rint(127 * levels).astype(np.int8), found.max(axis=1), bool((found < 0).any())
 
 
+def largest_deflection(columns: dict[str, np.ndarray]) -> float:
+    """Of an elastic rod across its chord, anywhere along it [m]."""
+    modes = [name for name in columns if name.startswith("rod_mode_")]
+    if not modes:
+        return 0.0
+    along = np.linspace(0, np.pi, 33)
+    shapes = np.array([np.sin(int(name.rsplit("_", 1)[1]) * along) for name in modes])
+    return float(np.abs(np.array([columns[name] for name in modes]).T @ shapes).max())
+
+
 def page(run: Run, ideal: Run | None = None) -> str:
     """The page as text."""
     columns = with_sizes(run)
@@ -286,11 +301,13 @@ def page(run: Run, ideal: Run | None = None) -> str:
         "rod": float(run.parameter("mechanism", "rod_length")),
         "bearing": drawn_bearing_radius(run),
         "speed": float(run.parameter("initial", "crank_speed")),
+        "modes": sum(name.startswith("rod_mode_") for name in used),
         "peak": {
             "pin_force": float(columns["pin_force"].max()),
             "normal_force": max([contact["force"] for contact in touched], default=0.0),
             "eccentricity_ratio": float(run["eccentricity_ratio"].max()) if run.clearance else 0.0,
             "cylinder_pressure": float(columns["cylinder_pressure"].max()) if "cylinder_pressure" in columns else 0.0,
+            "rod_deflection": largest_deflection(columns),
         },
     }
     if "normal_force" in columns:

@@ -77,6 +77,28 @@
     g.strokeStyle = COLOUR.ink; g.lineWidth = 1; g.stroke();
   }
 
+  // An elastic rod: a bar along the deflected line, `bend` times as far from its chord as it is. Points are (x up, y right).
+  function bentBar(g, X, Y, from, to, half, bend) {
+    const steps = 40, ux = to[0] - from[0], uy = to[1] - from[1], length = Math.hypot(ux, uy) || 1, left = [], right = [];
+    for (let i = 0; i <= steps; i++) {
+      const s = i / steps, thick = half * (1 - 0.3 * s);
+      let w = 0;
+      for (let k = 1; k <= scene.modes; k++) w += at(`rod_mode_${k}`) * Math.sin(k * Math.PI * s);
+      for (const [side, sign] of [[left, 1], [right, -1]]) {
+        const across = (bend * w + sign * thick) / length;
+        side.push([from[0] + s * ux - across * uy, from[1] + s * uy + across * ux]);
+      }
+    }
+    g.beginPath();
+    for (const [x, y] of [...left, ...right.reverse()]) g.lineTo(X(y), Y(x));
+    g.closePath();
+    g.fillStyle = COLOUR.steel; g.fill();
+    g.strokeStyle = COLOUR.ink; g.lineWidth = 1; g.stroke();
+  }
+
+  // How many times as bent as it is an elastic rod is drawn: its largest deflection as a tenth of its length.
+  const bending = scene.modes && scene.peak.rod_deflection > 0 ? 0.1 * scene.rod / scene.peak.rod_deflection : 0;
+
   function arrow(g, x, y, dx, dy, colour) {
     const length = Math.hypot(dx, dy);
     if (length < 2) return;
@@ -120,7 +142,8 @@
     g.fillStyle = COLOUR.light; g.strokeStyle = COLOUR.ink; g.lineWidth = 1.5;
     g.beginPath(); g.rect(X(-half), Y(piston + 2.6 * bearing), 2 * half * scale, 4.1 * bearing * scale); g.fill(); g.stroke();
     circle(g, X(0), Y(piston), bearing * scale, "#fff", COLOUR.ink, 1.2);
-    bar(g, X(py), Y(px), X(ey), Y(piston + ex), 0.55 * bearing * scale);
+    if (bending) bentBar(g, X, Y, [px, py], [piston + ex, ey], 0.55 * bearing, bending);
+    else bar(g, X(py), Y(px), X(ey), Y(piston + ex), 0.55 * bearing * scale);
     circle(g, X(ey), Y(piston + ex), (bearing - m * scene.clearance) * scale * (joint ? 1 : 0.75), COLOUR.blue, COLOUR.ink, 1);
     circle(g, X(0), Y(0), 0.45 * bearing * scale, "#fff", COLOUR.ink, 1);
     circle(g, X(py), Y(px), 0.45 * bearing * scale, "#fff", COLOUR.ink, 1);
@@ -231,6 +254,11 @@
       parts.push(`film ${(1e6 * at("film_thickness")).toFixed(2)} µm`, (["free", "film acts", "contact"][near("phase")] || "")
         + (force > 0 ? `, ${(force / 1e3).toFixed(2)} kN` : ""));
       if (pressure && near("phase") === 1) parts.push(`film pressure up to ${(near("film_peak") / 1e6).toPrecision(3)} MPa`);
+    }
+    if (bending) {
+      let w = 0;
+      for (let k = 1; k <= scene.modes; k += 2) w += at(`rod_mode_${k}`) * (k % 4 === 1 ? 1 : -1);
+      parts.push(`rod bent ${(1e6 * w).toFixed(1)} µm half way (drawn × ${bending.toPrecision(2)})`);
     }
     const inside = scene.contacts.find((c) => now >= c.begin && now <= c.end);
     if (inside) {
