@@ -24,8 +24,8 @@ from assertions import Assertions
 
 TOP = Path(__file__).resolve().parents[1]
 
-#: A film that stays open, one with contacts and gas, dry contact, an ideal joint.
-CASES = ("sim_I", "sim_V_oscillating", "dry_0500um", "ideal")
+#: A film that stays open, one with contacts and gas, dry contact, an ideal joint, dry contact on an elastic rod.
+CASES = ("sim_I", "sim_V_oscillating", "dry_0500um", "ideal", "dry_friction")
 
 LARGEST_PAGE = 6_000_000  # bytes
 
@@ -151,6 +151,13 @@ def check_page(browser: Browser, page: Path, checks: Assertions, pictures: Path 
     for canvas in canvases:
         checks.check(browser.run(PAINTED, canvas), f"{name}: {canvas} is painted")
         checks.check(browser.run(IMAGE, canvas) != before[canvas], f"{name}: {canvas} moves")
+    if browser.run("return gudgeon.scene.modes"):
+        said = browser.run("return document.getElementById('state').textContent")
+        checks.check("rod bent" in said and "drawn ×" in said, f"{name}: says how far the rod is bent: {said}")
+        image = browser.run(IMAGE, "mechanism")
+        browser.run("gudgeon.scene.modes = 0; gudgeon.seek(gudgeon.now)")
+        checks.check(browser.run(IMAGE, "mechanism") != image, f"{name}: the rod is drawn bent")
+        browser.run("gudgeon.scene.modes = 2; gudgeon.seek(gudgeon.now)")
     if clearance:
         image = browser.run(IMAGE, "joint")
         browser.run(MOVE, "magnification", 0.3)

@@ -35,7 +35,8 @@ contains
       text = 'tolerance below the rounding of the state'
     case (left_domain, start_outside)
       text = 'the state leaves the model ('//leaving_pin(scene, y)//' its bearing or its film)'
-      if (scene%chain%has_elastic_rod()) text = text(:len(text) - 1)//', or the elastic rod bends or stretches beyond its equations)'
+      if (scene%chain%has_elastic_rod()) text = text(:len(text) - 1)// &
+        ', or the elastic rod bends or stretches beyond its equations)'
       if (scene%is_singular(y)) text = ill_posed_text(scene, y)
     case (step_limit_reached)
       text = 'too many steps (&integrator max_steps)'
