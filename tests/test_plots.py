@@ -24,7 +24,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 import pandas as pd  # noqa: E402
 
-from gudgeon_plots import compare, figures, film_pressure, report_page, tradeoff  # noqa: E402
+from gudgeon_plots import compare, elastic_pictures, figures, film_pressure, report_page, tradeoff  # noqa: E402
 from gudgeon_plots.figure_map import read_figures  # noqa: E402
 from gudgeon_plots.quantities import QUANTITIES, once_a_cycle  # noqa: E402
 from gudgeon_plots.results import (  # noqa: E402
@@ -426,6 +426,32 @@ class Drawing(unittest.TestCase):
             self.assertEqual(overlaps(drawing), [], number)
             self.assertTrue(all(axes.lines or axes.collections for axes in drawing.axes), number)
             plt.close(drawing)
+
+    def test_first_impacts_of_elastic_rods(self) -> None:
+        time = np.linspace(0, 1e-3, 101)
+        events = {
+            "time": [2e-4, 3e-4],
+            "crank_angle": [0.0, 0.0],
+            "event": ["contact_begins", "contact_ends"],
+            "normal_speed": [2.0, -0.8],
+            "duration": [np.nan, 1e-4],
+            "max_penetration": [np.nan, 1e-5],
+            "max_normal_force": [np.nan, 1.1e4],
+        }
+        columns = {name: np.sin(3e3 * time) for name in ("film_thickness", "normal_force", "rod_mid_deflection", "rod_stretch")}
+        runs = [run({"time": time, **columns}, events=events) for _ in elastic_pictures.RODS]
+        for made in runs:
+            made.summary["rhs_evaluations"] = ("7", "1")
+        drawing = elastic_pictures.draw_first_impacts(runs)
+        self.assertEqual(overlaps(drawing), [])
+        plt.close(drawing)
+        self.assertIn("| rigid | 0.2000 ms, +2.000 m/s | 0.3000 ms, -0.800 m/s | 11.0 kN | 7 |", elastic_pictures.describe_first_impacts(runs))
+
+    def test_largest_deflection_of_a_rod(self) -> None:
+        zero, far = np.zeros(3), np.array([0.0, 2e-6, 1e-6])
+        self.assertEqual(report_page.largest_deflection({"time": zero}), 0)
+        self.assertAlmostEqual(report_page.largest_deflection({"rod_mode_1": far, "rod_mode_2": zero}), 2e-6, delta=1e-12)
+        self.assertAlmostEqual(report_page.largest_deflection({"rod_mode_1": zero, "rod_mode_2": -far}), 2e-6, delta=1e-12)
 
     def test_overlaps_are_found(self) -> None:
         drawing, axes = plt.subplots(figsize=(3, 2))
