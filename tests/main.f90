@@ -35,6 +35,7 @@ program gudgeon_tests
   use test_findings, only: run_test_findings
   use test_finite_bearing, only: run_test_finite_bearing
   use test_film_moment, only: run_test_film_moment
+  use test_half_film_guess, only: run_test_half_film_guess
   use test_film_figures, only: run_test_film_figures
   use test_friction, only: run_test_friction
   use test_friction_runs, only: run_test_friction_runs
@@ -105,6 +106,7 @@ program gudgeon_tests
   call run('findings', run_test_findings)
   call run('finite_bearing', run_test_finite_bearing)
   call run('film_moment', run_test_film_moment)
+  call run('half_film_guess', run_test_half_film_guess)
   call run('film_figures', run_test_film_figures)
   call run('friction', run_test_friction)
   call run('friction_runs', run_test_friction_runs)
