@@ -105,6 +105,32 @@ class Cache(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertTrue(trace, "a run without a cache")
 
+    def test_file_of_the_case(self) -> None:
+        table = self.folder / "oil.table"
+        named = ("-s", f"lubrication.table_file={table}")
+        done, first = self.run_case("first", *named)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertFalse(self.cache.exists(), "not in the cache")
+        written = table.stat().st_mtime_ns
+        _, again = self.run_case("again", *named)
+        self.assertEqual((first, written), (again, table.stat().st_mtime_ns), "it is used again")
+        self.run_case("longer", *named, "-s", "joint.bearing_length=0.02")
+        self.assertNotEqual(written, table.stat().st_mtime_ns, "a table of another film is replaced")
+        beside = self.folder / "cases" / CASE.name
+        beside.parent.mkdir()
+        beside.write_bytes(CASE.read_bytes())
+        done = subprocess.run([GUDGEON, "-q", "-o", self.folder / "beside", *SMALL, "-s", "lubrication.table_file=oil.table", beside],
+                              capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue((beside.parent / "oil.table").exists(), "it stands beside the case")
+        table.write_text("a letter")
+        done, _ = self.run_case("foreign", *named)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("table_file", done.stderr)
+        self.assertEqual(table.read_text(), "a letter", "what is no table is left alone")
+        done, _ = self.run_case("nowhere", "-s", f"lubrication.table_file={self.folder}/no/oil.table")
+        self.assertEqual(done.returncode, 5, done.stderr)
+
     def test_check_makes_none(self) -> None:
         done, _ = self.run_case("check", "--check")
         self.assertEqual(done.returncode, 0, done.stderr)

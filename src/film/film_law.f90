@@ -36,6 +36,7 @@ module film_law
     real(dp) :: viscosity = 0                 !! mu, dynamic [Pa s], > 0
     real(dp) :: least_film_ratio = 0          !! the film is taken no thinner than this part of the clearance, where it is held [-]
     logical :: singular_at_wall = .true.      !! the force is infinite at |e| = c: the state may not reach it
+    character(len=:), allocatable :: table_file   !! where the user wants the table, from the case's folder; or empty
     character(len=100) :: table_of = ''       !! the `table_key` of the table that the law has; empty: it has none
   contains
     procedure(prepare), deferred :: prepare

@@ -73,7 +73,8 @@ contains
     call list%add('table_points', self%table_points, &
       'of the table in each direction; 0: from the tolerance, 33 above 3e-5, else 65', '>= 17 and <= 513', '0')
     call list%add('film_points', self%film_points, &
-      'round the film, divisible by 4; 0: from the tolerance, 64 above 3e-5, 128, 256 below 1e-8', '>= 32 and <= 1024', '0')
+      'round the film, divisible by 4; 0: from the tolerance, 64 above 3e-5, 128, 192 below 1e-8', '>= 32 and <= 1024', '0')
+    call list%text('table_file', self%table_file, 'keeps the table, by its way from the case; '''': the user''s cache does', '')
     call self%add_least_film(list)
   end subroutine parameters
 
@@ -117,7 +118,7 @@ contains
     real(dp), intent(in) :: tolerance
     film_points_for = 128
     if (tolerance > 3e-5_dp) film_points_for = 64
-    if (tolerance < 1e-8_dp) film_points_for = 256
+    if (tolerance < 1e-8_dp) film_points_for = 192
   end function film_points_for
 
   pure integer function table_points_for(tolerance)

@@ -37,15 +37,18 @@ module finite_film
 
 contains
 
-  !> Prepare for one thickness `gap` = 1 - eps (> 0, <= 1) and half length L/(2R) on n times m nodes.
-  pure subroutine begin(self, n, m, gap, half_length)
+  !> Prepare for one thickness `gap` = 1 - eps (> 0, <= 1) and half length L/(2R) on n times m nodes, those round the film shifted by a
+  !> part of their distance.
+  pure subroutine begin(self, n, m, gap, half_length, shift)
     class(film_solver_t), intent(inout) :: self
     integer, intent(in) :: n, m
     real(dp), intent(in) :: gap, half_length
+    real(dp), intent(in), optional :: shift
     real(dp), allocatable :: factor(:, :)
     integer :: i, j, k, next
 
-    self%grid = new_reynolds_grid(n, m, gap, half_length)
+    self%grid = new_reynolds_grid(n, m, gap, half_length, 0.0_dp)
+    if (present(shift)) self%grid = new_reynolds_grid(n, m, gap, half_length, shift)
     self%n = n*m
     self%band = 2*m
     if (allocated(self%matrix)) deallocate (self%matrix, self%linear, self%pressure, self%active, self%node)

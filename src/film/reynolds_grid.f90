@@ -34,9 +34,10 @@ module reynolds_grid
 contains
 
   !> The grid of n (even, >= 8) times m (>= 2) nodes for a film of the thickness `gap` = 1 - eps (0 to 1, over c) where it is thinnest.
-  pure function new_reynolds_grid(n, m, gap, half_length) result(grid)
+  !> Its nodes round the film are a part `shift` (0 to 1) of their distance further on than those of an unshifted one.
+  pure function new_reynolds_grid(n, m, gap, half_length, shift) result(grid)
     integer, intent(in) :: n, m
-    real(dp), intent(in) :: gap, half_length
+    real(dp), intent(in) :: gap, half_length, shift
     type(reynolds_grid_t) :: grid
     real(dp) :: faces(0:n), eps, kappa, scales(n_scales), angle, slope, dense, spread, x
     integer :: i, j
@@ -51,8 +52,8 @@ contains
       scales(i) = kappa**(0.25_dp*(i - 1))
     end do
     do i = 1, n
-      grid%angle(i) = angle_at(scales, -pi + 2*pi*(i - 1)/n)
-      faces(i) = angle_at(scales, -pi + 2*pi*(i - 0.5_dp)/n)
+      grid%angle(i) = angle_beyond(scales, -pi + 2*pi*(i - 1 + shift)/n)
+      faces(i) = angle_beyond(scales, -pi + 2*pi*(i - 0.5_dp + shift)/n)
       slope = sum(share*scales/((scales*cos(0.5_dp*faces(i)))**2 + sin(0.5_dp*faces(i))**2))   ! ds/dphi
       grid%around(i) = height(gap, faces(i))**3*slope*n/(2*pi)
     end do
@@ -94,6 +95,16 @@ contains
       mean_cube = mean_cube + 0.5_dp*weight(i)*(height(gap, middle - at(i)*half)**3 + height(gap, middle + at(i)*half)**3)
     end do
   end function mean_cube
+
+  !> `angle_at` from -pi to 3 pi.
+  pure real(dp) function angle_beyond(scales, s) result(phi)
+    real(dp), intent(in) :: scales(n_scales), s
+    if (s > pi) then
+      phi = angle_at(scales, s - 2*pi) + 2*pi
+    else
+      phi = angle_at(scales, s)
+    end if
+  end function angle_beyond
 
   !> The angle phi at s, -pi to pi: s = sum of shares of psi, tan(psi/2) = tan(phi/2)/scale. By Newton's method, kept by bisection.
   pure real(dp) function angle_at(scales, s) result(phi)

@@ -1,10 +1,12 @@
-!> The tables of film laws that take long to make: kept in the user's cache folder, from one run to the next.
+!> The tables of film laws that take long to make: kept in the user's cache folder, or in a file that the case names, from one run to
+!> the next.
 !>
 !> A file holds a line that says what it is, the key of the table, the table as an archive, and a checksum of all that. One that is
-!> damaged, or that another version of the program wrote, is made again; one that cannot be written is done without.
+!> damaged, or that another version of the program wrote, is made again; one that cannot be written into the cache is done without. A file
+!> that a case names is replaced only if it is such a table, of whatever film.
 module film_tables
   use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, fail, status_integration
+  use gudgeon_errors, only: error_t, fail, status_integration, status_case_file
   use gudgeon_archive, only: archive_t
   use gudgeon_bearing, only: bearing_t
   use gudgeon_checksum, only: checksum_t, mark_of, mark_length
@@ -30,27 +32,28 @@ module film_tables
 
 contains
 
-  !> Give the films of a case their tables: those that are in the cache, or new ones. Error: the user interrupted
-  !> (status_integration).
+  !> Give the films of a case their tables: those that are kept, or new ones. Errors: the user interrupted (status_integration); the
+  !> file that the case names is no table (status_case_file) or cannot be written (status_output).
   subroutine provide_tables(case, shows_progress, error)
     type(case_t), intent(inout) :: case
     logical, intent(in) :: shows_progress
     type(error_t), allocatable, intent(out) :: error
     logical :: was_stopped
-    call provide_table(case%joint, case, shows_progress, was_stopped)
-    if (.not. was_stopped) call provide_table(case%crank_pin, case, shows_progress, was_stopped)
+    call provide_table(case%joint, case, shows_progress, was_stopped, error)
+    if (.not. (was_stopped .or. allocated(error))) call provide_table(case%crank_pin, case, shows_progress, was_stopped, error)
     if (was_stopped) call fail(error, 'interrupted before it began, while the table of its film was made', status_integration)
   end subroutine provide_tables
 
-  subroutine provide_table(joint, case, shows_progress, was_stopped)
+  subroutine provide_table(joint, case, shows_progress, was_stopped, error)
     type(joint_case_t), intent(inout) :: joint
     type(case_t), intent(in) :: case
     logical, intent(in) :: shows_progress
     logical, intent(out) :: was_stopped
+    type(error_t), allocatable, intent(out) :: error
     type(progress_watch_t) :: watch
     type(bearing_t) :: bearing
     character(len=:), allocatable :: key, path
-    logical :: is_there
+    logical :: is_there, is_named, is_foreign
     was_stopped = .false.
     if (.not. (allocated(joint%film) .and. joint%has_clearance())) return
     bearing = joint%bearing(case%mechanism%rod_length)
@@ -58,14 +61,23 @@ contains
       key = joint%film%table_key(bearing, tolerance)
       if (key == joint%film%table_of) return
       !$omp critical (film_tables)
-      path = path_for(key)
-      call load(path, key, joint%film, is_there)
-      if (.not. is_there) then
+      is_named = .false.
+      if (allocated(joint%film%table_file)) is_named = joint%film%table_file /= ''
+      if (is_named) then
+        path = beside(case%file, joint%film%table_file)
+      else
+        path = path_for(key)
+      end if
+      call load(path, key, joint%film, is_there, is_foreign)
+      if (is_named .and. is_foreign) call fail(error, '&lubrication table_file = '//joint%film%table_file// &
+        ': holds something else than a film table: must name a new file or one of this program', status_case_file)
+      if (.not. (is_there .or. allocated(error))) then
         call watch%progress%start(case%name//': film table', shows_progress)
         call joint%film%make_table(bearing, tolerance, watch)
         call watch%progress%finish()
         was_stopped = watch%wants_to_stop
-        if (.not. was_stopped) call save(path, key, joint%film)
+        if (.not. was_stopped) call save(path, key, joint%film, error)
+        if (allocated(error) .and. .not. is_named) deallocate (error)
       end if
       !$omp end critical (film_tables)
     end associate
@@ -77,6 +89,14 @@ contains
     call self%progress%update_share(real(done, dp)/rows)
     self%wants_to_stop = interrupted()
   end subroutine row_done
+
+  !> The path of a file that is named by its way from the folder of a case.
+  pure function beside(case_file, name) result(path)
+    character(len=*), intent(in) :: case_file, name
+    character(len=:), allocatable :: path
+    path = case_file(:index(case_file, '/', back=.true.))//name
+    if (name(1:1) == '/') path = name
+  end function beside
 
   !> Where a table is kept; empty where there is no place.
   function path_for(key) result(path)
@@ -107,19 +127,21 @@ contains
     if (length > 0) call get_environment_variable(name, value)
   end subroutine get_variable
 
-  !> Take a table from its file, if it is there and whole.
-  subroutine load(path, key, film, is_there)
+  !> Take a table from its file, if it is there and whole. `is_foreign`: the file is no table at all.
+  subroutine load(path, key, film, is_there, is_foreign)
     character(len=*), intent(in) :: path, key
     class(film_law_t), intent(inout) :: film
-    logical, intent(out) :: is_there
+    logical, intent(out) :: is_there, is_foreign
     type(archive_t) :: archive
     character(len=:), allocatable :: bytes, head
     integer :: status, last
 
     is_there = .false.
+    is_foreign = .false.
     if (path == '') return
     call read_whole(path, bytes, status)
     if (status /= 0) return
+    is_foreign = index(bytes, title) /= 1 .and. bytes /= ''
     head = title//key//newline
     last = len(bytes) - mark_length
     if (last < len(head)) return
@@ -133,11 +155,11 @@ contains
   end subroutine load
 
   !> Keep a table, if that is possible: first under another name.
-  subroutine save(path, key, film)
+  subroutine save(path, key, film, error)
     character(len=*), intent(in) :: path, key
     class(film_law_t), intent(inout) :: film
+    type(error_t), allocatable, intent(out) :: error
     type(archive_t) :: archive
-    type(error_t), allocatable :: error
     character(len=:), allocatable :: bytes
     if (path == '') return
     call archive%begin_writing()
