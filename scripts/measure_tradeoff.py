@@ -4,6 +4,7 @@
     scripts/measure_tradeoff.py cases/sim_I.nml               table, picture and recommendation, in results/tradeoff
     scripts/measure_tradeoff.py cases/flores/*.nml --repeat 9 several cases, wall times the median of nine
     scripts/measure_tradeoff.py --presets                     what --accuracy draft, standard, reference give in every case
+    scripts/measure_tradeoff.py --films cases/sim_I.nml       every film in this scene: cost and answers
 
 Runs a case over tolerance x method x max_order x contact entry with the release build, side by side on the cores there
 are, and compares each run with a reference at the tightest setting, whose own error it estimates from the next
@@ -29,7 +30,7 @@ use_virtual_environment()
 
 import pandas as pd  # noqa: E402
 
-from gudgeon_plots import figures, tradeoff  # noqa: E402
+from gudgeon_plots import figures, film_tradeoff, tradeoff  # noqa: E402
 from gudgeon_plots.program import release_program  # noqa: E402
 from gudgeon_plots.results import MissingResult, Run, load_run, read_summary  # noqa: E402
 from gudgeon_plots.tradeoff import Reference, Settings  # noqa: E402
@@ -46,6 +47,7 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("cases", nargs="*", type=Path, metavar="CASE.nml")
     parser.add_argument("--presets", action="store_true", help="only the accuracy levels (default: of every shipped case)")
+    parser.add_argument("--films", action="store_true", help="only the films against each other, in the scenes of these cases")
     parser.add_argument(
         "--out", type=Path, default=TOP / "results" / "tradeoff", metavar="DIR", help="(default: results/tradeoff)"
     )
@@ -274,6 +276,9 @@ def main() -> int:
     rows: list[str] = []
     try:
         program = release_program()
+        if options.films:
+            film_tradeoff.print_table(program, options.cases, options.repeat, options.timeout)
+            return 0
         if options.presets:
             print("| case | length | reference known to | draft | standard | reference |", "|---|---|---|---|---|---|", sep="\n")
             for case in options.cases:

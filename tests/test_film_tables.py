@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Films of finite length from outside: the cache of their tables, and whole mechanisms against independent programs.
+"""Films of finite length from outside: their tables in cache and file, their pressure fields, whole mechanisms against independent
+programs.
 
     tests/test_film_tables.py
 
@@ -7,6 +8,7 @@ Builds the fast program. Ends with `N passed, N failed`; the exit status is 0 if
 """
 
 import csv
+import math
 import os
 import signal
 import subprocess
@@ -148,6 +150,54 @@ class Cache(unittest.TestCase):
         self.assertIn("interrupted before it began", said)
         self.assertLess(time.monotonic() - began, 40, "an interruption is obeyed")
         self.assertFalse(list(self.cache.glob("gudgeon/*")), "a table given up is not kept")
+
+
+class Fields(unittest.TestCase):
+    """The pressures in NAME.film.csv, summed over the bore, are the force in the row of the same time."""
+
+    def fields(self, case: Path, *options: str) -> tuple[dict[float, list[tuple[float, ...]]], dict[str, list[float]]]:
+        folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+        done = subprocess.run([GUDGEON, "-q", "-o", folder, "-s", "output.interval=0.001", "-s", "output.ideal_twin=F",
+                               "-s", "integrator.method=auto", *options, case], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        times: dict[float, list[tuple[float, ...]]] = {}
+        with (folder / f"{case.stem}.film.csv").open() as file:
+            for row in csv.DictReader(file):
+                self.assertEqual(row["joint"], "piston_pin")
+                node = tuple(float(row[name]) for name in ("angle[rad]", "place[m]", "pressure[Pa]", "film_thickness[m]"))
+                times.setdefault(float(row["time[s]"]), []).append(node)
+        return times, columns(folder / f"{case.stem}.csv")
+
+    def resultant(self, nodes: list[tuple[float, ...]], radius: float) -> tuple[float, float]:
+        """Trapezoids along the bore, then round it; both halves of the bore."""
+        lines: dict[float, list[tuple[float, float]]] = {}
+        for angle, place, pressure, _ in nodes:
+            lines.setdefault(angle, []).append((place, pressure))
+        angles = sorted(lines)
+        loads = [2 * sum(0.5 * (b[0] - a[0]) * (a[1] + b[1]) for a, b in zip(line, line[1:])) for line in map(lines.get, angles)]
+        force = [0.0, 0.0]
+        for i, angle in enumerate(angles):
+            width = 0.5 * ((angles[(i + 1) % len(angles)] - angles[i - 1]) % (2 * math.pi)) * radius
+            force[0] -= loads[i] * math.cos(angle) * width
+            force[1] -= loads[i] * math.sin(angle) * width
+        return force[0], force[1]
+
+    def test_pressure_carries_the_force(self) -> None:
+        finite, mixed, long_one = CASE, TOP / "cases" / "film" / "sim_IV_mixed.nml", TOP / "cases" / "sim_II.nml"
+        for case, options in ((finite, SMALL), (finite, [*SMALL, "-s", "lubrication.variant=short"]),
+                              (finite, [*SMALL, "-s", "lubrication.cavitation=gumbel"]), (mixed, SMALL),
+                              (long_one, ["-s", "integrator.revolutions=1", "-s", "lubrication.variant=half_film"])):
+            with self.subTest(case=case.stem, options=options):
+                times, trace = self.fields(case, *options, "-s", "output.film_times='0.004:0.02:5'")
+                self.assertEqual(len(times), 5)
+                clearance = 4e-5 if case == long_one else 2e-5
+                for time_, nodes in times.items():
+                    row = min(range(len(trace["time[s]"])), key=lambda i: abs(trace["time[s]"][i] - time_))
+                    force = self.resultant(nodes, 0.01 - clearance)
+                    wanted = trace["film_force_x[N]"][row], trace["film_force_y[N]"][row]
+                    self.assertLessEqual(math.dist(force, wanted), 0.02 * math.hypot(*wanted) + 1e-3, f"at {time_} s")
+                    self.assertGreaterEqual(min(node[2] for node in nodes), 0.0)
+                    self.assertTrue(all(0 < node[3] < 2 * clearance for node in nodes), "thickness of the film")
 
 
 class References(unittest.TestCase):

@@ -5,9 +5,12 @@ module film_law
   use gudgeon_parameters, only: law_t, parameter_list_t
   use gudgeon_bearing, only: bearing_t
   use gudgeon_archive, only: archive_t
+  use reynolds_grid, only: reynolds_grid_t, new_reynolds_grid
   implicit none
   private
-  public :: film_law_t, film_motion_t, table_watch_t, difference_derivatives, difference_steps, moved
+  public :: film_law_t, film_motion_t, table_watch_t, difference_derivatives, difference_steps, moved, angles_of_film, field_points
+
+  integer, parameter :: field_points = 128   !! angles of a pressure field
 
   !> Somebody who waits for a table to be made.
   type, abstract :: table_watch_t
@@ -52,6 +55,7 @@ module film_law
     procedure :: drag_moment => none
     procedure :: pressure => nowhere
     procedure :: peak_and_flow => peak_without_flow
+    procedure :: pressure_field => long_field
     procedure :: table_key => no_key
     procedure :: make_table => no_table
     procedure :: exchange_table => nothing_to_exchange
@@ -183,6 +187,32 @@ contains
     eps = min(norm2(motion%eccentricity)*self%per_clearance, 1 - epsilon(1.0_dp))
     most = max(largest_pressure(self, motion, 1.0_dp), largest_pressure(self, motion, sqrt((1 - eps)/(1 + eps))))
   end subroutine peak_without_flow
+
+  !> The pressure over half of the bearing [Pa], (angles, places): at angles [rad] from the direction of the eccentricity and places from
+  !> the middle (0) to the end (1). The default is that of a long film, the same everywhere along it.
+  pure subroutine long_field(self, motion, angles, places, field)
+    class(film_law_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), allocatable, intent(out) :: angles(:), places(:), field(:, :)
+    integer :: i
+    places = [0.0_dp, 1.0_dp]
+    angles = angles_of_film(motion, self%per_clearance)
+    allocate (field(size(angles), size(places)))
+    do i = 1, size(angles)
+      field(i, :) = self%pressure(motion, angles(i))
+    end do
+  end subroutine long_field
+
+  !> Angles round a film [rad], dense where it is thin.
+  pure function angles_of_film(motion, per_clearance) result(angles)
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: per_clearance   !! 1/c [1/m]
+    real(dp), allocatable :: angles(:)
+    real(dp), parameter :: least_gap = 1e-6_dp
+    type(reynolds_grid_t) :: grid
+    grid = new_reynolds_grid(field_points, 2, max(1 - norm2(motion%eccentricity)*per_clearance, least_gap), 1.0_dp, 0.0_dp)
+    angles = grid%angle
+  end function angles_of_film
 
   !> The largest of `pressure` at angles theta, tan(theta/2) = scale tan(s/2), uniform in s, and round the best of them.
   pure real(dp) function largest_pressure(self, motion, scale) result(most)

@@ -8,8 +8,8 @@ module finite_bearing
   use gudgeon_parameters, only: parameter_list_t
   use gudgeon_bearing, only: bearing_t
   use gudgeon_archive, only: archive_t
-  use film_law, only: film_law_t, film_motion_t, table_watch_t
-  use finite_film, only: film_answer_t, cavitation_none, cavitation_gumbel, cavitation_reynolds
+  use film_law, only: film_law_t, film_motion_t, table_watch_t, field_points
+  use finite_film, only: film_answer_t, film_solver_t, cavitation_none, cavitation_gumbel, cavitation_reynolds
   use film_map, only: film_map_t, solved_force, solved_film
   implicit none
   private
@@ -39,6 +39,7 @@ module finite_bearing
     procedure :: gives_side_flow => gives_pressure
     procedure :: peak_and_flow
     procedure :: reduced_peak_and_flow
+    procedure :: pressure_field
     procedure :: table_key
     procedure :: make_table
     procedure :: exchange_table
@@ -275,6 +276,26 @@ contains
     most = v*film%most
     flow = v*film%flow
   end subroutine reduced_peak_and_flow
+
+  !> The pressure, solved for whatever the variant.
+  pure subroutine pressure_field(self, motion, angles, places, field)
+    class(finite_bearing_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), allocatable, intent(out) :: angles(:), places(:), field(:, :)
+    integer, parameter :: along = 12
+    type(film_solver_t) :: solver
+    type(film_answer_t) :: answer
+    real(dp), allocatable :: inside(:, :)
+    real(dp) :: n(2), square, b, t, scale
+    call reduce(self, motion, n, square, b, t)
+    call solver%begin(field_points, along, gap_of(square), self%half_length)
+    call solver%solve(atan2(t, b), self%condition, .false., answer)
+    call solver%pressure_at(angles, places, inside)
+    scale = self%force_scale/(2*self%half_length*self%pin_radius**2)*sqrt(b**2 + t**2)
+    places = [places/self%half_length, 1.0_dp]
+    allocate (field(size(angles), size(places)), source=0.0_dp)
+    field(:, :along) = scale*inside
+  end subroutine pressure_field
 
   !> 1 - eps, where the equation is solved.
   pure real(dp) function gap_of(eps_squared)

@@ -305,12 +305,14 @@ contains
     sums = [cos(middle)*even - sin(middle)*odd, sin(middle)*even + cos(middle)*odd]
   end function linear_integrals
 
-  !> Pressure of the last solution at the nodes, over mu V R^2/c^2: (i, j) as in the grid, with the nodes' angles [rad].
-  pure subroutine pressure_at(self, angle, pressure)
+  !> Pressure of the last solution at the nodes, over mu V R^2/c^2: (i, j) as in the grid, with the nodes' angles [rad] and places
+  !> along the film over R.
+  pure subroutine pressure_at(self, angle, zeta, pressure)
     class(film_solver_t), intent(in) :: self
-    real(dp), allocatable, intent(out) :: angle(:), pressure(:, :)
+    real(dp), allocatable, intent(out) :: angle(:), zeta(:), pressure(:, :)
     integer :: i
     angle = self%grid%angle
+    zeta = self%grid%zeta
     allocate (pressure(self%grid%n, self%grid%m))
     do i = 1, self%grid%n
       pressure(i, :) = self%pressure((self%grid%place(i) - 1)*self%grid%m + 1:self%grid%place(i)*self%grid%m)

@@ -23,6 +23,7 @@ module reynolds_grid
     real(dp), allocatable :: height_cubed(:)      !! integral of H^3 over the cells (n)
     real(dp), allocatable :: around(:)      !! conductance from node i to i + 1 round the film, by width of the cell (n)
     real(dp), allocatable :: along(:)       !! conductance from node j to j + 1 along the film, by integral of H^3 (m)
+    real(dp), allocatable :: zeta(:)        !! of the nodes along the film (m), 0 in its middle
     real(dp), allocatable :: width(:)       !! of the cells along the film (m + 1), the last one at the end half
   contains
     procedure :: place
@@ -45,7 +46,8 @@ contains
     grid%n = n
     grid%m = m
     grid%half_length = half_length
-    allocate (grid%angle(n), grid%sine(n), grid%cosine(n), grid%height_cubed(n), grid%around(n), grid%along(m), grid%width(m + 1))
+    allocate (grid%angle(n), grid%sine(n), grid%cosine(n), grid%height_cubed(n), grid%around(n), grid%along(m), grid%width(m + 1), &
+      grid%zeta(m))
     eps = 1 - gap
     kappa = sqrt(gap/(1 + eps))
     do i = 1, n_scales
@@ -72,6 +74,7 @@ contains
     do j = 1, m
       x = (j - 0.5_dp)/m
       grid%along(j) = m/(dense*spread*cosh(spread*(1 - x)))
+      grid%zeta(j) = half_length - dense*sinh(spread*(1 - (j - 1.0_dp)/m))
       grid%width(j) = half_length - dense*sinh(spread*(1 - x))
     end do
     grid%width(m + 1) = half_length

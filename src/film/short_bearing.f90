@@ -3,6 +3,7 @@ module short_bearing
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi, two_pi
   use gudgeon_bearing, only: bearing_t
+  use film_law, only: film_motion_t, angles_of_film
   use finite_bearing, only: finite_bearing_t
   implicit none
   private
@@ -15,6 +16,7 @@ module short_bearing
     procedure :: conflict
     procedure :: reduced_force
     procedure :: reduced_peak_and_flow
+    procedure :: pressure_field
   end type short_bearing_t
 
 contains
@@ -92,6 +94,30 @@ contains
     end do
     most = speed*6*self%half_length**2*cos(phi - alpha)/(1 - eps + 2*eps*sin(0.5_dp*phi)**2)**3
   end subroutine reduced_peak_and_flow
+
+  !> The pressure p = 6 mu v*.r (L^2/4 - z^2)/h^3, its positive part.
+  pure subroutine pressure_field(self, motion, angles, places, field)
+    class(short_bearing_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), allocatable, intent(out) :: angles(:), places(:), field(:, :)
+    integer, parameter :: along = 12
+    real(dp) :: v(2), r(2), middle, direction
+    integer :: i
+    associate (e => motion%eccentricity)
+      v = motion%eccentricity_rate - 0.5_dp*motion%pin_speed*[-e(2), e(1)]
+      direction = 0
+      if (norm2(e) > 0) direction = atan2(e(2), e(1))
+      angles = angles_of_film(motion, self%per_clearance)
+      places = [(real(i, dp)/along, i=0, along)]
+      allocate (field(size(angles), size(places)))
+      do i = 1, size(angles)
+        r = [cos(angles(i) + direction), sin(angles(i) + direction)]
+        middle = 6*self%viscosity*max(dot_product(v, r), 0.0_dp)*(self%half_length*self%pin_radius)**2 &
+          /max(self%clearance - dot_product(e, r), 1e-6_dp*self%clearance)**3
+        field(i, :) = middle*(1 - places**2)
+      end do
+    end associate
+  end subroutine pressure_field
 
   !> The brackets above at a = alpha + beyond, `beyond` being pi/2 or 3 pi/2.
   pure function primitives(eps, w, alpha, cos_alpha, sin_alpha, beyond) result(brackets)

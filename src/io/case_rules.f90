@@ -8,6 +8,7 @@ module case_rules
   use case_schema, only: find_group, find_key
   use measured_pressure, only: measured_pressure_periods
   use case_values, only: case_values_t
+  use film_snapshots, only: read_times
   use guide_rules, only: check_guide, bore_reach
   use elastic_rules, only: check_elastic
   implicit none
@@ -308,6 +309,25 @@ contains
     end associate
   end subroutine check_pin
 
+  !> Pressure fields are of films that have a pressure.
+  subroutine check_film_times(c, values, error)
+    type(case_t), intent(in) :: c
+    type(case_values_t), intent(in) :: values
+    type(error_t), allocatable, intent(out) :: error
+    real(dp), allocatable :: times(:)
+    logical :: has_film
+    if (c%output%film_times == '') return
+    call read_times(c%output%film_times, times)
+    has_film = .false.
+    if (allocated(c%joint%film)) has_film = c%joint%film%gives_pressure()
+    if (allocated(c%crank_pin%film)) has_film = has_film .or. c%crank_pin%film%gives_pressure()
+    if (.not. allocated(times)) then
+      call values%refuse('output', 'film_times', 'must be times >= 0 in rising order with commas, or from:to:count', error)
+    else if (.not. has_film) then
+      call values%refuse('output', 'film_times', 'needs a film with a pressure: pinkus_sternlicht or finite_bearing', error)
+    end if
+  end subroutine check_film_times
+
   !> What to say of a length of the joint that is missing, or given as 0.
   function needed(group, name, values, why) result(wanted)
     character(len=*), intent(in) :: group, name, why
@@ -405,6 +425,8 @@ contains
       call values%refuse('output', 'columns', 'must be ''standard'' or names of columns without their units', error)
       return
     end if
+    call check_film_times(c, values, error)
+    if (allocated(error)) return
     speed = abs(c%initial%crank_speed)
     end_time = c%integrator%end_time
     if (turns(c)) end_time = max(end_time, max(c%integrator%revolutions, c%integrator%crank_revolutions)*two_pi/speed)

@@ -14,6 +14,7 @@ module case_run
   use gudgeon_archive, only: archive_t
   use gudgeon_summary, only: summary_table, summary_line
   use stability_advice, only: advice
+  use film_file, only: write_film_file
   use gudgeon_posix, only: synchronise_folder, error_text
   use text_tools, only: printable
   implicit none
@@ -107,6 +108,7 @@ contains
     if (self%start%goes_on .or. self%start%is_done) return
     call remove(self%base//'.csv', was_there, status)
     call remove(self%base//'.events.csv', was_there, status)
+    call remove(self%base//'.film.csv', was_there, status)
     if (.not. self%is_twin) call remove(self%base//'.resolved.nml', was_there, status)
   end subroutine clear
 
@@ -182,6 +184,7 @@ contains
   subroutine close_files(self, files)
     class(case_run_t), intent(inout) :: self
     type(trace_files_t), intent(inout) :: files
+    type(error_t), allocatable :: film_error
     logical :: is_whole
     integer :: folder_status
     call files%synchronise()
@@ -189,6 +192,10 @@ contains
     if (files%has_failed()) is_whole = .false.
     if (is_whole) call files%conclude()
     !$omp critical (texts)
+    if (allocated(self%report%films)) then
+      call write_film_file(self%base//'.film.csv', self%report%films, film_error)
+      if (allocated(film_error) .and. .not. allocated(self%error)) call move_alloc(film_error, self%error)
+    end if
     call self%put_summary(files)
     !$omp end critical (texts)
     call self%summary%synchronise()

@@ -9,7 +9,7 @@ module film_figures
   use mixed_film, only: motion_in_gap
   implicit none
   private
-  public :: film_figures_t, film_figures_of, film_moment
+  public :: film_figures_t, film_figures_of, film_moment, acting_film
 
   type :: film_figures_t
     real(dp) :: moment = 0        !! on the pin about its centre, whether or not the case lets the shear act [N m]
@@ -27,14 +27,8 @@ contains
     type(joint_loads_t), intent(in) :: loads
     type(film_motion_t) :: seen
     real(dp) :: share
-    share = film_share(joint, motion)
+    call acting_film(joint, motion, seen, share)
     if (.not. share > 0) return
-    seen%eccentricity = motion%eccentricity
-    seen%eccentricity_rate = motion%eccentricity_rate
-    seen%pin_speed = motion%journal_speed + motion%bearing_speed
-    seen%turning_speed = motion%journal_speed - motion%bearing_speed
-    if (allocated(joint%asperities)) seen = motion_in_gap(joint%film, joint%asperities, seen)
-    if (allocated(joint%transition)) seen = joint%transition%held_motion(seen)
     figures%moment = film_moment(joint, loads)
     if (.not. joint%film%film_moment) &
       figures%moment = figures%moment + share*joint%film%drag_moment(seen, loads%film/share)
@@ -45,6 +39,21 @@ contains
     figures%max_pressure = share*figures%max_pressure
     figures%side_flow = share*figures%side_flow
   end function film_figures_of
+
+  !> The motion that the film of a joint sees, and the part of the whole film that acts.
+  pure subroutine acting_film(joint, motion, seen, share)
+    type(clearance_joint_t), intent(in) :: joint
+    type(joint_motion_t), intent(in) :: motion
+    type(film_motion_t), intent(out) :: seen
+    real(dp), intent(out) :: share
+    share = film_share(joint, motion)
+    seen%eccentricity = motion%eccentricity
+    seen%eccentricity_rate = motion%eccentricity_rate
+    seen%pin_speed = motion%journal_speed + motion%bearing_speed
+    seen%turning_speed = motion%journal_speed - motion%bearing_speed
+    if (allocated(joint%asperities)) seen = motion_in_gap(joint%film, joint%asperities, seen)
+    if (allocated(joint%transition)) seen = joint%transition%held_motion(seen)
+  end subroutine acting_film
 
   !> The part of the whole film that acts.
   pure real(dp) function film_share(joint, motion)

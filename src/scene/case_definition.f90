@@ -86,6 +86,7 @@ module case_definition
     real(dp) :: angle_origin_deg = 0
     real(dp) :: interval = 0, start_time = 0   !! interval > 0 wins over samples_per_revolution
     character(len=:), allocatable :: columns   !! 'standard' or column names without units, separated by commas
+    character(len=:), allocatable :: film_times   !! of pressure fields, as `read_times` knows them; or empty
     integer :: digits = 0                      !! significant digits of the numbers in traces
     logical :: every_step = .false., ideal_twin = .false.
     character(len=:), allocatable :: window    !! 'all' or 'last_period'
@@ -493,6 +494,8 @@ contains
     call list%text('columns', self%columns, '''standard'', names of columns without their units, or both, with commas', &
       'standard', many=.true.)
     call list%add('digits', self%digits, 'significant, of every number in a trace; 17 read back exactly', '>= 9 and <= 17', '10')
+    call list%text('film_times', self%film_times, &
+      'pressure fields in NAME.film.csv at these times [s]: t1, t2, .. or from:to:count', '')
     call list%add('every_step', self%every_step, 'a row also at each step of the integrator', '.false.')
     call list%add('ideal_twin', self%ideal_twin, 'run the same scene with ideal joints and rigid bodies too', '.false.')
     call list%word('window', self%window, 'all, last_period', 'all', &

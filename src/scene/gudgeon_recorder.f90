@@ -20,6 +20,7 @@ module gudgeon_recorder
   use guide_record, only: guide_record_t
   use trace_sink, only: trace_sink_t, trace_event_t
   use run_figures, only: run_figures_t, elastic_figures_t
+  use film_snapshots, only: film_snapshots_t
   use gudgeon_archive, only: archive_t
   implicit none
   private
@@ -28,6 +29,7 @@ module gudgeon_recorder
   type, extends(observer_t) :: recorder_t
     type(column_list_t) :: list       !! of a row; empty: no rows
     type(run_figures_t) :: figures
+    type(film_snapshots_t), allocatable :: films   !! pressure fields, where they are asked for
     class(trace_sink_t), allocatable :: sink
     type(cycle_watch_t), allocatable :: cycles   !! revolution by revolution
     type(period_watch_t) :: periods   !! whether the motion repeats, where that ends the run
@@ -131,6 +133,7 @@ contains
       t_end = t_to
       if (self%periods%is_on) call watch_periods(self, method, problem, t_end)
       if (.not. self%every_step .and. size(self%values) > 0) call put_samples(self, method, problem, t_end)
+      if (allocated(self%films)) call self%films%take(method, problem, t_end)
       if (t_end < method%t) then
         call method%interpolate(t_end, self%y)
         call take_end(self, method, problem, t_end, self%y)
@@ -426,6 +429,7 @@ contains
       call self%pins(i)%exchange(archive)
     end do
     call self%guide%exchange(archive)
+    if (allocated(self%films)) call self%films%exchange(archive)
     call archive%exchange(self%initial_energy)
     call archive%exchange(self%start_angle)
     call archive%exchange(self%next_row)

@@ -17,6 +17,7 @@ module gudgeon_simulation
   use lyapunov, only: exponent_t, measure_exponent
   use gudgeon_recorder, only: recorder_t
   use run_figures, only: run_figures_t
+  use film_snapshots, only: film_field_t
   use trace_sink, only: trace_sink_t
   use gudgeon_constants, only: two_pi, degree
   use gudgeon_archive, only: archive_t
@@ -29,6 +30,7 @@ module gudgeon_simulation
     character(len=:), allocatable :: status      !! 'done', or in words why and where it ended
     type(step_statistics_t) :: statistics
     type(run_figures_t) :: figures
+    type(film_field_t), allocatable :: films(:)  !! pressure fields, where the case asks for them
     real(dp), allocatable :: time_with(:, :)     !! by method auto: time with Adams and with Radau in each mode, (2, 0:highest mode) [s]
     logical :: can_go_on = .false.               !! stopped from outside or by a limit: the sink was given its state
     logical :: energy_is_poor = .false.          !! done, but with a residual that somebody should know of
@@ -91,6 +93,10 @@ contains
     y = scene%initial_state()
     t = 0
     call recorder%prepare(scene)
+    if (case%output%film_times /= '' .and. .not. ideal_joint) then
+      allocate (recorder%films)
+      call recorder%films%prepare(case%output%film_times, scene)
+    end if
     if (.not. present(archive)) call recorder%begin(scene, y)
     call integrate(scene, method, t, y, recorder%end_time, case%integrator%max_steps, recorder, status, archive)
     if (recorder%periods%has_ended) then
@@ -114,6 +120,7 @@ contains
     report%statistics = method%totals()
     if (allocated(method%time_with)) report%time_with = method%time_with
     report%figures = recorder%figures
+    if (allocated(recorder%films)) report%films = recorder%films%fields(scene)
     report%can_go_on = any(status == [integration_interrupted, step_limit_reached, evaluation_limit_reached, &
       revolution_budget_spent]) .and. .not. has_come_to_its_end
     if (status == integration_done .and. case%integrator%method == 'adams' .and. .not. (ideal_joint .or. present(cycles))) &

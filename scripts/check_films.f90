@@ -1,0 +1,77 @@
+!> How close the film of finite length comes to the tables of an independent solver (data/film/phi_LD*.csv), bearing by bearing: worst
+!> relative error of the force, of the side flow and of the largest pressure up to eps = 0.99, and of the force at 0.999.
+!>
+!>     check_films                  solved in every row with 64, 128 and 192 nodes round the film: draft, standard, reference
+!>     check_films POINTS NODES     from tables of POINTS values in each direction, solved with NODES
+program check_films
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: degree
+  use finite_film, only: film_answer_t, cavitation_gumbel, cavitation_reynolds
+  use film_map, only: film_map_t, solved_film
+  implicit none
+  character(len=*), parameter :: bearings(5) = [character(len=4) :: '0.25', '0.5', '0.75', '1', '2']
+  character(len=*), parameter :: conditions(2) = [character(len=8) :: 'gumbel', 'reynolds']
+  integer, parameter :: levels(3) = [64, 128, 192]
+  character(len=20) :: text
+  integer :: i, k, l, points, nodes
+
+  points = 0
+  if (command_argument_count() == 2) then
+    call get_command_argument(1, text)
+    read (text, *) points
+    call get_command_argument(2, text)
+    read (text, *) nodes
+  end if
+  print '(a)', '| L/D | cavitation | table, nodes | force | side flow | largest pressure | force at eps = 0.999 '// &
+    '| rows beyond 3e-4 and the error stated |'
+  print '(a)', repeat('|---', 8)//'|'
+  do i = 1, size(bearings)
+    do k = 1, size(conditions)
+      if (points > 0) call compare(trim(bearings(i)), trim(conditions(k)), points, nodes)
+      do l = 1, merge(0, size(levels), points > 0)
+        call compare(trim(bearings(i)), trim(conditions(k)), 0, levels(l))
+      end do
+    end do
+  end do
+
+contains
+
+  subroutine compare(bearing, condition, points, nodes)
+    character(len=*), intent(in) :: bearing, condition
+    integer, intent(in) :: points, nodes
+    type(film_map_t) :: map
+    type(film_answer_t) :: got
+    character(len=10) :: row_condition
+    character(len=200) :: line
+    real(dp) :: half_length, eps, alpha, force(2), flow, most, stated(2), off, worst(4)
+    integer :: unit, status, beyond, cavitation
+    cavitation = merge(cavitation_gumbel, cavitation_reynolds, condition == 'gumbel')
+    worst = 0
+    beyond = 0
+    open (newunit=unit, file='data/film/phi_LD'//bearing//'.csv', status='old', action='read')
+    read (unit, '(a)') line
+    do
+      read (unit, '(a)', iostat=status) line
+      if (status /= 0) exit
+      read (line, *) half_length, row_condition, eps, alpha, force, flow, most, stated
+      if (row_condition /= condition) cycle
+      if (points > 0) then
+        if (map%points == 0) call map%build(half_length, cavitation, points, nodes)
+        call map%force(eps**2, cos(alpha*degree), sin(alpha*degree), got%force(1), got%force(2))
+        call map%peak_and_flow(eps**2, cos(alpha*degree), sin(alpha*degree), got%most, got%flow)
+      else
+        call solved_film(nodes, half_length, cavitation, 1 - eps, alpha*degree, got)
+      end if
+      off = norm2(got%force - force)/norm2(force)
+      if (off > max(3e-4_dp, stated(1))) beyond = beyond + 1
+      if (eps > 0.995_dp) then
+        worst(4) = max(worst(4), off)
+      else
+        worst(:3) = max(worst(:3), [off, abs(got%flow/flow - 1), abs(got%most/most - 1)])
+      end if
+    end do
+    close (unit)
+    print '(5a,i0,a,i0,4(a,es7.1),a,i0,a)', '| ', bearing, ' | ', condition, ' | ', points, ', ', nodes, ' | ', worst(1), ' | ', &
+      worst(2), ' | ', worst(3), ' | ', worst(4), ' | ', beyond, ' |'
+  end subroutine compare
+end program check_films

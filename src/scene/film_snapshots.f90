@@ -1,0 +1,147 @@
+!> The pressure of films over the bore at chosen times of a run. While it goes on the motions are kept, which is next to nothing; the
+!> pressures are found when it has ended.
+module film_snapshots
+  use gudgeon_kinds, only: dp
+  use gudgeon_archive, only: archive_t
+  use film_law, only: film_motion_t
+  use ode_method, only: ode_method_t
+  use gudgeon_scene, only: scene_t, evaluation_t
+  use film_figures, only: acting_film
+  implicit none
+  private
+  public :: film_snapshots_t, film_field_t, read_times
+
+  integer, parameter :: most_times = 10000
+
+  !> A pressure over half of a bearing, which is the same in the other half.
+  type :: film_field_t
+    real(dp) :: time = 0, crank_angle = 0     !! [s], [rad]
+    integer :: place = 0                      !! pin of the chain
+    real(dp) :: clearance = 0, distance = 0   !! c, |e| as the film sees it [m]
+    real(dp) :: direction = 0                 !! of the eccentricity, from x towards y [rad]
+    real(dp), allocatable :: angle(:)         !! from that direction [rad]
+    real(dp), allocatable :: along(:)         !! from the middle [m]
+    real(dp), allocatable :: pressure(:, :)   !! [Pa]
+  end type film_field_t
+
+  type :: film_snapshots_t
+    real(dp), allocatable :: times(:)         !! at which they are wanted, rising [s]
+    integer :: next = 1                       !! of them
+    integer, private :: n = 0                 !! kept
+    real(dp), allocatable, private :: kept(:, :)   !! time, crank angle, joint, share, e, e', both speeds; by snapshot
+  contains
+    procedure :: prepare
+    procedure :: take
+    procedure :: fields
+    procedure :: exchange
+  end type film_snapshots_t
+
+contains
+
+  !> Times in a text: numbers with commas, or from:to:count. Not allocated where it holds something else.
+  subroutine read_times(text, times)
+    character(len=*), intent(in) :: text
+    real(dp), allocatable, intent(out) :: times(:)
+    real(dp) :: ends(2), numbers(most_times)
+    integer :: status, count, i
+    character(len=len(text)) :: list
+    if (scan(text, ':') > 0) then
+      list = text
+      do i = 1, len(list)
+        if (list(i:i) == ':') list(i:i) = ','
+      end do
+      if (verify(trim(list), '0123456789+-.eEdD, ') > 0) return
+      read (list, *, iostat=status) ends, count
+      if (status /= 0 .or. count < 2 .or. count > most_times) return
+      if (.not. (ends(1) >= 0 .and. ends(2) > ends(1) .and. ends(2) < huge(1.0_dp))) return
+      times = [(ends(1) + (ends(2) - ends(1))*(i - 1)/(count - 1), i=1, count)]
+      return
+    end if
+    if (verify(text, '0123456789+-.eEdD, ') > 0) return
+    count = 1
+    do i = 1, len(text)
+      if (text(i:i) == ',') count = count + 1
+    end do
+    if (count > most_times) return
+    read (text, *, iostat=status) numbers(:count)
+    if (status /= 0) return
+    if (.not. all(numbers(:count) >= 0 .and. numbers(:count) < huge(1.0_dp))) return
+    if (any(numbers(2:count) <= numbers(:count - 1))) return
+    times = numbers(:count)
+  end subroutine read_times
+
+  !> For a scene that is ready to run.
+  subroutine prepare(self, text, scene)
+    class(film_snapshots_t), intent(inout) :: self
+    character(len=*), intent(in) :: text   !! as `read_times`; empty: none
+    type(scene_t), intent(in) :: scene
+    if (text /= '') call read_times(text, self%times)
+    if (.not. allocated(self%times)) allocate (self%times(0))
+    allocate (self%kept(10, size(self%times)*scene%n_joints), source=0.0_dp)
+  end subroutine prepare
+
+  !> Keep what is due in the last step of the method, up to t_to.
+  subroutine take(self, method, scene, t_to)
+    class(film_snapshots_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t_to
+    type(evaluation_t) :: now
+    type(film_motion_t) :: seen
+    real(dp) :: y(scene%n), share
+    logical :: inside
+    integer :: i
+    do while (self%next <= size(self%times))
+      if (self%times(self%next) > t_to) exit
+      call method%interpolate(self%times(self%next), y)
+      call scene%evaluate(self%times(self%next), y, now, inside)
+      do i = 1, merge(scene%n_joints, 0, inside)
+        if (.not. allocated(scene%joints(i)%film)) cycle
+        if (.not. scene%joints(i)%film%gives_pressure()) cycle
+        call acting_film(scene%joints(i), now%relative(i), seen, share)
+        self%n = self%n + 1
+        self%kept(:, self%n) = [self%times(self%next), now%motion%crank_angle, real(i, dp), share, seen%eccentricity, &
+          seen%eccentricity_rate, seen%pin_speed, seen%turning_speed]
+      end do
+      self%next = self%next + 1
+    end do
+  end subroutine take
+
+  !> The pressures at the times that the run has come to.
+  function fields(self, scene) result(all)
+    class(film_snapshots_t), intent(in) :: self
+    type(scene_t), intent(in) :: scene
+    type(film_field_t), allocatable :: all(:)
+    type(film_motion_t) :: seen
+    integer :: i
+    allocate (all(self%n))
+    do i = 1, self%n
+      associate (kept => self%kept(:, i), field => all(i), joint => scene%joints(nint(self%kept(3, i))))
+        field%time = kept(1)
+        field%crank_angle = kept(2)
+        field%place = joint%place
+        field%clearance = joint%bearing%clearance
+        seen = film_motion_t(eccentricity=kept(5:6), eccentricity_rate=kept(7:8), pin_speed=kept(9), turning_speed=kept(10))
+        field%distance = norm2(seen%eccentricity)
+        field%direction = 0
+        if (field%distance > 0) field%direction = atan2(kept(6), kept(5))
+        call joint%film%pressure_field(seen, field%angle, field%along, field%pressure)
+        field%along = 0.5_dp*joint%bearing%length*field%along
+        field%pressure = kept(4)*field%pressure
+      end associate
+    end do
+  end function fields
+
+  !> What has been kept, to or from an archive.
+  subroutine exchange(self, archive)
+    class(film_snapshots_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    integer :: i
+    call archive%exchange(self%next)
+    call archive%exchange(self%n)
+    if (archive%failed .or. self%n > size(self%kept, 2)) return
+    do i = 1, self%n
+      call archive%exchange(self%kept(:, i))
+    end do
+  end subroutine exchange
+end module film_snapshots
