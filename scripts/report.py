@@ -4,7 +4,9 @@
     scripts/report.py sim_V_oscillating             -> results/sim_V_oscillating.html
     scripts/report.py cases/flores/dry_0500um.nml -o dry.html
 
-The page is one file that needs no network. Runs the case with the release build if its result is missing.
+The page is one file that needs no network. The pressure round the pin in a film of finite length is there where the run has
+written it (&output film_times = 'from:to:count').
+ Runs the case with the release build if its result is missing.
 """
 
 import argparse
@@ -15,6 +17,7 @@ from gudgeon_plots.environment import TOP, use_virtual_environment
 
 use_virtual_environment()
 
+from gudgeon_plots.film_pressure import fields_of  # noqa: E402
 from gudgeon_plots.report_page import page  # noqa: E402
 from gudgeon_plots.results import MissingResult, Results  # noqa: E402
 
@@ -40,7 +43,8 @@ def main() -> int:
         if not run.case:
             raise MissingResult(f"{name}.resolved.nml is missing beside the trace")
         twin = results[f"{name}.ideal"] if results.path(f"{name}.ideal").exists() else None
-        text = page(run, twin)
+        pressures = directory / f"{name}.film.csv"
+        text = page(run, twin, fields_of(pressures) if pressures.exists() else None)
     except MissingResult as problem:
         print(f"report.py: {problem}", file=sys.stderr)
         return 1

@@ -297,6 +297,19 @@ class FilmPressure(unittest.TestCase):
             )
             np.testing.assert_allclose(self.resultant(made) / unit, [radial, tangential], rtol=2e-3, atol=2e-3)
 
+    def test_finite_film_by_its_file(self) -> None:
+        """The page shows the pressures that the program has written, turned to the eccentricity, or none."""
+        motion = {"rod_speed": 0.0, "eccentricity_x": 0.5 * self.CLEARANCE, "eccentricity_ratio": 0.5, "film_thickness": 1.0, "phase": 1}
+        columns = {name: np.full(5, float(value)) for name, value in motion.items()} | {"time": np.linspace(0.0, 4.0, 5)}
+        made = Run("made", pd.DataFrame(columns), {}, pd.DataFrame(), {}, {"lubrication": {"law": "finite_bearing"}})
+        self.assertIsNone(film_pressure.pressure(made, self.ANGLES))
+        bore = np.linspace(-2.0, 2 * np.pi - 2.0, 400, endpoint=False)
+        fields = [pd.DataFrame({"time": time, "place": 0.0, "angle": bore, "film_thickness": 1 - np.cos(bore - 1.5),
+                                "pressure": top * np.maximum(np.cos(bore - 1.5 - 0.3), 0)}) for time, top in ((1.0, 10.0), (3.0, 30.0))]
+        found = film_pressure.from_fields(made, fields, self.ANGLES)
+        wanted = np.outer([0, 10, 20, 30, 0], np.maximum(np.cos(self.ANGLES - 0.3), 0))
+        self.assertLess(np.abs(found - wanted).max(), 0.5)
+
     def test_oscillating_film(self) -> None:
         speed, rod, crank = 300.0, 0.2, 0.05
         radius = self.BEARING - self.CLEARANCE

@@ -4,10 +4,12 @@ Angles are measured from the direction of the eccentricity, x towards y; arrays 
 """
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
-from .results import Run
+from .results import MissingResult, Run, read_table
 
 FILM_PHASE = 1
 
@@ -103,12 +105,40 @@ def _integral(values: np.ndarray, theta: np.ndarray) -> np.ndarray:
 
 
 def pressure(run: Run, angles: np.ndarray) -> np.ndarray | None:
-    """Pressure [Pa] at the angles from the eccentricity; 0 where no film acts. None for a run without film."""
+    """Pressure [Pa] at the angles from the eccentricity; 0 where no film acts. None for a run without film, and with a
+    film of finite length, whose pressure is no formula: see `from_fields`."""
     law = run.parameter("lubrication", "law")
-    if law is None or "phase" not in run:
+    if law is None or "phase" not in run or law == "finite_bearing":
         return None
     found = oscillating(run, angles) if law == "oscillating_film" else pinkus_sternlicht(run, angles)
     found[run["phase"] != FILM_PHASE] = 0
+    return found
+
+
+def fields_of(path: Path) -> list[pd.DataFrame]:
+    """The nodes of each time in a NAME.film.csv, of the piston pin."""
+    if not path.exists():
+        raise MissingResult(f"no pressure fields {path}")
+    table = read_table(path)[0]
+    return [field for _, field in table[table["joint"] == "piston_pin"].groupby("time", sort=True)]
+
+
+def from_fields(run: Run, fields: list[pd.DataFrame], angles: np.ndarray) -> np.ndarray:
+    """Pressure [Pa] in the middle of the bore at the angles from the eccentricity, between the times of a NAME.film.csv by straight
+    lines; 0 before the first and after the last."""
+    times = np.array([field["time"].iloc[0] for field in fields])
+    lines = []
+    for field in fields:
+        line = field[field["place"] == field["place"].min()].sort_values("angle")
+        thinnest = line["angle"].to_numpy()[np.argmin(line["film_thickness"].to_numpy())]
+        lines.append(np.interp(angles, line["angle"] - thinnest, line["pressure"], period=2 * np.pi))
+    time = run["time"]
+    place = np.clip(np.searchsorted(times, time, side="right"), 1, max(len(times) - 1, 1))
+    if len(times) < 2:
+        return np.where(np.isclose(time, times[0])[:, None], lines[0], 0.0)
+    part = ((time - times[place - 1]) / (times[place] - times[place - 1]))[:, None]
+    found = (1 - part) * np.array(lines)[place - 1] + part * np.array(lines)[place]
+    found[(time < times[0]) | (time > times[-1]) | (run["phase"] != FILM_PHASE)] = 0
     return found
 
 

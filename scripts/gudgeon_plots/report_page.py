@@ -10,6 +10,7 @@ import json
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 from plotly.offline import get_plotlyjs
 
 from . import film_pressure
@@ -245,11 +246,13 @@ def summary_number(text: str) -> str:
         return text
 
 
-def film_columns(run: Run, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, bool] | None:
+def film_columns(run: Run, rows: np.ndarray, fields: list[pd.DataFrame] | None = None) -> tuple[np.ndarray, np.ndarray, bool] | None:
     """Square roots of the film's pressure over its largest as bytes (rows, angles), its peak of each row [Pa], and
     whether it goes below its mean."""
     angles = 2 * np.pi * np.arange(ANGLES) / ANGLES - np.pi
     found = film_pressure.pressure(run, angles)
+    if found is None and fields:
+        found = film_pressure.from_fields(run, fields, angles)
     if found is None:
         return None
     found = found[rows]
@@ -268,8 +271,8 @@ def largest_deflection(columns: dict[str, np.ndarray]) -> float:
     return float(np.abs(np.array([columns[name] for name in modes]).T @ shapes).max())
 
 
-def page(run: Run, ideal: Run | None = None) -> str:
-    """The page as text."""
+def page(run: Run, ideal: Run | None = None, fields: list[pd.DataFrame] | None = None) -> str:
+    """The page as text; `fields`: the pressures of a NAME.film.csv."""
     columns = with_sizes(run)
     if ideal is not None:
         for name, values in with_sizes(ideal).items():
@@ -281,7 +284,7 @@ def page(run: Run, ideal: Run | None = None) -> str:
         for curve in plot["curves"]:
             used += [curve[axis] for axis in ("x", "y") if curve[axis] not in used]
     rows = chosen_rows([columns[name] for name in used])
-    film = film_columns(run, rows)
+    film = film_columns(run, rows, fields)
     if film:
         columns["film_peak"] = np.zeros(len(run["time"]))
         columns["film_peak"][rows] = film[1]

@@ -20,21 +20,25 @@ contains
     type(film_field_t), intent(in) :: fields(:)
     type(error_t), allocatable, intent(out) :: error
     type(growing_text_t) :: file
-    character(len=:), allocatable :: head, middle
     integer :: i, j, k
     call file%append('time[s],crank_angle[rad],joint,angle[rad],film_thickness[m],place[m],pressure[Pa]'//achar(10))
     do i = 1, size(fields)
-      associate (field => fields(i))
-        head = real_text(field%time)//','//real_text(field%crank_angle)//','//trim(pin_names(field%place))//','
-        do j = 1, size(field%angle)
-          middle = head//real_text(field%angle(j) + field%direction)//','// &
-            real_text(field%clearance - field%distance*cos(field%angle(j)))//','
-          do k = 1, size(field%along)
-            call file%append(middle//real_text(field%along(k))//','//real_text(field%pressure(j, k))//achar(10))
-          end do
+      do j = 1, size(fields(i)%angle)
+        do k = 1, size(fields(i)%along)
+          call append_node(file, fields(i), j, k)
         end do
-      end associate
+      end do
     end do
     call write_text(path, file%text(:file%used), error)
   end subroutine write_film_file
+
+  subroutine append_node(file, field, j, k)
+    type(growing_text_t), intent(inout) :: file
+    type(film_field_t), intent(in) :: field
+    integer, intent(in) :: j, k   !! its angle and its place
+    call file%append(real_text(field%time)//','//real_text(field%crank_angle)//','//trim(pin_names(field%place))//',')
+    call file%append(real_text(field%angle(j) + field%direction)//',')
+    call file%append(real_text(field%clearance - field%distance*cos(field%angle(j)))//',')
+    call file%append(real_text(field%along(k))//','//real_text(field%pressure(j, k))//achar(10))
+  end subroutine append_node
 end module film_file
