@@ -194,16 +194,25 @@ contains
     call refused('elastic_rod.shank_mass=0.22', '&elastic_rod shank_mass = 0.22: must be <= 0.21')
     call refused('mechanism.rod_inertia=1e-6', '&mechanism rod_inertia = 1e-6: must be >')
     call refused('elastic_rod.transverse_modes=9', '&elastic_rod transverse_modes = 9: must be >= 0 and <= 8')
+    call refused('mechanism.rod_com=0.06,0.05', '&elastic_rod transverse_modes = 8: mass matrix not positive definite', &
+      [character(len=long) :: 'drive.kind=free', 'elastic_rod.transverse_modes=8', 'elastic_rod.axial_shapes=8'])
     call refused('elastic_rod.section_area=0', '&elastic_rod section_area = 0: must be > 0')
 
   contains
 
-    subroutine refused(override, message)
+    subroutine refused(override, message, beside)
       character(len=*), intent(in) :: override, message
-      character(len=long) :: overrides(1)
+      character(len=*), intent(in), optional :: beside(:)   !! further overrides
+      character(len=long), allocatable :: overrides(:)
       type(case_t) :: case
       type(error_t), allocatable :: error
-      overrides = override
+      allocate (overrides(1))
+      if (present(beside)) then
+        deallocate (overrides)
+        allocate (overrides(1 + size(beside)))
+        overrides(2:) = beside
+      end if
+      overrides(1) = override
       call read_case(dry, overrides, case, error)
       call check%that(allocated(error), 'refused: '//override)
       if (.not. allocated(error)) return
