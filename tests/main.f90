@@ -29,6 +29,7 @@ program gudgeon_tests
   use test_coordinates, only: run_test_coordinates
   use test_elastic_rod, only: run_test_elastic_rod
   use test_elastic_runs, only: run_test_elastic_runs
+  use test_drive, only: run_test_drive
   use test_energy_kept, only: run_test_energy_kept
   use test_error_growth, only: run_test_error_growth
   use test_events, only: run_test_events
@@ -100,6 +101,7 @@ program gudgeon_tests
   call run('coordinates', run_test_coordinates)
   call run('elastic_rod', run_test_elastic_rod)
   call run('elastic_runs', run_test_elastic_runs)
+  call run('drive', run_test_drive)
   call run('energy_kept', run_test_energy_kept)
   call run('error_growth', run_test_error_growth)
   call run('events', run_test_events)

@@ -386,7 +386,8 @@ contains
     call refused(check, whole//'&joint place=''piston_pin'' kind=''ideal'' /', 'x.nml:8: &joint: this group stands here twice')
     call refused(check, '&joint place=''wrist'' /', 'x.nml:1: &joint place = wrist: must be one of piston_pin, crank_pin')
     call refused(check, '&joint place=''crank_pin'' place=''crank_pin'' /', 'x.nml:1: &joint place = crank_pin: given twice')
-    call refused(check, '&drive place=''crank_pin'' /', 'x.nml:1: &drive place: unknown key (allowed: kind, torque, damping)')
+    call refused(check, '&drive place=''crank_pin'' /', 'x.nml:1: &drive place: unknown key (allowed: kind, torque, damping, '// &
+      'flywheel_inertia, torque_table, torque_table_digest, ramp_time, ramp_from)')
     call refused(check, whole//'&contact place=''crank_pin'' /', 'x.nml: &joint of crank_pin kind: must be clearance with '// &
                  'contact, friction or lubrication: an ideal joint has no play for them; leave those groups out, as '// &
                  '--set contact=none does')

@@ -77,7 +77,7 @@ class Bodies:
         n = run.number
         return cls(n("mechanism.crank_length"), n("mechanism.rod_length"),
                    (n("mechanism.crank_mass"), n("mechanism.rod_mass"), n("mechanism.piston_mass")),
-                   (n("mechanism.crank_inertia"), n("mechanism.rod_inertia")),
+                   (n("mechanism.crank_inertia") + n("drive.flywheel_inertia"), n("mechanism.rod_inertia")),
                    run.pair("mechanism.crank_com"), run.pair("mechanism.rod_com"), n("mechanism.gravity"),
                    rotated(-1.0, 0.0, math.radians(n("mechanism.gravity_angle_deg"))), n("drive.damping"),
                    n("joint.bearing_radius") - n("joint.clearance"))

@@ -76,7 +76,7 @@ contains
     call equations%add(crank)
     call equations%add(rod)
     call equations%add(piston)
-    call equations%solve(.not. drive%free_crank, z(:at%n), holding, definite)
+    call equations%solve(.not. drive%free_crank, z(:at%n), holding, definite, drive%acceleration)
     if (present(solvable)) solvable = definite
     crank_moment = drive%torque + holding
     accelerations%crank = z(1)

@@ -35,9 +35,10 @@ module chain_bodies
 
   !> How the crank is driven.
   type :: drive_t
-    logical :: free_crank = .true.   !! the crank moves under its loads; else its speed is held constant
+    logical :: free_crank = .true.   !! the crank moves under its loads; else its speed is held
     real(dp) :: torque = 0           !! tau on a free crank [N m]
     real(dp) :: damping = 0          !! D, moment per crank speed [N m s/rad]
+    real(dp) :: acceleration = 0     !! of a held crank [rad/s^2]
   end type drive_t
 
   !> The bodies, and what follows from their constants: made by `new_bodies`.

@@ -45,6 +45,7 @@ module chain_motion
     real(dp) :: sin_crank, cos_crank
     real(dp) :: sin_rod, cos_rod    !! of A; cos A > 0
     real(dp) :: crank_speed         !! dq/dt [rad/s]
+    real(dp) :: held_acceleration   !! d2q/dt2 of a held crank whose speed is run up; not set otherwise [rad/s^2]
     real(dp) :: rod_speed           !! dA/dt [rad/s]
     real(dp) :: piston_position     !! x of the bearing centre [m]
     real(dp) :: piston_velocity     !! [m/s]

@@ -45,9 +45,9 @@ contains
         accelerations%crank = (on_crank*b%rod_term - on_rod*m12)*per_determinant
         accelerations%rod = (on_rod*b%crank_term - on_crank*m12)*per_determinant
       else
-        accelerations%crank = 0
-        accelerations%rod = on_rod/b%rod_term
-        crank_moment = m12*accelerations%rod - (on_crank - drive%torque)
+        accelerations%crank = drive%acceleration
+        accelerations%rod = (on_rod - m12*drive%acceleration)/b%rod_term
+        crank_moment = b%crank_term*drive%acceleration + m12*accelerations%rod - (on_crank - drive%torque)
       end if
       accelerations%piston = b%gravity(1) - (loads%axial_force + f_x)*b%per_piston_mass
       accelerations%pin(:, crank_pin) = 0

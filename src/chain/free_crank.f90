@@ -27,8 +27,8 @@ contains
       crank_moment = drive%torque
       acceleration = on_crank/bodies%crank_inertia
     else
-      crank_moment = drive%torque - on_crank
-      acceleration = 0
+      crank_moment = drive%torque - on_crank + bodies%crank_inertia*drive%acceleration
+      acceleration = drive%acceleration
     end if
   end subroutine accelerate_crank
 

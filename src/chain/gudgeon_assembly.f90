@@ -76,19 +76,24 @@ contains
     end associate
   end subroutine add
 
-  !> The accelerations z'' of the coordinates, the first of them held at rest if `holds_first`: then `holding` is the force that
+  !> The accelerations z'' of the coordinates, the first of them held at `held` if `holds_first`: then `holding` is the force that
   !> this takes, else 0. `definite` is false where the mass matrix is not positive definite: there is no answer then.
-  pure subroutine solve(self, holds_first, accelerations, holding, definite)
+  pure subroutine solve(self, holds_first, accelerations, holding, definite, held)
     class(equations_t), intent(in) :: self
     logical, intent(in) :: holds_first
     real(dp), intent(out) :: accelerations(:)   !! (n)
     real(dp), intent(out) :: holding
     logical, intent(out) :: definite
+    real(dp), intent(in), optional :: held   !! [its unit/s^2]; 0 where it is not given
     real(dp) :: matrix(self%n, self%n), a(self%n)
     integer :: first
     first = merge(2, 1, holds_first)
     a = self%force(:self%n)
     a(:first - 1) = 0
+    if (holds_first .and. present(held)) then
+      a = a - held*self%mass(:self%n, 1)
+      a(1) = held
+    end if
     matrix = self%mass(:self%n, :self%n)
     call factorise_cholesky(self%n - first + 1, matrix(first:, first:), definite)
     holding = 0

@@ -12,6 +12,7 @@ module gudgeon_chain
   use free_rod, only: accelerate_free_rod
   use assembled_chain, only: accelerate_assembled
   use loose_piston, only: free_piston, kinetic_energy_beside, height_beside
+  use varying_drive, only: varying_drive_t
   use elastic_members, only: elastic_members_t
   use elastic_rod, only: elastic_rod_t
   use elastic_rod_piece, only: accelerate_elastic_rod
@@ -23,6 +24,7 @@ module gudgeon_chain
   type :: chain_t
     type(bodies_t) :: bodies
     type(drive_t) :: drive
+    type(varying_drive_t), allocatable :: varying   !! not allocated: the drive does not vary
     logical :: is_loose(n_pins) = .false.   !! pins with clearance
     type(elastic_members_t), allocatable :: elastic   !! not allocated: all bodies are rigid
   contains
@@ -49,7 +51,12 @@ contains
     type(loads_t), intent(inout) :: loads
     type(accelerations_t), intent(out) :: accelerations
     real(dp), intent(out) :: crank_moment
-    call accelerate_rigid(self, self%drive, motion, loads, accelerations, crank_moment)
+    if (allocated(self%varying)) then
+      call accelerate_rigid(self, self%varying%at(self%drive, motion%crank_speed, motion), motion, loads, accelerations, &
+        crank_moment)
+    else
+      call accelerate_rigid(self, self%drive, motion, loads, accelerations, crank_moment)
+    end if
   end subroutine accelerate
 
   pure subroutine accelerate_rigid(chain, drive, motion, loads, accelerations, crank_moment)
@@ -104,8 +111,11 @@ contains
     type(accelerations_t), intent(out) :: accelerations
     real(dp), intent(out) :: crank_moment
     logical, intent(out) :: solvable
-    type(drive_t) :: drive
-    drive = self%drive
+    type(drive_t) :: drive, acting
+    acting = self%drive
+    if (allocated(self%varying)) acting = self%varying%at(self%drive, merge(motion%flywheel_speed, motion%crank_speed, &
+      self%has_crankshaft()), motion)
+    drive = acting
     if (self%has_crankshaft()) drive = self%elastic%crankshaft%drive_of_crank(motion)
     solvable = .true.
     if (.not. self%has_elastic_rod()) then
@@ -127,7 +137,7 @@ contains
       end associate
     end if
     if (self%has_crankshaft()) &
-      call self%elastic%crankshaft%accelerate_flywheel(self%drive, motion, accelerations%flywheel, crank_moment)
+      call self%elastic%crankshaft%accelerate_flywheel(acting, motion, accelerations%flywheel, crank_moment)
   end subroutine accelerate_elastic
 
   !> Accelerations of the turning of an elastic rod's ends.

@@ -70,8 +70,8 @@ contains
         crank_moment = drive%torque
         accelerations%crank = total/inertia
       else
-        accelerations%crank = 0
-        crank_moment = drive%torque - total
+        accelerations%crank = drive%acceleration
+        crank_moment = drive%torque - total + inertia*drive%acceleration
       end if
       accelerations%rod = ratio*accelerations%crank + ratio_slope*speed_square
       accelerations%piston = rate*accelerations%crank + rate_slope*speed_square

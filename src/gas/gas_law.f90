@@ -12,6 +12,7 @@ module gas_law
     real(dp) :: bore = 0                        !! cylinder diameter [m]
     real(dp) :: crankcase_pressure = 101325     !! under the piston [Pa]
   contains
+    procedure :: revolutions => one_revolution
     procedure :: add_bore
     procedure :: add_crankcase_pressure
     procedure(prepare), deferred :: prepare
@@ -30,6 +31,14 @@ module gas_law
   end interface
 
 contains
+
+  !> After how many revolutions the pressure repeats.
+  pure integer function one_revolution(self) result(revolutions)
+    class(gas_law_t), intent(in) :: self
+    associate (unused => self)
+    end associate
+    revolutions = 1
+  end function one_revolution
 
   subroutine add_bore(self, list)
     class(gas_law_t), intent(inout) :: self

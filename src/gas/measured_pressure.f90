@@ -24,6 +24,7 @@ module measured_pressure
     procedure, nopass :: name
     procedure :: parameters
     procedure :: prepare
+    procedure :: revolutions
   end type measured_pressure_t
 
 contains
@@ -61,4 +62,9 @@ contains
     call gas%take_curve(cylinder, self%crankcase_pressure, &
       new_periodic_cubic((self%curve%x + self%offset_deg)*degree, self%curve%y, self%period_deg*degree))
   end subroutine prepare
+
+  pure integer function revolutions(self)
+    class(measured_pressure_t), intent(in) :: self
+    revolutions = self%period_deg/360
+  end function revolutions
 end module measured_pressure

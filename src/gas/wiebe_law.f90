@@ -1,7 +1,7 @@
 !> What a case says of an engine with Wiebe's heat release, of whatever cycle.
 module wiebe_law
   use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: degree
+  use gudgeon_constants, only: degree, two_pi
   use gudgeon_errors, only: error_t
   use gudgeon_parameters, only: parameter_list_t
   use cylinder, only: new_cylinder
@@ -22,6 +22,7 @@ module wiebe_law
   contains
     procedure :: wiebe_parameters
     procedure :: prepare
+    procedure :: revolutions
     procedure(angle_of), deferred :: closes
     procedure(angle_of), deferred :: opens
     procedure(angle_of), deferred :: period
@@ -73,4 +74,9 @@ contains
     call new_gas_cycle(cycle, tolerance, error)
     if (.not. allocated(error)) call gas%take_cycle(cycle, self%crankcase_pressure)
   end subroutine prepare
+
+  pure integer function revolutions(self)
+    class(wiebe_law_t), intent(in) :: self
+    revolutions = nint(self%period()/two_pi)
+  end function revolutions
 end module wiebe_law

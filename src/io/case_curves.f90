@@ -12,7 +12,7 @@ module case_curves
   use case_definition, only: case_t
   use case_schema, only: find_key, shown_group
   use case_values, only: case_values_t
-  use curve_file, only: parse_curve, quantity_t, crank_angle, pressure
+  use curve_file, only: parse_curve, quantity_t, crank_angle, pressure, turning_speed, torque
   implicit none
   private
   public :: provide_curves, period_fault
@@ -30,7 +30,9 @@ contains
     type(case_values_t), intent(inout) :: values
     type(case_t), intent(inout) :: into
     type(error_t), allocatable, intent(out) :: error
-    if (.not. allocated(into%measured)) return
+    if (into%drive%table%is_wanted()) call provide(values, into%file, 'drive', 'torque_table', turning_speed, torque, &
+      into%drive%table, error)
+    if (allocated(error) .or. .not. allocated(into%measured)) return
     associate (gas => into%measured)
       if (all(gas%period_deg /= measured_pressure_periods)) return   ! the rules refuse it
       call provide(values, into%file, 'cylinder_pressure', 'table', crank_angle, pressure, gas%curve, error, gas%period_deg)

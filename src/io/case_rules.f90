@@ -42,6 +42,8 @@ contains
     if (allocated(error)) return
     call check_gas(c, values, error)
     if (allocated(error)) return
+    call check_drive(c, values, error)
+    if (allocated(error)) return
     call check_periods(c, values, error)
     if (allocated(error)) return
     call check_run(c, values, error)
@@ -78,7 +80,7 @@ contains
         end if
         return
       end if
-      crank = m%crank_inertia + m%crank_mass*sum(m%crank_com**2)
+      crank = m%crank_inertia + c%drive%flywheel_inertia + m%crank_mass*sum(m%crank_com**2)
       rod = m%rod_inertia + m%rod_mass*sum(m%rod_com**2)
       if (c%crank_pin%has_clearance()) then
         if (crank <= 0) then
@@ -350,6 +352,29 @@ contains
     end if
   end subroutine check_gas
 
+  !> A drive that varies does so in the way of its kind; there is one flywheel.
+  subroutine check_drive(c, values, error)
+    type(case_t), intent(in) :: c
+    type(case_values_t), intent(in) :: values
+    type(error_t), allocatable, intent(out) :: error
+    associate (drive => c%drive)
+      if (drive%table%is_wanted() .and. drive%kind /= 'free') then
+        call values%refuse('drive', 'torque_table', 'needs kind = ''free'': a held speed takes whatever torque it needs', error)
+      else if (drive%ramp_time > 0 .and. drive%kind /= 'constant_speed') then
+        call values%refuse('drive', 'ramp_time', 'needs kind = ''constant_speed'': the loads make the speed of a free crank', error)
+      else if (abs(drive%ramp_from) > 0 .and. .not. drive%ramp_time > 0) then
+        call values%refuse('drive', 'ramp_from', 'needs ramp_time, in which the speed goes from there to crank_speed', error)
+      else if (drive%ramp_time > 0 .and. c%is_elastic()) then
+        call values%refuse('drive', 'ramp_time', 'goes without elastic_rod and crankshaft', error)
+      else if (drive%ramp_time > 0 .and. c%integrator%crank_revolutions > 0) then
+        call values%refuse('drive', 'ramp_time', 'goes with revolutions or end_time, not with crank_revolutions', error)
+      else if (drive%flywheel_inertia > 0 .and. allocated(c%crankshaft)) then
+        call values%refuse('drive', 'flywheel_inertia', 'must be 0 with the group crankshaft, which has its own flywheel_inertia', &
+          error)
+      end if
+    end associate
+  end subroutine check_drive
+
   !> The run has one end, and reaches it.
   subroutine check_run(c, values, error)
     type(case_t), intent(in) :: c
@@ -389,7 +414,7 @@ contains
       if (c%output%window == 'last_period') call values%refuse('output', 'window', 'is for &run until = ''periodic'' alone', error)
     else if (.not. turns(c)) then
       call values%refuse('run', 'until', 'needs crank_speed other than 0', error)
-    else if (allocated(c%combustion) .and. c%run%period_revolutions < 2) then
+    else if (c%run%period_revolutions < c%gas_revolutions()) then
       call values%refuse('run', 'period_revolutions', 'must be >= 2, what the gas takes to repeat', error)
     else if (c%output%window == 'last_period' .and. c%output%start_time > 0) then
       call values%refuse('output', 'start_time', 'must be 0 with window = ''last_period''', error)

@@ -16,8 +16,8 @@ module run_identity
 
   !> Keys of a case that may change between a run and its continuation: they only say when a run gives up, or where a table lies,
   !> whose content another key tells.
-  character(len=*), parameter :: free_keys(4) = [character(len=30) :: 'max_steps', 'max_evaluations', &
-    'max_evaluations_per_revolution', 'table']
+  character(len=*), parameter :: free_keys(5) = [character(len=30) :: 'max_steps', 'max_evaluations', &
+    'max_evaluations_per_revolution', 'table', 'torque_table']
 
 contains
 

@@ -23,6 +23,7 @@ module case_definition
   use elastic_crankshaft, only: elastic_crankshaft_t
   use gas_law, only: gas_law_t
   use gas_laws, only: offer_gas_cycles
+  use measured_curve, only: measured_curve_t
   use measured_pressure, only: measured_pressure_t
   implicit none
   private
@@ -38,7 +39,9 @@ module case_definition
 
   type, extends(has_parameters_t) :: drive_case_t
     character(len=:), allocatable :: kind
-    real(dp) :: torque = 0, damping = 0
+    real(dp) :: torque = 0, damping = 0, flywheel_inertia = 0
+    type(measured_curve_t) :: table              !! speed [rad/s], torque [N m]
+    real(dp) :: ramp_time = 0, ramp_from = 0     !! of the held speed
   contains
     procedure :: parameters => drive_parameters
   end type drive_case_t
@@ -114,6 +117,7 @@ module case_definition
     type(output_case_t) :: output
   contains
     procedure :: has_contact
+    procedure :: gas_revolutions
     procedure :: has_play
     procedure :: has_loose_guide
     procedure :: has_clearance => has_clearance_anywhere
@@ -125,6 +129,14 @@ module case_definition
   character(len=*), parameter :: piston_pin_place = trim(pin_names(piston_pin)), crank_pin_place = trim(pin_names(crank_pin))
 
 contains
+
+  !> After how many revolutions the gas repeats; 1 where there is none.
+  pure integer function gas_revolutions(self)
+    class(case_t), intent(in) :: self
+    gas_revolutions = 1
+    if (allocated(self%combustion)) gas_revolutions = self%combustion%revolutions()
+    if (allocated(self%measured)) gas_revolutions = self%measured%revolutions()
+  end function gas_revolutions
 
   !> Whether there is a joint with a contact law, or a piston with clearance in its bore.
   pure logical function has_contact(self)
@@ -420,6 +432,14 @@ contains
     call list%add('torque', self%torque, 'on a free crank, in the sense of its angle', 'N m', default='0.0')
     call list%add('damping', self%damping, 'moment against the crank speed; at constant_speed it adds to crank_moment alone', &
       'N m s/rad', '>= 0', default='0.0')
+    call list%add('flywheel_inertia', self%flywheel_inertia, 'of a flywheel fixed to the crank, which adds to crank_inertia', &
+      'kg m^2', '>= 0', default='0.0')
+    call self%table%parameters(list, 'torque_table', &
+      'CSV file, relative to the case file: speed[rad/s],torque[N.m]; beside torque', &
+      default='')
+    call list%add('ramp_time', self%ramp_time, 'in which a held speed is run up to crank_speed; 0: held from the start', 's', &
+      '> 0', default='0.0')
+    call list%add('ramp_from', self%ramp_from, 'held speed at the start, with ramp_time', 'rad/s', default='0.0')
   end subroutine drive_parameters
 
   subroutine initial_parameters(self, list)

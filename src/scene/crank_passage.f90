@@ -56,9 +56,9 @@ contains
     real(dp) :: speed_from, speed_to
     t = t_to
     call method%interpolate(t_from, y)
-    speed_from = scene%crank_speed(y)
+    speed_from = scene%crank_speed(t_from, y)
     call method%interpolate(t_to, y)
-    speed_to = scene%crank_speed(y)
+    speed_to = scene%crank_speed(t_to, y)
     turns = (speed_from > 0 .and. speed_to < 0) .or. (speed_from < 0 .and. speed_to > 0)
     if (.not. turns) return
     bracket = bracket_t(t_from, t_to, -abs(speed_from), abs(speed_to), 0, abs(t_to - t_from))
@@ -66,7 +66,7 @@ contains
       t = next_abscissa(bracket)
       if (.not. (t > bracket%a .and. t < bracket%b)) exit
       call method%interpolate(t, y)
-      call narrow(bracket, t, sign(1.0_dp, speed_to)*scene%crank_speed(y))
+      call narrow(bracket, t, sign(1.0_dp, speed_to)*scene%crank_speed(t, y))
       if (.not. bracket%fb > 0) exit
     end do
     t = bracket%b

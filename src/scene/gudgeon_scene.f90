@@ -66,6 +66,7 @@ module gudgeon_scene
     real(dp) :: span = 1            !! of the simulation [s]
     type(layout_t) :: layout        !! of the state
     type(coordinates_t) :: crank    !! where the crank angle stands in it
+    logical :: runs_up = .false.    !! the held speed is run up to start_speed
     logical :: crank_moves = .true. !! it stands there: its speed is not held
     integer :: work_at = 0          !! where the work of the forces stands
     type(slice_t) :: measures       !! quadratures of the joints
@@ -355,9 +356,22 @@ contains
     if (self%crank_moves) then
       call turn_crank(motion, y(self%crank%position), y(self%crank%rate))
     else
-      call turn_crank(motion, self%start_angle + self%start_speed*t, self%start_speed)
+      call hold_crank(self, t, motion)
     end if
   end subroutine read_crank
+
+  !> The crank of a held speed.
+  pure subroutine hold_crank(self, t, motion)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: t
+    type(motion_t), intent(inout) :: motion
+    if (self%runs_up) then
+      call turn_crank(motion, self%start_angle + self%chain%varying%turned(t), self%chain%varying%speed(t))
+      motion%held_acceleration = self%chain%varying%acceleration(t)
+    else
+      call turn_crank(motion, self%start_angle + self%start_speed*t, self%start_speed)
+    end if
+  end subroutine hold_crank
 
   !> The eccentricities of the joints, and what they are for the chain. `inside` is false where a joint does not admit its own.
   pure subroutine place_journals(n, joints, y, now, inside)
@@ -455,6 +469,7 @@ contains
   pure logical function work_tells(self)
     class(scene_t), intent(in) :: self
     work_tells = self%chain%drive%free_crank .and. .not. (self%chain%drive%damping > 0 .or. allocated(self%gas) &
+      .or. allocated(self%chain%varying) &
                                                          .or. allocated(self%guide) .or. allocated(self%chain%elastic))
   end function work_tells
 
@@ -518,17 +533,19 @@ contains
       crank_angle = y(self%crank%position)
     else
       crank_angle = self%start_angle + self%start_speed*t
+      if (self%runs_up) crank_angle = self%start_angle + self%chain%varying%turned(t)
     end if
   end function crank_angle
 
-  !> Crank speed in a state [rad/s].
-  pure real(dp) function crank_speed(self, y)
+  !> Crank speed at (t, y) [rad/s].
+  pure real(dp) function crank_speed(self, t, y)
     class(scene_t), intent(in) :: self
-    real(dp), intent(in) :: y(:)
+    real(dp), intent(in) :: t, y(:)
     if (self%crank_moves) then
       crank_speed = y(self%crank%rate)
     else
       crank_speed = self%start_speed
+      if (self%runs_up) crank_speed = self%chain%varying%speed(t)
     end if
   end function crank_speed
 

@@ -130,7 +130,7 @@ contains
     companion%method%settings%max_evaluations = 0
     companion%t = t
     companion%y = y
-    companion%direction = sign(1.0_dp, companion%scene%crank_speed(y))
+    companion%direction = sign(1.0_dp, companion%scene%crank_speed(t, y))
   end subroutine prepare
 
   !> What of the state is compared: all but the crank angle and the quadratures; and its natural sizes.

@@ -9,6 +9,7 @@ module scene_builder
   use chain_bodies, only: crank_t, rod_t, piston_t, drive_t, new_bodies
   use clearance_joint, only: clearance_joint_t
   use gudgeon_scene, only: scene_t
+  use monotone_cubic, only: new_monotone_cubic
   use crank_turns, only: new_crank_turns
   implicit none
   private
@@ -55,11 +56,13 @@ contains
     if (present(without_tables)) makes_tables = .not. without_tables
     if (makes_tables) call make_tables(case, scene)
     associate (m => case%mechanism)
-      scene%chain%bodies = new_bodies(crank_t(m%crank_length, m%crank_mass, m%crank_inertia, m%crank_com), &
+      scene%chain%bodies = new_bodies(crank_t(m%crank_length, m%crank_mass, &
+        m%crank_inertia + case%drive%flywheel_inertia, m%crank_com), &
         rod_t(m%rod_length, m%rod_mass, m%rod_inertia, m%rod_com), piston_of(case, scene), gravity_of(case))
     end associate
     if (scene%chain%has_elastic_rod()) call scene%chain%elastic%rod%prepare(scene%chain%bodies%rod)
     scene%chain%drive = drive_t(case%drive%kind == 'free', case%drive%torque, case%drive%damping)
+    call vary_drive(case, scene)
     scene%start_angle = case%initial%crank_angle_deg*degree
     scene%start_speed = case%initial%crank_speed
     scene%span = simulated_time(case)
@@ -139,6 +142,24 @@ contains
     if (allocated(case%combustion) .or. allocated(case%measured)) allocate (scene%gas)
   end subroutine assemble_scene
 
+  !> A torque that follows from the speed, or a held speed that is run up.
+  subroutine vary_drive(case, scene)
+    type(case_t), intent(in) :: case
+    type(scene_t), intent(inout) :: scene
+    associate (drive => case%drive)
+      scene%runs_up = drive%kind == 'constant_speed' .and. drive%ramp_time > 0
+      if (.not. (scene%runs_up .or. scene%chain%drive%free_crank .and. drive%table%is_wanted())) return
+      allocate (scene%chain%varying)
+      if (scene%runs_up) then
+        scene%chain%varying%ramp_time = drive%ramp_time
+        scene%chain%varying%first_speed = drive%ramp_from
+        scene%chain%varying%last_speed = case%initial%crank_speed
+      else
+        allocate (scene%chain%varying%torque, source=new_monotone_cubic(drive%table%x, drive%table%y))
+      end if
+    end associate
+  end subroutine vary_drive
+
   !> Make the gas ready at the start.
   subroutine prepare_gas(case, scene, error)
     type(case_t), intent(in) :: case
@@ -154,7 +175,8 @@ contains
         call case%combustion%prepare(m%crank_length, m%rod_length, tolerance, scene%gas, error)
       end if
     end associate
-    if (.not. allocated(error)) call scene%gas%start(scene%start_angle, scene%start_speed)
+    if (.not. allocated(error)) &
+      call scene%gas%start(scene%start_angle, merge(case%drive%ramp_from, scene%start_speed, scene%runs_up))
   end subroutine prepare_gas
 
   !> Find what the laws need to know of their bearings.

@@ -55,11 +55,11 @@ contains
     end do
     if (allocated(self%gas)) then
       n = self%gas%n_events
-      call self%gas%events(self%crank_angle(t, y), self%crank_speed(y), g(k + 1:k + n), g_rate(k + 1:k + n))
+      call self%gas%events(self%crank_angle(t, y), self%crank_speed(t, y), g(k + 1:k + n), g_rate(k + 1:k + n))
       k = k + n
     end if
     if (allocated(self%turns)) then
-      call self%turns%events(self%crank_angle(t, y), self%crank_speed(y), g(k + 1:k + n_turn_events), &
+      call self%turns%events(self%crank_angle(t, y), self%crank_speed(t, y), g(k + 1:k + n_turn_events), &
         g_rate(k + 1:k + n_turn_events))
       k = k + n_turn_events
     end if
@@ -87,7 +87,7 @@ contains
     action = event_continue
     associate (i => self%event_of(index)%joint, event => self%event_of(index)%event)
       if (i == of_gas) then
-        call self%gas%pass(event, self%crank_angle(t, y), self%crank_speed(y))
+        call self%gas%pass(event, self%crank_angle(t, y), self%crank_speed(t, y))
       else if (i == of_turns) then
         call self%turns%pass(event, self%crank_angle(t, y), action)
       else if (i == of_guide) then

@@ -2,6 +2,7 @@
 submodule (gudgeon_scene) scene_tangent
   use ode_problem, only: difference_jacobian
   use chain_motion, only: crank_pin
+  use chain_bodies, only: drive_t
   use friction_law, only: most_friction_states
   use crank_rod_tangent, only: motion_change_t, load_change_t, motion_change, acceleration_change
   implicit none
@@ -10,6 +11,7 @@ contains
 
   module procedure jacobian
     type(evaluation_t) :: now
+    type(drive_t) :: drive
     type(motion_change_t) :: change
     type(load_change_t) :: load_change
     real(dp) :: force(3, 5), direction(6), loads(3), a(3)
@@ -33,7 +35,9 @@ contains
     m = 3 - skip
     n = self%joints(1)%n_friction_states
     if (n > 0) call self%joints(1)%state_slopes(now%relative(1), now%joint(1), by_states, of_rates)
-    associate (bodies => self%chain%bodies, drive => self%chain%drive)
+    drive = self%chain%drive
+    if (allocated(self%chain%varying)) drive%damping = drive%damping - self%chain%varying%torque_slope(now%motion%crank_speed)
+    associate (bodies => self%chain%bodies)
       do i = 1 + skip, 6
         if (i == 4 .and. skip == 1) cycle
         direction = 0

@@ -1,0 +1,74 @@
+!> A drive that varies: a torque that follows from the speed, or a held speed that is run up.
+!>
+!> The held speed goes from one value to another within a time T by w = w_0 + (w_1 - w_0) s^3 (10 - 15 s + 6 s^2), s = t/T, so that
+!> its acceleration begins and ends at 0 without a jump in its own rate.
+module varying_drive
+  use gudgeon_kinds, only: dp
+  use monotone_cubic, only: monotone_cubic_t
+  use chain_motion, only: motion_t
+  use chain_bodies, only: drive_t
+  implicit none
+  private
+  public :: varying_drive_t
+
+  type :: varying_drive_t
+    type(monotone_cubic_t), allocatable :: torque   !! [N m] over the speed [rad/s], beside the drive's own
+    real(dp) :: ramp_time = 0                       !! T [s]; 0: the speed is not run up
+    real(dp) :: first_speed = 0, last_speed = 0     !! w_0, w_1 [rad/s]
+  contains
+    procedure :: at
+    procedure :: turned
+    procedure :: speed
+    procedure :: acceleration
+    procedure :: torque_slope
+  end type varying_drive_t
+
+contains
+
+  !> The drive at a speed of what it turns [rad/s], where a held crank has the acceleration of `motion`.
+  pure type(drive_t) function at(self, drive, speed, motion)
+    class(varying_drive_t), intent(in) :: self
+    type(drive_t), intent(in) :: drive
+    real(dp), intent(in) :: speed
+    type(motion_t), intent(in) :: motion
+    at = drive
+    if (allocated(self%torque)) at%torque = drive%torque + self%torque%value(speed)
+    if (self%ramp_time > 0) at%acceleration = motion%held_acceleration
+  end function at
+
+  !> Angle that a held crank has turned by the time t [rad].
+  pure real(dp) function turned(self, t)
+    class(varying_drive_t), intent(in) :: self
+    real(dp), intent(in) :: t   !! [s]
+    real(dp) :: s
+    s = min(t/self%ramp_time, 1.0_dp)
+    turned = self%first_speed*min(t, self%ramp_time) + (self%last_speed - self%first_speed)*self%ramp_time &
+      *s**4*(2.5_dp - s*(3 - s)) + self%last_speed*max(t - self%ramp_time, 0.0_dp)
+  end function turned
+
+  !> Speed of a held crank [rad/s].
+  pure real(dp) function speed(self, t)
+    class(varying_drive_t), intent(in) :: self
+    real(dp), intent(in) :: t
+    real(dp) :: s
+    s = min(t/self%ramp_time, 1.0_dp)
+    speed = self%first_speed + (self%last_speed - self%first_speed)*s**3*(10 - s*(15 - 6*s))
+  end function speed
+
+  !> Acceleration of a held crank [rad/s^2].
+  pure real(dp) function acceleration(self, t)
+    class(varying_drive_t), intent(in) :: self
+    real(dp), intent(in) :: t
+    real(dp) :: s
+    s = min(t/self%ramp_time, 1.0_dp)
+    acceleration = (self%last_speed - self%first_speed)/self%ramp_time*30*(s*(1 - s))**2
+  end function acceleration
+
+  !> Derivative of the torque by the speed [N m s/rad].
+  pure real(dp) function torque_slope(self, speed)
+    class(varying_drive_t), intent(in) :: self
+    real(dp), intent(in) :: speed
+    torque_slope = 0
+    if (allocated(self%torque)) torque_slope = self%torque%slope(speed)
+  end function torque_slope
+end module varying_drive

@@ -1,0 +1,230 @@
+!> Drives that vary: a speed that is run up, a torque that follows from the speed, a flywheel.
+module test_drive
+  use gudgeon_kinds, only: dp
+  use ode_problem, only: difference_jacobian
+  use varying_drive, only: varying_drive_t
+  use case_definition, only: case_t
+  use case_file, only: read_case
+  use gudgeon_errors, only: error_t
+  use gudgeon_scene, only: scene_t
+  use scene_builder, only: build_scene
+  use checks, only: checks_t
+  use collecting_sink, only: trace_t, run_case, column
+  implicit none
+  private
+  public :: run_test_drive
+
+  integer, parameter :: long = 60
+  character(len=long), parameter :: alone(4) = [character(len=long) :: 'joint.kind=ideal', 'joint.clearance=0', 'contact=none', &
+    'lubrication=none']
+  character(len=*), parameter :: ramp = 'cases/drive/start_up.nml', motor = 'cases/drive/motor.nml'
+
+contains
+
+  subroutine run_test_drive(check)
+    class(checks_t), intent(inout) :: check
+    call speed_of_a_ramp(check)
+    call moment_of_an_ideal_ramp(check)
+    call ramp_with_play(check, ['piston_pin'], 0)
+    call ramp_with_play(check, ['crank_pin '], 1)
+    call ramp_with_play(check, ['both      '], 2)
+    call run_up_on_a_line(check)
+    call slopes_of_a_torque(check)
+    call a_flywheel_is_inertia(check)
+    call what_does_not_fit(check)
+  end subroutine run_test_drive
+
+  !> Angle, speed and acceleration are derivatives of each other, without a jump at the ends.
+  subroutine speed_of_a_ramp(check)
+    class(checks_t), intent(inout) :: check
+    type(varying_drive_t) :: drive
+    real(dp) :: t
+    integer :: i
+    real(dp), parameter :: h = 1e-5_dp
+    drive%ramp_time = 0.4_dp
+    drive%first_speed = -20
+    drive%last_speed = 300
+    do i = 1, 59
+      t = 0.01_dp*i
+      call check%close_to((drive%turned(t + h) - drive%turned(t - h))/(2*h), drive%speed(t), 1e-5_dp, &
+        'the speed is the rate of the angle')
+      call check%close_to((drive%speed(t + h) - drive%speed(t - h))/(2*h), drive%acceleration(t), 1e-3_dp, &
+        'the acceleration that of the speed')
+    end do
+    call check%close_to(drive%speed(0.0_dp), -20.0_dp, 1e-15_dp, 'first speed')
+    call check%close_to(drive%speed(0.2_dp), 140.0_dp, 1e-12_dp, 'half way it is the mean')
+    call check%close_to(drive%speed(7.0_dp), 300.0_dp, 1e-15_dp, 'last speed')
+    call check%close_to(drive%turned(1.4_dp), 140*0.4_dp + 300, 1e-12_dp, 'angle: the mean speed, and the last one')
+    call check%close_to(drive%acceleration(0.0_dp) + drive%acceleration(0.4_dp) + drive%acceleration(9.0_dp), 0.0_dp, 1e-15_dp, &
+      'no acceleration at the ends')
+  end subroutine speed_of_a_ramp
+
+  !> A crank, a massless rod and a piston held on a ramp, without gravity: the moment is I q'' + m x'' dx/dq with x(q) and its
+  !> derivatives as the textbook has them.
+  subroutine moment_of_an_ideal_ramp(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    character(len=long), parameter :: settings(6) = [character(len=long) :: 'mechanism.rod_mass=0', 'mechanism.rod_inertia=0', &
+      'mechanism.gravity=0', 'mechanism.piston_mass=0.5', 'drive.flywheel_inertia=0.03', 'integrator.relative_tolerance=1e-9']
+    real(dp) :: q, w, a, s, root, first, second, want, inertia
+    integer :: i
+    real(dp), parameter :: r = 0.0508_dp, l = 0.2032_dp, m = 0.5_dp
+    trace = run_case(ramp, [settings, alone], .true.)
+    call check%equal_text(outcome(trace), 'done', 'an ideal mechanism is run up')
+    if (allocated(trace%error)) return
+    inertia = 0.006_dp + 0.03_dp
+    do i = 1, size(trace%values, 2)
+      q = trace%values(column(trace, 'crank_angle[rad]'), i)
+      w = trace%values(column(trace, 'crank_speed[rad/s]'), i)
+      a = trace%values(column(trace, 'crank_acceleration[rad/s2]'), i)
+      s = min(trace%values(1, i)/0.1_dp, 1.0_dp)
+      call check%close_to(w, 250*(10*s**3 - 15*s**4 + 6*s**5), 1e-9_dp, 'speed of the ramp')
+      call check%close_to(a, 2500*(30*s**2 - 60*s**3 + 30*s**4), 1e-7_dp, 'acceleration of the ramp')
+      root = sqrt(l**2 - (r*sin(q))**2)
+      first = -r*sin(q) - r**2*sin(q)*cos(q)/root
+      second = -r*cos(q) - r**2*(cos(2*q)/root + (r*sin(q)*cos(q))**2/root**3)
+      want = inertia*a + m*(first*a + second*w**2)*first
+      call check%close_to(trace%values(column(trace, 'crank_moment[N.m]'), i), want, 1e-7_dp, 'moment that runs it up')
+    end do
+    call check%that(trace%report%figures%max_energy_residual < 1e-8_dp*trace%report%figures%max_energy, &
+      'its energy is the work done')
+  end subroutine moment_of_an_ideal_ramp
+
+  !> With clearance the moment does the work that the energy tells, in the closed form of each chain.
+  subroutine ramp_with_play(check, place, kind)
+    class(checks_t), intent(inout) :: check
+    character(len=10), intent(in) :: place(1)
+    integer, intent(in) :: kind   !! 0: at the piston pin, 1: at the crank pin, 2: both
+    type(trace_t) :: trace
+    character(len=long), parameter :: run(5) = [character(len=long) :: 'drive.kind=constant_speed', 'drive.ramp_time=4e-3', &
+      'drive.ramp_from=20', 'integrator.relative_tolerance=1e-8', 'integrator.revolutions=0.4']
+    if (kind == 0) then
+      trace = run_case('cases/flores/dry_0500um.nml', run)
+    else if (kind == 1) then
+      trace = run_case('cases/joints/crank_pin.nml', run)
+    else
+      trace = run_case('cases/joints/both_pins.nml', run)
+    end if
+    call check%equal_text(outcome(trace), 'done', 'a ramp with clearance: '//place(1))
+    if (allocated(trace%error)) return
+    call check%that(trace%report%figures%max_energy_residual < 1e-6_dp*trace%report%figures%max_energy, &
+      'its energy is the work done: '//place(1))
+    call check%that(maxval(trace%values(column(trace, 'crank_acceleration[rad/s2]'), :)) > 1e4_dp, 'and it is accelerated')
+  end subroutine ramp_with_play
+
+  !> A pure inertia J on a motor of M = M0 (1 - w/w0): w = w0 (1 - exp(-M0 t/(J w0))).
+  subroutine run_up_on_a_line(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    character(len=long), parameter :: settings(9) = [character(len=long) :: 'mechanism.rod_mass=0', 'mechanism.rod_inertia=0', &
+      'mechanism.gravity=0', 'mechanism.piston_mass=1e-12', 'mechanism.crank_inertia=0.02', 'drive.flywheel_inertia=0.08', &
+      'drive.damping=0', 'drive.torque=0', 'integrator.relative_tolerance=1e-10']
+    integer :: i
+    real(dp) :: t
+    trace = run_case(motor, [settings, alone], .true.)
+    call check%equal_text(outcome(trace), 'done', 'a motor runs an inertia up')
+    if (allocated(trace%error)) return
+    do i = 1, size(trace%values, 2)
+      t = trace%values(1, i)
+      call check%close_to(trace%values(column(trace, 'crank_speed[rad/s]'), i), 200*(1 - exp(-30*t/(0.1_dp*200))), 1e-6_dp, &
+        'exponential run-up')
+      call check%close_to(trace%values(column(trace, 'crank_moment[N.m]'), i), 30*exp(-30*t/(0.1_dp*200)), 1e-6_dp, &
+        'the motor''s torque')
+    end do
+    call check%that(trace%report%figures%max_energy_residual < 1e-8_dp*trace%report%figures%max_energy, &
+      'its energy is the work done')
+  end subroutine run_up_on_a_line
+
+  !> The closed form of the Jacobian knows the slope of the torque, and a held crank's acceleration.
+  subroutine slopes_of_a_torque(check)
+    class(checks_t), intent(inout) :: check
+    type(case_t) :: case
+    type(scene_t), allocatable :: scene
+    type(error_t), allocatable :: error
+    real(dp), allocatable :: y(:), by_p(:, :), by_v(:, :), want_p(:, :), want_v(:, :)
+    character(len=long) :: settings(1)
+    integer :: i, n
+    do i = 1, 2
+      settings(1) = 'output.ideal_twin=F'
+      if (i == 1) call read_case(motor, settings, case, error)
+      if (i == 2) call read_case(ramp, settings, case, error)
+      call check%that(.not. allocated(error), 'a case to differentiate')
+      if (allocated(error)) return
+      call build_scene(case, .false., scene, error)
+      n = scene%n_positions
+      y = scene%initial_state()
+      if (i == 1) y(scene%crank%position) = 0.7_dp
+      if (i == 1) y(scene%crank%rate) = 90
+      y(scene%joints(1)%at%position:scene%joints(1)%at%position + 1) = [3e-6_dp, -5e-6_dp]
+      y(scene%joints(1)%at%rate:scene%joints(1)%at%rate + 1) = [1e-3_dp, 2e-3_dp]
+      allocate (by_p(n, n), by_v(n, n), want_p(n, n), want_v(n, n), source=0.0_dp)
+      call scene%jacobian(0.05_dp, y, by_p, by_v)
+      call difference_jacobian(scene, 0.05_dp, y, want_p, want_v)
+      call check%that(maxval(abs(by_v - want_v)) < 1e-4_dp*maxval(abs(want_v)), 'derivatives by the rates')
+      call check%that(maxval(abs(by_p - want_p)) < 1e-4_dp*maxval(abs(want_p)), 'derivatives by the positions')
+      if (i == 1) call check%relative(by_v(1, 1), want_v(1, 1), 1e-4_dp, 'of the crank by its speed')
+      deallocate (by_p, by_v, want_p, want_v)
+    end do
+  end subroutine slopes_of_a_torque
+
+  !> A flywheel on the crank is the same as more inertia of the crank, and what a stiff crankshaft makes of its own.
+  subroutine a_flywheel_is_inertia(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: flywheel, inertia, shaft
+    character(len=long), parameter :: run(3) = [character(len=long) :: 'integrator.revolutions=1', &
+      'integrator.relative_tolerance=1e-9', &
+      'output.ideal_twin=F']
+    real(dp), allocatable :: one(:), two(:)
+    flywheel = run_case('cases/flores/ideal.nml', [run, [character(len=long) :: 'drive.kind=free', 'drive.flywheel_inertia=2e-3']])
+    inertia = run_case('cases/flores/ideal.nml', [run, [character(len=long) :: 'drive.kind=free', &
+      'mechanism.crank_inertia=2.01e-3']])
+    shaft = run_case('cases/flores/ideal.nml', [run, [character(len=long) :: 'drive.kind=free', &
+      'crankshaft.flywheel_inertia=2e-3', &
+      'crankshaft.torsional_stiffness=1e6', 'crankshaft.torsional_damping=20']])
+    call check%equal_text(outcome(flywheel)//outcome(inertia)//outcome(shaft), 'donedonedone', 'three flywheels')
+    if (allocated(flywheel%error) .or. allocated(inertia%error) .or. allocated(shaft%error)) return
+    one = speeds(flywheel)
+    two = speeds(inertia)
+    call check%that(maxval(abs(one/two - 1)) < 1e-12_dp, 'a flywheel adds its inertia')
+    two = speeds(shaft)
+    call check%that(maxval(abs(one/two - 1)) < 1e-3_dp, 'as one on a stiff shaft does')
+  end subroutine a_flywheel_is_inertia
+
+  !> How a run ended, or why it did not begin.
+  function outcome(trace) result(text)
+    type(trace_t), intent(in) :: trace
+    character(len=:), allocatable :: text
+    text = ''
+    if (allocated(trace%error)) text = trace%error%message
+    if (allocated(trace%report%status)) text = trace%report%status
+  end function outcome
+
+  pure function speeds(trace) result(values)
+    type(trace_t), intent(in) :: trace
+    real(dp) :: values(size(trace%values, 2))
+    values = trace%values(column(trace, 'crank_speed[rad/s]'), :)
+  end function speeds
+
+  subroutine what_does_not_fit(check)
+    class(checks_t), intent(inout) :: check
+    call refused(motor, 'drive.ramp_time=1', 'ramp_time = 1: needs kind = ''constant_speed''')
+    call refused(motor, 'drive.kind=constant_speed', 'torque_table')
+    call refused(ramp, 'drive.kind=free', 'ramp_time = 0.1: needs kind = ''constant_speed''')
+    call refused(ramp, 'drive.ramp_time=-1', 'ramp_time = -1: must be > 0')
+    call refused('cases/flores/ideal.nml', 'drive.ramp_from=3', 'ramp_from = 3: needs ramp_time')
+    call refused('cases/flores/ideal.nml', 'drive.flywheel_inertia=-1', 'flywheel_inertia = -1: must be >= 0')
+    call refused('cases/flores/ideal.nml', 'drive.torque_table=no.csv', 'torque_table: cases/flores/no.csv: No such file')
+    call refused(ramp, 'drive.torque_table=../gas/indicator.csv', 'indicator.csv:2: crank_angle[deg]: the header must name')
+
+  contains
+
+    subroutine refused(file, setting, wanted)
+      character(len=*), intent(in) :: file, setting, wanted
+      type(case_t) :: case
+      type(error_t), allocatable :: error
+      call read_case(file, [setting], case, error)
+      call check%that(allocated(error), 'refused: '//setting)
+      if (allocated(error)) call check%that(index(error%message, wanted) > 0, 'in these words: '//setting)
+    end subroutine refused
+  end subroutine what_does_not_fit
+end module test_drive
