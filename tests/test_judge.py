@@ -54,6 +54,8 @@ SCENES = {
     "two_stroke": ("gas/two_stroke", {"integrator.method": "'auto'", "integrator.revolutions": "1.2", "initial.crank_angle_deg": "170"}),
     "measured": ("gas/measured", {"integrator.method": "'auto'", "integrator.revolutions": "0.5", "initial.crank_angle_deg": "300",
                                   "cylinder_pressure.offset_deg": "-17.3"}),
+    "ramp": ("drive/start_up", {"integrator.method": "'auto'", "integrator.end_time": "0.02", "output.interval": "1e-4"}),
+    "motor": ("drive/motor", {"integrator.method": "'auto'", "integrator.end_time": "0.1", "output.interval": "5e-4"}),
     "both": ("joints/both_pins", {"integrator.revolutions": "0.2", "drive.kind": "'free'", "mechanism.gravity_angle_deg": "25"}),
     "crank": ("joints/crank_pin", {"integrator.revolutions": "0.2", "integrator.relative_tolerance": "1e-7"}),
     "films": ("joints/both_pins_lubricated", {"integrator.revolutions": "0.5"}),
@@ -64,7 +66,7 @@ LONG_STEPS = ("sim_V", {"integrator.method": "'auto'", "integrator.revolutions":
 PHASES = {"dry": {0, 2}, "sticks": {0, 2}, "threlfall": {0, 2}, "brown_mcphee": {0, 2}, "stribeck": {0, 2}, "lugre": {0, 2},
           "elasto_plastic": {0, 2}, "conformal": {0, 2}, "johnson": {0, 2},
           "liner": {0, 2}, "pereira": {0, 2}, "dissipation": {0, 2}, "film": {1}, "contact": {1, 2}, "weighted": {1, 2},
-          "compressor": {1}, "two_stroke": {1}, "measured": {1}, "both": {0, 2}, "crank": {0}, "films": {1}, "ideal": {0}}   # 0 free flight, 1 film, 2 contact
+          "compressor": {1}, "two_stroke": {1}, "measured": {1}, "ramp": {1}, "motor": {1}, "both": {0, 2}, "crank": {0}, "films": {1}, "ideal": {0}}   # 0 free flight, 1 film, 2 contact
 
 #: (what is changed, scene, column, change of (value, row), what the verdict must say)
 CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
@@ -119,6 +121,9 @@ CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
     ("more pressure in a compressor", "compressor", "cylinder_pressure", lambda v, i: v * 1.001, "gas law"),
     ("more pressure in a two-stroke engine", "two_stroke", "cylinder_pressure", lambda v, i: v * 1.001, "gas law"),
     ("another pressure than the measured one", "measured", "cylinder_pressure", lambda v, i: v * (1 + 1e-4), "gas law"),
+    ("another speed of the ramp", "ramp", "crank_speed", lambda v, i: v * (1 + 1e-9), "held speed"),
+    ("another acceleration of the ramp", "ramp", "crank_acceleration", lambda v, i: v * (1 + 1e-9), "held acceleration"),
+    ("more torque of the motor", "motor", "crank_moment", lambda v, i: v * (1 + 1e-9), "drive's torque"),
     ("another gas force", "film", "gas_force", lambda v, i: -v, "gas force"),
     ("another cylinder", "film", "cylinder_volume", lambda v, i: v * 1.001, "cylinder volume"),
     ("crank speed that is not the rate of the angle", "ideal", "crank_angle", lambda v, i: v * 1.01, "is not the integral of its rate"),

@@ -5,6 +5,7 @@ import dataclasses
 import math
 
 from .contact import Contact
+from .drive import Drive
 from .gas import gas_of
 from .laws import ROUNDING, Friction, squeeze_film
 from .mechanics import Bodies, Row
@@ -59,6 +60,7 @@ class RowChecks:
         self.contact = Contact(run) if self.has_joint and run.text("contact.law") else None
         self.friction = Friction(run) if self.has_joint and run.text("friction.law") else None
         self.weighted = self.contact is not None and run.text("lubrication.transition") == "weighted"
+        self.drive = Drive(run) if joint == "piston_pin" and "crankshaft.flywheel_inertia" not in run.case else None
         self.gas = gas_of(run) if joint == "piston_pin" else None
         tolerance = min(run.number("integrator.relative_tolerance"), 1e-3)
         self.gas_tolerance = max(10 * tolerance, 1e-9)
@@ -109,6 +111,8 @@ class RowChecks:
                 self.crank_pin.check_joint(at_crank_pin, t)
             if self.has_joint:
                 self.check_joint(row, t)
+            for name, (miss, allowed) in (self.drive.misses(row, t) if self.drive else {}).items():
+                self.take(name, miss, allowed + 1e-300, t)
             if self.gas:
                 self.check_gas(row, i, t)
         if self.crank_pin:
