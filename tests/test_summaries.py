@@ -40,7 +40,10 @@ def judge(folder: Path, name: str, slack: float) -> None:
     check(fractions <= 1 + 1e-9, f"{name}: times by method sum to {fractions} of the run")
     events = table(folder / f"{name}.events.csv") if (folder / f"{name}.events.csv").exists() else []
     loose = {joint for joint, prefix in PREFIXES.items() if f"{prefix}film_thickness[m]" in rows[0]}
-    check({event["joint"] for event in events} <= loose, f"{name}: events of other joints than {loose}")
+    corners = {f"guide_{i}" for i in range(1, 5) if f"guide_{i}_gap[m]" in rows[0]}
+    check({event["joint"] for event in events} <= loose | corners, f"{name}: events of other joints than {loose | corners}")
+    for corner in corners:
+        judge_corner(name, corner, summary, rows, [event for event in events if event["joint"] == corner], slack)
     for joint, prefix in PREFIXES.items():
         has_figures = any(f"{prefix}{quantity}" in summary for quantity in ("contacts", "min_film_thickness", "max_penetration"))
         check(has_figures == (joint in loose), f"{name}: figures of the {joint} {'missing' if joint in loose else 'of an ideal pin'}")
@@ -77,6 +80,22 @@ def judge_contacts(name: str, prefix: str, summary: dict[str, str], rows: list[d
         check(float(event["max_penetration[m]"]) >= depth, f"{name}: a {prefix}contact to {end} s is deeper in a row")
         check(float(event["max_normal_force[N]"]) >= normal, f"{name}: a {prefix}contact to {end} s presses harder in a row")
         check(float(event["max_penetration[m]"]) <= deepest, f"{name}: a {prefix}contact to {end} s is deeper than the deepest")
+
+
+def judge_corner(name: str, corner: str, summary: dict[str, str], rows: list[dict[str, str]], events: list[dict[str, str]],
+                 slack: float) -> None:
+    """Contacts of one corner of a piston with clearance in its bore."""
+    begun = sum(event["event"] == "contact_begins" for event in events)
+    check(begun == int(summary[f"{corner}_contacts"]), f"{name}: {corner}_contacts are not the {begun} of the events")
+    deepest, largest = (float(summary[f"{corner}_{quantity}"]) for quantity in ("max_penetration", "max_force"))
+    depth = max(-float(row[f"{corner}_gap[m]"]) for row in rows)
+    force_of_rows = max(abs(float(row[f"{corner}_force[N]"])) for row in rows)
+    check(deepest >= depth * (1 - slack), f"{name}: {corner}_max_penetration {deepest!r} is below a row, {depth!r}")
+    check(largest >= force_of_rows * (1 - slack), f"{name}: {corner}_max_force {largest!r} is below a row, {force_of_rows!r}")
+    for event in events:
+        if event["event"] == "contact_ends":
+            check(float(event["max_penetration[m]"]) <= deepest, f"{name}: a contact of {corner} is deeper than the deepest")
+            check(float(event["max_normal_force[N]"]) <= largest, f"{name}: a contact of {corner} presses harder than the largest")
 
 
 def main() -> int:
