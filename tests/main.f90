@@ -13,6 +13,7 @@ program gudgeon_tests
   use test_asperities, only: run_test_asperities
   use test_film_transition, only: run_test_film_transition
   use test_oil_viscosity, only: run_test_oil_viscosity
+  use test_elastic_film, only: run_test_elastic_film
   use test_case_file, only: run_test_case_file
   use test_chain, only: run_test_chain
   use test_checkpoint, only: run_test_checkpoint
@@ -84,6 +85,7 @@ program gudgeon_tests
   call run('asperities', run_test_asperities)
   call run('film_transition', run_test_film_transition)
   call run('oil_viscosity', run_test_oil_viscosity)
+  call run('elastic_film', run_test_elastic_film)
   call run('case_file', run_test_case_file)
   call run('chain', run_test_chain)
   call run('checkpoint', run_test_checkpoint)

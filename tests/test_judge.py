@@ -56,6 +56,7 @@ SCENES = {
                                   "cylinder_pressure.offset_deg": "-17.3"}),
     "ramp": ("drive/start_up", {"integrator.method": "'auto'", "integrator.end_time": "0.02", "output.interval": "1e-4"}),
     "motor": ("drive/motor", {"integrator.method": "'auto'", "integrator.end_time": "0.1", "output.interval": "5e-4"}),
+    "elastic": ("film/elastic", {"integrator.revolutions": "0.1", "lubrication.variant": "short"}),
     "both": ("joints/both_pins", {"integrator.revolutions": "0.2", "drive.kind": "'free'", "mechanism.gravity_angle_deg": "25"}),
     "crank": ("joints/crank_pin", {"integrator.revolutions": "0.2", "integrator.relative_tolerance": "1e-7"}),
     "films": ("joints/both_pins_lubricated", {"integrator.revolutions": "0.5"}),
@@ -65,7 +66,7 @@ SCENES = {
 LONG_STEPS = ("sim_V", {"integrator.method": "'auto'", "integrator.revolutions": "1.2", "initial.crank_angle_deg": "170"})
 PHASES = {"dry": {0, 2}, "sticks": {0, 2}, "threlfall": {0, 2}, "brown_mcphee": {0, 2}, "stribeck": {0, 2}, "lugre": {0, 2},
           "elasto_plastic": {0, 2}, "conformal": {0, 2}, "johnson": {0, 2},
-          "liner": {0, 2}, "pereira": {0, 2}, "dissipation": {0, 2}, "film": {1}, "contact": {1, 2}, "weighted": {1, 2},
+          "liner": {0, 2}, "pereira": {0, 2}, "dissipation": {0, 2}, "film": {1}, "contact": {1, 2}, "weighted": {1, 2}, "elastic": {1},
           "compressor": {1}, "two_stroke": {1}, "measured": {1}, "ramp": {1}, "motor": {1}, "both": {0, 2}, "crank": {0}, "films": {1}, "ideal": {0}}   # 0 free flight, 1 film, 2 contact
 
 #: (what is changed, scene, column, change of (value, row), what the verdict must say)
@@ -117,6 +118,8 @@ CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
     ("another film", "film", "film_force_x", lambda v, i: v * 1.001, "film force on the pin"),
     ("more film beside a contact", "weighted", "film_force_y", lambda v, i: v * (1 + 1e-5), "contact force on the pin"),
     ("harder contact beside a film", "weighted", "normal_force", lambda v, i: v * (1 + 1e-5), "contact law"),
+    ("a film elsewhere between elastic walls", "elastic", "film_eccentricity_x", lambda v, i: v * (1 + 1e-5), "elastic walls"),
+    ("walls that give way more", "elastic", "wall_deflection", lambda v, i: v * (1 + 1e-6), "wall deflection"),
     ("more pressure", "film", "cylinder_pressure", lambda v, i: v * 1.001, "gas law"),
     ("more pressure in a compressor", "compressor", "cylinder_pressure", lambda v, i: v * 1.001, "gas law"),
     ("more pressure in a two-stroke engine", "two_stroke", "cylinder_pressure", lambda v, i: v * 1.001, "gas law"),
@@ -154,6 +157,7 @@ LIARS = [
     ("a deeper transition", "weighted", "lubrication.transition_depth", "3.001e-6", "contact law"),
     ("a film held farther out", "weighted", "lubrication.least_film_ratio", "0.0299", "film law"),
     ("thicker oil beside a contact", "weighted", "lubrication.viscosity", "0.0201", "film law"),
+    ("another stiffness under the film", "elastic", "contact.housing_compliance", "0.3864", "elastic walls"),
     ("a heavier piston", "ideal", "mechanism.piston_mass", "0.92", "Newton, piston"),
     ("gravity from elsewhere", "both", "mechanism.gravity_angle_deg", "25.01", "Newton, crank"),
     ("a heavier rod between two loose pins", "both", "mechanism.rod_mass", "0.2101", "energy column"),

@@ -54,6 +54,7 @@ contains
     call split(check, 'cases/sim_I.nml', 'crank_revolutions=0.1', 'auto', 'drive.torque=100', from_rest=.true.)
     call split(check, 'cases/sim_I_oscillating.nml', 'revolutions=0.2', 'auto', 'output.sampling=crank_angle')
     call split(check, 'cases/flores/dry_0500um.nml', 'revolutions=0.2', 'adams', 'output.sampling=crank_angle')
+    call split(check, 'cases/film/elastic.nml', 'revolutions=0.1', 'auto', 'lubrication.variant=short')
     call split(check, 'cases/film/weighted.nml', 'revolutions=0.4', 'auto', 'lubrication.transition_shape=linear')
     call split(check, 'cases/flores/lubricated_400cP.nml', 'revolutions=1', 'auto', 'run.until=periodic')
     call split(check, 'cases/joints/both_pins.nml', 'revolutions=0.1', 'auto', 'drive.kind=free')

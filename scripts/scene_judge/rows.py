@@ -59,6 +59,7 @@ class RowChecks:
         self.film = run.text("lubrication.law")
         self.contact = Contact(run) if self.has_joint and run.text("contact.law") else None
         self.friction = Friction(run) if self.has_joint and run.text("friction.law") else None
+        self.elastic = self.run.case.get("lubrication.elastic_film", [False])[0]
         self.weighted = self.contact is not None and run.text("lubrication.transition") == "weighted"
         self.drive = Drive(run) if joint == "piston_pin" and "crankshaft.flywheel_inertia" not in run.case else None
         self.gas = gas_of(run) if joint == "piston_pin" else None
@@ -93,6 +94,8 @@ class RowChecks:
     def joint_moment(self, row: Row) -> float | None:
         """Of the joint on its journal [N m]: friction at the pin's radius; none by pressure; None for the shear of a film."""
         phase = row.get.get("phase", FREE)
+        if self.film and phase != FREE and self.run.case.get("lubrication.film_moment", [False])[0]:
+            return None
         if self.weighted and self.film == "oscillating_film":
             return None
         if phase == CONTACT and self.friction:
@@ -124,7 +127,8 @@ class RowChecks:
         get, c = row.get, self.run.number("joint.clearance")
         e = get["eccentricity_x"], get["eccentricity_y"]
         size = math.hypot(*e)
-        self.take("film thickness", abs(c - size - get["film_thickness"]), 1e-14 * (c + size), t)
+        thinnest = math.hypot(get["film_eccentricity_x"], get["film_eccentricity_y"]) if self.elastic else size
+        self.take("film thickness", abs(c - thinnest - get["film_thickness"]), 1e-14 * (c + size), t)
         self.take("eccentricity ratio", abs(size / c - get["eccentricity_ratio"]), 1e-14 * (1 + size / c), t)
         phase = get["phase"]
         n = (e[0] / size, e[1] / size) if size > 0 else (1.0, 0.0)
@@ -192,8 +196,22 @@ class RowChecks:
     def check_film(self, row: Row, n: tuple[float, float], give: float, t: float) -> None:
         get = row.get
         self.take("film force on the pin", math.hypot(row.force[0] - get["film_force_x"], row.force[1] - get["film_force_y"]), row.law_noise, t)
+        if self.elastic:
+            self.check_walls(row, give, t)
+            return
         self.take("no contact force in a film", abs(get["normal_force"]) + abs(get["friction_force"]), 0.0, t)
         self.check_film_law(row, n, row.force, 1.0, give, t)
+
+    def check_walls(self, row: Row, give: float, t: float) -> None:
+        """Walls that give way under a film bear what it bears, along their deflection."""
+        get = row.get
+        d = get["eccentricity_x"] - get["film_eccentricity_x"], get["eccentricity_y"] - get["film_eccentricity_y"]
+        depth = math.hypot(*d)
+        want = self.contact.geometry.force(depth) if depth > 0 else 0.0
+        blur = 4e-15 * (self.contact.geometry.exponent + 1) * self.run.number("joint.clearance") / depth if depth > 0 else 0.0
+        miss = math.hypot(row.force[0] + want * d[0] / depth, row.force[1] + want * d[1] / depth) if depth > 0 else math.hypot(*row.force)
+        self.take("elastic walls", miss, (LAW + blur) * want + row.law_noise + 1e-300, t)
+        self.take("wall deflection", abs(depth - get["wall_deflection"]), 1e-14 * (depth + self.run.number("joint.clearance")), t)
 
     def check_film_law(self, row: Row, n: tuple[float, float], force: tuple[float, float], share: float, give: float, t: float) -> None:
         """A share of the film that the case names."""

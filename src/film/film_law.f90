@@ -50,6 +50,7 @@ module film_law
     procedure, non_overridable :: add_least_film
     procedure, non_overridable :: shear_moment
     procedure, non_overridable :: shear_moment_slopes
+    procedure :: is_quasi_static => no
     procedure :: gives_pressure => no
     procedure :: gives_side_flow => no
     procedure :: drag_moment => none
@@ -148,7 +149,8 @@ contains
     end associate
   end function shear_moment_slopes
 
-  !> Whether the law has a pressure above that at the film's ends, and a flow out of these. The default has neither.
+  !> Whether the force is in proportion to v* = e' - (omega/2) z x e, depends on nothing else of the motion and is against it; whether
+  !> the law has a pressure above that at the film's ends, and a flow out of these. The default is none of it.
   pure logical function no(self)
     class(film_law_t), intent(in) :: self
     associate (unused => self)

@@ -37,6 +37,7 @@ module finite_bearing
     procedure :: drag_moment
     procedure :: gives_pressure
     procedure :: gives_side_flow => gives_pressure
+    procedure :: is_quasi_static => gives_pressure
     procedure :: peak_and_flow
     procedure :: reduced_peak_and_flow
     procedure :: pressure_field

@@ -34,6 +34,7 @@ module pinkus_sternlicht
     procedure :: prepare
     procedure :: film_force
     procedure :: force_derivatives
+    procedure :: is_quasi_static
     procedure :: drag_moment
     procedure :: gives_pressure
     procedure :: pressure
@@ -66,6 +67,13 @@ contains
       '.false.', example='.false.')
     call self%add_least_film(list)
   end subroutine parameters
+
+  !> But with the misprint, by which the film pushes a pin that leaves the wall.
+  pure logical function is_quasi_static(self)
+    class(pinkus_sternlicht_t), intent(in) :: self
+    is_quasi_static = .true.
+    if (allocated(self%variant)) is_quasi_static = self%variant /= 'as_printed'
+  end function is_quasi_static
 
   !> The scales of pressure and force, and the sign of (5.36), misprinted where the variant is `as_printed`.
   subroutine prepare(self, bearing, tolerance)

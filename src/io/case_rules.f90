@@ -141,8 +141,10 @@ contains
     else if (allocated(joint%contact)) then
       call check_contact(joint, group, law_group(values, 'contact', place), values, error)
     end if
-    if (.not. allocated(error) .and. allocated(joint%film)) &
-      call check_transition(joint, law_group(values, 'lubrication', place), values, error)
+    if (allocated(error) .or. .not. allocated(joint%film)) return
+    call check_transition(joint, law_group(values, 'lubrication', place), values, error)
+    if (.not. allocated(error)) &
+      call check_elastic_film(joint, law_group(values, 'lubrication', place), law_group(values, 'contact', place), values, error)
   end subroutine check_joint
 
   !> The film has its viscosity from one source.
@@ -193,6 +195,29 @@ contains
       call values%refuse(own, 'transition_depth', 'must be <= clearance', error)
     end if
   end subroutine check_transition
+
+  !> Elastic walls have a stiffness and no loss, the film between them lets itself be driven, and nothing touches.
+  subroutine check_elastic_film(joint, own, contact, values, error)
+    type(joint_case_t), intent(in) :: joint
+    character(len=*), intent(in) :: own, contact   !! groups of the film and of the contact
+    type(case_values_t), intent(in) :: values
+    type(error_t), allocatable, intent(out) :: error
+    if (.not. joint%elastic%is_wanted) then
+      if (joint%elastic%pressure_viscosity > 0) call values%refuse(own, 'pressure_viscosity', &
+        'needs elastic_film = .true.: between rigid walls the pressures are fiction', error)
+    else if (.not. allocated(joint%contact)) then
+      call values%refuse(own, 'elastic_film', 'needs the group contact, whose geometry is the stiffness of the walls', error)
+    else if (joint%contact%name() /= 'hertz') then
+      call values%refuse(contact, 'law', 'must be hertz with elastic_film: the film damps, the walls do not', error)
+    else if (allocated(joint%friction)) then
+      call values%refuse(own, 'elastic_film', 'goes without the group friction: the surfaces do not touch', error)
+    else if (joint%transition%is_weighted()) then
+      call values%refuse(own, 'elastic_film', 'goes without transition = ''weighted'': the film carries at every depth', error)
+    else if (.not. joint%film%is_quasi_static()) then
+      call values%refuse(own, 'elastic_film', 'is for films of wedge and squeeze: finite_bearing, '// &
+        'and closed_form and half_film of pinkus_sternlicht', error)
+    end if
+  end subroutine check_elastic_film
 
   !> Rough surfaces touch through a film, and no contact law is beside them.
   subroutine check_asperities(joint, group, values, error)
@@ -303,7 +328,7 @@ contains
         else if (norm2(rate) > 0) then
           call values%refuse('initial', key//'_rate', 'must be 0 in an ideal joint', error)
         end if
-      else if (.not. (allocated(joint%contact) .or. allocated(joint%asperities)) .and. distance >= joint%clearance) then
+      else if (.not. (joint%can_touch() .or. allocated(joint%asperities)) .and. distance >= joint%clearance) then
         call values%refuse('initial', key, 'must be shorter than the clearance where there is no contact', error)
       else if (distance >= joint%bearing_radius) then
         call values%refuse('initial', key, 'must be shorter than bearing_radius: the pin would be through its bearing', error)

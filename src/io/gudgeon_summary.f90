@@ -323,7 +323,7 @@ contains
     character(len=:), allocatable :: text
     text = ''
     if (joint%has_clearance()) then
-      if (allocated(joint%contact)) text = integer_text(pin%contacts)//' contacts, '
+      if (joint%can_touch()) text = integer_text(pin%contacts)//' contacts, '
       text = text//'film at least '//short_text(pin%min_film_thickness)//' m, '
     end if
     text = text//'pin force up to '//short_text(pin%max_force)//' N'

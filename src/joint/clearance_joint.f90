@@ -17,7 +17,8 @@ module clearance_joint
   use film_transition, only: film_transition_t
   use asperities, only: asperities_t
   use mixed_film, only: mixed_forces, mixed_derivatives
-  use joint_motion, only: joint_motion_t, find_polar, find_speeds, find_sliding
+  use elastic_film, only: elastic_film_t, n_film_states
+  use joint_motion, only: joint_motion_t, most_joint_states, find_polar, find_speeds, find_sliding
   implicit none
   private
   public :: clearance_joint_t, joint_loads_t, most_joints
@@ -51,6 +52,8 @@ module clearance_joint
     class(film_law_t), allocatable :: film
     type(asperities_t), allocatable :: asperities   !! of rough surfaces, beside the film; without contact then
     type(film_transition_t), allocatable :: transition   !! film and contact share the load beyond the clearance
+    type(elastic_film_t), allocatable :: elastic    !! walls that give way under the film; without contact then
+    type(slice_t) :: film_states            !! where the film's own eccentricity stands
     type(coordinates_t) :: at               !! where the eccentricity stands in the state
     integer :: n_friction_states = 0        !! of the friction law
     type(slice_t) :: friction_states        !! where they stand
@@ -64,6 +67,7 @@ module clearance_joint
     real(dp) :: max_penetration = 0         !! deepest entry where steps are refused: contact begins at the end of a step [m]
     real(dp) :: start_eccentricity(2) = 0   !! at t = 0 [m]
     real(dp) :: start_rate(2) = 0           !! [m/s]
+    real(dp) :: start_deflection(2) = 0     !! of the walls of an elastic film [m]
   contains
     procedure :: claim
     procedure :: own_speed
@@ -76,6 +80,7 @@ module clearance_joint
     procedure, non_overridable :: admits
     procedure, non_overridable :: loads
     procedure :: contact_weight
+    procedure :: n_states
     procedure :: complete
     procedure :: look
     procedure :: slopes
@@ -102,6 +107,10 @@ contains
     if (self%place /= piston_pin) self%bearing_turns = .true.
     call layout%claim_positions(2, self%bearing%clearance, max(self%bearing%clearance*crank_speed, norm2(self%start_rate), &
       0.01_dp*crossing_speed(self, span)), self%at, grows=.false.)
+    if (allocated(self%elastic)) then
+      call layout%claim_states(n_film_states, self%bearing%clearance, self%film_states)
+      self%has_own_rates = .true.
+    end if
     if (.not. allocated(self%friction)) return
     self%n_friction_states = self%friction%n_states
     self%has_own_rates = self%n_friction_states > 0 .or. self%reports_friction_work
@@ -130,9 +139,17 @@ contains
     class(clearance_joint_t), intent(inout) :: self
     type(layout_t), intent(in) :: layout
     call layout%settle(self%at)
+    if (allocated(self%elastic)) call layout%settle(self%film_states)
     if (self%n_friction_states > 0) call layout%settle(self%friction_states)
-    if (self%has_own_rates) call layout%settle(self%friction_work)
+    if (self%has_own_rates .and. allocated(self%friction)) call layout%settle(self%friction_work)
   end subroutine settle
+
+  !> How many first-order states its laws have.
+  pure integer function n_states(self)
+    class(clearance_joint_t), intent(in) :: self
+    n_states = self%n_friction_states
+    if (allocated(self%elastic)) n_states = n_film_states
+  end function n_states
 
   !> Its part of the state at t = 0.
   pure subroutine put_start(self, y)
@@ -140,15 +157,23 @@ contains
     real(dp), intent(inout) :: y(:)
     y(self%at%position:self%at%position + 1) = self%start_eccentricity
     y(self%at%rate:self%at%rate + 1) = self%start_rate
+    if (allocated(self%elastic)) y(self%film_states%first:self%film_states%last) = &
+      self%start_eccentricity - self%start_deflection
   end subroutine put_start
 
-  !> Rates of the states of its friction law and of the work of friction: 0 while journal and bearing are apart.
+  !> Rates of the states of an elastic film; of those of its friction law and of the work of friction: 0 while journal and bearing are
+  !> apart.
   pure subroutine put_own_rates(self, motion, own, dydt)
     class(clearance_joint_t), intent(in) :: self
     type(joint_motion_t), intent(in) :: motion
     type(joint_loads_t), intent(in) :: own
     real(dp), intent(inout) :: dydt(*)
     integer :: i
+    if (allocated(self%elastic)) then
+      dydt(self%film_states%first) = motion%film_rate(1)
+      dydt(self%film_states%last) = motion%film_rate(2)
+      return
+    end if
     do i = 1, self%n_friction_states
       dydt(self%friction_states%first + i - 1) = 0
       if (self%phase == phase_contact) dydt(self%friction_states%first + i - 1) = own%friction_rates(i)
@@ -169,7 +194,7 @@ contains
     class(clearance_joint_t), intent(in) :: self
     real(dp), intent(in) :: y(:)
     work_of_friction = 0
-    if (self%has_own_rates) work_of_friction = y(self%friction_work%first)
+    if (self%has_own_rates .and. allocated(self%friction)) work_of_friction = y(self%friction_work%first)
   end function work_of_friction
 
   !> The eccentricity and its rate.
@@ -181,24 +206,29 @@ contains
     joint%eccentricity(2) = y(self%at%position + 1)
     joint%eccentricity_rate(1) = y(self%at%rate)
     joint%eccentricity_rate(2) = y(self%at%rate + 1)
+    if (allocated(self%elastic)) then
+      joint%film_eccentricity(1) = y(self%film_states%first)
+      joint%film_eccentricity(2) = y(self%film_states%last)
+    end if
   end subroutine read_state
 
   !> Whether the journal may be there: inside the bearing's wall and, where a film is singular, inside the clearance.
-  pure logical function admits(self, e)
+  pure logical function admits(self, joint)
     class(clearance_joint_t), intent(in) :: self
-    real(dp), intent(in) :: e(2)
+    type(joint_motion_t), intent(in) :: joint
     real(dp) :: distance_squared
-    distance_squared = e(1)**2 + e(2)**2
+    distance_squared = joint%eccentricity(1)**2 + joint%eccentricity(2)**2
     admits = distance_squared < self%bearing%radius**2
     if (self%phase == phase_film) &
       admits = admits .and. (distance_squared < self%bearing%clearance**2 .or. .not. is_unbounded(self))
+    if (allocated(self%elastic)) admits = admits .and. sum(joint%film_eccentricity**2) < self%bearing%clearance**2
   end function admits
 
   !> Whether the film of the present phase grows without bound at the wall.
   pure logical function is_unbounded(joint)
     type(clearance_joint_t), intent(in) :: joint
     is_unbounded = .false.
-    if (joint%phase /= phase_film .or. allocated(joint%asperities)) return
+    if (joint%phase /= phase_film .or. allocated(joint%asperities) .or. allocated(joint%elastic)) return
     is_unbounded = joint%film%singular_at_wall
     if (allocated(joint%transition)) is_unbounded = is_unbounded .and. .not. joint%transition%film_is_held
   end function is_unbounded
@@ -232,6 +262,9 @@ contains
       else if (allocated(self%asperities)) then
         call find_mixed(self, film_motion(self, bodies, motion, joint), joint, own)
         force = own%film + own%contact
+      else if (allocated(self%elastic)) then
+        call find_elastic(self, bodies, motion, joint, own)
+        force = own%film
       else
         if (allocated(self%transition)) then
           call self%transition%film_force(self%film, film_motion(self, bodies, motion, joint), own%film, own%moment)
@@ -316,6 +349,47 @@ contains
     own%moment = own%moment + own%friction_force*self%pin_radius
   end subroutine find_mixed
 
+  !> A film between elastic walls: the force of the walls, and how the film lets its own eccentricity go under it.
+  pure subroutine find_elastic(self, bodies, motion, joint, own)
+    type(clearance_joint_t), intent(in) :: self
+    type(bodies_t), intent(in) :: bodies
+    type(motion_t), intent(in) :: motion
+    type(joint_motion_t), intent(inout) :: joint
+    type(joint_loads_t), intent(inout) :: own
+    associate (e => joint%film_eccentricity, drawn => 0.5_dp*(joint%journal_speed + joint%bearing_speed))
+      own%film = -self%elastic%load(joint%eccentricity - e)
+      joint%film_rate = self%elastic%velocity(self%film, e, -own%film) + drawn*[-e(2), e(1)]
+    end associate
+    if (self%film%film_moment) &
+      own%moment = self%elastic%moment(self%film, motion_of_film(self, bodies, motion, joint), -own%film)
+  end subroutine find_elastic
+
+  !> The thickness of an elastic film, which is not that of its pin's place, in the terms of a penetration. Its rate has no part of the
+  !> turning.
+  pure subroutine find_elastic_thickness(self, joint)
+    type(clearance_joint_t), intent(in) :: self
+    type(joint_motion_t), intent(inout) :: joint
+    real(dp) :: distance
+    associate (e => joint%film_eccentricity)
+      distance = norm2(e)
+      joint%penetration = distance - self%bearing%clearance
+      joint%penetration_rate = 0
+      if (distance > 0 .and. distance < self%bearing%clearance) joint%penetration_rate = dot_product(e, &
+        self%elastic%velocity(self%film, e, self%elastic%load(joint%eccentricity - e)))/distance
+    end associate
+  end subroutine find_elastic_thickness
+
+  !> The motion as an elastic film sees it.
+  pure type(film_motion_t) function motion_of_film(self, bodies, motion, joint) result(film)
+    type(clearance_joint_t), intent(in) :: self
+    type(bodies_t), intent(in) :: bodies
+    type(motion_t), intent(in) :: motion
+    type(joint_motion_t), intent(in) :: joint
+    film = film_motion(self, bodies, motion, joint)
+    film%eccentricity = joint%film_eccentricity
+    film%eccentricity_rate = joint%film_rate
+  end function motion_of_film
+
   !> Friction of a law with states.
   pure subroutine find_state_friction(self, y, joint, own)
     type(clearance_joint_t), intent(in) :: self
@@ -347,6 +421,7 @@ contains
       joint%friction_states = 0
     end if
     call find_polar(self%bearing%clearance, joint)
+    if (allocated(self%elastic)) call find_elastic_thickness(self, joint)
     if (.not. is_known) return
     call find_speeds(self%place, motion, joint)
     if (self%bearing_turns .and. self%place == piston_pin) joint%bearing_speed = motion%tilting%tilt_rate
@@ -362,6 +437,7 @@ contains
     real(dp), intent(out) :: normal_force
     call self%read_state(y, joint)
     call find_polar(self%bearing%clearance, joint)
+    if (allocated(self%elastic)) call find_elastic_thickness(self, joint)
     normal_force = 0
     if (self%phase /= phase_contact) return
     normal_force = self%contact%normal_force(joint%penetration, joint%penetration_rate, self%impact_speed)
@@ -398,6 +474,7 @@ contains
     type(joint_motion_t), intent(in) :: joint
     type(joint_loads_t), intent(in) :: own
     real(dp), intent(out) :: derivatives(3, 5)
+    real(dp) :: of_loads(3, 5 + n_film_states), of_rates(n_film_states, 5 + n_film_states)
     derivatives = 0
     if (self%phase == phase_contact) then
       if (allocated(self%transition)) then
@@ -409,6 +486,10 @@ contains
     if (self%phase /= phase_film) return
     if (allocated(self%transition)) then
       call self%transition%film_derivatives(self%film, film_motion(self, bodies, motion, joint), derivatives)
+    else if (allocated(self%elastic)) then
+      call self%elastic%slopes(self%film, motion_of_film(self, bodies, motion, joint), &
+        joint%eccentricity - joint%film_eccentricity, self%film%film_moment, of_loads, of_rates)
+      derivatives = of_loads(:, :5)
     else if (allocated(self%asperities)) then
       call mixed_derivatives(self%film, self%asperities, self%pin_radius, film_motion(self, bodies, motion, joint), derivatives)
     else
@@ -501,17 +582,25 @@ contains
     end if
   end subroutine find_friction_slopes
 
-  !> What the states of the friction law add to `slopes`: derivatives of the force and the moment on the journal (rows F_x, F_y,
+  !> What the states of the friction law or of an elastic film add to `slopes`: derivatives of the force and the moment on the journal (rows F_x, F_y,
   !> moment) by these states, and of the states' rates by e_x, e_y, e_x', e_y', the journal's speed and the states (columns).
-  pure subroutine state_slopes(self, joint, own, by_states, of_rates)
+  pure subroutine state_slopes(self, bodies, motion, joint, own, by_states, of_rates)
     class(clearance_joint_t), intent(in) :: self
+    type(bodies_t), intent(in) :: bodies
+    type(motion_t), intent(in) :: motion
     type(joint_motion_t), intent(in) :: joint
     type(joint_loads_t), intent(in) :: own
-    real(dp), intent(out) :: by_states(3, most_friction_states), of_rates(most_friction_states, 5 + most_friction_states)
-    real(dp) :: slopes(1 + most_friction_states, 1 + most_friction_states), ratio
+    real(dp), intent(out) :: by_states(3, most_joint_states), of_rates(most_joint_states, 5 + most_joint_states)
+    real(dp) :: slopes(1 + most_friction_states, 1 + most_friction_states), ratio, of_loads(3, 5 + n_film_states)
     integer :: i
     by_states = 0
     of_rates = 0
+    if (allocated(self%elastic)) then
+      call self%elastic%slopes(self%film, motion_of_film(self, bodies, motion, joint), &
+        joint%eccentricity - joint%film_eccentricity, self%film%film_moment, of_loads, of_rates)
+      by_states = of_loads(:, 6:)
+      return
+    end if
     if (self%phase /= phase_contact .or. self%n_friction_states == 0) return
     call find_friction_slopes(self, joint, ratio, slopes)
     do i = 1, self%n_friction_states
@@ -519,7 +608,7 @@ contains
         by_states(:, i) = [-n(2)*force, n(1)*force, self%pin_radius*force]
       end associate
       of_rates(i, :5) = slopes(1 + i, 1)*sliding_gradient(self, joint)
-      of_rates(i, 6:) = slopes(1 + i, 2:)
+      of_rates(i, 6:5 + self%n_friction_states) = slopes(1 + i, 2:1 + self%n_friction_states)
     end do
   end subroutine state_slopes
 

@@ -26,18 +26,20 @@ contains
     type(joint_motion_t), intent(in) :: motion
     type(joint_loads_t), intent(in) :: loads
     type(film_motion_t) :: seen
-    real(dp) :: share
+    real(dp) :: share, rate(2)
     call acting_film(joint, motion, seen, share)
     if (.not. share > 0) return
+    rate = motion%eccentricity_rate
+    if (allocated(joint%elastic)) rate = motion%film_rate   ! what the walls store is not the film's
     figures%moment = film_moment(joint, loads)
     if (.not. joint%film%film_moment) &
       figures%moment = figures%moment + share*joint%film%drag_moment(seen, loads%film/share)
-    figures%power = -(dot_product(loads%film, motion%eccentricity_rate) + figures%moment*motion%journal_speed &
+    figures%power = -(dot_product(loads%film, rate) + figures%moment*motion%journal_speed &
       + bearing_moment(motion%eccentricity, loads%film, figures%moment)*motion%bearing_speed)
     if (.not. joint%film%gives_pressure()) return
     call joint%film%peak_and_flow(seen, figures%max_pressure, figures%side_flow)
     figures%max_pressure = share*figures%max_pressure
-    figures%side_flow = share*figures%side_flow
+    figures%side_flow = film_share(joint, motion)*figures%side_flow
   end function film_figures_of
 
   !> The motion that the film of a joint sees, and the part of the whole film that acts.
@@ -53,6 +55,10 @@ contains
     seen%turning_speed = motion%journal_speed - motion%bearing_speed
     if (allocated(joint%asperities)) seen = motion_in_gap(joint%film, joint%asperities, seen)
     if (allocated(joint%transition)) seen = joint%transition%held_motion(seen)
+    if (.not. allocated(joint%elastic)) return
+    share = share*joint%elastic%thickening(joint%elastic%load(motion%eccentricity - motion%film_eccentricity))
+    seen%eccentricity = motion%film_eccentricity
+    seen%eccentricity_rate = motion%film_rate
   end subroutine acting_film
 
   !> The part of the whole film that acts.

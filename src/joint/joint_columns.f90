@@ -40,6 +40,7 @@ contains
       call row%put('film_force_x[N]', loads%film(1))
       call row%put('film_force_y[N]', loads%film(2))
       if (allocated(joint%transition)) call row%put('contact_weight[-]', joint%contact_weight(motion%penetration))
+      if (allocated(joint%elastic)) call put_elastic_film(joint, motion, row)
       if (allocated(joint%asperities)) then
         call row%put('asperity_force[N]', loads%normal_force)
         call row%put('friction_force[N]', loads%friction_force)
@@ -50,6 +51,21 @@ contains
     end if
     row%place = ''
   end subroutine put_joint_columns
+
+  !> Where the film is of which the walls give way, by how much they do, and what they store.
+  pure subroutine put_elastic_film(joint, motion, row)
+    type(clearance_joint_t), intent(in) :: joint
+    type(joint_motion_t), intent(in) :: motion
+    type(trace_row_t), intent(inout) :: row
+    real(dp) :: deflection(2), stored
+    deflection = motion%eccentricity - motion%film_eccentricity
+    call row%put('film_eccentricity_x[m]', motion%film_eccentricity(1))
+    call row%put('film_eccentricity_y[m]', motion%film_eccentricity(2))
+    call row%put('wall_deflection[m]', norm2(deflection))
+    stored = 0
+    if (row%wants(1)) stored = joint%elastic%energy(deflection)
+    call row%put('wall_energy[J]', stored)
+  end subroutine put_elastic_film
 
   !> The columns of a film that take more work than its force, each only where the case names it.
   pure subroutine put_film_figures(joint, motion, loads, row)

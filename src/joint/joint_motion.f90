@@ -5,7 +5,9 @@ module joint_motion
   use friction_law, only: most_friction_states
   implicit none
   private
-  public :: joint_motion_t, find_polar, find_speeds, find_sliding, sliding_acceleration, outward_acceleration
+  public :: joint_motion_t, most_joint_states, find_polar, find_speeds, find_sliding, sliding_acceleration, outward_acceleration
+
+  integer, parameter :: most_joint_states = max(most_friction_states, 2)   !! of friction, or of an elastic film
 
   !> Where the journal is in its bearing, and how it moves there.
   type :: joint_motion_t
@@ -20,6 +22,8 @@ module joint_motion
     real(dp) :: tangential_rate       !! t . e' [m/s]
     real(dp) :: sliding_speed         !! v_T, of the journal's surface on the bearing [m/s]
     real(dp) :: friction_states(most_friction_states)   !! of a friction law that has them
+    real(dp) :: film_eccentricity(2)  !! e_f of an elastic film [m]
+    real(dp) :: film_rate(2)          !! [m/s]
   end type joint_motion_t
 
 contains

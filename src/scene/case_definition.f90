@@ -18,6 +18,7 @@ module case_definition
   use films, only: offer_film_laws
   use film_transition, only: film_transition_t
   use oil_viscosity, only: oil_t
+  use elastic_film, only: elastic_film_t
   use asperities, only: asperities_t
   use elastic_rod, only: elastic_rod_t
   use elastic_crankshaft, only: elastic_crankshaft_t
@@ -66,10 +67,12 @@ module case_definition
     type(film_transition_t) :: transition
     logical :: reports_film = .false.
     type(oil_t) :: oil
+    type(elastic_film_t) :: elastic
     type(asperities_t), allocatable :: asperities
   contains
     procedure :: parameters => joint_parameters
     procedure :: has_clearance
+    procedure :: can_touch
     procedure :: bearing => bearing_of
   end type joint_case_t
 
@@ -141,7 +144,7 @@ contains
   !> Whether there is a joint with a contact law, or a piston with clearance in its bore.
   pure logical function has_contact(self)
     class(case_t), intent(in) :: self
-    has_contact = allocated(self%joint%contact) .or. allocated(self%crank_pin%contact) .or. self%has_loose_guide()
+    has_contact = self%joint%can_touch() .or. self%crank_pin%can_touch() .or. self%has_loose_guide()
   end function has_contact
 
   !> Whether there is a joint with clearance.
@@ -168,6 +171,12 @@ contains
     class(case_t), intent(in) :: self
     is_elastic = allocated(self%elastic_rod) .or. allocated(self%crankshaft)
   end function is_elastic
+
+  !> Whether a contact acts in the joint: not where it is the walls of an elastic film.
+  pure logical function can_touch(self)
+    class(joint_case_t), intent(in) :: self
+    can_touch = allocated(self%contact) .and. .not. (allocated(self%film) .and. self%elastic%is_wanted)
+  end function can_touch
 
   !> Whether the joint has clearance.
   pure logical function has_clearance(self)
@@ -224,7 +233,7 @@ contains
     call joint%parameters(list)
     call visit_contact(joint%contact, place, list)
     call visit_friction(joint%friction, joint%reports_friction_work, place, list)
-    call visit_film(joint%film, joint%transition, joint%oil, joint%reports_film, place, list)
+    call visit_film(joint%film, joint%transition, joint%oil, joint%elastic, joint%reports_film, place, list)
     call visit_asperities(joint%asperities, place, list)
   end subroutine visit_joint
 
@@ -282,10 +291,11 @@ contains
     end select
   end subroutine visit_friction
 
-  subroutine visit_film(law, transition, oil, reports, place, list)
+  subroutine visit_film(law, transition, oil, elastic, reports, place, list)
     class(film_law_t), allocatable, intent(inout) :: law
     type(film_transition_t), intent(inout) :: transition
     type(oil_t), intent(inout) :: oil
+    type(elastic_film_t), intent(inout) :: elastic
     logical, intent(inout) :: reports
     character(len=*), intent(in) :: place
     class(parameter_list_t), intent(inout) :: list
@@ -293,6 +303,7 @@ contains
     call list%choice('law', 'pinkus_sternlicht', 'journal bearing or oscillating film')
     call oil%parameters(list)
     call transition%parameters(list)
+    call elastic%parameters(list)
     call list%add('report', reports, 'energy lost in it, largest pressure and mean side flow in the summary', '.false.')
     call offer_film_laws(list)
     if (.not. list%sets) return

@@ -25,7 +25,7 @@ module gudgeon_scene
 
   !> An ideal pin, in the terms of a joint with clearance.
   type(joint_motion_t), parameter :: centred_pin = joint_motion_t([0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp], 0.0_dp, 0.0_dp, &
-    [1.0_dp, 0.0_dp], 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp)
+    [1.0_dp, 0.0_dp], 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, [0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp])
   type(joint_loads_t), parameter :: no_loads = joint_loads_t([0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp], 0.0_dp, 0.0_dp, 0.0_dp, &
     0.0_dp, 0.0_dp, .false.)
 
@@ -389,7 +389,7 @@ contains
     do i = 1, n
       associate (joint => joints(i), relative => now%relative(i))
         call joint%read_state(y, relative)
-        admitted = admitted .and. joint%admits(relative%eccentricity)
+        admitted = admitted .and. joint%admits(relative)
         offset = offset + relative%eccentricity
         offset_rate = offset_rate + relative%eccentricity_rate
         if (joint%place == piston_pin) cycle

@@ -193,6 +193,7 @@ contains
         if (allocated(joint%friction)) call joint%friction%prepare()
         if (allocated(joint%film)) call joint%film%prepare(joint%bearing, case%integrator%relative_tolerance)
         if (allocated(joint%transition)) call joint%transition%prepare(joint%bearing, joint%film%least_film_ratio)
+        if (allocated(joint%elastic)) call joint%elastic%prepare(joint%bearing)
         if (allocated(joint%asperities)) call joint%asperities%prepare(joint%bearing)
         if (allocated(joint%contact) .and. case%integrator%contact_entry == 'step_rejection') scene%refuses_steps = .true.
       end associate
@@ -221,13 +222,17 @@ contains
     joint%place = place
     joint%bearing = wanted%bearing(case%mechanism%rod_length)
     joint%pin_radius = joint%bearing%pin_radius()
-    if (allocated(wanted%contact)) allocate (joint%contact, source=wanted%contact)
+    if (wanted%can_touch()) allocate (joint%contact, source=wanted%contact)
     if (allocated(wanted%friction)) allocate (joint%friction, source=wanted%friction)
     if (allocated(wanted%film)) then
       allocate (joint%film, source=wanted%film)
       if (wanted%oil%is_known()) call joint%film%take_oil(wanted%oil%dynamic_viscosity(), wanted%oil%kinematic_viscosity())
     end if
-    if (allocated(wanted%film) .and. allocated(wanted%contact) .and. wanted%transition%is_weighted()) &
+    if (allocated(wanted%film) .and. allocated(wanted%contact) .and. wanted%elastic%is_wanted) then
+      allocate (joint%elastic, source=wanted%elastic)
+      allocate (joint%elastic%walls, source=wanted%contact%geometry)
+    end if
+    if (allocated(wanted%film) .and. wanted%can_touch() .and. wanted%transition%is_weighted()) &
       allocate (joint%transition, source=wanted%transition)
     if (allocated(wanted%asperities)) allocate (joint%asperities, source=wanted%asperities)
     joint%reports_friction_work = wanted%reports_friction_work

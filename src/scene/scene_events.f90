@@ -193,6 +193,7 @@ contains
     integer :: i
 
     call number_events(self)
+    call load_walls(self)
     y = self%initial_state()
     do i = 1, self%n_joints
       self%joints(i)%phase = self%joints(i)%phase_apart()
@@ -241,4 +242,53 @@ contains
       if (.not. corner(i)%depth > 0 .and. corner(i)%depth_rate > 0 .and. contact_is_rough(scene%guide)) scene%entry_time = 0
     end do
   end subroutine prepare_corners
+
+  !> The walls of elastic films start with the deflection that keeps the pin from being accelerated in its bearing, as in an ideal joint: a
+  !> pin on walls without load would bounce on them. But the film keeps a tenth of its thickness.
+  subroutine load_walls(scene)
+    class(scene_t), intent(inout) :: scene
+    real(dp), parameter :: trial = 1e-8_dp   !! [m]
+    real(dp), parameter :: closest = 0.9_dp  !! of the film's eccentricity to the clearance
+    real(dp) :: at_rest(2), by_load(2, 2), load(2), along(2), d(2)
+    integer :: i, k
+    logical :: inside
+    do i = 1, scene%n_joints
+      if (.not. allocated(scene%joints(i)%elastic)) cycle
+      along = 0
+      associate (joint => scene%joints(i))
+        joint%start_deflection = 0
+        call pin_acceleration(scene, i, at_rest, inside)
+        do k = 1, 2
+          joint%start_deflection = 0
+          joint%start_deflection(k) = trial
+          if (inside) call pin_acceleration(scene, i, along, inside)
+          by_load(:, k) = (along - at_rest)/norm2(joint%elastic%load(joint%start_deflection))
+        end do
+        joint%start_deflection = 0
+        if (.not. inside) cycle
+        load = -[by_load(2, 2)*at_rest(1) - by_load(1, 2)*at_rest(2), by_load(1, 1)*at_rest(2) - by_load(2, 1)*at_rest(1)] &
+          /(by_load(1, 1)*by_load(2, 2) - by_load(1, 2)*by_load(2, 1))
+        d = joint%elastic%deflection(load)
+        do while (norm2(joint%start_eccentricity - d) >= max(closest*joint%bearing%clearance, norm2(joint%start_eccentricity)) &
+                  .and. norm2(d) > 0)
+          d = 0.5_dp*d
+          if (norm2(d) < trial) d = 0
+        end do
+        joint%start_deflection = d
+      end associate
+    end do
+  end subroutine load_walls
+
+  !> Acceleration of a pin in its bearing at t = 0 [m/s^2].
+  subroutine pin_acceleration(scene, i, acceleration, inside)
+    class(scene_t), intent(inout) :: scene
+    integer, intent(in) :: i
+    real(dp), intent(out) :: acceleration(2)
+    logical, intent(out) :: inside
+    type(evaluation_t) :: now
+    scene%joints(i)%phase = scene%joints(i)%phase_apart()
+    call scene%evaluate(0.0_dp, scene%initial_state(), now, inside)
+    acceleration = 0
+    if (inside) acceleration = now%accelerations%pin(:, scene%joints(i)%place)
+  end subroutine pin_acceleration
 end submodule scene_events

@@ -3,7 +3,7 @@ submodule (gudgeon_scene) scene_tangent
   use ode_problem, only: difference_jacobian
   use chain_motion, only: crank_pin
   use chain_bodies, only: drive_t
-  use friction_law, only: most_friction_states
+  use joint_motion, only: most_joint_states
   use crank_rod_tangent, only: motion_change_t, load_change_t, motion_change, acceleration_change
   implicit none
 
@@ -15,8 +15,8 @@ contains
     type(motion_change_t) :: change
     type(load_change_t) :: load_change
     real(dp) :: force(3, 5), direction(6), loads(3), a(3)
-    real(dp) :: by_states(3, most_friction_states), of_rates(most_friction_states, 5 + most_friction_states)
-    real(dp) :: rates(most_friction_states)
+    real(dp) :: by_states(3, most_joint_states), of_rates(most_joint_states, 5 + most_joint_states)
+    real(dp) :: rates(most_joint_states)
     logical :: has_closed_form
     integer :: i, skip, m, n
 
@@ -33,8 +33,8 @@ contains
     call self%joints(1)%slopes(self%chain%bodies, now%motion, now%relative(1), now%joint(1), force)
     skip = merge(0, 1, self%chain%drive%free_crank)   ! the held crank angle is no unknown
     m = 3 - skip
-    n = self%joints(1)%n_friction_states
-    if (n > 0) call self%joints(1)%state_slopes(now%relative(1), now%joint(1), by_states, of_rates)
+    n = self%joints(1)%n_states()
+    if (n > 0) call self%joints(1)%state_slopes(self%chain%bodies, now%motion, now%relative(1), now%joint(1), by_states, of_rates)
     drive = self%chain%drive
     if (allocated(self%chain%varying)) drive%damping = drive%damping - self%chain%varying%torque_slope(now%motion%crank_speed)
     associate (bodies => self%chain%bodies)

@@ -1,0 +1,92 @@
+!> The inverse of a film's force: with what velocity a film lets the pin go under a load (Booker 1965).
+!>
+!> A quasi-static film knows the velocity v* = e' - (omega/2) z x e alone, and its force grows in proportion to it. So the direction of
+!> v* is that in which the force is against the load, and its size the load over the force of unit velocity.
+module film_mobility
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: pi
+  use film_law, only: film_law_t, film_motion_t
+  implicit none
+  private
+  public :: driven_velocity
+
+contains
+
+  !> v* [m/s] at an eccentricity e, |e| < c, under a load on the pin [N]: the film's force is against it. The direction is sought
+  !> along beta, v* = (w cos beta, sin beta) with w = sqrt(1 - eps^2), in which the load turns evenly up to the wall: between 0 and pi, by
+  !> regula falsi as Anderson and Björck have it, to the rounding. It is mirrored where the load has the other sense.
+  pure subroutine driven_velocity(film, e, load, velocity)
+    class(film_law_t), intent(in) :: film
+    real(dp), intent(in) :: e(2)          !! [m]
+    real(dp), intent(in) :: load(2)       !! [N]
+    real(dp), intent(out) :: velocity(2)
+    integer, parameter :: most_trials = 60
+    real(dp), parameter :: close_enough = 1e-14_dp
+    real(dp) :: size_of_load, distance, n(2), t(2), w, target(2), beta, strength
+    real(dp) :: end, f_end, last, f_last, f   ! of the bracket: the end that stays, and the last trial
+    integer :: i
+    velocity = 0
+    size_of_load = sqrt(load(1)**2 + load(2)**2)
+    if (.not. size_of_load > tiny(1.0_dp)**0.25_dp) return
+    distance = sqrt(e(1)**2 + e(2)**2)
+    n = load/size_of_load   ! a centred film is alike in every direction
+    if (distance > 1e-100_dp*film%clearance) n = e/distance
+    t = [-n(2), n(1)]
+    w = sqrt(max(1 - (distance*film%per_clearance)**2, 4*epsilon(1.0_dp)))
+    target = [dot_product(n, load), dot_product(t, load)]/size_of_load
+    if (target(2) < 0) then
+      t = -t
+      target(2) = -target(2)
+    end if
+    end = 0
+    f_end = -atan2(target(2), target(1))
+    last = pi
+    f_last = pi + f_end
+    do i = 1, most_trials
+      beta = last - f_last*(last - end)/(f_last - f_end)
+      call try(beta, f, strength)
+      if (abs(f) <= close_enough .or. abs(last - end) <= close_enough) exit
+      if (f > 0 .neqv. f_last > 0) then
+        end = last
+        f_end = f_last
+      else
+        f_end = f_end*share(f, f_last)
+      end if
+      last = beta
+      f_last = f
+    end do
+    velocity = size_of_load/strength*unit_velocity(beta)
+
+  contains
+
+    !> How much the value at an end that stays counts from now on.
+    pure real(dp) function share(now, before)
+      real(dp), intent(in) :: now, before
+      share = 0.5_dp
+      if (abs(now) < abs(before)) share = 1 - now/before
+    end function share
+
+    !> One clearance in a second, near enough.
+    pure function unit_velocity(beta) result(v)
+      real(dp), intent(in) :: beta
+      real(dp) :: v(2)
+      v = film%clearance*(w*cos(beta)*n + sin(beta)*t)
+    end function unit_velocity
+
+    !> By what angle the load that goes with a direction is beyond the one wanted, and its size.
+    pure subroutine try(beta, f, strength)
+      real(dp), intent(in) :: beta
+      real(dp), intent(out) :: f, strength
+      type(film_motion_t) :: motion
+      real(dp) :: force(2), moment, along, across
+      motion%eccentricity = e
+      motion%eccentricity_rate = unit_velocity(beta)
+      motion%pin_speed = 0
+      call film%film_force(motion, force, moment)
+      along = -dot_product(n, force)
+      across = -dot_product(t, force)
+      strength = sqrt(along**2 + across**2)
+      f = atan2(across*target(1) - along*target(2), along*target(1) + across*target(2))
+    end subroutine try
+  end subroutine driven_velocity
+end module film_mobility

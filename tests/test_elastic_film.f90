@@ -1,0 +1,314 @@
+!> A film between elastic walls: the inverse of a film's force, derivatives, energy, the limit of stiff walls, every method, the start,
+!> the viscosity under pressure, and what a case may not ask of it.
+module test_elastic_film
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t
+  use checks, only: checks_t
+  use film_law, only: film_law_t, film_motion_t
+  use film_mobility, only: driven_velocity
+  use laws, only: film_law_of
+  use case_definition, only: case_t
+  use case_file, only: parse_case, read_case
+  use chain_motion, only: piston_pin
+  use gudgeon_scene, only: scene_t, evaluation_t
+  use scene_builder, only: build_scene
+  use ode_problem, only: difference_jacobian
+  use state_making, only: put_crank, put_pin
+  use collecting_sink, only: trace_t, run_case, column
+  implicit none
+  private
+  public :: run_test_elastic_film
+
+  character(len=*), parameter :: file = 'cases/film/elastic.nml'
+  integer, parameter :: long = 60
+  character(len=long), parameter :: plain(2) = [character(len=long) :: 'lubrication.law=pinkus_sternlicht', &
+    'lubrication.variant=closed_form']
+  real(dp), parameter :: c = 20e-6_dp
+
+contains
+
+  subroutine run_test_elastic_film(check)
+    class(checks_t), intent(inout) :: check
+    call inverse_of_the_force(check)
+    call centred_film(check)
+    call derivatives(check)
+    call energy_is_known(check)
+    call stiff_walls_are_rigid(check)
+    call methods_agree(check)
+    call starts_on_loaded_walls(check)
+    call goes_beyond_the_clearance(check)
+    call oil_under_pressure(check)
+    call refuses(check)
+  end subroutine run_test_elastic_film
+
+  !> The force at the velocity that is found is against the load and of its size, for every film, place and direction.
+  subroutine inverse_of_the_force(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: keys(6) = [character(len=100) :: "variant='closed_form'", "variant='half_film'", &
+      "law='finite_bearing' variant='short'", "law='finite_bearing' table_points=33 film_points=32", &
+      "law='finite_bearing' table_points=33 film_points=32 cavitation='gumbel'", &
+      "law='finite_bearing' table_points=33 film_points=32 cavitation='none'"]
+    real(dp), parameter :: ratios(6) = [1e-12_dp, 0.05_dp, 0.5_dp, 0.9_dp, 0.99_dp, 0.999_dp]
+    class(film_law_t), allocatable :: film
+    type(error_t), allocatable :: error
+    type(film_motion_t) :: motion
+    real(dp) :: load(2), velocity(2), force(2), moment, worst
+    integer :: i, j, k
+    do i = 1, size(keys)
+      call film_law_of('viscosity=0.0117 '//trim(keys(i)), 1e-6_dp, film, error)
+      call check%that(.not. allocated(error), 'a film of '//keys(i))
+      if (allocated(error)) cycle
+      call check%that(film%is_quasi_static(), 'is quasi-static')
+      do j = 1, size(ratios)
+        worst = 0
+        do k = 0, 24
+          motion%eccentricity = ratios(j)*c*[cos(2.2_dp), sin(2.2_dp)]
+          load = 1e3_dp*[cos(2.2_dp + 0.26179938779914941_dp*k), sin(2.2_dp + 0.26179938779914941_dp*k)]
+          call driven_velocity(film, motion%eccentricity, load, velocity)
+          motion%eccentricity_rate = velocity
+          motion%pin_speed = 0
+          motion%turning_speed = 0
+          call film%film_force(motion, force, moment)
+          worst = max(worst, norm2(force + load)/norm2(load))
+          call check%that(dot_product(velocity, load) >= 0, 'the load drives the pin')
+        end do
+        call check%close_to(worst, 0.0_dp, merge(1e-7_dp, 1e-9_dp, ratios(j) > 0.99_dp), 'the force is against the load: '//keys(i))
+      end do
+    end do
+    call film_law_of("viscosity=0.0117 variant='as_printed'", 1e-6_dp, film, error)
+    call check%that(.not. film%is_quasi_static(), 'the misprinted film is not against the motion')
+    call driven_velocity(film, [0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp], velocity)
+    call check%that(all(abs(velocity) <= 0), 'no load, no velocity')
+  end subroutine inverse_of_the_force
+
+  !> Half of Sommerfeld's long centred film, 12 pi mu L R^3/c^3, carries it.
+  subroutine centred_film(check)
+    class(checks_t), intent(inout) :: check
+    class(film_law_t), allocatable :: film
+    type(error_t), allocatable :: error
+    real(dp) :: velocity(2)
+    call film_law_of("viscosity=0.0117 variant='half_film'", 1e-6_dp, film, error)
+    call driven_velocity(film, [0.0_dp, 0.0_dp], [300.0_dp, -400.0_dp], velocity)
+    call check%relative(norm2(velocity), 500/(6*acos(-1.0_dp)*0.0117_dp*15e-3_dp*(10e-3_dp - c)**3/c**3), 1e-12_dp, &
+      'a centred film')
+    call check%relative(velocity(1)/velocity(2), -0.75_dp, 1e-12_dp, 'lets go along the load')
+  end subroutine centred_film
+
+  !> The closed-form Jacobian against differences, with the film's moment and an oil that thickens.
+  subroutine derivatives(check)
+    class(checks_t), intent(inout) :: check
+    character(len=long) :: set(6)
+    type(case_t) :: case
+    type(error_t), allocatable :: error
+    type(scene_t), allocatable :: scene
+    real(dp), allocatable :: y(:), a_p(:, :), a_v(:, :), d_p(:, :), d_v(:, :)
+    integer :: i, j, m, k
+    do j = 1, 4
+      set(1:2) = plain
+      if (j == 2) set(2) = 'lubrication.variant=half_film'
+      if (j == 3) set(1:2) = [character(len=long) :: 'lubrication.law=finite_bearing', 'lubrication.variant=short']
+      set(3) = 'contact.geometry='//merge('conformal   ', 'hertz_sphere', j < 3)
+      set(4) = 'drive.kind='//merge('constant_speed', 'free          ', j == 2)
+      set(5) = 'lubrication.pressure_viscosity=2e-8'
+      set(6) = 'lubrication.film_moment=T'
+      call read_case(file, set, case, error)
+      if (.not. allocated(error)) call build_scene(case, .false., scene, error)
+      call check%that(.not. allocated(error), 'a scene')
+      if (allocated(error)) return
+      m = scene%n_positions
+      k = m + scene%n_states()
+      call check%that(scene%n_states() == 2, 'with two states')
+      if (allocated(a_p)) deallocate (a_p, a_v, d_p, d_v)
+      allocate (a_p(k, m), a_v(k, k), d_p(k, m), d_v(k, k))
+      do i = 1, 4
+        y = scene%initial_state()
+        call put_crank(scene, y, 0.3_dp*i, 250.0_dp)
+        call put_pin(scene, y, 0.99_dp*c*[cos(1.3_dp*i), sin(1.3_dp*i)], [0.01_dp, 0.007_dp])
+        y(scene%joints(1)%film_states%first:scene%joints(1)%film_states%last) = &
+          0.9_dp*c*[cos(1.3_dp*i + 0.1_dp), sin(1.3_dp*i + 0.1_dp)]
+        call scene%jacobian(0.0_dp, y, a_p, a_v)
+        call difference_jacobian(scene, 0.0_dp, y, d_p, d_v)
+        call check%close_to(maxval(abs(a_p(:m, :) - d_p(:m, :))), 0.0_dp, 2e-4_dp*maxval(abs(d_p(:m, :))), 'slopes by positions')
+        call check%close_to(maxval(abs(a_v(:m, :) - d_v(:m, :))), 0.0_dp, 2e-4_dp*maxval(abs(d_v(:m, :))), 'slopes by rates')
+        call check%close_to(maxval(abs(a_p(m + 1:, :) - d_p(m + 1:, :))), 0.0_dp, 2e-4_dp*maxval(abs(d_p(m + 1:, :))), &
+          'slopes of the film by positions')
+        call check%close_to(maxval(abs(a_v(m + 1:, m + 1:) - d_v(m + 1:, m + 1:))), 0.0_dp, &
+          2e-4_dp*maxval(abs(d_v(m + 1:, m + 1:))), 'slopes of the film by itself')
+        call check%close_to(maxval(abs(a_v(m + 1:, :m) - d_v(m + 1:, :m))), 0.0_dp, &
+          1e-3_dp*maxval(abs(d_v(m + 1:, :m))) + 1e-12_dp, 'slopes of the film by rates')
+      end do
+    end do
+  end subroutine derivatives
+
+  !> Undriven, the bodies' energy, what the walls store and what the film has taken (the integral of a column that knows nothing of the
+  !> walls) stay together; the film never gives.
+  subroutine energy_is_known(check)
+    class(checks_t), intent(inout) :: check
+    character(len=long) :: set(9)
+    type(trace_t) :: trace
+    real(dp), allocatable :: t(:), power(:), energy(:), stored(:)
+    real(dp) :: taken, worst
+    integer :: i
+    set(1:2) = plain
+    set(3:9) = [character(len=long) :: 'lubrication.film_moment=T', 'integrator.revolutions=0.5', &
+      'output.samples_per_revolution=40000', 'integrator.relative_tolerance=1e-9', 'output.columns=standard,film_power', &
+      'lubrication.pressure_viscosity=2e-8', 'mechanism.gravity=0']
+    trace = run_case(file, set)
+    call check%that(.not. allocated(trace%error), 'an undriven run')
+    if (allocated(trace%error)) return
+    call check%that(trace%report%figures%max_energy_residual < 1e-8_dp*trace%report%figures%max_energy, 'keeps the energy')
+    allocate (t, source=trace%values(column(trace, 'time[s]'), :))
+    allocate (power, source=trace%values(column(trace, 'film_power[W]'), :))
+    allocate (energy, source=trace%values(column(trace, 'energy[J]'), :))
+    allocate (stored, source=trace%values(column(trace, 'wall_energy[J]'), :))
+    taken = 0
+    worst = 0
+    do i = 2, size(t)
+      taken = taken + 0.5_dp*(power(i) + power(i - 1))*(t(i) - t(i - 1))
+      worst = max(worst, abs(energy(i) - energy(1) + stored(i) - stored(1) + taken))
+    end do
+    call check%that(taken > 10*maxval(stored) .and. maxval(stored) > 1e-4_dp, 'film and walls have a part')
+    call check%close_to(worst, 0.0_dp, 2e-4_dp*maxval(stored), 'bodies, walls and film keep the energy')
+    call check%that(all(power >= 0), 'the film never gives')
+  end subroutine energy_is_known
+
+  !> The film of walls a thousand and a million times stiffer comes to that of rigid walls.
+  subroutine stiff_walls_are_rigid(check)
+    class(checks_t), intent(inout) :: check
+    character(len=long) :: set(8)
+    type(trace_t) :: rigid, stiff
+    real(dp) :: off(2)
+    integer :: i, at
+    set(1:2) = plain
+    set(3:8) = [character(len=long) :: 'contact=none', 'lubrication.elastic_film=F', 'integrator.revolutions=0.6', &
+      'integrator.relative_tolerance=1e-8', 'lubrication.pressure_viscosity=0', 'integrator.method=radau']
+    rigid = run_case(file, set)
+    set(4) = 'lubrication.elastic_film=T'
+    do i = 1, 2
+      set(3) = 'contact.youngs_modulus='//merge('207e12,207e12', '207e15,207e15', i == 1)
+      stiff = run_case(file, set)
+      call check%that(.not. (allocated(rigid%error) .or. allocated(stiff%error)), 'rigid and stiff walls')
+      if (allocated(rigid%error) .or. allocated(stiff%error)) return
+      at = column(rigid, 'film_thickness[m]')
+      off(i) = maxval(abs(stiff%values(at, :) - rigid%values(at, :)))
+    end do
+    call check%that(off(1) < 1e-2_dp*c .and. off(2) < 2e-5_dp*c, 'stiff walls are rigid')
+  end subroutine stiff_walls_are_rigid
+
+  subroutine methods_agree(check)
+    class(checks_t), intent(inout) :: check
+    character(len=6), parameter :: methods(3) = [character(len=6) :: 'adams', 'radau', 'auto']
+    character(len=long) :: set(7)
+    type(trace_t) :: trace, first
+    integer :: i, k, at
+    do k = 1, 2
+      do i = 1, 3
+        set(1:2) = plain
+        if (k == 2) set(1:2) = [character(len=long) :: 'lubrication.law=finite_bearing', 'lubrication.variant=short']
+        set(3) = 'integrator.method='//methods(i)
+        set(4) = 'integrator.relative_tolerance=1e-9'
+        set(5) = 'integrator.revolutions=0.3'
+        set(6) = 'lubrication.pressure_viscosity=1e-8'
+        set(7) = 'lubrication.film_moment=T'
+        trace = run_case(file, set)
+        call check%that(.not. allocated(trace%error), 'an elastic film runs by '//methods(i))
+        if (allocated(trace%error)) return
+        associate (figures => trace%report%figures)
+          call check%that(figures%max_energy_residual < 1e-8_dp*figures%max_energy, 'and keeps the energy')
+        end associate
+        if (i == 1) first = trace
+        at = column(trace, 'film_thickness[m]')
+        call check%close_to(maxval(abs(trace%values(at, :) - first%values(at, :))), 0.0_dp, 1e-6_dp*c, 'methods agree on the film')
+      end do
+    end do
+  end subroutine methods_agree
+
+  !> At t = 0 the walls carry what an ideal joint does.
+  subroutine starts_on_loaded_walls(check)
+    class(checks_t), intent(inout) :: check
+    type(case_t) :: case
+    type(error_t), allocatable :: error
+    type(scene_t), allocatable :: scene, ideal
+    type(evaluation_t) :: now, then
+    logical :: inside
+    call read_case(file, plain, case, error)
+    call build_scene(case, .false., scene, error)
+    call build_scene(case, .true., ideal, error)
+    call scene%evaluate(0.0_dp, scene%initial_state(), now, inside)
+    call ideal%evaluate(0.0_dp, ideal%initial_state(), then, inside)
+    call check%that(norm2(then%loads%force(:, piston_pin)) > 100, 'there is a load')
+    call check%close_to(norm2(now%loads%force(:, piston_pin) - then%loads%force(:, piston_pin)), 0.0_dp, &
+      1e-6_dp*norm2(then%loads%force(:, piston_pin)), 'walls carry the load of an ideal joint')
+  end subroutine starts_on_loaded_walls
+
+  !> At a high speed the pin passes the clearance, and the film stays.
+  subroutine goes_beyond_the_clearance(check)
+    class(checks_t), intent(inout) :: check
+    character(len=long) :: set(5)
+    type(trace_t) :: trace
+    set(1:2) = plain
+    set(3:5) = [character(len=long) :: 'initial.crank_speed=700', 'joint.clearance=6e-6', 'integrator.revolutions=1']
+    trace = run_case(file, set)
+    call check%that(.not. allocated(trace%error), 'a fast run')
+    if (allocated(trace%error)) return
+    call check%that(maxval(trace%values(column(trace, 'eccentricity_ratio[-]'), :)) > 1.05_dp, 'the pin goes beyond the clearance')
+    call check%that(minval(trace%values(column(trace, 'film_thickness[m]'), :)) > 0, 'on a film')
+    call check%that(trace%report%figures%pin(piston_pin)%min_film_thickness > 0 .and. &
+      trace%report%figures%pin(piston_pin)%min_film_thickness <= minval(trace%values(column(trace, 'film_thickness[m]'), :)), &
+      'whose least thickness the summary has')
+  end subroutine goes_beyond_the_clearance
+
+  !> Under 5 kN on 20 x 15 mm an oil of 2e-8 1/Pa is thicker by exp(2e-8 * 16.7 MPa) = 1.396, and gives way by so much less.
+  subroutine oil_under_pressure(check)
+    class(checks_t), intent(inout) :: check
+    type(case_t) :: case
+    type(error_t), allocatable :: error
+    type(scene_t), allocatable :: thin, thick
+    real(dp), parameter :: load(2) = [3000.0_dp, -4000.0_dp], e(2) = [10e-6_dp, 5e-6_dp]
+    real(dp) :: slow(2), fast(2)
+    call read_case(file, [character(len=long) :: plain, 'lubrication.pressure_viscosity=0'], case, error)
+    call build_scene(case, .false., thin, error)
+    call read_case(file, [character(len=long) :: plain, 'lubrication.pressure_viscosity=2e-8'], case, error)
+    call build_scene(case, .false., thick, error)
+    fast = thin%joints(1)%elastic%velocity(thin%joints(1)%film, e, load)
+    slow = thick%joints(1)%elastic%velocity(thick%joints(1)%film, e, load)
+    call check%close_to(norm2(slow*exp(2e-8_dp*5000/(2*(10e-3_dp - c)*15e-3_dp)) - fast), 0.0_dp, 1e-12_dp*norm2(fast), &
+      'an oil thickens under pressure')
+  end subroutine oil_under_pressure
+
+  subroutine refuses(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: contact = "&contact law='hertz' / "
+    call expect(check, contact//'&lubrication viscosity=0.01 elastic_film=T /', '', 'an elastic film')
+    call expect(check, '&lubrication viscosity=0.01 elastic_film=T /', &
+      '&lubrication elastic_film = T: needs the group contact', 'walls without a stiffness')
+    call expect(check, '&contact / &lubrication viscosity=0.01 elastic_film=T /', &
+      '&contact law: must be hertz with elastic_film', 'walls with a loss')
+    call expect(check, contact//"&lubrication viscosity=0.01 law='oscillating_film' kinematic_viscosity=1e-5 elastic_film=T /", &
+      '&lubrication elastic_film = T: is for films of wedge and squeeze', 'a film that knows no velocity')
+    call expect(check, contact//"&lubrication viscosity=0.01 variant='as_printed' elastic_film=T /", &
+      '&lubrication elastic_film = T: is for films of wedge and squeeze', 'a misprinted film')
+    call expect(check, contact//"&friction coefficient=0.1 law='coulomb' / &lubrication viscosity=0.01 elastic_film=T /", &
+      '&lubrication elastic_film = T: goes without the group friction', 'friction on a film')
+    call expect(check, contact//"&lubrication viscosity=0.01 elastic_film=T transition='weighted' transition_depth=1e-6 /", &
+      '&lubrication elastic_film = T: goes without transition', 'a transition beside an elastic film')
+    call expect(check, '&lubrication viscosity=0.01 pressure_viscosity=1e-8 /', &
+      '&lubrication pressure_viscosity = 1e-8: needs elastic_film', 'pressure between rigid walls')
+    call expect(check, contact//'&lubrication viscosity=0.01 elastic_film=T / &asperities roughness=1e-7 /', &
+      '&asperities roughness = 1e-7: goes without the group contact', 'rough elastic walls')
+  end subroutine refuses
+
+  subroutine expect(check, groups, wanted, name)
+    class(checks_t), intent(inout) :: check
+    character(len=*), intent(in) :: groups, wanted, name
+    character(len=*), parameter :: bodies = '&mechanism crank_length=0.05 crank_mass=1 crank_inertia=1 rod_length=0.2 '// &
+      'rod_mass=1 rod_inertia=1 piston_mass=1 / &initial crank_speed=100 / &integrator revolutions=1 / '// &
+      '&joint kind=''clearance'' clearance=20e-6 bearing_radius=10e-3 bearing_length=15e-3 / '
+    character(len=1) :: nothing(0)
+    type(case_t) :: case
+    type(error_t), allocatable :: error
+    call parse_case(bodies//groups, 'x.nml', nothing, case, error)
+    call check%that(allocated(error) .neqv. wanted == '', name//' is judged')
+    if (allocated(error)) call check%that(index(error%message, wanted) > 0, name//' in words: '//error%message)
+  end subroutine expect
+end module test_elastic_film
