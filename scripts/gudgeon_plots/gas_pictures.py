@@ -25,8 +25,8 @@ def each(draw: Callable[[Axes, Run, dict], None]) -> Callable[[Axes, list[Run]],
 
 
 def first_cycle(run: Run) -> np.ndarray:
-    """The rows of the first four-stroke cycle; runs begin with one."""
-    return run["crank_angle"] <= run["crank_angle"][0] + 4 * np.pi
+    """The rows of the first cycle; runs begin with one."""
+    return np.abs(run["crank_angle"] - run["crank_angle"][0]) <= run.cycle
 
 
 def indicator(axis: Axes, run: Run, look: dict) -> None:
@@ -41,7 +41,8 @@ def over_cycle(axis: Axes, run: Run, values: np.ndarray, look: dict) -> None:
     rows = first_cycle(run)
     axis.plot(np.degrees(run["crank_angle"][rows]), values[rows], **look)
     axis.set_xlabel("crank angle in the cycle [deg]")
-    axis.set_xlim(0, 720)
+    first = np.degrees(run["crank_angle"][0])
+    axis.set_xlim(first, first + np.degrees(run.cycle))
     axis.xaxis.set_major_locator(MultipleLocator(180))
     axis.set_ylim(bottom=min(0.0, values.min()))
 

@@ -50,8 +50,9 @@ class Run:
 
     @property
     def cycle(self) -> float:
-        """Crank angle after which the loads repeat [rad]: two revolutions with gas, else one."""
-        return (4 if "gas_force" in self else 2) * np.pi
+        """Crank angle after which the loads repeat [rad]: two revolutions with the gas of four strokes, else one."""
+        one_turn = self.parameter("combustion", "cycle") in ("two_stroke", "compressor") or self.parameter("cylinder_pressure", "period_deg") == 360
+        return (4 if "gas_force" in self and not one_turn else 2) * np.pi
 
     @cached_property
     def contacts(self) -> pd.DataFrame:
