@@ -50,7 +50,9 @@ def gas_part(checks: RowChecks, i: int) -> int:
 
 def pieces_of(checks: RowChecks, run: Run) -> list[list[int]]:
     """Runs of rows within which nothing jumps: same phase, same contact, same part of the gas cycle, same side of the friction."""
-    keys = [(phase_key(checks, i), phase_key(checks.crank_pin, i) if checks.crank_pin else None, gas_part(checks, i)) for i in range(len(run.times))]
+    begins = checks.guide.begins if checks.guide else []
+    keys = [(phase_key(checks, i), phase_key(checks.crank_pin, i) if checks.crank_pin else None, gas_part(checks, i),
+             checks.guide.side(checks.row(i), i, begins, run.times[i]) if checks.guide else None) for i in range(len(run.times))]
     pieces: list[list[int]] = []
     for i, key in enumerate(keys):
         if i and key == keys[i - 1]:
@@ -69,7 +71,16 @@ def sizes(run: Run) -> dict[str, float]:
     own = run.number("crank_pin.joint.clearance")
     return {"rod_velocity_x": speed * max(way, own), "rod_velocity_y": speed * max(way, own), "crank_pin_eccentricity_x": own,
             "crank_pin_eccentricity_y": own, "crank_speed": speed, "rod_speed": speed * way / run.number("mechanism.rod_length"), "piston_velocity": speed * way,
-            "crank_angle": 1.0, "piston_position": way}
+            "crank_angle": 1.0, "piston_position": way, **bore_sizes(run, speed)}
+
+
+def bore_sizes(run: Run, speed: float) -> dict[str, float]:
+    """Those of a piston loose in its bore."""
+    if not run.has_loose_guide:
+        return {}
+    way = run.number("guide.bore_clearance")
+    turn = 2 * way / (run.number("guide.skirt_top") + run.number("guide.skirt_bottom"))
+    return {"piston_offset": way, "piston_tilt": turn, "piston_offset_rate": way * speed, "piston_tilt_rate": turn * speed}
 
 
 def worst_drift(run: Run, rates: dict[str, str], stencil: list[list[Stencil]]) -> tuple[float, float, str]:
@@ -147,6 +158,9 @@ def balances(checks: RowChecks) -> Balances:
         run = dataclasses.replace(run, columns=run.columns | dict(zip(names, rod)))
         rates |= {f"rod_velocity_{axis}": f"rod_acceleration_{axis}" for axis in "xy"}
         rates |= {f"crank_pin_eccentricity_{axis}": f"crank_pin_eccentricity_rate_{axis}" for axis in "xy"}
+    if checks.guide and checks.guide.is_loose:
+        rates |= {f"piston_{one}": f"piston_{one}_rate" for one in ("offset", "tilt")}
+        rates |= {f"piston_{one}_rate": f"piston_{one}_acceleration" for one in ("offset", "tilt")}
     found.drift, found.drift_bound, found.worst = worst_drift(run, rates, stencil)
     for joint in (checks, checks.crank_pin):
         if joint and joint.friction and joint.friction.has_bristles and joint.friction.gives_way >= LEAST_BEND:
@@ -158,11 +172,16 @@ def balances(checks: RowChecks) -> Balances:
 
 def power_of(checks: RowChecks, row: Row, i: int) -> float:
     """Of gas on the piston, of the joints on their bodies, of damping and drive on the crank [W]."""
-    power = row.get["crank_moment"] * row.turn - row.bodies.damping * row.turn**2 - row.gas * row.vx
+    power = row.get["crank_moment"] * row.turn - row.bodies.damping * row.turn**2 - row.gas * row.com_velocity[0]
+    if checks.guide:
+        power += checks.guide.power(row)
     if checks.has_joint:
         moment = checks.joint_moment(row)
         power += row.force[0] * row.slip[0] + row.force[1] * row.slip[1]
-        power += (row.joint_moment() if moment is None else moment) * row.rod_turn
+        moment = row.joint_moment() if moment is None else moment
+        power += moment * row.rod_turn
+        if row.is_loose:
+            power -= (moment + row.get["eccentricity_x"] * row.force[1] - row.get["eccentricity_y"] * row.force[0]) * row.tilt_rate
     if checks.crank_pin:
         own = row.crank_pin(checks.crank_pin.run.columns, i)
         moment = checks.crank_pin.joint_moment(own)

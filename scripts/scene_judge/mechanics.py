@@ -71,6 +71,8 @@ class Bodies:
     downwards: Vector                     # of length 1
     damping: float
     pin_radius: float
+    piston_inertia: float = 0.0           # about its centre of mass, and that from the pin, of a piston loose in its bore
+    piston_com: Vector = (0.0, 0.0)
 
     @classmethod
     def of(cls, run: Run) -> Bodies:
@@ -80,7 +82,8 @@ class Bodies:
                    (n("mechanism.crank_inertia") + n("drive.flywheel_inertia"), n("mechanism.rod_inertia")),
                    run.pair("mechanism.crank_com"), run.pair("mechanism.rod_com"), n("mechanism.gravity"),
                    rotated(-1.0, 0.0, math.radians(n("mechanism.gravity_angle_deg"))), n("drive.damping"),
-                   n("joint.bearing_radius") - n("joint.clearance"))
+                   n("joint.bearing_radius") - n("joint.clearance"),
+                   *((n("guide.piston_inertia"), run.pair("guide.piston_com")) if run.has_loose_guide else ()))
 
 
 class Row:
@@ -106,12 +109,21 @@ class Row:
         self.big_end = self.crankpin[0] - self.offset[0], self.crankpin[1] - self.offset[1]
         self.big_end_velocity = self.crankpin_velocity[0] - self.offset_rate[0], self.crankpin_velocity[1] - self.offset_rate[1]
         self.pin_velocity = velocity(self.big_end_velocity, self.rod, self.rod_turn)
-        self.journal_turn, self.bearing_turn = self.rod_turn, 0.0
+        # of a piston loose in its bore: its centre of mass across, its tilt, and that centre from the pin's bearing
+        self.is_loose = "piston_tilt" in get
+        self.offset_y, self.offset_rate_y = get.get("piston_offset", 0.0), get.get("piston_offset_rate", 0.0)
+        self.tilt, self.tilt_rate, self.tilt_acceleration = (get.get(f"piston_tilt{one}", 0.0) for one in ("", "_rate", "_acceleration"))
+        self.com = rotated(*bodies.piston_com, self.tilt)
+        self.com_velocity = self.vx - self.tilt_rate * self.com[1], self.offset_rate_y
+        self.bearing = self.x, self.offset_y - self.com[1]
+        self.bearing_velocity = self.vx, self.offset_rate_y - self.tilt_rate * self.com[0]
+        self.bore_friction = get.get("guide_friction_force", 0.0)
+        self.journal_turn, self.bearing_turn = self.rod_turn, self.tilt_rate
         self.law_noise = 0.0   # of the column of the joint's force: it is the law's own
         self.force = get["pin_force_x"], get["pin_force_y"]
         self.gas = get.get("gas_force", 0.0)
         # of the pin in its bearing
-        self.slip = self.pin_velocity[0] - self.vx, self.pin_velocity[1]
+        self.slip = self.pin_velocity[0] - self.vx, self.pin_velocity[1] - self.bearing_velocity[1]
         self.speed_size = abs(bodies.crank_length * self.turn) + abs(bodies.rod_length * self.rod_turn) + abs(self.vx)
 
     def energy_terms(self) -> tuple[list[float], list[float]]:
@@ -120,9 +132,27 @@ class Row:
         crank = velocity((0.0, 0.0), self.crank_arm, self.turn)
         rod = self.rod_velocity
         kinetic = [0.5 * b.mass[0] * (crank[0]**2 + crank[1]**2), 0.5 * b.inertia[0] * self.turn**2,
-                   0.5 * b.mass[1] * (rod[0]**2 + rod[1]**2), 0.5 * b.inertia[1] * self.rod_turn**2, 0.5 * b.mass[2] * self.vx**2]
-        places = self.crank_arm, (self.big_end[0] + self.rod_arm[0], self.big_end[1] + self.rod_arm[1]), (self.x, 0.0)
+                   0.5 * b.mass[1] * (rod[0]**2 + rod[1]**2), 0.5 * b.inertia[1] * self.rod_turn**2, 0.5 * b.mass[2] * self.com_velocity[0]**2,
+                   0.5 * b.mass[2] * self.com_velocity[1]**2, 0.5 * b.piston_inertia * self.tilt_rate**2]
+        places = self.crank_arm, (self.big_end[0] + self.rod_arm[0], self.big_end[1] + self.rod_arm[1]), (
+            self.x + self.com[0], self.offset_y)
         return kinetic, [-m * b.gravity * (b.downwards[0] * x + b.downwards[1] * y) for m, (x, y) in zip(b.mass, places)]
+
+    @property
+    def com_acceleration(self) -> Vector:
+        """Of the piston's centre of mass."""
+        return self.ax - self.tilt_acceleration * self.com[1] - self.tilt_rate**2 * self.com[0], self.get.get("piston_offset_acceleration", 0.0)
+
+    @property
+    def bearing_acceleration(self) -> float:
+        """Of the pin's bearing in the piston, across."""
+        return self.com_acceleration[1] - self.tilt_acceleration * self.com[0] + self.tilt_rate**2 * self.com[1]
+
+    def piston_moment_terms(self, joint_moment: float) -> list[float]:
+        """Euler's law of the piston about its centre of mass, all but what the bore gives, from the joint's moment on the rod [N m]."""
+        e = self.get.get("eccentricity_x", 0.0), self.get.get("eccentricity_y", 0.0)
+        return [-self.bodies.piston_inertia * self.tilt_acceleration, -joint_moment, -e[0] * self.force[1], e[1] * self.force[0],
+                self.com[0] * self.force[1], -self.com[1] * self.force[0]]
 
     @property
     def rod_velocity(self) -> Vector:
@@ -190,9 +220,9 @@ class Row:
         at_pin = acceleration((0.0, 0.0), self.crankpin, self.turn, self.turn_rate)
         crank = acceleration((0.0, 0.0), self.crank_arm, self.turn, self.turn_rate)
         rod = acceleration(at_pin, self.rod_arm, self.rod_turn, self.rod_turn_rate)
-        found["Newton, piston"] = balance(b.mass[2] * self.ax, self.gas, self.force[0], -b.mass[2] * g[0])
+        found["Newton, piston"] = balance(b.mass[2] * self.com_acceleration[0], self.gas, self.force[0], -self.bore_friction, -b.mass[2] * g[0])
         # the guide's force follows from the rod's moments, so their rounding is in it
-        found["guide force"] = Balance(abs(get["guide_force"] + self.force[1] - b.mass[2] * g[1]), abs(self.force[1]) + abs(on_rod[1]) + (
+        found["guide force"] = Balance(abs(get["guide_force"] + self.force[1] - b.mass[2] * (g[1] - self.com_acceleration[1])), abs(self.force[1]) + abs(on_rod[1]) + (
             sum(map(abs, self.rod_moment_terms())) + abs(self.rod[1] * on_rod[0])) / abs(self.rod[0]))
         if not self.has_loose_crank_pin:   # where there is no column of the rod's acceleration
             found |= vector_balance("Newton, rod", scaled(b.mass[1], rod), scaled(-b.mass[1], g), scaled(-1, on_rod), scaled(-1, self.force))
@@ -209,18 +239,19 @@ class Row:
             found["Euler, rod"] = Balance(
                 abs(math.fsum((*self.rod_moment_terms(), -joint_moment, -at_big_end))), abs(joint_moment) + abs(at_big_end) + sum(
                     map(abs, self.rod_moment_terms())) + b.rod_length * (math.hypot(*on_rod) + math.hypot(*self.force)))
-        found["force on the frame, x"] = balance(get["frame_force_x"], -on_crank[0], self.gas)
+        found["force on the frame, x"] = balance(get["frame_force_x"], -on_crank[0], self.gas, -self.bore_friction)
         found["force on the frame, y"] = balance(get["frame_force_y"], -on_crank[1], get["guide_force"])
         e = get.get("eccentricity_x", 0.0), get.get("eccentricity_y", 0.0)
         found["pin in the bearing, x"] = balance(self.crankpin[0], -self.offset[0], self.rod[0], -self.x, -e[0])
-        found["pin in the bearing, y"] = balance(self.crankpin[1], -self.offset[1], self.rod[1], -e[1])
+        found["pin in the bearing, y"] = balance(self.crankpin[1], -self.offset[1], self.rod[1], -self.bearing[1], -e[1])
         if "eccentricity_x" not in get:
             found["pin speed, x"] = balance(self.pin_velocity[0], -self.vx)
-            found["pin speed, y"] = balance(self.big_end_velocity[1], self.rod_turn * self.rod[0])
+            found["pin speed, y"] = balance(self.big_end_velocity[1], self.rod_turn * self.rod[0], -self.bearing_velocity[1])
         if "eccentricity_x" not in get and not self.has_loose_crank_pin:
             at_end = acceleration(at_pin, self.rod, self.rod_turn, self.rod_turn_rate)
             found["pin acceleration, x"] = Balance(abs(at_end[0] - self.ax), abs(at_end[0]) + abs(at_pin[0]))
-            found["pin acceleration, y"] = Balance(abs(at_end[1]), abs(at_pin[1]) + abs(self.rod_turn_rate * self.rod[0]))
+            found["pin acceleration, y"] = Balance(abs(at_end[1] - self.bearing_acceleration), abs(at_pin[1]) + abs(
+                self.rod_turn_rate * self.rod[0]) + abs(self.bearing_acceleration))
         noise = self.noise()
         for name, one in found.items():
             if name.startswith(("Newton", "guide", "force")):

@@ -60,14 +60,17 @@ class Scales:
 
 
 def states(run: Run) -> list[tuple[float, ...]]:
-    """Crank angle and speed, of each joint with clearance eccentricity and its rate, at every row."""
+    """Crank angle and speed, of each joint with clearance eccentricity and its rate, at every row; of a piston with clearance in its
+    bore how far its centre of mass is off the axis and what its tilt moves the ends of its skirt, and the rates of both."""
     bodies = Bodies.of(run)
     found = []
     for i in range(len(run.times)):
         row = Row(bodies, run.columns, i)
         e = (row.get["eccentricity_x"], row.get["eccentricity_y"], *row.slip) if run.has_clearance else ()
         c = (*row.offset, *row.offset_rate) if run.has_loose_crank_pin else ()
-        found.append((row.q, row.turn, *e, *c))
+        arm = skirt_arm(run)
+        p = (row.offset_y, arm * row.tilt, row.offset_rate_y, arm * row.tilt_rate) if run.has_loose_guide else ()
+        found.append((row.q, row.turn, *e, *c, *p))
     return found
 
 
@@ -76,7 +79,7 @@ def scales_of(run: Run, rows: list[tuple[float, ...]]) -> Scales:
     found = Scales(1.0, speed, [])
     for k, (group, _) in enumerate(loose_joints(run)):
         rates = sorted(math.hypot(*row[4 + 4 * k:6 + 4 * k]) for row in rows)
-        c = run.number(f"{group}.clearance")
+        c = run.number("guide.bore_clearance" if group == "guide" else f"{group}.clearance")
         found.joints.append((c, max(c * speed, rates[len(rates) // 2])))
     return found
 
@@ -84,7 +87,14 @@ def scales_of(run: Run, rows: list[tuple[float, ...]]) -> Scales:
 def loose_joints(run: Run) -> list[tuple[str, str]]:
     """Group of each joint with clearance, and what the keys of its start begin with."""
     found = [("joint", "")] if run.has_clearance else []
-    return [*found, ("crank_pin.joint", "crank_pin_")] if run.has_loose_crank_pin else found
+    if run.has_loose_crank_pin:
+        found.append(("crank_pin.joint", "crank_pin_"))
+    return [*found, ("guide", "piston_")] if run.has_loose_guide else found
+
+
+def skirt_arm(run: Run) -> float:
+    """Half the length of the skirt [m]."""
+    return (run.number("guide.skirt_top") + run.number("guide.skirt_bottom")) / 2
 
 
 def distance(one: tuple[float, ...], two: tuple[float, ...], scales: Scales) -> float:
@@ -142,7 +152,12 @@ class Reruns:
         if run.text("drive.kind") != "constant_speed":
             start["initial__crank_angle_deg"] = repr(run.number("initial.crank_angle_deg") + sign() * math.degrees(scales.angle))
             start["initial__crank_speed"] = repr(run.number("initial.crank_speed") + sign() * scales.speed)
-        for (_, prefix), (eccentricity, rate) in zip(loose_joints(run), scales.joints):
+        for (group, prefix), (eccentricity, rate) in zip(loose_joints(run), scales.joints):
+            if group == "guide":
+                for key, arm in (("piston_offset", 1.0), ("piston_tilt", skirt_arm(run))):
+                    for name, size in ((key, eccentricity), (f"{key}_rate", rate)):
+                        start[f"initial__{name}"] = repr(run.number(f"initial.{name}") + sign() * size / arm)
+                continue
             for key, size in ((f"{prefix}eccentricity", eccentricity), (f"{prefix}eccentricity_rate", rate)):
                 start[f"initial__{key}"] = ",".join(repr(value + sign() * size) for value in run.pair(f"initial.{key}"))
         return start
@@ -150,7 +165,8 @@ class Reruns:
     def neighbour_laws(self, off: float) -> dict[str, str]:
         """Constants of the laws, off by so much: an error that goes on being made, as that of the steps does."""
         changed = {}
-        for key in ("joint.clearance", "contact.youngs_modulus", "lubrication.viscosity", "mechanism.piston_mass", "mechanism.crank_inertia"):
+        for key in ("joint.clearance", "contact.youngs_modulus", "lubrication.viscosity", "mechanism.piston_mass", "mechanism.crank_inertia",
+                    "guide.stiffness", "guide.coefficient", "guide.viscous"):
             if self.judged.number(key) > 0:
                 changed[key.replace(".", "__")] = ",".join(repr(value * (1 + self.random.choice((-1.0, 1.0)) * off))
                                                            for value in self.judged.case[key])

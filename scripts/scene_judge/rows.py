@@ -7,6 +7,7 @@ import math
 from .contact import Contact
 from .drive import Drive
 from .gas import gas_of
+from .guide import Guide
 from .laws import ROUNDING, Friction, squeeze_film
 from .mechanics import Bodies, Row
 from .trace import Run
@@ -63,6 +64,7 @@ class RowChecks:
         self.weighted = self.contact is not None and run.text("lubrication.transition") == "weighted"
         self.drive = Drive(run) if joint == "piston_pin" and "crankshaft.flywheel_inertia" not in run.case else None
         self.gas = gas_of(run) if joint == "piston_pin" else None
+        self.guide = Guide(whole) if whole.has_guide and joint == "piston_pin" else None
         tolerance = min(run.number("integrator.relative_tolerance"), 1e-3)
         self.gas_tolerance = max(10 * tolerance, 1e-9)
 
@@ -118,6 +120,8 @@ class RowChecks:
                 self.take(name, miss, allowed + 1e-300, t)
             if self.gas:
                 self.check_gas(row, i, t)
+            if self.guide:
+                self.guide.check(self, row, t)
         if self.crank_pin:
             self.misses |= {f"crank pin: {name}": dataclasses.replace(miss, check=f"crank pin: {name}")
                             for name, miss in self.crank_pin.misses.items()}

@@ -47,6 +47,14 @@ class Run:
     def has_loose_crank_pin(self) -> bool:
         return self.text("crank_pin.joint.kind") == "clearance"
 
+    @property
+    def has_guide(self) -> bool:
+        return "guide.kind" in self.case
+
+    @property
+    def has_loose_guide(self) -> bool:
+        return self.text("guide.kind") == "clearance"
+
     def at(self, joint: str) -> Run:
         """The run as one joint has it, under the names that the piston pin's have: its group, its laws, its columns, its events."""
         case = {key: value for key, value in self.case.items() if not (joint != "piston_pin" and key.startswith("joint."))}

@@ -1,0 +1,115 @@
+"""The piston's guide: friction on it, and the corners of a skirt with clearance in its bore, against the rows of a trace."""
+from __future__ import annotations
+
+import bisect
+import dataclasses
+import math
+
+from .contact import Contact
+from .laws import ROUNDING, Friction
+from .mechanics import Row, rotated
+from .trace import Run
+
+LAW = 1e-6    # of a force: what a law may be missed by, beyond the rounding of what it was given
+SUM = 1e-9    # of a sum's terms
+
+
+class Guide:
+    """What the case says of its guide. The corners are numbered from 1: top and bottom towards +y, top and bottom towards -y."""
+
+    def __init__(self, run: Run) -> None:
+        n = run.number
+        self.viscous = n("guide.viscous")
+        case = {key.replace("guide.", "friction."): value for key, value in run.case.items() if key.startswith("guide.")}
+        self.friction = Friction(dataclasses.replace(run, case=case))
+        self.is_loose = run.has_loose_guide
+        if not self.is_loose:
+            return
+        self.clearance, self.radius = n("guide.bore_clearance"), n("guide.piston_radius")
+        along = run.pair("guide.piston_com")[0]
+        self.height = n("guide.skirt_top") - along, -n("guide.skirt_bottom") - along
+        case = {key.replace("guide.", "contact."): value for key, value in run.case.items() if key.startswith("guide.")}
+        case |= {"contact.law": run.case["guide.contact_law"], "contact.geometry": ["hertz_sphere"],
+                 "contact.youngs_modulus": [1e11, 1e11], "contact.poissons_ratio": [0.3, 0.3]}
+        self.contacts = [Contact(dataclasses.replace(run, case=case, events=[e for e in run.events if e["joint"] == f"guide_{k}"]))
+                         for k in range(1, 5)]
+
+    def corner(self, k: int, row: Row) -> tuple[float, float]:
+        """From the piston's centre of mass [m]."""
+        return rotated(self.height[(k - 1) % 2], math.copysign(self.radius, 2.5 - k), row.tilt)
+
+    def depth(self, k: int, row: Row) -> float:
+        """In the wall [m]."""
+        return math.copysign(1.0, 2.5 - k) * (row.offset_y + self.corner(k, row)[1]) - self.radius - self.clearance
+
+    def rates(self, k: int, row: Row) -> tuple[float, float]:
+        """Of the depth and of the corner along the wall [m/s]."""
+        x, y = self.corner(k, row)
+        return math.copysign(1.0, 2.5 - k) * (row.offset_rate_y + row.tilt_rate * x), row.com_velocity[0] - row.tilt_rate * y
+
+    def power(self, row: Row) -> float:
+        """Of all that the bore does to the piston [W]."""
+        get, v = row.get, row.com_velocity[0]
+        if not self.is_loose:
+            return get["guide_friction_force"] * v
+        total = -self.viscous * v**2
+        for k in range(1, 5):
+            rate, along = self.rates(k, row)
+            total += get[f"guide_{k}_friction"] * along - get[f"guide_{k}_force"] * rate
+        return total
+
+    def side(self, row: Row, i: int, begins: list[list[float]], time: float) -> tuple:
+        """What jumps or bends: corners that touch, which of their contacts it is, and the sense of sliding."""
+        if not self.is_loose:
+            sense = row.get["guide_force"] > 0
+            return self.friction.side(row.com_velocity[0], 0.0)[0], sense
+        found = []
+        for k in range(1, 5):
+            touches = row.get[f"guide_{k}_force"] > 0 or self.depth(k, row) > 0
+            found.append((bisect.bisect_left(begins[k - 1], time), self.friction.side(self.rates(k, row)[1], 0.0)[0]) if touches else None)
+        return tuple(found)
+
+    @property
+    def begins(self) -> list[list[float]]:
+        return [contact.begin for contact in self.contacts] if self.is_loose else []
+
+    def check(self, checks, row: Row, t: float) -> None:
+        """One row; `checks` takes the misses."""
+        get, v = row.get, row.com_velocity[0]
+        give = 10 * ROUNDING * (row.speed_size + abs(row.tilt_rate) * math.hypot(*row.com))
+        if not self.is_loose:
+            low, high = self.friction.range(v, give)
+            normal, got = abs(get["guide_force"]), get["guide_friction_force"] + self.viscous * v
+            low, high = low * normal, high * normal
+            slack = LAW * (abs(low) + abs(high)) / 2 + SUM * abs(self.viscous * v) + row.noise() * max(abs(low), abs(high)) / (normal or 1.0)
+            checks.take("friction on the guide", max(low - got, got - high, 0.0), slack + 1e-300, t)
+            return
+        total, moment, size = -self.viscous * v, 0.0, 0.0
+        for k in range(1, 5):
+            depth, (rate, along) = self.depth(k, row), self.rates(k, row)
+            checks.take("gap of a corner", abs(get[f"guide_{k}_gap"] + depth), 1e-15 * (self.radius + abs(row.offset_y)) * 4, t)
+            depth = -get[f"guide_{k}_gap"]
+            normal, friction = get[f"guide_{k}_force"], get[f"guide_{k}_friction"]
+            low, high = (self.contacts[k - 1].force(depth, rate + d, t) for d in (-give, give))
+            low, high = min(low, high), max(low, high)
+            blur = 4e-15 * (self.radius + self.clearance) / depth * self.contacts[k - 1].geometry.exponent if depth > 0 else 0.0
+            near = 1e-15 * (self.radius + self.clearance + abs(self.height[(k - 1) % 2] * row.tilt)) + 1e-9 * self.clearance
+            at_wall = self.contacts[k - 1].geometry.force(2 * near) if abs(depth) <= near else 0.0   # a row where it begins or ends
+            checks.take("contact law of a corner", max(low - normal, normal - high, 0.0), (LAW + blur) * max(abs(high), abs(normal)) + at_wall, t)
+            low, high = (one * normal for one in self.friction.range(along, give))
+            checks.take("friction law of a corner", max(low - friction, friction - high, 0.0), LAW * (abs(low) + abs(high)) / 2 + 1e-300, t)
+            total += friction
+            x, y = self.corner(k, row)
+            side = math.copysign(1.0, 2.5 - k)
+            moment += -side * x * normal - y * friction
+            size += abs(x * normal) + abs(y * friction)
+        checks.take("friction on the piston", abs(total - get["guide_friction_force"]), SUM * (abs(total) + abs(self.viscous * v)) + 1e-300, t)
+        pressing = sum(math.copysign(get[f"guide_{k}_force"], 2.5 - k) for k in range(1, 5))
+        forces = sum(abs(get[f"guide_{k}_force"]) for k in range(1, 5)) + math.hypot(*row.force)
+        checks.take("force of the corners on the guide", abs(pressing - get["guide_force"]), SUM * forces + 10 * row.noise(), t)
+        joint = checks.joint_moment(row) if checks.has_joint else 0.0
+        if joint is None:   # the shear of a film, whose moment no column tells
+            return
+        turning = row.piston_moment_terms(joint) + [moment]
+        size += sum(map(abs, turning))
+        checks.take("Euler, piston", abs(math.fsum(turning)), SUM * size + 10 * row.noise() * (self.radius + abs(self.height[0]) + abs(self.height[1])), t)
