@@ -59,6 +59,9 @@ SCENES = {
     "elastic": ("film/elastic", {"integrator.revolutions": "0.1", "lubrication.variant": "short"}),
     "both": ("joints/both_pins", {"integrator.revolutions": "0.2", "drive.kind": "'free'", "mechanism.gravity_angle_deg": "25"}),
     "crank": ("joints/crank_pin", {"integrator.revolutions": "0.2", "integrator.relative_tolerance": "1e-7"}),
+    "slap": ("joints/piston_slap", {"integrator.revolutions": "0.3", "mechanism.gravity_angle_deg": "25"}),
+    "guide": ("flores/ideal", {"drive.kind": "'free'", "mechanism.gravity": "9.8", "guide.law": "threlfall", "guide.coefficient": "0.1", "guide.v1": "0.5",
+                               "guide.viscous": "3"}),
     "films": ("joints/both_pins_lubricated", {"integrator.revolutions": "0.5"}),
     "ideal": ("flores/ideal", {"drive.kind": "'free'", "drive.damping": "0.03", "mechanism.gravity": "9.8", "initial.crank_angle_deg": "20"}),
 }
@@ -67,7 +70,8 @@ LONG_STEPS = ("sim_V", {"integrator.method": "'auto'", "integrator.revolutions":
 PHASES = {"dry": {0, 2}, "sticks": {0, 2}, "threlfall": {0, 2}, "brown_mcphee": {0, 2}, "stribeck": {0, 2}, "lugre": {0, 2},
           "elasto_plastic": {0, 2}, "conformal": {0, 2}, "johnson": {0, 2},
           "liner": {0, 2}, "pereira": {0, 2}, "dissipation": {0, 2}, "film": {1}, "contact": {1, 2}, "weighted": {1, 2}, "elastic": {1},
-          "compressor": {1}, "two_stroke": {1}, "measured": {1}, "ramp": {1}, "motor": {1}, "both": {0, 2}, "crank": {0}, "films": {1}, "ideal": {0}}   # 0 free flight, 1 film, 2 contact
+          "compressor": {1}, "two_stroke": {1}, "measured": {1}, "ramp": {1}, "motor": {1}, "both": {0, 2}, "crank": {0}, "films": {1},
+          "slap": {0, 2}, "guide": {0}, "ideal": {0}}   # 0 free flight, 1 film, 2 contact
 
 #: (what is changed, scene, column, change of (value, row), what the verdict must say)
 CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
@@ -115,6 +119,17 @@ CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
     ("another film at the crank pin", "films", "crank_pin_film_force_y", lambda v, i: v * (1 + 1e-5), "crank pin: film force on the pin"),
     ("rod acceleration off with both pins loose", "both", "rod_acceleration", lambda v, i: v * 1.001, "Euler, rod"),
     ("crank acceleration off with both pins loose", "both", "crank_acceleration", lambda v, i: v * 1.001, "Euler, crank"),
+    ("a little harder corner of the skirt", "slap", "guide_1_force", lambda v, i: v * (1 + 1e-5), "contact law of a corner"),
+    ("friction that drives a corner", "slap", "guide_2_friction", lambda v, i: -v, "friction law of a corner"),
+    ("a wider gap", "slap", "guide_3_gap", lambda v, i: v + 1e-12, "gap of a corner"),
+    ("a piston that tilts on its own", "slap", "piston_tilt_acceleration", lambda v, i: v * 1.001, "Euler, piston"),
+    ("another offset", "slap", "piston_offset", lambda v, i: v + 1e-9, "pin in the bearing, y"),
+    ("offset faster than it grows", "slap", "piston_offset_rate", lambda v, i: v * 1.001, "energy column"),
+    ("tilt that is not the integral of its rate", "slap", "piston_tilt_rate", lambda v, i: v * 1.01, "is not the integral of its rate"),
+    ("guide force that no corner gives", "slap", "guide_force", lambda v, i: v * (1 + 1e-6), "force of the corners on the guide"),
+    ("friction of the piston off", "slap", "guide_friction_force", lambda v, i: v + 1e-3, "friction on the piston"),
+    ("a little more friction on the guide", "guide", "guide_friction_force", lambda v, i: v * (1 + 1e-5), "friction on the guide"),
+    ("friction on the guide that is no force", "guide", "guide_friction_force", lambda v, i: -v, "Newton, piston"),
     ("another film", "film", "film_force_x", lambda v, i: v * 1.001, "film force on the pin"),
     ("more film beside a contact", "weighted", "film_force_y", lambda v, i: v * (1 + 1e-5), "contact force on the pin"),
     ("harder contact beside a film", "weighted", "normal_force", lambda v, i: v * (1 + 1e-5), "contact law"),
@@ -153,6 +168,10 @@ LIARS = [
     ("other damping of bristles", "lugre", "friction.bristle_damping", "0.0101", "friction law"),
     ("more damping", "ideal", "drive.damping", "0.031", "Euler, crank"),
     ("more heat", "film", "combustion.heat", "166.0", "gas law"),
+    ("a heavier piston to turn", "slap", "guide.piston_inertia", "2.001e-5", "Euler, piston"),
+    ("a longer skirt", "slap", "guide.skirt_top", "0.0151", "gap of a corner"),
+    ("a wider bore", "slap", "guide.bore_clearance", "101e-6", "gap of a corner"),
+    ("a tighter ring pack", "guide", "guide.viscous", "3.01", "friction on the guide"),
     ("thicker oil", "film", "lubrication.viscosity", "0.0118", "film law"),
     ("a deeper transition", "weighted", "lubrication.transition_depth", "3.001e-6", "contact law"),
     ("a film held farther out", "weighted", "lubrication.least_film_ratio", "0.0299", "film law"),
@@ -184,6 +203,8 @@ MUTANTS = [
     ("the film keeps a thousandth too much", "film_transition.f90", "w = s**2*(3 - 2*s)", "w = s**2*(2.999_dp - 2*s)", "weighted", "contact law"),
     ("the crank pin slides without its bearing's turning", "joint_motion.f90", "- joint%bearing_speed*(joint%distance + pin_radius)",
      "- joint%bearing_speed*pin_radius", "both", "crank pin: sliding speed"),
+    ("a corner's friction turns nothing", "piston_guide.f90", "*corner%normal_force - corner%from_com(2)*corner%friction_force", "*corner%normal_force",
+     "slap", "Euler, piston"),
     ("angular momentum from nowhere", "chain_loads.f90", "-(moment + eccentricity(1)", "-(moment + 0*eccentricity(1)", "both", "Euler, rod"),
     ("a valve opens too late", "valve_gas.f90", "*(1 - opening_margin)", "*0.999_dp", "compressor", "gas law"),
     ("a measured pressure is off between its rows", "monotone_cubic.f90", "0.5_dp*abs(parabola))*2", "0.5_dp*abs(parabola))*2.2_dp",
