@@ -24,8 +24,9 @@ from assertions import Assertions
 
 TOP = Path(__file__).resolve().parents[1]
 
-#: A film that stays open, one with contacts and gas, dry contact, an ideal joint, dry contact on an elastic rod.
-CASES = ("sim_I", "sim_V_oscillating", "dry_0500um", "ideal", "dry_friction")
+#: A film that stays open, one with contacts and gas, dry contact, a piston that slaps (with a loose pin, with ideal ones), an ideal
+#: joint, dry contact on an elastic rod.
+CASES = ("sim_I", "sim_V_oscillating", "dry_0500um", "piston_slap", "slider_clearance", "ideal", "dry_friction")
 
 LARGEST_PAGE = 6_000_000  # bytes
 
@@ -134,6 +135,7 @@ def check_page(browser: Browser, page: Path, checks: Assertions, pictures: Path 
     checks.check(browser.run("return document.getElementById('failure').hidden"), f"{name}: tells no failure")
     clearance = browser.run("return gudgeon.scene.clearance > 0")
     canvases = ["mechanism", "timeline"] + (["joint", "orbit"] if clearance else [])
+    canvases += ["bore"] if browser.run("return gudgeon.scene.bore !== null") else []
     plots = browser.run("return gudgeon.scene.plots.length")
     checks.check(
         plots >= 5 and browser.run("return document.querySelectorAll('#plots .main-svg').length") >= plots,

@@ -15,7 +15,7 @@ from plotly.offline import get_plotlyjs
 
 from . import film_pressure
 from .results import Run
-from .style import BLACK, BLUE
+from .style import BLACK, BLUE, GREEN, PURPLE, VERMILION
 
 PAGE = Path(__file__).parent / "page"
 
@@ -24,6 +24,9 @@ MOST_ROWS = 8000
 
 #: Angles around the pin at which the film's pressure is drawn.
 ANGLES = 72
+
+#: Corners of a skirt in its bore, and what the page calls them.
+CORNERS = {1: "top, +y", 2: "bottom, +y", 3: "top, -y", 4: "bottom, -y"}
 
 #: Columns that the animation needs, where the run has them.
 MOTION = (
@@ -41,6 +44,9 @@ MOTION = (
     "normal_force",
     "cylinder_pressure",
     *(f"rod_mode_{k}" for k in range(1, 9)),
+    "piston_offset",
+    "piston_tilt",
+    *(f"guide_{corner}_force" for corner in CORNERS),
 )
 
 #: Plots over time: column, title, unit shown, factor; the ideal joint's curve overlaid where there is a twin.
@@ -60,6 +66,9 @@ OVER_TIME = (
     ("crankshaft_twist", "Crankshaft: twist", "mrad", 1e3),
     ("crank_moment", "Crank moment", "N m", 1.0),
     ("guide_force", "Guide force", "kN", 1e-3),
+    ("guide_friction_force", "Friction of the piston on its guide", "N", 1.0),
+    ("piston_offset", "Piston across its bore", "µm", 1e6),
+    ("piston_tilt", "Tilt of the piston", "mrad", 1e3),
     ("gas_force", "Gas force", "kN", 1e-3),
     ("energy_residual", "Energy residual", "mJ", 1e3),
 )
@@ -116,6 +125,25 @@ def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
                 }
             )
         found.append({"title": title, "x": "time [ms]", "y": unit, "timed": True, "curves": curves})
+
+    for quantity, title, unit, factor in (
+        ("gap", "Gaps of the skirt's corners (below 0: penetration)", "µm", 1e6),
+        ("force", "Forces on the skirt's corners", "kN", 1e-3),
+    ):
+        curves = [
+            {
+                "name": said,
+                "x": "time",
+                "x_factor": 1e3,
+                "y": f"guide_{corner}_{quantity}",
+                "y_factor": factor,
+                "colour": colour,
+            }
+            for (corner, said), colour in zip(CORNERS.items(), (BLUE, GREEN, VERMILION, PURPLE))
+            if f"guide_{corner}_{quantity}" in columns
+        ]
+        if curves:
+            found.append({"title": title, "x": "time [ms]", "y": unit, "timed": True, "curves": curves})
 
     def plane(title: str, x: str, y: str, names: tuple[str, str], factors: tuple[float, float], **more: object) -> dict:
         curve = {
@@ -291,6 +319,7 @@ def page(run: Run, ideal: Run | None = None, fields: list[pd.DataFrame] | None =
         used.append("film_peak")
     data = b"".join(columns[name][rows].astype("<f4").tobytes() for name in used)
     touched = contacts(run)
+    bore = bore_of(run) if "piston_tilt" in columns else None
     scene = {
         "rows": len(rows),
         "columns": used,
@@ -303,10 +332,12 @@ def page(run: Run, ideal: Run | None = None, fields: list[pd.DataFrame] | None =
         "crank": float(run.parameter("mechanism", "crank_length")),
         "rod": float(run.parameter("mechanism", "rod_length")),
         "bearing": drawn_bearing_radius(run),
+        "bore": bore,
         "speed": float(run.parameter("initial", "crank_speed")),
         "modes": sum(name.startswith("rod_mode_") for name in used),
         "peak": {
             "pin_force": float(columns["pin_force"].max()),
+            "guide_force": max([float(columns[f"guide_{i}_force"].max()) for i in CORNERS if bore], default=0.0),
             "normal_force": max([contact["force"] for contact in touched], default=0.0),
             "eccentricity_ratio": float(run["eccentricity_ratio"].max()) if run.clearance else 0.0,
             "cylinder_pressure": float(columns["cylinder_pressure"].max()) if "cylinder_pressure" in columns else 0.0,
@@ -368,6 +399,13 @@ def time_line(columns: dict[str, np.ndarray]) -> dict:
         "factor": 1e-3,
         "range": [0.0, float(columns["pin_force"].max())],
     }
+
+
+def bore_of(run: Run) -> dict[str, object]:
+    """Clearance and dimensions of a skirt in its bore [m]: ends and centre of mass from the pin, along and across."""
+    along, across = run.parameter("guide", "piston_com")
+    keys = {"clearance": "bore_clearance", "top": "skirt_top", "bottom": "skirt_bottom", "radius": "piston_radius"}
+    return {"along": along, "across": across, **{name: float(run.parameter("guide", key)) for name, key in keys.items()}}
 
 
 def drawn_bearing_radius(run: Run) -> float:

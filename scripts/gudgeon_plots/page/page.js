@@ -23,7 +23,9 @@
   const pressure = scene.angles ? new Int8Array(await unpack("pressure")) : null;
   const time = column.time, begin = time[0], end = time[scene.rows - 1];
   const joint = scene.clearance > 0;
+  const bore = scene.bore;
   document.body.classList.toggle("ideal", !joint);
+  document.body.classList.toggle("boreless", !bore);
   document.body.classList.toggle("contactless", scene.contacts.length === 0);
   document.body.classList.toggle("filmless", !scene.angles);
   document.body.classList.toggle("unsigned", !scene.signed);
@@ -112,9 +114,11 @@
     g.closePath(); g.fill();
   }
 
-  // ---- magnification: 1 ... where the clearance is drawn as 45 % of the bearing's radius
+  // ---- magnification: 1 ... where the clearance is drawn as 45 % of the bearing's radius, that of the bore as 20 % of the piston's
   const largest = joint ? 0.45 * scene.bearing / scene.clearance : 1;
-  const magnification = () => Math.pow(largest, Number(byId("magnification").value));
+  const magnified = (most) => Math.pow(most, Number(byId("magnification").value));
+  const magnification = () => magnified(largest);
+  const inBore = (radius) => magnified(0.2 * radius / bore.clearance);   // of a piston drawn with this radius [m]
 
   // x is up, y to the right
   function drawMechanism() {
@@ -125,11 +129,14 @@
     const X = (y) => width / 2 + scale * y, Y = (x) => height - scale * (x - bottom);
     const q = at("crank_angle"), piston = at("piston_position"), m = magnification();
     const px = crank * Math.cos(q), py = crank * Math.sin(q);
-    const ex = joint ? m * at("eccentricity_x") : 0, ey = joint ? m * at("eccentricity_y") : 0;
+    // of a piston loose in its bore: how far its axis and its pin are drawn beside the cylinder's, and its tilt
+    const n = bore ? inBore(half) : 0, gap = bore ? n * bore.clearance : 0.05 * half;
+    const aside = bore ? n * at("piston_offset") : 0, tilt = bore ? drawnTilt(n) : 0, pin = bore ? aside - bore.along * tilt - bore.across : 0;
+    const ex = joint ? m * at("eccentricity_x") : 0, ey = (joint ? m * at("eccentricity_y") : 0) + pin;
     g.strokeStyle = COLOUR.ink; g.lineWidth = 2.5;
     for (const side of [-1, 1]) {
       g.beginPath();
-      g.moveTo(X(side * 1.05 * half), Y(Math.min(1.45 * crank, rod - crank))); g.lineTo(X(side * 1.05 * half), Y(top));
+      g.moveTo(X(side * (half + gap)), Y(Math.min(1.45 * crank, rod - crank))); g.lineTo(X(side * (half + gap)), Y(top));
       g.stroke();
     }
     if (column.cylinder_pressure) {
@@ -140,8 +147,11 @@
     circle(g, X(0), Y(0), 1.25 * crank * scale, COLOUR.light, COLOUR.grey, 1);
     bar(g, X(0), Y(0), X(py), Y(px), 0.9 * bearing * scale);
     g.fillStyle = COLOUR.light; g.strokeStyle = COLOUR.ink; g.lineWidth = 1.5;
-    g.beginPath(); g.rect(X(-half), Y(piston + 2.6 * bearing), 2 * half * scale, 4.1 * bearing * scale); g.fill(); g.stroke();
-    circle(g, X(0), Y(piston), bearing * scale, "#fff", COLOUR.ink, 1.2);
+    g.save();
+    g.translate(X(aside), Y(piston)); g.rotate(tilt);   // x is up: from x to y is clockwise here
+    g.beginPath(); g.rect(-half * scale, -2.6 * bearing * scale, 2 * half * scale, 4.1 * bearing * scale); g.fill(); g.stroke();
+    g.restore();
+    circle(g, X(pin), Y(piston), bearing * scale, "#fff", COLOUR.ink, 1.2);
     if (bending) bentBar(g, X, Y, [px, py], [piston + ex, ey], 0.55 * bearing, bending);
     else bar(g, X(py), Y(px), X(ey), Y(piston + ex), 0.55 * bearing * scale);
     circle(g, X(ey), Y(piston + ex), (bearing - m * scene.clearance) * scale * (joint ? 1 : 0.75), COLOUR.blue, COLOUR.ink, 1);
@@ -190,6 +200,33 @@
       circle(g, wx, wy, 5, COLOUR.purple);
       arrow(g, wx + length * uy / e, wy - length * ux / e, -length * uy / e, length * ux / e, COLOUR.purple);
     }
+  }
+
+  // A tilt drawn as large as the gaps are, but no piston lies on its side.
+  const drawnTilt = (n) => Math.max(-0.6, Math.min(0.6, n * at("piston_tilt")));
+
+  function drawBore() {
+    const { g, width, height } = prepare("bore");
+    const n = inBore(bore.radius), tall = bore.top + bore.bottom;
+    const scale = Math.min(0.8 * height / tall, 0.36 * width / (bore.radius + n * bore.clearance)), wall = scale * (bore.radius + n * bore.clearance);
+    const cx = width / 2, cy = height / 2, sine = n * at("piston_tilt");   // gaps are drawn n times as wide, and so is what the tilt takes of them
+    const Y = (h) => cy - scale * (h - (bore.top - bore.bottom) / 2);
+    const X = (h, side) => cx + scale * (side * bore.radius + n * at("piston_offset") + (h - bore.along) * sine);
+    g.strokeStyle = COLOUR.ink; g.lineWidth = 2.5;
+    for (const side of [-1, 1]) { g.beginPath(); g.moveTo(cx + side * wall, 4); g.lineTo(cx + side * wall, height - 4); g.stroke(); }
+    g.beginPath();
+    g.moveTo(X(bore.top, -1), Y(bore.top)); g.lineTo(X(bore.top, 1), Y(bore.top));
+    g.lineTo(X(-bore.bottom, 1), Y(-bore.bottom)); g.lineTo(X(-bore.bottom, -1), Y(-bore.bottom));
+    g.closePath();
+    g.fillStyle = COLOUR.steel; g.fill(); g.strokeStyle = COLOUR.ink; g.lineWidth = 1.2; g.stroke();
+    circle(g, X(0, 0) - scale * bore.across, Y(0), 0.25 * scale * bore.radius, "#fff", COLOUR.ink, 1.2);
+    [[bore.top, 1], [-bore.bottom, 1], [bore.top, -1], [-bore.bottom, -1]].forEach(([h, side], i) => {
+      const force = near(`guide_${i + 1}_force`);
+      if (!(force > 0)) return;
+      const length = rooted(force, scene.peak.guide_force, 0.4 * scale * bore.radius + 12), x = cx + side * wall;
+      circle(g, x, Y(h), 5, COLOUR.purple);
+      arrow(g, x + side * length, Y(h), -side * length, 0, COLOUR.purple);
+    });
   }
 
   function drawOrbit() {
@@ -255,6 +292,11 @@
         + (force > 0 ? `, ${(force / 1e3).toFixed(2)} kN` : ""));
       if (pressure && near("phase") === 1) parts.push(`film pressure up to ${(near("film_peak") / 1e6).toPrecision(3)} MPa`);
     }
+    if (bore) {
+      const touching = [1, 2, 3, 4].filter((i) => near(`guide_${i}_force`) > 0);
+      parts.push(`piston ${(1e6 * at("piston_offset")).toFixed(1)} µm off, tilt ${(1e3 * at("piston_tilt")).toFixed(2)} mrad`
+        + (touching.length ? `, corner ${touching.join(" and ")} on the bore` : ""));
+    }
     if (bending) {
       let w = 0;
       for (let k = 1; k <= scene.modes; k += 2) w += at(`rod_mode_${k}`) * (k % 4 === 1 ? 1 : -1);
@@ -271,6 +313,7 @@
   function draw() {
     drawMechanism();
     if (joint) { drawJoint(); drawOrbit(); }
+    if (bore) drawBore();
     drawTimeline();
     drawState();
     byId("scrub").value = (now - begin) / (end - begin);
@@ -280,7 +323,7 @@
   const turns = () => Math.pow(10, Number(byId("speed").value));   // revolutions a second
   function labels() {
     byId("speed-value").textContent = `${turns().toPrecision(2)} rev/s`;
-    byId("magnification-value").textContent = `× ${magnification().toPrecision(3)}`;
+    byId("magnification-value").textContent = `× ${(joint || !bore ? magnification() : inBore(bore.radius)).toPrecision(3)}`;
   }
 
   function frame(stamp) {
