@@ -27,6 +27,7 @@ contains
     call one_impact_gives_back_its_share(check)
     call energy_of_elastic_corners(check)
     call energy_with_all_losses(check)
+    call energy_with_elastic_members(check)
     call no_event_is_lost(check)
     call methods_agree(check)
     call narrow_bore_is_an_ideal_guide(check)
@@ -215,6 +216,33 @@ contains
         'energy lost is the work of all forces: '//trim(scenes(i)))
     end do
   end subroutine energy_with_all_losses
+
+  !> The same with an elastic rod and an elastic crankshaft: at a loose pin, at ideal pins with clearance in the bore and with friction
+  !> on the guide alone.
+  subroutine energy_with_elastic_members(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: ideal_pin(3) = [character(len=long) :: 'joint=none', 'contact=none', 'friction=none']
+    character(len=*), parameter :: elastic(7) = [character(len=long) :: 'elastic_rod.youngs_modulus=207e9', &
+      'elastic_rod.section_area=9.6e-5', 'elastic_rod.section_inertia=5.12e-10', 'crankshaft.flywheel_inertia=0.002', &
+      'crankshaft.torsional_stiffness=2e4', 'integrator.relative_tolerance=1e-8', 'integrator.revolutions=0.1']
+    call runs([character(len=long) :: elastic, 'drive.kind=free'], 'a loose pin')
+    call runs([character(len=long) :: elastic, ideal_pin], 'ideal pins')
+    call runs([character(len=long) :: elastic, ideal_pin, 'guide.kind=friction'], 'friction alone')
+
+  contains
+
+    subroutine runs(overrides, what)
+      character(len=*), intent(in) :: overrides(:), what
+      type(trace_t) :: got
+      got = run_case('cases/joints/piston_slap.nml', overrides)
+      call check%that(got%report%status == 'done', 'elastic rod and shaft in a bore run: '//what)
+      call check%close_to(got%report%figures%max_energy_residual/got%report%figures%max_energy, 0.0_dp, 1e-9_dp, &
+        'energy with elastic rod and shaft: '//what)
+      associate (reached => maxval(abs(values_of(got, 'guide_friction_force[N]'))))
+        call check%that(reached > 5, 'the guide has friction: '//what)
+      end associate
+    end subroutine runs
+  end subroutine energy_with_elastic_members
 
   !> Every row in which a corner is in the wall has a contact there, contacts of each corner begin and end in turn, and they begin
   !> and end at the wall; corners of both ends that hit it at the same instant are two contacts.

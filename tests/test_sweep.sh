@@ -87,6 +87,29 @@ check "an ideal crank pin among them, status $status" [ "$status" = 0 ]
 check "has no figures" [ -z "$(named "$work/ideal/pins.runs.csv" 2 'crank_pin_max_pin_force[N]')" ]
 check "the piston pin has" [ -n "$(named "$work/ideal/pins.runs.csv" 2 'max_penetration[m]')" ]
 
+# the piston in its bore
+cp cases/joints/piston_slap.nml "$work/slap.nml"
+study bore <<'END'
+&study case = 'slap.nml' /
+&parameter key = 'guide.bore_clearance', values = 5e-5, 2e-4 /
+&parameter key = 'guide.restitution', values = 0.3, 0.9 /
+&parameter key = 'initial.piston_offset', values = 0, 2e-5 /
+END
+run sweep -j 2 -o "$work/bore" "$work/bore.nml"
+check "a study of the bore runs, status $status" [ "$status" = 0 ]
+run -q -o "$work/single" -s guide.bore_clearance=2e-4 -s guide.restitution=0.3 -s initial.piston_offset=2e-5 "$work/slap.nml"
+for names in 'energy_residual[-] max_energy_residual_relative' 'rhs_evaluations[-] rhs_evaluations' 'max_pin_force[N] max_pin_force'; do
+  check "the run is the case: $names" [ "$(named "$work/bore/bore.runs.csv" 6 "${names% *}")" = "$(field "$work/single/slap.summary.csv" "${names#* }")" ]
+done
+study kinds <<'END'
+&study case = 'slap.nml' /
+&parameter key = 'guide.kind', values = 'clearance', 'friction' /
+&parameter key = 'guide.viscous', values = 0, 10 /
+END
+run sweep -j 1 -o "$work/kinds" "$work/kinds.nml"
+check "a study of kinds of guide runs, status $status" [ "$status" = 0 ]
+check "all of its runs differ" [ "$(awk -F, 'NR > 1' "$work/kinds/kinds.runs.csv" | cut -d, -f5- | sort -u | wc -l)" = 4 ]
+
 # runs until the motion repeats: its period, its exponent, the statistics of the last period alone
 cp cases/flores/lubricated_400cP.nml "$work/film.nml"
 study periods <<'END'
