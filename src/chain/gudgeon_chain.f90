@@ -66,41 +66,22 @@ contains
     type(loads_t), intent(inout) :: loads
     type(accelerations_t), intent(out) :: accelerations
     real(dp), intent(out) :: crank_moment
-    if (chain%bodies%piston%is_loose) then
-      call accelerate_with_loose_piston(chain, drive, motion, loads, accelerations, crank_moment)
-    else if (chain%is_loose(crank_pin)) then
-      if (chain%is_loose(piston_pin)) then
+    if (chain%is_loose(piston_pin)) then
+      if (chain%is_loose(crank_pin)) then
         call accelerate_free_rod(chain%bodies, drive, loads, motion, accelerations, crank_moment)
       else
-        call accelerate_rod_piston(chain%bodies, drive, motion, loads, accelerations, crank_moment)
+        call accelerate_crank_rod(chain%bodies, drive, loads, motion, accelerations, crank_moment)
       end if
-    else if (chain%is_loose(piston_pin)) then
-      call accelerate_crank_rod(chain%bodies, drive, loads, motion, accelerations, crank_moment)
+      if (chain%bodies%piston%is_loose) call free_piston(chain%bodies, motion, loads, accelerations)
+    else if (chain%bodies%piston%is_loose) then
+      call accelerate_assembled(chain%bodies, drive, chain%is_loose, loads, motion, accelerations, crank_moment)
+      call chain%complete_loads(motion, accelerations, loads)
+    else if (chain%is_loose(crank_pin)) then
+      call accelerate_rod_piston(chain%bodies, drive, motion, loads, accelerations, crank_moment)
     else
       call accelerate_ideal_chain(chain%bodies, drive, motion, loads, accelerations, crank_moment)
     end if
   end subroutine accelerate_rigid
-
-  !> The same where the piston has clearance in its bore: with clearance at its pin too it is a piece of its own.
-  pure subroutine accelerate_with_loose_piston(chain, drive, motion, loads, accelerations, crank_moment)
-    class(chain_t), intent(in) :: chain
-    type(drive_t), intent(in) :: drive
-    type(motion_t), intent(in) :: motion
-    type(loads_t), intent(inout) :: loads
-    type(accelerations_t), intent(out) :: accelerations
-    real(dp), intent(out) :: crank_moment
-    if (.not. chain%is_loose(piston_pin)) then
-      call accelerate_assembled(chain%bodies, drive, chain%is_loose, loads, motion, accelerations, crank_moment)
-      call chain%complete_loads(motion, accelerations, loads)
-      return
-    end if
-    if (chain%is_loose(crank_pin)) then
-      call accelerate_free_rod(chain%bodies, drive, loads, motion, accelerations, crank_moment)
-    else
-      call accelerate_crank_rod(chain%bodies, drive, loads, motion, accelerations, crank_moment)
-    end if
-    call free_piston(chain%bodies, motion, loads, accelerations)
-  end subroutine accelerate_with_loose_piston
 
   !> The same of a chain with elastic members. The moment is that on the flywheel where there is one. `solvable` is false where the
   !> elastic rod's mass matrix is not positive definite.
