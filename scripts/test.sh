@@ -46,6 +46,7 @@ count "tables of films" tests/test_film_tables.py
 count "faults" tests/test_faults.py --kills 10
 count "runs taken up again" tests/test_resume.py --kills 10
 count "the plots" sh -c 'scripts/setup.sh --python && tests/test_plots.py'
+count "orders and cycles" sh -c 'scripts/setup.sh --python && .venv/bin/python tests/test_orders.py'
 count "the pages of runs, in a browser" sh -c 'scripts/setup.sh --browser && tests/test_report.py'
 count "studies past the program" sh -c 'scripts/setup.sh --studies && tests/test_studies.py'
 

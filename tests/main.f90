@@ -15,6 +15,7 @@ program gudgeon_tests
   use test_oil_viscosity, only: run_test_oil_viscosity
   use test_elastic_film, only: run_test_elastic_film
   use test_case_file, only: run_test_case_file
+  use test_certificate, only: run_test_certificate
   use test_chain, only: run_test_chain
   use test_checkpoint, only: run_test_checkpoint
   use test_combustion, only: run_test_combustion
@@ -87,6 +88,7 @@ program gudgeon_tests
   call run('oil_viscosity', run_test_oil_viscosity)
   call run('elastic_film', run_test_elastic_film)
   call run('case_file', run_test_case_file)
+  call run('certificate', run_test_certificate)
   call run('chain', run_test_chain)
   call run('checkpoint', run_test_checkpoint)
   call run('combustion', run_test_combustion)

@@ -163,5 +163,19 @@ if (ulimit -f 400) 2>/dev/null; then
   check "and the summary says so" grep -q '^status,"stopped: ' "$work/d/sim_I.summary.csv"
 fi
 
+# certificates
+run -o "$work/certified" --certify -s integrator.method=auto -s output.ideal_twin=F cases/flores/lubricated_400cP.nml
+check "a run is certified, status $status" [ "$status" = 0 ]
+check "its line says so" grep -q 'done; [0-9.]* digits to the end; ' "$work/out"
+check "its summary too" grep -q '^certified_until,2.4.*E-02,s$' "$work/certified/lubricated_400cP.summary.csv"
+check "every column has its error" [ "$(wc -l <"$work/certified/lubricated_400cP.certificate.csv")" = \
+  "$(head -n 1 "$work/certified/lubricated_400cP.csv" | tr , '\n' | grep -vc phase | awk '{ print $1 + 1 }')" ]
+run -o "$work/plain" -s integrator.method=auto -s output.ideal_twin=F cases/flores/lubricated_400cP.nml
+check "the run is the same" cmp -s "$work/plain/lubricated_400cP.csv" "$work/certified/lubricated_400cP.csv"
+run -q -o "$work/certified" -s integrator.method=adams -s output.ideal_twin=F cases/flores/lubricated_400cP.nml
+check "another run takes its certificate away" [ ! -e "$work/certified/lubricated_400cP.certificate.csv" ]
+run sweep --certify cases/studies/map_I.nml
+check "no certificates of sweeps, status $status" [ "$status" = 2 ]
+
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]

@@ -10,10 +10,10 @@ PACKAGES = ("matplotlib", "numpy", "pandas", "plotly")
 STUDIES = ("SALib", "f90nml")
 
 
-def use_virtual_environment(studies: bool = False) -> None:
-    """Go on in .venv's Python if this one lacks the packages, with `studies` also those of parameter studies; leave with
+def use_virtual_environment(studies: bool = False, more: tuple[str, ...] = ()) -> None:
+    """Go on in .venv's Python if this one lacks the packages, with `studies` also those of parameter studies, and `more`; leave with
     what to do if neither has them."""
-    wanted = PACKAGES + (STUDIES if studies else ())
+    wanted = PACKAGES + (STUDIES if studies else ()) + more
     missing = [name for name in wanted if importlib.util.find_spec(name) is None]
     if not missing:
         return

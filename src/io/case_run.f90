@@ -11,6 +11,8 @@ module case_run
   use result_file, only: result_file_t, remove_result
   use continuation, only: continuation_t
   use run_identity, only: identity_length
+  use certificate, only: certificate_t, make_certificate
+  use certificate_text, only: certificate_table, certificate_summary, certificate_clause
   use gudgeon_archive, only: archive_t
   use gudgeon_summary, only: summary_table, summary_line
   use stability_advice, only: advice
@@ -21,7 +23,7 @@ module case_run
   private
   public :: case_run_t, name_file
 
-  integer, parameter :: room_for_summary = 8192   !! bytes: twice what the longest have
+  integer, parameter :: room_for_summary = 12288   !! bytes: twice what the longest have
 
   !> A run is prepared, begins where `start` says, and goes. Its files are BASE.csv, with contacts BASE.events.csv, BASE.summary.csv
   !> and BASE.checkpoint. What goes wrong on the way is in `error`.
@@ -30,6 +32,8 @@ module case_run
     character(len=:), allocatable :: line, notice        !! for people: how it went, and what they should know besides
     type(continuation_t) :: start
     character(len=:), allocatable :: base                !! path of the results without their endings
+    logical :: certifies = .false.                       !! a run that is done is certified
+    type(certificate_t), allocatable, private :: certificate
     type(case_t), private :: case
     logical, private :: is_twin = .false.                !! the run of the ideal twin
     type(column_list_t), private :: list
@@ -109,6 +113,7 @@ contains
     call remove(self%base//'.csv', was_there, status)
     call remove(self%base//'.events.csv', was_there, status)
     call remove(self%base//'.film.csv', was_there, status)
+    call remove(self%base//'.certificate.csv', was_there, status)
     if (.not. self%is_twin) call remove(self%base//'.resolved.nml', was_there, status)
   end subroutine clear
 
@@ -148,6 +153,11 @@ contains
       call simulate(self%case, self%is_twin, self%list, sink, self%report, self%error)
     end if
     if (.not. allocated(self%report%status)) self%report%status = self%error%message
+    if (self%certifies .and. self%report%status == 'done') then
+      allocate (self%certificate)
+      call make_certificate(self%case, self%report, self%certificate, self%error)
+      if (allocated(self%error)) self%certificate%reason = self%error%message
+    end if
     select type (sink)
     type is (trace_files_t)
       call close_files(self, sink)
@@ -208,22 +218,42 @@ contains
     !$omp end critical (texts)
   end subroutine close_files
 
+  !> Write NAME.certificate.csv.
+  subroutine write_certificate(self)
+    class(case_run_t), intent(inout) :: self
+    type(result_file_t) :: table
+    type(error_t), allocatable :: error
+    call table%open(self%base//'.certificate.csv', error)
+    if (.not. allocated(error)) then
+      call table%put(certificate_table(self%certificate))
+      call table%close(error)
+    end if
+    if (allocated(error) .and. .not. allocated(self%error)) call move_alloc(error, self%error)
+  end subroutine write_certificate
+
   !> Put the summary into its file, and its line for people into `line` and `notice`.
   subroutine put_summary(self, files)
     class(case_run_t), intent(inout) :: self
     type(trace_files_t), intent(inout) :: files
     type(error_t), allocatable :: trace_error
     type(case_t) :: case
+    character(len=:), allocatable :: remark
     call files%tell_error(trace_error)
     if (allocated(trace_error)) self%report%status = 'stopped: '//trace_error%message
     case = self%case
     if (self%is_twin) case%joint%kind = 'ideal'
     if (self%is_twin) case%crank_pin%kind = 'ideal'
-    self%line = summary_line(case, self%report, files%wall_time(), self%base)
+    remark = ''
+    if (allocated(self%certificate)) then
+      if (self%certificate%is_made) call write_certificate(self)
+      remark = certificate_clause(self%certificate)
+    end if
+    self%line = summary_line(case, self%report, files%wall_time(), self%base, remark)
     if (.not. files%advice%was_given) self%notice = advice(self%report%auto_saves)
     if (self%notice /= '') self%notice = printable(case%file, 200)//': '//self%notice
     call self%summary%put(summary_table(case, self%report, files%wall_time(), self%start%identity, &
                                         int(files%trace%length(), int64), int(files%event_list%length(), int64), self%is_twin))
+    if (allocated(self%certificate)) call self%summary%put(certificate_summary(self%certificate))
   end subroutine put_summary
 
   !> The error of the run: one of the output goes before one of the integration. The checkpoint goes where all is said and done.

@@ -80,6 +80,7 @@ contains
     self%has_twin = case%output%ideal_twin .and. (case%has_clearance() .or. case%is_elastic())
     identity = identity_of(text, program)
     call self%run%prepare(case, text, identity, .false., list, base, options%checkpoint_interval, show_progress, options%quiet)
+    self%run%certifies = options%certify
     self%twin%base = base//'.ideal'
     if (self%has_twin) call self%twin%prepare(case, text, twin_identity(identity), .true., ideal_list, self%twin%base, &
       options%checkpoint_interval, show_progress .and. options%jobs == 1, options%quiet)

@@ -16,6 +16,7 @@ module command_line
     integer :: jobs = 0                           !! threads; 0: as many as there are cores
     real(dp) :: checkpoint_interval = 60          !! seconds between checkpoints of a run; 0: none
     logical :: resume = .false.                   !! go on where runs were stopped
+    logical :: certify = .false.                  !! find out how far runs can be believed
     logical :: check = .false., template = .false., quiet = .false., help = .false., version = .false.
     character(len=:), allocatable :: progress     !! auto, always, never
     character(len=:), allocatable :: cases(:)     !! paths of case files, or of study files, blanks behind
@@ -31,10 +32,10 @@ module command_line
     logical :: takes_value = .false.
   end type option_t
 
-  type(option_t), parameter :: options(14) = [ &
+  type(option_t), parameter :: options(15) = [ &
     option_t('out', 'o', .true.), option_t('set', 's', .true.), option_t('accuracy', 'a', .true.), &
     option_t('jobs', 'j', .true.), option_t('progress', '', .true.), option_t('check', '', .false.), &
-    option_t('resume', '', .false.), option_t('checkpoint', '', .true.), &
+    option_t('resume', '', .false.), option_t('checkpoint', '', .true.), option_t('certify', '', .false.), &
     option_t('template', '', .false.), option_t('quiet', 'q', .false.), option_t('help', 'h', .false.), &
     option_t('version', 'V', .false.), option_t('fresh', '', .false.), option_t('rows', '', .true.)]
 
@@ -85,6 +86,8 @@ contains
       if (line%sweep) call fail(error, 'no study file given'//hint, status_command_line)
       if (.not. line%sweep) call fail(error, 'no case file given'//hint, status_command_line)
       return
+    else if (line%sweep .and. line%certify) then
+      call fail(error, '--certify is not for gudgeon sweep'//hint, status_command_line)
     else if (.not. line%sweep .and. (line%fresh .or. line%last_row > 0)) then
       call fail(error, '--fresh and --rows are for gudgeon sweep'//hint, status_command_line)
       return
@@ -209,6 +212,8 @@ contains
       line%template = .true.
     case ('quiet')
       line%quiet = .true.
+    case ('certify')
+      line%certify = .true.
     case ('fresh')
       line%fresh = .true.
     case ('rows')
@@ -317,6 +322,8 @@ contains
       '                            are those of a run that was not; give the same options as then (but the limits'//n// &
       '                            max_steps, max_evaluations, max_evaluations_per_revolution)'//n// &
       '      --checkpoint SECONDS  how often a run writes CASE.checkpoint (default: 60; 0: never)'//n// &
+      '      --certify             run each case again at a hundredth of its tolerance and with another method, and say'//n// &
+      '                            in its line, summary and CASE.certificate.csv how far it can be believed'//n// &
       '      --check               read and validate the cases, run nothing'//n// &
       '      --template            print a complete, commented case (sweep: study) file with every key and default'//n// &
       '      --progress WHEN       auto, always or never: progress on standard error (auto: a terminal)'//n// &

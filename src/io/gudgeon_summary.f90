@@ -275,14 +275,18 @@ contains
   end function energy_warning
 
   !> One line for people.
-  function summary_line(case, report, wall_time, path) result(text)
+  function summary_line(case, report, wall_time, path, remark) result(text)
     type(case_t), intent(in) :: case
     type(run_report_t), intent(in) :: report
     real(dp), intent(in) :: wall_time
     character(len=*), intent(in) :: path   !! of the results, without their endings
+    character(len=*), intent(in), optional :: remark   !! how far the run can be believed, or empty
     character(len=:), allocatable :: text
     associate (s => report%statistics, f => report%figures)
       text = case%name//': '//report%status//'; '
+      if (present(remark)) then
+        if (remark /= '') text = text//remark//'; '
+      end if
       if (report%periods%is_on .and. report%status == 'done') text = text//period_text(report%periods)//'; '
       if (report%exponent%is_known) then
         text = text//'Lyapunov exponent '//short_text(report%exponent%mean)//' per revolution; '

@@ -1,0 +1,210 @@
+"""Whole cycles of a settled run: orders, spectra, means with their scatter, work over the cycle, loads on the bearings."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from scipy import fft, integrate, interpolate, signal
+
+from .results import MissingResult, Run
+
+TURN = 2 * np.pi
+POINTS = 720  # of a revolution, where the trace's own rows are not at equal crank angles
+
+
+@dataclass(frozen=True)
+class Cycles:
+    """Columns at equal crank angles over whole cycles: values of each column as (cycle, angle)."""
+
+    run: Run
+    angle: np.ndarray  # within a cycle [rad], from 0
+    start: np.ndarray  # crank angle at which each cycle begins [rad]
+    values: dict[str, np.ndarray]
+    sense: float  # in which the crank turns
+
+    @property
+    def length(self) -> float:
+        """Of a cycle [rad]."""
+        return self.run.cycle
+
+    @property
+    def place(self) -> np.ndarray:
+        """Crank angle of each column of the values within the cycle, counted from 0 of the trace's own crank angle [rad]."""
+        return np.mod(self.start[0] * self.sense + self.angle + 1e-9, self.length) - 1e-9
+
+    @property
+    def number(self) -> int:
+        return len(self.start)
+
+    def __getitem__(self, column: str) -> np.ndarray:
+        return self.values[column]
+
+    def __contains__(self, column: str) -> bool:
+        return column in self.values
+
+
+def whole_cycles(run: Run, settle: float | None = None, most: int | None = None) -> Cycles:
+    """The whole cycles at the end of a run, `most` of them, that begin after `settle` revolutions (default: half of the run; none where
+    the trace is of the last period alone). Rows at equal crank angles are taken as they are; others are interpolated by cubics over the
+    crank angle."""
+    travel = run["crank_angle"] - run["crank_angle"][0]
+    sense = 1.0 if travel[-1] >= 0 else -1.0
+    travel = sense * travel
+    if np.any(np.diff(travel) <= 0):
+        raise MissingResult(f"{run.name}: the crank stops or turns back, so there are no cycles")
+    if settle is None:
+        settle = 0.0 if run.parameter("output", "window") == "last_period" else travel[-1] / TURN / 2
+    rounding = 1e-6
+    number = int((travel[-1] - settle * TURN + rounding) // run.cycle)
+    if most is not None:
+        number = min(number, most)
+    if number < 1:
+        raise MissingResult(f"{run.name}: no whole cycle of {run.cycle / TURN:g} revolutions after {settle:g} revolutions")
+    points, first = grid_of(travel, run.cycle, number)
+    angle = np.arange(points) * (run.cycle / points)
+    begin = travel[-1] - number * run.cycle if first is None else travel[first]
+    start = begin + np.arange(number) * run.cycle
+    places = (start[:, None] + angle[None, :]).ravel()
+    values = {}
+    for name in run.trace.columns:
+        column = run[name]
+        if first is not None:
+            taken = column[first : first + number * points]
+        elif name.endswith("phase"):
+            taken = column[np.clip(np.searchsorted(travel, places, side="right") - 1, 0, len(column) - 1)]
+        else:
+            taken = interpolate.CubicSpline(travel, column)(np.clip(places, travel[0], travel[-1]))
+        values[name] = taken.reshape(number, points)
+    return Cycles(run, angle, run["crank_angle"][0] + sense * start, values, sense)
+
+
+def grid_of(travel: np.ndarray, length: float, number: int) -> tuple[int, int | None]:
+    """Points of a cycle, and the row at which the first begins where the rows are at equal crank angles already."""
+    steps = np.diff(travel)
+    points = int(round(length / np.median(steps)))
+    if np.ptp(steps) < 1e-4 * np.median(steps) and abs(points * np.median(steps) - length) < 1e-6 * length and points > 1:
+        first = len(travel) - 1 - number * points
+        if first >= 0:
+            return points, first
+    return int(round(length / TURN * POINTS)), None
+
+
+def orders(cycles: Cycles, column: str) -> pd.DataFrame:
+    """Amplitude and phase [deg] of each order (cycles of the quantity in a revolution), by Fourier's sum over all cycles together: of
+    amplitude cos(order q + phase), q the crank angle in the sense in which the crank turns. `scatter` is the standard deviation of the
+    amplitude from cycle to cycle. Order 0 is the mean."""
+    values = cycles[column]
+    points = values.shape[1]
+    of_each = fft.rfft(values, axis=1) / points
+    of_each = of_each * np.exp(-1j * np.arange(of_each.shape[1]) * TURN / cycles.length * cycles.place[0])
+    together = of_each.mean(axis=0)
+    factor = np.full(len(together), 2.0)
+    factor[0] = 1.0
+    if points % 2 == 0:
+        factor[-1] = 1.0
+    return pd.DataFrame(
+        {
+            "order": np.arange(len(together)) * TURN / cycles.length,
+            "amplitude": factor * np.abs(together),
+            "phase_deg": np.degrees(np.angle(together)),
+            "scatter": np.std(factor * np.abs(of_each), axis=0),
+        }
+    )
+
+
+def spectrum(cycles: Cycles, column: str) -> tuple[np.ndarray, np.ndarray]:
+    """Frequency [Hz] and amplitude density [unit/sqrt(Hz)] over the time of the cycles (Welch, Hann windows of half of it)."""
+    time = cycles["time"].ravel()
+    count = len(time)
+    even = np.linspace(time[0], time[-1], count)
+    values = np.interp(even, time, cycles[column].ravel())
+    rate = (count - 1) / (time[-1] - time[0])
+    frequency, density = signal.welch(values, rate, nperseg=max(8, count // 2), detrend="constant")
+    return frequency, np.sqrt(density)
+
+
+def over_cycle(cycles: Cycles, integrand: np.ndarray, over: np.ndarray) -> np.ndarray:
+    """Integral of each cycle by the trapezoidal rule, with the first row of the next cycle as its last."""
+    result = []
+    for k in range(cycles.number):
+        y, x = integrand[k], over[k]
+        if k + 1 < cycles.number:
+            y, x = np.append(y, integrand[k + 1, 0]), np.append(x, over[k + 1, 0])
+        else:  # the last one closes with the step before it
+            y, x = np.append(y, integrand[k, 0]), np.append(x, 2 * over[k, -1] - over[k, -2])
+        result.append(integrate.trapezoid(y, x))
+    return np.array(result)
+
+
+def closed_integral(integrand: np.ndarray, over: np.ndarray) -> np.ndarray:
+    """Integral of each cycle over a quantity that comes back to where it was."""
+    y = np.concatenate([integrand, integrand[:, :1]], axis=1)
+    x = np.concatenate([over, over[:, :1]], axis=1)
+    return integrate.trapezoid(y, x, axis=1)
+
+
+def work(cycles: Cycles) -> pd.DataFrame:
+    """Work and losses of a cycle [J], mean and standard deviation over the cycles, and as mean effective pressure [Pa] where there is a
+    cylinder: over the volume that the piston sweeps."""
+    run = cycles.run
+    time = cycles["time"]
+    found: dict[str, np.ndarray] = {}
+    swept = None
+    if "cylinder_pressure" in cycles:
+        volume = cycles["cylinder_volume"]
+        swept = float(np.ptp(volume))
+        found["gas (p-V)"] = closed_integral(cycles["cylinder_pressure"], volume)
+    speed = cycles["crank_speed"]
+    found["drive"] = over_cycle(cycles, cycles["crank_moment"] * speed, time)
+    damping = float(run.parameter("drive", "damping", 0.0))
+    if damping > 0:
+        found["damping"] = -over_cycle(cycles, damping * speed**2, time)
+    for name, label in loss_columns(cycles):
+        found[label] = over_cycle(cycles, name, time)
+    done = cycles["energy"] - cycles["energy_residual"]  # the work of all forces but gravity, and a constant
+    all_work = np.append(done[:, 0], run["energy"][-1] - run["energy_residual"][-1])
+    if cycles.number > 1 and ("eccentricity_x" in cycles or "crank_pin_eccentricity_x" in cycles):
+        of_forces = np.diff(all_work)[: cycles.number - 1]
+        others = found["drive"] + found.get("damping", 0.0)
+        if "gas_force" in cycles:
+            others = others - over_cycle(cycles, cycles["gas_force"] * cycles["piston_velocity"], time)
+        found["joints, all"] = of_forces - others[: cycles.number - 1]
+    rows = []
+    for name, values in found.items():
+        row = {"quantity": name, "work[J]": values.mean(), "scatter[J]": values.std()}
+        if swept:
+            row |= {"mean_effective_pressure[Pa]": values.mean() / swept, "scatter[Pa]": values.std() / swept}
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def loss_columns(cycles: Cycles) -> list[tuple[np.ndarray, str]]:
+    """Powers [W] that joints take from the bodies, negative, where the trace has what tells them."""
+    found = []
+    for prefix, place in (("", "piston pin"), ("crank_pin_", "crank pin")):
+        if f"{prefix}friction_force" in cycles and f"{prefix}sliding_speed" in cycles:
+            friction = -np.abs(cycles[f"{prefix}friction_force"] * cycles[f"{prefix}sliding_speed"])
+            if np.any(friction):
+                found.append((friction, f"friction, {place}"))
+        if f"{prefix}film_power" in cycles:
+            found.append((-cycles[f"{prefix}film_power"], f"film, {place}"))
+    return found
+
+
+def bearing_loads(cycles: Cycles) -> dict[str, np.ndarray]:
+    """Loads on the bearings over all cycles, (2, cycles, angles) [N]: the force of the piston on the rod and of the crank on the rod, both
+    along the rod, outwards, and across it, and of the crank on its main bearing, along x and y."""
+    angle = cycles["rod_angle"]
+    cosine, sine = np.cos(angle), np.sin(angle)
+
+    def along_rod(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        return np.array([x * cosine + y * sine, -x * sine + y * cosine])
+
+    loads = {}
+    if "pin_force_x" in cycles:  # of the joint on the pin, which is the rod's
+        loads["piston on the rod, in the rod's frame"] = along_rod(cycles["pin_force_x"], cycles["pin_force_y"])
+    if "crankpin_force_x" in cycles:
+        loads["crank on the rod, in the rod's frame"] = along_rod(cycles["crankpin_force_x"], cycles["crankpin_force_y"])
+    if "crank_bearing_force_x" in cycles:
+        loads["crank on the main bearing"] = np.array([-cycles["crank_bearing_force_x"], -cycles["crank_bearing_force_y"]])
+    return loads

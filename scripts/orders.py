@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""What a run does cycle by cycle, once it has settled: orders and spectra, means with their scatter, work and losses, loads on the
+bearings.
+
+    scripts/orders.py sim_IV                                 the case's own results, run if they are missing
+    scripts/orders.py results/sim_IV.csv --columns crank_speed guide_force
+    scripts/orders.py dry_0500um --settle 20 --highest 60    cycles after 20 revolutions, orders up to 60
+
+A cycle is a revolution of the crank, or two with gas. Taken are whole cycles at the end of the run: those after half of it, or after
+--settle revolutions. A trace with `&output sampling = 'crank_angle'` is taken as it is; in others values at equal crank angles are
+interpolated. Best of all is a run with `&run until = 'periodic'` and `&output window = 'last_period'`. Writes, into --out:
+
+    NAME.orders.csv      each column's amplitude, phase and scatter by order
+    NAME.work.csv        work of the gas (p dV), drive and damping, losses of the joints, in a cycle [J]; with gas as mean effective
+                         pressures over the swept volume [Pa]
+    NAME.cycles.png, NAME.orders.png, NAME.bearings.png and, with gas, NAME.indicator.png
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+from gudgeon_plots.environment import TOP, use_virtual_environment
+
+use_virtual_environment(more=("scipy",))
+
+import pandas as pd  # noqa: E402
+
+from gudgeon_plots import cycle_pictures, figures  # noqa: E402
+from gudgeon_plots.cycles import Cycles, orders, whole_cycles, work  # noqa: E402
+from gudgeon_plots.results import MissingResult, Results  # noqa: E402
+
+COLUMNS = ("crank_speed", "piston_acceleration", "guide_force", "frame_force_x", "crank_moment", "film_thickness")
+
+
+def arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("case", metavar="NAME", help="a case's name, its file or its trace")
+    parser.add_argument("--columns", nargs="+", metavar="COLUMN", help=f"without units (default: {' '.join(COLUMNS)}, if they change)")
+    parser.add_argument("--settle", type=float, metavar="REVOLUTIONS", help="at the start that are left out (default: half)")
+    parser.add_argument("--cycles", type=int, metavar="N", help="at most so many, the last ones")
+    parser.add_argument("--highest", type=float, default=20.0, metavar="ORDER", help="in the picture (default: 20)")
+    parser.add_argument("--results", type=Path, metavar="DIR", help="where traces are (default: results, or the trace's)")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="(default: beside the trace)")
+    parser.add_argument("--format", action="append", choices=("png", "svg", "pdf"), help="repeatable (default: png)")
+    return parser.parse_args()
+
+
+def chosen(cycles: Cycles, wanted: list[str] | None) -> list[str]:
+    """Columns to look at. Raises MissingResult for one that the trace does not have."""
+    if wanted:
+        for name in wanted:
+            if name not in cycles:
+                raise MissingResult(f"no column {name} in the trace; it has: {' '.join(cycles.values)}")
+        return wanted
+    return [name for name in COLUMNS if name in cycles and cycles[name].max() > cycles[name].min()]
+
+
+def main() -> int:
+    options = arguments()
+    given = Path(options.case)
+    name = given.name.removesuffix(".nml").removesuffix(".csv")
+    directory = options.results or (given.parent if given.suffix == ".csv" else TOP / "results")
+    results = Results(directory, case=given if given.suffix == ".nml" and given.exists() else None)
+    out = options.out or directory
+    forms = options.format or ["png"]
+    try:
+        if not results.path(name).exists():
+            results.make([name])
+        cycles = whole_cycles(results[name], options.settle, options.cycles)
+        columns = chosen(cycles, options.columns)
+        tables = {column: orders(cycles, column) for column in columns}
+    except MissingResult as problem:
+        print(f"orders.py: {problem}", file=sys.stderr)
+        return 1
+    out.mkdir(parents=True, exist_ok=True)
+    done = work(cycles)
+    done.to_csv(out / f"{name}.work.csv", index=False)
+    pd.concat([table.assign(column=column) for column, table in tables.items()])[
+        ["column", "order", "amplitude", "phase_deg", "scatter"]
+    ].to_csv(out / f"{name}.orders.csv", index=False)
+    paths = [out / f"{name}.work.csv", out / f"{name}.orders.csv"]
+    paths += figures.save(cycle_pictures.draw_means(cycles, columns), out, f"{name}.cycles", forms)
+    paths += figures.save(cycle_pictures.draw_orders(cycles, columns, options.highest), out, f"{name}.orders", forms)
+    paths += figures.save(cycle_pictures.draw_bearings(cycles), out, f"{name}.bearings", forms)
+    if "cylinder_pressure" in cycles:
+        paths += figures.save(cycle_pictures.draw_indicator(cycles), out, f"{name}.indicator", forms)
+    print(f"{name}: {cycles.number} cycles")
+    print(done.to_string(index=False, float_format=lambda value: f"{value:.5g}"))
+    for column, table in tables.items():
+        strongest = table[table["order"] > 0].nlargest(4, "amplitude")
+        said = ", ".join(f"{row.order:g}: {row.amplitude:.4g}" for row in strongest.itertuples())
+        print(f"{column} [{cycles.run.units.get(column, '')}], strongest orders: {said}")
+    for path in paths:
+        print(path)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,364 @@
+!> How far a run can be believed: it is run again at a hundredth of its tolerance, and at that with another method, and compared with
+!> both up to where they part.
+!>
+!> The error of a row is the difference from the closer run, with a margin for what that errs itself and for what happens between the
+!> rows. A run is certified up to where the error of any coordinate or speed, so far, exceeds 1e-3 of its range, and not beyond where the
+!> run with the other method differs from the closer one by that. (The error itself is not taken from that run, which at the same tolerance
+!> may well be the worst of the three.) Beyond, means over whole revolutions are compared.
+module certificate
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: two_pi
+  use gudgeon_errors, only: error_t, fail, status_integration
+  use case_definition, only: case_t
+  use chain_motion, only: piston_pin, crank_pin
+  use gudgeon_columns, only: column_list_t, choose_columns
+  use cycle_statistics, only: cycle_t
+  use cycle_watch, only: cycle_watch_t
+  use film_tables, only: provide_tables
+  use gudgeon_simulation, only: simulate, run_report_t
+  use row_store, only: row_store_t
+  use trace_sink, only: trace_sink_t
+  implicit none
+  private
+  public :: certificate_t, make_certificate, n_statistics, statistic_names
+
+  integer, parameter :: n_statistics = 4
+  character(len=*), parameter :: statistic_names(n_statistics) = [character(len=23) :: 'mean_pin_force', 'contact_time_fraction', &
+    'impacts_per_revolution', 'loss_per_revolution']
+
+  real(dp), parameter :: limit = 1e-3_dp              !! error of a certified state, over its range
+  real(dp), parameter :: margin = 1.5_dp              !! for what happens between the rows
+  real(dp), parameter :: closer = 1e-2_dp             !! tolerance of the runs to compare with, over that of the run
+  real(dp), parameter :: finest_tolerance = 1e-13_dp  !! that they can have
+  real(dp), parameter :: loosest_tolerance = 1e-3_dp  !! a looser one counts as this one
+  integer, parameter :: rows_per_revolution = 10000, most_rows = 60000
+
+  !> Columns that are coordinates or speeds, without their units and without the pin.
+  character(len=*), parameter :: state_names(8) = [character(len=16) :: 'crank_angle', 'rod_angle', 'piston_position', &
+    'crank_speed', 'rod_speed', 'piston_velocity', 'eccentricity_x', 'eccentricity_y']
+
+  type :: certificate_t
+    logical :: is_made = .false.
+    character(len=:), allocatable :: reason      !! why it is not made
+    real(dp) :: until = 0               !! certified up to there [s]
+    logical :: is_whole = .false.       !! that is the end of the run
+    real(dp) :: digits = 0              !! of the states up to there, median over the time
+    real(dp) :: state_error = 0         !! largest of the states up to there, over the range
+    integer :: impacts = 0              !! of the run up to there
+    integer :: impacts_matched = 0      !! of them, by those of the closer run
+    logical :: has_other_method = .false.        !! the run with the other method came to its end
+    integer :: revolutions_beyond = 0            !! whole ones
+    real(dp) :: statistic(n_statistics) = 0      !! means over them
+    real(dp) :: difference(n_statistics) = 0     !! largest difference of the other runs, over the mean
+    type(column_list_t) :: list
+    real(dp), allocatable :: range(:), error(:), rms(:)   !! of each column: range over the run; largest error and its mean square up to there
+  end type certificate_t
+
+  !> One of the runs.
+  type :: witness_t
+    class(trace_sink_t), allocatable :: sink
+    type(cycle_watch_t), allocatable :: cycles
+    logical :: is_done = .false., was_interrupted = .false.
+  end type witness_t
+
+contains
+
+  !> Certify a run that is done, or say why not. Error: the user interrupted (status_integration).
+  subroutine make_certificate(case, report, certificate, error)
+    type(case_t), intent(in) :: case
+    type(run_report_t), intent(in) :: report
+    type(certificate_t), intent(out) :: certificate
+    type(error_t), allocatable, intent(out) :: error
+    type(case_t) :: plain, close
+    type(witness_t) :: own, closer_run, other_run
+    real(dp), allocatable :: errors(:)
+    integer :: n
+
+    if (case%integrator%relative_tolerance < 10*finest_tolerance) then
+      certificate%reason = 'not certified: no run can be closer than its tolerance by a factor of ten'
+      return
+    end if
+    call prepare(case, report, plain, certificate%list, error)
+    if (allocated(error)) return
+    call run(plain, certificate%list, 0, own, error)
+    if (allocated(error)) return
+    close = plain
+    close%integrator%relative_tolerance = max(finest_tolerance, closer*min(case%integrator%relative_tolerance, loosest_tolerance))
+    if (case%integrator%absolute_tolerance > 0) &
+      close%integrator%absolute_tolerance = max(finest_tolerance, closer*case%integrator%absolute_tolerance)
+    call run(close, certificate%list, 0, closer_run, error)
+    if (allocated(error)) return
+    if (.not. (own%is_done .and. closer_run%is_done)) then
+      certificate%reason = 'not certified: the run at a hundredth of the tolerance could not go on'
+      return
+    end if
+    close%integrator%method = merge('auto ', 'radau', case%integrator%method == 'radau')
+    call run(close, certificate%list, 40*(report%statistics%evaluations/10 + 1000), other_run, error)
+    if (allocated(error)) return
+    certificate%has_other_method = other_run%is_done
+    allocate (errors(rows_of(own)))
+    call find_errors(own, closer_run, other_run, certificate, errors, n)
+    call find_end(own, errors, n, certificate)
+    call find_column_errors(own, closer_run, certificate)
+    call match_impacts(own, closer_run, certificate)
+    call compare_statistics(own, closer_run, other_run, certificate)
+    certificate%is_made = .true.
+  end subroutine make_certificate
+
+  !> The case as the three run it: all columns in rows of their own, and the end of the run.
+  subroutine prepare(case, report, plain, list, error)
+    type(case_t), intent(in) :: case
+    type(run_report_t), intent(in) :: report
+    type(case_t), intent(out) :: plain
+    type(column_list_t), intent(out) :: list
+    type(error_t), allocatable, intent(out) :: error
+    real(dp) :: speed
+    plain = case
+    !$omp critical (texts)
+    plain%output%sampling = 'time'
+    plain%output%columns = 'standard'
+    plain%output%window = 'all'
+    if (report%periods%is_on) then
+      plain%run%until = 'end'
+      plain%integrator%revolutions = 0
+      plain%integrator%crank_revolutions = 0
+      plain%integrator%end_time = report%figures%time
+    end if
+    call choose_columns(plain, .false., list, error)
+    !$omp end critical (texts)
+    plain%run%lyapunov_revolutions = 0
+    plain%output%start_time = 0
+    plain%output%every_step = .false.
+    speed = max(abs(case%initial%crank_speed), abs(report%figures%crank_travel)/max(report%figures%time, tiny(1.0_dp)))
+    plain%output%interval = report%figures%time/most_rows
+    if (speed > 0) plain%output%interval = max(plain%output%interval, two_pi/(speed*rows_per_revolution))
+  end subroutine prepare
+
+  !> Run a case into memory; `is_done` is false where it does not come to its end, or needs more than `most_evaluations` (0: no limit).
+  subroutine run(case, list, most_evaluations, witness, error)
+    type(case_t), intent(in) :: case
+    type(column_list_t), intent(in) :: list
+    integer, intent(in) :: most_evaluations
+    type(witness_t), intent(out) :: witness
+    type(error_t), allocatable, intent(out) :: error   !! the user interrupted
+    type(error_t), allocatable :: failure
+    type(run_report_t) :: report
+    type(case_t) :: limited
+    limited = case
+    if (most_evaluations > 0) limited%integrator%max_evaluations = min(limited%integrator%max_evaluations, most_evaluations)
+    call provide_tables(limited, .false., error)
+    if (allocated(error)) return
+    allocate (row_store_t :: witness%sink)
+    if (case%has_play()) then   ! without clearance the measures of the joint would change the steps
+      allocate (witness%cycles)
+      witness%cycles%keeps_cycles = .true.
+      call simulate(limited, .false., list, witness%sink, report, failure, cycles=witness%cycles)
+    else
+      call simulate(limited, .false., list, witness%sink, report, failure)
+    end if
+    witness%is_done = .not. allocated(failure)
+    witness%was_interrupted = witness%sink%wants_to_stop
+    if (.not. witness%was_interrupted) return
+    !$omp critical (texts)
+    call fail(error, 'interrupted before it was certified', status_integration)
+    !$omp end critical (texts)
+  end subroutine run
+
+  !> Rows of a run.
+  pure integer function rows_of(witness)
+    type(witness_t), intent(in) :: witness
+    rows_of = 0
+    select type (sink => witness%sink)
+    type is (row_store_t)
+      rows_of = sink%rows
+    end select
+  end function rows_of
+
+  !> Error of the states in each row, over their ranges.
+  subroutine find_errors(own, closer_run, other_run, certificate, errors, n)
+    type(witness_t), intent(in) :: own, closer_run, other_run
+    type(certificate_t), intent(inout) :: certificate
+    real(dp), intent(out) :: errors(:)   !! (rows of the run)
+    integer, intent(out) :: n            !! of them that the closer run has too
+    real(dp) :: difference
+    integer :: c, i
+    select type (a => own%sink)
+    type is (row_store_t)
+      certificate%range = maxval(a%values(:, :a%rows), 2) - minval(a%values(:, :a%rows), 2)
+      select type (b => closer_run%sink)
+      type is (row_store_t)
+        n = min(a%rows, b%rows)
+        errors = 0
+        errors(n + 1:) = huge(1.0_dp)
+        do c = 1, size(certificate%list%id)
+          if (.not. (is_state(certificate%list%names(certificate%list%id(c))) .and. certificate%range(c) > 0)) cycle
+          do i = 1, n
+            difference = margin*abs(a%values(c, i) - b%values(c, i))/certificate%range(c)
+            if (other_run%is_done) then
+              if (doubt(other_run%sink, c, i, b%values(c, i)) > limit*certificate%range(c)) difference = huge(1.0_dp)
+            end if
+            errors(i) = max(errors(i), difference)
+          end do
+        end do
+      end select
+    end select
+  end subroutine find_errors
+
+  !> How far the value in a row of another run is from the value given; 0 where that run has no such row.
+  pure real(dp) function doubt(sink, c, i, value)
+    class(trace_sink_t), intent(in) :: sink
+    integer, intent(in) :: c, i
+    real(dp), intent(in) :: value
+    doubt = 0
+    select type (sink)
+    type is (row_store_t)
+      if (i <= sink%rows) doubt = abs(value - sink%values(c, i))
+    end select
+  end function doubt
+
+  !> Whether a column is a coordinate or a speed.
+  pure logical function is_state(name)
+    character(len=*), intent(in) :: name
+    integer :: i, length
+    is_state = .false.
+    do i = 1, size(state_names)
+      length = index(name, '[') - 1
+      is_state = is_state .or. name(:length) == state_names(i) .or. name(:length) == 'crank_pin_'//state_names(i)
+    end do
+  end function is_state
+
+  !> Up to where the error of the states, so far, is within the limit, and how many digits they have there.
+  subroutine find_end(own, errors, n, certificate)
+    type(witness_t), intent(in) :: own
+    real(dp), intent(in) :: errors(:)
+    integer, intent(in) :: n
+    type(certificate_t), intent(inout) :: certificate
+    integer :: i, last
+    last = 0
+    do i = 1, n
+      if (errors(i) > limit) exit
+      last = i
+    end do
+    if (last == 0) return
+    select type (a => own%sink)
+    type is (row_store_t)
+      certificate%until = a%values(1, last)
+      certificate%is_whole = last == a%rows
+    end select
+    certificate%state_error = maxval(errors(:last))
+    certificate%digits = -log10(max(median(errors(:last)), epsilon(1.0_dp)))
+  end subroutine find_end
+
+  !> Median, by halving the interval of their logarithms.
+  pure real(dp) function median(values)
+    real(dp), intent(in) :: values(:)
+    real(dp) :: low, high
+    integer :: i
+    low = -40
+    high = 0
+    do i = 1, 50
+      if (2*count(values <= 10**(0.5_dp*(low + high))) >= size(values)) then
+        high = 0.5_dp*(low + high)
+      else
+        low = 0.5_dp*(low + high)
+      end if
+    end do
+    median = 10**high
+  end function median
+
+  !> Errors of every column up to there.
+  subroutine find_column_errors(own, closer_run, certificate)
+    type(witness_t), intent(in) :: own, closer_run
+    type(certificate_t), intent(inout) :: certificate
+    integer :: i, n
+    allocate (certificate%error(size(certificate%range)), certificate%rms(size(certificate%range)), source=0.0_dp)
+    select type (a => own%sink)
+    type is (row_store_t)
+      select type (b => closer_run%sink)
+      type is (row_store_t)
+        n = count(a%values(1, :min(a%rows, b%rows)) <= certificate%until)
+        do i = 1, n
+          certificate%error = max(certificate%error, margin*abs(a%values(:, i) - b%values(:, i)))
+          certificate%rms = certificate%rms + (a%values(:, i) - b%values(:, i))**2/n
+        end do
+      end select
+    end select
+    certificate%rms = sqrt(certificate%rms)
+  end subroutine find_column_errors
+
+  !> Impacts of the run up to there, and those that the closer run has at the same pin, in the same order and at the same time: closer
+  !> than half the way to the next one.
+  subroutine match_impacts(own, closer_run, certificate)
+    type(witness_t), intent(in) :: own, closer_run
+    type(certificate_t), intent(inout) :: certificate
+    real(dp) :: gap
+    integer :: i
+    select type (a => own%sink)
+    type is (row_store_t)
+      select type (b => closer_run%sink)
+      type is (row_store_t)
+        do i = 1, a%impacts
+          if (a%impact_time(i) > certificate%until) exit
+          certificate%impacts = i
+          if (i > b%impacts) cycle
+          gap = certificate%until
+          if (i > 1) gap = a%impact_time(i) - a%impact_time(i - 1)
+          if (i < a%impacts) gap = min(gap, a%impact_time(i + 1) - a%impact_time(i))
+          if (a%impact_pin(i) == b%impact_pin(i) .and. abs(a%impact_time(i) - b%impact_time(i)) < 0.5_dp*gap) &
+            certificate%impacts_matched = certificate%impacts_matched + 1
+        end do
+      end select
+    end select
+  end subroutine match_impacts
+
+  !> Means over the whole revolutions that begin after the certified time, and how far those of the other runs are from them.
+  subroutine compare_statistics(own, closer_run, other_run, certificate)
+    type(witness_t), intent(in) :: own, closer_run, other_run
+    type(certificate_t), intent(inout) :: certificate
+    real(dp) :: means(n_statistics), begins
+    integer :: first, last
+    if (certificate%is_whole .or. .not. allocated(own%cycles)) return
+    first = 1
+    begins = 0
+    last = min(own%cycles%statistics%cycles, closer_run%cycles%statistics%cycles)
+    if (other_run%is_done) last = min(last, other_run%cycles%statistics%cycles)
+    do while (first <= last .and. begins < certificate%until)
+      begins = begins + own%cycles%cycles(first)%duration
+      first = first + 1
+    end do
+    certificate%revolutions_beyond = max(0, last - first + 1)
+    if (certificate%revolutions_beyond == 0) return
+    certificate%statistic = means_of(own%cycles%cycles(first:last))
+    means = means_of(closer_run%cycles%cycles(first:last))
+    certificate%difference = relative(means)
+    if (.not. other_run%is_done) return
+    means = means_of(other_run%cycles%cycles(first:last))
+    certificate%difference = max(certificate%difference, relative(means))
+
+  contains
+
+    !> Differences over the run's own means; 0 where both are.
+    pure function relative(others) result(differences)
+      real(dp), intent(in) :: others(n_statistics)
+      real(dp) :: differences(n_statistics)
+      differences = 0
+      where (abs(certificate%statistic) > 0 .or. abs(others) > 0) differences = abs(others - certificate%statistic)/ &
+        max(abs(certificate%statistic), abs(others))
+    end function relative
+  end subroutine compare_statistics
+
+  !> The statistics of some revolutions, at both pins.
+  pure function means_of(cycles) result(means)
+    type(cycle_t), intent(in) :: cycles(:)
+    real(dp) :: means(n_statistics), duration
+    integer :: i
+    means = 0
+    duration = sum(cycles%duration)
+    do i = 1, size(cycles)
+      means(1) = means(1) + cycles(i)%pin(piston_pin)%force_integral/duration
+      means(2) = means(2) + (cycles(i)%pin(piston_pin)%contact_time + cycles(i)%pin(crank_pin)%contact_time)/duration
+      means(3) = means(3) + real(cycles(i)%pin(piston_pin)%impacts + cycles(i)%pin(crank_pin)%impacts, dp)/size(cycles)
+      means(4) = means(4) + cycles(i)%dissipated_energy/size(cycles)
+    end do
+  end function means_of
+end module certificate

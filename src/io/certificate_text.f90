@@ -1,0 +1,94 @@
+!> A certificate as text: NAME.certificate.csv, its rows in the summary, and its clause in the run's line.
+module certificate_text
+  use gudgeon_kinds, only: dp
+  use certificate, only: certificate_t, statistic_names, n_statistics
+  use gudgeon_columns, only: column_name
+  use number_text, only: real_text, short_text
+  use text_tools, only: integer_text, quoted
+  implicit none
+  private
+  public :: certificate_table, certificate_summary, certificate_clause
+
+  character(len=*), parameter :: newline = achar(10)
+
+contains
+
+  !> NAME.certificate.csv: of every column its range over the run, and up to the certified time its largest error, the root of its mean
+  !> square, and the largest one over the range.
+  function certificate_table(certificate) result(text)
+    type(certificate_t), intent(in) :: certificate
+    character(len=:), allocatable :: text
+    integer :: i
+    text = 'column,range,largest_error,rms_error,relative_error'//newline
+    do i = 1, size(certificate%list%id)
+      if (index(column_name(certificate%list, i), 'phase[') > 0) cycle   ! no quantity
+      text = text//column_name(certificate%list, i)//','//real_text(certificate%range(i))//','//real_text(certificate%error(i))// &
+        ','//real_text(certificate%rms(i))//','
+      if (certificate%range(i) > 0) text = text//real_text(certificate%error(i)/certificate%range(i))
+      text = text//newline
+    end do
+  end function certificate_table
+
+  !> Rows `quantity,value,unit` for the summary.
+  function certificate_summary(certificate) result(text)
+    type(certificate_t), intent(in) :: certificate
+    character(len=:), allocatable :: text
+    character(len=8), parameter :: units(n_statistics) = [character(len=8) :: 'N', '1', '1', 'J']
+    integer :: i
+    text = ''
+    if (.not. certificate%is_made) then
+      call add('certificate', quoted(certificate%reason, '"'), '')
+      return
+    end if
+    call add('certified_until', real_text(certificate%until), 's')
+    call add('certified_digits', real_text(certificate%digits), '1')
+    call add('state_error', real_text(certificate%state_error), '1')
+    call add('certified_impacts', integer_text(certificate%impacts), '1')
+    call add('certified_impacts_matched', integer_text(certificate%impacts_matched), '1')
+    call add('certified_with_other_method', trim(merge('yes', 'no ', certificate%has_other_method)), '')
+    if (certificate%is_whole) return
+    call add('beyond_revolutions', integer_text(certificate%revolutions_beyond), '1')
+    if (certificate%revolutions_beyond == 0) return
+    do i = 1, n_statistics
+      call add('beyond_'//trim(statistic_names(i)), real_text(certificate%statistic(i)), trim(units(i)))
+      call add('beyond_'//trim(statistic_names(i))//'_difference', real_text(certificate%difference(i)), '1')
+    end do
+
+  contains
+
+    subroutine add(quantity, value, unit)
+      character(len=*), intent(in) :: quantity, value, unit
+      text = text//quantity//','//value//','//unit//newline
+    end subroutine add
+  end function certificate_summary
+
+  !> What the run's line says of it.
+  function certificate_clause(certificate) result(text)
+    type(certificate_t), intent(in) :: certificate
+    character(len=:), allocatable :: text
+    if (.not. certificate%is_made) then
+      text = certificate%reason
+      return
+    end if
+    text = short_text(0.1_dp*nint(10*certificate%digits))//' digits to '
+    if (certificate%is_whole) then
+      text = text//'the end'
+      return
+    end if
+    text = text//short_text(certificate%until)//' s'
+    if (certificate%revolutions_beyond == 0) return
+    text = text//', then statistics of '//integer_text(certificate%revolutions_beyond)//' revolution'
+    if (certificate%revolutions_beyond > 1) text = text//'s'
+    text = text//' within '//short_text(two_digits(100*maxval(certificate%difference)))//' %'
+  end function certificate_clause
+
+  !> A number with two digits.
+  pure real(dp) function two_digits(number)
+    real(dp), intent(in) :: number   !! >= 0
+    real(dp) :: unit
+    two_digits = 0
+    if (.not. number > 0) return
+    unit = 10.0_dp**(floor(log10(number)) - 1)
+    two_digits = unit*anint(number/unit)
+  end function two_digits
+end module certificate_text

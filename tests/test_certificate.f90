@@ -1,0 +1,130 @@
+!> Certificates against runs at 1e-13: they claim no more than is true, and not much less.
+module test_certificate
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t
+  use checks, only: checks_t
+  use case_definition, only: case_t
+  use case_file, only: read_case
+  use certificate, only: certificate_t, make_certificate
+  use certificate_text, only: certificate_clause, certificate_table, certificate_summary
+  use gudgeon_columns, only: column_name
+  use collecting_sink, only: trace_t, run_case, column
+  implicit none
+  private
+  public :: run_test_certificate
+
+  integer, parameter :: long = 60
+  character(len=20), parameter :: states(7) = [character(len=20) :: 'rod_angle[rad]', 'piston_position[m]', &
+    'rod_speed[rad/s]', 'piston_velocity[m/s]', 'eccentricity_x[m]', 'eccentricity_y[m]', 'crank_speed[rad/s]']
+
+contains
+
+  subroutine run_test_certificate(check)
+    class(checks_t), intent(inout) :: check
+    call holds(check, 'cases/flores/dry_0500um.nml', 'adams', .false., 'chaotic')
+    call holds(check, 'cases/flores/dry_0500um.nml', 'radau', .false., 'chaotic, Radau')
+    call holds(check, 'cases/flores/lubricated_400cP.nml', 'auto', .true., 'film')
+    call holds(check, 'cases/sim_I_oscillating.nml', 'auto', .false., 'free crank')
+    call holds(check, 'cases/sim_I.nml', 'auto', .true., 'free crank, film')
+    call refuses_what_cannot_be_told(check)
+  end subroutine run_test_certificate
+
+  !> The certificate of a case as it is, and the true errors of its run.
+  subroutine holds(check, file, method, to_the_end, what)
+    class(checks_t), intent(inout) :: check
+    character(len=*), intent(in) :: file, method, what
+    logical, intent(in) :: to_the_end
+    character(len=long) :: common(3)
+    type(certificate_t) :: certificate
+    type(error_t), allocatable :: error
+    type(case_t) :: case
+    type(trace_t) :: run, truth
+    real(dp), allocatable :: errors(:)
+    real(dp) :: true_end, true_decade
+    integer :: i, n, c
+
+    common = [character(len=long) :: 'integrator.method='//method, 'integrator.revolutions=2.5', &
+      'output.samples_per_revolution=12000']
+    call read_case(file, common, case, error)
+    run = run_case(file, common)
+    truth = run_case(file, [character(len=long) :: common, 'integrator.relative_tolerance=1e-13'])
+    call make_certificate(case, run%report, certificate, error)
+    call check%that(.not. allocated(error) .and. certificate%is_made, what//': is made')
+    if (.not. certificate%is_made) return
+    n = min(size(run%values, 2), size(truth%values, 2))
+    allocate (errors(n), source=0.0_dp)
+    do i = 1, size(states)
+      c = column(run, trim(states(i)))
+      if (c == 0) cycle
+      if (.not. maxval(run%values(c, :)) > minval(run%values(c, :))) cycle
+      errors = max(errors, abs(run%values(c, :n) - truth%values(c, :n))/(maxval(run%values(c, :)) - minval(run%values(c, :))))
+    end do
+    true_end = end_of(errors, run%values(1, :n), 1e-3_dp)
+    true_decade = end_of(errors, run%values(1, :n), 1e-4_dp)
+    call check%that(certificate%until <= true_end*(1 + 1e-12_dp), what//': no more time than is true')
+    call check%that(certificate%until >= min(0.95_dp*true_end, true_decade)*(1 - 1e-12_dp), what//': not much less')
+    call check%that(certificate%is_whole .eqv. to_the_end, what//': to the end or not')
+    call check%that(certificate%state_error <= 20*maxval(errors, mask=run%values(1, :n) <= certificate%until), &
+      what//': no error far above the true one')
+    call check%that(certificate%state_error >= maxval(errors, mask=run%values(1, :n) <= certificate%until), &
+      what//': no smaller error than is true')
+    call check%that(certificate%impacts == certificate%impacts_matched .and. certificate%impacts == &
+      count(run%event%time <= certificate%until .and. run%event%kind == 1), what//': impacts matched')
+    call check%that((certificate%revolutions_beyond > 0) .eqv. .not. to_the_end, what//': revolutions beyond')
+    call columns_hold(check, run, truth, certificate, what)
+    call check%that(index(certificate_clause(certificate), ' digits to ') > 0, what//': '//certificate_clause(certificate))
+    call check%that(index(certificate_table(certificate), 'pin_force_x[N],') > 0, what//': table')
+    call check%that(index(certificate_summary(certificate), 'certified_until,') == 1, what//': summary')
+  end subroutine holds
+
+  !> The errors of the forces up to the certified time are those that the certificate says, but for what peaks between its rows.
+  subroutine columns_hold(check, run, truth, certificate, what)
+    class(checks_t), intent(inout) :: check
+    type(trace_t), intent(in) :: run, truth
+    type(certificate_t), intent(in) :: certificate
+    character(len=*), intent(in) :: what
+    character(len=32), parameter :: names(3) = [character(len=32) :: 'pin_force_x[N]', 'piston_acceleration[m/s2]', &
+      'eccentricity_ratio[-]']
+    real(dp) :: largest
+    integer :: i, k, c, n
+    n = count(run%values(1, :min(size(run%values, 2), size(truth%values, 2))) <= certificate%until)
+    do i = 1, size(names)
+      if (what == 'free crank' .and. i < 3) cycle   ! its forces jump where the film gives way to the contact
+      c = column(run, trim(names(i)))
+      largest = maxval(abs(run%values(c, :n) - truth%values(c, :n)))
+      do k = 1, size(certificate%list%id)
+        if (column_name(certificate%list, k) /= trim(names(i))) cycle
+        call check%that(certificate%error(k) >= 0.5_dp*largest, what//': error of '//trim(names(i)))
+        call check%that(certificate%error(k) <= 20*largest, what//': not far above that of '//trim(names(i)))
+      end do
+    end do
+  end subroutine columns_hold
+
+  !> The last time up to which no error exceeds a limit.
+  pure real(dp) function end_of(errors, times, limit)
+    real(dp), intent(in) :: errors(:), times(:), limit
+    integer :: i
+    end_of = 0
+    do i = 1, size(errors)
+      if (errors(i) > limit) exit
+      end_of = times(i)
+    end do
+  end function end_of
+
+  !> No run is closer than one at 1e-13.
+  subroutine refuses_what_cannot_be_told(check)
+    class(checks_t), intent(inout) :: check
+    type(certificate_t) :: certificate
+    type(error_t), allocatable :: error
+    type(case_t) :: case
+    type(trace_t) :: run
+    character(len=long), parameter :: tight(2) = [character(len=long) :: 'integrator.relative_tolerance=1e-13', &
+      'integrator.revolutions=0.1']
+    call read_case('cases/flores/lubricated_400cP.nml', tight, case, error)
+    run = run_case('cases/flores/lubricated_400cP.nml', tight)
+    call make_certificate(case, run%report, certificate, error)
+    call check%that(.not. (certificate%is_made .or. allocated(error)), 'nothing is closer than 1e-13')
+    call check%that(index(certificate_clause(certificate), 'not certified: ') == 1, 'and the line says so')
+    call check%that(index(certificate_summary(certificate), 'certificate,"not certified: ') == 1, 'and the summary')
+  end subroutine refuses_what_cannot_be_told
+end module test_certificate

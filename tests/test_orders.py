@@ -1,0 +1,166 @@
+#!/usr/bin/env python3
+"""Tests of scripts/orders.py: orders of known sums of sines, work of known cycles, losses against the run's own balance of energy.
+
+    .venv/bin/python tests/test_orders.py        (after scripts/setup.sh --python; runs three cases)
+
+Ends with the line "N passed, N failed".
+"""
+
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+TOP = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(TOP / "scripts"))
+sys.path.insert(0, str(TOP / "tests"))
+
+from gudgeon_plots.environment import use_virtual_environment  # noqa: E402
+
+use_virtual_environment(more=("scipy",))
+
+import numpy as np  # noqa: E402
+import pandas as pd  # noqa: E402
+from assertions import Assertions  # noqa: E402
+
+from gudgeon_plots.cycles import bearing_loads, orders, spectrum, whole_cycles, work  # noqa: E402
+from gudgeon_plots.program import release_program  # noqa: E402
+from gudgeon_plots.results import MissingResult, Run, load_run  # noqa: E402
+
+check = Assertions().check
+TURN = 2 * np.pi
+
+
+def made(columns: dict, case: dict | None = None) -> Run:
+    """A run made by hand."""
+    return Run("made", pd.DataFrame(columns), dict.fromkeys(columns, "-"), pd.DataFrame(), case=case or {})
+
+
+def known_orders(uneven: bool, backwards: bool) -> None:
+    """3 + 2 cos(2 q + 30 deg) + 0.5 sin(5 q), over 10 revolutions, at equal angles or at equal times of a crank that swings in speed."""
+    time = np.linspace(0, 1, 7201)
+    angle = TURN * 10 * time
+    if uneven:
+        angle = angle + 0.3 * np.sin(angle) / 2
+    sense = -1 if backwards else 1
+    q = sense * angle
+    value = 3 + 2 * np.cos(2 * angle + np.radians(30)) + 0.5 * np.sin(5 * angle)
+    cycles = whole_cycles(made({"time": time, "crank_angle": q, "value": value}))
+    what = f"{'uneven' if uneven else 'even'} rows{', backwards' if backwards else ''}"
+    check(cycles.number == 5, f"{what}: half of the cycles", str(cycles.number))
+    table = orders(cycles, "value").set_index("order")
+    for order, amplitude in ((0.0, 3.0), (2.0, 2.0), (5.0, 0.5), (1.0, 0.0), (7.0, 0.0)):
+        found = table.loc[order, "amplitude"]
+        check(abs(found - amplitude) < 1e-5, f"{what}: amplitude of order {order}", str(found))
+    check(abs(table.loc[2.0, "phase_deg"] - 30) < 1e-2, f"{what}: phase", str(table.loc[2.0, "phase_deg"]))
+    check(abs(table.loc[5.0, "phase_deg"] + 90) < 1e-2, f"{what}: phase of a sine", str(table.loc[5.0, "phase_deg"]))
+    check(table["scatter"].max() < 1e-4, f"{what}: no scatter")
+    parts = np.sum((table["amplitude"].to_numpy()[1:] ** 2) / 2) + table.loc[0.0, "amplitude"] ** 2
+    check(abs(parts - np.mean(cycles["value"] ** 2)) < 1e-3, f"{what}: Parseval's sum")
+
+
+def scatter_is_seen() -> None:
+    """Cycles of amplitudes 1 and 2 in turn: mean 1.5, scatter 0.5."""
+    angle = np.linspace(0, TURN * 8, 8 * 360 + 1)
+    size = np.where(np.floor(angle / TURN + 1e-9) % 2 == 0, 1.0, 2.0)
+    cycles = whole_cycles(made({"time": angle, "crank_angle": angle, "value": size * np.cos(angle)}), settle=0)
+    row = orders(cycles, "value").set_index("order").loc[1.0]
+    check(abs(row["amplitude"] - 1.5) < 1e-2 and abs(row["scatter"] - 0.5) < 1e-2, "scatter of the amplitude", str(row.to_dict()))
+    frequency, density = spectrum(cycles, "value")
+    check(abs(frequency[np.argmax(density)] - 1 / TURN) < 0.05, "the spectrum has its peak at the frequency of the crank")
+
+
+def known_work() -> None:
+    """A cycle p = 1e5 (2 + cos(q + 40 deg)), V = 1e-3 (1.5 - cos(q)): its area is pi times the amplitudes and sin 40 deg."""
+    angle = np.linspace(0, 3 * 2 * TURN, 3 * 1440 + 1)
+    columns = {name: np.zeros_like(angle) for name in ("crank_moment", "piston_velocity", "energy", "energy_residual", "gas_force")}
+    columns |= {
+        "time": angle / 100,
+        "crank_angle": angle,
+        "crank_speed": np.full_like(angle, 100.0),
+        "cylinder_pressure": 1e5 * (2 + np.cos(angle + np.radians(40))),
+        "cylinder_volume": 1e-3 * (1.5 - np.cos(angle)),
+        "crank_moment": np.full_like(angle, 7.0),
+    }
+    table = work(whole_cycles(made(columns, {"drive": {"damping": 0.02}}), settle=0)).set_index("quantity")
+    area = 2 * np.pi * 1e5 * 1e-3 * np.sin(np.radians(40))  # two turns round the loop
+    gas = table.loc["gas (p-V)"]
+    check(abs(abs(gas["work[J]"]) - area) < 1e-4 * area, "work of the gas", f"{gas['work[J]']}, {area}")
+    check(abs(gas["mean_effective_pressure[Pa]"] * 2e-3 - gas["work[J]"]) < 1e-6 * area, "mean effective pressure")
+    check(abs(table.loc["drive", "work[J]"] - 7 * 2 * TURN) < 1e-6, "work of the drive", str(table.loc["drive", "work[J]"]))
+    check(abs(table.loc["damping", "work[J]"] + 0.02 * 100 * 2 * TURN) < 1e-6, "work of the damping")
+
+
+def runs(folder: Path) -> None:
+    """Whole runs: what the joints take is what drive and damping give, and friction its share; loads are the trace's."""
+    program = release_program()
+
+    def run(case: str, *settings: str) -> Run:
+        words = [w for s in settings for w in ("--set", s)]
+        subprocess.run([program, "-q", "-o", folder, *words, TOP / "cases" / f"{case}.nml"], check=True)
+        return load_run(folder / f"{Path(case).name}.csv")
+
+    sampled = ("output.sampling=crank_angle", "output.samples_per_revolution=3600")
+    settled = run("flores/friction_100", "run.until=periodic", "integrator.method=auto", *sampled, "integrator.revolutions=0")
+    cycles = whole_cycles(settled, settle=settled["crank_angle"][-1] / TURN - 2.5)
+    table = work(cycles).set_index("quantity")
+    check(cycles.number == 2, "two whole cycles", str(cycles.number))
+    check(len(cycles.angle) == 3600, "rows at equal crank angles are taken as they are")
+    drive, joints = table.loc["drive", "work[J]"], table.loc["joints, all", "work[J]"]
+    check(abs(drive + joints) < 2e-3 * drive, "a held crank gives what the joint takes", f"{drive}, {joints}")
+    friction = table.loc["friction, piston pin", "work[J]"]
+    check(-friction < 1.02 * drive and -friction > 0.5 * drive, "most of it is friction", f"{friction}")
+    loads = bearing_loads(cycles)
+    dead_centre = int(np.argmin(np.abs(cycles.place)))
+    check(loads["piston on the rod, in the rod's frame"][0, 0, dead_centre] > 0, "in the dead centre the piston pulls the rod outwards")
+    check(loads["crank on the rod, in the rod's frame"][0, 0, dead_centre] < 0, "and the crank holds it back")
+    check(loads["crank on the main bearing"][0, 0, dead_centre] > 0, "and is held by its bearing")
+    size = np.hypot(*loads["piston on the rod, in the rod's frame"])
+    check(np.allclose(size, np.hypot(cycles["pin_force_x"], cycles["pin_force_y"])), "a frame changes no size")
+    fired = run("sim_IV", "run.until=periodic", "output.window=last_period", "integrator.method=auto", *sampled)
+    table = work(whole_cycles(fired)).set_index("quantity")
+    gas, damping = table.loc["gas (p-V)", "work[J]"], table.loc["damping", "work[J]"]
+    check(gas > 0 and abs(gas + damping) < 0.05 * gas, "a settled engine: the gas gives what the damping takes, nearly", f"{gas}, {damping}")
+    ideal = load_run(folder / "sim_IV.ideal.csv")
+    table = work(whole_cycles(ideal, settle=0)).set_index("quantity")
+    gas, damping = table.loc["gas (p-V)", "work[J]"], table.loc["damping", "work[J]"]
+    check(abs(gas + damping) < 2e-3 * gas, "without clearance all of it", f"{gas}, {damping}")
+    told = subprocess.run(
+        [TOP / "scripts" / "orders.py", folder / "sim_IV.csv", "--settle", "0"], capture_output=True, text=True, check=False
+    )
+    check(told.returncode == 0, "the script runs", told.stderr)
+    for kind in ("orders.csv", "work.csv", "cycles.png", "orders.png", "bearings.png", "indicator.png"):
+        check((folder / f"sim_IV.{kind}").stat().st_size > 100, f"it writes {kind}")
+    told = subprocess.run(
+        [TOP / "scripts" / "orders.py", folder / "sim_IV.csv", "--columns", "nonsense"], capture_output=True, text=True, check=False
+    )
+    check(told.returncode == 1 and "no column nonsense" in told.stderr and told.stderr.count("\n") == 1, "an unknown column", told.stderr)
+
+
+def refusals() -> None:
+    angle = np.concatenate([np.linspace(0, 5, 100), np.linspace(5, 0, 100)])
+    for columns, words in (
+        ({"time": np.arange(200.0), "crank_angle": angle}, "turns back"),
+        ({"time": np.arange(200.0), "crank_angle": np.linspace(0, 5, 200)}, "no whole cycle"),
+    ):
+        try:
+            whole_cycles(made(columns))
+            check(False, f"refused: {words}")
+        except MissingResult as problem:
+            check(words in str(problem), f"refused: {words}", str(problem))
+
+
+def main() -> int:
+    for uneven in (False, True):
+        for backwards in (False, True):
+            known_orders(uneven, backwards)
+    scatter_is_seen()
+    known_work()
+    refusals()
+    with tempfile.TemporaryDirectory() as folder:
+        runs(Path(folder))
+    return check.__self__.report()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
