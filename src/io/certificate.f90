@@ -31,7 +31,7 @@ module certificate
   real(dp), parameter :: closer = 1e-2_dp             !! tolerance of the runs to compare with, over that of the run
   real(dp), parameter :: finest_tolerance = 1e-13_dp  !! that they can have
   real(dp), parameter :: loosest_tolerance = 1e-3_dp  !! a looser one counts as this one
-  integer, parameter :: rows_per_revolution = 10000, most_rows = 60000
+  integer, parameter :: rows_per_revolution = 10000, fewest_rows = 2000, most_rows = 60000
 
   !> Columns that are coordinates or speeds, without their units and without the pin.
   character(len=*), parameter :: state_names(8) = [character(len=16) :: 'crank_angle', 'rod_angle', 'piston_position', &
@@ -99,6 +99,7 @@ contains
     allocate (errors(rows_of(own)))
     call find_errors(own, closer_run, other_run, certificate, errors, n)
     call find_end(own, errors, n, certificate)
+    if (certificate%is_whole) certificate%until = report%figures%time   ! less than a row away
     call find_column_errors(own, closer_run, certificate)
     call match_impacts(own, closer_run, certificate)
     call compare_statistics(own, closer_run, other_run, certificate)
@@ -130,8 +131,9 @@ contains
     plain%output%start_time = 0
     plain%output%every_step = .false.
     speed = max(abs(case%initial%crank_speed), abs(report%figures%crank_travel)/max(report%figures%time, tiny(1.0_dp)))
-    plain%output%interval = report%figures%time/most_rows
-    if (speed > 0) plain%output%interval = max(plain%output%interval, two_pi/(speed*rows_per_revolution))
+    plain%output%interval = report%figures%time/fewest_rows
+    if (speed > 0) plain%output%interval = min(plain%output%interval, two_pi/(speed*rows_per_revolution))
+    plain%output%interval = max(plain%output%interval, report%figures%time/most_rows)
   end subroutine prepare
 
   !> Run a case into memory; `is_done` is false where it does not come to its end, or needs more than `most_evaluations` (0: no limit).

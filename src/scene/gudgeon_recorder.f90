@@ -166,9 +166,9 @@ contains
     end if
     if (t_end < method%t) then
       call method%interpolate(t_end, self%y)
-      call self%periods%take_point(self%y)
+      call self%periods%take_point(self%y, scene%crank_angle(t_end, self%y))
     else
-      call self%periods%take_point(method%y)
+      call self%periods%take_point(method%y, scene%crank_angle(method%t, method%y))
     end if
     if (self%periods%window_after < 0 .or. self%first_sample <= self%periods%window_start) return
     self%first_sample = self%periods%window_start

@@ -43,6 +43,7 @@ module period_watch
     real(dp), private :: start_angle = 0, direction = 1
     integer, allocatable, private :: at(:)       !! components that are compared
     real(dp), allocatable, private :: smallest_range(:)
+    real(dp), allocatable, private :: turning(:)   !! 1 of an angle that grows with the crank's, which is taken from it; else 0
     real(dp), allocatable, private :: states(:, :), low(:, :), high(:, :)   !! of revolution k in column mod(k, depth)
     real(dp), private :: times(0:depth - 1) = 0
   contains
@@ -68,6 +69,7 @@ contains
     self%at = pack([(i, i=1, n)], [(i /= scene%crank%position, i=1, n)])
     call scene%layout%natural_scales(scales, growing)
     self%smallest_range = least_range*scales(self%at)
+    self%turning = merge(1.0_dp, 0.0_dp, growing(self%at))
     self%forcing = scene%forcing_revolutions()
     self%start_angle = scene%start_angle
     self%direction = sign(1.0_dp, scene%start_speed)
@@ -78,14 +80,17 @@ contains
   end subroutine begin
 
   !> An accepted point of the present revolution.
-  pure subroutine take_point(self, y)
+  pure subroutine take_point(self, y, crank_angle)
     class(period_watch_t), intent(inout) :: self
     real(dp), intent(in) :: y(:)
+    real(dp), intent(in) :: crank_angle   !! [rad]
+    real(dp) :: value
     integer :: place, i
     place = mod(self%made + 1, depth)
     do i = 1, size(self%at)
-      self%low(i, place) = min(self%low(i, place), y(self%at(i)))
-      self%high(i, place) = max(self%high(i, place), y(self%at(i)))
+      value = y(self%at(i)) - self%turning(i)*crank_angle
+      self%low(i, place) = min(self%low(i, place), value)
+      self%high(i, place) = max(self%high(i, place), value)
     end do
   end subroutine take_point
 
@@ -115,11 +120,13 @@ contains
     class(period_watch_t), intent(inout) :: self
     integer :: next
     self%made = self%made + 1
-    self%states(:, mod(self%made, depth)) = self%y(self%at)
-    self%times(mod(self%made, depth)) = self%t
-    next = mod(self%made + 1, depth)
-    self%low(:, next) = self%y(self%at)
-    self%high(:, next) = self%y(self%at)
+    associate (now => mod(self%made, depth))
+      self%states(:, now) = self%y(self%at) - self%turning*(self%start_angle + self%direction*two_pi*self%made)
+      self%times(now) = self%t
+      next = mod(self%made + 1, depth)
+      self%low(:, next) = self%states(:, now)
+      self%high(:, next) = self%states(:, now)
+    end associate
     if (self%window_after >= 0) then
       if (self%period > 0) self%has_ended = self%made >= self%window_after + self%period
       return
