@@ -119,6 +119,7 @@ contains
     plain%output%sampling = 'time'
     plain%output%columns = 'standard'
     plain%output%window = 'all'
+    plain%output%film_times = ''
     if (report%periods%is_on) then
       plain%run%until = 'end'
       plain%integrator%revolutions = 0
