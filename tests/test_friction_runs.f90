@@ -151,7 +151,7 @@ contains
     integer :: i, k, n, pin
     do k = 1, size(laws)
       do i = 1, size(methods)
-        trace(i) = run_case(lugre, [character(len=long) :: laws(k), methods(i), 'integrator.relative_tolerance=1e-10', &
+        trace(i) = run_case(lugre, [character(len=long) :: laws(k), methods(i), 'integrator.relative_tolerance=3e-11', &
           'integrator.revolutions=0.5'])
         call check%that(.not. allocated(trace(i)%error), 'bristles run with '//methods(i))
         associate (f => trace(i)%report%figures)
