@@ -88,6 +88,7 @@ contains
       return
     else if (line%sweep .and. line%certify) then
       call fail(error, '--certify is not for gudgeon sweep'//hint, status_command_line)
+      return
     else if (.not. line%sweep .and. (line%fresh .or. line%last_row > 0)) then
       call fail(error, '--fresh and --rows are for gudgeon sweep'//hint, status_command_line)
       return
