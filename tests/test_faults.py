@@ -71,7 +71,7 @@ def torn(path: Path) -> str:
     if name.endswith(".summary.csv"):
         return "" if rows and rows[-1].startswith("compiler_options,") else f"{path.name} is not whole"
     if name.endswith(".resolved.nml"):
-        return "" if rows and rows[-1] == "/" and rows[-2].strip().startswith("ideal_twin") else f"{path.name} is not whole"
+        return "" if rows and rows[-1] == "/" and rows[-2].strip().startswith("window") else f"{path.name} is not whole"
     columns = rows[0].count(",") if rows else 0
     for row in rows[1:]:
         if row.count(",") != columns:
