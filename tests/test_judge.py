@@ -54,7 +54,7 @@ SCENES = {
     "two_stroke": ("gas/two_stroke", {"integrator.method": "'auto'", "integrator.revolutions": "1.2", "initial.crank_angle_deg": "170"}),
     "measured": ("gas/measured", {"integrator.method": "'auto'", "integrator.revolutions": "0.5", "initial.crank_angle_deg": "300",
                                   "cylinder_pressure.offset_deg": "-17.3"}),
-    "ramp": ("drive/start_up", {"integrator.method": "'auto'", "integrator.end_time": "0.02", "output.interval": "1e-4"}),
+    "ramp": ("drive/start_up", {"integrator.method": "'auto'", "integrator.end_time": "0.05", "output.interval": "2.5e-4"}),
     "motor": ("drive/motor", {"integrator.method": "'auto'", "integrator.end_time": "0.1", "output.interval": "5e-4"}),
     "elastic": ("film/elastic", {"integrator.revolutions": "0.1", "lubrication.variant": "short"}),
     "both": ("joints/both_pins", {"integrator.revolutions": "0.2", "drive.kind": "'free'", "mechanism.gravity_angle_deg": "25"}),
