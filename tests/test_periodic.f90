@@ -136,7 +136,7 @@ contains
     trace = run_case('cases/sim_I.nml', [character(len=long) :: until, auto, 'run.most_revolutions=20', 'output.ideal_twin=F'])
     call check%that(trace%report%periods%period == 0, 'undriven crank: no period')
     call check%relative(abs(trace%report%figures%crank_travel), 20*two_pi, 1e-9_dp, 'undriven crank: as many as allowed')
-    trace = run_case('cases/sim_I.nml', [character(len=long) :: until, auto, 'drive.damping=1'])
+    trace = run_case('cases/sim_I.nml', [character(len=long) :: until, auto, 'drive.damping=1', 'output.sampling=crank_angle'])
     call check%that(index(trace%report%status, '&run most_revolutions') > 0, 'a crank that stops: '//trace%report%status)
   end subroutine free_crank
 
