@@ -277,6 +277,13 @@ contains
     call refused_with(check, 'cylinder_pressure.bore=0.1', 'x.nml: &cylinder_pressure table: required')
     call refused_with(check, 'cylinder_pressure.table=', 'x.nml: &cylinder_pressure table = : must be the name of a file', &
       '&cylinder_pressure bore=0.1 /')
+    call refused_on(check, whole//fire, [character(len=40) :: 'run.until=periodic', 'run.period_revolutions=1'], &
+      'x.nml: &run period_revolutions = 1: must be >= 2, what the gas takes to repeat')
+    call accepted(check, whole//fire, 'a two-stroke engine repeats after one revolution', [character(len=40) :: &
+      'run.until=periodic', 'run.period_revolutions=1', 'combustion.cycle=two_stroke', 'combustion.port_opens_deg=100'])
+    call accepted(check, whole//fire, 'a compressor repeats after one revolution', [character(len=40) :: &
+      'run.until=periodic', 'run.period_revolutions=1', 'combustion.cycle=compressor', 'combustion.dead_space=0.1', &
+      'combustion.discharge_pressure=5e5', 'combustion.polytropic_exponent=1.2'])
     call refused_with(check, 'combustion.intake_pressure=0', 'x.nml: &combustion intake_pressure = 0: must be > 0 (Pa)', fire)
   end subroutine test_ranges
 

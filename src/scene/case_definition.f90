@@ -494,7 +494,7 @@ contains
       'the run ends when the crank itself has made so many; if it stops or turns back: exit status 4', range='> 0', default='0.0', &
       family='end', beside='end_time')
     call list%add('end_time', self%end_time, &
-      'of the run; with crank_revolutions its latest end, or else 100 times what they take at crank_speed', 's', '> 0', &
+      'of the run; with crank_revolutions its latest end, or else when one takes as long as 100 at crank_speed', 's', '> 0', &
       default='0.0', family='end')
     call list%add('relative_tolerance', self%relative_tolerance, 'of each step; above 1e-3 it counts as 1e-3', &
       range='> 0 and <= 0.1', default='1.0e-6')

@@ -1,7 +1,8 @@
 !> A run that ends when the crank has turned by itself so many times, wherever that is: counted by its angle, not by the time.
 !>
 !> The crank must not stop or turn back on its way. Its sense is that of its start speed; of a crank that starts from rest, the sense in
-!> which it has left its start by one degree (by half of what is wanted, where that is less).
+!> which it has left its start by one degree (by half of what is wanted, where that is less). A crank that only creeps does neither:
+!> how long it may take for one turn is its `turn_patience_t`.
 module crank_turns
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi, degree
@@ -9,7 +10,7 @@ module crank_turns
   use gudgeon_archive, only: archive_t
   implicit none
   private
-  public :: crank_turns_t, new_crank_turns, n_turn_events, on_the_way, all_made, turned_back
+  public :: crank_turns_t, new_crank_turns, n_turn_events, on_the_way, all_made, turned_back, turn_patience_t
 
   integer, parameter :: n_turn_events = 2   !! event functions: where the crank has to come to, and its speed against its sense
 
@@ -28,6 +29,18 @@ module crank_turns
     procedure :: pass
     procedure :: exchange
   end type crank_turns_t
+
+  !> How long a crank may take for one turn.
+  type :: turn_patience_t
+    real(dp) :: longest = huge(1.0_dp)   !! [s]
+    logical :: is_over = .false.         !! it takes longer: the run is to end
+    integer, private :: made = 0         !! whole turns away from the start, at most so far
+    real(dp), private :: since = 0       !! when it had made them [s]
+  contains
+    procedure :: follow
+    procedure :: limit_end
+    procedure :: exchange => exchange_patience
+  end type turn_patience_t
 
 contains
 
@@ -94,4 +107,30 @@ contains
     type(archive_t), intent(inout) :: archive
     call archive%exchange(self%sense)
   end subroutine exchange
+
+  !> At time t the crank is so many turns away from its start.
+  pure subroutine follow(self, t, turns)
+    class(turn_patience_t), intent(inout) :: self
+    real(dp), intent(in) :: t       !! [s]
+    real(dp), intent(in) :: turns   !! >= 0
+    if (turns < self%made + 1) return
+    self%made = floor(turns)
+    self%since = t
+  end subroutine follow
+
+  !> The run is to end before t_end, if the crank has not made its next turn by then.
+  pure subroutine limit_end(self, t_end)
+    class(turn_patience_t), intent(inout) :: self
+    real(dp), intent(inout) :: t_end   !! [s]
+    self%is_over = t_end - self%since > self%longest
+    if (self%is_over) t_end = self%since + self%longest
+  end subroutine limit_end
+
+  !> What changes on the way, to or from an archive.
+  subroutine exchange_patience(self, archive)
+    class(turn_patience_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    call archive%exchange(self%made)
+    call archive%exchange(self%since)
+  end subroutine exchange_patience
 end module crank_turns

@@ -14,6 +14,7 @@ module gudgeon_recorder
   use gudgeon_columns, only: column_list_t, row_values
   use angle_grid, only: angle_grid_t
   use crank_passage, only: find_turning
+  use crank_turns, only: turn_patience_t
   use period_watch, only: period_watch_t
   use cycle_watch, only: cycle_watch_t
   use pin_record, only: pin_record_t
@@ -34,6 +35,7 @@ module gudgeon_recorder
     type(cycle_watch_t), allocatable :: cycles   !! revolution by revolution
     type(period_watch_t) :: periods   !! whether the motion repeats, where that ends the run
     type(scene_t), allocatable :: scene_at_end   !! where it does: as it was then
+    type(turn_patience_t) :: patience   !! with a crank that has to make turns
     real(dp) :: first_sample = 0      !! time of the first row [s]
     real(dp) :: interval = 0          !! from row to row [s]
     type(angle_grid_t) :: angles      !! of the rows, where these are not spaced by time
@@ -131,6 +133,7 @@ contains
     select type (problem)
     class is (scene_t)
       t_end = t_to
+      call self%patience%limit_end(t_end)
       if (self%periods%is_on) call watch_periods(self, method, problem, t_end)
       if (.not. self%every_step .and. size(self%values) > 0) call put_samples(self, method, problem, t_end)
       if (allocated(self%films)) call self%films%take(method, problem, t_end)
@@ -147,7 +150,8 @@ contains
       if (method%statistics%time_limited_by(limit_stability) > 0.5_dp*t_to) call self%sink%take_cost(t_to, method%statistics)
     end if
     call keep_budget(self, method%statistics%evaluations)
-    self%wants_to_stop = self%sink%wants_to_stop .or. self%over_budget .or. self%periods%has_ended
+    call self%patience%follow(self%figures%time, abs(self%figures%crank_travel)/two_pi)
+    self%wants_to_stop = self%sink%wants_to_stop .or. self%over_budget .or. self%periods%has_ended .or. self%patience%is_over
     self%wants_archive = self%sink%wants_archive
     if (self%periods%has_ended) self%keeps_archives = .false.
   end subroutine step_taken
@@ -347,7 +351,7 @@ contains
     logical :: inside
     integer :: i
 
-    if (self%periods%has_ended) return
+    if (self%periods%has_ended .or. self%patience%is_over) return
     select type (problem)
     class is (scene_t)
       do i = 1, self%n_pins
@@ -435,6 +439,7 @@ contains
     call archive%exchange(self%next_row)
     call self%angles%exchange(archive)
     call self%periods%exchange(archive)
+    call self%patience%exchange(archive)
     call archive%exchange(self%first_sample)
     call archive%exchange(self%steps)
     call archive%exchange(self%evaluations_then)

@@ -8,8 +8,9 @@ module gudgeon_simulation
   use gudgeon_solver, only: integrate, silent_observer_t, integration_done, integration_stopped, integration_interrupted, &
     step_limit_reached, evaluation_limit_reached, unreadable_archive
   use gudgeon_scene, only: scene_t
-  use stop_reason, only: reason, place, interrupted_text, revolution_budget_spent, crank_turned_back, turns_not_made
-  use scene_builder, only: build_scene, simulated_time, latest_end, sample_interval, settings_for
+  use stop_reason, only: reason, place, interrupted_text, revolution_budget_spent, crank_turned_back, turns_not_made, &
+    crank_creeps
+  use scene_builder, only: build_scene, simulated_time, latest_end, longest_turn, sample_interval, settings_for
   use crank_turns, only: all_made, turned_back
   use gudgeon_columns, only: choose_columns, column_list_t
   use cycle_watch, only: cycle_watch_t
@@ -80,6 +81,7 @@ contains
     recorder%periods%keeps_one_more = recorder%periods%is_on .and. case%output%window == 'last_period'
     recorder%end_time = latest_end(case)
     recorder%expected_end = simulated_time(case)
+    recorder%patience%longest = longest_turn(case)
     recorder%every_step = case%output%every_step
     recorder%max_evaluations_per_revolution = case%integrator%max_evaluations_per_revolution
     recorder%revolution_time = two_pi/scene%speed_scale(recorder%expected_end)
@@ -104,6 +106,10 @@ contains
       t = recorder%periods%t
       y = recorder%periods%y
       call move_alloc(recorder%scene_at_end, scene)
+    else if (recorder%patience%is_over) then
+      status = crank_creeps
+      t = recorder%figures%time
+      call method%interpolate(t, y)
     else
       if (status == integration_interrupted .and. recorder%over_budget) status = revolution_budget_spent
       call judge_turns(scene, t, y, status)

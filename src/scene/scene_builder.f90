@@ -13,7 +13,7 @@ module scene_builder
   use crank_turns, only: new_crank_turns
   implicit none
   private
-  public :: build_scene, assemble_scene, simulated_time, latest_end, sample_interval, settings_for
+  public :: build_scene, assemble_scene, simulated_time, latest_end, longest_turn, sample_interval, settings_for
 
   !> A looser tolerance is taken as this one: it would save nothing (1500 extreme scenes take as many evaluations at 8e-4 as at
   !> 1e-4), and the errors of its steps would add up to more than a result may miss.
@@ -263,6 +263,18 @@ contains
       if (case%integrator%end_time > 0) latest_end = case%integrator%end_time
     end if
   end function latest_end
+
+  !> How long a free crank that has to make turns may take for one of them, before it counts as one that has stopped [s]: so long as
+  !> `most_patience` turns at the starting speed. Where end_time is given with crank_revolutions, that alone limits it.
+  pure real(dp) function longest_turn(case)
+    type(case_t), intent(in) :: case
+    longest_turn = huge(longest_turn)
+    if (case%drive%kind == 'constant_speed' .or. .not. abs(case%initial%crank_speed) > 0) return
+    if (.not. case%run%is_until_periodic()) then
+      if (.not. case%integrator%crank_revolutions > 0 .or. case%integrator%end_time > 0) return
+    end if
+    longest_turn = most_patience*two_pi/abs(case%initial%crank_speed)
+  end function longest_turn
 
   !> Time from sample to sample [s].
   pure real(dp) function sample_interval(case)

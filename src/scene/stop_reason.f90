@@ -8,7 +8,8 @@ module stop_reason
   use chain_motion, only: crank_pin, piston_pin
   implicit none
   private
-  public :: reason, place, interrupted_text, revolution_budget_spent, crank_turned_back, turns_not_made
+  public :: reason, place, interrupted_text, revolution_budget_spent, crank_turned_back, turns_not_made, &
+    crank_creeps
 
   character(len=*), parameter :: interrupted_text = 'interrupted'
 
@@ -16,6 +17,7 @@ module stop_reason
   integer, parameter :: revolution_budget_spent = 21
   integer, parameter :: crank_turned_back = 22         !! or stopped, before it had made the turns that end the run
   integer, parameter :: turns_not_made = 23            !! at the latest end
+  integer, parameter :: crank_creeps = 24              !! it takes too long for one of them
 
   real(dp), parameter :: tight_tolerance = 1e-12_dp    !! from here on the forces' own rounding counts
 
@@ -48,6 +50,8 @@ contains
       text = 'the crank stops, or turns back, after '//turns_text(scene, t, y)
     case (turns_not_made)
       text = 'the crank has made only '//turns_text(scene, t, y)//' by the latest end (&integrator end_time)'
+    case (crank_creeps)
+      text = 'the crank creeps: one revolution takes longer than 100 at its starting speed, after '//turns_text(scene, t, y)
     case (integration_interrupted)
       text = interrupted_text
     case (unreadable_archive)
