@@ -6,20 +6,14 @@ module collecting_sink
   use case_file, only: read_case
   use gudgeon_columns, only: column_list_t, choose_columns, column_name
   use gudgeon_simulation, only: simulate, run_report_t
+  use row_store, only: row_store_t, take_store
   use trace_sink, only: trace_sink_t, trace_event_t
   use chain_motion, only: crank_pin, piston_pin
   implicit none
   private
   public :: collecting_sink_t, trace_t, run_case, load_trace, load_table, column, last_row_time
 
-  type, extends(trace_sink_t) :: collecting_sink_t
-    integer :: rows = 0, events = 0
-    real(dp), allocatable :: values(:, :)           !! (columns, rows)
-    type(trace_event_t), allocatable :: event(:)
-  contains
-    procedure :: take_row
-    procedure :: take_event
-    procedure :: take_progress
+  type, extends(row_store_t) :: collecting_sink_t
   end type collecting_sink_t
 
   !> A trace with the names of its columns.
@@ -59,13 +53,7 @@ contains
     do i = 1, size(list%id)
       trace%names(i) = column_name(list, i)
     end do
-    select type (sink)
-    type is (collecting_sink_t)
-      if (.not. allocated(sink%values)) allocate (sink%values(size(list%id), 0))
-      if (.not. allocated(sink%event)) allocate (sink%event(0))
-      trace%values = sink%values(:, :sink%rows)
-      trace%event = sink%event(:sink%events)
-    end select
+    call take_store(sink, size(list%id), trace%values, trace%event)
   end function run_case
 
   !> Read a reference curve and its events.
@@ -145,39 +133,4 @@ contains
     type(trace_t), intent(in) :: trace
     last_row_time = trace%values(1, size(trace%values, 2))
   end function last_row_time
-
-  subroutine take_row(self, values)
-    class(collecting_sink_t), intent(inout) :: self
-    real(dp), intent(in), contiguous :: values(:)
-    real(dp), allocatable :: larger(:, :)
-    if (.not. allocated(self%values)) allocate (self%values(size(values), 1000))
-    if (self%rows == size(self%values, 2)) then
-      allocate (larger(size(values), 2*self%rows))
-      larger(:, :self%rows) = self%values
-      call move_alloc(larger, self%values)
-    end if
-    self%rows = self%rows + 1
-    self%values(:, self%rows) = values
-  end subroutine take_row
-
-  subroutine take_event(self, event)
-    class(collecting_sink_t), intent(inout) :: self
-    type(trace_event_t), intent(in) :: event
-    type(trace_event_t), allocatable :: larger(:)
-    if (.not. allocated(self%event)) allocate (self%event(100))
-    if (self%events == size(self%event)) then
-      allocate (larger(2*self%events))
-      larger(:self%events) = self%event
-      call move_alloc(larger, self%event)
-    end if
-    self%events = self%events + 1
-    self%event(self%events) = event
-  end subroutine take_event
-
-  subroutine take_progress(self, time)
-    class(collecting_sink_t), intent(inout) :: self
-    real(dp), intent(in) :: time
-    associate (unused_self => self, unused_time => time)
-    end associate
-  end subroutine take_progress
 end module collecting_sink

@@ -16,8 +16,9 @@ module certificate
   use cycle_watch, only: cycle_watch_t
   use film_tables, only: provide_tables
   use gudgeon_simulation, only: simulate, run_report_t
-  use row_store, only: row_store_t
-  use trace_sink, only: trace_sink_t
+  use row_store, only: row_store_t, take_store
+  use trace_sink, only: trace_sink_t, trace_event_t
+  use gudgeon_scene, only: event_contact_begins
   implicit none
   private
   public :: certificate_t, make_certificate, n_statistics, statistic_names
@@ -56,9 +57,10 @@ module certificate
 
   !> One of the runs.
   type :: witness_t
-    class(trace_sink_t), allocatable :: sink
+    real(dp), allocatable :: values(:, :)              !! (columns, rows)
+    type(trace_event_t), allocatable :: impact(:)      !! contacts that begin
     type(cycle_watch_t), allocatable :: cycles
-    logical :: is_done = .false., was_interrupted = .false.
+    logical :: is_done = .false.
   end type witness_t
 
 contains
@@ -93,10 +95,10 @@ contains
       return
     end if
     close%integrator%method = merge('auto ', 'radau', case%integrator%method == 'radau')
-    call run(close, certificate%list, 40*(report%statistics%evaluations/10 + 1000), other_run, error)
+    call run(close, certificate%list, enough_for_another_method(report%statistics%evaluations), other_run, error)
     if (allocated(error)) return
     certificate%has_other_method = other_run%is_done
-    allocate (errors(rows_of(own)))
+    allocate (errors(size(own%values, 2)))
     call find_errors(own, closer_run, other_run, certificate, errors, n)
     call find_end(own, errors, n, certificate)
     if (certificate%is_whole) certificate%until = report%figures%time   ! less than a row away
@@ -147,35 +149,37 @@ contains
     type(error_t), allocatable :: failure
     type(run_report_t) :: report
     type(case_t) :: limited
+    class(trace_sink_t), allocatable :: sink
+    type(trace_event_t), allocatable :: event(:)
+    logical :: was_interrupted
     limited = case
     if (most_evaluations > 0) limited%integrator%max_evaluations = min(limited%integrator%max_evaluations, most_evaluations)
     call provide_tables(limited, .false., error)
     if (allocated(error)) return
-    allocate (row_store_t :: witness%sink)
+    allocate (row_store_t :: sink)
     if (case%has_play()) then   ! without clearance the measures of the joint would change the steps
       allocate (witness%cycles)
       witness%cycles%keeps_cycles = .true.
-      call simulate(limited, .false., list, witness%sink, report, failure, cycles=witness%cycles)
+      call simulate(limited, .false., list, sink, report, failure, cycles=witness%cycles)
     else
-      call simulate(limited, .false., list, witness%sink, report, failure)
+      call simulate(limited, .false., list, sink, report, failure)
     end if
     witness%is_done = .not. allocated(failure)
-    witness%was_interrupted = witness%sink%wants_to_stop
-    if (.not. witness%was_interrupted) return
+    was_interrupted = sink%wants_to_stop
+    call take_store(sink, size(list%id), witness%values, event)
+    witness%impact = pack(event, event%kind == event_contact_begins)
+    if (.not. was_interrupted) return
     !$omp critical (texts)
     call fail(error, 'interrupted before it was certified', status_integration)
     !$omp end critical (texts)
   end subroutine run
 
-  !> Rows of a run.
-  pure integer function rows_of(witness)
-    type(witness_t), intent(in) :: witness
-    rows_of = 0
-    select type (sink => witness%sink)
-    type is (row_store_t)
-      rows_of = sink%rows
-    end select
-  end function rows_of
+  !> Evaluations that the run with the other method may need, given those of the run: four times as many, and some to start with. A
+  !> method that is not fit for the case needs hundreds of times as many.
+  pure integer function enough_for_another_method(evaluations) result(enough)
+    integer, intent(in) :: evaluations
+    enough = int(min(4*real(evaluations, dp) + 40000, real(huge(enough), dp)))
+  end function enough_for_another_method
 
   !> Error of the states in each row, over their ranges.
   subroutine find_errors(own, closer_run, other_run, certificate, errors, n)
@@ -183,41 +187,26 @@ contains
     type(certificate_t), intent(inout) :: certificate
     real(dp), intent(out) :: errors(:)   !! (rows of the run)
     integer, intent(out) :: n            !! of them that the closer run has too
-    real(dp) :: difference
-    integer :: c, i
-    select type (a => own%sink)
-    type is (row_store_t)
-      certificate%range = maxval(a%values(:, :a%rows), 2) - minval(a%values(:, :a%rows), 2)
-      select type (b => closer_run%sink)
-      type is (row_store_t)
-        n = min(a%rows, b%rows)
-        errors = 0
-        errors(n + 1:) = huge(1.0_dp)
-        do c = 1, size(certificate%list%id)
-          if (.not. (is_state(certificate%list%names(certificate%list%id(c))) .and. certificate%range(c) > 0)) cycle
-          do i = 1, n
-            difference = margin*abs(a%values(c, i) - b%values(c, i))/certificate%range(c)
-            if (other_run%is_done) then
-              if (doubt(other_run%sink, c, i, b%values(c, i)) > limit*certificate%range(c)) difference = huge(1.0_dp)
-            end if
-            errors(i) = max(errors(i), difference)
-          end do
+    real(dp) :: doubt
+    integer :: c, i, n_other
+    associate (a => own%values, b => closer_run%values)
+      certificate%range = maxval(a, 2) - minval(a, 2)
+      n = min(size(a, 2), size(b, 2))
+      n_other = 0
+      if (other_run%is_done) n_other = size(other_run%values, 2)
+      errors = 0
+      errors(n + 1:) = huge(1.0_dp)
+      do c = 1, size(certificate%list%id)
+        if (.not. (is_state(certificate%list%names(certificate%list%id(c))) .and. certificate%range(c) > 0)) cycle
+        do i = 1, n
+          errors(i) = max(errors(i), margin*abs(a(c, i) - b(c, i))/certificate%range(c))
+          if (i > n_other) cycle
+          doubt = abs(other_run%values(c, i) - b(c, i))
+          if (doubt > limit*certificate%range(c)) errors(i) = huge(1.0_dp)
         end do
-      end select
-    end select
+      end do
+    end associate
   end subroutine find_errors
-
-  !> How far the value in a row of another run is from the value given; 0 where that run has no such row.
-  pure real(dp) function doubt(sink, c, i, value)
-    class(trace_sink_t), intent(in) :: sink
-    integer, intent(in) :: c, i
-    real(dp), intent(in) :: value
-    doubt = 0
-    select type (sink)
-    type is (row_store_t)
-      if (i <= sink%rows) doubt = abs(value - sink%values(c, i))
-    end select
-  end function doubt
 
   !> Whether a column is a coordinate or a speed.
   pure logical function is_state(name)
@@ -243,11 +232,8 @@ contains
       last = i
     end do
     if (last == 0) return
-    select type (a => own%sink)
-    type is (row_store_t)
-      certificate%until = a%values(1, last)
-      certificate%is_whole = last == a%rows
-    end select
+    certificate%until = own%values(1, last)
+    certificate%is_whole = last == size(own%values, 2)
     certificate%state_error = maxval(errors(:last))
     certificate%digits = -log10(max(median(errors(:last)), epsilon(1.0_dp)))
   end subroutine find_end
@@ -275,17 +261,13 @@ contains
     type(certificate_t), intent(inout) :: certificate
     integer :: i, n
     allocate (certificate%error(size(certificate%range)), certificate%rms(size(certificate%range)), source=0.0_dp)
-    select type (a => own%sink)
-    type is (row_store_t)
-      select type (b => closer_run%sink)
-      type is (row_store_t)
-        n = count(a%values(1, :min(a%rows, b%rows)) <= certificate%until)
-        do i = 1, n
-          certificate%error = max(certificate%error, margin*abs(a%values(:, i) - b%values(:, i)))
-          certificate%rms = certificate%rms + (a%values(:, i) - b%values(:, i))**2/n
-        end do
-      end select
-    end select
+    associate (a => own%values, b => closer_run%values)
+      n = count(a(1, :min(size(a, 2), size(b, 2))) <= certificate%until)
+      do i = 1, n
+        certificate%error = max(certificate%error, margin*abs(a(:, i) - b(:, i)))
+        certificate%rms = certificate%rms + (a(:, i) - b(:, i))**2/n
+      end do
+    end associate
     certificate%rms = sqrt(certificate%rms)
   end subroutine find_column_errors
 
@@ -296,22 +278,18 @@ contains
     type(certificate_t), intent(inout) :: certificate
     real(dp) :: gap
     integer :: i
-    select type (a => own%sink)
-    type is (row_store_t)
-      select type (b => closer_run%sink)
-      type is (row_store_t)
-        do i = 1, a%impacts
-          if (a%impact_time(i) > certificate%until) exit
-          certificate%impacts = i
-          if (i > b%impacts) cycle
-          gap = certificate%until
-          if (i > 1) gap = a%impact_time(i) - a%impact_time(i - 1)
-          if (i < a%impacts) gap = min(gap, a%impact_time(i + 1) - a%impact_time(i))
-          if (a%impact_pin(i) == b%impact_pin(i) .and. abs(a%impact_time(i) - b%impact_time(i)) < 0.5_dp*gap) &
-            certificate%impacts_matched = certificate%impacts_matched + 1
-        end do
-      end select
-    end select
+    associate (a => own%impact, b => closer_run%impact)
+      do i = 1, size(a)
+        if (a(i)%time > certificate%until) exit
+        certificate%impacts = i
+        if (i > size(b)) cycle
+        gap = certificate%until
+        if (i > 1) gap = a(i)%time - a(i - 1)%time
+        if (i < size(a)) gap = min(gap, a(i + 1)%time - a(i)%time)
+        if (a(i)%pin == b(i)%pin .and. abs(a(i)%time - b(i)%time) < 0.5_dp*gap) &
+          certificate%impacts_matched = certificate%impacts_matched + 1
+      end do
+    end associate
   end subroutine match_impacts
 
   !> Means over the whole revolutions that begin after the certified time, and how far those of the other runs are from them.

@@ -1,18 +1,16 @@
-!> A sink that keeps rows, and the times at which contacts begin, in memory, and ends when the user interrupts.
+!> A sink that keeps rows and events in memory, and ends when the user interrupts.
 module row_store
   use gudgeon_kinds, only: dp
   use trace_sink, only: trace_sink_t, trace_event_t
-  use gudgeon_scene, only: event_contact_begins
   use gudgeon_posix, only: interrupted
   implicit none
   private
-  public :: row_store_t
+  public :: row_store_t, take_store
 
   type, extends(trace_sink_t) :: row_store_t
-    integer :: rows = 0, impacts = 0
-    real(dp), allocatable :: values(:, :)     !! (columns, rows)
-    real(dp), allocatable :: impact_time(:)   !! [s]
-    integer, allocatable :: impact_pin(:)
+    integer :: rows = 0, events = 0
+    real(dp), allocatable :: values(:, :)           !! (columns, rows and room for more)
+    type(trace_event_t), allocatable :: event(:)    !! and room for more
   contains
     procedure :: take_row
     procedure :: take_event
@@ -20,6 +18,21 @@ module row_store
   end type row_store_t
 
 contains
+
+  !> Take what a run gave to its sink, which is such a store: without the room for more.
+  subroutine take_store(sink, columns, values, event)
+    class(trace_sink_t), allocatable, intent(inout) :: sink
+    integer, intent(in) :: columns                               !! of a row
+    real(dp), allocatable, intent(out) :: values(:, :)           !! (columns, rows)
+    type(trace_event_t), allocatable, intent(out) :: event(:)
+    allocate (values(columns, 0), event(0))
+    select type (sink)
+    class is (row_store_t)
+      if (allocated(sink%values)) values = sink%values(:, :sink%rows)
+      if (allocated(sink%event)) event = sink%event(:sink%events)
+    end select
+    deallocate (sink)
+  end subroutine take_store
 
   subroutine take_row(self, values)
     class(row_store_t), intent(inout) :: self
@@ -38,20 +51,15 @@ contains
   subroutine take_event(self, event)
     class(row_store_t), intent(inout) :: self
     type(trace_event_t), intent(in) :: event
-    real(dp), allocatable :: times(:)
-    integer, allocatable :: pins(:)
-    if (event%kind /= event_contact_begins) return
-    if (.not. allocated(self%impact_time)) allocate (self%impact_time(100), self%impact_pin(100))
-    if (self%impacts == size(self%impact_time)) then
-      allocate (times(2*self%impacts), pins(2*self%impacts))
-      times(:self%impacts) = self%impact_time
-      pins(:self%impacts) = self%impact_pin
-      call move_alloc(times, self%impact_time)
-      call move_alloc(pins, self%impact_pin)
+    type(trace_event_t), allocatable :: larger(:)
+    if (.not. allocated(self%event)) allocate (self%event(100))
+    if (self%events == size(self%event)) then
+      allocate (larger(2*self%events))
+      larger(:self%events) = self%event
+      call move_alloc(larger, self%event)
     end if
-    self%impacts = self%impacts + 1
-    self%impact_time(self%impacts) = event%time
-    self%impact_pin(self%impacts) = event%pin
+    self%events = self%events + 1
+    self%event(self%events) = event
   end subroutine take_event
 
   subroutine take_progress(self, time)
