@@ -7,7 +7,8 @@ program check_films
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: degree
   use finite_film, only: film_answer_t, cavitation_gumbel, cavitation_reynolds
-  use film_map, only: film_map_t, solved_film
+  use film_map, only: film_map_t
+  use film_solution, only: solved_film
   implicit none
   character(len=*), parameter :: bearings(5) = [character(len=4) :: '0.25', '0.5', '0.75', '1', '2']
   character(len=*), parameter :: conditions(2) = [character(len=8) :: 'gumbel', 'reynolds']

@@ -7,7 +7,8 @@ module test_film_figures
   use checks, only: checks_t
   use film_law, only: film_law_t, film_motion_t
   use finite_film, only: film_answer_t, cavitation_gumbel, cavitation_reynolds
-  use film_map, only: film_map_t, solved_film
+  use film_map, only: film_map_t
+  use film_solution, only: solved_film
   use short_bearing, only: short_bearing_t
   use laws, only: film_law_of
   use collecting_sink, only: trace_t, run_case, column

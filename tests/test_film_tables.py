@@ -70,6 +70,24 @@ class Cache(unittest.TestCase):
                 self.assertEqual(first, remade, f"a {what} table is made again")
                 self.assertEqual(tables[0].read_bytes(), whole, f"a {what} table is replaced")
 
+    def test_stated_error(self) -> None:
+        """The summary says how exact the table is, from the cache too; one of fewer values is worse. A film without a table says nothing."""
+
+        def stated(name: str, *options: str) -> list[float]:
+            done, _ = self.run_case(name, "-s", "lubrication.cavitation=gumbel", *options)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            with (self.folder / name / "sim_I_finite.summary.csv").open() as file:
+                rows = {row["quantity"]: (row["value"], row["unit"]) for row in csv.DictReader(file)}
+            self.assertTrue(all(unit == "1" for name, (_, unit) in rows.items() if name.startswith("film_table")))
+            return [float(rows[name][0]) for name in ("film_table_error", "film_table_mean_error") if name in rows]
+
+        made, kept, small = stated("made"), stated("kept"), stated("small", "-s", "lubrication.table_points=17")
+        self.assertEqual(made, kept)
+        self.assertEqual(len(made), 2)
+        self.assertTrue(0 < made[1] < made[0] < 0.005, made)
+        self.assertGreater(small[0], 3 * made[0])
+        self.assertEqual(stated("short", "-s", "lubrication.variant=short"), [])
+
     def test_other_tables(self) -> None:
         self.run_case("one")
         self.run_case("same", "-s", "lubrication.viscosity=0.03", "-s", "joint.clearance=20e-6")

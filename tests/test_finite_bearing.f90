@@ -8,7 +8,8 @@ module test_finite_bearing
   use checks, only: checks_t
   use film_law, only: film_law_t, film_motion_t
   use finite_film, only: cavitation_none, cavitation_gumbel, cavitation_reynolds
-  use film_map, only: film_map_t, solved_force
+  use film_map, only: film_map_t
+  use film_solution, only: solved_force
   use short_bearing, only: short_bearing_t
   use laws, only: film_law_of
   implicit none
@@ -29,6 +30,7 @@ contains
     call short_bearing_by_quadrature(check)
     call potential_of_the_velocity(check)
     call table_meets_solver(check)
+    call table_states_its_error(check)
     call table_goes_through_an_archive(check)
     call symmetries_and_extremes(check)
     call power_is_lost(check)
@@ -248,7 +250,33 @@ contains
     call check%relative(got(1)*(2e-7_dp)**1.5_dp, -12*pi, 0.02_dp, 'approach next to the wall, as of a long film')
   end subroutine table_meets_solver
 
-  !> A table that was put away and taken back gives the same bits.
+  !> What a table says of its error is what is found at other points than those it was measured at; a smaller table says more.
+  subroutine table_states_its_error(check)
+    class(checks_t), intent(inout) :: check
+    integer, parameter :: points = 150
+    type(film_map_t) :: map, small
+    real(dp) :: tau, gap, alpha, got(2), want(2), errors(points)
+    integer :: i
+    call map%build(0.75_dp, cavitation_gumbel, 33, 64)
+    do i = 1, points
+      tau = 1.5566_dp*modulo(0.75487766624669276_dp*i, 1.0_dp)
+      gap = 1 - sin(tau)
+      alpha = pi*(2*modulo(0.56984029099805327_dp*i, 1.0_dp) - 1)
+      call solved_force(64, 0.75_dp, cavitation_gumbel, gap, alpha, want)
+      call map%force((1 - gap)**2, cos(alpha), sin(alpha), got(1), got(2))
+      errors(i) = norm2(got - want)/norm2(want)
+    end do
+    call check%that(maxval(errors) < 2.5_dp*map%largest_error .and. maxval(errors) > 0.2_dp*map%largest_error, &
+      'the largest error of a table, as it says')
+    associate (mean => sqrt(sum(errors**2)/points))
+      call check%that(mean < 2*map%mean_error .and. mean > 0.4_dp*map%mean_error, 'the mean error of a table, as it says')
+    end associate
+    call small%build(0.75_dp, cavitation_gumbel, 17, 64)
+    call check%that(small%mean_error > 4*map%mean_error .and. small%largest_error > 4*map%largest_error, &
+      'a table of half as many values says that it is worse')
+  end subroutine table_states_its_error
+
+  !> A table that was put away and taken back gives the same bits, and says the same of its error.
   subroutine table_goes_through_an_archive(check)
     class(checks_t), intent(inout) :: check
     type(film_map_t) :: map, again
@@ -265,6 +293,8 @@ contains
     call map%force(0.3_dp, -0.2_dp, 0.9_dp, one(1), one(2))
     call again%force(0.3_dp, -0.2_dp, 0.9_dp, other(1), other(2))
     call check%that(all(abs(one - other) <= 0), 'and gives the same force')
+    call check%that(map%largest_error > 0 .and. map%mean_error > 0 .and. &
+      all(abs([map%largest_error - again%largest_error, map%mean_error - again%mean_error]) <= 0), 'and says the same of its error')
   end subroutine table_goes_through_an_archive
 
   !> Mirror, size, a centred pin, rest, and the wall.

@@ -41,6 +41,8 @@ module film_law
     logical :: singular_at_wall = .true.      !! the force is infinite at |e| = c: the state may not reach it
     character(len=:), allocatable :: table_file   !! where the user wants the table, from the case's folder; or empty
     character(len=100) :: table_of = ''       !! the `table_key` of the table that the law has; empty: it has none
+    real(dp) :: table_error = 0               !! of the force in it, relative: the largest measured when it was made [-]
+    real(dp) :: table_mean_error = 0          !! root of the mean square of the same [-]
   contains
     procedure(prepare), deferred :: prepare
     procedure(film_force), deferred :: film_force

@@ -16,17 +16,20 @@ module film_map
   use gudgeon_constants, only: pi
   use gudgeon_archive, only: archive_t
   use film_law, only: table_watch_t
-  use finite_film, only: film_solver_t, film_answer_t, cavitation_reynolds
+  use finite_film, only: film_answer_t
+  use film_solution, only: film_solution_t
   use uniform_spline, only: spline_weights, through_values, through_mirrored, before, after
   implicit none
   private
-  public :: film_map_t, solved_force, solved_film
+  public :: film_map_t
 
   type :: film_map_t
     real(dp) :: half_length = 0            !! L/(2R) of the table
     integer :: cavitation = 0              !! as in `finite_film`
     integer :: film_points = 0             !! nodes round the film where it was solved; Richardson's extrapolation from half as many
     integer :: points = 0                  !! values of the table in each direction; 0: there is none
+    real(dp) :: largest_error = 0          !! of the force in the table, relative, against solutions between its values
+    real(dp) :: mean_error = 0             !! root of the mean square of the same
     real(dp), private :: per_tau = 0, per_chi = 0   !! intervals per radian
     real(dp), allocatable, private :: c(:, :, :)    !! coefficients: of G_r and G_t, by chi, by tau
     real(dp), allocatable, private :: more(:, :, :) !! the same of G_p and G_q
@@ -37,22 +40,19 @@ module film_map
     procedure :: exchange
   end type film_map_t
 
-  type :: solver_pair_t
-    type(film_solver_t) :: fine, coarse
-  end type solver_pair_t
-
   real(dp), parameter :: last_gap = 1e-4_dp     !! 1 - eps of the last row; beyond it G is held
-  integer, parameter :: nodes_along = 10        !! nodes round the film for one along half of it
+  integer, parameter :: sample_rows = 16, sample_directions = 12   !! of the points at which its error is measured
 
 contains
 
-  !> Find the table. Rows are solved in parallel. If somebody stops it there is none.
+  !> Find the table, and how far it is from solutions between its values. Rows are solved in parallel. If somebody stops it there is
+  !> none.
   subroutine build(self, half_length, cavitation, points, film_points, watch)
     class(film_map_t), intent(inout) :: self
     real(dp), intent(in) :: half_length
     integer, intent(in) :: cavitation, points, film_points   !! points >= 8, film_points >= 32
     class(table_watch_t), intent(inout), optional :: watch
-    real(dp), allocatable :: g(:, :, :), by_chi(:, :)
+    real(dp), allocatable :: g(:, :, :), between(:, :, :), by_chi(:, :)
     integer :: i, k, done
     logical :: stops
 
@@ -62,17 +62,18 @@ contains
     self%film_points = film_points
     self%per_tau = (points - 1)/tau_of(last_gap)
     self%per_chi = (points - 1)/pi
-    allocate (g(points, points, 4))   ! by chi, tau
+    allocate (g(points, points, 4), between(2, sample_directions, sample_rows))   ! by chi, tau
     done = 0
     stops = .false.
     !$omp parallel do schedule(dynamic)
-    do i = points, 1, -1   ! the longest first
+    do i = points + sample_rows, 1, -1   ! the longest first
       if (stops) cycle
-      call solve_row(self, (i - 1)/self%per_tau, g(:, i, :))
+      if (i > points) call solve_sample(self, i - points, between(:, :, i - points))
+      if (i <= points) call solve_row(self, (i - 1)/self%per_tau, g(:, i, :))
       !$omp critical (film_rows)
       done = done + 1
       if (present(watch)) then
-        call watch%row_done(done, points)
+        call watch%row_done(done, points + sample_rows)
         stops = watch%wants_to_stop
       end if
       !$omp end critical (film_rows)
@@ -86,6 +87,7 @@ contains
       if (k <= 2) self%c(k, :, :) = by_chi
       if (k > 2) self%more(k - 2, :, :) = by_chi
     end do
+    call find_errors(self, between)
   end subroutine build
 
   subroutine make_room(self)
@@ -106,22 +108,21 @@ contains
     class(film_map_t), intent(in) :: self
     real(dp), intent(in) :: tau
     real(dp), intent(out) :: g(:, :)
-    type(solver_pair_t), allocatable :: pairs(:)
+    type(film_solution_t) :: solution
     type(film_answer_t) :: film
     real(dp) :: gap, w, alpha, s_r, s_t
-    integer :: j, grids
+    integer :: j
 
-    gap = 2*sin(0.5_dp*(0.5_dp*pi - tau))**2
+    gap = gap_at(tau)
     w = cos(tau)
-    grids = grids_for(self%film_points, self%cavitation)
-    call begin_pairs(grids, nodes_at(self%film_points, grids, gap), gap, self%half_length, pairs)
-    if (gap >= 1) call extrapolated(pairs, 0.0_dp, self%cavitation, .false., film)
+    call solution%begin(self%film_points, self%half_length, self%cavitation, gap)
+    if (gap >= 1) call solution%solve(0.0_dp, .false., film)
     do j = 1, self%points
       alpha = direction_at((j - 1)/self%per_chi, w)
       if (gap >= 1) then   ! a centred film: alike in every direction
         g(j, :2) = film%force(1)*[cos(alpha), sin(alpha)]
       else
-        call extrapolated(pairs, alpha, self%cavitation, j > 1, film)
+        call solution%solve(alpha, j > 1, film)
         g(j, :2) = film%force
       end if
       call find_scales(cos(alpha), sin(alpha), w**2, s_r, s_t)
@@ -132,82 +133,58 @@ contains
     g([1, self%points], 2) = 0
   end subroutine solve_row
 
-  !> Nodes round the film at a thickness: more where it is thin, since the edge of a film that is left moves from node to node. The mean
-  !> of several grids does without.
-  pure integer function nodes_at(film_points, grids, gap)
-    integer, intent(in) :: film_points, grids
-    real(dp), intent(in) :: gap
-    integer, parameter :: enough = 200
-    nodes_at = film_points
-    if (grids > 1) return
-    if (gap < 0.05_dp) nodes_at = 4*((3*film_points)/8)
-    if (gap < 0.012_dp .and. film_points < enough) nodes_at = 2*film_points
-  end function nodes_at
+  !> 1 - eps at a tau.
+  pure real(dp) function gap_at(tau)
+    real(dp), intent(in) :: tau
+    gap_at = 2*sin(0.5_dp*(0.5_dp*pi - tau))**2
+  end function gap_at
 
-  !> Grids whose mean is taken. Where the film ruptures at a free edge the force has an error that changes with the place of the edge
-  !> between two nodes, and that Richardson's extrapolation leaves: the mean of grids a quarter of this distance apart is five to ten
-  !> times closer. Coarse films have larger errors than this one.
-  pure integer function grids_for(film_points, cavitation)
-    integer, intent(in) :: film_points, cavitation
-    integer, parameter :: fine_film = 160
-    grids_for = merge(4, 1, cavitation == cavitation_reynolds .and. film_points >= fine_film)
-  end function grids_for
+  !> A point of the sample at which the table is compared with solutions. It lies where the table's size has no part in it: tau and chi
+  !> are spread by the golden section, so that no number of values has them as nodes.
+  pure subroutine place_sample(i, j, gap, alpha)
+    integer, intent(in) :: i, j   !! the row of one eccentricity ratio, the direction in it
+    real(dp), intent(out) :: gap  !! 1 - eps
+    real(dp), intent(out) :: alpha
+    real(dp), parameter :: golden = 0.61803398874989485_dp
+    real(dp) :: tau
+    tau = modulo(golden*i, 1.0_dp)*tau_of(last_gap)
+    gap = gap_at(tau)
+    alpha = direction_at(pi*(j - 1 + modulo(golden*golden*i, 1.0_dp))/sample_directions, cos(tau))
+  end subroutine place_sample
 
-  !> Pairs of solvers, one of each with half as many nodes in each direction, on shifted grids.
-  pure subroutine begin_pairs(grids, nodes, gap, half_length, pairs)
-    integer, intent(in) :: grids
-    integer, intent(in) :: nodes   !! round the film, divisible by 4
-    real(dp), intent(in) :: gap, half_length
-    type(solver_pair_t), allocatable, intent(out) :: pairs(:)
-    integer :: along, i
-    along = 2*max(3, nodes/(2*nodes_along))
-    allocate (pairs(grids))
-    do i = 1, grids
-      call pairs(i)%fine%begin(nodes, along, gap, half_length, real(i - 1, dp)/grids)
-      call pairs(i)%coarse%begin(nodes/2, along/2, gap, half_length, real(i - 1, dp)/grids)
-    end do
-  end subroutine begin_pairs
-
-  !> The film from all of them: in a pair errors of the second order cancel.
-  pure subroutine extrapolated(pairs, alpha, cavitation, warm, film)
-    type(solver_pair_t), intent(inout) :: pairs(:)
-    real(dp), intent(in) :: alpha
-    integer, intent(in) :: cavitation
-    logical, intent(in) :: warm
-    type(film_answer_t), intent(out) :: film
-    type(film_answer_t) :: fine, coarse
-    integer :: i
-    do i = 1, size(pairs)
-      call pairs(i)%fine%solve(alpha, cavitation, warm, fine)
-      call pairs(i)%coarse%solve(alpha, cavitation, warm, coarse)
-      film%force = film%force + (4*fine%force - coarse%force)/3
-      film%flow = film%flow + (4*fine%flow - coarse%flow)/3
-      film%most = film%most + (4*fine%most - coarse%most)/3
-    end do
-    film%force = film%force/size(pairs)
-    film%flow = film%flow/size(pairs)
-    film%most = film%most/size(pairs)
-  end subroutine extrapolated
-
-  !> The same without a table, for one eccentricity ratio and direction [rad].
-  pure subroutine solved_film(film_points, half_length, cavitation, gap, alpha, film)
-    integer, intent(in) :: film_points, cavitation
-    real(dp), intent(in) :: half_length, gap, alpha
-    type(film_answer_t), intent(out) :: film
-    type(solver_pair_t), allocatable :: pairs(:)
-    call begin_pairs(grids_for(film_points, cavitation), film_points, gap, half_length, pairs)
-    call extrapolated(pairs, alpha, cavitation, .false., film)
-  end subroutine solved_film
-
-  !> Its force alone, over mu V L R^3/c^2.
-  pure subroutine solved_force(film_points, half_length, cavitation, gap, alpha, force)
-    integer, intent(in) :: film_points, cavitation
-    real(dp), intent(in) :: half_length, gap, alpha
-    real(dp), intent(out) :: force(2)
+  !> The force along n and t in the directions of a row of the sample.
+  subroutine solve_sample(self, i, force)
+    class(film_map_t), intent(in) :: self
+    integer, intent(in) :: i
+    real(dp), intent(out) :: force(:, :)
+    type(film_solution_t) :: solution
     type(film_answer_t) :: film
-    call solved_film(film_points, half_length, cavitation, gap, alpha, film)
-    force = film%force
-  end subroutine solved_force
+    real(dp) :: gap, alpha
+    integer :: j
+    do j = 1, sample_directions
+      call place_sample(i, j, gap, alpha)
+      if (j == 1) call solution%begin(self%film_points, self%half_length, self%cavitation, gap)
+      call solution%solve(alpha, j > 1, film)
+      force(:, j) = film%force
+    end do
+  end subroutine solve_sample
+
+  !> The errors of the table against the forces of the sample.
+  subroutine find_errors(self, solved)
+    class(film_map_t), intent(inout) :: self
+    real(dp), intent(in) :: solved(:, :, :)   !! forces, by direction, by row
+    real(dp) :: gap, alpha, force(2), errors(sample_directions, sample_rows)
+    integer :: i, j
+    do i = 1, sample_rows
+      do j = 1, sample_directions
+        call place_sample(i, j, gap, alpha)
+        call self%force((1 - gap)**2, cos(alpha), sin(alpha), force(1), force(2))
+        errors(j, i) = norm2(force - solved(:, j, i))/norm2(solved(:, j, i))
+      end do
+    end do
+    self%largest_error = maxval(errors)
+    self%mean_error = sqrt(sum(errors**2)/size(errors))
+  end subroutine find_errors
 
   !> Scales of the radial and of the tangential force for the velocity (B, A), A >= 0, not both 0; w2 = 1 - eps^2.
   pure subroutine find_scales(b, a, w2, s_r, s_t)
@@ -323,6 +300,8 @@ contains
     call archive%exchange(self%cavitation)
     call archive%exchange(self%film_points)
     call archive%exchange(self%points)
+    call archive%exchange(self%largest_error)
+    call archive%exchange(self%mean_error)
     if (archive%failed .or. self%points < 8) return
     self%per_tau = (self%points - 1)/tau_of(last_gap)
     self%per_chi = (self%points - 1)/pi

@@ -10,7 +10,8 @@ module finite_bearing
   use gudgeon_archive, only: archive_t
   use film_law, only: film_law_t, film_motion_t, table_watch_t, field_points
   use finite_film, only: film_answer_t, film_solver_t, cavitation_none, cavitation_gumbel, cavitation_reynolds
-  use film_map, only: film_map_t, solved_force, solved_film
+  use film_map, only: film_map_t
+  use film_solution, only: solved_force, solved_film
   implicit none
   private
   public :: finite_bearing_t
@@ -150,7 +151,7 @@ contains
     key = ''
     if (self%variant /= 'table') return
     call choose_points(self, tolerance, table_points, film_points)
-    write (text, '(a,es24.16e3,a,i0,a,i0)') 'finite_bearing 3 '//self%cavitation//' ', 0.5_dp*bearing%length/bearing%pin_radius(), &
+    write (text, '(a,es24.16e3,a,i0,a,i0)') 'finite_bearing 4 '//self%cavitation//' ', 0.5_dp*bearing%length/bearing%pin_radius(), &
       ' ', table_points, ' ', film_points
     key = trim(text)
   end function table_key
@@ -167,14 +168,22 @@ contains
     call set_scales(self, bearing)
     call choose_points(self, tolerance, table_points, film_points)
     call self%map%build(self%half_length, self%condition, table_points, film_points, watch)
+    call tell_errors(self)
     self%table_of = ''
     if (self%map%points > 0) self%table_of = key
   end subroutine make_table
+
+  subroutine tell_errors(self)
+    class(finite_bearing_t), intent(inout) :: self
+    self%table_error = self%map%largest_error
+    self%table_mean_error = self%map%mean_error
+  end subroutine tell_errors
 
   subroutine exchange_table(self, archive)
     class(finite_bearing_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
     call self%map%exchange(archive)
+    call tell_errors(self)
   end subroutine exchange_table
 
   !> Force and, of the shear, moment.

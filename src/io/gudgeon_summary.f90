@@ -131,6 +131,7 @@ contains
       type(pin_figures_t), intent(in) :: pin
       if (allocated(joint%film) .and. joint%oil%is_known()) &
         call add(prefix//'viscosity', real_text(joint%oil%dynamic_viscosity(), case%output%digits), 'Pa s')
+      if (allocated(joint%film)) call add_table(prefix, joint)
       call add(prefix//'min_film_thickness', real_text(pin%min_film_thickness, case%output%digits), 'm')
       call add(prefix//'contacts', integer_text(pin%contacts), '1')
       if (report%figures%time > 0) &
@@ -142,6 +143,15 @@ contains
       if (pin%friction_work < huge(pin%friction_work)) call add(prefix//'friction_work', real_text(pin%friction_work), 'J')
       if (joint%reports_film .and. allocated(joint%film)) call add_film(prefix, joint, pin)
     end subroutine add_joint
+
+    !> How exact the table of a film is, if it has one.
+    subroutine add_table(prefix, joint)
+      character(len=*), intent(in) :: prefix
+      type(joint_case_t), intent(in) :: joint
+      if (joint%film%table_of == '') return
+      call add(prefix//'film_table_error', real_text(joint%film%table_error), '1')
+      call add(prefix//'film_table_mean_error', real_text(joint%film%table_mean_error), '1')
+    end subroutine add_table
 
     !> What a corner of the skirt in the bore has.
     subroutine add_corner(prefix, corner)
