@@ -28,6 +28,7 @@ contains
     call squeeze_of_butenschoen(check)
     call limits_in_closed_form(check)
     call short_bearing_by_quadrature(check)
+    call short_bearing_next_to_wall(check)
     call potential_of_the_velocity(check)
     call table_meets_solver(check)
     call table_states_its_error(check)
@@ -206,6 +207,73 @@ contains
       end do
     end do
   end subroutine short_bearing_by_quadrature
+
+  !> The same with 33 digits up to 1 - eps = 1e-13, in every direction: next to the wall a film that is left has a force 1e30 times
+  !> smaller than the integrals that its closed form is made of.
+  subroutine short_bearing_next_to_wall(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: gaps(7) = [0.5_dp, 0.03_dp, 1e-3_dp, 1e-4_dp, 1e-6_dp, 1e-9_dp, 1e-13_dp]
+    real(dp), parameter :: angles(9) = [0.0_dp, 0.4_dp, 1.5_dp, 1.5707_dp, 1.5709_dp, 1.65_dp, -2.4_dp, 3.1_dp, 3.141592653589793_dp]
+    type(short_bearing_t) :: short
+    real(dp) :: square, b, t, want(2), got(2)
+    integer :: i, j
+    short%half_length = 0.6_dp
+    do i = 1, size(gaps)
+      square = 1 - gaps(i)*(2 - gaps(i))
+      do j = 1, size(angles)
+        b = cos(angles(j))
+        t = sin(angles(j))
+        want = -4*short%half_length**2*precise_integrals(square, b, t)
+        call short%reduced_force(square, b, t, got(1), got(2))
+        call check%that(norm2(got - want) <= 1e-13_dp*norm2(want), 'the short bearing next to the wall')
+      end do
+    end do
+  end subroutine short_bearing_next_to_wall
+
+  !> The integrals of cos(phi - alpha) cos phi/H^3 and cos(phi - alpha) sin phi/H^3 over the half of the film in which cos(phi - alpha) is
+  !> positive, by Romberg's method on pieces that grow from the thinnest place on.
+  function precise_integrals(square, b, t) result(sums)
+    real(dp), intent(in) :: square, b, t   !! eps^2; cos(alpha) and sin(alpha)
+    real(dp) :: sums(2)
+    integer, parameter :: long = selected_real_kind(p=30), levels = 7
+    real(long) :: gap, alpha, ends(2), from, to, width, romberg(2, 0:levels, 0:levels), total(2)
+    integer :: side, i, k, l
+    gap = (1 - real(square, long))/(1 + sqrt(real(square, long)))
+    alpha = atan2(real(t, long), real(b, long))
+    total = 0
+    do side = -1, 1, 2   ! of the thinnest place: from it to pi
+      ends = acos(-1.0_long)*[-0.5_long, 0.5_long] + side*alpha
+      do k = -1, 1       ! the arc, and the same a turn before and after
+        from = max(ends(1) + 2*k*acos(-1.0_long), 0.0_long)
+        do while (from < min(ends(2) + 2*k*acos(-1.0_long), acos(-1.0_long)))
+          to = min(from + 0.3_long*max(sqrt(gap), from), ends(2) + 2*k*acos(-1.0_long), acos(-1.0_long))
+          width = to - from
+          romberg(:, 0, 0) = 0.5_long*width*(weighed(from) + weighed(to))
+          do l = 1, levels
+            romberg(:, l, 0) = 0.5_long*romberg(:, l - 1, 0)
+            do i = 1, 2**l - 1, 2
+              romberg(:, l, 0) = romberg(:, l, 0) + width/2**l*weighed(from + width*i/2**l)
+            end do
+            do i = 1, l
+              romberg(:, l, i) = romberg(:, l, i - 1) + (romberg(:, l, i - 1) - romberg(:, l - 1, i - 1))/(4.0_long**i - 1)
+            end do
+          end do
+          total = total + romberg(:, levels, levels)
+          from = to
+        end do
+      end do
+    end do
+    sums = real(total, dp)
+
+  contains
+
+    !> Both integrands at the angle phi on the side.
+    pure function weighed(phi) result(values)
+      real(long), intent(in) :: phi
+      real(long) :: values(2)
+      values = (b*cos(phi) + t*side*sin(phi))/(gap + 2*(1 - gap)*sin(0.5_long*phi)**2)**3*[cos(phi), side*sin(phi)]
+    end function weighed
+  end function precise_integrals
 
   !> With Reynolds' condition the force is the gradient of a potential of the velocity: its change along the direction is half of that
   !> of its product with the velocity. With Gumbel's it is not.

@@ -1,7 +1,7 @@
 !> Ocvirk's film of a short bearing, of whose pressure only the positive part acts, in closed form.
 module short_bearing
   use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi, two_pi
+  use gudgeon_constants, only: pi
   use gudgeon_bearing, only: bearing_t
   use film_law, only: film_motion_t, angles_of_film
   use finite_bearing, only: finite_bearing_t
@@ -39,31 +39,34 @@ contains
     wanted = 'none is for the variants table and direct: of the short bearing the positive pressure acts'
   end subroutine conflict
 
-  !> P = 6 cos(phi - alpha) (lambda^2 - zeta^2)/H^3 where cos(phi - alpha) > 0. With a = phi + pi and Sommerfeld's angle g,
-  !> exp(i g) = (cos a + eps + i w sin a)/(1 + eps cos a), w = sqrt(1 - eps^2), the integrals of cos^2 a, cos a sin a and sin^2 a over
-  !> (1 + eps cos a)^3 are
-  !>
-  !>     w^-5 [g (1/2 + eps^2) + sin g cos g/2 - 2 eps sin g],  w^-4 [sin^2 g/2 + eps cos g],  w^-3 [g - sin g cos g]/2
-  !>
-  !> from a = alpha + pi/2 to alpha + 3 pi/2 (Booker 1965).
+  !> P = 6 cos(phi - alpha) (lambda^2 - zeta^2)/H^3 where cos(phi - alpha) > 0, from phi = alpha - pi/2 to alpha + pi/2. The force is
+  !> made of the integrals of cos^2 phi, cos phi sin phi and sin^2 phi over H^3 (Booker 1965). The second one is
+  !> 2 eps sin^3 alpha/(1 - eps^2 sin^2 alpha)^2. The others are sums of parts beyond an angle (`parts_beyond`): of the film that is left,
+  !> on both sides of its thickest place; or the rest of the whole circle, (1 + 2 eps^2) pi/w^5 and pi/w^3, w = sqrt(1 - eps^2). So
+  !> nothing cancels next to the wall, where these integrals grow as w^-5 and those of a film that is left do not.
   pure subroutine reduced_force(self, eps_squared, b, t, radial, tangential)
     class(short_bearing_t), intent(in) :: self
     real(dp), intent(in) :: eps_squared, b, t
     real(dp), intent(out) :: radial, tangential
-    real(dp) :: eps, w, speed, to(3), from(3), cc, cs, ss
+    real(dp) :: eps, w2, gap, kappa, speed, c, s, parts(2), cc, cs, ss
     radial = 0
     tangential = 0
     speed = sqrt(b**2 + t**2)
     if (.not. speed > 0) return
     eps = sqrt(eps_squared)
-    w = sqrt(1 - eps_squared)
-    from = primitives(eps, w, atan2(t, b), b/speed, t/speed, 0.5_dp*pi)
-    to = primitives(eps, w, atan2(t, b), b/speed, t/speed, 1.5_dp*pi)
-    cc = (to(1) - from(1))/w**5
-    cs = (to(2) - from(2))/w**4
-    ss = (to(3) - from(3))/w**3
-    radial = -4*self%half_length**2*(b*cc + t*cs)
-    tangential = -4*self%half_length**2*(b*cs + t*ss)
+    w2 = 1 - eps_squared
+    gap = w2/(1 + eps)
+    kappa = sqrt(w2)/(1 + eps)
+    c = abs(b)/speed
+    s = abs(t)/speed
+    parts = parts_beyond(kappa*(1 + s), c, gap) + parts_beyond(kappa*c, 1 + s, gap)
+    if (b > 0) parts = pi*[1 + 2*eps_squared, 1.0_dp] - parts
+    cc = parts(1)/(w2**2*sqrt(w2))
+    ss = parts(2)/(w2*sqrt(w2))
+    cs = 2*eps*s**3/(w2 + eps_squared*c**2)**2
+    radial = -4*self%half_length**2*(b*cc + abs(t)*cs)
+    tangential = -4*self%half_length**2*(b*cs + abs(t)*ss)
+    if (t < 0) tangential = -tangential
   end subroutine reduced_force
 
   !> The largest of 6 lambda^2 cos(phi - alpha)/H^3, and 4 lambda, over V. At the peak d ln P/dphi = 0, that is
@@ -73,26 +76,27 @@ contains
     class(short_bearing_t), intent(in) :: self
     real(dp), intent(in) :: eps_squared, b, t
     real(dp), intent(out) :: most, flow
-    real(dp) :: speed, eps, alpha, lower, upper, phi
+    real(dp) :: speed, eps, gap, alpha, lower, upper, phi
     integer :: i
     most = 0
     speed = sqrt(b**2 + t**2)
     flow = 4*self%half_length*speed
     if (.not. speed > 0) return
     eps = sqrt(eps_squared)
+    gap = (1 - eps_squared)/(1 + eps)
     alpha = atan2(abs(t), b)
     lower = max(alpha - 0.5_dp*pi, 0.0_dp)
     upper = alpha
     do i = 1, 200   ! halved until nothing is left between
       phi = 0.5_dp*(lower + upper)
       if (.not. (phi > lower .and. phi < upper)) exit
-      if ((1 - eps*cos(phi))*sin(phi - alpha) + 3*eps*sin(phi)*cos(phi - alpha) < 0) then
+      if ((gap + 2*eps*sin(0.5_dp*phi)**2)*sin(phi - alpha) + 3*eps*sin(phi)*cos(phi - alpha) < 0) then
         lower = phi
       else
         upper = phi
       end if
     end do
-    most = speed*6*self%half_length**2*cos(phi - alpha)/(1 - eps + 2*eps*sin(0.5_dp*phi)**2)**3
+    most = speed*6*self%half_length**2*cos(phi - alpha)/(gap + 2*eps*sin(0.5_dp*phi)**2)**3
   end subroutine reduced_peak_and_flow
 
   !> The pressure p = 6 mu v*.r (L^2/4 - z^2)/h^3, its positive part.
@@ -119,18 +123,37 @@ contains
     end associate
   end subroutine pressure_field
 
-  !> The brackets above at a = alpha + beyond, `beyond` being pi/2 or 3 pi/2.
-  pure function primitives(eps, w, alpha, cos_alpha, sin_alpha, beyond) result(brackets)
-    real(dp), intent(in) :: eps, w, alpha, cos_alpha, sin_alpha, beyond
-    real(dp) :: brackets(3), cos_a, sin_a, g, cosine, sine, a
-    a = alpha + beyond
-    cos_a = merge(-sin_alpha, sin_alpha, beyond < pi)
-    sin_a = merge(cos_alpha, -cos_alpha, beyond < pi)
-    g = atan2(w*sin_a, cos_a + eps)
-    g = g + two_pi*nint((a - g)/two_pi)   ! the branch next to a
-    cosine = (cos_a + eps)/(1 + eps*cos_a)
-    sine = w*sin_a/(1 + eps*cos_a)
-    brackets = [g*(0.5_dp + eps**2) + 0.5_dp*sine*cosine - 2*eps*sine, 0.5_dp*sine**2 + eps*cosine, &
-      0.5_dp*(g - sine*cosine)]
-  end function primitives
+  !> w^5 and w^3 times the integrals of cos^2 phi/H^3 and sin^2 phi/H^3 from an angle phi to pi. With Sommerfeld's angle as seen from
+  !> the thickest place, tan(delta/2) = kappa cot(phi/2) = y/x, they are those of (2 sin^2(delta/2) - gap)^2 and sin^2(delta) from 0 to
+  !> delta; below one radian as power series, since their closed forms cancel there.
+  pure function parts_beyond(y, x, gap) result(parts)
+    real(dp), intent(in) :: y, x   !! >= 0, not both 0
+    real(dp), intent(in) :: gap    !! 1 - eps
+    real(dp) :: parts(2)
+    integer, parameter :: terms = 13   !! of the series
+    real(dp) :: delta, sine, both, square, fourth, term, power
+    integer :: k
+    delta = 2*atan2(y, x)
+    if (delta >= 1) then
+      sine = 2*x*y/(x**2 + y**2)
+      both = sine*(x + y)*(x - y)/(x**2 + y**2)
+      square = delta - sine
+      fourth = 1.5_dp*delta - 2*sine + 0.5_dp*both
+      parts(2) = 0.5_dp*(delta - both)
+    else   ! delta^(2k + 1)/(2k + 1)! times -1, 2^(2k - 1) - 2 and -2^(2k - 1), with changing signs
+      term = -delta**3/6
+      power = 2
+      square = -term
+      fourth = 0
+      parts(2) = -term*power
+      do k = 2, terms
+        term = -term*delta**2/(2*k*(2*k + 1))
+        power = 4*power
+        square = square - term
+        fourth = fourth + (power - 2)*term
+        parts(2) = parts(2) - power*term
+      end do
+    end if
+    parts(1) = fourth - 2*gap*square + gap**2*delta   ! 4 sin^4, 2 sin^2 and 1
+  end function parts_beyond
 end module short_bearing
