@@ -47,16 +47,21 @@ contains
     end do
   end subroutine begin
 
-  !> Nodes round the film at a thickness: more where it is thin, since the edge of a film that is left moves from node to node. The mean
-  !> of several grids does without.
+  !> Nodes round the film at a thickness: more where it is thin, since the pressure of a film that is left is small beside the one that
+  !> is cut off, and its edge moves from node to node. The mean of several grids needs fewer of them.
   pure integer function nodes_at(film_points, grids, gap)
     integer, intent(in) :: film_points, grids
     real(dp), intent(in) :: gap
     integer, parameter :: enough = 200
+    real(dp), parameter :: thin = 0.05_dp, very_thin = 0.012_dp
     nodes_at = film_points
-    if (grids > 1) return
-    if (gap < 0.05_dp) nodes_at = 4*((3*film_points)/8)
-    if (gap < 0.012_dp .and. film_points < enough) nodes_at = 2*film_points
+    if (grids > 1) then
+      if (gap < very_thin) nodes_at = 4*(film_points/3)
+    else if (gap < very_thin .and. film_points < enough) then
+      nodes_at = 2*film_points
+    else if (gap < thin) then
+      nodes_at = 4*((3*film_points)/8)
+    end if
   end function nodes_at
 
   !> Grids whose mean is taken. Where the film ruptures at a free edge the force has an error that changes with the place of the edge
