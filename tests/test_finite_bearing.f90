@@ -31,6 +31,7 @@ contains
     call short_bearing_next_to_wall(check)
     call potential_of_the_velocity(check)
     call table_meets_solver(check)
+    call table_without_cavitation(check)
     call table_states_its_error(check)
     call table_goes_through_an_archive(check)
     call symmetries_and_extremes(check)
@@ -219,7 +220,7 @@ contains
   subroutine short_bearing_next_to_wall(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: gaps(7) = [0.5_dp, 0.03_dp, 1e-3_dp, 1e-4_dp, 1e-6_dp, 1e-9_dp, 1e-13_dp]
-    real(dp), parameter :: angles(9) = [0.0_dp, 0.4_dp, 1.5_dp, 1.5707_dp, 1.5709_dp, 1.65_dp, -2.4_dp, 3.1_dp, 3.141592653589793_dp]
+    real(dp), parameter :: angles(9) = [0.0_dp, 0.4_dp, 1.5_dp, 1.5707_dp, 1.5709_dp, 1.65_dp, -2.4_dp, 3.1_dp, pi]
     type(short_bearing_t) :: short
     real(dp) :: square, b, t, want(2), got(2)
     integer :: i, j
@@ -323,6 +324,22 @@ contains
     call map%force((1 - 1e-7_dp)**2, 1.0_dp, 0.3_dp, got(1), got(2))
     call check%relative(got(1)*(2e-7_dp)**1.5_dp, -12*pi, 0.02_dp, 'approach next to the wall, as of a long film')
   end subroutine table_meets_solver
+
+  !> A film that pulls: leaving and approaching alike.
+  subroutine table_without_cavitation(check)
+    class(checks_t), intent(inout) :: check
+    type(film_map_t) :: map
+    real(dp) :: eps, alpha, got(2), want(2)
+    integer :: i
+    call map%build(0.75_dp, cavitation_none, 33, 64)
+    do i = 1, 30
+      eps = sin(1.55_dp*modulo(0.618_dp*i, 1.0_dp))
+      alpha = pi*(2*modulo(0.414_dp*i, 1.0_dp) - 1)
+      call solved_force(64, 0.75_dp, cavitation_none, 1 - eps, alpha, want)
+      call map%force(eps**2, 3*cos(alpha), 3*sin(alpha), got(1), got(2))
+      call check%that(norm2(got - 3*want) <= 1e-3_dp*norm2(3*want), 'the table of a film without cavitation')
+    end do
+  end subroutine table_without_cavitation
 
   !> What a table says of its error is what is found at other points than those it was measured at; a smaller table says more.
   subroutine table_states_its_error(check)

@@ -10,13 +10,14 @@
 !>
 !> leave two smooth and bounded functions G of tau and chi, even and odd about chi = 0 and pi, which are splines of the fifth
 !> degree here. They depend on L/(2R) and on the cavitation. So do two more, even both: the largest pressure over mu R^2/c^2 is
-!> M q^2 G_p, the flow out of both ends over c R^2 is V G_q.
+!> M q^2 G_p, the flow out of both ends over c R^2 is V G_q. A film without cavitation pulls as much as it pushes: its force is linear
+!> in B and T, V Phi_r = B w^-3 G_r and V Phi_t = T w^-1 G_t, with G of tau alone.
 module film_map
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
   use gudgeon_archive, only: archive_t
   use film_law, only: table_watch_t
-  use finite_film, only: film_answer_t
+  use finite_film, only: film_answer_t, cavitation_none
   use film_solution, only: film_solution_t
   use uniform_spline, only: spline_weights, through_values, through_mirrored, before, after
   implicit none
@@ -82,7 +83,7 @@ contains
     if (stops) return
     call make_room(self)
     do k = 1, 4
-      by_chi = through_mirrored(g(:, :, k), merge(-1, 1, k == 2))
+      by_chi = through_mirrored(g(:, :, k), merge(-1, 1, k == 2 .and. cavitation /= cavitation_none))
       by_chi = transpose(through_values(transpose(by_chi)))
       if (k <= 2) self%c(k, :, :) = by_chi
       if (k > 2) self%more(k - 2, :, :) = by_chi
@@ -130,7 +131,14 @@ contains
       g(j, 3) = film%most/(s_r**2/s_t)
       g(j, 4) = film%flow
     end do
-    g([1, self%points], 2) = 0
+    if (self%cavitation == cavitation_none) then
+      call solution%solve(0.0_dp, .false., film)
+      g(:, 1) = film%force(1)*w**3
+      call solution%solve(0.5_dp*pi, .false., film)
+      g(:, 2) = film%force(2)*w
+    else
+      g([1, self%points], 2) = 0
+    end if
   end subroutine solve_row
 
   !> 1 - eps at a tau.
@@ -242,7 +250,12 @@ contains
     if (.not. (a > 0 .or. abs(b) > 0)) return
     w2 = 1 - eps_squared
     w = sqrt(w2)
-    call find_scales(b, a, w2, s_r, s_t)
+    if (self%cavitation == cavitation_none) then
+      s_r = b/(w2*w)
+      s_t = a/w
+    else
+      call find_scales(b, a, w2, s_r, s_t)
+    end if
     x = min(atan2(sqrt(eps_squared), w)*self%per_tau, real(self%points - 1, dp))
     y = chi_of(b, a, w)*self%per_chi
     i = min(int(x), self%points - 2)
