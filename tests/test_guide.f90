@@ -32,6 +32,7 @@ contains
     call methods_agree(check)
     call narrow_bore_is_an_ideal_guide(check)
     call compare_with_siconos(check)
+    call follow_siconos(check)
     call refusals(check)
   end subroutine run_test_guide
 
@@ -277,6 +278,7 @@ contains
     call check%that(got%event(1)%pin + got%event(2)%pin == 2*n_pins + 3 .and. all(got%event(:2)%kind == 1), 'both ends touch')
     call check%close_to(got%event(2)%time - got%event(1)%time, 0.0_dp, 1e-12_dp, 'at the same instant [s]')
     call check%relative(got%event(3)%max_normal_force, got%event(4)%max_normal_force, 1e-6_dp, 'and with the same force')
+    call check%close_to(got%event(3)%normal_speed/got%event(1)%normal_speed, -0.4_dp, 4e-3_dp, 'and both give back the coefficient')
   end subroutine no_event_is_lost
 
   !> The same motion by both methods, at ideal and at loose pins.
@@ -344,6 +346,35 @@ contains
       end associate
     end do
   end subroutine compare_with_siconos
+
+  !> From Siconos's state just after that impact, where both ends of the slider hit nearly at once, on: nearer to rigid walls with the
+  !> stiffness until both ends hit again, at 26 ms.
+  subroutine follow_siconos(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: stiffness(3) = [character(len=5) :: '1e8', '1e9', '1e10']
+    real(dp), parameter :: near(3) = [5e-4_dp, 3e-4_dp, 1e-4_dp]   ! of the clearance, up to 20 ms
+    type(trace_t) :: got
+    character(len=40), allocatable :: names(:)
+    real(dp), allocatable :: want(:, :)
+    character(len=long) :: settings(2)
+    integer :: i, first, n, m
+    call load_table('siconos_guide_clearance.csv', names, want)
+    first = count(want(1, :) < 2.8e-3_dp - 1e-9_dp)
+    do i = 1, size(stiffness)
+      settings = 'integrator.relative_tolerance=1e-9'
+      settings(1) = 'guide.stiffness='//stiffness(i)
+      got = run_case('cases/joints/slider_after_impact.nml', settings)
+      call check%that(size(got%values, 2) == size(want, 2) - first, 'as many rows as Siconos has from there on')
+      associate (across => abs(values_of(got, 'piston_offset[m]')/1e-3_dp - want(8, first + 1:)), &
+          turned => abs(values_of(got, 'crank_angle[rad]')/two_pi - want(2, first + 1:)))
+        n = count(want(1, first + 1:) < 0.0201_dp)
+        m = count(want(1, first + 1:) < 0.0401_dp)
+        call check%close_to(sum(across(:n))/n, 0.0_dp, near(i), 'y/c to 20 ms, on average, '//stiffness(i)//' N/m')
+        call check%close_to(sum(across(:m))/m, 0.0_dp, 0.01_dp, 'y/c to 40 ms, on average, '//stiffness(i)//' N/m')
+        call check%close_to(maxval(turned), 0.0_dp, 0.005_dp, 'crank angle to 0.2 s, '//stiffness(i)//' N/m [revolutions]')
+      end associate
+    end do
+  end subroutine follow_siconos
 
   subroutine refusals(check)
     class(checks_t), intent(inout) :: check
