@@ -59,7 +59,7 @@ contains
       [between(random, 0.2_dp, 0.7_dp), between(random, -0.2_dp, 0.2_dp)]*l), &
       piston_t(between(random, 0.1_dp, 1.0_dp)), 9.80665_dp*[-cos(tilt), -sin(tilt)])
     chain%drive = drive_t(between(random, 0.0_dp, 1.0_dp) < 0.5_dp, between(random, -20.0_dp, 20.0_dp), &
-      between(random, 0.0_dp, 0.1_dp))
+      between(random, 0.0_dp, 0.1_dp), 0.0_dp)
     chain%is_loose = [modulo(piece, 2) == 1, piece > 1]
     z(1) = between(random, -10.0_dp, 10.0_dp)
     z_rate(1) = between(random, -300.0_dp, 300.0_dp)
@@ -118,6 +118,7 @@ contains
     type(accelerations_t) :: a, b
     real(dp) :: z(5), z_rate(5), moment, same, worst, worst_moment, largest(7)
     integer :: piece, i
+    logical :: solvable
 
     call random%begin(16)
     do piece = 0, 3
@@ -126,7 +127,7 @@ contains
       do i = 1, trials
         call draw(random, piece, chain, motion, loads, z, z_rate)
         found = loads
-        call chain%accelerate(motion, found, a, moment)
+        call chain%accelerate(motion, found, a, moment, solvable)
         call accelerate_assembled(chain%bodies, chain%drive, chain%is_loose, loads, motion, b, same)
         largest = in_common_units(chain, b)
         worst = max(worst, maxval(abs(in_common_units(chain, a) - largest))/maxval(abs(largest)))
@@ -148,6 +149,7 @@ contains
     type(accelerations_t) :: a
     real(dp) :: z(5), z_rate(5), moment, power, terms(6), worst
     integer :: piece, i
+    logical :: solvable
 
     call random%begin(17)
     do piece = 0, 3
@@ -155,7 +157,7 @@ contains
       do i = 1, trials
         call draw(random, piece, chain, motion, loads, z, z_rate)
         found = loads
-        call chain%accelerate(motion, found, a, moment)
+        call chain%accelerate(motion, found, a, moment, solvable)
         associate (q_rate => motion%crank_speed, rod_spin => -motion%rod_speed)
           terms = [(moment - chain%drive%damping*q_rate)*q_rate, -loads%axial_force*motion%piston_velocity, &
             dot_product(loads%force(:, crank_pin), z_rate(2:3)), dot_product(loads%force(:, piston_pin), z_rate(4:5)), &
@@ -182,13 +184,14 @@ contains
     type(reactions_t) :: r
     real(dp) :: z(5), z_rate(5), moment, balance, size_of, worst(4)
     integer :: piece, i
+    logical :: solvable
 
     call random%begin(18)
     do piece = 0, 3
       worst = 0
       do i = 1, trials
         call draw(random, piece, chain, motion, loads, z, z_rate)
-        call chain%accelerate(motion, loads, a, moment)
+        call chain%accelerate(motion, loads, a, moment, solvable)
         r = chain%reactions(motion, a, loads)
         size_of = maxval(abs([r%pin, r%crankpin]))
         worst(1) = max(worst(1), maxval(abs(r%pin + loads%force(:, piston_pin)))/size_of)
@@ -221,6 +224,7 @@ contains
     type(accelerations_t) :: a, b, difference
     real(dp) :: z(5), z_rate(5), moment, same, change, worst, worst_load, worst_moment
     integer :: piece, i
+    logical :: solvable
 
     call random%begin(19)
     do piece = 0, 3
@@ -236,8 +240,8 @@ contains
         more%force = loads%force + added%force
         more%moment = loads%moment + added%moment
         more%axial_force = loads%axial_force + added%axial_force
-        call chain%accelerate(motion, loads, a, moment)
-        call chain%accelerate(motion, more, b, same)
+        call chain%accelerate(motion, loads, a, moment, solvable)
+        call chain%accelerate(motion, more, b, same, solvable)
         call chain%response(motion, added, difference, change)
         worst = max(worst, maxval(abs(in_common_units(chain, b) - in_common_units(chain, a) &
           - in_common_units(chain, difference))) &
@@ -270,6 +274,7 @@ contains
     type(accelerations_t) :: a
     type(loads_t) :: loads
     real(dp) :: moment, same
+    logical :: solvable
     call accelerate_at(0.0_dp)
     call check%close_to(a%piston, -19419.360511_dp, 1e-6_dp, 'slider acceleration at the top')
     call accelerate_at(180.0_dp)
@@ -280,17 +285,18 @@ contains
     call accelerate_at(34.974_dp)
     call check%close_to(abs(moment), 138.521666_dp, 1e-6_dp, 'crank moment at 34.974 deg')
     call check%close_to(moment + same, 0.0_dp, 1e-9_dp, 'crank moment is odd')
-    chain%drive = drive_t(.true., moment)
-    call chain%accelerate(ideal_motion(chain%bodies, 34.974_dp*degree, 5000*pi/30), loads, a, same)
+    chain%drive = drive_t(.true., moment, 0.0_dp, 0.0_dp)
+    call chain%accelerate(ideal_motion(chain%bodies, 34.974_dp*degree, 5000*pi/30), loads, a, same, solvable)
     call check%close_to(a%crank, 0.0_dp, 1e-8_dp, 'the holding moment holds')
 
   contains
 
     subroutine accelerate_at(angle)
       real(dp), intent(in) :: angle
+    logical :: solvable
       chain = flores()
       loads = loads_t(0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp)
-      call chain%accelerate(ideal_motion(chain%bodies, angle*degree, 5000*pi/30), loads, a, moment)
+      call chain%accelerate(ideal_motion(chain%bodies, angle*degree, 5000*pi/30), loads, a, moment, solvable)
     end subroutine accelerate_at
   end subroutine published_values
 
@@ -304,6 +310,7 @@ contains
     type(accelerations_t) :: a, b
     real(dp) :: z(5), z_rate(5), moment, worst
     integer :: piece, i
+    logical :: solvable
 
     call random%begin(20)
     do piece = 1, 3
@@ -311,10 +318,10 @@ contains
       do i = 1, trials
         call draw(random, 0, chain, motion, loads, z, z_rate)
         chain%drive%free_crank = .true.
-        call chain%accelerate(motion, loads, a, moment)
+        call chain%accelerate(motion, loads, a, moment, solvable)
         call chain%complete_loads(motion, a, loads)
         chain%is_loose = [modulo(piece, 2) == 1, piece > 1]
-        call chain%accelerate(motion, loads, b, moment)
+        call chain%accelerate(motion, loads, b, moment, solvable)
         worst = max(worst, maxval(abs(in_common_units(chain, a) - in_common_units(chain, b))) &
           /maxval(abs(in_common_units(chain, a))))
       end do

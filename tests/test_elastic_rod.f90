@@ -64,7 +64,7 @@ contains
       [between(random, -0.5_dp, 1.0_dp), between(random, -0.5_dp, 0.5_dp)]*r), rod, &
       piston_t(between(random, 0.1_dp, 1.0_dp)), 9.80665_dp*[-cos(tilt), -sin(tilt)])
     chain%drive = drive_t(between(random, 0.0_dp, 1.0_dp) < 0.5_dp, between(random, -20.0_dp, 20.0_dp), &
-      between(random, 0.0_dp, 0.1_dp))
+      between(random, 0.0_dp, 0.1_dp), 0.0_dp)
     chain%is_loose = [modulo(piece, 2) == 1, piece > 1]
     allocate (chain%elastic)
     allocate (chain%elastic%rod)
@@ -172,7 +172,7 @@ contains
       do i = 1, trials
         call draw(random, piece, n, na, chain, motion, loads, z, z_rate)
         found = loads
-        call chain%accelerate_elastic(motion, found, a, moment, solvable)
+        call chain%accelerate(motion, found, a, moment, solvable)
         call check%that(solvable, 'the equations can be solved')
         associate (q_rate => motion%crank_speed, rod => chain%elastic%rod)
           terms = [(moment - chain%drive%damping*q_rate)*q_rate, -loads%axial_force*motion%piston_velocity, &
@@ -213,7 +213,7 @@ contains
         do i = 1, trials
           call draw(random, piece, shapes(1, k), shapes(2, k), chain, motion, loads, z, z_rate)
           found = loads
-          call chain%accelerate_elastic(motion, found, a, moment, solvable)
+          call chain%accelerate(motion, found, a, moment, solvable)
           call check%that(solvable, 'the equations of many shapes can be solved')
           call accelerate_assembled(chain%bodies, chain%drive, chain%is_loose, loads, motion, b, same, chain%elastic%rod)
           associate (ns => sum(shapes(:, k)), l => chain%bodies%rod%length)
@@ -248,7 +248,7 @@ contains
       worst = 0
       do i = 1, trials
         call draw(random, piece, 2, 4, chain, motion, loads, z, z_rate)
-        call chain%accelerate_elastic(motion, loads, a, moment, solvable)
+        call chain%accelerate(motion, loads, a, moment, solvable)
         r = chain%reactions(motion, a, loads)
         size_of = maxval(abs([r%pin, r%crankpin]))
         worst(1) = max(worst(1), maxval(abs(r%pin + loads%force(:, piston_pin)))/size_of)
@@ -292,8 +292,8 @@ contains
         more%force = loads%force + added%force
         more%moment = loads%moment + added%moment
         more%axial_force = loads%axial_force + added%axial_force
-        call chain%accelerate_elastic(motion, loads, a, moment, solvable)
-        call chain%accelerate_elastic(motion, more, b, same, solvable)
+        call chain%accelerate(motion, loads, a, moment, solvable)
+        call chain%accelerate(motion, more, b, same, solvable)
         call chain%response(motion, added, c, change)
         worst = max(worst, maxval(abs(b%pin - a%pin - c%pin))/maxval(abs(b%pin)), &
           maxval(abs(b%shape(:6) - a%shape(:6) - c%shape(:6)))/maxval(abs(b%shape(:6))), &
@@ -322,14 +322,14 @@ contains
       do i = 1, trials
         call draw(random, piece, 0, 0, chain, motion, loads, z, z_rate)
         found = loads
-        call chain%accelerate_elastic(motion, found, a, moment, solvable)
+        call chain%accelerate(motion, found, a, moment, solvable)
         one = chain%reactions(motion, a, found)
         worst = max(worst, abs(chain%elastic%rod%strain_energy(motion)))
         same = chain%energy(motion)
         deallocate (chain%elastic)
         call check%relative(same, chain%energy(motion), 1e-12_dp, 'energy of a rod without shapes')
         found = loads
-        call chain%accelerate(motion, found, b, same)
+        call chain%accelerate(motion, found, b, same, solvable)
         other = chain%reactions(motion, b, found)
         worst = max(worst, maxval(abs(a%pin - b%pin)/(1 + maxval(abs(b%pin)))), abs(a%rod - b%rod)/abs(b%rod), &
           abs(a%piston - b%piston)/abs(b%piston), abs(moment - same)/(abs(same) + 100), &

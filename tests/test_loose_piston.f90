@@ -46,7 +46,7 @@ contains
       rod_t(0.2_dp*(1 + u()), 0.5_dp + u(), 1e-3_dp*(1 + u()), [0.1_dp*u(), 0.02_dp*u()]), &
       piston_t(0.5_dp + u(), .true., 1e-3_dp*(1 + u()), [0.03_dp*u() - 0.01_dp, 0.01_dp*u() - 0.005_dp]), &
       9.80665_dp*[-cos(6*u()), -sin(6*u())])
-    chain%drive = drive_t(u() < 0.5_dp, 40*u() - 20, 0.1_dp*u())
+    chain%drive = drive_t(u() < 0.5_dp, 40*u() - 20, 0.1_dp*u(), 0.0_dp)
     chain%is_loose = [modulo(piece, 2) == 1, piece > 1]
     z = [10*u(), (1e-3_dp*(2*u() - 1), i=1, 5), 0.1_dp*(2*u() - 1)]
     z_rate = [600*u() - 300, (4*u() - 2, i=1, 5), 100*u() - 50]
@@ -101,13 +101,14 @@ contains
     type(accelerations_t) :: a, b
     real(dp) :: z(7), z_rate(7), moment, same, worst
     integer :: piece, i
+    logical :: solvable
     call random%begin(31)
     do piece = 2, 3
       worst = 0
       do i = 1, trials
         call draw(random, piece, chain, motion, loads, z, z_rate)
         found = loads
-        call chain%accelerate(motion, found, a, moment)
+        call chain%accelerate(motion, found, a, moment, solvable)
         call accelerate_assembled(chain%bodies, chain%drive, chain%is_loose, loads, motion, b, same)
         worst = max(worst, maxval(abs(in_common_units(chain, a) - in_common_units(chain, b))) &
           /maxval(abs(in_common_units(chain, b))))
@@ -127,13 +128,14 @@ contains
     type(accelerations_t) :: a
     real(dp) :: z(7), z_rate(7), moment, terms(8), worst, slope
     integer :: piece, i
+    logical :: solvable
     call random%begin(32)
     do piece = 0, 3
       worst = 0
       do i = 1, trials
         call draw(random, piece, chain, motion, loads, z, z_rate)
         found = loads
-        call chain%accelerate(motion, found, a, moment)
+        call chain%accelerate(motion, found, a, moment, solvable)
         terms = [(moment - chain%drive%damping*motion%crank_speed)*motion%crank_speed, &
           -loads%axial_force*motion%tilting%com_velocity, loads%bore_force*z_rate(6) + loads%bore_moment*z_rate(7), &
           dot_product(loads%force(:, crank_pin), z_rate(2:3)), dot_product(loads%force(:, piston_pin), z_rate(4:5)), &
@@ -160,12 +162,13 @@ contains
     type(reactions_t) :: r
     real(dp) :: z(7), z_rate(7), moment, force, euler, com(2), worst(4), size_of
     integer :: piece, i
+    logical :: solvable
     call random%begin(33)
     do piece = 0, 3
       worst = 0
       do i = 1, trials
         call draw(random, piece, chain, motion, loads, z, z_rate)
-        call chain%accelerate(motion, loads, a, moment)
+        call chain%accelerate(motion, loads, a, moment, solvable)
         r = chain%reactions(motion, a, loads)
         size_of = maxval(abs([r%pin, r%crankpin])) + 1e4_dp
         worst(1) = max(worst(1), maxval(abs(r%pin + loads%force(:, piston_pin)))/size_of)
@@ -195,6 +198,7 @@ contains
     type(accelerations_t) :: a, b, difference
     real(dp) :: z(7), z_rate(7), moment, same, change, worst
     integer :: piece, i
+    logical :: solvable
     call random%begin(34)
     do piece = 2, 3
       worst = 0
@@ -206,8 +210,8 @@ contains
         more = loads
         more%force = loads%force + added%force
         more%moment = loads%moment + added%moment
-        call chain%accelerate(motion, loads, a, moment)
-        call chain%accelerate(motion, more, b, same)
+        call chain%accelerate(motion, loads, a, moment, solvable)
+        call chain%accelerate(motion, more, b, same, solvable)
         call chain%response(motion, added, difference, change)
         worst = max(worst, maxval(abs(in_common_units(chain, b) - in_common_units(chain, a) &
           - in_common_units(chain, difference)))/maxval(abs(in_common_units(chain, b))))

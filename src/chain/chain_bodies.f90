@@ -7,7 +7,7 @@ module chain_bodies
   use chain_motion, only: motion_t
   implicit none
   private
-  public :: bodies_t, crank_t, rod_t, piston_t, drive_t, new_bodies, weightless
+  public :: bodies_t, crank_t, rod_t, piston_t, drive_t, undriven, new_bodies, weightless
 
   !> The crank. Its frame begins at the crank bearing, the first axis towards the crank pin.
   type :: crank_t
@@ -33,13 +33,15 @@ module chain_bodies
     real(dp) :: com(2) = 0        !! its centre of mass (U_p, V_p) [m]
   end type piston_t
 
-  !> How the crank is driven.
+  !> How the crank is driven. (Without defaults: one is made in every right-hand side.)
   type :: drive_t
-    logical :: free_crank = .true.   !! the crank moves under its loads; else its speed is held
-    real(dp) :: torque = 0           !! tau on a free crank [N m]
-    real(dp) :: damping = 0          !! D, moment per crank speed [N m s/rad]
-    real(dp) :: acceleration = 0     !! of a held crank [rad/s^2]
+    logical :: free_crank            !! the crank moves under its loads; else its speed is held
+    real(dp) :: torque               !! tau on a free crank [N m]
+    real(dp) :: damping              !! D, moment per crank speed [N m s/rad]
+    real(dp) :: acceleration         !! of a held crank [rad/s^2]
   end type drive_t
+
+  type(drive_t), parameter :: undriven = drive_t(.true., 0.0_dp, 0.0_dp, 0.0_dp)   !! a crank that turns by itself
 
   !> The bodies, and what follows from their constants: made by `new_bodies`.
   type :: bodies_t

@@ -4,7 +4,7 @@ module chain_loads
   use chain_motion, only: n_pins
   implicit none
   private
-  public :: loads_t, force_size, bearing_moment
+  public :: loads_t, unloaded, force_size, bearing_moment
 
   !> Loads of the pins, of the gas and of the bore. Of an ideal pin the force is found with the accelerations.
   type :: loads_t
@@ -14,6 +14,8 @@ module chain_loads
     real(dp) :: bore_force          !! of the bore on a piston with clearance there, along y [N]; of an ideal guide it is a reaction
     real(dp) :: bore_moment         !! and its moment about the piston's centre of mass, from x to y [N m]
   end type loads_t
+
+  type(loads_t), parameter :: unloaded = loads_t(0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp)
 
 contains
 

@@ -7,7 +7,7 @@ module elastic_crankshaft
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t
   use chain_motion, only: motion_t
-  use chain_bodies, only: drive_t
+  use chain_bodies, only: drive_t, undriven
   implicit none
   private
   public :: elastic_crankshaft_t
@@ -49,9 +49,8 @@ contains
   pure type(drive_t) function drive_of_crank(self, motion) result(drive)
     class(elastic_crankshaft_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
-    drive%free_crank = .true.
+    drive = undriven
     drive%torque = self%moment(motion)
-    drive%damping = 0
   end function drive_of_crank
 
   !> Acceleration of the flywheel [rad/s^2] and the drive's moment on it [N m].

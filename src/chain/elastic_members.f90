@@ -25,6 +25,7 @@ module elastic_members
     procedure :: put_start
     procedure :: read_state
     procedure :: put_rates
+    procedure :: driven_speed
     procedure :: n_shapes
     procedure :: damping_power
     procedure :: power
@@ -114,6 +115,14 @@ contains
     dydt(self%flywheel%rate) = accelerations%flywheel
   end subroutine put_rates
 
+  !> Speed of what the drive turns: the flywheel of an elastic crankshaft or the crank [rad/s].
+  pure real(dp) function driven_speed(self, motion)
+    class(elastic_members_t), intent(in) :: self
+    type(motion_t), intent(in) :: motion
+    driven_speed = motion%crank_speed
+    if (allocated(self%crankshaft)) driven_speed = motion%flywheel_speed
+  end function driven_speed
+
   !> Power of the dampings on the bodies [W], <= 0.
   pure real(dp) function damping_power(self, motion)
     class(elastic_members_t), intent(in) :: self
@@ -129,8 +138,7 @@ contains
     type(motion_t), intent(in) :: motion
     real(dp), intent(in) :: moment, damping   !! of the drive [N m], [N m s/rad]
     real(dp) :: speed
-    speed = motion%crank_speed
-    if (allocated(self%crankshaft)) speed = motion%flywheel_speed
+    speed = self%driven_speed(motion)
     power = (moment - damping*speed)*speed + self%damping_power(motion)
   end function power
 end module elastic_members

@@ -3,7 +3,7 @@
 module gudgeon_chain
   use gudgeon_kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, n_pins, follow_rod, follow_piston
-  use chain_bodies, only: bodies_t, drive_t, weightless
+  use chain_bodies, only: bodies_t, drive_t, undriven, weightless
   use chain_loads, only: loads_t
   use chain_reactions, only: reactions_t, reactions_of, elastic_reactions
   use ideal_chain, only: accelerate_ideal_chain
@@ -23,44 +23,93 @@ module gudgeon_chain
 
   type :: chain_t
     type(bodies_t) :: bodies
-    type(drive_t) :: drive
+    type(drive_t) :: drive = undriven
     type(varying_drive_t), allocatable :: varying   !! not allocated: the drive does not vary
     logical :: is_loose(n_pins) = .false.   !! pins with clearance
     type(elastic_members_t), allocatable :: elastic   !! not allocated: all bodies are rigid
   contains
     procedure, non_overridable :: accelerate
-    procedure, non_overridable :: accelerate_elastic
-    procedure :: has_elastic_rod
+    procedure, non_overridable :: has_elastic_rod
     procedure :: has_crankshaft
     procedure, non_overridable :: move_rod
     procedure, non_overridable :: move_piston
     procedure :: response
     procedure :: complete_loads
+    procedure :: add_response
     procedure :: reactions
     procedure :: energy
   end type chain_t
 
 contains
 
-  !> Accelerations of rigid bodies under gravity, the drive and the loads of gas and loose pins; the loads of ideal pins that the
-  !> piece finds with them; and the moment on the crank [N m]: the drive's torque if the crank is free, the moment that holds its
-  !> speed if not.
-  pure subroutine accelerate(self, motion, loads, accelerations, crank_moment)
+  !> Accelerations under gravity, the drive and the loads of gas and loose pins; the loads of ideal pins that the piece finds with
+  !> them; and the moment of the drive on what it turns, the crank or the flywheel of an elastic crankshaft [N m]: its torque where
+  !> this moves freely, the moment that holds its speed where not. `solvable` is false where the mass matrix of an elastic rod is not
+  !> positive definite.
+  pure subroutine accelerate(self, motion, loads, accelerations, crank_moment, solvable)
     class(chain_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
     type(loads_t), intent(inout) :: loads
     type(accelerations_t), intent(out) :: accelerations
     real(dp), intent(out) :: crank_moment
-    if (allocated(self%varying)) then
-      call accelerate_rigid(self, self%varying%at(self%drive, motion%crank_speed, motion), motion, loads, accelerations, &
-        crank_moment)
-    else
-      call accelerate_rigid(self, self%drive, motion, loads, accelerations, crank_moment)
+    logical, intent(out) :: solvable
+    type(drive_t) :: drive
+    logical :: is_special, has_elastic_rod
+    solvable = .true.
+    drive = self%drive
+    has_elastic_rod = .false.
+    is_special = allocated(self%varying) .or. allocated(self%elastic)
+    if (is_special) then
+      has_elastic_rod = self%has_elastic_rod()
+      drive = drive_of_crank(self, motion)
     end if
+    if (has_elastic_rod) then
+      call accelerate_with_elastic_rod(self, drive, motion, loads, accelerations, crank_moment, solvable)
+    else
+      call accelerate_rigid(self, drive, motion, loads, accelerations, crank_moment)
+    end if
+    if (is_special) call accelerate_flywheel(self, motion, accelerations, crank_moment)
   end subroutine accelerate
 
+  !> What turns the crank now: the drive or, of an elastic crankshaft, the shaft.
+  pure type(drive_t) function drive_of_crank(chain, motion) result(drive)
+    type(chain_t), intent(in) :: chain
+    type(motion_t), intent(in) :: motion
+    if (chain%has_crankshaft()) then
+      drive = chain%elastic%crankshaft%drive_of_crank(motion)
+    else
+      drive = present_drive(chain, motion)
+    end if
+  end function drive_of_crank
+
+  !> The drive now, where it varies with the speed or the time.
+  pure type(drive_t) function present_drive(chain, motion) result(drive)
+    type(chain_t), intent(in) :: chain
+    type(motion_t), intent(in) :: motion
+    drive = chain%drive
+    if (allocated(chain%varying)) drive = chain%varying%at(chain%drive, driven_speed(chain, motion), motion)
+  end function present_drive
+
+  !> Speed of what the drive turns, the crank or the flywheel of an elastic crankshaft [rad/s].
+  pure real(dp) function driven_speed(chain, motion)
+    type(chain_t), intent(in) :: chain
+    type(motion_t), intent(in) :: motion
+    driven_speed = motion%crank_speed
+    if (allocated(chain%elastic)) driven_speed = chain%elastic%driven_speed(motion)
+  end function driven_speed
+
+  !> The flywheel of an elastic crankshaft, and the moment of the drive on it [N m].
+  pure subroutine accelerate_flywheel(chain, motion, accelerations, drive_moment)
+    type(chain_t), intent(in) :: chain
+    type(motion_t), intent(in) :: motion
+    type(accelerations_t), intent(inout) :: accelerations
+    real(dp), intent(inout) :: drive_moment
+    if (.not. chain%has_crankshaft()) return
+    call chain%elastic%crankshaft%accelerate_flywheel(present_drive(chain, motion), motion, accelerations%flywheel, drive_moment)
+  end subroutine accelerate_flywheel
+
   pure subroutine accelerate_rigid(chain, drive, motion, loads, accelerations, crank_moment)
-    class(chain_t), intent(in) :: chain
+    type(chain_t), intent(in) :: chain
     type(drive_t), intent(in) :: drive
     type(motion_t), intent(in) :: motion
     type(loads_t), intent(inout) :: loads
@@ -81,45 +130,31 @@ contains
     else
       call accelerate_ideal_chain(chain%bodies, drive, motion, loads, accelerations, crank_moment)
     end if
+    accelerations%rod_end = -accelerations%rod
   end subroutine accelerate_rigid
 
-  !> The same of a chain with elastic members. The moment is that on the flywheel where there is one. `solvable` is false where the
-  !> elastic rod's mass matrix is not positive definite.
-  pure subroutine accelerate_elastic(self, motion, loads, accelerations, crank_moment, solvable)
-    class(chain_t), intent(in) :: self
+  pure subroutine accelerate_with_elastic_rod(chain, drive, motion, loads, accelerations, crank_moment, solvable)
+    type(chain_t), intent(in) :: chain
+    type(drive_t), intent(in) :: drive
     type(motion_t), intent(in) :: motion
     type(loads_t), intent(inout) :: loads
     type(accelerations_t), intent(out) :: accelerations
     real(dp), intent(out) :: crank_moment
     logical, intent(out) :: solvable
-    type(drive_t) :: drive, acting
-    acting = self%drive
-    if (allocated(self%varying)) acting = self%varying%at(self%drive, merge(motion%flywheel_speed, motion%crank_speed, &
-      self%has_crankshaft()), motion)
-    drive = acting
-    if (self%has_crankshaft()) drive = self%elastic%crankshaft%drive_of_crank(motion)
-    solvable = .true.
-    if (.not. self%has_elastic_rod()) then
-      call accelerate_rigid(self, drive, motion, loads, accelerations, crank_moment)
-      accelerations%rod_end = -accelerations%rod
-    else
-      associate (rod => self%elastic%rod)
-        if (self%is_loose(piston_pin)) then
-          call accelerate_elastic_rod(rod, self%bodies, drive, self%is_loose(crank_pin), loads, motion, accelerations, &
-            crank_moment, solvable)
-          if (.not. solvable) return
-          if (self%bodies%piston%is_loose) call free_piston(self%bodies, motion, loads, accelerations)
-        else
-          call accelerate_assembled(self%bodies, drive, self%is_loose, loads, motion, accelerations, crank_moment, rod, solvable)
-          if (.not. solvable) return
-          call self%complete_loads(motion, accelerations, loads)
-        end if
-        call turn_rod_ends(rod, accelerations)
-      end associate
-    end if
-    if (self%has_crankshaft()) &
-      call self%elastic%crankshaft%accelerate_flywheel(acting, motion, accelerations%flywheel, crank_moment)
-  end subroutine accelerate_elastic
+    associate (rod => chain%elastic%rod)
+      if (chain%is_loose(piston_pin)) then
+        call accelerate_elastic_rod(rod, chain%bodies, drive, chain%is_loose(crank_pin), loads, motion, accelerations, &
+          crank_moment, solvable)
+        if (.not. solvable) return
+        if (chain%bodies%piston%is_loose) call free_piston(chain%bodies, motion, loads, accelerations)
+      else
+        call accelerate_assembled(chain%bodies, drive, chain%is_loose, loads, motion, accelerations, crank_moment, rod, solvable)
+        if (.not. solvable) return
+        call chain%complete_loads(motion, accelerations, loads)
+      end if
+      call turn_rod_ends(rod, accelerations)
+    end associate
+  end subroutine accelerate_with_elastic_rod
 
   !> Accelerations of the turning of an elastic rod's ends.
   pure subroutine turn_rod_ends(rod, accelerations)
@@ -200,13 +235,14 @@ contains
 
   !> A drive without moment.
   pure type(drive_t) function free_drive(chain) result(drive)
-    class(chain_t), intent(in) :: chain
+    type(chain_t), intent(in) :: chain
+    drive = undriven
     drive%free_crank = chain%drive%free_crank .or. chain%has_crankshaft()
   end function free_drive
 
   !> The same of an elastic rod, as it is bent and stretched but without its stiffness.
   pure subroutine respond_elastic_rod(chain, at_rest, loads, accelerations, crank_moment)
-    class(chain_t), intent(in) :: chain
+    type(chain_t), intent(in) :: chain
     type(motion_t), intent(in) :: at_rest
     type(loads_t), intent(in) :: loads
     type(accelerations_t), intent(out) :: accelerations
@@ -223,6 +259,27 @@ contains
     call turn_rod_ends(slack, accelerations)
     accelerations%flywheel = 0
   end subroutine respond_elastic_rod
+
+  !> Add a multiple of a response to the accelerations.
+  pure subroutine add_response(self, factor, change, accelerations)
+    class(chain_t), intent(in) :: self
+    real(dp), intent(in) :: factor
+    type(accelerations_t), intent(in) :: change   !! see `response`
+    type(accelerations_t), intent(inout) :: accelerations
+    integer :: n
+    accelerations%crank = accelerations%crank + factor*change%crank
+    accelerations%rod = accelerations%rod + factor*change%rod
+    accelerations%piston = accelerations%piston + factor*change%piston
+    accelerations%pin = accelerations%pin + factor*change%pin
+    accelerations%rod_end = accelerations%rod_end + factor*change%rod_end
+    if (self%bodies%piston%is_loose) then
+      accelerations%offset = accelerations%offset + factor*change%offset
+      accelerations%tilt = accelerations%tilt + factor*change%tilt
+    end if
+    if (.not. allocated(self%elastic)) return
+    n = self%elastic%n_shapes()
+    accelerations%shape(:n) = accelerations%shape(:n) + factor*change%shape(:n)
+  end subroutine add_response
 
   !> The loads of ideal pins, from the bodies' accelerations.
   pure subroutine complete_loads(self, motion, accelerations, loads)

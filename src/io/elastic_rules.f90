@@ -6,7 +6,7 @@ module elastic_rules
   use number_text, only: short_text
   use chain_motion, only: motion_t, accelerations_t, turn_crank
   use chain_bodies, only: rod_t, crank_t, piston_t, bodies_t, new_bodies, drive_t
-  use chain_loads, only: loads_t
+  use chain_loads, only: loads_t, unloaded
   use elastic_rod, only: elastic_rod_t, largest_shank
   use assembled_chain, only: accelerate_assembled
   use case_definition, only: case_t
@@ -69,9 +69,7 @@ contains
       bodies = new_bodies(crank_t(m%crank_length, m%crank_mass, m%crank_inertia, m%crank_com), rigid, piston_t(m%piston_mass), &
         [0.0_dp, 0.0_dp])
     end associate
-    loads%force = 0
-    loads%moment = 0
-    loads%axial_force = 0
+    loads = unloaded
     motion%crank_pin = 0
     motion%crank_pin_rate = 0
     motion%offset = 0
@@ -82,7 +80,7 @@ contains
     do i = 1, angles
       call turn_crank(motion, 2*pi*i/angles, 0.0_dp)
       call rod%follow(bodies%crank%length, motion, reachable)
-      call accelerate_assembled(bodies, drive_t(c%drive%kind == 'free' .or. allocated(c%crankshaft)), &
+      call accelerate_assembled(bodies, drive_t(c%drive%kind == 'free' .or. allocated(c%crankshaft), 0.0_dp, 0.0_dp, 0.0_dp), &
         [c%crank_pin%has_clearance(), c%joint%has_clearance()], loads, motion, accelerations, crank_moment, rod, definite)
       if (.not. definite) return
     end do

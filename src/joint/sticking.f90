@@ -1,8 +1,8 @@
 !> The friction that holds surfaces which stick.
 module sticking
   use gudgeon_kinds, only: dp
-  use chain_motion, only: motion_t, accelerations_t
-  use chain_loads, only: loads_t
+  use chain_motion, only: motion_t, accelerations_t, piston_pin
+  use chain_loads, only: loads_t, unloaded
   use gudgeon_chain, only: chain_t
   use clearance_joint, only: clearance_joint_t, joint_loads_t, most_joints
   use joint_motion, only: joint_motion_t, sliding_acceleration
@@ -59,21 +59,10 @@ contains
         loads%force(:, place) = loads%force(:, place) + f*unit(k)%force(:, place)
         loads%moment(place) = loads%moment(place) + f*joints(k)%pin_radius
         crank_moment = crank_moment + f*moment(k)
-        accelerations%crank = accelerations%crank + f*change(k)%crank
-        accelerations%rod = accelerations%rod + f*change(k)%rod
-        accelerations%piston = accelerations%piston + f*change(k)%piston
-        accelerations%pin = accelerations%pin + f*change(k)%pin
-        accelerations%rod_end = accelerations%rod_end + f*change(k)%rod_end
-        if (chain%bodies%piston%is_loose) then
-          accelerations%offset = accelerations%offset + f*change(k)%offset
-          accelerations%tilt = accelerations%tilt + f*change(k)%tilt
-        end if
-        if (.not. allocated(chain%elastic)) cycle
-        associate (n => chain%elastic%n_shapes())
-          accelerations%shape(:n) = accelerations%shape(:n) + f*change(k)%shape(:n)
-        end associate
+        call chain%add_response(f, change(k), accelerations)
       end associate
     end do
+    if (.not. chain%is_loose(piston_pin)) call chain%complete_loads(motion, accelerations, loads)
   end subroutine hold_surfaces
 
   !> A friction force of 1 N on one journal.
@@ -81,11 +70,7 @@ contains
     type(clearance_joint_t), intent(in) :: joint
     type(joint_motion_t), intent(in) :: relative
     type(loads_t) :: loads
-    loads%force = 0
-    loads%moment = 0
-    loads%axial_force = 0
-    loads%bore_force = 0
-    loads%bore_moment = 0
+    loads = unloaded
     loads%force(:, joint%place) = [-relative%normal(2), relative%normal(1)]
     loads%moment(joint%place) = joint%pin_radius
   end function unit_friction

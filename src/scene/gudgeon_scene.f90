@@ -71,8 +71,9 @@ module gudgeon_scene
     integer :: work_at = 0          !! where the work of the forces stands
     type(slice_t) :: measures       !! quadratures of the joints
     logical :: measures_loss = .false.   !! the last of them is what the joints take
+    logical :: has_more_bodies = .false.   !! elastic members or a guide that is not ideal
     logical :: may_stick = .false.  !! a joint has set-valued friction
-    logical :: has_more_rates = .false.   !! measures, or a law of a joint has states or quadratures
+    logical :: has_more_rates = .false.   !! of measures, of elastic members, of a guide, or of the law of a joint
     real(dp) :: entry_time = -huge(1.0_dp)          !! when a joint has begun to touch last [s]
     type(event_owner_t) :: event_of(max_events)     !! owners of the event functions
   contains
@@ -167,31 +168,35 @@ module gudgeon_scene
       class(scene_t), intent(inout) :: self
     end subroutine prepare_start
 
-    !> Where the piston is in its bore. `inside` is false where it cannot be.
-    pure module subroutine place_in_bore(self, y, now, inside)
+    !> Where the piston in its bore, the shapes of the rod and the flywheel are, in a scene with elastic members or a guide. `inside` is
+    !> false where they cannot be.
+    pure module subroutine place_more_bodies(self, t, y, now, inside)
       class(scene_t), intent(in) :: self
-      real(dp), intent(in) :: y(self%n)
+      real(dp), intent(in) :: t, y(self%n)
       type(evaluation_t), intent(inout) :: now
       logical, intent(out) :: inside
-    end subroutine place_in_bore
+    end subroutine place_more_bodies
 
-    !> Accelerations under the loads of joints and gas and those of the guide, whose power comes to that of the joints. `inside` is
-    !> false where friction would jam the piston.
-    pure module subroutine accelerate_on_guide(self, joints, now, inside)
+    !> Add the loads of the guide to those of joints and gas: friction only as far as the loads of the piston pin are known.
+    pure module subroutine load_guide(self, now)
+      class(scene_t), intent(in) :: self
+      type(evaluation_t), intent(inout) :: now
+    end subroutine load_guide
+
+    !> Add the friction of an ideal guide that hangs on the accelerations which it changes, when these are known without it and without
+    !> the friction of surfaces that stick. `inside` is false where it would jam the piston.
+    pure module subroutine add_guide_friction(self, joints, now, inside)
       class(scene_t), intent(in) :: self
       type(clearance_joint_t), intent(in) :: joints(:)
       type(evaluation_t), intent(inout) :: now
       logical, intent(out) :: inside
-    end subroutine accelerate_on_guide
+    end subroutine add_guide_friction
 
-    !> Accelerations of a chain with elastic members, and the friction of surfaces that stick. `inside` is false where its equations
-    !> cannot be solved.
-    pure module subroutine accelerate_elastic(self, joints, now, inside)
+    !> Add to the power of the joints that of drive, gas, guide and elastic members, in a scene with elastic members or a guide.
+    pure module subroutine add_power(self, now)
       class(scene_t), intent(in) :: self
-      type(clearance_joint_t), intent(in) :: joints(:)
       type(evaluation_t), intent(inout) :: now
-      logical, intent(out) :: inside
-    end subroutine accelerate_elastic
+    end subroutine add_power
 
     !> Let the elastic members claim their part of the state.
     module subroutine claim_elastic(self)
@@ -220,10 +225,10 @@ contains
       dydt(self%crank%rate) = now%accelerations%crank
     end if
     call put_rates(self%n_joints, self%joints, now, dydt)
-    if (allocated(self%guide)) call self%guide%put_rates(now%motion%tilting, now%accelerations%offset, now%accelerations%tilt, &
-      dydt)
     dydt(self%work_at) = now%power
     if (.not. self%has_more_rates) return
+    if (allocated(self%guide)) call self%guide%put_rates(now%motion%tilting, now%accelerations%offset, now%accelerations%tilt, &
+      dydt)
     if (allocated(self%chain%elastic)) call self%chain%elastic%put_rates(now%motion, now%accelerations, dydt)
     call put_own_rates(self%n_joints, self%joints, now, dydt)
     if (self%measures%last < self%measures%first) return
@@ -294,21 +299,16 @@ contains
     real(dp), intent(in) :: t, y(self%n)
     type(evaluation_t), intent(inout) :: now
     logical, intent(out) :: inside
+    logical :: has_more, solvable
     integer :: i
 
     call read_crank(self, t, y, now%motion)
     call place_journals(n, joints, y, now, inside)
     if (.not. inside) return
-    if (allocated(self%guide)) then
-      call place_in_bore(self, y, now, inside)
+    has_more = self%has_more_bodies
+    if (has_more) then
+      call place_more_bodies(self, t, y, now, inside)
       if (.not. inside) return
-    end if
-    if (allocated(self%chain%elastic)) then
-      if (.not. self%chain%is_loose(crank_pin)) then   ! which not every closed form reads
-        now%motion%crank_pin = 0
-        now%motion%crank_pin_rate = 0
-      end if
-      call self%chain%elastic%read_state(t, y, now%motion)
     end if
     call self%chain%move_rod(now%motion, inside)
     if (.not. inside) return
@@ -322,28 +322,23 @@ contains
       now%cylinder_pressure = self%gas%pressure(now%motion%crank_angle)
       now%loads%axial_force = self%gas%force(now%cylinder_pressure)
     end if
-    if (allocated(self%guide)) then
-      call accelerate_on_guide(self, joints, now, inside)
-      if (.not. inside) return
-    else if (allocated(self%chain%elastic)) then
-      call accelerate_elastic(self, joints, now, inside)
-      if (.not. inside) return
-    else
-      call self%chain%accelerate(now%motion, now%loads, now%accelerations, now%crank_moment)
-      if (self%may_stick) then
-        now%accelerations%rod_end = -now%accelerations%rod
-        call hold_surfaces(self%chain, joints, now%motion, now%relative, now%joint, now%loads, now%accelerations, &
-          now%crank_moment, now%power)
-      end if
+    if (has_more) call load_guide(self, now)
+    call self%chain%accelerate(now%motion, now%loads, now%accelerations, now%crank_moment, solvable)
+    if (has_more .and. solvable) call add_guide_friction(self, joints, now, solvable)
+    if (.not. solvable) then
+      inside = .false.
+      return
     end if
-    if (allocated(self%chain%elastic)) then
-      now%power = now%power + self%chain%elastic%power(now%motion, now%crank_moment, self%chain%drive%damping)
-    else
-      associate (crank_speed => now%motion%crank_speed)
-        now%power = (now%crank_moment - self%chain%drive%damping*crank_speed)*crank_speed + now%power
-      end associate
+    if (self%may_stick) call hold_surfaces(self%chain, joints, now%motion, now%relative, now%joint, now%loads, now%accelerations, &
+      now%crank_moment, now%power)
+    if (has_more) then
+      call add_power(self, now)
+      return
     end if
-    if (.not. allocated(self%gas) .or. allocated(self%guide)) return
+    associate (crank_speed => now%motion%crank_speed)
+      now%power = (now%crank_moment - self%chain%drive%damping*crank_speed)*crank_speed + now%power
+    end associate
+    if (.not. allocated(self%gas)) return
     call self%chain%move_piston(now%motion)
     now%power = now%power - now%loads%axial_force*now%motion%piston_velocity
   end subroutine find_accelerations
@@ -429,7 +424,8 @@ contains
       call self%joints(i)%settle(self%layout)
     end do
     if (allocated(self%guide)) call self%guide%settle(self%layout)
-    self%has_more_rates = any(self%joints%has_own_rates) .or. allocated(self%chain%elastic)
+    self%has_more_bodies = allocated(self%chain%elastic) .or. allocated(self%guide)
+    self%has_more_rates = any(self%joints%has_own_rates) .or. self%has_more_bodies
     call self%layout%settle(work)
     self%work_at = work%first
     call take_layout(self)

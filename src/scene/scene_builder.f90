@@ -61,7 +61,7 @@ contains
         rod_t(m%rod_length, m%rod_mass, m%rod_inertia, m%rod_com), piston_of(case, scene), gravity_of(case))
     end associate
     if (scene%chain%has_elastic_rod()) call scene%chain%elastic%rod%prepare(scene%chain%bodies%rod)
-    scene%chain%drive = drive_t(case%drive%kind == 'free', case%drive%torque, case%drive%damping)
+    scene%chain%drive = drive_t(case%drive%kind == 'free', case%drive%torque, case%drive%damping, 0.0_dp)
     call vary_drive(case, scene)
     scene%start_angle = case%initial%crank_angle_deg*degree
     scene%start_speed = case%initial%crank_speed

@@ -1,16 +1,9 @@
 !> The elastic members of a scene.
 submodule (gudgeon_scene) scene_elastic
   use ideal_chain, only: ideal_motion
-  use sticking, only: hold_surfaces
   implicit none
 
 contains
-
-  module procedure accelerate_elastic
-    call self%chain%accelerate_elastic(now%motion, now%loads, now%accelerations, now%crank_moment, inside)
-    if (inside .and. self%may_stick) call hold_surfaces(self%chain, joints, now%motion, now%relative, now%joint, now%loads, &
-      now%accelerations, now%crank_moment, now%power)
-  end procedure accelerate_elastic
 
   module procedure claim_elastic
     real(dp) :: own_speed

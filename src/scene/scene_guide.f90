@@ -1,104 +1,136 @@
-!> The piston in its bore, where the scene has a guide that is not ideal.
+!> What a scene with elastic members or a guide that is not ideal has more: the piston in its bore, the guide's forces.
 submodule (gudgeon_scene) scene_guide
   use chain_motion, only: crank_pin, piston_pin
-  use loose_piston, only: place_piston, move_centre
+  use chain_loads, only: unloaded
   use sticking, only: hold_surfaces
+  use loose_piston, only: place_piston, move_centre
   implicit none
 
 contains
 
-  module procedure place_in_bore
-    inside = .true.
+  module procedure place_more_bodies
     if (self%joint_of_pin(crank_pin) == 0) then   ! which not every closed form reads
       now%motion%crank_pin = 0
       now%motion%crank_pin_rate = 0
     end if
-    if (.not. self%guide%is_loose) return
-    call self%guide%read_state(y, now%motion%tilting)
-    inside = self%guide%admits(now%motion%tilting)
-    if (inside) call place_piston(self%chain%bodies%piston, now%motion)
-  end procedure place_in_bore
-
-  module procedure accelerate_on_guide
     inside = .true.
+    if (allocated(self%guide)) call place_in_bore(self, y, now, inside)
+    if (allocated(self%chain%elastic)) call self%chain%elastic%read_state(t, y, now%motion)
+  end procedure place_more_bodies
+
+  !> Where the piston is in its bore. `inside` is false where it cannot be.
+  pure subroutine place_in_bore(scene, y, now, inside)
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: y(scene%n)
+    type(evaluation_t), intent(inout) :: now
+    logical, intent(out) :: inside
+    inside = .true.
+    if (.not. scene%guide%is_loose) return
+    call scene%guide%read_state(y, now%motion%tilting)
+    inside = scene%guide%admits(now%motion%tilting)
+    if (inside) call place_piston(scene%chain%bodies%piston, now%motion)
+  end subroutine place_in_bore
+
+  module procedure load_guide
+    real(dp) :: ratio, rest
+    if (.not. allocated(self%guide)) return
     call self%chain%move_piston(now%motion)
     if (self%guide%is_loose) then
       call move_centre(now%motion)
       call self%guide%slide(now%motion, now%guide, now%loads)
-      call accelerate_once(self, joints, now, inside)
-      if (.not. inside) return
-      associate (at => now%motion%tilting, loads => now%loads)
-        now%power = now%power + (loads%bore_force*at%offset_rate + loads%bore_moment*at%tilt_rate) &
-          - loads%axial_force*at%com_velocity
-      end associate
     else
-      call find_guide_friction(self, joints, now, inside)
-      if (.not. inside) return
-      now%power = now%power - now%loads%axial_force*now%motion%piston_velocity
+      call self%guide%friction_on_guide(now%motion%piston_velocity, ratio, rest)
+      if (normal_is_known(self)) rest = rest + ratio*abs(normal_force(self, now))
+      now%guide%friction_force = rest
+      now%loads%axial_force = now%loads%axial_force - rest
     end if
-  end procedure accelerate_on_guide
+  end procedure load_guide
 
-  !> Accelerations with the present loads, and the friction of surfaces that stick. `inside` is false where the equations of elastic
-  !> members cannot be solved.
-  pure subroutine accelerate_once(scene, joints, now, inside)
-    class(scene_t), intent(in) :: scene
-    type(clearance_joint_t), intent(in) :: joints(:)
-    type(evaluation_t), intent(inout) :: now
-    logical, intent(out) :: inside
+  !> F = mu |N| of an ideal guide, where N = N_0 + N_1 F hangs on the accelerations, in which all is linear: N_0 is that without F, N_1
+  !> is found by a trial, and N = N_0/(1 - mu N_1 sign N_0). While |mu N_1| < 1 that is the one solution, and the other sign has none;
+  !> from there on the piston would jam.
+  module procedure add_guide_friction
+    type(loads_t) :: unit
+    type(accelerations_t) :: change
+    real(dp) :: ratio, rest, normal, probe, slope, moment
     inside = .true.
-    if (allocated(scene%chain%elastic)) then
-      call accelerate_elastic(scene, joints, now, inside)
-      return
-    end if
-    call scene%chain%accelerate(now%motion, now%loads, now%accelerations, now%crank_moment)
-    now%accelerations%rod_end = -now%accelerations%rod
-    if (scene%may_stick) call hold_surfaces(scene%chain, joints, now%motion, now%relative, now%joint, now%loads, &
-      now%accelerations, now%crank_moment, now%power)
-  end subroutine accelerate_once
+    if (.not. allocated(self%guide)) return
+    if (self%guide%is_loose .or. normal_is_known(self)) return
+    call self%guide%friction_on_guide(now%motion%piston_velocity, ratio, rest)
+    if (.not. abs(ratio) > 0) return
+    unit = unloaded
+    unit%axial_force = -1
+    call self%chain%response(now%motion, unit, change, moment)
+    normal = normal_with(self, joints, now, 0.0_dp, change, moment)
+    probe = max(abs(normal), 1.0_dp)
+    slope = (normal_with(self, joints, now, probe, change, moment) - normal)/probe
+    inside = abs(ratio*slope) < 1
+    if (inside) call add_friction(self, ratio*abs(normal/(1 - ratio*slope*sign(1.0_dp, normal))), change, moment, now)
+  end procedure add_guide_friction
 
-  !> Accelerations with the friction of an ideal guide, F = mu |N| + the rest. Where the piston pin has clearance N is known from its
-  !> law. Else N = N_0 + N_1 F hangs on the accelerations, in which all is linear: N_0 and N_1 are found by two trials, and
-  !> N = N_0/(1 - mu N_1 sign N_0). While |mu N_1| < 1 that is the one solution, and the other sign has none; from there on the piston
-  !> would jam, and `inside` is false.
-  pure subroutine find_guide_friction(scene, joints, now, inside)
+  !> Whether the force between an ideal guide and the piston does not hang on the accelerations: that of a piston pin with clearance
+  !> whose surfaces do not stick.
+  pure logical function normal_is_known(scene)
+    class(scene_t), intent(in) :: scene
+    normal_is_known = scene%chain%is_loose(piston_pin) .and. .not. scene%may_stick
+  end function normal_is_known
+
+  !> N with a friction force beside the present loads [N].
+  pure real(dp) function normal_with(scene, joints, now, friction, change, moment) result(normal)
     class(scene_t), intent(in) :: scene
     type(clearance_joint_t), intent(in) :: joints(:)
-    type(evaluation_t), intent(inout) :: now
-    logical, intent(out) :: inside
+    type(evaluation_t), intent(in) :: now
+    real(dp), intent(in) :: friction
+    type(accelerations_t), intent(in) :: change   !! of the accelerations by 1 N
+    real(dp), intent(in) :: moment                !! of the moment on the crank by 1 N [m]
     type(evaluation_t) :: trial
-    real(dp) :: ratio, rest, normal, probe, slope
-    inside = .true.
-    call scene%guide%friction_on_guide(now%motion%piston_velocity, ratio, rest)
-    now%loads%axial_force = now%loads%axial_force - rest
-    now%guide%friction_force = rest
-    if (abs(ratio) > 0) then
-      if (scene%chain%is_loose(piston_pin) .and. .not. scene%may_stick) then
-        normal = guide_force(scene, now)
+    trial = now
+    call add_friction(scene, friction, change, moment, trial)
+    if (scene%may_stick) call hold_surfaces(scene%chain, joints, trial%motion, trial%relative, trial%joint, trial%loads, &
+      trial%accelerations, trial%crank_moment, trial%power)
+    normal = normal_force(scene, trial)
+  end function normal_with
+
+  !> Add a friction force of the guide on the piston, along x [N], to the loads and what it changes.
+  pure subroutine add_friction(scene, friction, change, moment, now)
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: friction
+    type(accelerations_t), intent(in) :: change
+    real(dp), intent(in) :: moment
+    type(evaluation_t), intent(inout) :: now
+    now%guide%friction_force = now%guide%friction_force + friction
+    now%loads%axial_force = now%loads%axial_force - friction
+    call scene%chain%add_response(friction, change, now%accelerations)
+    now%crank_moment = now%crank_moment + friction*moment
+    if (.not. scene%chain%is_loose(piston_pin)) call scene%chain%complete_loads(now%motion, now%accelerations, now%loads)
+  end subroutine add_friction
+
+  module procedure add_power
+    associate (chain => self%chain, motion => now%motion, loads => now%loads)
+      if (allocated(chain%elastic)) then
+        now%power = now%power + chain%elastic%power(motion, now%crank_moment, chain%drive%damping)
       else
-        trial = now
-        call accelerate_once(scene, joints, trial, inside)
-        if (.not. inside) return
-        normal = guide_force(scene, trial)
-        probe = max(abs(normal), 1.0_dp)
-        trial = now
-        trial%loads%axial_force = now%loads%axial_force - probe
-        call accelerate_once(scene, joints, trial, inside)
-        if (.not. inside) return
-        slope = (guide_force(scene, trial) - normal)/probe
-        inside = abs(ratio*slope) < 1
-        if (.not. inside) return
-        normal = normal/(1 - ratio*slope*sign(1.0_dp, normal))
+        now%power = (now%crank_moment - chain%drive%damping*motion%crank_speed)*motion%crank_speed + now%power
       end if
-      now%loads%axial_force = now%loads%axial_force - ratio*abs(normal)
-      now%guide%friction_force = now%guide%friction_force + ratio*abs(normal)
-    end if
-    call accelerate_once(scene, joints, now, inside)
-  end subroutine find_guide_friction
+      if (.not. allocated(self%guide)) then
+        if (.not. allocated(self%gas)) return
+        call chain%move_piston(motion)
+        now%power = now%power - loads%axial_force*motion%piston_velocity
+      else if (self%guide%is_loose) then
+        associate (at => motion%tilting)
+          now%power = now%power + (loads%bore_force*at%offset_rate + loads%bore_moment*at%tilt_rate) &
+            - loads%axial_force*at%com_velocity
+        end associate
+      else
+        now%power = now%power - loads%axial_force*motion%piston_velocity
+      end if
+    end associate
+  end procedure add_power
 
   !> N of the piston on an ideal guide, from the force of the pin's joint [N].
-  pure real(dp) function guide_force(scene, now)
+  pure real(dp) function normal_force(scene, now)
     class(scene_t), intent(in) :: scene
     type(evaluation_t), intent(in) :: now
-    guide_force = scene%chain%bodies%piston%mass*scene%chain%bodies%gravity(2) - now%loads%force(2, piston_pin)
-  end function guide_force
+    normal_force = scene%chain%bodies%piston%mass*scene%chain%bodies%gravity(2) - now%loads%force(2, piston_pin)
+  end function normal_force
 end submodule scene_guide
