@@ -103,24 +103,33 @@ contains
     end associate
   end subroutine friction_of_an_ideal_guide
 
-  !> With clearance at the piston pin the normal force is the pin's across, also where the pin's surfaces stick.
+  !> With clearance at the piston pin the normal force is the pin's across, also where the pin's surfaces stick; where those of the
+  !> crank pin stick, that of an ideal piston pin follows.
   subroutine friction_follows_the_law_of_the_pin(check)
     class(checks_t), intent(inout) :: check
-    type(trace_t) :: got
-    character(len=*), parameter :: cases(3) = [character(len=40) :: 'cases/flores/friction_050.nml', &
-      'cases/friction/coulomb_static.nml', 'cases/joints/both_pins.nml']
-    integer :: i
-    do i = 1, size(cases)
-      got = run_case(trim(cases(i)), [character(len=long) :: 'drive.kind=free', 'mechanism.gravity_angle_deg=70', &
-        'mechanism.gravity=30', 'integrator.revolutions=0.5', 'guide.law=threlfall', 'guide.coefficient=0.1', 'guide.v1=0.1', &
-        'integrator.relative_tolerance=1e-10'])
+    character(len=long), parameter :: settings(8) = [character(len=long) :: 'drive.kind=free', 'mechanism.gravity_angle_deg=70', &
+      'mechanism.gravity=30', 'integrator.revolutions=0.5', 'guide.law=threlfall', 'guide.coefficient=0.1', 'guide.v1=0.1', &
+      'integrator.relative_tolerance=1e-10']
+    call friction_by_law('cases/flores/friction_050.nml', settings)
+    call friction_by_law('cases/friction/coulomb_static.nml', settings)
+    call friction_by_law('cases/joints/both_pins.nml', settings)
+    call friction_by_law('cases/joints/crank_pin.nml', [character(len=long) :: settings, 'crank_pin.friction.law=coulomb', &
+      'crank_pin.friction.coefficient=0.15', 'crank_pin.friction.static_coefficient=0.25'])
+
+  contains
+
+    subroutine friction_by_law(case, settings)
+      character(len=*), intent(in) :: case
+      character(len=*), intent(in) :: settings(:)
+      type(trace_t) :: got
+      got = run_case(case, settings)
       associate (normal => values_of(got, 'guide_force[N]'), v => values_of(got, 'piston_velocity[m/s]'))
         call check%close_to(maxval(abs(values_of(got, 'guide_friction_force[N]') + 0.1_dp*(1 - exp(-3*min(1.0_dp, abs(v)/0.1_dp))) &
-          *sign(abs(normal), v)))/maxval(abs(normal)), 0.0_dp, 1e-9_dp, trim(cases(i))//': friction by law and normal force')
+          *sign(abs(normal), v)))/maxval(abs(normal)), 0.0_dp, 1e-9_dp, case//': friction by law and normal force')
       end associate
       call check%close_to(got%report%figures%max_energy_residual/got%report%figures%max_energy, 0.0_dp, 1e-8_dp, &
-        trim(cases(i))//': energy residual with friction on the guide')
-    end do
+        case//': energy residual with friction on the guide')
+    end subroutine friction_by_law
   end subroutine friction_follows_the_law_of_the_pin
 
   !> Corners by turning a rectangle, the gap by their distance from the wall; rates by differences.
