@@ -6,7 +6,7 @@ module gudgeon_chain
   use chain_bodies, only: bodies_t, drive_t, undriven, weightless
   use chain_loads, only: loads_t
   use chain_reactions, only: reactions_t, reactions_of, elastic_reactions
-  use ideal_chain, only: accelerate_ideal_chain
+  use ideal_chain, only: accelerate_ideal_chain, respond_ideal_chain
   use crank_rod, only: accelerate_crank_rod, respond_crank_rod
   use rod_piston, only: accelerate_rod_piston
   use free_rod, only: accelerate_free_rod
@@ -206,7 +206,8 @@ contains
   end subroutine move_piston
 
   !> What a load of loose pins or of the gas adds to the accelerations and to the moment on the crank, in which all loads are
-  !> linear: the bodies at rest, nothing else acting. By the general assembly, but for the piece that scenes of one joint have.
+  !> linear: the bodies at rest, nothing else acting. By the general assembly, but for scenes without joints or with one at the
+  !> piston pin.
   pure subroutine response(self, motion, loads, accelerations, crank_moment)
     class(chain_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
@@ -214,9 +215,12 @@ contains
     type(accelerations_t), intent(out) :: accelerations
     real(dp), intent(out) :: crank_moment
     type(motion_t) :: rest
-    if (self%is_loose(piston_pin) .and. .not. (self%is_loose(crank_pin) .or. self%bodies%piston%is_loose &
-                                               .or. allocated(self%elastic))) then
-      call respond_crank_rod(self%bodies, self%drive, loads, motion, accelerations, crank_moment)
+    if (.not. (self%is_loose(crank_pin) .or. self%bodies%piston%is_loose .or. allocated(self%elastic))) then
+      if (self%is_loose(piston_pin)) then
+        call respond_crank_rod(self%bodies, self%drive, loads, motion, accelerations, crank_moment)
+      else
+        call respond_ideal_chain(self%bodies, self%drive, loads, motion, accelerations, crank_moment)
+      end if
       accelerations%rod_end = -accelerations%rod
       return
     end if

@@ -6,7 +6,7 @@ module ideal_chain
   use chain_loads, only: loads_t
   implicit none
   private
-  public :: accelerate_ideal_chain, ideal_motion, ideal_rod
+  public :: accelerate_ideal_chain, respond_ideal_chain, ideal_motion, ideal_rod
 
 contains
 
@@ -52,18 +52,14 @@ contains
 
     call bodies%coupling(motion, m12, slope)
     associate (b => bodies, across => bodies%crank%length*motion%sin_crank, m22 => bodies%rod_term)
-      ! with k = dA/dq and p = dx/dq: A'' = k q'' + k' q'^2, x'' = p q'' + p' q'^2; k = R cos q/(L cos A), k' = tan A (k^2 - 1)
-      per_arm = b%per_rod_length/((1 - motion%sin_rod)*(1 + motion%sin_rod))*motion%cos_rod
-      ratio = b%crank%length*motion%cos_crank*per_arm
+      call find_ratios(b, motion, m12, per_arm, ratio, rate, inertia)
       ratio_slope = b%rod%length*motion%sin_rod*per_arm*((ratio - 1)*(ratio + 1))
-      rate = -across*(1 + ratio)
       rate_slope = -(across*ratio_slope + b%crank%length*motion%cos_crank*(1 + ratio))
       speed_square = motion%crank_speed**2
       on_crank = drive%torque - drive%damping*motion%crank_speed &
         + (b%crank_weight(1)*motion%sin_crank + b%crank_weight(2)*motion%cos_crank)
       on_rod = b%rod_weight(1)*motion%sin_rod - b%rod_weight(2)*motion%cos_rod
       on_piston = b%gravity(1)*b%piston%mass - loads%axial_force
-      inertia = b%crank_term + ratio*(2*m12 + ratio*m22) + b%piston%mass*rate**2
       total = on_crank + ratio*on_rod + rate*on_piston &
         - speed_square*(slope*ratio*(1 + ratio) + (m12 + ratio*m22)*ratio_slope + b%piston%mass*rate*rate_slope)
       if (drive%free_crank) then
@@ -82,4 +78,42 @@ contains
         - b%rod%length*motion%sin_rod*loads%force(1, piston_pin))*per_arm
     end associate
   end subroutine accelerate_ideal_chain
+
+  !> What an axial force on the piston adds to the accelerations and to the moment on the crank.
+  pure subroutine respond_ideal_chain(bodies, drive, loads, motion, accelerations, crank_moment)
+    type(bodies_t), intent(in) :: bodies
+    type(drive_t), intent(in) :: drive
+    type(loads_t), intent(in) :: loads
+    type(motion_t), intent(in) :: motion
+    type(accelerations_t), intent(out) :: accelerations
+    real(dp), intent(out) :: crank_moment
+    real(dp) :: m12, slope, per_arm, ratio, rate, inertia
+    call bodies%coupling(motion, m12, slope)
+    call find_ratios(bodies, motion, m12, per_arm, ratio, rate, inertia)
+    accelerations%crank = 0
+    crank_moment = 0
+    if (drive%free_crank) then
+      accelerations%crank = -rate*loads%axial_force/inertia
+    else
+      crank_moment = rate*loads%axial_force
+    end if
+    accelerations%rod = ratio*accelerations%crank
+    accelerations%piston = rate*accelerations%crank
+    accelerations%pin = 0
+  end subroutine respond_ideal_chain
+
+  !> k = dA/dq = R cos q/(L cos A), p = dx/dq and the inertia of all on q. With them A'' = k q'' + k' q'^2, x'' = p q'' + p' q'^2, and
+  !> k' = tan A (k^2 - 1).
+  pure subroutine find_ratios(bodies, motion, m12, per_arm, ratio, rate, inertia)
+    type(bodies_t), intent(in) :: bodies
+    type(motion_t), intent(in) :: motion
+    real(dp), intent(in) :: m12                !! coupling of crank and rod [kg m^2]
+    real(dp), intent(out) :: per_arm           !! 1/(L cos A) [1/m]
+    real(dp), intent(out) :: ratio, rate       !! k [-], p [m]
+    real(dp), intent(out) :: inertia           !! [kg m^2]
+    per_arm = bodies%per_rod_length/((1 - motion%sin_rod)*(1 + motion%sin_rod))*motion%cos_rod
+    ratio = bodies%crank%length*motion%cos_crank*per_arm
+    rate = -bodies%crank%length*motion%sin_crank*(1 + ratio)
+    inertia = bodies%crank_term + ratio*(2*m12 + ratio*bodies%rod_term) + bodies%piston%mass*rate**2
+  end subroutine find_ratios
 end module ideal_chain

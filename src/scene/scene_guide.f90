@@ -61,7 +61,8 @@ contains
     unit = unloaded
     unit%axial_force = -1
     call self%chain%response(now%motion, unit, change, moment)
-    normal = normal_with(self, joints, now, 0.0_dp, change, moment)
+    normal = normal_force(self, now)
+    if (self%may_stick) normal = normal_with(self, joints, now, 0.0_dp, change, moment)
     probe = max(abs(normal), 1.0_dp)
     slope = (normal_with(self, joints, now, probe, change, moment) - normal)/probe
     inside = abs(ratio*slope) < 1
