@@ -23,7 +23,8 @@ use_virtual_environment()
 
 from gudgeon_plots import compare, figures, readme_picture  # noqa: E402
 from gudgeon_plots.figure_map import Figure, read_figures  # noqa: E402
-from gudgeon_plots.results import MissingResult, Results, WindowResults  # noqa: E402
+from gudgeon_plots.quantities import QUANTITIES  # noqa: E402
+from gudgeon_plots.results import FineResults, ManyCycles, MissingResult, Results, WindowResults  # noqa: E402
 
 
 def arguments() -> argparse.Namespace:
@@ -61,16 +62,23 @@ def arguments() -> argparse.Namespace:
     return parser.parse_args()
 
 
-def draw_figures(wanted: list[Figure], results: Results, out: Path, formats: list[str]) -> int:
+def draw_figures(wanted: list[Figure], own: Results, out: Path, formats: list[str]) -> int:
     """Draw figures one after the other; the number of those that could not be drawn."""
-    sources = {figure.window: WindowResults(results, figure.window) if figure.window else results for figure in wanted}
-    for window, source in sources.items():
-        source.make({name for figure in wanted if figure.window == window for name in figure.needs})
+    fine, cycles = FineResults(own), ManyCycles(own)
+    windows = {figure.window: WindowResults(own, figure.window) for figure in wanted if figure.window}
+
+    def source(figure: Figure) -> Results:
+        is_fine = any(QUANTITIES[name].fine for name in figure.quantities)
+        return windows[figure.window] if figure.window else fine if is_fine else own
+
+    for results in (own, fine, *windows.values()):
+        results.make({name for figure in wanted if source(figure) is results for name in figure.needs})
+    cycles.make({name for figure in wanted if figure.shows_many_cycles for name in figure.needs})
     failed = 0
     for figure in wanted:
         try:
-            paths = figures.save(figures.draw(figure, sources[figure.window]), out, figure.stem, formats)
-            print(*paths)
+            drawing = figures.draw(figure, source(figure), cycles)
+            print(*figures.save(drawing, out, figure.stem, formats))
         except MissingResult as problem:
             print(f"plot.py: figure {figure.number}: {problem}", file=sys.stderr)
             failed += 1

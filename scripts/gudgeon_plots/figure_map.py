@@ -35,6 +35,10 @@ class Figure:
         return replace(self, window=None)
 
     @property
+    def shows_many_cycles(self) -> bool:
+        return "section" in self.quantities
+
+    @property
     def needs(self) -> tuple[str, ...]:
         return self.runs + ((self.ideal,) if self.ideal else ())
 

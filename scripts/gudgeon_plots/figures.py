@@ -1,5 +1,6 @@
 """Draws the figures of the table."""
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -18,12 +19,16 @@ from .style import GREY, WIDTH
 WIDE_HEIGHT = 1.75  # of an axis with a curve over time [inch]
 LEGEND_HEIGHT = 0.55  # of title and legend [inch]
 
+#: Letters of a legend that have room side by side, and those that a handle takes the room of.
+LETTERS_IN_A_ROW, HANDLE_LETTERS = 125, 9
+
 
 @dataclass(frozen=True)
 class Panel:
     """One axis of a figure: a run, several, or none where its result is missing.
 
-    `kind` is "full", "detail" (the range around the ideal joint) or "difference" (the run less the ideal joint).
+    `kind` is "full", "detail" (the range around the ideal joint), "difference" (the run less the ideal joint), "zoom" (some
+    oscillations of a curve that rings) or "below" (what else the quantity shows of the run). `rows` is its height in rows.
     """
 
     quantity: Quantity
@@ -31,33 +36,43 @@ class Panel:
     ideal: Run | None = None
     kind: str = "full"
     missing: str = ""
+    rows: int = 1
 
 
 def second_look(panel: Panel) -> Panel | None:
-    """What a curve with the ideal joint's overlaid needs beside it: where the run's peaks would flatten the rest, the range
-    around the ideal joint; else the difference, which the line width hides. None where neither helps."""
+    """What a curve with the ideal joint's overlaid needs beside it: a zoom where it rings faster than can be seen; where the run's
+    peaks would flatten the rest, the range around the ideal joint; else the difference, which the line width hides. None where
+    nothing helps."""
     quantity, ideal = panel.quantity, panel.ideal
-    if panel.missing or ideal is None or quantity.values is None:
+    if panel.missing:
         return None
+    if quantity.below is not None:
+        return replace(panel, kind="below") if quantity.has_below(panel.runs[0]) else None
+    if ideal is None or quantity.values is None:
+        return None
+    if quantity.rings(panel.runs[0]):
+        return replace(panel, kind="zoom")
     if quantity.needs_detail(panel.runs[0], ideal):
         return replace(panel, kind="detail")
-    return replace(panel, kind="difference") if quantity.wide else None
+    return replace(panel, kind="difference")
 
 
-def arrange(figure: Figure, results: Results) -> list[list[Panel | None]]:
+def arrange(figure: Figure, results: Results, cycles: Results | None = None) -> list[list[Panel | None]]:
     """Rows of panels: runs side by side, a second look at each below; three runs over time go one below the other, the
-    second look at their side. None is an empty place."""
-    try:
-        ideal = results[figure.ideal] if figure.ideal else None
-    except MissingResult:
-        ideal = None
+    second look at their side. A panel without a second look reaches over both rows: None is the place that it covers. `cycles`
+    has the runs over many cycles."""
     rows: list[list[Panel | None]] = []
     for name in figure.quantities:
         quantity = QUANTITIES[name]
+        source = cycles if quantity.many_cycles and cycles is not None else results
+        try:
+            ideal = source[figure.ideal] if figure.ideal else None
+        except MissingResult:
+            ideal = None
         full = []
         for run_name in figure.runs:
             try:
-                full.append(Panel(quantity, (results[run_name],), ideal))
+                full.append(Panel(quantity, (source[run_name],), ideal))
             except MissingResult:
                 full.append(Panel(quantity, (), missing=run_name))
         if quantity.draw_all is not None:
@@ -70,7 +85,7 @@ def arrange(figure: Figure, results: Results) -> list[list[Panel | None]]:
         elif quantity.wide and len(full) > 2:
             rows += [list(pair) for pair in zip(full, second)]
         else:
-            rows += [full, second]
+            rows += [[panel if below else replace(panel, rows=2) for panel, below in zip(full, second)], second]
     if all(len(row) == 1 and not row[0].quantity.wide for row in rows):
         rows = [[panel for row in rows for panel in row]]
     return rows
@@ -87,49 +102,58 @@ def draw_panel(axis: Axes, panel: Panel, named: bool) -> None:
     run = panel.runs[0]
     if panel.kind == "difference":
         panel.quantity.draw_difference(axis, run, panel.ideal, colour(run))
-        return
-    panel.quantity.draw(axis, run, panel.ideal, colour(run))
+    elif panel.kind == "zoom":
+        panel.quantity.draw_zoom(axis, run, panel.ideal, colour(run))
+    elif panel.kind == "below":
+        panel.quantity.below(axis, run, colour(run))
+    else:
+        panel.quantity.draw(axis, run, panel.ideal, colour(run))
     if panel.kind == "detail":
         axis.set_ylim(panel.quantity.detail_range(panel.ideal))
         axis.set_title("detail, peaks cut off", color=GREY)
-    elif named:
-        note = panel.quantity.note
-        axis.set_title(label(run) + (f", {note(run)}" if note else ""), color=colour(run))
+    elif panel.kind == "full" and named and not panel.quantity.many_cycles:
+        note = panel.quantity.note(run) if panel.quantity.note else ""
+        axis.set_title(label(run) + (f", {note}" if note else ""), color=colour(run))
 
 
-def draw(figure: Figure, results: Results) -> Drawing:
-    """The figure, ready to be saved. Raises MissingResult if none of its runs is there."""
-    rows = arrange(figure, results)
+def panel_label(panel: Panel) -> str:
+    """What is on its vertical axis."""
+    if panel.kind == "below":
+        return panel.quantity.below_label
+    return ("Δ " if panel.kind == "difference" else "") + panel.quantity.label
+
+
+def draw(figure: Figure, results: Results, cycles: Results | None = None) -> Drawing:
+    """The figure, ready to be saved; `cycles` has the runs over many cycles. Raises MissingResult if none of its runs is there."""
+    rows = arrange(figure, results, cycles)
     runs = [run for row in rows for panel in row if panel for run in panel.runs]
     if not runs:
         raise MissingResult(f"no result of {' '.join(figure.runs)}")
     columns = max(len(row) for row in rows)
     plane_height = min(WIDTH / columns, 2.75)
     heights = [WIDE_HEIGHT if any(p and p.quantity.wide for p in row) else plane_height for row in rows]
-    drawing, axes = plt.subplots(
-        len(rows), columns, figsize=(WIDTH, sum(heights) + LEGEND_HEIGHT), squeeze=False, height_ratios=heights
-    )
-    for row, row_axes in zip(rows, axes):
-        for panel, axis in zip(row, row_axes):
+    drawing = plt.figure(figsize=(WIDTH, sum(heights) + LEGEND_HEIGHT))
+    grid = drawing.add_gridspec(len(rows), columns, height_ratios=heights)
+    lowest: dict[int, tuple[Axes, int]] = {}
+    for place, row in enumerate(rows):
+        previous = ""
+        for column, panel in enumerate(row):
             if panel is None:
-                axis.set_axis_off()
-            else:
-                draw_panel(axis, panel, named=not all(p and p.quantity.draw_all for p in row))
-        for axis in row_axes[len(row) :]:
-            axis.set_axis_off()
-        previous = None
-        for panel, axis in zip(row, row_axes):
-            if panel and panel.quantity is not previous:
-                axis.set_ylabel(panel.quantity.label)
-                previous = panel.quantity
-    for column_axes in axes.T:  # curves over time: numbers below the lowest only
-        for upper, lower in zip(column_axes, column_axes[1:]):
-            if upper.get_xlabel() == lower.get_xlabel() and lower.get_xlabel().startswith(("time", "crank angle [")):
-                upper.set_xlabel("")
-                upper.tick_params(labelbottom=False)
-    drawing.align_ylabels(axes[:, 0])
-    add_legend(drawing, axes.flat)
-    drawing.suptitle(f"{figure.number}  {figure.title}{span(runs[0]) if figure.has_windows else ''}", fontweight="bold")
+                continue
+            axis = drawing.add_subplot(grid[place : place + panel.rows, column])
+            draw_panel(axis, panel, named=not all(p and p.quantity.draw_all for p in row))
+            if panel_label(panel) != previous:
+                axis.set_ylabel(panel_label(panel))
+                previous = panel_label(panel)
+            if column in lowest and panel.quantity.wide and lowest[column][0].get_xlim() == axis.get_xlim():
+                lowest[column][0].set_xlabel("")  # curves over the same time: numbers below the lowest only
+                lowest[column][0].tick_params(labelbottom=False)
+            lowest[column] = (axis, place)
+    drawing.align_ylabels()
+    add_legend(drawing, drawing.axes)
+    drawing.suptitle(
+        f"{figure.number}  {figure.title}{span(runs[0]) if figure.has_windows else ''}", fontweight="bold", x=0.01, horizontalalignment="left"
+    )
     return drawing
 
 
@@ -146,7 +170,11 @@ def add_legend(drawing: Drawing, axes: Iterable[Axes]) -> None:
         for handle, text in zip(*axis.get_legend_handles_labels()):
             entries.setdefault(text, handle)
     if entries:
-        drawing.legend(entries.values(), entries.keys(), loc="outside lower center", ncols=4)
+        needed = sum(len(text) + HANDLE_LETTERS for text in entries)
+        rows = math.ceil(needed / LETTERS_IN_A_ROW * (WIDTH / drawing.get_figwidth()))
+        drawing.legend(
+            entries.values(), entries.keys(), loc="outside lower center", ncols=math.ceil(len(entries) / max(rows, 1))
+        )
 
 
 def save(drawing: Drawing, directory: Path, stem: str, formats: Iterable[str]) -> list[Path]:

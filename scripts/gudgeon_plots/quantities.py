@@ -1,17 +1,42 @@
 """What a figure can show of a run. A new quantity is a new entry of QUANTITIES."""
 
+from dataclasses import replace
+
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.patches import Circle
 from matplotlib.ticker import MaxNLocator
 
 from . import contact_pictures, gas_pictures
-from .quantity import Quantity, abscissa, column, mark_abscissa, series
+from .quantity import (
+    Quantity,
+    abscissa,
+    after_start,
+    column,
+    curve_name,
+    first_revolution,
+    mark_abscissa,
+    series,
+    start_is_cut,
+)
 from .results import Run
-from .style import BLACK, GREY, PURPLE
+from .style import BLACK, GREY, PURPLE, mark_decades
 
 #: Points once a cycle are spread no farther than to this share of the run's range.
 LEAST_SHARE = 1e-5
+
+#: Crank angle in the cycle at which a point is taken once a cycle [rad]: neither velocity nor acceleration is stationary there.
+SECTION = np.pi / 4
+
+#: Cycles of which a point is shown, the last of the run.
+SECTION_CYCLES = 60
+
+#: A contact's largest force is seen in the samples that have this share of it.
+SEEN_PEAK = 0.98
+
+#: Where the pin touches, the axis of the film goes down to this [um]: on its way to contact every film passes through 0.
+LEAST_DRAWN_FILM = 0.1
 
 
 def pin_force(run: Run) -> np.ndarray:
@@ -20,40 +45,46 @@ def pin_force(run: Run) -> np.ndarray:
 
 
 def contact_peaks(axis: Axes, run: Run) -> None:
-    """The largest force of each contact, from begin to end: what the samples of the trace miss."""
+    """The largest force of those contacts whose peak the samples of the trace miss."""
     contacts = run.contacts
     contacts = contacts[contacts["end"] >= run["time"][0]]
-    if contacts.empty:
-        return
-    begin, end = (np.interp(contacts[edge], run["time"], abscissa(run)[0]) for edge in ("begin", "end"))
-    force = 1e-3 * contacts["force"]
-    axis.hlines(force, begin, end, color=PURPLE, linewidth=0.9)
-    axis.plot(
-        0.5 * (begin + end),
-        force,
-        ".",
-        color=PURPLE,
-        markersize=3,
-        label="largest normal force of each contact",
-    )
+    time, force = run["time"], pin_force(run)
+    missed = []
+    for begin, end, peak in zip(contacts["begin"], contacts["end"], 1e-3 * contacts["force"]):
+        rows = force[np.searchsorted(time, begin) : np.searchsorted(time, end, side="right")]
+        if rows.size == 0 or rows.max() < SEEN_PEAK * peak:
+            missed.append((np.interp(0.5 * (begin + end), time, abscissa(run)[0]), peak))
+    if missed:
+        axis.plot(*zip(*missed), ".", color=PURPLE, markersize=3, label="largest normal force of a contact, between samples")
 
 
 def film_thickness(axis: Axes, run: Run, _ideal: Run | None, colour: str) -> None:
-    """Film thickness, logarithmic where the film stays open; where the pin touches, logarithmic to both sides of a linear
-    stretch around 0."""
+    """Film thickness on a logarithmic axis, with gaps where the pin touches."""
     x, _ = abscissa(run)
     h = 1e6 * run["film_thickness"]
-    axis.plot(x, h, color=colour)
-    if h.min() > 0:
-        axis.set_yscale("log")
-        axis.yaxis.set_major_formatter("{x:g}")
-        axis.yaxis.set_minor_formatter(lambda value, _: f"{value:g}" if f"{value:.0e}"[0] in "25" else "")
-    else:
-        axis.set_yscale("symlog", linthresh=1.0)
-        axis.yaxis.set_major_formatter("{x:g}")
-        axis.axhline(0, color=BLACK, linewidth=0.7)
-        axis.fill_between(x, h, 0, where=h < 0, color=PURPLE, alpha=0.5, linewidth=0, label="penetration")
+    axis.plot(x, np.where(h > 0, h, np.nan), color=colour, label=curve_name(run))
+    axis.set_yscale("log")
+    if touches(run):
+        axis.set_ylim(bottom=max(axis.get_ylim()[0], LEAST_DRAWN_FILM))
+    mark_decades(axis.yaxis)
     mark_abscissa(axis, run)
+
+
+def penetration(axis: Axes, run: Run, _colour: str) -> None:
+    """How deep the pin is in its bearing, upwards from 0; the start is cut off where it would flatten the rest."""
+    x, _ = abscissa(run)
+    depth = np.maximum(-1e6 * run["film_thickness"], 0.0)
+    axis.fill_between(x, depth, 0, color=PURPLE, alpha=0.25, linewidth=0)
+    axis.plot(x, depth, color=PURPLE, linewidth=0.5, label="in contact")
+    axis.set_ylim(bottom=0)
+    if start_is_cut(run, depth):
+        axis.set_ylim(0, 1.06 * depth[after_start(run)].max())
+        axis.set_title(f"start to {depth.max():.3g} cut off", color=GREY)
+    mark_abscissa(axis, run)
+
+
+def touches(run: Run) -> bool:
+    return bool((run["film_thickness"] < 0).any())
 
 
 def least_film(run: Run) -> str:
@@ -70,9 +101,10 @@ def pin_orbit(axis: Axes, run: Run, _ideal: Run | None, colour: str) -> None:
     near[1:] |= outside[:-1]
     near[:-1] |= outside[1:]
     axis.add_patch(Circle((0, 0), 1, fill=False, edgecolor=BLACK, linewidth=0.8, zorder=3))
-    axis.plot(np.where(near & outside, np.nan, y), np.where(near & outside, np.nan, x), color=colour, linewidth=0.6)
+    axis.plot(np.where(near & outside, np.nan, y), np.where(near & outside, np.nan, x), color=colour, linewidth=0.6, label=curve_name(run))
     if outside.any():
-        axis.plot(np.where(near, y, np.nan), np.where(near, x, np.nan), color=PURPLE, linewidth=0.6, label="in contact")
+        thin = 0.6 if len(x) < 20000 else 0.3
+        axis.plot(np.where(near, y, np.nan), np.where(near, x, np.nan), color=PURPLE, linewidth=thin, label="in contact")
     axis.plot(y[0], x[0], "o", color=BLACK, markersize=3, markerfacecolor="white", zorder=4, label="beginning")
     reach = 1.05 * max(1.0, np.hypot(x, y).max())
     axis.set_xlim(-reach, reach)
@@ -81,20 +113,49 @@ def pin_orbit(axis: Axes, run: Run, _ideal: Run | None, colour: str) -> None:
     axis.set_xlabel(r"$e_y/c$")
 
 
+def last_cycle(run: Run) -> Run:
+    """The rows of a run's last cycle; all rows of a window of later revolutions."""
+    if first_revolution(run) > 0:
+        return run
+    travel = np.abs(run["crank_angle"] - run["crank_angle"][0])
+    return replace(run, trace=run.trace[travel >= travel[-1] - run.cycle * (1 + 1e-9)].reset_index(drop=True))
+
+
 def portrait(axis: Axes, run: Run, ideal: Run | None, colour: str) -> None:
-    """Piston acceleration over velocity. The ideal joint's is broad and lies below: over several cycles dashes fill up."""
+    """Piston acceleration over velocity in the last cycle. The ideal joint's is broad and lies below."""
     if ideal is not None:
+        shown = last_cycle(ideal)
         axis.plot(
-            ideal["piston_velocity"],
-            1e-3 * ideal["piston_acceleration"],
+            shown["piston_velocity"],
+            1e-3 * shown["piston_acceleration"],
             color=GREY,
             linewidth=2.2,
             alpha=0.5,
             label="ideal joint",
         )
-    axis.plot(run["piston_velocity"], 1e-3 * run["piston_acceleration"], color=colour, linewidth=0.6)
+    shown = last_cycle(run)
+    axis.plot(shown["piston_velocity"], 1e-3 * shown["piston_acceleration"], color=colour, linewidth=0.6, label=curve_name(run))
     axis.set_xlabel("piston velocity [m/s]")
     axis.margins(x=0.05)
+
+
+def portrait_difference(axis: Axes, run: Run, ideal: Run, colour: str) -> None:
+    """Piston acceleration less that of the ideal joint at the same crank angle, over velocity."""
+    shown = last_cycle(run)
+    other = np.interp(np.abs(shown["crank_angle"]), np.abs(ideal["crank_angle"]), ideal["piston_acceleration"])
+    axis.axhline(0, color=BLACK, linewidth=0.7)
+    axis.plot(shown["piston_velocity"], 1e-3 * (shown["piston_acceleration"] - other), color=colour, linewidth=0.6)
+    axis.set_xlabel("piston velocity [m/s]")
+    axis.set_title("run − ideal joint", color=GREY)
+    axis.margins(x=0.05)
+
+
+def cycle_note(run: Run) -> str:
+    """Which cycle a portrait shows."""
+    if first_revolution(run) > 0:
+        return ""
+    cycles = round(abs(run["crank_angle"][-1] - run["crank_angle"][0]) / run.cycle)
+    return f"cycle {cycles}"
 
 
 def once_a_cycle(run: Run, section: float) -> tuple[np.ndarray, np.ndarray]:
@@ -109,27 +170,29 @@ def once_a_cycle(run: Run, section: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def section(axis: Axes, run: Run, ideal: Run | None, colour: str) -> None:
-    """Once a cycle, at the gas-exchange dead centre, q = 0: first point open, then a line from point to point."""
+    """The last cycles of a long run, a point in each, from light to dark."""
     if ideal is not None:
-        velocity, acceleration = once_a_cycle(ideal, 0.0)
+        velocity, acceleration = once_a_cycle(ideal, SECTION)
         axis.plot(
-            1e3 * velocity,
-            1e-3 * acceleration,
+            velocity[-SECTION_CYCLES:],
+            1e-3 * acceleration[-SECTION_CYCLES:],
             "+",
             color=BLACK,
-            markersize=7,
-            markeredgewidth=0.8,
+            markersize=6,
+            markeredgewidth=0.6,
             label="ideal joint, once a cycle",
         )
-    velocity, acceleration = once_a_cycle(run, 0.0)
-    axis.plot(1e3 * velocity, 1e-3 * acceleration, "-", color=colour, linewidth=0.4, alpha=0.6)
-    axis.plot(1e3 * velocity, 1e-3 * acceleration, "o", color=colour, markersize=3.5)
-    axis.plot(1e3 * velocity[:1], 1e-3 * acceleration[:1], "o", color=colour, markerfacecolor="white", markersize=3.5)
-    axis.set_xlabel("piston velocity [mm/s]")
+    velocity, acceleration = once_a_cycle(run, SECTION)
+    count = len(velocity)
+    velocity, acceleration = velocity[-SECTION_CYCLES:], acceleration[-SECTION_CYCLES:]
+    shades = LinearSegmentedColormap.from_list("cycles", ["#DDDDDD", colour, BLACK])(np.linspace(0.1, 0.8, len(velocity)))
+    axis.scatter(velocity, 1e-3 * acceleration, s=7, c=shades, linewidths=0, label="once a cycle, light to dark")
+    axis.set_title(f"cycles {count - len(velocity) + 1} to {count}", color=GREY)
+    axis.set_xlabel("piston velocity [m/s]")
     axis.margins(0.12)
-    axis.set_xlim(widened(axis.get_xlim(), 1e3 * LEAST_SHARE * np.ptp(run["piston_velocity"])))
+    axis.set_xlim(widened(axis.get_xlim(), LEAST_SHARE * np.ptp(run["piston_velocity"])))
     axis.set_ylim(widened(axis.get_ylim(), 1e-3 * LEAST_SHARE * np.ptp(run["piston_acceleration"])))
-    axis.xaxis.set_major_locator(MaxNLocator(4))
+    axis.xaxis.set_major_locator(MaxNLocator(3))
     axis.yaxis.set_major_locator(MaxNLocator(5))
 
 
@@ -147,10 +210,29 @@ QUANTITIES: dict[str, Quantity] = {
     "piston_acceleration": series("piston acceleration\n[10³ m/s²]", column("piston_acceleration", 1e-3)),
     "crank_moment": series("crank moment [N m]", column("crank_moment")),
     "pin_force": series("pin reaction [kN]", pin_force, contact_peaks),
-    "film_thickness": Quantity("film thickness [µm]", None, film_thickness, note=least_film),
-    "pin_orbit": Quantity(r"$e_x/c$", None, pin_orbit, wide=False),
-    "portrait": Quantity("piston acceleration\n[10³ m/s²]", column("piston_acceleration", 1e-3), portrait, wide=False),
-    "section": Quantity("once a cycle, $q=0$:\npiston acceleration [10³ m/s²]", None, section, wide=False),
+    "film_thickness": Quantity(
+        "film thickness [µm]",
+        None,
+        film_thickness,
+        note=least_film,
+        below=penetration,
+        below_label="penetration [µm]",
+        has_below=touches,
+        fine=True,
+    ),
+    "pin_orbit": Quantity(r"$e_x/c$", None, pin_orbit, wide=False, fine=True),
+    "portrait": Quantity(
+        "piston acceleration\n[10³ m/s²]",
+        lambda run: 1e-3 * last_cycle(run)["piston_acceleration"],
+        portrait,
+        wide=False,
+        note=cycle_note,
+        difference=portrait_difference,
+        fine=True,
+    ),
+    "section": Quantity(
+        "once a cycle, $q=45°$:\npiston acceleration [10³ m/s²]", None, section, wide=False, many_cycles=True
+    ),
     "indicator": Quantity("pressure [bar]", draw_all=gas_pictures.each(gas_pictures.indicator), wide=False),
     "gas_force": Quantity("gas force [kN]", draw_all=gas_pictures.each(gas_pictures.gas_force), wide=False),
     "cylinder_pressure": Quantity(

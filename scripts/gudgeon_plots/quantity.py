@@ -5,8 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
 
 from .results import Run
+from .ringing import draw_envelope, rings, zoom_window
 from .style import BLACK, BLUE, GREY, VERMILION
 
 #: A run's range is called far larger than the ideal joint's from this factor on: the figure then adds a detail.
@@ -16,12 +18,18 @@ FAR_LARGER = 3.0
 STARTING_SHARE = 0.02
 
 
+#: The start is cut off where the rest of the run covers less than this share of the whole range.
+START_CUT = 0.7
+
+
 @dataclass(frozen=True)
 class Quantity:
     """A way to draw runs on an axis.
 
     `values` gives what is on the vertical axis, for ranges; `draw(axis, run, ideal, colour)` draws one run, or
-    `draw_all(axis, runs)` all of them on one axis. `wide` axes show a curve over time, others a plane.
+    `draw_all(axis, runs)` all of them on one axis. `wide` axes show a curve over time, others a plane. `below` draws a second panel
+    of a run, named `below_label`, where `has_below` says that the run needs one. A quantity of `many_cycles` is drawn of runs over
+    hundreds of revolutions.
     """
 
     label: str
@@ -30,6 +38,12 @@ class Quantity:
     draw_all: Callable[[Axes, list[Run]], None] | None = None
     wide: bool = True
     note: Callable[[Run], str] | None = None  # beside the run's name
+    difference: Callable[[Axes, Run, Run, str], None] | None = None  # of a plane
+    below: Callable[[Axes, Run, str], None] | None = None
+    below_label: str = ""
+    has_below: Callable[[Run], bool] = lambda run: False
+    many_cycles: bool = False
+    fine: bool = False  # drawn of runs with many rows in each contact
 
     def needs_detail(self, run: Run, ideal: Run | None) -> bool:
         """Whether the ideal joint's curve would be flattened by the run's peaks."""
@@ -43,19 +57,89 @@ class Quantity:
         room = high - low
         return (-0.03 * high, high + room) if low >= 0 else (low - 0.5 * room, high + 0.5 * room)
 
+    def rings(self, run: Run) -> bool:
+        """Whether the curve over time is a filled band at the width of a picture."""
+        return self.wide and self.values is not None and rings(abscissa(run)[0], self.values(run))
+
+    def zoomed(self, run: Run, ideal: Run) -> tuple[float, float]:
+        """The part of the abscissa that a zoom shows."""
+        x, y = abscissa(run)[0], self.values(run)
+        return zoom_window(x, y, np.interp(run["time"], ideal["time"], self.values(ideal)), x[0] + 0.1 * np.ptp(x))
+
+    def draw_zoom(self, axis: Axes, run: Run, ideal: Run, colour: str) -> None:
+        """Some of the oscillations that the envelope stands for."""
+        low, high = self.zoomed(run, ideal)
+        x, name = abscissa(run)
+        inside = (x >= low) & (x <= high)
+        axis.plot(x[inside], self.values(run)[inside], color=colour, label=curve_name(run))
+        ideal_line(axis, x[inside], np.interp(run["time"], ideal["time"], self.values(ideal))[inside])
+        axis.set_xlim(low, high)
+        axis.set_xlabel(name)
+        axis.xaxis.set_major_locator(MaxNLocator(5))
+        axis.set_title("zoom on the grey stretch", color=GREY)
+
     def draw_difference(self, axis: Axes, run: Run, ideal: Run, colour: str) -> None:
         """The run less the ideal joint at the same time. A run from t = 0 begins with a pin that nothing carries yet: its
         first moments do not count for the range."""
+        if self.difference is not None:
+            self.difference(axis, run, ideal, colour)
+            return
         difference = self.values(run) - np.interp(run["time"], ideal["time"], self.values(ideal))
-        counted = difference[run["time"] >= STARTING_SHARE * run["time"][-1]]
-        cut = np.ptp(difference) > FAR_LARGER * np.ptp(counted)
         axis.axhline(0, color=BLACK, linewidth=0.7)
-        axis.plot(abscissa(run)[0], difference, color=colour)
-        if cut:
-            room = 0.1 * np.ptp(counted)
-            axis.set_ylim(counted.min() - room, counted.max() + room)
+        plot_curve(axis, run, difference, colour)
+        cut = cut_start(axis, run, difference)
         axis.set_title(f"run − ideal joint, at the same time{', start cut off' if cut else ''}", color=GREY)
         mark_abscissa(axis, run)
+
+
+def after_start(run: Run) -> np.ndarray:
+    """The rows after a run's first moments, in which a pin released in the centre falls; all of a window of later revolutions."""
+    return run["time"] >= STARTING_SHARE * run["time"][-1]
+
+
+def start_is_cut(run: Run, values: np.ndarray) -> bool:
+    return bool(np.ptp(values[after_start(run)]) < START_CUT * np.ptp(values))
+
+
+def cut_start(axis: Axes, run: Run, values: np.ndarray, more: np.ndarray | None = None) -> bool:
+    """Limit an axis to what comes after the start, and to `more` values, where the start would flatten it; whether it did."""
+    if not start_is_cut(run, values):
+        return False
+    counted = values[after_start(run)]
+    counted = counted if more is None else np.concatenate([counted, more])
+    room = 0.06 * np.ptp(counted)
+    axis.set_ylim(counted.min() - room, counted.max() + room)
+    return True
+
+
+def start_note(values: Callable[[Run], np.ndarray]) -> Callable[[Run], str]:
+    """What a title says of a start that is cut off: the value farthest from the rest of the run."""
+
+    def note(run: Run) -> str:
+        y = values(run)
+        if not start_is_cut(run, y):
+            return ""
+        rest = y[after_start(run)]
+        low, high = rest.min() - y.min(), y.max() - rest.max()
+        farthest = f"{y.max() if high > low else y.min():.3g}".replace("-", "−")
+        return f"start to {farthest} cut off"
+
+    return note
+
+
+def plot_curve(axis: Axes, run: Run, y: np.ndarray, colour: str) -> None:
+    """A curve over time or crank angle; its envelope where it rings faster than a picture can show."""
+    x = abscissa(run)[0]
+    if rings(x, y):
+        draw_envelope(axis, x, y, colour)
+    else:
+        axis.plot(x, y, color=colour, label=curve_name(run))
+
+
+def curve_name(run: Run) -> str:
+    """What the legend calls a run's curve: its film, or that its joint has clearance."""
+    law = run.parameter("lubrication", "law")
+    return label(run) if law in ("pinkus_sternlicht", "oscillating_film") and not held_speed(run) else "with clearance"
 
 
 def label(run: Run) -> str:
@@ -120,11 +204,16 @@ def series(
     """A curve over time or crank angle, the ideal joint overlaid."""
 
     def draw(axis: Axes, run: Run, ideal: Run | None, colour: str) -> None:
-        axis.plot(abscissa(run)[0], values(run), color=colour)
+        y = values(run)
+        plot_curve(axis, run, y, colour)
         if ideal is not None:
             ideal_line(axis, abscissa(ideal)[0], values(ideal))
+            if found.rings(run):
+                axis.axvspan(*found.zoomed(run, ideal), color=GREY, alpha=0.4, linewidth=0)
         if extra is not None:
             extra(axis, run)
+        cut_start(axis, run, y, None if ideal is None else values(ideal))
         mark_abscissa(axis, run)
 
-    return Quantity(label, values, draw)
+    found = Quantity(label, values, draw, note=start_note(values), fine=True)
+    return found

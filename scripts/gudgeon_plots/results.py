@@ -52,7 +52,8 @@ class Run:
     def cycle(self) -> float:
         """Crank angle after which the loads repeat [rad]: two revolutions with the gas of four strokes, else one."""
         one_turn = self.parameter("combustion", "cycle") in ("two_stroke", "compressor") or self.parameter("cylinder_pressure", "period_deg") == 360
-        return (4 if "gas_force" in self and not one_turn else 2) * np.pi
+        has_gas = "gas_force" in self or bool({"combustion", "cylinder_pressure"} & self.case.keys())
+        return (4 if has_gas and not one_turn else 2) * np.pi
 
     @cached_property
     def contacts(self) -> pd.DataFrame:
@@ -185,6 +186,10 @@ class Results:
     def path(self, name: str) -> Path:
         return self.directory / f"{name}.csv"
 
+    def has(self, name: str) -> bool:
+        """Whether there is a result of this name."""
+        return self.path(name).exists()
+
     def settings(self, names: Iterable[str]) -> list[str]:
         """What runs of these cases are made with: their own values."""
         return []
@@ -212,6 +217,61 @@ class Results:
                 raise MissingResult(f"no result {self.path(name)}")
             self._runs[name] = load_run(self.path(name))
         return self._runs[name]
+
+
+class FineResults(Results):
+    """The same runs with the rows that a picture of contacts needs: those in which the pin touches are made again with ten times the
+    cases' samples, and the columns of figures alone, in a folder of their own; the others are the cases' own. Samples do not change
+    the motion."""
+
+    SAMPLES = 7200
+    COLUMNS = (
+        "time,crank_angle,crank_speed,crank_acceleration,rod_acceleration,piston_velocity,piston_acceleration,pin_force_x,pin_force_y,"
+        "eccentricity_x,eccentricity_y,film_thickness,phase,normal_force"
+    )
+
+    def __init__(self, own: Results) -> None:
+        super().__init__(own.directory / "fine", own.run_missing, own.rerun)
+        self.files = own.files
+        self.own = own
+
+    def settings(self, names: Iterable[str]) -> list[str]:
+        return [
+            f"output.samples_per_revolution={self.SAMPLES}",
+            f"output.columns={self.COLUMNS}",
+            "output.ideal_twin=false",
+        ]
+
+    def make(self, names: Iterable[str]) -> None:
+        names = set(names)
+        self.own.make(names)
+        super().make(name for name in names if self.own.has(name) and self.touches(name))
+
+    def touches(self, name: str) -> bool:
+        """Whether the pin touches its bearing in a run."""
+        return not self.own[name].contacts.empty
+
+    def __getitem__(self, name: str) -> Run:
+        return super().__getitem__(name) if self.own.has(name) and self.touches(name) else self.own[name]
+
+
+class ManyCycles(Results):
+    """The same cases run on for hundreds of revolutions, with eight rows in each, at equal crank angles."""
+
+    REVOLUTIONS = 200
+    SAMPLES = 8
+
+    def __init__(self, own: Results) -> None:
+        super().__init__(own.directory / f"revolutions_{self.REVOLUTIONS}", own.run_missing, own.rerun)
+        self.files = own.files
+
+    def settings(self, names: Iterable[str]) -> list[str]:
+        return [
+            f"integrator.revolutions={self.REVOLUTIONS}",
+            "integrator.method=auto",
+            "output.sampling=crank_angle",
+            f"output.samples_per_revolution={self.SAMPLES}",
+        ]
 
 
 class WindowResults(Results):

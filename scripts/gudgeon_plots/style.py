@@ -1,6 +1,8 @@
 """How the figures look: sizes for print, colours told apart by colour-blind readers (Okabe and Ito)."""
 
 import matplotlib as mpl
+from matplotlib.axis import Axis
+from matplotlib.ticker import FuncFormatter, LogLocator
 
 mpl.use("Agg")
 
@@ -43,3 +45,12 @@ SETTINGS = {
 }
 
 mpl.rcParams.update(SETTINGS)
+
+
+def mark_decades(axis: Axis) -> None:
+    """Numbers as 0.1, 1, 10 on a logarithmic axis, with 2 and 5 where it covers less than three decades."""
+    low, high = sorted(axis.get_view_interval())
+    short = high < 1e3 * low
+    axis.set_major_locator(LogLocator(10, subs=(1.0, 2.0, 5.0) if short else (1.0,)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(FuncFormatter(lambda value, _: ""))

@@ -1,0 +1,85 @@
+"""Curves that ring faster than a picture's width can show: their envelope with the mean of it, and a zoom on some of the oscillations."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+
+#: Stretches of the abscissa that an envelope is made of: about one each two dots of a printed panel.
+STRETCHES = 300
+
+#: A stretch rings if the curve turns at least so often in it and covers at least this share of the curve's range.
+LEAST_TURNS, LEAST_SHARE = 3, 0.03
+
+#: A curve rings if this share of its stretches does.
+RINGING_SHARE = 0.08
+
+#: Oscillations that a zoom shows.
+SHOWN_OSCILLATIONS = 12
+
+
+@dataclass(frozen=True)
+class Envelope:
+    """Least, largest and mean value of a curve in stretches of equal length of its abscissa, and how often it turns in each."""
+
+    x: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    mean: np.ndarray
+    turns: np.ndarray
+
+    @property
+    def rings(self) -> np.ndarray:
+        """Whether each stretch rings."""
+        span = np.nanmax(self.high) - np.nanmin(self.low)
+        # a far peak elsewhere hides no ringing: the usual width of a stretch counts as well
+        usual = np.nanmedian(self.high) - np.nanmedian(self.low)
+        return (self.turns >= LEAST_TURNS) & (self.high - self.low > LEAST_SHARE * min(span, 10 * max(usual, span / 10)))
+
+
+def envelope(x: np.ndarray, y: np.ndarray, stretches: int = STRETCHES) -> Envelope:
+    """The mean is over x, by the trapezoidal rule, so that a stretch with many rows where little happens is not weighed more."""
+    bounds = np.linspace(x[0], x[-1], stretches + 1)
+    place = np.clip(np.searchsorted(bounds, x, side="right") - 1, 0, stretches - 1)
+    low, high = np.full(stretches, np.inf), np.full(stretches, -np.inf)
+    np.minimum.at(low, place, y)
+    np.maximum.at(high, place, y)
+    area = np.concatenate([[0.0], np.cumsum(0.5 * (y[1:] + y[:-1]) * np.diff(x))])
+    mean = np.diff(np.interp(bounds, x, area)) / np.diff(bounds)
+    turn = np.flatnonzero(np.diff(np.sign(np.diff(y))) != 0) + 1
+    turns = np.bincount(place[turn], minlength=stretches)
+    empty = ~np.isfinite(low)
+    low[empty], high[empty] = mean[empty], mean[empty]
+    return Envelope(0.5 * (bounds[1:] + bounds[:-1]), low, high, mean, turns)
+
+
+def rings(x: np.ndarray, y: np.ndarray) -> bool:
+    """Whether a picture of the whole curve would be a filled band."""
+    if len(x) < 4 * STRETCHES:
+        return False
+    return bool(np.mean(envelope(x, y).rings) > RINGING_SHARE)
+
+
+def draw_envelope(axis: Axes, x: np.ndarray, y: np.ndarray, colour: str) -> None:
+    """The band between least and largest value light, the mean dark."""
+    found = envelope(x, y)
+    axis.fill_between(found.x, found.low, found.high, color=colour, alpha=0.4, linewidth=0, label="range of the ringing")
+    axis.plot(found.x, found.mean, color=colour, label="mean of the ringing")
+
+
+def zoom_window(x: np.ndarray, y: np.ndarray, reference: np.ndarray, after: float) -> tuple[float, float]:
+    """Bounds in x round the beginning of the largest ringing about the reference after a place, for some of its oscillations."""
+    found = envelope(x, y)
+    later = found.x > after
+    width = np.where(later & found.rings, found.high - found.low, 0.0)
+    if not width.any():
+        width = np.where(later, found.high - found.low, 0.0)
+    middle = found.x[int(np.argmax(width))]
+    step = found.x[1] - found.x[0]
+    near = (x > middle - 2 * step) & (x < middle + 2 * step)
+    off = (y - reference)[near]
+    crossings = np.count_nonzero(np.diff(np.sign(off - np.median(off))))
+    period = 2 * np.ptp(x[near]) / max(crossings, 1)
+    length = min(max(SHOWN_OSCILLATIONS * period, step), 0.2 * np.ptp(x))
+    start = min(max(middle - 0.3 * length, x[0]), x[-1] - length)
+    return float(start), float(start + length)
