@@ -21,7 +21,7 @@ from gudgeon_plots.environment import TOP, use_virtual_environment
 
 use_virtual_environment()
 
-from gudgeon_plots import compare, figures, readme_picture  # noqa: E402
+from gudgeon_plots import compare, figures, language, readme_picture  # noqa: E402
 from gudgeon_plots.figure_map import Figure, read_figures  # noqa: E402
 from gudgeon_plots.quantities import QUANTITIES  # noqa: E402
 from gudgeon_plots.results import FineResults, ManyCycles, MissingResult, Results, WindowResults  # noqa: E402
@@ -41,6 +41,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument(
         "--out", type=Path, metavar="DIR", help="pictures (default: figures in the directory of traces)"
     )
+    language.add_option(parser)
     parser.add_argument("--format", action="append", choices=("png", "svg", "pdf"), help="repeatable (default: png)")
     parser.add_argument(
         "--window",
@@ -112,6 +113,7 @@ def main() -> int:
         if options.window == "start":
             wanted = [figure.at_start for figure in wanted]
         failed = draw_figures(wanted, results, out, formats)
+        language.current.warn("plot.py")
         print(f"{len(wanted) - failed} of {len(wanted)} figures in {time.monotonic() - started:.0f} s, in {out}")
         return 1 if failed else 0
     except MissingResult as problem:

@@ -17,7 +17,7 @@ from gudgeon_plots.environment import TOP, use_virtual_environment
 
 use_virtual_environment()
 
-from gudgeon_plots import figures, film_pictures, film_pressure  # noqa: E402
+from gudgeon_plots import figures, film_pictures, film_pressure, language  # noqa: E402
 from gudgeon_plots.program import release_program  # noqa: E402
 from gudgeon_plots.results import MissingResult, Results, load_run  # noqa: E402
 
@@ -31,6 +31,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--set", action="append", default=[], metavar="GROUP.KEY=VALUE", help="of the case; repeatable")
     parser.add_argument("--results", type=Path, default=TOP / "results", metavar="DIR", help="traces (default: results)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="pictures (default: figures in the directory of traces)")
+    language.add_option(parser)
     parser.add_argument("--format", action="append", choices=("png", "svg", "pdf"), help="repeatable (default: png)")
     parser.add_argument("--no-run", action="store_true", help="say what to run where a result is missing")
     options = parser.parse_args()
@@ -60,6 +61,7 @@ def main() -> int:
             results = Results(options.results, run_missing=not options.no_run)
             results.make({f"sim_{number}{ending}" for number in film_pictures.SIMULATIONS for ending, _, _ in film_pictures.FILMS})
             print(*figures.save(film_pictures.simulations(results), out, "films", formats))
+            language.current.warn("plot_film.py")
             return 0
         path = fields_file(options)
         name = path.name.removesuffix(".film.csv")
@@ -68,6 +70,7 @@ def main() -> int:
             raise MissingResult(f"{path}: holds no pressures")
         drawing = film_pictures.pressure_fields(load_run(path.with_name(f"{name}.csv")), fields, name)
         print(*figures.save(drawing, out, f"{name}_pressure", formats))
+        language.current.warn("plot_film.py")
     except (MissingResult, OSError) as problem:
         print(f"plot_film.py: {problem}", file=sys.stderr)
         return 1

@@ -3,7 +3,7 @@
 
     scripts/plot_study.py                        the shipped studies, as scripts/run_studies.sh leaves them
     scripts/plot_study.py --picture map          one of map, bifurcation, restitution, contact_laws
-    scripts/plot_study.py results/x.runs.csv     any study of one parameter or two: curves or maps of --columns
+    scripts/plot_study.py results/x.runs.csv     any study: curves, maps or points of --columns
 
 Prints the numbers of the pictures and where they are. Failed runs are left blank, and counted on standard error.
 """
@@ -16,9 +16,10 @@ from gudgeon_plots.environment import TOP, use_virtual_environment
 
 use_virtual_environment(studies=True)
 
+import f90nml  # noqa: E402
 import numpy as np  # noqa: E402
 
-from gudgeon_plots import contact_study, figures, study_pictures  # noqa: E402
+from gudgeon_plots import contact_study, figures, language, study_pictures  # noqa: E402
 from gudgeon_plots.results import MissingResult  # noqa: E402
 from gudgeon_plots.study import Runs, warn_of_failures  # noqa: E402
 
@@ -42,6 +43,7 @@ def arguments() -> argparse.Namespace:
         "--results", type=Path, default=TOP / "results" / "studies", metavar="DIR", help="(default: results/studies)"
     )
     parser.add_argument("--out", type=Path, metavar="DIR", help="pictures (default: beside the results)")
+    language.add_option(parser)
     parser.add_argument("--format", action="append", choices=("png", "svg", "pdf"), help="repeatable (default: png)")
     return parser.parse_args()
 
@@ -59,15 +61,17 @@ def maps(results: Path) -> tuple[figures.Drawing, list[str]]:
 
 def bifurcation(results: Path) -> tuple[figures.Drawing, list[str]]:
     kinds = {
-        "bifurcation_clearance": ("joint.clearance", 1e6, "µm", None, FLORES_SPEED),
-        "bifurcation_speed": ("initial.crank_speed", 1.0, "rad/s", FLORES_CLEARANCE, None),
+        "bifurcation_clearance": ("joint.clearance", 1e6, "µm", None, FLORES_SPEED, "524 rad/s"),
+        "bifurcation_speed": ("initial.crank_speed", 1.0, "rad/s", FLORES_CLEARANCE, None, "c = 100 µm"),
     }
     strobes, lines = {}, []
-    for name, (parameter, unit, label, clearance, speed) in kinds.items():
+    for name, (parameter, unit, label, clearance, speed, held) in kinds.items():
         strobe = study_pictures.read_strobe(results / f"{name}.strobe.csv", read(results, name))
-        strobes[name] = study_pictures.with_ratios(strobe, clearance, speed)
-        lines.append(study_pictures.describe_bifurcation(strobes[name], name, parameter, unit, label))
-    return study_pictures.draw_bifurcation(strobes), lines
+        strobe = study_pictures.with_ratios(strobe, clearance, speed)
+        strobes[name] = (strobe, parameter, held)
+        lines.append(study_pictures.describe_bifurcation(strobe, name, parameter, unit, label))
+    title = "Flores slider-crank, dry: state at the dead centre in 80 revolutions"
+    return study_pictures.draw_bifurcation(strobes, title), lines
 
 
 def restitution(results: Path) -> tuple[figures.Drawing, list[str]]:
@@ -85,19 +89,30 @@ def contact_laws(results: Path) -> tuple[figures.Drawing, list[str]]:
 PICTURES = {"map": maps, "bifurcation": bifurcation, "restitution": restitution, "contact_laws": contact_laws}
 
 
-def any_study(path: Path, columns: list[str]) -> figures.Drawing:
-    """Curves over one parameter, maps over two."""
+def any_study(path: Path, columns: list[str]) -> dict[str, figures.Drawing]:
+    """Pictures of a study by their names: curves over one parameter, maps over a grid of two, points over each of more or of a
+    sample; where the study strobes its runs, these points too."""
     runs = Runs.read(path)
     warn_of_failures(path.name, runs)
     names = list(runs.table.columns)
     parameters = names[1 : names.index("status")]
     if unknown := [column for column in columns if column not in names]:
         raise MissingResult(f"{path}: no column {' '.join(unknown)}; there are {' '.join(names)}")
+    stem = path.name.removesuffix(".runs.csv")
+    study = path.with_name(f"{stem}.study.nml")
+    settings = f90nml.read(study)["study"] if study.exists() else {}
+    title = str(settings.get("title") or stem)
     if len(parameters) == 1:
-        return study_pictures.draw_curves(runs, *parameters, columns)
-    if len(parameters) == 2 and not runs.table.duplicated(parameters).any():
-        return study_pictures.draw_map(runs, *parameters, columns)
-    raise MissingResult(f"{path}: has {len(parameters)} parameters: only one, or a grid of two, can be drawn")
+        found = {stem: study_pictures.draw_curves(runs, *parameters, columns, title)}
+    elif len(parameters) == 2 and study_pictures.is_grid(runs, *parameters):
+        found = {stem: study_pictures.draw_map(runs, *parameters, columns, title)}
+    else:
+        found = {stem: study_pictures.draw_scatter(runs, parameters, columns, title)}
+    strobes = path.with_name(f"{stem}.strobe.csv")
+    if strobes.exists() and len(parameters) == 1:
+        strobe = study_pictures.read_strobe(strobes, runs)
+        found[f"{stem}.strobe"] = study_pictures.draw_strobes(strobe, parameters[0], title)
+    return found
 
 
 def main() -> int:
@@ -105,8 +120,8 @@ def main() -> int:
     formats = options.format or ["png"]
     try:
         for path in options.runs:
-            drawing = any_study(path, options.columns)
-            print(*figures.save(drawing, options.out or path.parent, path.name.removesuffix(".runs.csv"), formats))
+            for stem, drawing in any_study(path, options.columns).items():
+                print(*figures.save(drawing, options.out or path.parent, stem, formats))
         for name in options.picture or ([] if options.runs else PICTURES):
             drawing, lines = PICTURES[name](options.results)
             print(*lines, sep="\n")
@@ -114,6 +129,7 @@ def main() -> int:
     except (MissingResult, OSError) as problem:
         print(f"plot_study.py: {problem}", file=sys.stderr)
         return 1
+    language.current.warn("plot_study.py")
     return 0
 
 

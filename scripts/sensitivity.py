@@ -21,7 +21,7 @@ use_virtual_environment(studies=True)
 
 import pandas as pd  # noqa: E402
 
-from gudgeon_plots import figures, sensitivity, study  # noqa: E402
+from gudgeon_plots import figures, language, sensitivity, study  # noqa: E402
 from gudgeon_plots.program import release_program  # noqa: E402
 from gudgeon_plots.results import MissingResult  # noqa: E402
 from gudgeon_plots.sensitivity import METHODS, Indices, Output  # noqa: E402
@@ -55,6 +55,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("-s", "--set", action="append", default=[], metavar="GROUP.KEY=VALUE", help="of the base case")
     parser.add_argument("--program", type=Path, help="gudgeon (default: the release build, brought up to date)")
     parser.add_argument("--fresh", action="store_true", help="forget the runs of an earlier call")
+    language.add_option(parser)
     parser.add_argument("--convergence", action="store_true", help="indices of parts of the sample too")
     options = parser.parse_args()
     if options.sobol < 2 or options.sobol & (options.sobol - 1):
@@ -127,6 +128,7 @@ def main() -> int:
     except (MissingResult, OSError) as problem:
         print(f"sensitivity.py: {problem}", file=sys.stderr)
         return 1
+    language.current.warn("sensitivity.py")
     return 0
 
 

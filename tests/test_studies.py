@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 from contextlib import redirect_stderr
 from pathlib import Path
 
@@ -21,13 +22,14 @@ from gudgeon_plots.environment import use_virtual_environment  # noqa: E402
 
 use_virtual_environment(studies=True)
 
+import matplotlib.colors  # noqa: E402
 import matplotlib.pyplot as plt  # noqa: E402
 import merge_runs  # noqa: E402
 import numpy as np  # noqa: E402
 import pandas as pd  # noqa: E402
 from scipy.integrate import solve_ivp  # noqa: E402
 
-from gudgeon_plots import contact_study, sensitivity, study, study_pictures  # noqa: E402
+from gudgeon_plots import contact_study, names, sensitivity, study, study_pictures  # noqa: E402
 from gudgeon_plots.program import release_program  # noqa: E402
 from gudgeon_plots.results import MissingResult  # noqa: E402
 from gudgeon_plots.sensitivity import Output  # noqa: E402
@@ -342,6 +344,82 @@ class Pictures(InDirectory):
         x, y, z = study_pictures.grid(Runs(table.assign(h=[1.0, 2.0, 3.0, 4.0]), {}), "a", "b", "h")
         np.testing.assert_array_equal([*x, *y], [1, 2, 5, 6])
         np.testing.assert_array_equal(z, [[1.0, 3.0], [2.0, np.nan]])
+
+
+class AnyStudy(InDirectory):
+    """Pictures that every study gets."""
+
+    UNITS = {"joint.clearance": "m", "initial.crank_speed": "rad/s"}
+
+    def setUp(self) -> None:
+        super().setUp()
+        self.addCleanup(plt.close, "all")
+        patch = unittest.mock.patch.object(names, "key_units", lambda: self.UNITS)
+        patch.start()
+        self.addCleanup(patch.stop)
+
+    def grid_runs(self) -> Runs:
+        """Films that fall over three decades on a grid that is even in its logarithm; one run failed; never in contact."""
+        clearance, speed = np.meshgrid(np.geomspace(1e-5, 1e-4, 6), np.geomspace(50, 1000, 5))
+        film = 1e-5 * (clearance.ravel() / 1e-5) ** -2 * (speed.ravel() / 50) ** -1
+        table = pd.DataFrame({"run": np.arange(1, 31), "joint.clearance": clearance.ravel(), "initial.crank_speed": speed.ravel()})
+        table = table.assign(status="done", min_film_thickness=film, contact_time_fraction=0.0, max_pin_force=film * 1e8)
+        table.loc[7, ["status", "min_film_thickness", "contact_time_fraction", "max_pin_force"]] = ["stopped", np.nan, np.nan, np.nan]
+        return Runs(table, {"min_film_thickness": "m", "contact_time_fraction": "-", "max_pin_force": "N"})
+
+    def test_maps_of_grids_that_are_even_in_their_logarithm(self) -> None:
+        columns = ("min_film_thickness", "contact_time_fraction", "max_pin_force")
+        drawing = study_pictures.draw_map(self.grid_runs(), "joint.clearance", "initial.crank_speed", columns, "films")
+        panels = [axes for axes in drawing.axes if axes.get_xlabel() == "radial clearance [µm]"]
+        self.assertEqual(len(panels), 2)  # a column that is the same in every run has no panel, but is said
+        self.assertEqual(drawing._suptitle.get_text(), "films; 1 of 30 runs failed (×)\ntime in contact: 0 % in every run")
+        for axes in panels:
+            self.assertEqual((axes.get_xscale(), axes.get_yscale(), axes.get_ylabel()), ("log", "log", "crank speed [rad/s]"))
+            self.assertIsInstance(axes.collections[0].norm, matplotlib.colors.LogNorm)
+            self.assertEqual(len(axes.lines[0].get_xdata()), 1)  # the cross of the run that failed
+        bars = {axes.get_xlabel() for axes in drawing.axes} - {"radial clearance [µm]"}
+        self.assertEqual(bars, {"least film thickness [µm]", "largest pin force [kN]"})
+
+    def test_colours_say_what_lies_beyond_them(self) -> None:
+        values = np.concatenate([np.linspace(1, 2, 400), [50.0]])
+        norm, extend = study_pictures.colour_scale(values)
+        self.assertEqual(extend, "both")
+        self.assertLess(norm.vmax, 2.1)
+        norm, extend = study_pictures.colour_scale(np.linspace(1, 2, 400))
+        self.assertEqual((norm.vmin, norm.vmax, extend), (1, 2, "neither"))
+
+    def test_curves(self) -> None:
+        table = pd.DataFrame({"run": [1, 2, 3], "initial.crank_speed": [100.0, 200.0, 300.0], "status": ["done", "stopped", "done"]})
+        runs = Runs(table.assign(min_film_thickness=[-1e-6, np.nan, -3e-6]), {"min_film_thickness": "m"})
+        drawing = study_pictures.draw_curves(runs, "initial.crank_speed", ["min_film_thickness"], "deep")
+        axes = drawing.axes[0]
+        self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("crank speed [rad/s]", "largest penetration [µm]"))
+        np.testing.assert_allclose(axes.lines[0].get_ydata(), [1, np.nan, 3])
+        np.testing.assert_allclose(axes.lines[1].get_xdata(), [200])
+        self.assertIn("1 of 3 runs failed", drawing._suptitle.get_text())
+
+    def test_samples_are_points_over_each_parameter(self) -> None:
+        runs = self.grid_runs()
+        runs.table["joint.clearance"] = np.random.default_rng(1).permutation(np.linspace(1e-5, 2e-5, 30))
+        self.assertFalse(study_pictures.is_grid(runs, "joint.clearance", "initial.crank_speed"))
+        drawing = study_pictures.draw_scatter(runs, ["joint.clearance", "initial.crank_speed"], ["min_film_thickness"], "x")
+        self.assertEqual(len(drawing.axes), 2)
+        self.assertEqual(drawing.axes[0].get_yscale(), "log")
+
+    def test_units_take_the_prefix_of_their_largest_value(self) -> None:
+        for unit, largest, wanted in (("m", 2e-4, "µm"), ("m", 0.05, "mm"), ("N", 2e4, "kN"), ("Pa", 3e8, "MPa"), ("rad/s", 1e3, "rad/s")):
+            shown, factor = names.prefixed(unit, np.array([0.1, 1.0]) * largest)
+            self.assertEqual(shown, wanted)
+            self.assertTrue(1 <= factor * largest <= 1000, (unit, factor))
+
+    def test_every_parameter_of_the_shipped_studies_has_its_unit(self) -> None:
+        unittest.mock.patch.stopall()
+        units = names.key_units()
+        self.assertEqual(units["joint.clearance"], "m")
+        self.assertEqual(units["lubrication.viscosity"], "Pa s")
+        self.assertEqual(units["initial.crank_speed"], "rad/s")
+        self.assertEqual(units["contact.restitution"], "")
+        self.assertEqual(names.of_parameter("lubrication.viscosity", np.array([0.004, 0.04])).label, "viscosity [mPa s]")
 
 
 class Sweeps(InDirectory):

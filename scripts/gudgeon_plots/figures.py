@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
+from . import language
 from .figure_map import Figure
 from .quantities import QUANTITIES
 from .quantity import Quantity, colour, label
@@ -163,7 +164,7 @@ def span(run: Run) -> str:
     return f", revolutions {first:.4g} to {last:.4g}"
 
 
-def add_legend(drawing: Drawing, axes: Iterable[Axes]) -> None:
+def add_legend(drawing: Drawing, axes: Iterable[Axes], markerscale: float = 1.0) -> None:
     """One legend for all axes, below them; each label once."""
     entries = {}
     for axis in axes:
@@ -173,12 +174,17 @@ def add_legend(drawing: Drawing, axes: Iterable[Axes]) -> None:
         needed = sum(len(text) + HANDLE_LETTERS for text in entries)
         rows = math.ceil(needed / LETTERS_IN_A_ROW * (WIDTH / drawing.get_figwidth()))
         drawing.legend(
-            entries.values(), entries.keys(), loc="outside lower center", ncols=math.ceil(len(entries) / max(rows, 1))
+            entries.values(),
+            entries.keys(),
+            loc="outside lower center",
+            ncols=math.ceil(len(entries) / max(rows, 1)),
+            markerscale=markerscale,
         )
 
 
 def save(drawing: Drawing, directory: Path, stem: str, formats: Iterable[str]) -> list[Path]:
-    """Write a drawing in each format; dates are left out, so that equal results give equal files."""
+    """Write a drawing in each format, in the language of the script; dates are left out, so that equal results give equal files."""
+    language.current.localise(drawing)
     directory.mkdir(parents=True, exist_ok=True)
     paths = []
     for form in formats:

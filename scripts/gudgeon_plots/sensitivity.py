@@ -13,8 +13,9 @@ from SALib.sample import morris as morris_sample
 from SALib.sample import sobol as sobol_sample
 
 from .figures import add_legend
+from .names import of_column, of_parameter, plain_unit, prefixed
 from .study import Parameter, Runs
-from .style import BLUE, GREY, ORANGE, VERMILION, WIDTH
+from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, WIDTH
 
 METHODS = ("morris", "sobol")
 
@@ -26,6 +27,11 @@ CONFIDENCE = 0.95
 
 #: Resamples of the bootstrap that gives the intervals.
 RESAMPLES = 500
+
+#: Colour and mark of each parameter in the order of the study.
+MARKS = (
+    (BLUE, "o"), (VERMILION, "s"), (GREEN, "^"), (PURPLE, "D"), (ORANGE, "v"), (BLACK, "P"), (SKY, "X"), (GREY, "*"),
+)
 
 #: For each method, the index that ranks parameters, then the one beside it.
 INDICES = {"morris": ("mu_star", "sigma"), "sobol": ("ST", "S1")}
@@ -193,51 +199,74 @@ def describe(found: Indices) -> str:
 
 def draw(found: Sequence[Indices], parameters: Sequence[Parameter], title: str) -> Drawing:
     """A row of panels for each output that varies, a panel for each method; parameters in the order of the study."""
-    still = {item.output: item.mean for item in found if item.constant}
+    still = {item.output: item for item in found if item.constant}
     outputs = list(dict.fromkeys(item.output for item in found if item.output not in still)) or list(still)
     methods = [method for method in METHODS if any(item.method == method for item in found)]
-    height = 0.7 + len(outputs) * (0.75 + 0.24 * len(parameters))
+    height = 0.9 + len(outputs) * (1.1 + 0.2 * len(parameters))
     drawing, axes = plt.subplots(
-        len(outputs), len(methods), figsize=(WIDTH, height), squeeze=False, sharey=True, layout="constrained"
+        len(outputs), len(methods), figsize=(WIDTH, height), squeeze=False, layout="constrained"
     )
     for item in found:
         if item.output in outputs:
             draw_panel(axes[outputs.index(item.output)][methods.index(item.method)], item, parameters)
-    notes = [
-        f"{name.replace('_', ' ')}: {mean:.3g} in every run" for name, mean in still.items() if name not in outputs
-    ]
+    notes = [f"{output_name(item)}: {item.mean:.3g} in every run" for name, item in still.items() if name not in outputs]
     drawing.suptitle("\n".join([title, *notes]))
     add_legend(drawing, drawing.axes)
     return drawing
 
 
+def output_name(found: Indices) -> str:
+    """What a title calls a result."""
+    column = found.output.removeprefix("log10 ")
+    return of_column(column, "", np.zeros(0)).name + (", its logarithm" if found.output != column else "")
+
+
 def draw_panel(axis: plt.Axes, found: Indices, parameters: Sequence[Parameter]) -> None:
-    place = np.arange(len(parameters))
-    axis.set_yticks(place, [parameter.key for parameter in parameters])
-    axis.set_ylim(len(parameters) - 0.4, -0.6)
-    axis.grid(axis="y", visible=False)
-    name = found.output.replace("_", " ")
-    axis.set_title(f"{name}, {'Morris' if found.method == 'morris' else 'Sobol'}")
+    """Morris: scatter of a parameter's effects over their mean size, each parameter a mark. Sobol: a bar for its total index, and
+    within it a dark one for its first-order index."""
+    axis.set_title(f"{output_name(found)}: {'Morris' if found.method == 'morris' else 'Sobol'}")
     if found.constant:
         text = "no value" if np.isnan(found.mean) else f"{found.mean:.3g} in every run"
         axis.text(0.5, 0.5, text, transform=axis.transAxes, ha="center", va="center", color=GREY)
         axis.set_xticks([])
+        axis.set_yticks([])
         return
-    main, beside = INDICES[found.method]
-    labels = {"mu_star": "µ* (mean size)", "sigma": "σ (scatter)", "ST": "total index", "S1": "index alone"}
-    for offset, index, colour in ((-0.18, main, BLUE), (0.18, beside, ORANGE)):
-        error = found.table.get(f"{index}_conf")
-        axis.barh(place + offset, found.table[index], 0.34, color=colour, label=labels[index])
-        if error is not None:
-            axis.errorbar(
-                found.table[index],
-                place + offset,
-                xerr=error,
-                fmt="none",
-                ecolor=VERMILION,
-                elinewidth=0.8,
-                capsize=1.5,
-            )
+    names = [of_parameter(parameter.key, np.zeros(0)).name for parameter in parameters]
+    draw_morris(axis, found, names) if found.method == "morris" else draw_sobol(axis, found, names)
+
+
+def draw_morris(axis: plt.Axes, found: Indices, names: Sequence[str]) -> None:
+    """The plane of mu* and sigma of the effect of going through the whole range: to the right matters, above the line sigma = mu* acts together with others or out of proportion."""
+    unit, factor = prefixed(found.unit, found.table["mu_star"].to_numpy())
+    size, scatter = factor * found.table["mu_star"], factor * found.table["sigma"]
+    error = factor * found.table["mu_star_conf"]
+    for place, name in enumerate(names):
+        colour, mark = MARKS[place % len(MARKS)]
+        axis.errorbar(
+            size.iloc[place], scatter.iloc[place], xerr=error.iloc[place], color=colour, marker=mark, markersize=5, linestyle="none",
+            elinewidth=0.7, capsize=1.5, label=name,
+        )
+    top = 1.1 * max(float((size + error).max()), float(scatter.max()))
+    axis.plot([0, top], [0, top], color=GREY, linestyle=":", linewidth=0.8, label="σ = µ*")
+    axis.set_xlim(-0.03 * top, top)
+    axis.set_ylim(-0.03 * top, top)
+    of_unit = f" [{plain_unit(unit)}]" if plain_unit(unit) else ""
+    axis.set_xlabel(f"µ*: mean size of the effect{of_unit}")
+    axis.set_ylabel(f"σ: scatter of the effect{of_unit}")
+
+
+def draw_sobol(axis: plt.Axes, found: Indices, names: Sequence[str]) -> None:
+    place = np.arange(len(names))
+    for index, width, colour, label, beside in (
+        ("ST", 0.8, SKY, "total index", -0.27),
+        ("S1", 0.3, BLUE, "first-order index", 0.0),
+    ):
+        axis.barh(place, found.table[index], width, color=colour, label=label)
+        axis.errorbar(
+            found.table[index], place + beside, xerr=found.table[f"{index}_conf"], fmt="none", ecolor=BLACK, elinewidth=0.7, capsize=1.5
+        )
+    axis.set_yticks(place, names)
+    axis.set_ylim(len(names) - 0.4, -0.6)
+    axis.grid(axis="y", visible=False)
     axis.axvline(0, color=GREY, linewidth=0.6)
-    whole = f"effect over the whole range [{found.unit}]"
-    axis.set_xlabel(whole if found.method == "morris" else "share of the variance")
+    axis.set_xlabel("share of the variance; bars of error: 95 %")

@@ -9,15 +9,20 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure as Drawing
+from matplotlib.ticker import MaxNLocator
 from scipy.optimize import brentq
 
 from .figures import add_legend
+from .names import Shown, of_column, of_parameter
 from .results import MissingResult, events_of, read_table
 from .study import Runs
-from .style import BLACK, BLUE, GREEN, GREY, VERMILION, WIDTH
+from .style import BLACK, BLUE, GREEN, GREY, VERMILION, WIDTH, mark_decades
 
-#: Contours of the least film thickness [um]. A film of three times the roughness of its surfaces separates them.
-FILM_CONTOURS = (0.01, 0.03, 0.1, 0.3, 1.0, 3.0)
+#: Values whose largest is more than this many times the least ask for a logarithmic scale.
+WIDE_RATIO = 30.0
+
+#: Colours of a map reach over these percentiles of its values where they leave less than this share of the whole range.
+OUTER_PERCENTILES, KEPT_RANGE = (1, 99), 0.75
 
 #: Strobed points that differ by less than this share of the clearance are one point.
 SAME_POINT = 2e-3
@@ -36,61 +41,108 @@ def grid(runs: Runs, x: str, y: str, column: str) -> tuple[np.ndarray, np.ndarra
     return found.columns.to_numpy(dtype=float), found.index.to_numpy(dtype=float), found.to_numpy(dtype=float)
 
 
-def mark_failed(axis: Axes, runs: Runs, x: str, y: str, scale: float = 1.0) -> None:
+def mark_failed(axis: Axes, runs: Runs, x: str, y: str, scale: tuple[float, float] = (1.0, 1.0)) -> None:
     """Crosses where runs failed."""
     if not runs.done.all():
         failed = runs.table[~runs.done]
-        axis.plot(scale * failed[x], failed[y], "x", color=VERMILION, markersize=4, label="failed")
+        axis.plot(scale[0] * failed[x], scale[1] * failed[y], "x", color=VERMILION, markersize=4, label="failed")
 
 
-def draw_film(axis: Axes, runs: Runs) -> plt.cm.ScalarMappable:
-    """The least film thickness [um] over clearance and speed."""
-    clearance, speed, film = grid(runs, "joint.clearance", "initial.crank_speed", "min_film_thickness")
-    film = 1e6 * film
-    norm = LogNorm(1e-3, 10.0)
-    image = axis.pcolormesh(1e6 * clearance, speed, film, norm=norm, cmap="viridis", shading="nearest")
-    levels = [level for level in FILM_CONTOURS if np.nanmin(film) < level < np.nanmax(film)]
-    if levels:
-        lines = axis.contour(1e6 * clearance, speed, film, levels=levels, colors="white", linewidths=0.8)
-        long = [level for level, parts in zip(lines.levels, lines.allsegs) if sum(map(len, parts)) > 12]
-        axis.clabel(lines, long, fmt=lambda value: f"{value:g} µm", fontsize=7)
-    mark_failed(axis, runs, "joint.clearance", "initial.crank_speed", 1e6)
-    return image
+def is_even_in_logarithm(values: np.ndarray) -> bool:
+    """Whether a parameter's values are spaced evenly in their logarithm rather than themselves."""
+    steps = np.unique(np.asarray(values, dtype=float))
+    if len(steps) < 3 or steps[0] <= 0:
+        return False
+    plain, ratio = np.diff(steps), np.diff(np.log(steps))
+    return bool(np.std(ratio) / np.mean(ratio) < 0.5 * np.std(plain) / np.mean(plain))
 
 
-def draw_contact(axis: Axes, runs: Runs) -> plt.cm.ScalarMappable:
-    """The share of time in contact [%] over clearance and speed."""
-    clearance, speed, share = grid(runs, "joint.clearance", "initial.crank_speed", "contact_time_fraction")
-    norm = Normalize(60.0, 100.0)
-    image = axis.pcolormesh(1e6 * clearance, speed, 100 * share, norm=norm, cmap="magma", shading="nearest")
-    mark_failed(axis, runs, "joint.clearance", "initial.crank_speed", 1e6)
-    return image
+def scale_axis(axis: Axes, which: str, values: np.ndarray) -> None:
+    """A logarithmic axis for values that are even in their logarithm."""
+    if is_even_in_logarithm(values):
+        getattr(axis, f"set_{which}scale")("log")
+        mark_decades(getattr(axis, f"{which}axis"))
+
+
+def spans_decades(values: np.ndarray) -> bool:
+    """Whether values ask for a logarithmic scale."""
+    finite = values[np.isfinite(values)]
+    return bool(finite.size and finite.min() > 0 and finite.max() > WIDE_RATIO * finite.min())
+
+
+def colour_scale(values: np.ndarray) -> tuple[Normalize, str]:
+    """Range of colours for the values of a map, and at which ends values lie beyond it ("neither", "min", "max" or "both"): a few
+    far ones do not take the colours from all others."""
+    finite = values[np.isfinite(values)]
+    as_log = spans_decades(finite)
+    bend = np.log if as_log else np.asarray
+    low, high = np.percentile(finite, OUTER_PERCENTILES)
+    if bend(high) - bend(low) > KEPT_RANGE * (bend(finite.max()) - bend(finite.min())):
+        low, high = finite.min(), finite.max()
+    below, above = finite.min() < low, finite.max() > high
+    extend = {(False, False): "neither", (True, False): "min", (False, True): "max", (True, True): "both"}[(below, above)]
+    return (LogNorm if as_log else Normalize)(low, high), extend
+
+
+def is_constant(runs: Runs, column: str) -> bool:
+    values = runs.table.loc[runs.done, column].astype(float)
+    return bool(values.nunique(dropna=True) <= 1)
+
+
+def is_grid(runs: Runs, x: str, y: str) -> bool:
+    """Whether runs are numbers on a grid of two parameters, one at each of its points."""
+    table = runs.table
+    if not all(pd.api.types.is_numeric_dtype(table[name]) for name in (x, y)) or table.duplicated([x, y]).any():
+        return False
+    return table[x].nunique() * table[y].nunique() == len(table)
+
+
+def map_panel(drawing: Drawing, axis: Axes, runs: Runs, x: str, y: str, column: str) -> None:
+    """A column of a study over its two parameters, the colour bar below."""
+    xs, ys, values = grid(runs, x, y, column)
+    shown_x, shown_y = of_parameter(x, xs), of_parameter(y, ys)
+    shown = of_column(column, runs.units[column], values)
+    values = shown.factor * values
+    norm, extend = colour_scale(values)
+    colours = "viridis" if column.startswith("min_film") and shown.factor > 0 else "magma"
+    image = axis.pcolormesh(shown_x.factor * xs, shown_y.factor * ys, values, norm=norm, cmap=colours, shading="nearest")
+    if isinstance(norm, LogNorm) and colours == "viridis":
+        exponents = range(int(np.floor(np.log10(norm.vmin))), int(np.ceil(np.log10(norm.vmax))) + 1)
+        levels = [m * 10.0**k for k in exponents for m in (1, 3) if np.nanmin(values) < m * 10.0**k < np.nanmax(values)]
+        if levels:
+            lines = axis.contour(shown_x.factor * xs, shown_y.factor * ys, values, levels=levels, colors="white", linewidths=0.8)
+            long = [level for level, parts in zip(lines.levels, lines.allsegs) if sum(map(len, parts)) > 12]
+            axis.clabel(lines, long, fmt=lambda value: f"{value:g}", fontsize=7)
+    mark_failed(axis, runs, x, y, (shown_x.factor, shown_y.factor))
+    scale_axis(axis, "x", xs)
+    scale_axis(axis, "y", ys)
+    axis.set_xlabel(shown_x.label)
+    axis.set_ylabel(shown_y.label)
+    axis.grid(visible=False)
+    bar = drawing.colorbar(image, ax=axis, location="bottom", label=shown.label, extend=extend, aspect=30, pad=0.02)
+    if isinstance(norm, LogNorm):
+        mark_decades(bar.ax.xaxis)
 
 
 def draw_maps(studies: dict[str, Runs]) -> Drawing:
     """Both films of simulations I and IV over clearance and speed."""
-    drawing, axes = plt.subplots(2, 2, figsize=(WIDTH, 5.4), sharex=True, sharey=True)
+    drawing, axes = plt.subplots(2, 2, figsize=(WIDTH, 7.2))
+    x, y = "joint.clearance", "initial.crank_speed"
     for row, number in zip(axes, ("I", "IV")):
         carried, touching = studies[f"map_{number}"], studies[f"map_{number}_oscillating"]
-        image = draw_film(row[0], carried)
-        drawing.colorbar(image, ax=row[0], label="least film thickness [µm]")
-        row[0].set_title(
-            f"{number}, Pinkus–Sternlicht: contact {100 * np.nanmax(carried['contact_time_fraction']):.3g} %"
-        )
-        image = draw_contact(row[1], touching)
-        drawing.colorbar(image, ax=row[1], label="time in contact [%]", extend="min")
-        row[1].set_title(f"{number}, oscillating film")
-        row[0].set_ylabel("crank speed [rad/s]")
-    for axis in axes.flat:
-        axis.set(xscale="log", yscale="log")
-        axis.grid(visible=False)
-        axis.set_xticks([10, 20, 50, 100, 200], ["10", "20", "50", "100", "200"])
-        axis.set_yticks([50, 100, 200, 500, 1000], ["50", "100", "200", "500", "1000"])
-        axis.minorticks_off()
-    for axis in axes[1]:
-        axis.set_xlabel("clearance [µm]")
+        map_panel(drawing, row[0], carried, x, y, "min_film_thickness")
+        share = 100 * np.nanmax(carried["contact_time_fraction"].astype(float))
+        row[0].set_title(f"{number}, Pinkus–Sternlicht film: in contact {share:.3g} %")
+        map_panel(drawing, row[1], touching, x, y, "contact_time_fraction")
+        row[1].set_title(f"{number}, oscillating film{failed_note(touching)}")
     drawing.suptitle("When does the film carry the pin? Constant crank speed, after four revolutions")
     return drawing
+
+
+def failed_note(runs: Runs) -> str:
+    """What a title says of runs that failed."""
+    failed = int((~runs.done).sum())
+    return f"; {failed} of {len(runs.table)} runs failed (×)" if failed else ""
 
 
 def describe_maps(studies: dict[str, Runs]) -> list[str]:
@@ -112,9 +164,11 @@ def read_strobe(path: Path, runs: Runs) -> pd.DataFrame:
     """NAME.strobe.csv, with the parameters of each point's run beside it."""
     if not path.exists():
         raise MissingResult(f"no result {path}")
-    strobe, _ = read_table(path)
+    strobe, units = read_table(path)
     parameters = runs.table.columns[1 : runs.table.columns.get_loc("status")]
-    return strobe.merge(runs.table[["run", *parameters]], on="run", validate="many_to_one")
+    found = strobe.merge(runs.table[["run", *parameters]], on="run", validate="many_to_one")
+    found.attrs = units
+    return found
 
 
 def period(points: np.ndarray, tolerance: float) -> int:
@@ -144,39 +198,62 @@ def with_ratios(strobe: pd.DataFrame, clearance: float | None, speed: float | No
     )
 
 
-def draw_bifurcation(strobes: dict[str, pd.DataFrame]) -> Drawing:
-    """Strobed points over clearance and over speed."""
-    drawing, axes = plt.subplots(2, 2, figsize=(WIDTH, 5.2), sharey="row")
-    columns = (
-        ("bifurcation_clearance", "joint.clearance", 1e6, "clearance [µm], at 524 rad/s", "log"),
-        ("bifurcation_speed", "initial.crank_speed", 1.0, "crank speed [rad/s], at 100 µm", "linear"),
+def strobe_panel(axis: Axes, strobe: pd.DataFrame, parameter: str, column: str, repeats: np.ndarray, label: str = "") -> None:
+    """Points of a column once in a revolution over the parameter, coloured by the revolutions after which each run's repeat."""
+    shown = of_parameter(parameter, strobe[parameter])
+    for mask, colour, size, name in (
+        (repeats == 0, BLACK, 0.5, f"does not repeat within {LONGEST_PERIOD} revolutions"),
+        (repeats > 1, VERMILION, 3.0, f"repeats after 2 to {LONGEST_PERIOD} revolutions"),
+        (repeats == 1, BLUE, 3.0, "repeats every revolution"),
+    ):
+        points = strobe[mask]
+        axis.scatter(
+            shown.factor * points[parameter], points[column], s=size, c=colour, linewidths=0, rasterized=True, label=name
+        )
+    scale_axis(axis, "x", strobe[parameter])
+    axis.set_xlabel(shown.label)
+    axis.set_ylabel(label)
+
+
+#: Columns of a strobe over the clearance, or over the speed at which it turns.
+RATIOS = {
+    "eccentricity_ratio_y": "eccentricity across the cylinder / c",
+    "velocity_ratio": "piston velocity / (c · crank speed)",
+}
+
+
+def draw_bifurcation(strobes: dict[str, tuple[pd.DataFrame, str, str]], title: str) -> Drawing:
+    """Strobed points over a parameter: for each study its points, the parameter and what else is held."""
+    drawing, axes = plt.subplots(
+        len(RATIOS), len(strobes), figsize=(WIDTH, 0.6 + 2.4 * len(RATIOS)), sharey="row", sharex="col", squeeze=False
     )
-    for (name, parameter, unit, label, scale), (above, below) in zip(columns, axes.T):
-        strobe = strobes[name]
-        settled = periods(strobe, parameter)
-        repeats = strobe[parameter].map(settled).to_numpy()
-        for axis, column in ((above, "eccentricity_ratio_y"), (below, "velocity_ratio")):
-            for mask, colour, size in (
-                (repeats == 0, BLACK, 0.3),
-                (repeats > 1, VERMILION, 3.0),
-                (repeats == 1, BLUE, 3.0),
-            ):
-                axis.scatter(
-                    unit * strobe.loc[mask, parameter],
-                    strobe.loc[mask, column],
-                    s=size,
-                    c=colour,
-                    linewidths=0,
-                    rasterized=True,
-                )
-            axis.set_xscale(scale)
-        below.set_xlabel(label)
-    axes[0][0].set_ylabel("eccentricity across / c")
-    axes[1][0].set_ylabel("piston velocity / (c · crank speed)")
-    drawing.suptitle(
-        "Flores slider-crank, dry: state at the dead centre in 80 revolutions\n"
-        f"blue: the same in each, red: repeats after 2 to {LONGEST_PERIOD}, black: does not"
-    )
+    for (strobe, parameter, held), panels in zip(strobes.values(), axes.T):
+        repeats = strobe[parameter].map(periods(strobe, parameter)).to_numpy()
+        for axis, (column, label) in zip(panels, RATIOS.items()):
+            strobe_panel(axis, strobe, parameter, column, repeats, label if axis in axes[:, 0] else "")
+        panels[0].set_title(held)
+        panels[0].set_xlabel("")
+    add_legend(drawing, axes.flat, markerscale=3)
+    drawing.suptitle(title)
+    return drawing
+
+
+def draw_strobes(strobe: pd.DataFrame, parameter: str, title: str) -> Drawing:
+    """The strobed columns of any study of one parameter. A run's points are one if all its columns agree within a share of the
+    column's range in the whole study."""
+    parameters = list(strobe.columns).index(parameter)
+    columns = [name for name in strobe.columns[2:parameters]]
+    scaled = strobe[columns] / (strobe[columns].max() - strobe[columns].min()).replace(0, 1)
+    found = {run: period(scaled.loc[rows.index].to_numpy(), SAME_POINT) for run, rows in strobe.groupby("run")}
+    repeats = strobe["run"].map(found).to_numpy()
+    drawing, axes = plt.subplots(len(columns), 1, figsize=(WIDTH, 0.7 + 2.2 * len(columns)), sharex=True, squeeze=False)
+    for axis, column in zip(axes[:, 0], columns):
+        shown = of_column(column, strobe.attrs.get(column, ""), strobe[column])
+        strobe_panel(axis, strobe.assign(**{column: shown.factor * strobe[column]}), parameter, column, repeats, shown.label)
+    for axis in axes[:-1, 0]:
+        axis.set_xlabel("")
+    add_legend(drawing, axes.flat, markerscale=3)
+    drawing.suptitle(title)
     return drawing
 
 
@@ -234,21 +311,26 @@ def draw_restitution(runs: Runs, measured: pd.DataFrame) -> Drawing:
         (axes[1][0], "dissipated_energy", 1.0, "dissipated in a revolution [J]"),
     )
     for axis, column, unit, label in panels:
-        axis.plot(nominal, unit * np.where(runs.done, runs[column], np.nan), ".-", color=BLUE)
-        axis.set(ylabel=label, ylim=(0, None))
-    axes[0][1].plot(nominal, 1e-3 * np.where(runs.done, runs["max_pin_force"], np.nan), ".", color=GREY)
-    axes[0][1].set_title("of a revolution, mean; grey: highest")
+        axis.plot(nominal, unit * np.where(runs.done, runs[column], np.nan), ".-", color=BLUE, label="mean over the revolutions")
+        axis.set_ylabel(label)
+    axes[0][1].plot(
+        nominal, 1e-3 * np.where(runs.done, runs["max_pin_force"], np.nan), ".", color=GREY, label="largest of all revolutions"
+    )
+    axes[0][1].set_yscale("log")
+    mark_decades(axes[0][1].yaxis)
+    for axis in (axes[0][0], axes[1][0]):
+        axis.set_ylim(bottom=0)
     axis = axes[1][1]
     axis.fill_between(measured["nominal"], measured["low"], measured["high"], color=BLUE, alpha=0.25, linewidth=0)
-    axis.plot(measured["nominal"], measured["middle"], ".-", color=BLUE, label="hard impacts, middle half")
+    axis.plot(measured["nominal"], measured["middle"], ".-", color=BLUE, label="hard impacts: median, middle half")
     line = np.linspace(0, 1, 101)
     axis.plot(line, [restitution_of_law(value) for value in line], color=VERMILION, label="the law, impact alone")
     axis.plot(line, line, color=GREEN, linestyle="--", label="as asked for")
     axis.set(ylabel="speed after / before", ylim=(0, 1.1))
     for axis in axes[1]:
         axis.set_xlabel("coefficient of restitution asked for")
-    add_legend(drawing, [axes[1][1]])
-    drawing.suptitle("Flores slider-crank, 5000 rpm, clearance 0.5 mm, dry")
+    add_legend(drawing, axes.flat)
+    drawing.suptitle(f"Flores slider-crank, 5000 rpm, clearance 0.5 mm, dry{failed_note(runs)}")
     return drawing
 
 
@@ -267,24 +349,88 @@ def describe_restitution(runs: Runs, measured: pd.DataFrame) -> str:
     return "\n".join(lines)
 
 
-def draw_curves(runs: Runs, parameter: str, columns: Sequence[str]) -> Drawing:
-    """Columns over the one parameter of any study."""
-    drawing, axes = plt.subplots(len(columns), 1, figsize=(WIDTH, 1.9 * len(columns)), sharex=True, squeeze=False)
-    for axis, column in zip(axes[:, 0], columns):
-        axis.plot(runs[parameter], np.where(runs.done, runs[column], np.nan), ".-", color=BLUE)
-        axis.set_ylabel(f"{column.replace('_', ' ')} [{runs.units[column]}]")
-    axes[-1][0].set_xlabel(parameter)
+def shown_columns(runs: Runs, columns: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Of the columns asked for, those that differ between runs, and what a title says of the others; all if none differs."""
+    varying = [column for column in columns if not is_constant(runs, column)] or list(columns)
+    notes = []
+    for column in columns:
+        if column not in varying:
+            values = runs.table.loc[runs.done, column].astype(float)
+            shown = of_column(column, runs.units[column], values)
+            value = f"{shown.factor * values.iloc[0]:.4g} {shown.unit}".strip() if len(values) else "no value"
+            notes.append(f"{shown.name}: {value} in every run")
+    return varying, notes
+
+
+def titled(drawing: Drawing, title: str, runs: Runs, notes: Sequence[str]) -> Drawing:
+    drawing.suptitle("\n".join([f"{title}{failed_note(runs)}", *notes]))
     return drawing
 
 
-def draw_map(runs: Runs, x: str, y: str, columns: Sequence[str]) -> Drawing:
+def draw_curves(runs: Runs, parameter: str, columns: Sequence[str], title: str) -> Drawing:
+    """Columns over the one parameter of any study; crosses on the axis where runs failed."""
+    columns, notes = shown_columns(runs, columns)
+    drawing, axes = plt.subplots(len(columns), 1, figsize=(WIDTH, 0.5 + 1.9 * len(columns)), sharex=True, squeeze=False)
+    is_number = pd.api.types.is_numeric_dtype(runs.table[parameter])
+    places = runs.table[parameter].to_numpy() if is_number else np.arange(len(runs.table))
+    shown_x = of_parameter(parameter, places) if is_number else Shown(parameter)
+    for axis, column in zip(axes[:, 0], columns):
+        values = np.where(runs.done, runs[column], np.nan).astype(float)
+        shown = of_column(column, runs.units[column], values)
+        axis.plot(shown_x.factor * places, shown.factor * values, ".-" if is_number else "o", color=BLUE)
+        axis.set_ylabel(shown.label)
+        if spans_decades(shown.factor * values):
+            axis.set_yscale("log")
+            mark_decades(axis.yaxis)
+        failed = ~runs.done
+        if failed.any():
+            axis.plot(
+                shown_x.factor * places[failed], np.zeros(failed.sum()), "x", color=VERMILION, markersize=4, clip_on=False,
+                transform=axis.get_xaxis_transform(), label="failed",
+            )
+    if is_number:
+        scale_axis(axes[-1][0], "x", places)
+    else:
+        axes[-1][0].set_xticks(places, [str(value) for value in runs.table[parameter]], rotation=30, ha="right")
+    axes[-1][0].set_xlabel(shown_x.label)
+    return titled(drawing, title, runs, notes)
+
+
+def draw_map(runs: Runs, x: str, y: str, columns: Sequence[str], title: str) -> Drawing:
     """Columns over the two parameters of any study."""
-    drawing, axes = plt.subplots(len(columns), 1, figsize=(WIDTH, 3.2 * len(columns)), sharex=True, squeeze=False)
-    for axis, column in zip(axes[:, 0], columns):
-        image = axis.pcolormesh(*grid(runs, x, y, column), shading="nearest")
-        drawing.colorbar(image, ax=axis, label=f"{column.replace('_', ' ')} [{runs.units[column]}]")
-        mark_failed(axis, runs, x, y)
-        axis.set_ylabel(y)
-        axis.grid(visible=False)
-    axes[-1][0].set_xlabel(x)
-    return drawing
+    columns, notes = shown_columns(runs, columns)
+    across = min(len(columns), 2)
+    rows = -(-len(columns) // across)
+    drawing, axes = plt.subplots(rows, across, figsize=(WIDTH * (0.5 + 0.25 * across), 0.5 + 3.4 * rows), squeeze=False)
+    for axis, column in zip(axes.flat, columns):
+        map_panel(drawing, axis, runs, x, y, column)
+    for axis in axes.flat[len(columns) :]:
+        axis.remove()
+    return titled(drawing, title, runs, notes)
+
+
+def draw_scatter(runs: Runs, parameters: Sequence[str], columns: Sequence[str], title: str) -> Drawing:
+    """Columns over each parameter of a sample, or of a grid of more than two parameters."""
+    columns, notes = shown_columns(runs, columns)
+    height = 0.5 + 1.7 * len(columns)
+    drawing, axes = plt.subplots(len(columns), len(parameters), figsize=(WIDTH, height), sharex="col", sharey="row", squeeze=False)
+    for row, column in zip(axes, columns):
+        values = np.where(runs.done, runs[column], np.nan).astype(float)
+        shown = of_column(column, runs.units[column], values)
+        for axis, parameter in zip(row, parameters):
+            is_number = pd.api.types.is_numeric_dtype(runs.table[parameter])
+            shown_x = of_parameter(parameter, runs[parameter]) if is_number else Shown(parameter.replace("_", " "))
+            places = shown_x.factor * runs[parameter] if is_number else runs.table[parameter].astype(str)
+            axis.plot(places, shown.factor * values, ".", color=BLUE, markersize=2)
+            if spans_decades(shown.factor * values):
+                axis.set_yscale("log")
+                mark_decades(axis.yaxis)
+            axis.margins(x=0.06)
+            if is_number:
+                axis.xaxis.set_major_locator(MaxNLocator(3))
+            else:
+                axis.tick_params(axis="x", rotation=60)
+            if axis in axes[-1]:
+                axis.set_xlabel(shown_x.label.replace(" [", "\n["))
+        row[0].set_ylabel(shown.label.replace(" [", "\n["))
+    return titled(drawing, title, runs, notes)
