@@ -8,6 +8,7 @@ Ends with the line "N passed, N failed".
 
 import contextlib
 import io
+import re
 import sys
 import tempfile
 import unittest
@@ -24,7 +25,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 import pandas as pd  # noqa: E402
 
-from gudgeon_plots import compare, elastic_pictures, figures, film_pressure, report_page, ringing, tradeoff  # noqa: E402
+from gudgeon_plots import compare, elastic_pictures, figures, film_pressure, language, report_page, ringing, tradeoff  # noqa: E402
 from gudgeon_plots.figure_map import read_figures  # noqa: E402
 from gudgeon_plots.quantities import QUANTITIES, once_a_cycle  # noqa: E402
 from gudgeon_plots.results import (  # noqa: E402
@@ -433,28 +434,38 @@ def empty_panels(drawing: plt.Figure) -> list[str]:
 
 
 class Drawing(unittest.TestCase):
+    #: One of each kind.
+    KINDS = "6.1 6.2 6.5 6.6 6.7 6.8 6.25 6.32 A.2 B.3 B.5 B.6 B.7 B.9 B.13 B.21".split()
+
     def test_figures_are_drawn_and_no_text_overlaps(self) -> None:
         table = read_figures()
-        for number in (
-            "6.1",
-            "6.2",
-            "6.5",
-            "6.6",
-            "6.7",
-            "6.8",
-            "6.25",
-            "A.2",
-            "B.3",
-            "B.5",
-            "B.6",
-            "B.7",
-            "B.9",
-            "B.21",
-        ):
+        for number in self.KINDS:
             drawing = figures.draw(table[number], MadeResults())
             self.assertEqual(overlaps(drawing), [], number)
             self.assertEqual(empty_panels(drawing), [], number)
             plt.close(drawing)
+
+    def test_figures_in_portuguese(self) -> None:
+        table, portuguese = read_figures(), language.Language("pt")
+        for number in self.KINDS:
+            drawing = figures.draw(table[number], MadeResults())
+            portuguese.localise(drawing)
+            self.assertEqual(overlaps(drawing), [], number)
+            texts = [text.get_text() for text in written(drawing)]
+            self.assertFalse([text for text in texts if re.search(r"\d\.\d", text.removeprefix(number))], number)
+            self.assertTrue(drawing._suptitle.get_text().startswith(number), number)
+            plt.close(drawing)
+        self.assertEqual(portuguese.unknown, set())
+
+    def test_every_title_and_quantity_has_its_portuguese(self) -> None:
+        portuguese = language.Language("pt")
+        for figure in read_figures().values():
+            said = portuguese.say(f"{figure.number}  {figure.title}")
+            self.assertNotEqual(said, f"{figure.number}  {figure.title}")
+        for quantity in QUANTITIES.values():
+            portuguese.say(quantity.label)
+            portuguese.say(quantity.below_label)
+        self.assertEqual(portuguese.unknown, set())
 
     def test_first_impacts_of_elastic_rods(self) -> None:
         time = np.linspace(0, 1e-3, 101)
@@ -754,6 +765,35 @@ class Ringing(unittest.TestCase):
         shown = (self.X > low) & (self.X < high)
         turns = np.count_nonzero(np.diff(np.sign(burst[shown])))
         self.assertTrue(12 <= turns <= 40, turns)
+
+
+class Portuguese(unittest.TestCase):
+    def test_texts(self) -> None:
+        portuguese = language.Language("pt")
+        for english, said in (
+            ("crank speed [rad/s]", "velocidade da manivela [rad/s]"),
+            ("6.1  Simulation I: crank speed", "6.1  Simulação I: velocidade da manivela"),
+            ("Pinkus–Sternlicht film, film at least 4.22 µm", "filme de Pinkus–Sternlicht, filme mínimo 4,22 µm"),
+            ("piston velocity\n[m/s]", "velocidade do pistão\n[m/s]"),
+            ("$10^{0.5}$", "$10^{0{,}5}$"),
+            ("1.75", "1,75"),
+        ):
+            self.assertEqual(portuguese.say(english), said)
+        self.assertEqual(portuguese.unknown, set())
+        self.assertEqual(portuguese.say("a thing nobody knows 1.5"), "a thing nobody knows 1,5")
+        self.assertEqual(portuguese.unknown, {"a thing nobody knows 1.5"})
+
+    def test_english_stays_as_it_is(self) -> None:
+        english = language.Language()
+        self.assertEqual(english.say("crank speed 1.5"), "crank speed 1.5")
+
+    def test_numbers_at_axes(self) -> None:
+        drawing, axes = plt.subplots()
+        axes.plot([0, 1], [0, 0.5])
+        language.Language("pt").localise(drawing)
+        drawing.canvas.draw()
+        self.assertIn("0,2", [tick.get_text() for tick in axes.get_xticklabels()])
+        plt.close(drawing)
 
 
 class Windows(unittest.TestCase):

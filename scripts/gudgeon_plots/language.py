@@ -17,7 +17,7 @@ from .portuguese import TEXTS, UNTRANSLATED
 
 LANGUAGES = ("en", "pt")
 
-_WORD = re.compile(r"[^\W\d_]{2,}[²³]?")
+_WORD = re.compile(r"[^\W\d_²³]{2,}")
 _COMMA = re.compile(r"(?<=\d)\.(?=\d)")
 
 

@@ -203,13 +203,13 @@ def widened(bounds: tuple[float, float], least: float) -> tuple[float, float]:
 
 
 QUANTITIES: dict[str, Quantity] = {
-    "crank_speed": series("crank speed [rad/s]", column("crank_speed")),
+    "crank_speed": series("crank speed\n[rad/s]", column("crank_speed")),
     "crank_acceleration": series("crank acceleration\n[10³ rad/s²]", column("crank_acceleration", 1e-3)),
     "rod_acceleration": series("rod acceleration\n[10³ rad/s²]", column("rod_acceleration", 1e-3)),
-    "piston_velocity": series("piston velocity [m/s]", column("piston_velocity")),
+    "piston_velocity": series("piston velocity\n[m/s]", column("piston_velocity")),
     "piston_acceleration": series("piston acceleration\n[10³ m/s²]", column("piston_acceleration", 1e-3)),
-    "crank_moment": series("crank moment [N m]", column("crank_moment")),
-    "pin_force": series("pin reaction [kN]", pin_force, contact_peaks),
+    "crank_moment": series("crank moment\n[N m]", column("crank_moment")),
+    "pin_force": series("pin reaction\n[kN]", pin_force, contact_peaks),
     "film_thickness": Quantity(
         "film thickness [µm]",
         None,
