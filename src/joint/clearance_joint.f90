@@ -79,6 +79,8 @@ module clearance_joint
     procedure, non_overridable :: read_state
     procedure, non_overridable :: admits
     procedure, non_overridable :: loads
+    procedure, non_overridable, private :: film_motion
+    procedure, non_overridable, private :: motion_of_film
     procedure :: contact_weight
     procedure :: n_states
     procedure :: complete
@@ -91,11 +93,36 @@ module clearance_joint
     procedure :: exchange
   end type clearance_joint_t
 
+  interface
+    !> Derivatives of the force and the moment on the journal (rows F_x, F_y, moment) by e_x, e_y, e_x', e_y' and the journal's speed
+    !> (columns), for implicit integration. Surfaces that stick have none.
+    pure module subroutine slopes(self, bodies, motion, joint, own, derivatives)
+      class(clearance_joint_t), intent(in) :: self
+      type(bodies_t), intent(in) :: bodies
+      type(motion_t), intent(in) :: motion
+      type(joint_motion_t), intent(in) :: joint
+      type(joint_loads_t), intent(in) :: own
+      real(dp), intent(out) :: derivatives(3, 5)
+    end subroutine slopes
+
+    !> What the states of the friction law or of an elastic film add to `slopes`: derivatives of the force and the moment on the
+    !> journal (rows F_x, F_y, moment) by these states, and of the states' rates by e_x, e_y, e_x', e_y', the journal's speed and the
+    !> states (columns).
+    pure module subroutine state_slopes(self, bodies, motion, joint, own, by_states, of_rates)
+      class(clearance_joint_t), intent(in) :: self
+      type(bodies_t), intent(in) :: bodies
+      type(motion_t), intent(in) :: motion
+      type(joint_motion_t), intent(in) :: joint
+      type(joint_loads_t), intent(in) :: own
+      real(dp), intent(out) :: by_states(3, most_joint_states), of_rates(most_joint_states, 5 + most_joint_states)
+    end subroutine state_slopes
+  end interface
+
 contains
 
-  !> Claim the eccentricity, the states of the friction law and its work. The eccentricity is measured by the clearance, its rate by the clearance in the time of one radian. Measured
-  !> (scripts/compare_adams.sh, simulation IV, c = 20 um): at the relative tolerance 1e-4 the pin is off by 4e-5 c at the
-  !> end, at 1e-6 by 4e-9 c, at 1e-12 by 1e-14 c; in (q, A, x) rounding alone makes 4e-12 c.
+  !> Claim the eccentricity, the states of the friction law and its work. The eccentricity is measured by the clearance, its rate by
+  !> the clearance in the time of one radian. Measured (scripts/compare_adams.sh, simulation IV, c = 20 um): at the relative tolerance
+  !> 1e-4 the pin is off by 4e-5 c at the end, at 1e-6 by 4e-9 c, at 1e-12 by 1e-14 c; in (q, A, x) rounding alone makes 4e-12 c.
   !>
   !> A journal may have a speed of its own where the crank hardly turns: see `own_speed`. The rate is measured by a hundredth of
   !> that in which it crosses the clearance: at first a journal at rest is slow, and it may stay so.
@@ -256,20 +283,20 @@ contains
         call find_contact(self, y, joint, own)
         force = own%contact
         if (allocated(self%transition)) then
-          call share_with_film(self, film_motion(self, bodies, motion, joint), joint, own)
+          call share_with_film(self, self%film_motion(bodies, motion, joint), joint, own)
           force = own%film + own%contact
         end if
       else if (allocated(self%asperities)) then
-        call find_mixed(self, film_motion(self, bodies, motion, joint), joint, own)
+        call find_mixed(self, self%film_motion(bodies, motion, joint), joint, own)
         force = own%film + own%contact
       else if (allocated(self%elastic)) then
         call find_elastic(self, bodies, motion, joint, own)
         force = own%film
       else
         if (allocated(self%transition)) then
-          call self%transition%film_force(self%film, film_motion(self, bodies, motion, joint), own%film, own%moment)
+          call self%transition%film_force(self%film, self%film_motion(bodies, motion, joint), own%film, own%moment)
         else
-          call self%film%film_force(film_motion(self, bodies, motion, joint), own%film, own%moment)
+          call self%film%film_force(self%film_motion(bodies, motion, joint), own%film, own%moment)
         end if
         force = own%film
       end if
@@ -361,7 +388,7 @@ contains
       joint%film_rate = self%elastic%velocity(self%film, e, -own%film) + drawn*[-e(2), e(1)]
     end associate
     if (self%film%film_moment) &
-      own%moment = self%elastic%moment(self%film, motion_of_film(self, bodies, motion, joint), -own%film)
+      own%moment = self%elastic%moment(self%film, self%motion_of_film(bodies, motion, joint), -own%film)
   end subroutine find_elastic
 
   !> The thickness of an elastic film, which is not that of its pin's place, in the terms of a penetration. Its rate has no part of the
@@ -381,11 +408,11 @@ contains
 
   !> The motion as an elastic film sees it.
   pure type(film_motion_t) function motion_of_film(self, bodies, motion, joint) result(film)
-    type(clearance_joint_t), intent(in) :: self
+    class(clearance_joint_t), intent(in) :: self
     type(bodies_t), intent(in) :: bodies
     type(motion_t), intent(in) :: motion
     type(joint_motion_t), intent(in) :: joint
-    film = film_motion(self, bodies, motion, joint)
+    film = self%film_motion(bodies, motion, joint)
     film%eccentricity = joint%film_eccentricity
     film%eccentricity_rate = joint%film_rate
   end function motion_of_film
@@ -446,7 +473,7 @@ contains
 
   !> The motion as a film sees it. Where both bodies turn the film is drawn along by the sum of their speeds.
   pure function film_motion(self, bodies, motion, joint) result(film)
-    type(clearance_joint_t), intent(in) :: self
+    class(clearance_joint_t), intent(in) :: self
     type(bodies_t), intent(in) :: bodies
     type(motion_t), intent(in) :: motion
     type(joint_motion_t), intent(in) :: joint
@@ -464,153 +491,6 @@ contains
       if (self%place /= piston_pin) film%ideal_pin_speed = motion%crank_speed - rod_speed
     end if
   end function film_motion
-
-  !> Derivatives of the force and the moment on the journal (rows F_x, F_y, moment) by e_x, e_y, e_x', e_y' and the journal's speed
-  !> (columns), for implicit integration. Surfaces that stick have none.
-  pure subroutine slopes(self, bodies, motion, joint, own, derivatives)
-    class(clearance_joint_t), intent(in) :: self
-    type(bodies_t), intent(in) :: bodies
-    type(motion_t), intent(in) :: motion
-    type(joint_motion_t), intent(in) :: joint
-    type(joint_loads_t), intent(in) :: own
-    real(dp), intent(out) :: derivatives(3, 5)
-    real(dp) :: of_loads(3, 5 + n_film_states), of_rates(n_film_states, 5 + n_film_states)
-    derivatives = 0
-    if (self%phase == phase_contact) then
-      if (allocated(self%transition)) then
-        call weighted_slopes(self, film_motion(self, bodies, motion, joint), joint, derivatives)
-      else
-        call contact_slopes(self, joint, own, derivatives)
-      end if
-    end if
-    if (self%phase /= phase_film) return
-    if (allocated(self%transition)) then
-      call self%transition%film_derivatives(self%film, film_motion(self, bodies, motion, joint), derivatives)
-    else if (allocated(self%elastic)) then
-      call self%elastic%slopes(self%film, motion_of_film(self, bodies, motion, joint), &
-        joint%eccentricity - joint%film_eccentricity, self%film%film_moment, of_loads, of_rates)
-      derivatives = of_loads(:, :5)
-    else if (allocated(self%asperities)) then
-      call mixed_derivatives(self%film, self%asperities, self%pin_radius, film_motion(self, bodies, motion, joint), derivatives)
-    else
-      call self%film%force_derivatives(film_motion(self, bodies, motion, joint), derivatives)
-    end if
-  end subroutine slopes
-
-  !> Those of a contact and a film that share the load: of both, weighted, and of the weights.
-  pure subroutine weighted_slopes(self, motion, joint, derivatives)
-    type(clearance_joint_t), intent(in) :: self
-    type(film_motion_t), intent(in) :: motion
-    type(joint_motion_t), intent(in) :: joint
-    real(dp), intent(out) :: derivatives(3, 5)
-    type(joint_loads_t) :: full
-    real(dp) :: w, slope, of_film(3, 5), change(3), force(2), moment, ratio
-    real(dp) :: friction_slopes(1 + most_friction_states, 1 + most_friction_states)
-    integer :: i
-    ratio = 0
-    if (allocated(self%friction)) call find_friction_slopes(self, joint, ratio, friction_slopes)
-    full%normal_force = self%contact%normal_force(joint%penetration, joint%penetration_rate, self%impact_speed)
-    full%friction_force = ratio*full%normal_force
-    call contact_slopes(self, joint, full, derivatives)
-    if (self%transition%film_is_gone) return
-    call self%transition%weight(joint%penetration, w, slope)
-    call self%transition%film_force(self%film, motion, force, moment)
-    call self%transition%film_derivatives(self%film, motion, of_film)
-    associate (n => joint%normal, pressing => full%normal_force, friction => full%friction_force)
-      change = [-pressing*n(1) - friction*n(2), friction*n(1) - pressing*n(2), friction*self%pin_radius] - [force, moment]
-      derivatives = w*derivatives + (1 - w)*of_film
-      do i = 1, 2
-        derivatives(:, i) = derivatives(:, i) + slope*n(i)*change
-      end do
-    end associate
-  end subroutine weighted_slopes
-
-  pure subroutine contact_slopes(self, joint, own, derivatives)
-    class(clearance_joint_t), intent(in) :: self
-    type(joint_motion_t), intent(in) :: joint
-    type(joint_loads_t), intent(in) :: own
-    real(dp), intent(out) :: derivatives(3, 5)
-    real(dp) :: stiffness, damping, ratio, ratio_slope, turn(5), depth(5), rate(5), normal(5), friction(5)
-    real(dp) :: friction_slopes(1 + most_friction_states, 1 + most_friction_states)
-    integer :: i
-
-    associate (n => joint%normal)
-      call self%contact%normal_force_slopes(joint%penetration, joint%penetration_rate, self%impact_speed, stiffness, damping)
-      ratio = 0
-      ratio_slope = 0
-      if (allocated(self%friction)) then
-        call find_friction_slopes(self, joint, ratio, friction_slopes)
-        ratio_slope = friction_slopes(1, 1)
-      end if
-      turn = [-n(2), n(1), 0.0_dp, 0.0_dp, 0.0_dp]/joint%distance
-      depth = [n(1), n(2), 0.0_dp, 0.0_dp, 0.0_dp]
-      rate = turn*joint%tangential_rate + [0.0_dp, 0.0_dp, n(1), n(2), 0.0_dp]
-      normal = stiffness*depth + damping*rate
-      friction = ratio*normal + ratio_slope*own%normal_force*sliding_gradient(self, joint)
-      do i = 1, 5
-        associate (along => -normal(i) - own%friction_force*turn(i), across => friction(i) - own%normal_force*turn(i))
-          derivatives(:, i) = [along*n(1) - across*n(2), along*n(2) + across*n(1), self%pin_radius*friction(i)]
-        end associate
-      end do
-    end associate
-  end subroutine contact_slopes
-
-  !> Derivatives of the sliding speed by e_x, e_y, e_x', e_y' and the journal's speed.
-  pure function sliding_gradient(self, joint) result(gradient)
-    type(clearance_joint_t), intent(in) :: self
-    type(joint_motion_t), intent(in) :: joint
-    real(dp) :: gradient(5)
-    associate (n => joint%normal, turn_rate => joint%penetration_rate/joint%distance)
-      gradient = [n(2)*turn_rate, -n(1)*turn_rate, -n(2), n(1), self%pin_radius]
-    end associate
-  end function sliding_gradient
-
-  !> Friction force over normal force, and derivatives of it (row 1) and of the rates of the friction law's states (rows behind) by
-  !> the sliding speed (column 1) and these states (columns behind).
-  pure subroutine find_friction_slopes(self, joint, ratio, slopes)
-    type(clearance_joint_t), intent(in) :: self
-    type(joint_motion_t), intent(in) :: joint
-    real(dp), intent(out) :: ratio, slopes(1 + most_friction_states, 1 + most_friction_states)
-    real(dp) :: rates(most_friction_states)
-    slopes = 0
-    if (self%n_friction_states > 0) then
-      call self%friction%state_friction(joint%sliding_speed, joint%friction_states, ratio, rates)
-      call self%friction%state_slopes(joint%sliding_speed, joint%friction_states, slopes)
-    else
-      ratio = self%friction%friction_ratio(joint%sliding_speed, self%sliding)
-      slopes(1, 1) = self%friction%friction_ratio_slope(joint%sliding_speed)
-    end if
-  end subroutine find_friction_slopes
-
-  !> What the states of the friction law or of an elastic film add to `slopes`: derivatives of the force and the moment on the journal (rows F_x, F_y,
-  !> moment) by these states, and of the states' rates by e_x, e_y, e_x', e_y', the journal's speed and the states (columns).
-  pure subroutine state_slopes(self, bodies, motion, joint, own, by_states, of_rates)
-    class(clearance_joint_t), intent(in) :: self
-    type(bodies_t), intent(in) :: bodies
-    type(motion_t), intent(in) :: motion
-    type(joint_motion_t), intent(in) :: joint
-    type(joint_loads_t), intent(in) :: own
-    real(dp), intent(out) :: by_states(3, most_joint_states), of_rates(most_joint_states, 5 + most_joint_states)
-    real(dp) :: slopes(1 + most_friction_states, 1 + most_friction_states), ratio, of_loads(3, 5 + n_film_states)
-    integer :: i
-    by_states = 0
-    of_rates = 0
-    if (allocated(self%elastic)) then
-      call self%elastic%slopes(self%film, motion_of_film(self, bodies, motion, joint), &
-        joint%eccentricity - joint%film_eccentricity, self%film%film_moment, of_loads, of_rates)
-      by_states = of_loads(:, 6:)
-      return
-    end if
-    if (self%phase /= phase_contact .or. self%n_friction_states == 0) return
-    call find_friction_slopes(self, joint, ratio, slopes)
-    do i = 1, self%n_friction_states
-      associate (n => joint%normal, force => own%normal_force*slopes(1, 1 + i))
-        by_states(:, i) = [-n(2)*force, n(1)*force, self%pin_radius*force]
-      end associate
-      of_rates(i, :5) = slopes(1 + i, 1)*sliding_gradient(self, joint)
-      of_rates(i, 6:5 + self%n_friction_states) = slopes(1 + i, 2:1 + self%n_friction_states)
-    end do
-  end subroutine state_slopes
 
   !> The phase while journal and bearing are apart.
   pure integer function phase_apart(self)
