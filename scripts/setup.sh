@@ -6,6 +6,7 @@
 #   scripts/setup.sh --python  also what scripts/plot.py and scripts/report.py need, in .venv
 #   scripts/setup.sh --browser the same, and Chromium (Debian packages) for tests/test_report.py
 #   scripts/setup.sh --studies also what scripts/sensitivity.py, scripts/run_studies.sh and scripts/cluster need
+#   scripts/setup.sh --manual  also FORD, which scripts/manual.sh needs
 #
 # Needs root or sudo only to install Debian packages. An fpm that is installed here lives in .venv, with a link in
 # /usr/local/bin or ~/.local/bin. POSIX sh; leaves no option of the calling shell changed.
@@ -42,8 +43,8 @@ gudgeon_venv() {   # .venv, a virtual environment of Python, made where it is mi
 
 gudgeon_pip() { .venv/bin/python -m pip install --quiet --disable-pip-version-check "$@" >&2; }
 
-gudgeon_python() {   # the packages of the plots; pip looks only at what is missing
-  gudgeon_venv && gudgeon_pip -r scripts/requirements.txt "$@"
+gudgeon_python() {   # the packages of these lists; pip looks only at what is missing
+  gudgeon_venv && gudgeon_pip "$@"
 }
 
 # fpm 0.12 goes on linking the objects of source files that were moved or removed, and says nothing: where the list of sources is
@@ -85,21 +86,22 @@ case "${0##*/} $#" in
   "setup.sh 0") ;;
   setup.sh*)
     case "$*" in
-      --python) gudgeon_packages= ;;
+      --python) gudgeon_packages="-r scripts/requirements.txt" ;;
       --browser)
-        gudgeon_packages=
+        gudgeon_packages="-r scripts/requirements.txt"
         if ! { command -v chromium && command -v chromedriver; } >/dev/null 2>&1; then
           gudgeon_apt chromium chromium-driver || gudgeon_status=1
         fi
         ;;
-      --studies) gudgeon_packages="-r scripts/requirements-studies.txt" ;;
+      --studies) gudgeon_packages="-r scripts/requirements.txt -r scripts/requirements-studies.txt" ;;
+      --manual) gudgeon_packages="-r scripts/requirements-manual.txt" ;;
       *)
-        echo "setup: usage: scripts/setup.sh [--python | --browser | --studies]" >&2
+        echo "setup: usage: scripts/setup.sh [--python | --browser | --studies | --manual]" >&2
         gudgeon_status=2
         ;;
     esac
     if [ "$gudgeon_status" = 0 ]; then
-      # shellcheck disable=SC2086  # an option and its value, or nothing
+      # shellcheck disable=SC2086  # options and their values
       gudgeon_python $gudgeon_packages || gudgeon_status=1
     fi
     ;;

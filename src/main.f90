@@ -8,7 +8,8 @@ program gudgeon
   use case_file, only: template
   use case_runner, only: case_job_t
   use study_runner, only: run_study_file
-  use study_file, only: study_template
+  use study_file, only: study_template, study_reference
+  use reference_pages, only: case_reference, results_reference
   use gudgeon_progress, only: progress_wanted, tell
   use gudgeon_summary, only: build_advice
   use text_tools, only: printable
@@ -36,6 +37,15 @@ program gudgeon
   else if (options%template) then
     if (options%sweep) call say(study_template(), status)
     if (.not. options%sweep) call say(template(), status)
+  else if (options%reference /= '') then
+    select case (options%reference)
+    case ('case')
+      call say(case_reference(), status)
+    case ('study')
+      call say(study_reference(), status)
+    case default
+      call say(results_reference(), status)
+    end select
   else if (options%sweep) then
     call run_studies(options, status)
   else

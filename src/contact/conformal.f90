@@ -164,7 +164,7 @@ contains
       b = arc_of_load(load(penetration/self%clearance, self%compliance))
       pressure = normal_force/(pi*self%area)*(2*b/sqrt(b**2 + 1) + asinh(b)/(b**2*(b**2 + 1)))
     end if
-    call row%put('contact_half_angle[rad]', 2*atan(b))
-    call row%put('peak_pressure[Pa]', pressure)
+    call row%put('contact_half_angle[rad]', 2*atan(b), 'half-angle of the arc on which pin and bearing touch; 0 without contact')
+    call row%put('peak_pressure[Pa]', pressure, 'largest contact pressure; 0 without contact')
   end subroutine put_columns
 end module conformal

@@ -200,6 +200,6 @@ contains
     type(trace_row_t), intent(inout) :: row
     associate (unused => self)
     end associate
-    call row%put('bristle[m]', states(1))
+    call row%put('bristle[m]', states(1), 'mean deflection of the bristles, the state of the friction law')
   end subroutine put_columns
 end module bristle_law

@@ -129,11 +129,12 @@ contains
     real(dp), intent(in) :: sin_crank, cos_crank, pressure
     type(trace_row_t), intent(inout) :: row
     real(dp) :: volume
-    call row%put('cylinder_pressure[Pa]', pressure)
+    call row%put('cylinder_pressure[Pa]', pressure, 'absolute pressure of the gas in the cylinder')
     volume = 0
     if (row%wants(1)) volume = self%cylinder%volume_at(sin_crank, cos_crank)
-    call row%put('cylinder_volume[m3]', volume)
-    call row%put('gas_force[N]', self%force(pressure))
+    call row%put('cylinder_volume[m3]', volume, 'volume of the gas in the cylinder')
+    call row%put('gas_force[N]', self%force(pressure), &
+      'force of the gas on the piston along -x: pressure difference to the crankcase times bore area')
   end subroutine put_columns
 
   !> Derivative of the force by the crank angle [N/rad].

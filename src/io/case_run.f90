@@ -23,7 +23,7 @@ module case_run
   private
   public :: case_run_t, name_file
 
-  integer, parameter :: room_for_summary = 12288   !! bytes: twice what the longest have
+  integer, parameter :: room_for_summary = 12288   !! [bytes], twice what the longest have
 
   !> A run is prepared, begins where `start` says, and goes. Its files are BASE.csv, with contacts BASE.events.csv, BASE.summary.csv
   !> and BASE.checkpoint. What goes wrong on the way is in `error`.

@@ -17,6 +17,7 @@ module command_line
     real(dp) :: checkpoint_interval = 60          !! seconds between checkpoints of a run; 0: none
     logical :: resume = .false.                   !! go on where runs were stopped
     logical :: certify = .false.                  !! find out how far runs can be believed
+    character(len=:), allocatable :: reference    !! case, study or results: a page of the manual; empty: none
     logical :: check = .false., template = .false., quiet = .false., help = .false., version = .false.
     character(len=:), allocatable :: progress     !! auto, always, never
     character(len=:), allocatable :: cases(:)     !! paths of case files, or of study files, blanks behind
@@ -32,12 +33,13 @@ module command_line
     logical :: takes_value = .false.
   end type option_t
 
-  type(option_t), parameter :: options(15) = [ &
+  type(option_t), parameter :: options(16) = [ &
     option_t('out', 'o', .true.), option_t('set', 's', .true.), option_t('accuracy', 'a', .true.), &
     option_t('jobs', 'j', .true.), option_t('progress', '', .true.), option_t('check', '', .false.), &
     option_t('resume', '', .false.), option_t('checkpoint', '', .true.), option_t('certify', '', .false.), &
     option_t('template', '', .false.), option_t('quiet', 'q', .false.), option_t('help', 'h', .false.), &
-    option_t('version', 'V', .false.), option_t('fresh', '', .false.), option_t('rows', '', .true.)]
+    option_t('version', 'V', .false.), option_t('fresh', '', .false.), option_t('rows', '', .true.), &
+    option_t('reference', '', .true.)]
 
   character(len=*), parameter :: hint = '; gudgeon --help lists the options'
   integer, parameter :: most_jobs = 1024
@@ -55,6 +57,7 @@ contains
     line%out = 'results'
     line%accuracy = ''
     line%progress = 'auto'
+    line%reference = ''
     allocate (character(len=len(arguments)) :: line%overrides(size(arguments)), line%cases(size(arguments)))
     only_cases = .false.
     i = 1
@@ -81,7 +84,7 @@ contains
     end do
     call shorten(line%overrides, line%override_count)
     call shorten(line%cases, line%case_count)
-    if (line%help .or. line%version .or. line%template) return
+    if (line%help .or. line%version .or. line%template .or. line%reference /= '') return
     if (size(line%cases) == 0) then
       if (line%sweep) call fail(error, 'no study file given'//hint, status_command_line)
       if (.not. line%sweep) call fail(error, 'no case file given'//hint, status_command_line)
@@ -211,6 +214,9 @@ contains
       line%check = .true.
     case ('template')
       line%template = .true.
+    case ('reference')
+      line%reference = value
+      if (all(value /= ['case   ', 'study  ', 'results'])) wanted = 'must be case, study or results'
     case ('quiet')
       line%quiet = .true.
     case ('certify')

@@ -22,7 +22,7 @@ module gudgeon_checkpoint
   integer, parameter :: format_version = 2
   character(len=*), parameter :: restart_hint = '; without --resume the run starts from the beginning'
 
-  integer, parameter :: buffer_size = 65536   !! bytes: it stays in the cache
+  integer, parameter :: buffer_size = 65536   !! [bytes]; it stays in the cache
 
   !> How far a file has come: its length and a checksum of all bytes up to there.
   type :: file_mark_t

@@ -19,34 +19,44 @@ contains
     type(joint_loads_t), intent(in) :: loads
     type(trace_row_t), intent(inout) :: row
     if (joint%place /= piston_pin) row%place = name_prefix(joint%place)
-    call row%put('eccentricity_x[m]', motion%eccentricity(1))
-    call row%put('eccentricity_y[m]', motion%eccentricity(2))
+    call row%put('eccentricity_x[m]', motion%eccentricity(1), 'centre of the pin from the centre of its bearing, along x')
+    call row%put('eccentricity_y[m]', motion%eccentricity(2), 'the same along y')
     if (joint%place /= piston_pin) then   ! whose rates follow from crank, rod and piston only where the other pin is ideal
-      call row%put('eccentricity_rate_x[m/s]', motion%eccentricity_rate(1))
-      call row%put('eccentricity_rate_y[m/s]', motion%eccentricity_rate(2))
+      call row%put('eccentricity_rate_x[m/s]', motion%eccentricity_rate(1), 'rate of eccentricity_x')
+      call row%put('eccentricity_rate_y[m/s]', motion%eccentricity_rate(2), 'rate of eccentricity_y')
     end if
-    call row%put('eccentricity_ratio[-]', motion%distance/joint%bearing%clearance)
-    call row%put('film_thickness[m]', -motion%penetration)
-    call row%put('phase[-]', real(joint%phase, dp))
+    call row%put('eccentricity_ratio[-]', motion%distance/joint%bearing%clearance, &
+      'eccentricity over radial clearance; above 1 the pin penetrates the bearing')
+    call row%put('film_thickness[m]', -motion%penetration, &
+      'smallest gap between pin and bearing; negative where the pin penetrates')
+    call row%put('phase[-]', real(joint%phase, dp), 'what acts in the joint: 0 nothing (free flight), 1 the oil film, 2 contact')
     if (allocated(joint%contact)) then
-      call row%put('normal_force[N]', loads%normal_force)
-      call row%put('friction_force[N]', loads%friction_force)
-      call row%put('sliding_speed[m/s]', motion%sliding_speed)
+      call row%put('normal_force[N]', loads%normal_force, &
+        'contact force along the line of centres, positive where it presses; 0 without contact')
+      call row%put('friction_force[N]', loads%friction_force, &
+        'friction on the pin along the tangent t = (-n_y, n_x), n from the bearing centre to the pin centre')
+      call row%put('sliding_speed[m/s]', motion%sliding_speed, &
+        'velocity of the pin surface relative to the bearing along the same tangent')
       call joint%contact%geometry%put_columns(merge(motion%penetration, 0.0_dp, joint%phase == phase_contact), &
         loads%normal_force, row)
       if (allocated(joint%friction)) call joint%friction%put_columns(motion%friction_states, row)
     end if
     if (allocated(joint%film)) then
-      call row%put('film_force_x[N]', loads%film(1))
-      call row%put('film_force_y[N]', loads%film(2))
-      if (allocated(joint%transition)) call row%put('contact_weight[-]', joint%contact_weight(motion%penetration))
+      call row%put('film_force_x[N]', loads%film(1), 'force of the oil film on the pin along x')
+      call row%put('film_force_y[N]', loads%film(2), 'the same along y')
+      if (allocated(joint%transition)) call row%put('contact_weight[-]', joint%contact_weight(motion%penetration), &
+        'share of the contact in the load of a weighted transition: 0 film alone, 1 contact alone')
       if (allocated(joint%elastic)) call put_elastic_film(joint, motion, row)
       if (allocated(joint%asperities)) then
-        call row%put('asperity_force[N]', loads%normal_force)
-        call row%put('friction_force[N]', loads%friction_force)
-        call row%put('sliding_speed[m/s]', motion%sliding_speed)
+        call row%put('asperity_force[N]', loads%normal_force, &
+          'contact force of the asperities along the line of centres, positive where it presses')
+        call row%put('friction_force[N]', loads%friction_force, &
+          'friction on the pin along the tangent t = (-n_y, n_x), n from the bearing centre to the pin centre')
+        call row%put('sliding_speed[m/s]', motion%sliding_speed, &
+          'velocity of the pin surface relative to the bearing along the same tangent')
       end if
-      if (joint%film%film_moment) call row%put('film_moment[N.m]', film_moment(joint, loads))
+      if (joint%film%film_moment) call row%put('film_moment[N.m]', film_moment(joint, loads), &
+        'moment of the oil shear on the pin about its centre, positive from x to y')
       call put_film_figures(joint, motion, loads, row)
     end if
     row%place = ''
@@ -59,12 +69,13 @@ contains
     type(trace_row_t), intent(inout) :: row
     real(dp) :: deflection(2), stored
     deflection = motion%eccentricity - motion%film_eccentricity
-    call row%put('film_eccentricity_x[m]', motion%film_eccentricity(1))
-    call row%put('film_eccentricity_y[m]', motion%film_eccentricity(2))
-    call row%put('wall_deflection[m]', norm2(deflection))
+    call row%put('film_eccentricity_x[m]', motion%film_eccentricity(1), &
+      'eccentricity of the film between elastic walls, along x: eccentricity less wall deflection')
+    call row%put('film_eccentricity_y[m]', motion%film_eccentricity(2), 'the same along y')
+    call row%put('wall_deflection[m]', norm2(deflection), 'elastic deflection of the bearing walls under the film')
     stored = 0
     if (row%wants(1)) stored = joint%elastic%energy(deflection)
-    call row%put('wall_energy[J]', stored)
+    call row%put('wall_energy[J]', stored, 'elastic energy stored in the bearing walls')
   end subroutine put_elastic_film
 
   !> The columns of a film that take more work than its force, each only where the case names it.
@@ -85,9 +96,12 @@ contains
       call row%skip(columns)
       return
     end if
-    if (.not. joint%film%film_moment) call row%put_on_request('film_moment[N.m]', figures%moment)
-    call row%put_on_request('film_power[W]', figures%power)
-    if (joint%film%gives_pressure()) call row%put_on_request('max_film_pressure[Pa]', figures%max_pressure)
-    if (joint%film%gives_side_flow()) call row%put_on_request('film_side_flow[m3/s]', figures%side_flow)
+    if (.not. joint%film%film_moment) call row%put_on_request('film_moment[N.m]', figures%moment, &
+      'moment of the oil shear on the pin about its centre, positive from x to y')
+    call row%put_on_request('film_power[W]', figures%power, 'power that the film takes from the bodies, by pressure and shear')
+    if (joint%film%gives_pressure()) call row%put_on_request('max_film_pressure[Pa]', figures%max_pressure, &
+      'largest pressure in the film')
+    if (joint%film%gives_side_flow()) call row%put_on_request('film_side_flow[m3/s]', figures%side_flow, &
+      'oil flow out of both ends of the bearing')
   end subroutine put_film_figures
 end module joint_columns

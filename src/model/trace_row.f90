@@ -1,19 +1,22 @@
-!> A row of a trace: who has a quantity gives its column, name and value, in one line.
+!> A row of a trace: who has a quantity gives its column, name, value and meaning, in one call.
 !>
-!> The same calls serve two passes. Before a run they collect the names of the columns that a scene has; in every row they give the
-!> values. What takes work is asked for only where a column that needs it is wanted (`wants`).
+!> The same calls serve two passes. Before a run they collect the names and meanings of the columns that a scene has; in every row
+!> they give the values. Values that take work are computed only where the trace has a column that needs them (`wants`).
 module trace_row
   use gudgeon_kinds, only: dp
   implicit none
   private
-  public :: trace_row_t, column_list_t, name_length, most_columns
+  public :: trace_row_t, column_list_t, name_length, meaning_length, most_columns
 
   integer, parameter :: name_length = 40
+  integer, parameter :: meaning_length = 160
   integer, parameter :: most_columns = 100
 
   !> The columns of one trace.
   type :: column_list_t
     character(len=name_length), allocatable :: names(:)   !! of all that the scene has, with their units
+    character(len=meaning_length), allocatable :: meanings(:)
+    logical, allocatable :: on_request(:)                 !! columns that are not standard
     integer, allocatable :: id(:)                         !! those of the trace, as positions among the names
   end type column_list_t
 
@@ -24,7 +27,8 @@ module trace_row
     logical :: wanted(most_columns)             !! columns whose values the trace has
     real(dp) :: values(most_columns)            !! of the columns so far (without an initial value, which every row would pay for)
     character(len=name_length), allocatable :: names(:)   !! in the pass that collects them
-    logical, allocatable :: on_request(:)       !! then: columns that are not standard
+    character(len=meaning_length), allocatable :: meanings(:)   !! in that pass
+    logical, allocatable :: on_request(:)       !! in that pass: columns that are not standard
   contains
     procedure, non_overridable :: put
     procedure, non_overridable :: put_on_request
@@ -42,7 +46,7 @@ contains
     self%n = 0
     self%is_naming = .true.
     self%wanted = .false.
-    allocate (self%names(most_columns))
+    allocate (self%names(most_columns), self%meanings(most_columns))
     allocate (self%on_request(most_columns), source=.false.)
   end subroutine collect_names
 
@@ -59,24 +63,26 @@ contains
   end subroutine choose
 
   !> The next column.
-  pure subroutine put(self, name, value)
+  pure subroutine put(self, name, value, says)
     class(trace_row_t), intent(inout) :: self
     character(len=*), intent(in) :: name    !! with its unit: normal_force[N]
     real(dp), intent(in) :: value
+    character(len=*), intent(in) :: says    !! its meaning and sign, as the manual gives them
     self%n = self%n + 1
     if (self%is_naming) then
       self%names(self%n) = trim(self%place)//name
+      self%meanings(self%n) = says
     else
       self%values(self%n) = value
     end if
   end subroutine put
 
   !> The next column, which a trace has only if the case names it.
-  pure subroutine put_on_request(self, name, value)
+  pure subroutine put_on_request(self, name, value, says)
     class(trace_row_t), intent(inout) :: self
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name, says
     real(dp), intent(in) :: value
-    call self%put(name, value)
+    call self%put(name, value, says)
     if (self%is_naming) self%on_request(self%n) = .true.
   end subroutine put_on_request
 

@@ -34,6 +34,8 @@ contains
     call row%collect_names()
     call put_columns(scene, 0.0_dp, nothing, 0.0_dp, 0.0_dp, row)
     list%names = row%names(:row%n)
+    list%meanings = row%meanings(:row%n)
+    list%on_request = row%on_request(:row%n)
     allocate (wanted(row%n), source=.not. row%on_request(:row%n))
     if (case%output%columns /= 'standard') &
       call read_names(case%output%columns, list%names, row%on_request(:row%n), ideal_joint, wanted, error)
@@ -111,14 +113,16 @@ contains
     type(trace_row_t), intent(inout) :: row
     real(dp) :: energy
     integer :: i
-    call row%put('time[s]', t)
+    call row%put('time[s]', t, 'time since the start of the run')
     call put_motion(now%motion, now%accelerations, row)
-    call row%put('crank_moment[N.m]', now%crank_moment)
+    call row%put('crank_moment[N.m]', now%crank_moment, &
+      'moment of the drive on the crank, positive in the sense of crank_angle; at constant speed the one that holds the speed')
     call put_forces(scene, now, row)
     energy = 0
     if (row%wants(2)) energy = scene%energy(now%motion)
-    call row%put('energy[J]', energy)
-    call row%put('energy_residual[J]', energy - initial_energy - work)
+    call row%put('energy[J]', energy, 'kinetic and potential energy of all bodies, with the energy stored in elastic members')
+    call row%put('energy_residual[J]', energy - initial_energy - work, &
+      'energy minus initial energy minus the work of all non-conservative forces and of the drive; 0 for an exact integration')
     do i = 1, scene%n_joints
       call put_joint_columns(scene%joints(i), now%relative(i), now%joint(i), row)
     end do
@@ -132,17 +136,17 @@ contains
     type(accelerations_t), intent(in) :: a
     type(trace_row_t), intent(inout) :: row
     real(dp) :: rod_angle
-    call row%put('crank_angle[rad]', m%crank_angle)
+    call row%put('crank_angle[rad]', m%crank_angle, 'angle of the crank from +x towards +y, counted on over whole revolutions')
     rod_angle = 0
     if (row%wants(1)) rod_angle = atan2(m%sin_rod, m%cos_rod)
-    call row%put('rod_angle[rad]', rod_angle)
-    call row%put('piston_position[m]', m%piston_position)
-    call row%put('crank_speed[rad/s]', m%crank_speed)
-    call row%put('rod_speed[rad/s]', m%rod_speed)
-    call row%put('piston_velocity[m/s]', m%piston_velocity)
-    call row%put('crank_acceleration[rad/s2]', a%crank)
-    call row%put('rod_acceleration[rad/s2]', a%rod)
-    call row%put('piston_acceleration[m/s2]', a%piston)
+    call row%put('rod_angle[rad]', rod_angle, 'angle of the connecting rod from the cylinder axis, positive from +x towards -y')
+    call row%put('piston_position[m]', m%piston_position, 'height of the piston pin bearing above the crank axis, along x')
+    call row%put('crank_speed[rad/s]', m%crank_speed, 'rate of crank_angle')
+    call row%put('rod_speed[rad/s]', m%rod_speed, 'rate of rod_angle')
+    call row%put('piston_velocity[m/s]', m%piston_velocity, 'rate of piston_position')
+    call row%put('crank_acceleration[rad/s2]', a%crank, 'rate of crank_speed')
+    call row%put('rod_acceleration[rad/s2]', a%rod, 'rate of rod_speed')
+    call row%put('piston_acceleration[m/s2]', a%piston, 'rate of piston_velocity')
   end subroutine put_motion
 
   !> The forces between the bodies.
@@ -151,15 +155,18 @@ contains
     type(evaluation_t), intent(in) :: now
     type(trace_row_t), intent(inout) :: row
     type(reactions_t) :: reaction
-    call row%put('pin_force_x[N]', now%loads%force(1, piston_pin))
-    call row%put('pin_force_y[N]', now%loads%force(2, piston_pin))
+    call row%put('pin_force_x[N]', now%loads%force(1, piston_pin), &
+      'force of the joint on the piston pin (on the rod), along x; the piston takes the opposite force')
+    call row%put('pin_force_y[N]', now%loads%force(2, piston_pin), 'the same along y')
     if (row%wants(7)) reaction = scene%chain%reactions(now%motion, now%accelerations, now%loads)
-    call row%put('crankpin_force_x[N]', reaction%crankpin(1))
-    call row%put('crankpin_force_y[N]', reaction%crankpin(2))
-    call row%put('crank_bearing_force_x[N]', reaction%crank_bearing(1))
-    call row%put('crank_bearing_force_y[N]', reaction%crank_bearing(2))
-    call row%put('guide_force[N]', reaction%guide)
-    call row%put('frame_force_x[N]', reaction%frame(1))
-    call row%put('frame_force_y[N]', reaction%frame(2))
+    call row%put('crankpin_force_x[N]', reaction%crankpin(1), 'force of the crank on the rod at the crank pin, along x (F3)')
+    call row%put('crankpin_force_y[N]', reaction%crankpin(2), 'the same along y (F4)')
+    call row%put('crank_bearing_force_x[N]', reaction%crank_bearing(1), &
+      'force of the frame on the crank at its main bearing, along x (F1)')
+    call row%put('crank_bearing_force_y[N]', reaction%crank_bearing(2), 'the same along y (F2)')
+    call row%put('guide_force[N]', reaction%guide, 'force of the piston on its guide along y; the piston takes the opposite (F7)')
+    call row%put('frame_force_x[N]', reaction%frame(1), &
+      'force of the frame on the mechanism along x: crank bearing, guide and cylinder head together; the frame takes the opposite')
+    call row%put('frame_force_y[N]', reaction%frame(2), 'the same along y')
   end subroutine put_forces
 end module gudgeon_columns

@@ -9,10 +9,11 @@ module study_file
   use case_schema, only: key_t, group_definition_t, find_key, is_group_of_cases
   use case_loader, only: load_model
   use case_text, only: resolved_text, template_text
+  use reference_pages, only: keys_reference
   use study_definition, only: study_t, parameter_t, text_t, study_schema_of
   implicit none
   private
-  public :: read_study, study_template
+  public :: read_study, study_template, study_reference
 
 contains
 
@@ -25,6 +26,15 @@ contains
     text = template_text('A parameter study of gudgeon with every key there is. Keys marked required have no default.', &
       groups, keys)
   end function study_template
+
+  !> Every group and key of a study file, as a page of the manual in Markdown.
+  function study_reference() result(text)
+    character(len=:), allocatable :: text
+    type(group_definition_t), allocatable :: groups(:)
+    type(key_t), allocatable :: keys(:)
+    call study_schema_of(groups, keys)
+    text = keys_reference(groups, keys)
+  end function study_reference
 
   !> Read and check a study file; paths in it become paths from here.
   subroutine read_study(path, study, error)

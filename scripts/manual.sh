@@ -1,0 +1,22 @@
+#!/bin/sh
+# Builds the manual into build/manual by FORD: the pages of data/manual, the measured tables of data/measured, the reference pages that the
+# program prints, and the comments of the source. Ends with an error if FORD warns of anything.
+#
+#   scripts/manual.sh [PROGRAM]      PROGRAM: a gudgeon to ask for the reference pages (default: the one of scripts/build.sh)
+cd "$(dirname "$0")/.." || exit 1
+scripts/setup.sh --manual || exit 1
+program=${1:-$(scripts/build.sh)} || exit 1
+[ -x "$program" ] || exit 1
+rm -rf build/manual build/manual_pages
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+.venv/bin/python scripts/manual_pages.py collect "$program" || exit 1
+.venv/bin/ford README.md >"$log" 2>&1
+status=$?
+if [ "$status" != 0 ] || grep -qi -e warning -e error "$log"; then
+  cat "$log" >&2
+  echo "manual: FORD failed or warned" >&2
+  exit 1
+fi
+.venv/bin/python scripts/manual_pages.py link || exit 1
+echo build/manual/index.html

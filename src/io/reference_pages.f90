@@ -1,0 +1,226 @@
+!> Reference pages of the manual in Markdown, made of the declarations of the models: the keys of case and study files, the columns
+!> and quantities of results. `gudgeon --reference` prints them.
+module reference_pages
+  use gudgeon_errors, only: error_t
+  use gudgeon_parameters, only: key_t, logical_kind
+  use case_schema, only: group_definition_t, case_schema_of, find_key
+  use case_definition, only: case_t
+  use case_file, only: parse_case, template
+  use gudgeon_columns, only: choose_columns
+  use trace_row, only: column_list_t, name_length
+  use summary_quantities, only: quantity_t, quantities_of_runs, event_columns
+  implicit none
+  private
+  public :: case_reference, results_reference, keys_reference
+
+  character(len=*), parameter :: newline = achar(10)
+
+  !> A kind of scene: what it changes in the template's case, one change a line.
+  type :: scene_kind_t
+    character(len=80) :: title = ''
+    character(len=60) :: changes(12) = ''
+  end type scene_kind_t
+
+contains
+
+  !> Every group and key of a case file.
+  function case_reference() result(text)
+    character(len=:), allocatable :: text
+    type(group_definition_t), allocatable :: groups(:)
+    type(key_t), allocatable :: keys(:)
+    call case_schema_of(groups, keys)
+    text = keys_reference(groups, keys)
+  end function case_reference
+
+  !> A section for each group, a table row for each key.
+  function keys_reference(groups, keys) result(text)
+    type(group_definition_t), intent(in) :: groups(:)
+    type(key_t), intent(in) :: keys(:)
+    character(len=:), allocatable :: text
+    integer :: group, i
+    text = ''
+    do group = 1, size(groups)
+      if (index(groups(group)%name, '.') > 0) cycle   ! the same for another joint
+      text = text//'## &'//trim(groups(group)%name)//newline//newline//sentence(trim(groups(group)%description))//newline
+      if (groups(group)%instead_of /= '') text = text//'Cannot stand beside `&'//trim(groups(group)%instead_of)//'`.'//newline
+      if (groups(group)%place /= '' .or. groups(group)%is_law) &
+        text = text//'`place = ''crank_pin''` in a second group of this name makes it that of the crank pin.'//newline
+      text = text//newline//'| key | unit | limits | default | meaning |'//newline//'|---|---|---|---|---|'//newline
+      do i = 1, size(keys)
+        if (keys(i)%group == groups(group)%name) text = text//key_row(keys, keys(i))//newline
+      end do
+      text = text//newline
+    end do
+  end function keys_reference
+
+  function key_row(keys, key) result(row)
+    type(key_t), intent(in) :: keys(:)   !! of the schema
+    type(key_t), intent(in) :: key       !! one of them
+    character(len=:), allocatable :: row, default, meaning
+    default = trim(key%default)
+    if (key%required) then
+      default = 'required'
+    else if (default == '' .and. allocated(key%laws)) then
+      default = 'depends on the law'
+    else if (key%kind > logical_kind) then
+      default = '`'''//default//'''`'
+    end if
+    meaning = sentence(trim(key%description))
+    if (allocated(key%words)) meaning = meaning//' One of `'//replaced(key%words, ', ', '`, `')//'`.'
+    if (allocated(key%laws)) then
+      associate (all_laws => keys(find_key(keys, trim(key%group), key%choice))%words)
+        if (key%laws /= all_laws) meaning = meaning//' Only with `'//key%choice//'` '//replaced(key%laws, ', ', ', ')//'.'
+      end associate
+    end if
+    row = '| `'//trim(key%name)//'` | '//trim(key%unit)//' | '//trim(key%range)//' | '//default//' | '//escaped(meaning)//' |'
+  end function key_row
+
+  !> Every column and quantity that a result file can have.
+  function results_reference() result(text)
+    character(len=:), allocatable :: text
+    character(len=name_length), allocatable :: seen(:)
+    type(scene_kind_t), allocatable :: kinds(:)
+    type(error_t), allocatable :: error
+    type(column_list_t) :: list
+    integer :: i
+    kinds = scene_kinds()
+    allocate (seen(0))
+    text = '## Columns of NAME.csv'//newline//newline
+    do i = 1, size(kinds)
+      call columns_of(kinds(i), list, error)
+      if (allocated(error)) then
+        text = error%message   ! which a test would see
+        return
+      end if
+      call add_columns(kinds(i)%title, list, seen, text)
+    end do
+    text = text//'## Columns of NAME.events.csv'//newline//newline//quantity_table(event_columns())//newline// &
+      '## Quantities of NAME.summary.csv'//newline//newline//quantity_table(quantities_of_runs())
+  end function results_reference
+
+  !> The columns of a kind of scene.
+  subroutine columns_of(kind, list, error)
+    type(scene_kind_t), intent(in) :: kind
+    type(column_list_t), intent(out) :: list
+    type(error_t), allocatable, intent(out) :: error
+    character(len=*), parameter :: rigid_and_dry(11) = [character(len=60) :: 'joint.kind=ideal', 'contact=none', 'friction=none', &
+      'lubrication=none', 'guide=none', 'elastic_rod=none', 'crankshaft=none', 'combustion=none', 'output.columns=standard', &
+      'output.ideal_twin=F', 'output.film_times=']
+    character(len=60), allocatable :: overrides(:)
+    type(case_t) :: case
+    overrides = [rigid_and_dry, pack(kind%changes, kind%changes /= '')]
+    call parse_case(template(), 'reference', overrides, case, error)
+    if (.not. allocated(error)) call choose_columns(case, .false., list, error)
+  end subroutine columns_of
+
+  !> Kinds of scenes that together have every column.
+  function scene_kinds() result(kinds)
+    type(scene_kind_t), allocatable :: kinds(:)
+    character(len=60), parameter :: play = 'joint.kind=clearance', none = '', film = 'lubrication.viscosity=0.0117', &
+      contact = 'contact.law=hertz'
+    kinds = [kind_of('Every scene', [none]), &
+      kind_of('Joint with clearance (the last three columns only with `&contact`)', [play, contact]), &
+      kind_of('Contact with `geometry = ''conformal''`', [character(len=60) :: play, contact, 'contact.geometry=conformal']), &
+      kind_of('Friction with bristles (`lugre`, `dahl`, `elasto_plastic`)', [character(len=60) :: play, contact, &
+        'friction.law=lugre', 'friction.coefficient=0.1', 'friction.stribeck_speed=0.01', 'friction.bristle_stiffness=1e4']), &
+      kind_of('Oil film', [play, film]), &
+      kind_of('Oil film of finite length', [character(len=60) :: play, film, 'lubrication.law=finite_bearing', &
+        'lubrication.variant=short']), &
+      kind_of('Film and contact that share the load', [character(len=60) :: play, film, contact, &
+        'lubrication.transition=weighted', 'lubrication.transition_depth=1e-6']), &
+      kind_of('Elastic walls (`elastic_film`)', [character(len=60) :: play, film, contact, 'lubrication.elastic_film=T']), &
+      kind_of('Asperities', [character(len=60) :: play, film, 'asperities.roughness=0.4e-6']), &
+      kind_of('Crank pin with clearance', [character(len=60) :: 'crank_pin.joint.kind=clearance', &
+        'crank_pin.joint.clearance=2e-5', 'crank_pin.joint.bearing_radius=0.02', 'crank_pin.contact.law=hertz'])]
+    kinds = [kinds, kind_of('Guide (`kind = ''friction''` has the first column alone)', [character(len=60) :: &
+      'guide.kind=clearance', 'guide.bore_clearance=1e-4', 'guide.skirt_top=0.02', 'guide.skirt_bottom=0.02', &
+      'guide.piston_radius=0.035', 'guide.piston_inertia=1e-3', 'guide.stiffness=1e8', 'guide.coefficient=0']), &
+      kind_of('Gas', [character(len=60) :: 'combustion.bore=0.07', 'combustion.compression_ratio=9', &
+        'combustion.heat_capacity_ratio=1.4', 'combustion.heat=165', 'combustion.wiebe_efficiency=5', &
+        'combustion.wiebe_form=3', 'combustion.start_deg=340', 'combustion.duration_deg=40']), &
+      kind_of('Elastic rod', [character(len=60) :: 'elastic_rod.section_area=3e-4', 'elastic_rod.section_inertia=1.5e-8']), &
+      kind_of('Elastic crankshaft', [character(len=60) :: 'crankshaft.flywheel_inertia=0.02', &
+        'crankshaft.torsional_stiffness=2e4'])]
+  end function scene_kinds
+
+  pure type(scene_kind_t) function kind_of(title, changes) result(kind)
+    character(len=*), intent(in) :: title, changes(:)
+    kind%title = title
+    kind%changes(:size(changes)) = changes
+  end function kind_of
+
+  !> The columns of a scene that no scene before had, as a section. Of the crank pin those that the piston pin has too are left out.
+  subroutine add_columns(title, list, seen, text)
+    character(len=*), intent(in) :: title
+    type(column_list_t), intent(in) :: list
+    character(len=name_length), allocatable, intent(inout) :: seen(:)
+    character(len=:), allocatable, intent(inout) :: text
+    character(len=:), allocatable :: rows, name, note
+    integer :: i, bracket
+    rows = ''
+    do i = 1, size(list%names)
+      if (any(seen == list%names(i))) cycle
+      if (is_joint_prefixed(list%names(i), seen)) cycle
+      seen = [character(len=name_length) :: seen, list%names(i)]
+      name = trim(list%names(i))
+      bracket = index(name, '[')
+      note = ''
+      if (list%on_request(i)) note = ' Only where `&output columns` names it.'
+      rows = rows//'| `'//name(:bracket - 1)//'` | '//name(bracket + 1:len(name) - 1)//' | '// &
+        escaped(sentence(trim(list%meanings(i)))//note)//' |'//newline
+    end do
+    if (rows /= '') text = text//'### '//trim(title)//newline//newline//'| column | unit | meaning |'//newline//'|---|---|---|'// &
+      newline//rows//newline
+  end subroutine add_columns
+
+  !> Whether a column is that of the piston pin behind `crank_pin_`.
+  pure logical function is_joint_prefixed(name, names)
+    character(len=*), intent(in) :: name, names(:)
+    is_joint_prefixed = .false.
+    if (index(name, 'crank_pin_') == 1) is_joint_prefixed = any(names == name(11:))
+  end function is_joint_prefixed
+
+  function quantity_table(list) result(text)
+    type(quantity_t), intent(in) :: list(:)
+    character(len=:), allocatable :: text
+    integer :: i
+    text = '| name | unit | meaning |'//newline//'|---|---|---|'//newline
+    do i = 1, size(list)
+      text = text//'| `'//trim(list(i)%name)//'` | '//trim(list(i)%unit)//' | '// &
+        escaped(sentence(trim(list(i)%meaning)))//' |'//newline
+    end do
+  end function quantity_table
+
+  !> With a capital letter and a full stop.
+  pure function sentence(text) result(whole)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: whole
+    whole = text
+    if (whole == '') return
+    if (whole(1:1) >= 'a' .and. whole(1:1) <= 'z' .and. verify(whole(2:2), 'abcdefghijklmnopqrstuvwxyz ') == 0) &
+      whole(1:1) = achar(iachar(whole(1:1)) - 32)
+    if (whole(len(whole):) /= '.') whole = whole//'.'
+  end function sentence
+
+  !> Without what Markdown would take for a column of a table, or for HTML.
+  pure function escaped(text) result(safe)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: safe
+    safe = replaced(replaced(replaced(text, '|', '\|'), '<', '&lt;'), '*', '\*')
+  end function escaped
+
+  pure function replaced(text, old, new) result(out)
+    character(len=*), intent(in) :: text, old, new
+    character(len=:), allocatable :: out, rest
+    integer :: at
+    out = ''
+    rest = text
+    do
+      at = index(rest, old)
+      if (at == 0) exit
+      out = out//rest(:at - 1)//new
+      rest = rest(at + len(old):)
+    end do
+    out = out//rest
+  end function replaced
+end module reference_pages
