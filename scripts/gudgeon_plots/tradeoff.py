@@ -277,7 +277,7 @@ def recommendation(table: pd.DataFrame, reference: Reference, digits: Sequence[i
 
 
 def markdown(name: str, table: pd.DataFrame, reference: Reference, digits: Sequence[int]) -> list[str]:
-    """Rows of the table in cases/README.md."""
+    """Rows of the table in data/measured/tradeoff.md."""
     end = float(reference.run["time"][-1])
     known = f"{reference.error:.0e} up to {1e3 * reference.horizon:.3g} of {1e3 * end:.3g} ms"
     rows = []

@@ -1,5 +1,5 @@
 !> The accuracy levels of the command line, as values of the case. Defined by measurement: scripts/measure_tradeoff.py --presets
-!> tells the error that each really gives in every shipped case (cases/README.md).
+!> tells the error that each really gives in every shipped case (data/measured/presets.md).
 module accuracy_presets
   implicit none
   private

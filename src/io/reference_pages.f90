@@ -79,11 +79,11 @@ contains
   function results_reference() result(text)
     character(len=:), allocatable :: text
     character(len=name_length), allocatable :: seen(:)
-    type(scene_kind_t), allocatable :: kinds(:)
+    type(scene_kind_t) :: kinds(14)
     type(error_t), allocatable :: error
     type(column_list_t) :: list
     integer :: i
-    kinds = scene_kinds()
+    call scene_kinds(kinds)
     allocate (seen(0))
     text = '## Columns of NAME.csv'//newline//newline
     do i = 1, size(kinds)
@@ -114,34 +114,36 @@ contains
   end subroutine columns_of
 
   !> Kinds of scenes that together have every column.
-  function scene_kinds() result(kinds)
-    type(scene_kind_t), allocatable :: kinds(:)
+  pure subroutine scene_kinds(kinds)
+    type(scene_kind_t), intent(out) :: kinds(14)
     character(len=60), parameter :: play = 'joint.kind=clearance', none = '', film = 'lubrication.viscosity=0.0117', &
       contact = 'contact.law=hertz'
-    kinds = [kind_of('Every scene', [none]), &
-      kind_of('Joint with clearance (the last three columns only with `&contact`)', [play, contact]), &
-      kind_of('Contact with `geometry = ''conformal''`', [character(len=60) :: play, contact, 'contact.geometry=conformal']), &
-      kind_of('Friction with bristles (`lugre`, `dahl`, `elasto_plastic`)', [character(len=60) :: play, contact, &
-        'friction.law=lugre', 'friction.coefficient=0.1', 'friction.stribeck_speed=0.01', 'friction.bristle_stiffness=1e4']), &
-      kind_of('Oil film', [play, film]), &
-      kind_of('Oil film of finite length', [character(len=60) :: play, film, 'lubrication.law=finite_bearing', &
-        'lubrication.variant=short']), &
-      kind_of('Film and contact that share the load', [character(len=60) :: play, film, contact, &
-        'lubrication.transition=weighted', 'lubrication.transition_depth=1e-6']), &
-      kind_of('Elastic walls (`elastic_film`)', [character(len=60) :: play, film, contact, 'lubrication.elastic_film=T']), &
-      kind_of('Asperities', [character(len=60) :: play, film, 'asperities.roughness=0.4e-6']), &
-      kind_of('Crank pin with clearance', [character(len=60) :: 'crank_pin.joint.kind=clearance', &
-        'crank_pin.joint.clearance=2e-5', 'crank_pin.joint.bearing_radius=0.02', 'crank_pin.contact.law=hertz'])]
-    kinds = [kinds, kind_of('Guide (`kind = ''friction''` has the first column alone)', [character(len=60) :: &
+    kinds(1) = kind_of('Every scene', [none])
+    kinds(2) = kind_of('Joint with clearance (the last three columns only with `&contact`)', [play, contact])
+    kinds(3) = kind_of('Contact with `geometry = ''conformal''`', [character(len=60) :: play, contact, &
+      'contact.geometry=conformal'])
+    kinds(4) = kind_of('Friction with bristles (`lugre`, `dahl`, `elasto_plastic`)', [character(len=60) :: play, contact, &
+      'friction.law=lugre', 'friction.coefficient=0.1', 'friction.stribeck_speed=0.01', 'friction.bristle_stiffness=1e4'])
+    kinds(5) = kind_of('Oil film', [play, film])
+    kinds(6) = kind_of('Oil film of finite length', [character(len=60) :: play, film, 'lubrication.law=finite_bearing', &
+      'lubrication.variant=short'])
+    kinds(7) = kind_of('Film and contact that share the load', [character(len=60) :: play, film, contact, &
+      'lubrication.transition=weighted', 'lubrication.transition_depth=1e-6'])
+    kinds(8) = kind_of('Elastic walls (`elastic_film`)', [character(len=60) :: play, film, contact, 'lubrication.elastic_film=T'])
+    kinds(9) = kind_of('Asperities', [character(len=60) :: play, film, 'asperities.roughness=0.4e-6'])
+    kinds(10) = kind_of('Crank pin with clearance', [character(len=60) :: 'crank_pin.joint.kind=clearance', &
+      'crank_pin.joint.clearance=2e-5', 'crank_pin.joint.bearing_radius=0.02', 'crank_pin.contact.law=hertz'])
+    kinds(11) = kind_of('Guide (`kind = ''friction''` has the first column alone)', [character(len=60) :: &
       'guide.kind=clearance', 'guide.bore_clearance=1e-4', 'guide.skirt_top=0.02', 'guide.skirt_bottom=0.02', &
-      'guide.piston_radius=0.035', 'guide.piston_inertia=1e-3', 'guide.stiffness=1e8', 'guide.coefficient=0']), &
-      kind_of('Gas', [character(len=60) :: 'combustion.bore=0.07', 'combustion.compression_ratio=9', &
-        'combustion.heat_capacity_ratio=1.4', 'combustion.heat=165', 'combustion.wiebe_efficiency=5', &
-        'combustion.wiebe_form=3', 'combustion.start_deg=340', 'combustion.duration_deg=40']), &
-      kind_of('Elastic rod', [character(len=60) :: 'elastic_rod.section_area=3e-4', 'elastic_rod.section_inertia=1.5e-8']), &
-      kind_of('Elastic crankshaft', [character(len=60) :: 'crankshaft.flywheel_inertia=0.02', &
-        'crankshaft.torsional_stiffness=2e4'])]
-  end function scene_kinds
+      'guide.piston_radius=0.035', 'guide.piston_inertia=1e-3', 'guide.stiffness=1e8', 'guide.coefficient=0'])
+    kinds(12) = kind_of('Gas', [character(len=60) :: 'combustion.bore=0.07', 'combustion.compression_ratio=9', &
+      'combustion.heat_capacity_ratio=1.4', 'combustion.heat=165', 'combustion.wiebe_efficiency=5', &
+      'combustion.wiebe_form=3', 'combustion.start_deg=340', 'combustion.duration_deg=40'])
+    kinds(13) = kind_of('Elastic rod', [character(len=60) :: 'elastic_rod.section_area=3e-4', &
+      'elastic_rod.section_inertia=1.5e-8'])
+    kinds(14) = kind_of('Elastic crankshaft', [character(len=60) :: 'crankshaft.flywheel_inertia=0.02', &
+      'crankshaft.torsional_stiffness=2e4'])
+  end subroutine scene_kinds
 
   pure type(scene_kind_t) function kind_of(title, changes) result(kind)
     character(len=*), intent(in) :: title, changes(:)
@@ -155,19 +157,21 @@ contains
     type(column_list_t), intent(in) :: list
     character(len=name_length), allocatable, intent(inout) :: seen(:)
     character(len=:), allocatable, intent(inout) :: text
-    character(len=:), allocatable :: rows, name, note
+    character(len=*), parameter :: on_request = ' Only where `&output columns` names it.'
+    character(len=:), allocatable :: rows
+    character(len=name_length) :: name
     integer :: i, bracket
     rows = ''
     do i = 1, size(list%names)
       if (any(seen == list%names(i))) cycle
       if (is_joint_prefixed(list%names(i), seen)) cycle
       seen = [character(len=name_length) :: seen, list%names(i)]
-      name = trim(list%names(i))
+      name = list%names(i)
       bracket = index(name, '[')
-      note = ''
-      if (list%on_request(i)) note = ' Only where `&output columns` names it.'
-      rows = rows//'| `'//name(:bracket - 1)//'` | '//name(bracket + 1:len(name) - 1)//' | '// &
-        escaped(sentence(trim(list%meanings(i)))//note)//' |'//newline
+      rows = rows//'| `'//name(:bracket - 1)//'` | '//name(bracket + 1:len_trim(name) - 1)//' | '// &
+        escaped(sentence(trim(list%meanings(i))))
+      if (list%on_request(i)) rows = rows//on_request
+      rows = rows//' |'//newline
     end do
     if (rows /= '') text = text//'### '//trim(title)//newline//newline//'| column | unit | meaning |'//newline//'|---|---|---|'// &
       newline//rows//newline
