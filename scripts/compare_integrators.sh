@@ -1,15 +1,34 @@
 #!/bin/sh
-# The methods adams, radau and auto side by side on the shipped scenes: error against evaluations and wall time at
-# tolerances 1e-3 to 1e-12, as a table and a picture.
+# The program's methods beside public codes on its own right-hand side, in its own coordinates and scales: SciPy's DOP853, Radau and
+# LSODA, SUNDIALS CVODE (Debian: apt-get install libsundials-dev; left out where it is missing).
 #
-#   scripts/compare_integrators.sh [DIR]      writes DIR/integrators.csv, .png and .svg (default: results)
+#   scripts/compare_integrators.sh [DIR]           writes DIR/integrators.md, .csv and .png (default: data/measured)
+#   scripts/compare_integrators.sh [DIR] --own     measures only the program's own methods anew
 #
-# Takes about a minute, nearly all of it Adams in stiff films.
+# Takes about 15 minutes, most of it Python's. Evaluations are the same on any machine with this compiler; times need a quiet one.
 cd "$(dirname "$0")/.." || exit 1
 scripts/setup.sh --python || exit 1
-out=${1:-results}
+own=
+out=data/measured
+for argument; do
+  case $argument in
+    --own) own=--own ;;
+    -*)
+      echo "compare_integrators: usage: scripts/compare_integrators.sh [DIR] [--own]" >&2
+      exit 2
+      ;;
+    *) out=$argument ;;
+  esac
+done
 mkdir -p "$out" || exit 5
-program=$(scripts/build.sh integrator_comparison) || exit 1
-"$program" >"$out/integrators.csv.part" || exit 1
-mv "$out/integrators.csv.part" "$out/integrators.csv"
-exec .venv/bin/python scripts/compare_integrators.py "$out/integrators.csv"
+scripts/build_scene_library.sh >&2 || exit 1
+folder=build/scene_library
+if [ -e /usr/include/cvode/cvode.h ]; then
+  cc -O2 -shared -fPIC scripts/cvode_run.c -o $folder/cvode_run.so -lsundials_cvode -lsundials_nvecserial \
+    -lsundials_sunmatrixdense -lsundials_sunlinsoldense -lm || exit 1
+else
+  rm -f $folder/cvode_run.so
+  echo "compare_integrators: no CVODE: apt-get install libsundials-dev" >&2
+fi
+# shellcheck disable=SC2086  # an option or nothing
+exec .venv/bin/python scripts/compare_integrators.py "$out" $own

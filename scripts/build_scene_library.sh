@@ -1,0 +1,28 @@
+#!/bin/sh
+# Builds a library of scenes that C and Python can call (scripts/scene_library.f90, optimised as the program is) and prints its
+# path. Its objects are position-independent, so they have a build folder of their own: build/scene_library.
+cd "$(dirname "$0")/.." || exit 1
+. scripts/setup.sh || exit 1
+folder=build/scene_library
+flags="-O3 -flto=auto -fno-ipa-modref -fno-tree-vectorize -fPIC"
+mkdir -p "$folder" || exit 1
+ln -sfn ../../src "$folder/src"
+cat >"$folder/fpm.toml" <<'TOML'
+name = "gudgeon"
+version = "0.1.0"
+[build]
+auto-executables = false
+[dependencies]
+openmp = "*"
+[library]
+source-dir = "src"
+TOML
+said=$(fpm build --directory "$folder" --no-prune --flag "$flags" 2>&1) &&
+  modules=$(dirname "$(find "$folder/build" -name scene_builder.mod | head -n 1)") &&
+  objects=$(find "$folder/build" -name '*.o' ! -name '*main.f90.o') &&
+  said=$(gfortran $flags -shared -fopenmp -I "$modules" -J "$folder" tests/state_watcher.f90 tests/event_watcher.f90 \
+    scripts/scene_library.f90 $objects -o "$folder/scene_library.so" 2>&1) &&
+  echo "$folder/scene_library.so" && exit 0
+printf '%s\n' "$said" >&2
+echo "build_scene_library: cannot build the library of scenes" >&2
+exit 1
