@@ -32,7 +32,7 @@ module radau
     real(dp) :: h_last = 0                 !! size of the last accepted step
     real(dp) :: error_done = 0             !! its error
     integer :: since_change = 0            !! steps since the formula was changed
-    logical :: fresh_jacobian = .false.    !! the Jacobian is that of the present point
+    logical :: fresh_jacobian = .false.    !! the Jacobian was found for this try or the one before it
     logical :: failed = .false.            !! the last try was rejected
     integer :: cautious = 0                !! steps for which the step size grows slowly, after one without convergence
     logical :: first = .true.              !! no step since the start
@@ -100,7 +100,8 @@ module radau
       real(dp), intent(in) :: x(:)
     end function scaled_norm
 
-    !> How small the rest of Newton's iteration must be, relative to the inner tolerance.
+    !> How small the rest of Newton's iteration must be, relative to the inner tolerance. (Four times this costs films 3 to
+    !> 10 % less at equal error, but a tenth of all impacts at 1e-6 are then off by 20 tolerances instead of 1.4.)
     pure real(dp) module function newton_goal(self)
       class(radau_t), intent(in) :: self
     end function newton_goal
@@ -194,11 +195,8 @@ contains
 
     error = 0
     fraction = 0.5_dp
-    if (.not. self%fresh_jacobian .and. (self%first .or. self%failed .or. self%stages%contraction > keep_jacobian_below)) then
-      call problem%jacobian(self%t, self%y, self%stages%a_p, self%stages%a_v)
-      self%statistics%jacobians = self%statistics%jacobians + 1
-      self%fresh_jacobian = .true.
-    end if
+    if (.not. self%fresh_jacobian .and. (self%first .or. self%failed .or. self%stages%contraction > keep_jacobian_below)) &
+      call find_jacobian(self, problem)
     call set_out(self, self%t, self%y, self%h)
     call self%stages%solve_stages(problem, .true., outcome)
     if (outcome == newton_diverged) call try_other_jacobian(self, problem, outcome)
@@ -226,6 +224,27 @@ contains
     call collect(self)
     self%y_new = self%y + self%stages%z_new(:, self%stages%stages())
   end subroutine attempt
+
+  !> The Jacobian of a try is that at three quarters of it, on the last step's polynomial continued: the stiffness of a film changes
+  !> within a step, and with the Jacobian of a point among the stages Newton's method contracts faster than with that of the
+  !> beginning. Measured on seven film scenes: 25 to 30 % fewer evaluations and Jacobians at equal error of 1e-4 to 1e-8; at half of the
+  !> step, or at its end, 17 to 20 %. After a start,
+  !> and where f is not defined on the way (all derivatives are 0), it is that of the beginning.
+  subroutine find_jacobian(self, problem)
+    class(radau_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    real(dp), parameter :: place = 0.75_dp   !! of the step
+    self%fresh_jacobian = .true.
+    if (self%stages%stages_done > 0) then
+      call self%stages%polynomial(1 + place*self%h/self%stages%h_done, self%y_try)
+      self%y_try = self%y_old + self%y_try
+      call problem%jacobian(self%t + place*self%h, self%y_try, self%stages%a_p, self%stages%a_v)
+      self%statistics%jacobians = self%statistics%jacobians + 1
+      if (any(abs(self%stages%a_v) > 0) .or. any(abs(self%stages%a_p) > 0)) return
+    end if
+    call problem%jacobian(self%t, self%y, self%stages%a_p, self%stages%a_v)
+    self%statistics%jacobians = self%statistics%jacobians + 1
+  end subroutine find_jacobian
 
   !> Newton's method diverged: the force may be far stiffer where it went than where its Jacobian is from (a film that the pin
   !> leaves hardly resists, one that it approaches does). Once more with the Jacobian from there, with which the
