@@ -24,6 +24,7 @@ from typing import Callable
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "scripts"))
 from assertions import Assertions  # noqa: E402
+from scene_judge.elastic import requested_columns  # noqa: E402
 from scene_judge.trace import Run, merged, run_case  # noqa: E402
 from scene_judge.verdict import judge_files, judge_scene, summary_of  # noqa: E402
 
@@ -63,6 +64,12 @@ SCENES = {
     "guide": ("flores/ideal", {"drive.kind": "'free'", "mechanism.gravity": "9.8", "guide.law": "threlfall", "guide.coefficient": "0.1", "guide.v1": "0.5",
                                "guide.viscous": "3"}),
     "films": ("joints/both_pins_lubricated", {"integrator.revolutions": "0.5"}),
+    "rod": ("elastic/dry_friction", {"integrator.revolutions": "0.1", "drive.kind": "'free'", "mechanism.gravity": "1000",
+                                     "mechanism.gravity_angle_deg": "25"}),
+    "rods": ("joints/both_pins", {"integrator.revolutions": "0.05", "elastic_rod.section_area": "9.6e-5", "elastic_rod.section_inertia": "5.12e-10"}),
+    "shaft": ("elastic/engine_crankshaft", {"integrator.revolutions": "0.3"}),
+    "bent": ("flores/ideal", {"integrator.revolutions": "0.3", "elastic_rod.section_area": "9.6e-5", "elastic_rod.section_inertia": "5.12e-10",
+                              "drive.kind": "'free'", "mechanism.gravity": "9.8"}),
     "ideal": ("flores/ideal", {"drive.kind": "'free'", "drive.damping": "0.03", "mechanism.gravity": "9.8", "initial.crank_angle_deg": "20"}),
 }
 
@@ -71,7 +78,7 @@ PHASES = {"dry": {0, 2}, "sticks": {0, 2}, "threlfall": {0, 2}, "brown_mcphee": 
           "elasto_plastic": {0, 2}, "conformal": {0, 2}, "johnson": {0, 2},
           "liner": {0, 2}, "pereira": {0, 2}, "dissipation": {0, 2}, "film": {1}, "contact": {1, 2}, "weighted": {1, 2}, "elastic": {1},
           "compressor": {1}, "two_stroke": {1}, "measured": {1}, "ramp": {1}, "motor": {1}, "both": {0, 2}, "crank": {0}, "films": {1},
-          "slap": {0, 2}, "guide": {0}, "ideal": {0}}   # 0 free flight, 1 film, 2 contact
+          "slap": {0, 2}, "guide": {0}, "ideal": {0}, "rod": {0, 2}, "rods": {0, 2}, "shaft": {1}, "bent": {0}}   # 0 free flight, 1 film, 2 contact
 
 #: (what is changed, scene, column, change of (value, row), what the verdict must say)
 CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
@@ -130,6 +137,19 @@ CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
     ("friction of the piston off", "slap", "guide_friction_force", lambda v, i: v + 1e-3, "friction on the piston"),
     ("a little more friction on the guide", "guide", "guide_friction_force", lambda v, i: v * (1 + 1e-5), "friction on the guide"),
     ("friction on the guide that is no force", "guide", "guide_friction_force", lambda v, i: -v, "Newton, piston"),
+    ("a rod bent a little more", "rod", "rod_mode_1", lambda v, i: v * (1 + 1e-6), "Lagrange, rod_mode_1"),
+    ("a rod that stretches faster", "rod", "rod_stretch_rate", lambda v, i: v * 1.001, "energy column"),
+    ("a shape that is not the integral of its rate", "rod", "rod_axial_3_rate", lambda v, i: v * 1.01, "is not the integral of its rate"),
+    ("shapes of another motion", "rod", "rod_axial_2_acceleration", lambda v, i: v * 1.0001, "Lagrange, rod_axial_2"),
+    ("force on an elastic rod off", "rod", "crankpin_force_y", lambda v, i: v * (1 + 1e-6), "Newton, rod along y"),
+    ("an elastic rod that turns on its own", "rod", "rod_acceleration", lambda v, i: v * 1.0001, "Euler, rod"),
+    ("an elastic rod between two loose pins turns on its own", "rods", "rod_acceleration", lambda v, i: v * 1.0001, "Euler, rod"),
+    ("a bent rod between two loose pins", "rods", "rod_mode_2_acceleration", lambda v, i: v * 1.0001, "Lagrange, rod_mode_2"),
+    ("a bent rod's pin elsewhere", "bent", "rod_stretch", lambda v, i: v + 1e-9, "pin in the bearing, x"),
+    ("a bent rod's pin is pulled", "bent", "rod_stretch_acceleration", lambda v, i: v * 1.001, "pin acceleration"),
+    ("more moment of an elastic shaft", "shaft", "crankshaft_moment", lambda v, i: v * (1 + 1e-6), "shaft's law"),
+    ("a flywheel that turns on its own", "shaft", "flywheel_acceleration", lambda v, i: v * 1.001, "Euler, flywheel"),
+    ("a faster flywheel", "shaft", "flywheel_speed", lambda v, i: v * (1 + 1e-6), "energy column"),
     ("another film", "film", "film_force_x", lambda v, i: v * 1.001, "film force on the pin"),
     ("more film beside a contact", "weighted", "film_force_y", lambda v, i: v * (1 + 1e-5), "contact force on the pin"),
     ("harder contact beside a film", "weighted", "normal_force", lambda v, i: v * (1 + 1e-5), "contact law"),
@@ -172,6 +192,12 @@ LIARS = [
     ("a longer skirt", "slap", "guide.skirt_top", "0.0151", "gap of a corner"),
     ("a wider bore", "slap", "guide.bore_clearance", "101e-6", "gap of a corner"),
     ("a tighter ring pack", "guide", "guide.viscous", "3.01", "friction on the guide"),
+    ("a thinner rod", "rod", "elastic_rod.section_area", "9.599e-5", "Lagrange, rod_axial_4"),
+    ("a rod that bends less", "rods", "elastic_rod.section_inertia", "5.121e-10", "Lagrange, rod_mode_2"),
+    ("a rod with less damping", "rod", "elastic_rod.axial_damping_ratio", "0.01999", "Lagrange, rod_stretch"),
+    ("a lighter shank", "bent", "elastic_rod.shank_mass", "0.2099", "Lagrange, rod_mode_1"),
+    ("a softer shaft", "shaft", "crankshaft.torsional_stiffness", "1.9999e4", "shaft's law"),
+    ("a heavier flywheel", "shaft", "crankshaft.flywheel_inertia", "0.004001", "Euler, flywheel"),
     ("thicker oil", "film", "lubrication.viscosity", "0.0118", "film law"),
     ("a deeper transition", "weighted", "lubrication.transition_depth", "3.001e-6", "contact law"),
     ("a film held farther out", "weighted", "lubrication.least_film_ratio", "0.0299", "film law"),
@@ -205,6 +231,9 @@ MUTANTS = [
      "- joint%bearing_speed*pin_radius", "both", "crank pin: sliding speed"),
     ("a corner's friction turns nothing", "piston_guide.f90", "*corner%normal_force - corner%from_com(2)*corner%friction_force", "*corner%normal_force",
      "slap", "Euler, piston"),
+    ("shapes without a part of the Coriolis force", "elastic_rod_body.f90", "on_shape(n + j) = -2*turn*", "on_shape(n + j) = -2.001_dp*turn*", "rod", "Lagrange, rod_"),
+    ("a shaft that damps the other way", "elastic_crankshaft.f90", "self%damping*(motion%flywheel_speed - motion%crank_speed)\n",
+     "self%damping*(motion%crank_speed - motion%flywheel_speed)\n", "shaft", "shaft's law"),
     ("angular momentum from nowhere", "chain_loads.f90", "-(moment + eccentricity(1)", "-(moment + 0*eccentricity(1)", "both", "Euler, rod"),
     ("a valve opens too late", "valve_gas.f90", "*(1 - opening_margin)", "*0.999_dp", "compressor", "gas law"),
     ("a measured pressure is off between its rows", "monotone_cubic.f90", "0.5_dp*abs(parabola))*2", "0.5_dp*abs(parabola))*2.2_dp",
@@ -217,6 +246,7 @@ def traced(program: Path, scene: str) -> Run:
     """A run with rows at every step and on a grid."""
     name, settings = SCENES[scene]
     case, plain = ROOT / "cases" / f"{name}.nml", {**settings, "output.digits": "17", "output.ideal_twin": ".false."}
+    plain |= requested_columns(run_case(program, case, plain))
     first = run_case(program, case, {**plain, "output.every_step": ".true."})
     if first.status:
         sys.exit(f"{scene}: {first.message}\n0 passed, 1 failed")

@@ -5,7 +5,7 @@ import bisect
 import dataclasses
 import math
 
-from .mechanics import Row
+from .mechanics import Bodies, Row
 from .quadrature import Stencil, integral, stencils
 from .rows import CONTACT, LEAST_BEND, RowChecks
 from .trace import Run
@@ -71,7 +71,7 @@ def sizes(run: Run) -> dict[str, float]:
     own = run.number("crank_pin.joint.clearance")
     return {"rod_velocity_x": speed * max(way, own), "rod_velocity_y": speed * max(way, own), "crank_pin_eccentricity_x": own,
             "crank_pin_eccentricity_y": own, "crank_speed": speed, "rod_speed": speed * way / run.number("mechanism.rod_length"), "piston_velocity": speed * way,
-            "crank_angle": 1.0, "piston_position": way, **bore_sizes(run, speed)}
+            "crank_angle": 1.0, "piston_position": way, **bore_sizes(run, speed), **elastic_sizes(run, speed)}
 
 
 def bore_sizes(run: Run, speed: float) -> dict[str, float]:
@@ -81,6 +81,17 @@ def bore_sizes(run: Run, speed: float) -> dict[str, float]:
     way = run.number("guide.bore_clearance")
     turn = 2 * way / (run.number("guide.skirt_top") + run.number("guide.skirt_bottom"))
     return {"piston_offset": way, "piston_tilt": turn, "piston_offset_rate": way * speed, "piston_tilt_rate": turn * speed}
+
+
+def elastic_sizes(run: Run, speed: float) -> dict[str, float]:
+    """Those of elastic members: what the shapes of one kind are at most, for each of them."""
+    found = {"crankshaft_twist": 1.0, "flywheel_speed": speed}
+    for what in ("", "_rate"):
+        for kind in (("rod_mode",), ("rod_stretch", "rod_axial")):
+            names = [name for name in run.columns if name.startswith(kind) and name.endswith(what or tuple("h12345678"))]
+            size = max((abs(value) for name in names for value in run.columns[name]), default=0.0)
+            found |= {name: size + 1e-300 for name in names}
+    return found
 
 
 def worst_drift(run: Run, rates: dict[str, str], stencil: list[list[Stencil]]) -> tuple[float, float, str]:
@@ -161,6 +172,8 @@ def balances(checks: RowChecks) -> Balances:
     if checks.guide and checks.guide.is_loose:
         rates |= {f"piston_{one}": f"piston_{one}_rate" for one in ("offset", "tilt")}
         rates |= {f"piston_{one}_rate": f"piston_{one}_acceleration" for one in ("offset", "tilt")}
+    run, more = elastic_rates(run, bodies)
+    rates |= more
     found.drift, found.drift_bound, found.worst = worst_drift(run, rates, stencil)
     for joint in (checks, checks.crank_pin):
         if joint and joint.friction and joint.friction.has_bristles and joint.friction.gives_way >= LEAST_BEND:
@@ -170,16 +183,30 @@ def balances(checks: RowChecks) -> Balances:
     return found
 
 
+def elastic_rates(run: Run, bodies: Bodies) -> tuple[Run, dict[str, str]]:
+    """What of elastic members is the integral of what; the run with a column of the twist's rate."""
+    rates: dict[str, str] = {}
+    if bodies.elastic:
+        for name in bodies.elastic.names:
+            rates |= {name: f"{name}_rate", f"{name}_rate": f"{name}_acceleration"}
+    if bodies.shaft:
+        twist = [a - b for a, b in zip(run.columns["flywheel_speed"], run.columns["crank_speed"])]
+        run = dataclasses.replace(run, columns=run.columns | {"crankshaft_twist_rate": twist})
+        rates |= {"crankshaft_twist": "crankshaft_twist_rate", "flywheel_speed": "flywheel_acceleration"}
+    return run, rates
+
+
 def power_of(checks: RowChecks, row: Row, i: int) -> float:
     """Of gas on the piston, of the joints on their bodies, of damping and drive on the crank [W]."""
-    power = row.get["crank_moment"] * row.turn - row.bodies.damping * row.turn**2 - row.gas * row.com_velocity[0]
+    turn = row.driven_turn()
+    power = row.get["crank_moment"] * turn - row.bodies.damping * turn**2 - row.gas * row.com_velocity[0] + row.elastic_power()
     if checks.guide:
         power += checks.guide.power(row)
     if checks.has_joint:
         moment = checks.joint_moment(row)
         power += row.force[0] * row.slip[0] + row.force[1] * row.slip[1]
         moment = row.joint_moment() if moment is None else moment
-        power += moment * row.rod_turn
+        power += moment * row.end_turn(1)
         if row.is_loose:
             power -= (moment + row.get["eccentricity_x"] * row.force[1] - row.get["eccentricity_y"] * row.force[0]) * row.tilt_rate
     if checks.crank_pin:
@@ -187,5 +214,5 @@ def power_of(checks: RowChecks, row: Row, i: int) -> float:
         moment = checks.crank_pin.joint_moment(own)
         if moment is None:
             moment = row.crank_pin_moment()
-        power += own.force[0] * own.slip[0] + own.force[1] * own.slip[1] + moment * row.turn + row.bearing_moment(moment) * row.rod_turn
+        power += own.force[0] * own.slip[0] + own.force[1] * own.slip[1] + moment * row.turn + row.bearing_moment(moment) * row.end_turn(0)
     return power

@@ -9,6 +9,7 @@ import copy
 import dataclasses
 import math
 
+from .elastic import ElasticRod
 from .trace import Run
 
 Vector = tuple[float, float]
@@ -73,17 +74,24 @@ class Bodies:
     pin_radius: float
     piston_inertia: float = 0.0           # about its centre of mass, and that from the pin, of a piston loose in its bore
     piston_com: Vector = (0.0, 0.0)
+    elastic: ElasticRod | None = None
+    shaft: tuple[float, float, float] | None = None   # of an elastic crankshaft: flywheel's inertia, stiffness, damping
 
     @classmethod
     def of(cls, run: Run) -> Bodies:
         n = run.number
-        return cls(n("mechanism.crank_length"), n("mechanism.rod_length"),
+        found = cls(n("mechanism.crank_length"), n("mechanism.rod_length"),
                    (n("mechanism.crank_mass"), n("mechanism.rod_mass"), n("mechanism.piston_mass")),
                    (n("mechanism.crank_inertia") + n("drive.flywheel_inertia"), n("mechanism.rod_inertia")),
                    run.pair("mechanism.crank_com"), run.pair("mechanism.rod_com"), n("mechanism.gravity"),
                    rotated(-1.0, 0.0, math.radians(n("mechanism.gravity_angle_deg"))), n("drive.damping"),
                    n("joint.bearing_radius") - n("joint.clearance"),
                    *((n("guide.piston_inertia"), run.pair("guide.piston_com")) if run.has_loose_guide else ()))
+        if "elastic_rod.section_area" in run.case:
+            found.elastic = ElasticRod(run)
+        if "crankshaft.flywheel_inertia" in run.case:
+            found.shaft = n("crankshaft.flywheel_inertia"), n("crankshaft.torsional_stiffness"), n("crankshaft.torsional_damping")
+        return found
 
 
 class Row:
@@ -100,7 +108,16 @@ class Row:
         self.crank_arm = rotated(*bodies.crank_com, self.q)
         self.crankpin = rotated(bodies.crank_length, 0.0, self.q)
         self.rod_arm = rotated(*bodies.rod_com, rod_angle)
-        self.rod = rotated(bodies.rod_length, 0.0, rod_angle)
+        self.chord, self.chord_rate = bodies.rod_length, 0.0
+        self.shape_state, self.shape_rates, self.shape_second = [], [], []   # chord's angle from y to x and shapes of an elastic rod
+        if bodies.elastic:
+            names = bodies.elastic.names
+            self.shape_state = [get["rod_angle"], *(get[name] for name in names)]
+            self.shape_rates = [get["rod_speed"], *(get[f"{name}_rate"] for name in names)]
+            self.shape_second = [get["rod_acceleration"], *(get[f"{name}_acceleration"] for name in names)]
+            self.chord, self.chord_rate = bodies.elastic.chord(self.shape_state[1:], self.shape_rates[1:])
+        self.is_detailed = True   # the equations of an elastic rod are looked at in this row
+        self.rod = rotated(self.chord, 0.0, rod_angle)
         self.crankpin_velocity = velocity((0.0, 0.0), self.crankpin, self.turn)
         # of the crank pin in the rod's big end, and that end's centre
         self.has_loose_crank_pin = "crank_pin_phase" in get
@@ -109,6 +126,7 @@ class Row:
         self.big_end = self.crankpin[0] - self.offset[0], self.crankpin[1] - self.offset[1]
         self.big_end_velocity = self.crankpin_velocity[0] - self.offset_rate[0], self.crankpin_velocity[1] - self.offset_rate[1]
         self.pin_velocity = velocity(self.big_end_velocity, self.rod, self.rod_turn)
+        self.pin_velocity = tuple(v + self.chord_rate * one / self.chord for v, one in zip(self.pin_velocity, self.rod))
         # of a piston loose in its bore: its centre of mass across, its tilt, and that centre from the pin's bearing
         self.is_loose = "piston_tilt" in get
         self.offset_y, self.offset_rate_y = get.get("piston_offset", 0.0), get.get("piston_offset_rate", 0.0)
@@ -118,7 +136,7 @@ class Row:
         self.bearing = self.x, self.offset_y - self.com[1]
         self.bearing_velocity = self.vx, self.offset_rate_y - self.tilt_rate * self.com[0]
         self.bore_friction = get.get("guide_friction_force", 0.0)
-        self.journal_turn, self.bearing_turn = self.rod_turn, self.tilt_rate
+        self.journal_turn, self.bearing_turn = self.end_turn(1), self.tilt_rate
         self.law_noise = 0.0   # of the column of the joint's force: it is the law's own
         self.force = get["pin_force_x"], get["pin_force_y"]
         self.gas = get.get("gas_force", 0.0)
@@ -131,12 +149,18 @@ class Row:
         b = self.bodies
         crank = velocity((0.0, 0.0), self.crank_arm, self.turn)
         rod = self.rod_velocity
+        moving = b.elastic.energies(self.shape_state, self.shape_rates, self.big_end_velocity) if b.elastic else (0.0, 0.0)
+        rigid = [0.5 * b.mass[1] * (rod[0]**2 + rod[1]**2), 0.5 * b.inertia[1] * self.rod_turn**2] if not b.elastic else [moving[0]]
         kinetic = [0.5 * b.mass[0] * (crank[0]**2 + crank[1]**2), 0.5 * b.inertia[0] * self.turn**2,
-                   0.5 * b.mass[1] * (rod[0]**2 + rod[1]**2), 0.5 * b.inertia[1] * self.rod_turn**2, 0.5 * b.mass[2] * self.com_velocity[0]**2,
+                   *rigid, 0.5 * b.mass[2] * self.com_velocity[0]**2,
                    0.5 * b.mass[2] * self.com_velocity[1]**2, 0.5 * b.piston_inertia * self.tilt_rate**2]
-        places = self.crank_arm, (self.big_end[0] + self.rod_arm[0], self.big_end[1] + self.rod_arm[1]), (
-            self.x + self.com[0], self.offset_y)
-        return kinetic, [-m * b.gravity * (b.downwards[0] * x + b.downwards[1] * y) for m, (x, y) in zip(b.mass, places)]
+        arm = b.elastic.from_big_end(self.shape_state, self.shape_rates)[0] if b.elastic else self.rod_arm
+        places = self.crank_arm, (self.big_end[0] + arm[0], self.big_end[1] + arm[1]), (self.x + self.com[0], self.offset_y)
+        strain = [moving[1]]
+        if b.shaft:
+            kinetic.append(0.5 * b.shaft[0] * self.get["flywheel_speed"]**2)
+            strain.append(0.5 * b.shaft[1] * self.get["crankshaft_twist"]**2)
+        return kinetic, strain + [-m * b.gravity * (b.downwards[0] * x + b.downwards[1] * y) for m, (x, y) in zip(b.mass, places)]
 
     @property
     def com_acceleration(self) -> Vector:
@@ -157,6 +181,9 @@ class Row:
     @property
     def rod_velocity(self) -> Vector:
         """Of the rod's centre of mass."""
+        if self.bodies.elastic:
+            own = self.bodies.elastic.from_big_end(self.shape_state, self.shape_rates)[1]
+            return self.big_end_velocity[0] + own[0], self.big_end_velocity[1] + own[1]
         return velocity(self.big_end_velocity, self.rod_arm, self.rod_turn)
 
     def crank_pin(self, columns: dict[str, list[float]], i: int) -> Row:
@@ -165,9 +192,46 @@ class Row:
         row.get = {name: column[i] for name, column in columns.items()}
         row.force = -self.get["crankpin_force_x"], -self.get["crankpin_force_y"]
         row.slip = self.offset_rate
-        row.journal_turn, row.bearing_turn = self.turn, self.rod_turn
+        row.journal_turn, row.bearing_turn = self.turn, self.end_turn(0)
         row.law_noise = self.noise() + 1e-10 * math.hypot(*row.force)   # the column's force is found from the bodies' motion
         return row
+
+    def end_turn(self, end: int) -> float:
+        """Turning speed of the rod's big end (0) and of its pin (1), from x to y."""
+        return self.bodies.elastic.end_turn(end, -self.rod_turn, self.shape_rates[1:]) if self.bodies.elastic else self.rod_turn
+
+    def crank_drive(self) -> float:
+        """Moment that turns the crank: of the drive and its damping, or of an elastic shaft [N m]."""
+        return self.get["crankshaft_moment"] if self.bodies.shaft else self.get["crank_moment"] - self.bodies.damping * self.turn
+
+    def elastic_power(self) -> float:
+        """Of the damping of the shapes and of the shaft [W]."""
+        power = 0.0
+        if self.bodies.elastic:
+            power -= sum(c * v * v for c, v in zip(self.bodies.elastic.damping, self.shape_rates[1:]))
+        if self.bodies.shaft:
+            power -= self.bodies.shaft[2] * (self.get["flywheel_speed"] - self.turn)**2
+        return power
+
+    def driven_turn(self) -> float:
+        """Turning speed of what the drive turns [rad/s]."""
+        return self.get["flywheel_speed"] if self.bodies.shaft else self.turn
+
+    def elastic_rod_sums(self, joint_moment: float, at_big_end: float) -> tuple[list[float], list[float]]:
+        """What is left of Lagrange's equations of the rod, and the sizes of their terms: big end along x and y, chord's angle, shapes."""
+        b, elastic = self.bodies, self.bodies.elastic
+        on_rod = self.get["crankpin_force_x"], self.get["crankpin_force_y"]
+        weight = scaled(b.gravity, b.downwards)
+        forces = elastic.applied(self.shape_state, self.shape_rates, weight, (on_rod, at_big_end), (self.force, joint_moment))
+        second = acceleration((0.0, 0.0), self.crankpin, self.turn, self.turn_rate)
+        if self.has_loose_crank_pin:   # Newton's law gives the big end's acceleration, which no column has
+            free = elastic.inertial_forces(self.shape_state, self.shape_rates, self.shape_second, self.big_end_velocity, (0.0, 0.0))
+            second = tuple((math.fsum(forces[k]) - free[k][0]) / b.mass[1] for k in (0, 1))
+        inertial = elastic.inertial_forces(self.shape_state, self.shape_rates, self.shape_second, self.big_end_velocity, second)
+        size = sum(math.hypot(forces[0][k], forces[1][k]) for k in range(3)) + b.mass[1] * math.hypot(*second)
+        extra = [size, size, b.rod_length * (math.hypot(*on_rod) + math.hypot(*self.force))] + [0.0] * len(elastic.names)
+        return ([rate - math.fsum(terms) for (rate, _), terms in zip(inertial, forces)],
+                [size + sum(map(abs, terms)) + more for (_, size), terms, more in zip(inertial, forces, extra)])
 
     def bearing_moment(self, moment: float) -> float:
         """What the rod takes at the crank pin about its big end's centre, from the moment on the crank: all balance about any point [N m]."""
@@ -186,19 +250,24 @@ class Row:
         b = self.bodies
         speeds = (b.crank_length + b.rod_length) * (self.turn**2 + self.rod_turn**2)
         size = sum(b.mass) * (abs(b.gravity) + speeds) + abs(self.gas) + math.hypot(*self.force)
+        if b.elastic:
+            size += sum(k * abs(x) for k, x in zip(b.elastic.stiffness, self.shape_state[1:]))
+            size += sum(b.mass) * sum(map(abs, self.shape_second[1:]))
         size += b.inertia[1] * (self.turn**2 + self.rod_turn**2 + abs(self.rod_turn_rate)) / b.rod_length
         return LAST_DIGITS * size * b.rod_length / abs(self.rod[0])   # the guide's force has the rod's slope in it
 
     def joint_moment(self) -> float:
         """Of the piston pin's joint on the rod, from the rod's motion [N m]."""
         at_big_end = self.bearing_moment(self.crank_pin_moment()) if self.has_loose_crank_pin else 0.0
+        if self.bodies.elastic:
+            return -self.elastic_rod_sums(0.0, at_big_end)[0][2]   # of the chord's equation
         return math.fsum((*self.rod_moment_terms(), -at_big_end))
 
     def crank_pin_moment(self) -> float:
         """Of the crank pin's joint on the crank, from the crank's motion [N m]."""
         b, get = self.bodies, self.get
         pin = self.crankpin[0] - self.crank_arm[0], self.crankpin[1] - self.crank_arm[1]
-        return math.fsum((b.inertia[0] * self.turn_rate, -get["crank_moment"], b.damping * self.turn,
+        return math.fsum((b.inertia[0] * self.turn_rate, -self.crank_drive(),
                           cross(self.crank_arm, (get["crank_bearing_force_x"], get["crank_bearing_force_y"])),
                           cross(pin, (get["crankpin_force_x"], get["crankpin_force_y"]))))
 
@@ -207,6 +276,28 @@ class Row:
         weight = scaled(self.bodies.gravity, self.bodies.downwards)
         forces = (self.get["crankpin_force_x"], self.get["crankpin_force_y"]), self.force
         return (weight[0] + (forces[0][0] + forces[1][0]) / self.bodies.mass[1], weight[1] + (forces[0][1] + forces[1][1]) / self.bodies.mass[1])
+
+    def pin_acceleration(self, big_end: Vector) -> Vector:
+        """Of the rod's pin, from that of its big end; of a chord whose length changes as well."""
+        at_end = acceleration(big_end, self.rod, self.rod_turn, self.rod_turn_rate)
+        if not self.bodies.elastic:
+            return at_end
+        second = self.bodies.elastic.chord_acceleration(self.shape_state[1:], self.shape_rates[1:], self.shape_second[1:])
+        across = 2 * self.chord_rate * self.rod_turn
+        return (at_end[0] + (second * self.rod[0] - across * self.rod[1]) / self.chord, at_end[1] + (second * self.rod[1] + across * self.rod[0]) / self.chord)
+
+    def elastic_balances(self, joint_moment: float | None, crank_pin_moment: float | None) -> dict[str, Balance]:
+        """Lagrange's equations of an elastic rod; without those that a moment enters which no law here gives."""
+        known = joint_moment is not None and crank_pin_moment is not None
+        at_big_end = self.bearing_moment(crank_pin_moment) if known else 0.0
+        sums = [Balance(abs(miss), size) for miss, size in zip(*self.elastic_rod_sums(joint_moment if known else 0.0, at_big_end))]
+        found = {} if self.has_loose_crank_pin else {"Newton, rod along x": sums[0], "Newton, rod along y": sums[1]}
+        if known:
+            found["Euler, rod"] = sums[2]
+        for name, one in zip(self.bodies.elastic.names, sums[3:]):
+            if known or not name.startswith("rod_mode"):
+                found[f"Lagrange, {name}"] = one
+        return found
 
     def balances(self, joint_moment: float | None, crank_pin_moment: float | None = 0.0) -> dict[str, Balance]:
         """Sums that vanish in every row, by name. `joint_moment`: of the joint on the rod [N m], None where no law here gives it;
@@ -224,17 +315,24 @@ class Row:
         # the guide's force follows from the rod's moments, so their rounding is in it
         found["guide force"] = Balance(abs(get["guide_force"] + self.force[1] - b.mass[2] * (g[1] - self.com_acceleration[1])), abs(self.force[1]) + abs(on_rod[1]) + (
             sum(map(abs, self.rod_moment_terms())) + abs(self.rod[1] * on_rod[0])) / abs(self.rod[0]))
-        if not self.has_loose_crank_pin:   # where there is no column of the rod's acceleration
+        if b.elastic:
+            if self.is_detailed:
+                found |= self.elastic_balances(joint_moment, crank_pin_moment)
+        elif not self.has_loose_crank_pin:   # where there is no column of the rod's acceleration
             found |= vector_balance("Newton, rod", scaled(b.mass[1], rod), scaled(-b.mass[1], g), scaled(-1, on_rod), scaled(-1, self.force))
         found |= vector_balance("Newton, crank", scaled(b.mass[0], crank), scaled(-b.mass[0], g), scaled(-1, on_crank), on_rod)
         arm, pin = self.crank_arm, (self.crankpin[0] - self.crank_arm[0], self.crankpin[1] - self.crank_arm[1])
         if crank_pin_moment is not None:
             found["Euler, crank"] = Balance(
-                abs(math.fsum((b.inertia[0] * self.turn_rate, -get["crank_moment"], b.damping * self.turn, cross(arm, on_crank), cross(pin, on_rod),
-                               -crank_pin_moment))),
-                abs(b.inertia[0] * self.turn_rate) + abs(get["crank_moment"]) + abs(b.damping * self.turn) + abs(crank_pin_moment)
+                abs(math.fsum((b.inertia[0] * self.turn_rate, -self.crank_drive(), cross(arm, on_crank), cross(pin, on_rod), -crank_pin_moment))),
+                abs(b.inertia[0] * self.turn_rate) + abs(get["crank_moment"]) + abs(b.damping * self.turn) + abs(self.crank_drive()) + abs(crank_pin_moment)
                 + math.hypot(*arm) * math.hypot(*on_crank) + math.hypot(*pin) * math.hypot(*on_rod))
-        if joint_moment is not None and crank_pin_moment is not None:
+        if b.shaft:
+            twisting = b.shaft[1] * get["crankshaft_twist"], b.shaft[2] * get["flywheel_speed"], -b.shaft[2] * self.turn
+            found["shaft's law"] = balance(get["crankshaft_moment"], *(-term for term in twisting))
+            found["Euler, flywheel"] = balance(b.shaft[0] * get["flywheel_acceleration"], -get["crank_moment"], b.damping * get["flywheel_speed"],
+                                               get["crankshaft_moment"])
+        if joint_moment is not None and crank_pin_moment is not None and not b.elastic:
             at_big_end = self.bearing_moment(crank_pin_moment)
             found["Euler, rod"] = Balance(
                 abs(math.fsum((*self.rod_moment_terms(), -joint_moment, -at_big_end))), abs(joint_moment) + abs(at_big_end) + sum(
@@ -246,15 +344,16 @@ class Row:
         found["pin in the bearing, y"] = balance(self.crankpin[1], -self.offset[1], self.rod[1], -self.bearing[1], -e[1])
         if "eccentricity_x" not in get:
             found["pin speed, x"] = balance(self.pin_velocity[0], -self.vx)
-            found["pin speed, y"] = balance(self.big_end_velocity[1], self.rod_turn * self.rod[0], -self.bearing_velocity[1])
+            found["pin speed, y"] = balance(self.big_end_velocity[1], self.rod_turn * self.rod[0], self.chord_rate * self.rod[1] / self.chord,
+                                            -self.bearing_velocity[1])
         if "eccentricity_x" not in get and not self.has_loose_crank_pin:
-            at_end = acceleration(at_pin, self.rod, self.rod_turn, self.rod_turn_rate)
+            at_end = self.pin_acceleration(at_pin)
             found["pin acceleration, x"] = Balance(abs(at_end[0] - self.ax), abs(at_end[0]) + abs(at_pin[0]))
             found["pin acceleration, y"] = Balance(abs(at_end[1] - self.bearing_acceleration), abs(at_pin[1]) + abs(
                 self.rod_turn_rate * self.rod[0]) + abs(self.bearing_acceleration))
         noise = self.noise()
         for name, one in found.items():
-            if name.startswith(("Newton", "guide", "force")):
+            if name.startswith(("Newton", "guide", "force", "Lagrange")):
                 one.noise = noise
             elif name.startswith("Euler"):
                 one.noise = noise * (b.crank_length + b.rod_length)

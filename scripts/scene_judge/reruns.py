@@ -289,7 +289,7 @@ def loss(run: Run, low: float, high: float) -> float:
     gas = columns.get("gas_force") or [0.0] * len(run.times)
 
     def power(i: int) -> float:
-        turn = columns["crank_speed"][i]
+        turn = columns.get("flywheel_speed", columns["crank_speed"])[i]
         return columns["crank_moment"][i] * turn - damping * turn**2 - gas[i] * columns["piston_velocity"][i]
     for i in rows[1:]:
         work += 0.5 * (power(i) + power(i - 1)) * (run.times[i] - run.times[i - 1])

@@ -15,6 +15,7 @@ from .trace import Run
 FREE, FILM, CONTACT = 0, 1, 2
 SUM = 1e-9        # of a sum's terms: what may be left of one that vanishes
 LAW = 1e-6        # of a force: what a law may be missed by, beyond the rounding of the speeds it was given
+DETAILED = 1500   # rows of a run in which the equations of an elastic rod are looked at
 STICKS = 10       # tolerances of the speeds: how fast surfaces that stick may seem to slide
 LEAST_BEND = 5e-9  # [m] bristles that give way sooner do so within a step: rows between the steps cannot tell how
 BENT = 1000       # tolerances of the static friction: what bristles may be bent beyond it in rows between the steps
@@ -105,8 +106,10 @@ class RowChecks:
         return None if phase == FILM and self.film == "oscillating_film" else 0.0
 
     def check(self) -> dict[str, Miss]:
+        every = max(1, len(self.run.times) // DETAILED) if self.bodies.elastic else 1
         for i in range(len(self.run.times)):
             row = self.row(i)
+            row.is_detailed = i % every == 0
             t = row.get["time"]
             at_crank_pin = row.crank_pin(self.crank_pin.run.columns, i) if self.crank_pin else None
             moments = self.joint_moment(row) if self.has_joint else 0.0, self.crank_pin.joint_moment(at_crank_pin) if self.crank_pin else 0.0

@@ -6,6 +6,7 @@ import math
 import zlib
 from pathlib import Path
 
+from .elastic import requested_columns
 from .energy import Balances, balances
 from .reruns import Comparison, Reruns
 from .rows import RowChecks
@@ -83,6 +84,7 @@ def judge_scene(program: Path, case: Path, settings: dict[str, str], limit: floa
     first = run_case(program, case, {**plain, **rows}, limit)
     if first.status or not first.times:
         return Verdict(notes=[f"not judged: {first.summary.get('status', first.message)[:120]}"])
+    plain |= requested_columns(first)
     span = float(first.summary["simulated_time"])
     resolved = float(first.summary["steps_accepted"]) <= MOST_STEPS
 
@@ -97,7 +99,7 @@ def judge_scene(program: Path, case: Path, settings: dict[str, str], limit: floa
     if verdict.faults:   # those of integrals over rows that lie too far apart go away with more of them
         verdict = judge_rows_on(CLOSER * GRID)
     seed = zlib.crc32(repr(sorted(settings.items())).encode())
-    found = verdict.states = Reruns(program, case, settings, first, limit, seed).compare()
+    found = verdict.states = Reruns(program, case, settings | requested_columns(first), first, limit, seed).compare()
     if found.unjudged:
         verdict.notes.append(f"states not compared: {found.unjudged}")
     if not found.share <= 1:

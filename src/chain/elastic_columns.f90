@@ -2,7 +2,8 @@
 module elastic_columns
   use gudgeon_kinds, only: dp
   use trace_row, only: trace_row_t
-  use chain_motion, only: motion_t
+  use chain_motion, only: motion_t, accelerations_t
+  use elastic_rod, only: elastic_rod_t
   use elastic_members, only: elastic_members_t
   implicit none
   private
@@ -10,33 +11,58 @@ module elastic_columns
 
 contains
 
-  pure subroutine put_elastic_columns(elastic, motion, row)
+  !> A trace has rates and accelerations of the rod's shapes, and the flywheel's acceleration, only on request.
+  pure subroutine put_elastic_columns(elastic, motion, accelerations, row)
     type(elastic_members_t), intent(in) :: elastic
     type(motion_t), intent(in) :: motion
+    type(accelerations_t), intent(in) :: accelerations
     type(trace_row_t), intent(inout) :: row
-    character(len=1) :: number
     integer :: i
     if (allocated(elastic%rod)) then
       associate (rod => elastic%rod)
-        do i = 1, rod%n_bending
-          write (number, '(i1)') i
-          call row%put('rod_mode_'//number//'[m]', motion%shape(i), 'amplitude of this transverse mode of the rod')
-        end do
-        do i = 1, rod%n_axial
-          write (number, '(i1)') i
-          if (i == 1) then
-            call row%put('rod_stretch[m]', motion%shape(rod%n_bending + 1), 'elongation of the rod between its pins')
-          else
-            call row%put('rod_axial_'//number//'[m]', motion%shape(rod%n_bending + i), 'amplitude of this axial shape of the rod')
-          end if
+        do i = 1, rod%n_bending + rod%n_axial
+          call row%put(shape_name(rod, i)//'[m]', motion%shape(i), shape_meaning(rod, i))
         end do
         call row%put('rod_mid_deflection[m]', rod%mid_deflection(motion), 'bending deflection of the rod midway between its pins')
         call row%put('rod_strain_energy[J]', rod%strain_energy(motion), 'elastic energy stored in the rod')
+        if (row%is_naming .or. row%wants(2*(rod%n_bending + rod%n_axial))) then
+          do i = 1, rod%n_bending + rod%n_axial
+            call row%put_on_request(shape_name(rod, i)//'_rate[m/s]', motion%shape_rate(i), 'time derivative of '//shape_name(rod, i))
+            call row%put_on_request(shape_name(rod, i)//'_acceleration[m/s2]', accelerations%shape(i), &
+              'second time derivative of '//shape_name(rod, i))
+          end do
+        else
+          call row%skip(2*(rod%n_bending + rod%n_axial))
+        end if
       end associate
     end if
     if (.not. allocated(elastic%crankshaft)) return
     call row%put('crankshaft_twist[rad]', motion%flywheel_angle - motion%crank_angle, 'flywheel angle less crank angle')
     call row%put('crankshaft_moment[N.m]', elastic%crankshaft%moment(motion), 'moment of the elastic shaft on the crank')
     call row%put('flywheel_speed[rad/s]', motion%flywheel_speed, 'angular velocity of the flywheel')
+    call row%put_on_request('flywheel_acceleration[rad/s2]', accelerations%flywheel, 'angular acceleration of the flywheel')
   end subroutine put_elastic_columns
+
+  !> What the column of a shape is called.
+  pure function shape_name(rod, i) result(name)
+    type(elastic_rod_t), intent(in) :: rod
+    integer, intent(in) :: i   !! those across come first
+    character(len=:), allocatable :: name
+    if (i <= rod%n_bending) then
+      name = 'rod_mode_'//achar(iachar('0') + i)
+    else if (i == rod%n_bending + 1) then
+      name = 'rod_stretch'
+    else
+      name = 'rod_axial_'//achar(iachar('0') + i - rod%n_bending)
+    end if
+  end function shape_name
+
+  pure function shape_meaning(rod, i) result(text)
+    type(elastic_rod_t), intent(in) :: rod
+    integer, intent(in) :: i
+    character(len=:), allocatable :: text
+    text = 'amplitude of this axial shape of the rod'
+    if (i <= rod%n_bending) text = 'amplitude of this transverse mode of the rod'
+    if (i == rod%n_bending + 1) text = 'elongation of the rod between its pins'
+  end function shape_meaning
 end module elastic_columns

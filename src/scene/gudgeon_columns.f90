@@ -127,7 +127,7 @@ contains
       call put_joint_columns(scene%joints(i), now%relative(i), now%joint(i), row)
     end do
     if (allocated(scene%guide)) call put_guide_columns(scene%guide, now%motion, now%accelerations, now%guide, row)
-    if (allocated(scene%chain%elastic)) call put_elastic_columns(scene%chain%elastic, now%motion, row)
+    if (allocated(scene%chain%elastic)) call put_elastic_columns(scene%chain%elastic, now%motion, now%accelerations, row)
     if (allocated(scene%gas)) call scene%gas%put_columns(now%motion%sin_crank, now%motion%cos_crank, now%cylinder_pressure, row)
   end subroutine put_columns
 
