@@ -101,6 +101,26 @@ run -q -o "$work/single" -s guide.bore_clearance=2e-4 -s guide.restitution=0.3 -
 for names in 'energy_residual[-] max_energy_residual_relative' 'rhs_evaluations[-] rhs_evaluations' 'max_pin_force[N] max_pin_force'; do
   check "the run is the case: $names" [ "$(named "$work/bore/bore.runs.csv" 6 "${names% *}")" = "$(field "$work/single/slap.summary.csv" "${names#* }")" ]
 done
+# statistics of the skirt's corners, against the case's own events and summary
+study skirt <<'END'
+&study case = 'slap.nml', cycles = T /
+&parameter key = 'guide.bore_clearance', values = 2e-4 /
+&parameter key = 'guide.kind', values = 'clearance', 'friction' /
+END
+run sweep -j 1 -o "$work/skirt" -s drive.kind=constant_speed "$work/skirt.nml"
+check "a study with and without clearance in the bore runs, status $status" [ "$status" = 0 ]
+run -q -o "$work/single" -s drive.kind=constant_speed -s guide.bore_clearance=2e-4 "$work/slap.nml"
+largest() { awk -F, -v name="$1" '$1 ~ "^guide_[1-4]_" name "$" && $2 + 0 >= most + 0 { most = $2 } END { print most }' "$work/single/slap.summary.csv"; }
+check "the deepest corner" [ "$(named "$work/skirt/skirt.runs.csv" 1 'guide_max_penetration[m]')" = "$(largest max_penetration)" ]
+check "the hardest pressed corner" [ "$(named "$work/skirt/skirt.runs.csv" 1 'guide_max_force[N]')" = "$(largest max_force)" ]
+check "slaps a revolution" [ "$(awk -F, '/contact_begins.*guide_/ { n++ } END { printf "%.9E", n / 2 }' "$work/single/slap.events.csv")" = \
+  "$(named "$work/skirt/skirt.runs.csv" 1 'guide_impacts[-]')" ]
+check "slaps of each revolution" [ "$(awk -F, '/contact_begins.*guide_/ { n++ } END { print n }' "$work/single/slap.events.csv")" = "$((
+  $(named "$work/skirt/skirt.cycles.csv" 1 'guide_impacts[-]') + $(named "$work/skirt/skirt.cycles.csv" 2 'guide_impacts[-]')))" ]
+check "one of its revolutions has the hardest" [ "$(for i in 1 2; do named "$work/skirt/skirt.cycles.csv" $i 'guide_max_force[N]'; done | sort -g | tail -n 1)" = "$(largest max_force)" ]
+check "a corner touches for a part of the time" awk -v a="$(named "$work/skirt/skirt.runs.csv" 1 'guide_contact_time_fraction[-]')" \
+  -v b="$(largest contact_time_fraction)" 'BEGIN { exit !(a >= b && a < 1) }'
+check "an ideal bore has none of it" [ -z "$(named "$work/skirt/skirt.runs.csv" 2 'guide_impacts[-]')" ]
 study kinds <<'END'
 &study case = 'slap.nml' /
 &parameter key = 'guide.kind', values = 'clearance', 'friction' /
@@ -109,6 +129,33 @@ END
 run sweep -j 1 -o "$work/kinds" "$work/kinds.nml"
 check "a study of kinds of guide runs, status $status" [ "$status" = 0 ]
 check "all of its runs differ" [ "$(awk -F, 'NR > 1' "$work/kinds/kinds.runs.csv" | cut -d, -f5- | sort -u | wc -l)" = 4 ]
+
+# every key of loose joints and elastic members: the study takes it, and it changes the run
+run -q -o "$work/all" -s integrator.revolutions=0.1 -s crank_pin.joint.kind=clearance -s crank_pin.joint.clearance=1e-4 \
+  -s crank_pin.joint.bearing_radius=0.012 -s guide.law=stribeck -s guide.coefficient=0.05 -s guide.static_coefficient=0.08 \
+  -s guide.transition_speed=0.5 -s guide.stribeck_speed=0.1 -s elastic_rod.section_area=9.6e-5 -s elastic_rod.section_inertia=5.12e-10 \
+  -s crankshaft.flywheel_inertia=0.02 -s crankshaft.torsional_stiffness=2e4 "$work/slap.nml"
+check "a scene with everything loose and elastic, status $status" [ "$status" = 0 ]
+awk -v q="'" '/^&/ { group = substr($1, 2) } $1 == "place" { group = substr($3, 2, length($3) - 2) "." group }
+  group ~ /^(guide|elastic_rod|crankshaft|crank_pin.joint)$/ && $3 ~ /^[-0-9.]/ && !/,.*!/ && $1 != "bearing_length" { print group "." $1, $3 + 0 }
+  group == "initial" && $1 ~ /^piston_/ { print group "." $1, $3 + 0 }' "$work/all/slap.resolved.nml" >"$work/keys"
+check "they have keys" [ "$(wc -l <"$work/keys")" -ge 34 ]
+stuck=
+while read -r key value; do
+  case $key in
+    *_modes | *_shapes) other=$((value + 1)) ;;
+    *.dissipation) value=0.3 other=0.4 ;;
+    *.shank_mass) value=0.2 other=0.19 ;;
+    *.exponent) other=1.01 ;;
+    *.least_impact_speed) other=1 ;;
+    *) other=$(awk -v v="$value" 'BEGIN { print v == 0 ? 1e-4 : 0.99 * v }') ;;
+  esac
+  printf "&study case = '%s' /\n&parameter key = '%s', values = %s, %s /\n" "$work/all/slap.resolved.nml" "$key" "$value" "$other" >"$work/key.nml"
+  run sweep --fresh -j 1 -o "$work/key" -s integrator.revolutions=1.05 -s integrator.relative_tolerance=1e-4 -s drive.kind=constant_speed \
+    "$work/key.nml"
+  [ "$status" = 0 ] && [ "$(awk -F, 'NR > 1' "$work/key/key.runs.csv" | cut -d, -f4- | sort -u | wc -l)" = 2 ] || stuck="$stuck $key"
+done <"$work/keys"
+check "each of them in a study, without effect or refused:$stuck" [ -z "$stuck" ]
 
 # runs until the motion repeats: its period, its exponent, the statistics of the last period alone
 cp cases/flores/lubricated_400cP.nml "$work/film.nml"

@@ -27,7 +27,8 @@ contains
         call row%put('rod_strain_energy[J]', rod%strain_energy(motion), 'elastic energy stored in the rod')
         if (row%is_naming .or. row%wants(2*(rod%n_bending + rod%n_axial))) then
           do i = 1, rod%n_bending + rod%n_axial
-            call row%put_on_request(shape_name(rod, i)//'_rate[m/s]', motion%shape_rate(i), 'time derivative of '//shape_name(rod, i))
+            call row%put_on_request(shape_name(rod, i)//'_rate[m/s]', motion%shape_rate(i), &
+              'time derivative of '//shape_name(rod, i))
             call row%put_on_request(shape_name(rod, i)//'_acceleration[m/s2]', accelerations%shape(i), &
               'second time derivative of '//shape_name(rod, i))
           end do

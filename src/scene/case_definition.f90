@@ -335,12 +335,22 @@ contains
   subroutine visit_guide(guide, list)
     type(guide_case_t), allocatable, intent(inout) :: guide
     class(parameter_list_t), intent(inout) :: list
+    type(guide_case_t) :: described
     call list%group('guide', 'the piston in its bore: leave the group out for an ideal guide', .true.)
-    if (list%sets) then
-      if (allocated(guide)) deallocate (guide)
-      if (.not. list%is_present) return
+    if (.not. list%sets) then   ! of a case whose other groups are set it stays as it is
+      call offer_guide(described, list)
+      return
     end if
-    if (.not. allocated(guide)) allocate (guide)
+    if (allocated(guide)) deallocate (guide)
+    if (.not. list%is_present) return
+    allocate (guide)
+    call offer_guide(guide, list)
+  end subroutine visit_guide
+
+  !> The keys and laws of a guide.
+  subroutine offer_guide(guide, list)
+    type(guide_case_t), intent(inout) :: guide
+    class(parameter_list_t), intent(inout) :: list
     call guide%parameters(list)
     call list%choice('law', 'ambrosio', 'friction on the bore; coefficient = 0: none')
     call list%make_optional('coefficient')
@@ -350,8 +360,7 @@ contains
     call list%choice('contact_law', 'exact', 'how an impact of the skirt is damped, with kind = ''clearance''')
     call offer_contact_laws(list)
     call guide%take_contact(list%chosen)
-    if (.not. list%sets) deallocate (guide)
-  end subroutine visit_guide
+  end subroutine offer_guide
 
   subroutine visit_elastic_rod(rod, list)
     type(elastic_rod_t), allocatable, intent(inout) :: rod

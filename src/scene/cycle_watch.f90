@@ -51,6 +51,8 @@ module cycle_watch
     procedure :: take_peaks
     procedure :: take_point
     procedure :: take_impact
+    procedure :: take_slap
+    procedure :: take_skirt
     procedure :: finish
   end type cycle_watch_t
 
@@ -165,6 +167,9 @@ contains
         c%contact_time = c%contact_time + (t - self%t)
       end associate
     end do
+    if (allocated(scene%guide)) then
+      if (any(scene%guide%touches)) self%present%skirt%contact_time = self%present%skirt%contact_time + (t - self%t)
+    end if
     self%t = t
   end subroutine take_point
 
@@ -174,6 +179,20 @@ contains
     integer, intent(in) :: pin
     self%present%pin(pin)%impacts = self%present%pin(pin)%impacts + 1
   end subroutine take_impact
+
+  !> A contact of a corner of the skirt begins.
+  pure subroutine take_slap(self)
+    class(cycle_watch_t), intent(inout) :: self
+    self%present%skirt%impacts = self%present%skirt%impacts + 1
+  end subroutine take_slap
+
+  !> The deepest and the hardest pressed corner of the skirt in the present revolution.
+  pure subroutine take_skirt(self, penetration, force)
+    class(cycle_watch_t), intent(inout) :: self
+    real(dp), intent(in) :: penetration, force   !! [m], [N]
+    self%present%skirt%max_penetration = penetration
+    self%present%skirt%max_force = force
+  end subroutine take_skirt
 
   !> The run ended at (t, y): a revolution that rounding left open is whole.
   subroutine finish(self, scene, t, y)

@@ -103,7 +103,10 @@ contains
       self%initial_energy = scene%energy(now%motion)
       self%start_angle = now%motion%crank_angle
     end if
-    if (allocated(self%cycles)) call self%cycles%begin(scene, y, self%initial_energy)
+    if (allocated(self%cycles)) then
+      call self%cycles%begin(scene, y, self%initial_energy)
+      call self%guide%begin_revolution()
+    end if
     do i = 1, self%n_pins
       if (inside .and. self%pins(i)%is_touching(scene)) call take_contact(self, self%pins(i), event_contact_begins, 0.0_dp, now)
       call self%pins(i)%begin(0.0_dp, now)
@@ -244,7 +247,9 @@ contains
         if (.not. ends) exit
         call look_at(self, scene, t_cycle, self%cycles%y, now, inside)
         if (inside) call search_peaks(self, method, scene, t_cycle, now)
+        call self%guide%end_revolution(self%cycles)
         call self%cycles%end_cycle(scene, t_cycle)
+        call self%guide%begin_revolution()
       end do
       call self%cycles%take_strobes(method, scene, t, y)
     end if
@@ -389,6 +394,7 @@ contains
     type(evaluation_t), intent(in) :: now
     type(trace_event_t) :: event
     call self%guide%take_contact(i, kind, t, now, self%figures, event)
+    if (allocated(self%cycles) .and. kind == event_contact_begins) call self%cycles%take_slap()
     call self%sink%take_event(event)
   end subroutine take_corner_contact
 
@@ -397,7 +403,10 @@ contains
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
-    if (allocated(self%cycles)) call self%cycles%finish(scene, t, y)
+    if (allocated(self%cycles)) then
+      call self%guide%end_revolution(self%cycles)
+      call self%cycles%finish(scene, t, y)
+    end if
     if (self%every_step) return
     if (self%angles%per_revolution > 0) then
       call put_last_angle(self, scene, t, y)

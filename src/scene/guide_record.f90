@@ -12,6 +12,7 @@ module guide_record
   use peak_search, only: sample_t, peak_search_t, may_peak
   use trace_sink, only: trace_event_t
   use run_figures, only: run_figures_t
+  use cycle_watch, only: cycle_watch_t
   implicit none
   private
   public :: guide_record_t
@@ -25,9 +26,12 @@ module guide_record
     real(dp), private :: t = 0         !! end of the last piece of the run that was searched [s]
     real(dp), private :: last(n_peaks, n_corners) = 0    !! depths and forces there
     real(dp), private :: rate(n_corners) = 0             !! rates of the depths there
+    real(dp), private :: highest(n_peaks) = huge(1.0_dp) !! depth and force in the present revolution, where revolutions are counted
   contains
     procedure, non_overridable :: prepare
     procedure, non_overridable :: stand_at
+    procedure, non_overridable :: begin_revolution
+    procedure, non_overridable :: end_revolution
     procedure, non_overridable :: search
     procedure, non_overridable :: take_values
     procedure, non_overridable :: take_time
@@ -60,6 +64,19 @@ contains
     self%rate = now%guide%corner%depth_rate
   end subroutine stand_at
 
+  !> A revolution that is counted begins: its peaks are searched, and not only those of the contacts.
+  pure subroutine begin_revolution(self)
+    class(guide_record_t), intent(inout) :: self
+    self%highest = 0
+  end subroutine begin_revolution
+
+  !> The revolution ends: its largest depth [m] and force [N] of a corner.
+  pure subroutine end_revolution(self, cycles)
+    class(guide_record_t), intent(inout) :: self
+    type(cycle_watch_t), intent(inout) :: cycles
+    if (self%is_there) call cycles%take_skirt(self%highest(of_depth), self%highest(of_force))
+  end subroutine end_revolution
+
   !> Peaks of corners that touch, between the end of the last piece and t, inside the last step of the method, where the scene is
   !> evaluated.
   subroutine search(self, method, scene, t, now, figures)
@@ -77,9 +94,11 @@ contains
       largest = 0
       associate (corner => now%guide%corner(i))
         call search_between(method, scene, i, of_depth, sample_t(self%t, self%last(of_depth, i), self%rate(i)), &
-          sample_t(t, corner%depth, corner%depth_rate), self%contact(i)%max_penetration, largest(of_depth))
+          sample_t(t, corner%depth, corner%depth_rate), min(self%contact(i)%max_penetration, self%highest(of_depth)), &
+          largest(of_depth))
         call search_between(method, scene, i, of_force, sample_t(self%t, self%last(of_force, i), slope_at(self%t, 1)), &
-          sample_t(t, corner%normal_force, slope_at(t, -1)), self%contact(i)%max_normal_force, largest(of_force))
+          sample_t(t, corner%normal_force, slope_at(t, -1)), min(self%contact(i)%max_normal_force, &
+          self%highest(of_force)), largest(of_force))
       end associate
       call put_values(self, i, largest, figures)
     end do
@@ -160,6 +179,7 @@ contains
       f%max_penetration = max(f%max_penetration, values(of_depth))
       f%max_force = max(f%max_force, values(of_force))
     end associate
+    self%highest = max(self%highest, values)
   end subroutine put_values
 
   !> Time [s] that has passed since the last point looked at.

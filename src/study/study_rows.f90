@@ -14,8 +14,7 @@ module study_rows
   use row_text, only: row_text_t
   implicit none
   private
-  public :: study_row_t, run_header, cycle_header, strobe_header, cycles_column, strobes_column, may_have_crank_pin, &
-    looks_at_motion
+  public :: study_row_t, run_header, cycle_header, strobe_header, cycles_column, strobes_column
   public :: put_run, put_cycles, put_strobes
 
   character(len=*), parameter :: crank_pin_prefix = crank_pin_place//'_'
@@ -25,9 +24,11 @@ module study_rows
     logical :: is_header = .false.       !! it has the names of the columns
     logical :: has_strobes = .false.     !! the study takes strobes
     logical :: has_crank_pin = .false.   !! and has columns of the crank pin
+    logical :: has_guide = .false.       !! and of the piston in its bore
     logical :: has_motion = .false.      !! and of the period or of the Lyapunov exponent of the motion
     type(number_writer_t) :: numbers
   contains
+    procedure :: choose
     procedure, private :: put_real, put_whole
     generic :: put => put_real, put_whole
   end type study_row_t
@@ -61,6 +62,18 @@ contains
     end if
   end subroutine put_whole
 
+  !> The columns that rows of a study have beside those of all: see the functions that follow.
+  pure subroutine choose(self, keys, base, has_strobes)
+    class(study_row_t), intent(inout) :: self
+    character(len=*), intent(in) :: keys(:)   !! of the parameters
+    type(case_t), intent(in) :: base
+    logical, intent(in) :: has_strobes
+    self%has_strobes = has_strobes
+    self%has_crank_pin = may_have_crank_pin(keys, base)
+    self%has_guide = base%has_loose_guide() .or. any(keys == 'guide.kind')
+    self%has_motion = looks_at_motion(keys, base)
+  end subroutine choose
+
   !> Whether runs of a study may have clearance at the crank pin, and so its columns: those of the base case do, or a parameter is of
   !> that joint.
   pure logical function may_have_crank_pin(keys, base)
@@ -78,18 +91,17 @@ contains
   end function looks_at_motion
 
   !> First row of NAME.runs.csv.
-  function run_header(keys, has_strobes, has_crank_pin, has_motion) result(text)
+  function run_header(keys, base, has_strobes) result(text)
     character(len=*), intent(in) :: keys(:)
-    logical, intent(in) :: has_strobes, has_crank_pin, has_motion
+    type(case_t), intent(in) :: base
+    logical, intent(in) :: has_strobes
     character(len=:), allocatable :: text
     type(study_row_t) :: row
     type(cycle_watch_t) :: no_watch
     type(run_report_t) :: no_report
     type(case_t) :: no_case
     row%is_header = .true.
-    row%has_strobes = has_strobes
-    row%has_crank_pin = has_crank_pin
-    row%has_motion = has_motion
+    call row%choose(keys, base, has_strobes)
     call put_run(row, 0, keys, 'status', .false., no_watch, no_report, no_case)
     text = row%text(:row%used)
   end function run_header
@@ -107,13 +119,14 @@ contains
   end function strobes_column
 
   !> First row of NAME.cycles.csv.
-  function cycle_header(has_crank_pin) result(text)
-    logical, intent(in) :: has_crank_pin
+  function cycle_header(keys, base) result(text)
+    character(len=*), intent(in) :: keys(:)
+    type(case_t), intent(in) :: base
     character(len=:), allocatable :: text
     type(study_row_t) :: row
     type(case_t) :: no_case
     row%is_header = .true.
-    row%has_crank_pin = has_crank_pin
+    call row%choose(keys, base, .false.)
     call put_cycle(row, 0, 0, cycle_t(duration=1.0_dp), 1.0_dp, no_case)
     text = row%text(:row%used)
   end function cycle_header
@@ -165,6 +178,7 @@ contains
     associate (has_clearance => is_done .and. case%crank_pin%has_clearance())
       if (row%has_crank_pin) call put_pin(crank_pin_prefix, crank_pin, has_clearance, has_clearance)
     end associate
+    if (row%has_guide) call put_skirt(is_done .and. case%has_loose_guide())
     if (row%has_motion) then
       call row%put('period_revolutions[-]', report%periods%period, is_done .and. report%periods%is_on)
       call row%put('lyapunov_exponent[1/revolution]', report%exponent%mean, is_done .and. report%exponent%is_known)
@@ -189,6 +203,17 @@ contains
         call row%put(prefix//'mean_pin_force[N]', total%force_integral/duration, has_force)
       end associate
     end subroutine put_pin
+
+    subroutine put_skirt(is_there)
+      logical, intent(in) :: is_there
+      associate (total => s%total%skirt)
+        call row%put('guide_contact_time_fraction[-]', total%contact_time/s%total%duration, is_there)
+        call row%put('guide_impacts[-]', real(total%impacts, dp)/s%cycles, is_there)
+        call row%put('guide_max_penetration[m]', total%max_penetration, is_there)
+        call row%put('guide_max_force[N]', total%max_force, is_there)
+        call row%put('guide_max_force_mean[N]', s%skirt_force_mean(), is_there)
+      end associate
+    end subroutine put_skirt
   end subroutine put_run
 
   !> A row for each revolution counted.
@@ -220,6 +245,14 @@ contains
     associate (has_clearance => case%crank_pin%has_clearance())
       if (row%has_crank_pin) call put_pin(crank_pin_prefix, crank_pin, has_clearance, has_clearance)
     end associate
+    if (row%has_guide) then
+      associate (c => cycle%skirt, is_there => case%has_loose_guide())
+        call row%put('guide_contact_time_fraction[-]', c%contact_time/cycle%duration, is_there)
+        call row%put('guide_impacts[-]', c%impacts, is_there)
+        call row%put('guide_max_penetration[m]', c%max_penetration, is_there)
+        call row%put('guide_max_force[N]', c%max_force, is_there)
+      end associate
+    end if
     call row%end_row()
 
   contains

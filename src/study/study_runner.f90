@@ -15,7 +15,7 @@ module study_runner
   use text_file, only: read_text_file
   use study_sweep, only: sweep_t, read_sweep, check_rows, study_checksum, file_cycles, file_strobes, file_runs
   use study_worker, only: study_worker_t
-  use study_rows, only: may_have_crank_pin, looks_at_motion, run_header, cycle_header, strobe_header, cycles_column, strobes_column
+  use study_rows, only: run_header, cycle_header, strobe_header, cycles_column, strobes_column
   implicit none
   private
   public :: run_study_file
@@ -105,14 +105,11 @@ contains
   subroutine prepare_files(sweep)
     type(sweep_t), intent(inout) :: sweep
     integer, parameter :: none(0) = 0
-    logical :: has_crank_pin
-    has_crank_pin = may_have_crank_pin(sweep%design%keys, sweep%base%case)
     associate (first => sweep%first, last => sweep%last, keys => sweep%design%keys)
-      call sweep%files(file_runs)%prepare(sweep%path//'.runs.csv', run_header(keys, sweep%has_strobes, has_crank_pin, &
-        looks_at_motion(keys, sweep%base%case)), first, &
+      call sweep%files(file_runs)%prepare(sweep%path//'.runs.csv', run_header(keys, sweep%base%case, sweep%has_strobes), first, &
         last, [cycles_column(keys), strobes_column(keys)])
       if (sweep%study%cycles) &
-        call sweep%files(file_cycles)%prepare(sweep%path//'.cycles.csv', cycle_header(has_crank_pin), first, last, none)
+        call sweep%files(file_cycles)%prepare(sweep%path//'.cycles.csv', cycle_header(keys, sweep%base%case), first, last, none)
       if (sweep%has_strobes) &
         call sweep%files(file_strobes)%prepare(sweep%path//'.strobe.csv', strobe_header(sweep%strobe_list), first, last, none)
     end associate

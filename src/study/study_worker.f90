@@ -14,7 +14,7 @@ module study_worker
   use study_definition, only: study_t
   use study_design, only: study_design_t
   use study_case, only: study_case_t
-  use study_rows, only: study_row_t, may_have_crank_pin, looks_at_motion, put_run, put_cycles, put_strobes
+  use study_rows, only: study_row_t, put_run, put_cycles, put_strobes
   implicit none
   private
   public :: study_worker_t
@@ -56,9 +56,7 @@ contains
     type(column_list_t), intent(in) :: strobe_list
     character(len=*), intent(in) :: trace_folder
     self%base = base
-    self%run_row%has_strobes = size(strobe_list%id) > 0
-    self%run_row%has_crank_pin = may_have_crank_pin(design%keys, base%case)
-    self%run_row%has_motion = looks_at_motion(design%keys, base%case)
+    call self%run_row%choose(design%keys, base%case, size(strobe_list%id) > 0)
     call self%run_row%numbers%prepare(base%case%output%digits)
     self%cycle_rows = self%run_row
     self%strobe_rows = self%run_row
