@@ -10,6 +10,7 @@ from .quadrature import Stencil, integral, stencils
 from .rows import CONTACT, LEAST_BEND, RowChecks
 from .trace import Run
 
+BLURRED = 1e-2   # of a size: rows between which a force changes beyond measure tell nothing of integrals
 SAFETY = 4.0   # the difference of two quadratures bounds the error of the better one where the rows resolve the motion; where
 #                they hardly do, four times that
 
@@ -95,12 +96,15 @@ def elastic_sizes(run: Run, speed: float) -> dict[str, float]:
 
 
 def worst_drift(run: Run, rates: dict[str, str], stencil: list[list[Stencil]]) -> tuple[float, float, str]:
-    """The largest of |value - first - integral of its rate| less its bound, over the value's size; that bound, and the name."""
+    """The largest of |value - first - integral of its rate| less its bound, over the value's size; that bound, and the name. Values
+    whose integral is not known to a hundredth of their size are left out."""
     worst = (0.0, 0.0, "")
     least = sizes(run)
     for name, rate in rates.items():
         values, found = run.columns[name], integral(run.columns[rate], stencil)
         size = max(least[name], *map(abs, values), abs(found.value[-1]))
+        if SAFETY * max(found.bound) > BLURRED * size:   # contacts shorter than the rows are apart
+            continue
         for value, by_rate, bound in zip(values, found.value, found.bound):
             beyond = (abs(value - values[0] - by_rate) - SAFETY * bound) / size
             if not beyond <= worst[0]:

@@ -7,14 +7,13 @@ import zlib
 from pathlib import Path
 
 from .elastic import requested_columns
-from .energy import Balances, balances
+from .energy import BLURRED, Balances, balances
 from .reruns import Comparison, Reruns
 from .rows import RowChecks
 from .trace import Run, merged, run_case
 
 MOST_STEPS = 60_000       # of a run that is traced at every step besides the grid
 CLOSER = 5     # times as many rows where something is found
-BLURRED = 1e-2   # of the energy: rows between which a force changes beyond measure tell nothing of integrals
 GRID = 4_000              # rows of the grid
 ENERGY = 100.0            # relative tolerances that the energy may be off, for each revolution begun
 CEILING = 1e-3            # part of the energy beyond which a result is wrong whatever the tolerance
