@@ -6,7 +6,7 @@
 
 The page is one file that needs no network. The pressure round the pin in a film of finite length is there where the run has
 written it (&output film_times = 'from:to:count').
- Runs the case with the release build if its result is missing.
+Runs the case with the release build if its result is missing.
 """
 
 import argparse
@@ -17,6 +17,7 @@ from gudgeon_plots.environment import TOP, use_virtual_environment
 
 use_virtual_environment()
 
+from gudgeon_plots import language  # noqa: E402
 from gudgeon_plots.film_pressure import fields_of  # noqa: E402
 from gudgeon_plots.report_page import page  # noqa: E402
 from gudgeon_plots.results import MissingResult, Results  # noqa: E402
@@ -30,6 +31,7 @@ def main() -> int:
     )
     parser.add_argument("-o", "--out", type=Path, metavar="FILE", help="the page (default: CASE.html beside the trace)")
     parser.add_argument("--no-run", action="store_true", help="say what to run if the result is missing")
+    language.add_option(parser)
     options = parser.parse_args()
     given = Path(options.case)
     name = given.name.removesuffix(".nml").removesuffix(".csv")
@@ -44,7 +46,8 @@ def main() -> int:
             raise MissingResult(f"{name}.resolved.nml is missing beside the trace")
         twin = results[f"{name}.ideal"] if results.path(f"{name}.ideal").exists() else None
         pressures = directory / f"{name}.film.csv"
-        text = page(run, twin, fields_of(pressures) if pressures.exists() else None)
+        text = page(run, twin, fields_of(pressures) if pressures.exists() else None, language.current)
+        language.current.warn("report.py")
     except MissingResult as problem:
         print(f"report.py: {problem}", file=sys.stderr)
         return 1

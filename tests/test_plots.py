@@ -893,6 +893,69 @@ class Page(unittest.TestCase):
         self.assertTrue({0, 777, 54321, 99999} <= set(rows.tolist()))
         self.assertEqual(len(report_page.chosen_rows([values[:2000]], 2000)), 2000)
 
+    def made(self) -> Run:
+        """A run of contact whose summary knows more than its rows."""
+        found = MadeResults()["sim_I_oscillating"]
+        count = len(found["time"])
+        trace = found.trace.assign(
+            rod_angle=0.0, piston_position=0.2, phase=np.where(found["film_thickness"] < 0, 2, 1), energy_residual=1e-7 * found["time"],
+        )
+        case = found.case | {
+            "mechanism": {"crank_length": 0.05, "rod_length": 0.2}, "initial": {"crank_speed": 250.0}, "lubrication": {}, "case": {},
+        }
+        summary = {
+            "status": ("done", "-"), "min_film_thickness": ("-9e-6", "m"), "contacts": ("3", "1"), "compiler_options": ("-O3", ""),
+        }
+        self.assertEqual(len(trace), count)
+        return Run(found.name, trace, {}, found.events, summary, case)
+
+    def test_the_time_line_has_the_extremes_of_the_summary(self) -> None:
+        made = self.made()
+        self.assertGreater(made["film_thickness"].min(), -9e-6)
+        line = report_page.time_line(report_page.with_sizes(made), made)
+        self.assertEqual(line["range"], [-9e-6, made["film_thickness"].max()])
+        self.assertEqual(line["extremes"], line["range"])
+
+    def test_energy_residuals_have_plots_of_their_own(self) -> None:
+        made = self.made()
+        columns = report_page.with_sizes(made)
+        columns["ideal energy_residual"] = 3e4 * columns["energy_residual"]
+        drawn = {plot["title"]: plot for plot in report_page.plots(columns, made)}
+        own, ideal = drawn["Energy residual"], drawn["Energy residual of the ideal joint's run"]
+        self.assertEqual([len(plot["curves"]) for plot in (own, ideal)], [1, 1])
+        self.assertEqual((own["y"], ideal["y"]), ("nJ", "µJ") if columns["energy_residual"].max() < 1e-6 else ("µJ", "mJ"))
+
+    def test_orbits_are_coloured_by_contact(self) -> None:
+        made = self.made()
+        drawn = {plot["title"]: plot for plot in report_page.plots(report_page.with_sizes(made), made)}
+        orbit = drawn["Pin orbit over the clearance"]
+        self.assertEqual((orbit["phase"], orbit["x"]), ("phase", "<i>e<sub>y</sub></i> / <i>c</i>"))
+
+    def test_the_page_opens_where_the_force_is_largest(self) -> None:
+        columns = {"time": np.linspace(0, 1, 11), "pin_force": np.array([9.0, 0, 1, 2, 7, 3, 2, 1, 1, 1, 1])}
+        self.assertAlmostEqual(report_page.first_moment(columns), 0.4)  # the drop of the pin at the beginning does not count
+
+    def test_pages_in_both_languages(self) -> None:
+        made, portuguese = self.made(), language.Language("pt")
+        english, said = report_page.page(made), report_page.page(made, None, None, portuguese)
+        self.assertEqual(portuguese.unknown, set())
+        for text in (english, said):
+            head = text.split("<script", 1)[0]
+            self.assertNotIn("[[", head)
+            self.assertNotIn("{{", head)
+            self.assertLess(head.index("contacts"), head.index("<details>"))
+            self.assertGreater(head.index("compiler_options"), head.index("<details>"))  # not in the main table
+        self.assertIn('<html lang="pt">', said)
+        self.assertIn("pino no mancal", said)
+        self.assertNotIn("pin in its bearing", said.split("<script", 1)[0])
+
+    def test_every_word_of_the_page_has_its_portuguese(self) -> None:
+        portuguese = language.Language("pt")
+        for text in [*report_page.script_words(), *(title for _, title, *_ in report_page.OVER_TIME)]:
+            portuguese.say(text)
+        self.assertEqual(portuguese.unknown, set())
+        self.assertGreater(len(report_page.script_words()), 15)
+
     def test_packing_depends_on_the_data_only(self) -> None:
         self.assertEqual(report_page.packed(b"abc"), report_page.packed(b"abc"))
 

@@ -147,6 +147,16 @@ def check_page(browser: Browser, page: Path, checks: Assertions, pictures: Path 
     )
     checks.check(not empty, f"{name}: no curve in {empty}")
 
+    checks.check(
+        browser.run("return Math.abs(gudgeon.now - gudgeon.scene.start) < 1e-9"), f"{name}: opens where the pin force is largest"
+    )
+    checks.check(
+        browser.run("return [...document.querySelectorAll('#planes > div')].length") == browser.run("return gudgeon.scene.plots.filter(p => p.square).length"),
+        f"{name}: planes stand apart",
+    )
+    if clearance and browser.run("return gudgeon.scene.contacts.length"):
+        orbit = "gudgeon.charts.find(c => c.div.layout.title.text === gudgeon.scene.plots.find(p => p.circle).title)"
+        checks.check(browser.run(f"return {orbit}.div.data.length") == 2, f"{name}: the orbit tells contact")
     before = {canvas: browser.run(IMAGE, canvas) for canvas in canvases}
     browser.run(MOVE, "scrub", 0.37)
     checks.check(browser.run("return gudgeon.now") > 0, f"{name}: scrubs")

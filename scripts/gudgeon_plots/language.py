@@ -61,7 +61,10 @@ class Language:
                 for part in match.groups():
                     said = said.replace("{}", self._line(part), 1)
                 return said
-        if any(word not in UNTRANSLATED for word in _WORD.findall(re.sub(r"\$[^$]*\$", "", text))):
+        if text[:1].isupper() and (text[0].lower() + text[1:]) in self.exact:
+            said = self.exact[text[0].lower() + text[1:]]
+            return said[0].upper() + said[1:]
+        if any(word not in UNTRANSLATED for word in _WORD.findall(re.sub(r"\$[^$]*\$|</?\w+>", "", text))):
             self.unknown.add(text)
         return self.number(text)
 

@@ -7,6 +7,7 @@ import base64
 import gzip
 import html
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,8 @@ import pandas as pd
 from plotly.offline import get_plotlyjs
 
 from . import film_pressure
+from .language import Language
+from .names import prefixed
 from .results import Run
 from .style import BLACK, BLUE, GREEN, PURPLE, VERMILION
 
@@ -24,6 +27,12 @@ MOST_ROWS = 8000
 
 #: Angles around the pin at which the film's pressure is drawn.
 ANGLES = 72
+
+#: Axes of an orbit.
+ECCENTRICITIES = ("<i>e<sub>y</sub></i> / <i>c</i>", "<i>e<sub>x</sub></i> / <i>c</i>")
+
+#: Of a summary, what concerns the program and not the run.
+OF_THE_PROGRAM = ("identity", "version", "compiler", "compiler_options", "trace_bytes", "events_bytes")
 
 #: Corners of a skirt in its bore, and what the page calls them.
 CORNERS = {1: "top, +y", 2: "bottom, +y", 3: "top, -y", 4: "bottom, -y"}
@@ -70,8 +79,11 @@ OVER_TIME = (
     ("piston_offset", "Piston across its bore", "µm", 1e6),
     ("piston_tilt", "Tilt of the piston", "mrad", 1e3),
     ("gas_force", "Gas force", "kN", 1e-3),
-    ("energy_residual", "Energy residual", "mJ", 1e3),
+    ("energy_residual", "Energy residual", "J", 1.0),
 )
+
+#: Plots that show the ideal joint's curve in a plot of its own, since it is a property of that run.
+APART = ("energy_residual",)
 
 
 def packed(data: bytes) -> str:
@@ -112,6 +124,15 @@ def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
         if name not in columns or not is_informative(columns[name]):
             continue
         curves = [{"name": "this run", "x": "time", "x_factor": 1e3, "y": name, "y_factor": factor, "colour": BLUE}]
+        if name in APART:
+            for run_name, said in ((name, title), (f"ideal {name}", f"{title} of the ideal joint's run")):
+                if run_name in columns and is_informative(columns[run_name]):
+                    shown_unit, factor = prefixed(unit, columns[run_name])
+                    curve = {"name": said, "x": "time", "x_factor": 1e3, "y": run_name, "y_factor": factor, "colour": BLUE}
+                    if run_name != name:
+                        curve["colour"] = BLACK
+                    found.append({"title": said, "x": "time [ms]", "y": shown_unit, "timed": True, "curves": [curve]})
+            continue
         if f"ideal {name}" in columns:
             curves.append(
                 {
@@ -146,7 +167,7 @@ def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
             found.append({"title": title, "x": "time [ms]", "y": unit, "timed": True, "curves": curves})
 
     def plane(title: str, x: str, y: str, names: tuple[str, str], factors: tuple[float, float], **more: object) -> dict:
-        curve = {
+        curve: dict[str, object] = {
             "name": title,
             "x": names[0],
             "x_factor": factors[0],
@@ -159,23 +180,23 @@ def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
     if run.clearance:
         found.append(
             plane(
-                "Pin orbit over c",
-                "e_y / c",
-                "e_x / c",
+                "Pin orbit over the clearance",
+                *ECCENTRICITIES,
                 ("eccentricity_y", "eccentricity_x"),
                 (1 / run.clearance,) * 2,
                 circle=True,
+                phase="phase",
             )
         )
     if crank_pin := float(run.parameter("crank_pin.joint", "clearance", 0.0)) if "crank_pin_phase" in columns else 0.0:
         found.append(
             plane(
-                "Crank-pin orbit over its c",
-                "e_y / c",
-                "e_x / c",
+                "Crank-pin orbit over its clearance",
+                *ECCENTRICITIES,
                 ("crank_pin_eccentricity_y", "crank_pin_eccentricity_x"),
                 (1 / crank_pin,) * 2,
                 circle=True,
+                phase="crank_pin_phase",
             )
         )
     found.append(
@@ -299,18 +320,27 @@ def largest_deflection(columns: dict[str, np.ndarray]) -> float:
     return float(np.abs(np.array([columns[name] for name in modes]).T @ shapes).max())
 
 
-def page(run: Run, ideal: Run | None = None, fields: list[pd.DataFrame] | None = None) -> str:
+def page(
+    run: Run, ideal: Run | None = None, fields: list[pd.DataFrame] | None = None, language: Language | None = None
+) -> str:
     """The page as text; `fields`: the pressures of a NAME.film.csv."""
+    say = (language or Language()).say
     columns = with_sizes(run)
     if ideal is not None:
         for name, values in with_sizes(ideal).items():
             if name in columns and name != "time":
                 columns[f"ideal {name}"] = np.interp(run["time"], ideal["time"], values)
     drawn = plots(columns, run)
+    for plot in drawn:
+        plot |= {part: say(plot[part]) for part in ("title", "x", "y")}
+        for curve in plot["curves"]:
+            curve["name"] = say(curve["name"])
     used = [name for name in MOTION if name in columns]
     for plot in drawn:
         for curve in plot["curves"]:
             used += [curve[axis] for axis in ("x", "y") if curve[axis] not in used]
+        if plot.get("phase") in columns and plot["phase"] not in used:
+            used.append(plot["phase"])
     rows = chosen_rows([columns[name] for name in used])
     film = film_columns(run, rows, fields)
     if film:
@@ -325,7 +355,10 @@ def page(run: Run, ideal: Run | None = None, fields: list[pd.DataFrame] | None =
         "columns": used,
         "plots": drawn,
         "contacts": touched,
-        "line": time_line(columns),
+        "line": time_line(columns, run) | {"title": say(time_line(columns, run)["title"])},
+        "words": {word: say(word) for word in script_words()},
+        "comma": bool(language and not language.is_english),
+        "start": first_moment(columns),
         "angles": ANGLES if film else 0,
         "signed": bool(film and film[2]),
         "clearance": run.clearance,
@@ -346,30 +379,42 @@ def page(run: Run, ideal: Run | None = None, fields: list[pd.DataFrame] | None =
     }
     if "normal_force" in columns:
         scene["peak"]["normal_force"] = max(scene["peak"]["normal_force"], float(columns["normal_force"].max()))
-    said = warnings(run)
+    said = [say(text) for text in warnings(run)]
     case = "".join(
         rows_html([(key, shown(value)) for key, value in keys.items()], f"&{group}") for group, keys in run.case.items()
     )
-    summary = rows_html(
-        [
-            (name, summary_number(value), "" if unit == "1" else unit)
-            for name, (value, unit) in run.summary.items()
-            if not name.startswith("steps_of_order")
-        ]
-    )
+
+    def summary(of_program: bool) -> str:
+        return rows_html(
+            [
+                (name, summary_number(value), "" if unit == "1" else unit)
+                for name, (value, unit) in run.summary.items()
+                if not name.startswith("steps_of_order") and (name in OF_THE_PROGRAM) == of_program
+            ]
+        )
+
     parts = {
         "title": html.escape(str(run.parameter("case", "title", "")) or run.name),
-        "subtitle": f"{html.escape(run.name)}: {len(run['time'])} samples over {run['time'][-1]:.6g} s"
-        + (f", of which {len(rows)} are kept here, peaks among them" if len(rows) < len(run["time"]) else ""),
+        "subtitle": html.escape(
+            f"{run.name}: "
+            + say(
+                f"{len(run['time'])} samples over {run['time'][-1]:.6g} s"
+                + (f", of which {len(rows)} are kept here, peaks among them" if len(rows) < len(run["time"]) else "")
+            )
+        ),
+        "language": (language or Language()).name,
         "style": (PAGE / "page.css").read_text(encoding="utf-8"),
         "script": (PAGE / "page.js").read_text(encoding="utf-8"),
         "warnings": "".join(f'<p class="warning">{html.escape(text)}</p>' for text in said)
-        or '<p class="fine">Nothing to warn of.</p>',
-        "summary": f"<table>{summary}</table>",
+        or f'<p class="fine">{html.escape(say("Nothing to warn of."))}</p>',
+        "summary": f"<table>{summary(False)}</table>",
+        "program": f"<table>{summary(True)}</table>",
         "case": f"<table>{case}</table>",
         "footer": html.escape(
-            f"gudgeon {run.summary.get('version', ('', ''))[0]}. Film pressures are computed for this page "
-            "from the motion in the trace. Plots by plotly.js, MIT licence."
+            f"gudgeon {run.summary.get('version', ('', ''))[0]}. "
+            + say(
+                "Film pressures are computed for this page from the motion in the trace. Plots by plotly.js, MIT licence."
+            )
         ),
         "scene": json.dumps(scene, ensure_ascii=False).replace("</", "<\\/"),
         "trace": packed(data),
@@ -377,27 +422,52 @@ def page(run: Run, ideal: Run | None = None, fields: list[pd.DataFrame] | None =
         "library": packed(get_plotlyjs().encode("utf-8")),
     }
     text = (PAGE / "page.html").read_text(encoding="utf-8")
+    text = re.sub(r"\[\[(.+?)\]\]", lambda found: html.escape(say(found[1])), text)
     head, *fields = text.split("{{")  # each field once, so that nothing is replaced inside what was put in
     return head + "".join(parts[name] + rest for name, rest in (field.split("}}", 1) for field in fields))
 
 
-def time_line(columns: dict[str, np.ndarray]) -> dict:
-    """What the page's time line shows: the film's thickness from 0 or below, or the size of the pin's force."""
+def first_moment(columns: dict[str, np.ndarray]) -> float:
+    """The time that the page opens at [s]: that of the largest pin force after the first tenth of the run."""
+    time = columns["time"]
+    force = np.where(time >= time[0] + 0.1 * (time[-1] - time[0]), columns["pin_force"], 0.0)
+    return float(time[int(np.argmax(force))])
+
+
+def script_words() -> list[str]:
+    """The texts of the page's script: those in W(...)."""
+    return re.findall(r'\bW\("([^"]+)"\)', (PAGE / "page.js").read_text(encoding="utf-8"))
+
+
+def time_line(columns: dict[str, np.ndarray], run: Run) -> dict:
+    """What the page's time line shows: the film's thickness from 0 or below, or the size of the pin's force. Its extremes are those of
+    the summary, which knows what happens between two rows."""
+
+    def of_summary(name: str, otherwise: float) -> float:
+        try:
+            return float(run.summary[name][0])
+        except (KeyError, ValueError):
+            return otherwise
+
     if "film_thickness" in columns:
         thickness = columns["film_thickness"]
+        least = min(float(thickness.min()), of_summary("min_film_thickness", np.inf))
         return {
             "column": "film_thickness",
             "title": "film thickness",
             "unit": "µm",
             "factor": 1e6,
-            "range": [min(0.0, float(thickness.min())), float(thickness.max())],
+            "range": [min(0.0, least), float(thickness.max())],
+            "extremes": [least, float(thickness.max())],
         }
+    largest = max(float(columns["pin_force"].max()), of_summary("max_pin_force", 0.0))
     return {
         "column": "pin_force",
         "title": "pin reaction",
         "unit": "kN",
         "factor": 1e-3,
-        "range": [0.0, float(columns["pin_force"].max())],
+        "range": [0.0, largest],
+        "extremes": [float(columns["pin_force"].min()), largest],
     }
 
 

@@ -373,7 +373,7 @@ def draw_curves(runs: Runs, parameter: str, columns: Sequence[str], title: str) 
     drawing, axes = plt.subplots(len(columns), 1, figsize=(WIDTH, 0.5 + 1.9 * len(columns)), sharex=True, squeeze=False)
     is_number = pd.api.types.is_numeric_dtype(runs.table[parameter])
     places = runs.table[parameter].to_numpy() if is_number else np.arange(len(runs.table))
-    shown_x = of_parameter(parameter, places) if is_number else Shown(parameter)
+    shown_x = of_parameter(parameter, places) if is_number else Shown(parameter.replace("_", " ").replace(".", " "))
     for axis, column in zip(axes[:, 0], columns):
         values = np.where(runs.done, runs[column], np.nan).astype(float)
         shown = of_column(column, runs.units[column], values)
@@ -419,7 +419,7 @@ def draw_scatter(runs: Runs, parameters: Sequence[str], columns: Sequence[str], 
         shown = of_column(column, runs.units[column], values)
         for axis, parameter in zip(row, parameters):
             is_number = pd.api.types.is_numeric_dtype(runs.table[parameter])
-            shown_x = of_parameter(parameter, runs[parameter]) if is_number else Shown(parameter.replace("_", " "))
+            shown_x = of_parameter(parameter, runs[parameter]) if is_number else Shown(parameter.replace("_", " ").replace(".", " "))
             places = shown_x.factor * runs[parameter] if is_number else runs.table[parameter].astype(str)
             axis.plot(places, shown.factor * values, ".", color=BLUE, markersize=2)
             if spans_decades(shown.factor * values):

@@ -4,6 +4,9 @@
   const COLOUR = { ink: "#1b1f23", grey: "#8a9096", blue: "#0072B2", vermilion: "#D55E00", purple: "#CC79A7",
     green: "#009E73", sky: "#56B4E9", steel: "#c8cdd2", light: "#e4e8eb" };
   const byId = (id) => document.getElementById(id);
+  let words = {}, comma = false;   // of the page's language
+  const W = (text) => words[text] || text;
+  const local = (text) => (comma ? text.replace(/(\d)\.(?=\d)/g, "$1,") : text);
   const fail = (message) => { byId("failure").hidden = false; byId("failure").textContent = message; };
   if (!("DecompressionStream" in window)) { fail("This browser cannot unpack the page's data: it is older than 2023."); return; }
 
@@ -15,6 +18,7 @@
 
   // ---- the trace: columns of float32, one after the other
   const scene = JSON.parse(byId("scene").textContent);
+  words = scene.words; comma = scene.comma;
   const column = {};
   {
     const values = new Float32Array(await unpack("trace"));
@@ -234,16 +238,25 @@
     const cx = width / 2, cy = height / 2, unit = 0.46 * Math.min(width, height) / Math.max(1, scene.peak.eccentricity_ratio);
     const x = (i) => cx + unit * column.eccentricity_y[i] / scene.clearance;
     const y = (i) => cy - unit * column.eccentricity_x[i] / scene.clearance;
-    const line = (from, to, colour, thick) => {
-      g.beginPath();
-      for (let i = from; i <= to; i++) g.lineTo(x(i), y(i));
-      g.strokeStyle = colour; g.lineWidth = thick; g.stroke();
+    const touching = (i) => column.phase && column.phase[i] === 2;
+    const line = (from, to, strength, thick) => {   // stretches in contact in a colour of their own
+      g.lineWidth = thick;
+      g.globalAlpha = strength;
+      for (let i = from; i < to;) {
+        const inside = touching(i) || touching(i + 1);
+        g.beginPath();
+        g.moveTo(x(i), y(i));
+        while (i < to && (touching(i) || touching(i + 1)) === inside) { i++; g.lineTo(x(i), y(i)); }
+        g.strokeStyle = inside ? COLOUR.purple : COLOUR.blue;
+        g.stroke();
+      }
+      g.globalAlpha = 1;
     };
     circle(g, cx, cy, unit, "#fff", null);
-    line(0, row, "rgba(0,114,178,0.25)", 1);
+    line(0, row, 0.3, 1);
     let from = row;
     while (from > 0 && column.crank_angle[row] - column.crank_angle[from] < 2 * Math.PI) from--;
-    line(from, row, COLOUR.blue, 1.4);
+    line(from, row, 1, 1.4);
     circle(g, cx, cy, unit, null, COLOUR.ink, 1.5);
     const inContact = near("phase") === 2;
     circle(g, cx + unit * at("eccentricity_y") / scene.clearance, cy - unit * at("eccentricity_x") / scene.clearance, 5,
@@ -272,42 +285,43 @@
     }
     g.globalAlpha = 1;
     g.font = "11px system-ui, sans-serif";
-    const text = `${curve.title} ${(curve.factor * low).toFixed(1)} … ${(curve.factor * high).toFixed(1)} ${curve.unit}`;
+    const [least, most] = curve.extremes.map((value) => (curve.factor * value).toPrecision(3));
+    const text = local(`${curve.title} ${least} … ${most} ${curve.unit}`);
     g.fillStyle = "rgba(243,245,247,0.85)";
     g.fillRect(10, 5, g.measureText(text).width + 6, 15);
     g.fillStyle = "#555";
     g.fillText(text, 13, 16);
-    if (strip) g.fillText("contacts", 12, height - strip + 6);
+    if (strip) g.fillText(W("contacts"), 12, height - strip + 6);
     g.beginPath(); g.moveTo(X(now), 2); g.lineTo(X(now), height - 2);
     g.strokeStyle = COLOUR.vermilion; g.lineWidth = 2; g.stroke();
   }
 
   function drawState() {
     const degrees = at("crank_angle") * 180 / Math.PI;
-    const parts = [`t = ${(1e3 * now).toFixed(3)} ms`, `crank ${degrees.toFixed(1)}° (${(degrees / 360).toFixed(2)} rev)`,
-      `${at("crank_speed").toFixed(1)} rad/s`, `pin force ${(Math.hypot(near("pin_force_x"), near("pin_force_y")) / 1e3).toFixed(2)} kN`];
+    const parts = [`t = ${(1e3 * now).toFixed(3)} ms`, `${W("crank")} ${degrees.toFixed(1)}° (${(degrees / 360).toFixed(2)} rev)`,
+      `${at("crank_speed").toFixed(1)} rad/s`, `${W("pin force")} ${(Math.hypot(near("pin_force_x"), near("pin_force_y")) / 1e3).toFixed(2)} kN`];
     if (joint) {
       const force = column.normal_force ? near("normal_force") : 0;
-      parts.push(`film ${(1e6 * at("film_thickness")).toFixed(2)} µm`, (["free", "film acts", "contact"][near("phase")] || "")
+      parts.push(`${W("film")} ${(1e6 * at("film_thickness")).toFixed(2)} µm`, ([W("free"), W("film acts"), W("contact")][near("phase")] || "")
         + (force > 0 ? `, ${(force / 1e3).toFixed(2)} kN` : ""));
-      if (pressure && near("phase") === 1) parts.push(`film pressure up to ${(near("film_peak") / 1e6).toPrecision(3)} MPa`);
+      if (pressure && near("phase") === 1) parts.push(`${W("film pressure up to")} ${(near("film_peak") / 1e6).toPrecision(3)} MPa`);
     }
     if (bore) {
       const touching = [1, 2, 3, 4].filter((i) => near(`guide_${i}_force`) > 0);
-      parts.push(`piston ${(1e6 * at("piston_offset")).toFixed(1)} µm off, tilt ${(1e3 * at("piston_tilt")).toFixed(2)} mrad`
-        + (touching.length ? `, corner ${touching.join(" and ")} on the bore` : ""));
+      parts.push(`${W("piston offset")} ${(1e6 * at("piston_offset")).toFixed(1)} µm, ${W("tilt")} ${(1e3 * at("piston_tilt")).toFixed(2)} mrad`
+        + (touching.length ? `, ${W("corners on the bore:")} ${touching.join(", ")}` : ""));
     }
     if (bending) {
       let w = 0;
       for (let k = 1; k <= scene.modes; k += 2) w += at(`rod_mode_${k}`) * (k % 4 === 1 ? 1 : -1);
-      parts.push(`rod bent ${(1e6 * w).toFixed(1)} µm half way (drawn × ${bending.toPrecision(2)})`);
+      parts.push(`${W("rod bent")} ${(1e6 * w).toFixed(1)} µm ${W("half way")} (${W("drawn")} × ${bending.toPrecision(2)})`);
     }
     const inside = scene.contacts.find((c) => now >= c.begin && now <= c.end);
     if (inside) {
-      parts.push(`this contact: ${(1e3 * (inside.end - inside.begin)).toPrecision(3)} ms, up to ${(inside.force / 1e3).toPrecision(3)} kN,`
-        + ` ${(1e6 * inside.penetration).toPrecision(3)} µm deep`);
+      parts.push(`${W("this contact:")} ${(1e3 * (inside.end - inside.begin)).toPrecision(3)} ms, ${(inside.force / 1e3).toPrecision(3)} kN,`
+        + ` ${(1e6 * inside.penetration).toPrecision(3)} µm`);
     }
-    byId("state").replaceChildren(...parts.map((text) => Object.assign(document.createElement("span"), { textContent: text })));
+    byId("state").replaceChildren(...parts.map((text) => Object.assign(document.createElement("span"), { textContent: local(text) })));
   }
 
   function draw() {
@@ -322,8 +336,8 @@
   // ---- controls
   const turns = () => Math.pow(10, Number(byId("speed").value));   // revolutions a second
   function labels() {
-    byId("speed-value").textContent = `${turns().toPrecision(2)} rev/s`;
-    byId("magnification-value").textContent = `× ${(joint || !bore ? magnification() : inBore(bore.radius)).toPrecision(3)}`;
+    byId("speed-value").textContent = local(`${turns().toPrecision(2)} ${W("rev/s")}`);
+    byId("magnification-value").textContent = local(`× ${(joint || !bore ? magnification() : inBore(bore.radius)).toPrecision(3)}`);
   }
 
   function frame(stamp) {
@@ -340,7 +354,7 @@
   function play(on) {
     playing = on;
     before = null;
-    byId("play").textContent = on ? "pause" : "play";
+    byId("play").textContent = on ? W("pause") : W("play");
     if (on) requestAnimationFrame(frame); else markPlots();
   }
 
@@ -408,15 +422,21 @@
   async function drawPlot(plot) {
     const div = document.createElement("div");
     if (plot.square) div.className = "square";
-    byId("plots").append(div);
-    const data = plot.curves.map((curve) => ({ type: "scatter", mode: "lines", name: curve.name, x: values(curve, "x"),
-      y: values(curve, "y"), line: { color: curve.colour, width: curve.dash ? 1.2 : 1, dash: curve.dash || "solid" },
-      connectgaps: false }));
+    byId(plot.square ? "planes" : "plots").append(div);
+    const phase = plot.phase ? column[plot.phase] : null;
+    const data = plot.curves.flatMap((curve) => {
+      const trace = (name, colour, keep) => ({ type: "scatter", mode: "lines", name, x: values(curve, "x"),
+        y: keep ? values(curve, "y").map((v, i) => (keep(i) ? v : null)) : values(curve, "y"),
+        line: { color: colour, width: curve.dash ? 1.2 : 1, dash: curve.dash || "solid" }, connectgaps: false });
+      if (!phase || !phase.includes(2)) return [trace(curve.name, curve.colour)];
+      const touching = (i) => phase[i] === 2 || phase[i - 1] === 2 || phase[i + 1] === 2;
+      return [trace(W("apart"), curve.colour, (i) => phase[i] !== 2), trace(W("in contact"), COLOUR.purple, touching)];
+    });
     const shapes = plot.circle ? [{ type: "circle", x0: -1, x1: 1, y0: -1, y1: 1, line: { color: COLOUR.ink, width: 1 } }] : [];
     await Plotly.newPlot(div, data, {
       title: { text: plot.title, font: { size: 14 }, x: 0, xref: "paper", xanchor: "left", y: 1, yref: "container",
         yanchor: "top", pad: { t: 10 } }, margin: { l: 70, r: 15, t: data.length > 1 ? 54 : 40, b: 45 }, shapes,
-      font: { size: 11 }, hovermode: plot.timed ? "x" : "closest", showlegend: data.length > 1,
+      font: { size: 11 }, separators: comma ? ",." : ".,", hovermode: plot.timed ? "x" : "closest", showlegend: data.length > 1,
       legend: { orientation: "h", x: 0, xanchor: "left", y: 1, yanchor: "bottom" },
       xaxis: { title: { text: plot.x }, zeroline: false },
       yaxis: { title: { text: plot.y }, zeroline: true, scaleanchor: plot.circle ? "x" : undefined },
@@ -429,7 +449,7 @@
   }
 
   labels();
-  seek(begin);
+  seek(scene.start);
   window.gudgeon = { ready: false, seek, play, charts, scene, get now() { return now; }, get playing() { return playing; } };
   const library = document.createElement("script");
   library.textContent = new TextDecoder().decode(await unpack("library"));
