@@ -30,7 +30,7 @@ use_virtual_environment()
 
 import pandas as pd  # noqa: E402
 
-from gudgeon_plots import figures, film_tradeoff, tradeoff  # noqa: E402
+from gudgeon_plots import figures, film_tradeoff, language, tradeoff  # noqa: E402
 from gudgeon_plots.program import release_program  # noqa: E402
 from gudgeon_plots.results import MissingResult, Run, load_run, read_summary  # noqa: E402
 from gudgeon_plots.tradeoff import Reference, Settings  # noqa: E402
@@ -100,6 +100,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument(
         "--timeout", type=float, default=120.0, metavar="S", help="give a run up after this (default: 120)"
     )
+    language.add_option(parser)
     options = parser.parse_args()
     if options.presets and not options.cases:
         options.cases = sorted(TOP.glob("cases/*.nml")) + sorted(TOP.glob("cases/*/*.nml"))
@@ -269,6 +270,7 @@ def report(study: Study, reference: Reference, table: pd.DataFrame) -> None:
     drawing = tradeoff.draw(table, reference, study.name)
     figures.add_legend(drawing, drawing.axes)
     print(study.table, *figures.save(drawing, study.options.out, study.name, ["png", "svg"]))
+    language.current.warn("measure_tradeoff.py")
 
 
 def main() -> int:

@@ -26,7 +26,7 @@ use_virtual_environment(more=("scipy",))
 
 import pandas as pd  # noqa: E402
 
-from gudgeon_plots import cycle_pictures, figures  # noqa: E402
+from gudgeon_plots import cycle_pictures, figures, language  # noqa: E402
 from gudgeon_plots.cycles import Cycles, orders, whole_cycles, work  # noqa: E402
 from gudgeon_plots.results import MissingResult, Results  # noqa: E402
 
@@ -43,6 +43,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--results", type=Path, metavar="DIR", help="where traces are (default: results, or the trace's)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="(default: beside the trace)")
     parser.add_argument("--format", action="append", choices=("png", "svg", "pdf"), help="repeatable (default: png)")
+    language.add_option(parser)
     return parser.parse_args()
 
 
@@ -85,6 +86,7 @@ def main() -> int:
     paths += figures.save(cycle_pictures.draw_bearings(cycles), out, f"{name}.bearings", forms)
     if "cylinder_pressure" in cycles:
         paths += figures.save(cycle_pictures.draw_indicator(cycles), out, f"{name}.indicator", forms)
+    language.current.warn("orders.py")
     print(f"{name}: {cycles.number} cycles")
     print(done.to_string(index=False, float_format=lambda value: f"{value:.5g}"))
     for column, table in tables.items():

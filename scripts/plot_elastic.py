@@ -18,7 +18,7 @@ from gudgeon_plots.environment import TOP, use_virtual_environment
 
 use_virtual_environment()
 
-from gudgeon_plots import elastic_pictures, figures  # noqa: E402
+from gudgeon_plots import elastic_pictures, figures, language  # noqa: E402
 from gudgeon_plots.program import release_program  # noqa: E402
 from gudgeon_plots.results import MissingResult, load_run  # noqa: E402
 
@@ -30,6 +30,7 @@ def main() -> int:
     parser.add_argument("--out", type=Path, default=TOP / "results" / "elastic", metavar="DIR", help="(default: results/elastic)")
     parser.add_argument("--format", action="append", choices=("png", "svg", "pdf"), help="repeatable (default: png)")
     parser.add_argument("--program", type=Path, help="this program instead of a release build")
+    language.add_option(parser)
     options = parser.parse_args()
     runs = []
     try:
@@ -46,6 +47,7 @@ def main() -> int:
     print(elastic_pictures.describe_first_impacts(runs))
     for path in figures.save(elastic_pictures.draw_first_impacts(runs), options.out, CASE.stem, options.format or ["png"]):
         print(path)
+    language.current.warn("plot_elastic.py")
     return 0
 
 

@@ -25,7 +25,8 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 import pandas as pd  # noqa: E402
 
-from gudgeon_plots import compare, elastic_pictures, figures, film_pressure, language, report_page, ringing, tradeoff  # noqa: E402
+import show_noise  # noqa: E402
+from gudgeon_plots import compare, elastic_pictures, figures, film_pictures, film_pressure, language, names, report_page, ringing, tradeoff  # noqa: E402
 from gudgeon_plots.figure_map import read_figures  # noqa: E402
 from gudgeon_plots.quantities import QUANTITIES, once_a_cycle  # noqa: E402
 from gudgeon_plots.results import (  # noqa: E402
@@ -783,6 +784,20 @@ class Portuguese(unittest.TestCase):
         self.assertEqual(portuguese.say("a thing nobody knows 1.5"), "a thing nobody knows 1,5")
         self.assertEqual(portuguese.unknown, {"a thing nobody knows 1.5"})
 
+    def test_other_pictures(self) -> None:
+        """Those of elastic rods, films and trade-offs, and names of the columns that runs are compared by."""
+        portuguese = language.Language("pt")
+        for text in (
+            *(name for name, *_ in elastic_pictures.RODS),
+            *(name for _, name, _ in film_pictures.FILMS),
+            *(label for _, label in tradeoff.ERRORS),
+            *(column.replace("_", " ") for column in compare.COLUMNS),
+            *names.KEYS.values(),
+            *names.COLUMNS.values(),
+        ):
+            portuguese.say(text)
+        self.assertEqual(portuguese.unknown, set())
+
     def test_english_stays_as_it_is(self) -> None:
         english = language.Language()
         self.assertEqual(english.say("crank speed 1.5"), "crank speed 1.5")
@@ -793,6 +808,37 @@ class Portuguese(unittest.TestCase):
         language.Language("pt").localise(drawing)
         drawing.canvas.draw()
         self.assertIn("0,2", [tick.get_text() for tick in axes.get_xticklabels()])
+        plt.close(drawing)
+
+
+class PrintsNoise(unittest.TestCase):
+    """The figures of scripts/show_noise.py."""
+
+    def made(self) -> show_noise.Noise:
+        """Noise of 10 % where the pin is nearer to the wall than 0.95 c; the start, where it drops, does not count."""
+        time = np.linspace(0, 1, 1001)
+        ratio = 0.9 + 0.09 * np.sin(20 * time)
+        away = np.where(ratio > 0.95, 0.1, 1e-4)
+        away[:10] = 5.0
+        return show_noise.Noise("II", time, np.cos(time), ratio, {1e-6: away, 1e-8: 1e-3 * away})
+
+    def test_noise_is_where_the_film_is_thin(self) -> None:
+        noise = self.made()
+        self.assertAlmostEqual(noise.largest(1e-6), 0.1)
+        self.assertAlmostEqual(noise.largest(1e-8), 1e-4)
+        there, elsewhere = noise.eccentricities(1e-6)
+        self.assertTrue(0.95 < there < 0.99 and elsewhere < 0.95, (there, elsewhere))
+        self.assertTrue(np.isnan(noise.eccentricities(1e-8)[0]))
+        row = show_noise.table([noise])[-1]
+        self.assertTrue(row.startswith("| II | 10 % |") and row.endswith("| 0.01 % |"), row)
+
+    def test_the_picture(self) -> None:
+        drawing, portuguese = show_noise.draw([self.made(), self.made()]), language.Language("pt")
+        self.assertEqual([axes.get_yscale() for axes in drawing.axes], 2 * ["linear", "log"])
+        self.assertEqual(empty_panels(drawing), [])
+        self.assertEqual(overlaps(drawing), [])
+        portuguese.localise(drawing)
+        self.assertEqual(portuguese.unknown, set())
         plt.close(drawing)
 
 
@@ -1014,6 +1060,22 @@ class Tradeoff(unittest.TestCase):
         )
         self.assertEqual(tradeoff.cheapest(table, 3)["seconds"], 2.0)
         self.assertIsNone(tradeoff.cheapest(table, 6))
+
+    def test_the_picture_is_over_evaluations_alone(self) -> None:
+        rows = 6
+        table = pd.DataFrame(
+            {
+                "status": "done", "state_error": np.geomspace(1e-8, 1e-3, rows), "peak_force_error": np.geomspace(1e-7, 1e-2, rows),
+                "evaluations": np.geomspace(1e5, 1e3, rows), "seconds": np.random.default_rng(1).random(rows), "method": "adams",
+                "contact_entry": "root", "max_order": 12,
+            }
+        )
+        reference = tradeoff.Reference(run({"time": [0.0, 1.0]}), 1.0, True, 1e-10)
+        drawing = tradeoff.draw(table, reference, "x")
+        self.assertEqual([axes.get_xlabel() for axes in drawing.axes], 2 * ["evaluations of the right-hand side"])
+        for axes, error in zip(drawing.axes, ("state_error", "peak_force_error")):
+            np.testing.assert_allclose(axes.collections[0].get_offsets()[:, 1], table[error])
+        plt.close(drawing)
 
     def test_settings_are_known_again(self) -> None:
         settings = tradeoff.Settings("", "adams", 12, "step_rejection", 5e-7, 10.0**-9)
