@@ -517,7 +517,7 @@ class Drawing(unittest.TestCase):
             return [[panel.kind for panel in row] for row in figures.arrange(table[number], results)]
 
         self.assertEqual(kinds("6.1"), [["full", "full"], ["difference", "difference"]])  # same range
-        self.assertEqual(kinds("6.4"), [["full", "full"], ["detail", "detail"]])
+        self.assertEqual(kinds("6.4"), [["full", "full"], ["zoom", "zoom"]])  # rings
         self.assertEqual(kinds("B.3"), [["full"], ["detail"]])
         self.assertEqual(kinds("B.4"), [["full", "detail"]] * 3)
         self.assertEqual(kinds("6.7"), [["full", "full"], ["detail", "detail"], ["full", "full"]])

@@ -59,7 +59,7 @@ class Quantity:
 
     def rings(self, run: Run) -> bool:
         """Whether the curve over time is a filled band at the width of a picture."""
-        return self.wide and self.values is not None and rings(abscissa(run)[0], self.values(run))
+        return self.wide and self.values is not None and is_band(run, self.values(run))
 
     def zoomed(self, run: Run, ideal: Run) -> tuple[float, float]:
         """The part of the abscissa that a zoom shows."""
@@ -127,10 +127,16 @@ def start_note(values: Callable[[Run], np.ndarray]) -> Callable[[Run], str]:
     return note
 
 
+def is_band(run: Run, y: np.ndarray) -> bool:
+    """Whether a curve over time rings faster than a picture can show. At a held speed pictures have two revolutions, in which single
+    impacts are told apart."""
+    return not held_speed(run) and rings(abscissa(run)[0], y)
+
+
 def plot_curve(axis: Axes, run: Run, y: np.ndarray, colour: str) -> None:
     """A curve over time or crank angle; its envelope where it rings faster than a picture can show."""
     x = abscissa(run)[0]
-    if rings(x, y):
+    if is_band(run, y):
         draw_envelope(axis, x, y, colour)
     else:
         axis.plot(x, y, color=colour, label=curve_name(run))

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 
-#: Stretches of the abscissa that an envelope is made of: about one each two dots of a printed panel.
-STRETCHES = 300
+#: Stretches of the abscissa that an envelope is made of: some dots of a printed panel each.
+STRETCHES = 150
 
 #: A stretch rings if the curve turns at least so often in it and covers at least this share of the curve's range.
-LEAST_TURNS, LEAST_SHARE = 3, 0.03
+LEAST_TURNS, LEAST_SHARE = 2, 0.1
 
 #: A curve rings if this share of its stretches does.
 RINGING_SHARE = 0.08
