@@ -8,6 +8,7 @@ Ends with the line "N passed, N failed".
 
 import contextlib
 import io
+import math
 import re
 import sys
 import tempfile
@@ -487,6 +488,21 @@ class Drawing(unittest.TestCase):
         self.assertEqual(overlaps(drawing), [])
         plt.close(drawing)
         self.assertIn("| rigid | 0.2000 ms, +2.000 m/s | 0.3000 ms, -0.800 m/s | 11.0 kN | 7 |", elastic_pictures.describe_first_impacts(runs))
+
+    def test_members(self) -> None:
+        """A pin force of 3 and 4 kN, a bearing force of 1 kN, a moment of 2 N m that the energy does not keep: 4 pi J a revolution."""
+        time = np.linspace(0, 3, 301)
+        ones = np.ones_like(time)
+        columns = {"crank_angle": 2 * math.pi * time, "crank_speed": 2 * math.pi * ones, "crank_moment": 2 * ones, "energy": 5 * ones,
+                   "pin_force_x": 3e3 * ones, "pin_force_y": 4e3 * ones, "crank_bearing_force_x": 1e3 * ones, "crank_bearing_force_y": 0 * ones,
+                   "guide_force": np.where(time < 0.9, 9e3, -2e3)}
+        runs = [run({"time": time, **columns}) for _ in elastic_pictures.MEMBERS]
+        for made in runs:
+            made.summary.update({"rhs_evaluations": ("7", "1"), "contacts": ("6", "1"), "guide_1_contacts": ("1", "1"), "guide_4_contacts": ("2", "1")})
+        drawing = elastic_pictures.draw_members(runs)
+        self.assertEqual(overlaps(drawing), [])
+        plt.close(drawing)
+        self.assertIn(f"| all of it | 2.0 | 0.0 | 1.0 | 5.0 | 1.0 | 2.0 | {4 * math.pi:.2f} | 7 |", elastic_pictures.describe_members(runs))
 
     def test_largest_deflection_of_a_rod(self) -> None:
         zero, far = np.zeros(3), np.array([0.0, 2e-6, 1e-6])

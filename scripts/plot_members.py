@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+"""Draws what each loose joint and each elastic member changes in one mechanism: Flores's slider-crank at 3500 rpm, 0.2 mm, dry.
+
+    scripts/plot_members.py                     -> results/members/members.png
+    scripts/plot_members.py --out cases/joints  the picture that is shipped; --table: and the table data/measured/members.md
+
+The mechanism of cases/elastic/first_impact.nml runs three revolutions with one member added at a time, and with all of them. Prints what
+the second and third revolution have of impacts, forces and losses.
+"""
+
+import argparse
+import datetime
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from gudgeon_plots.environment import TOP, use_virtual_environment
+
+use_virtual_environment()
+
+from gudgeon_plots import elastic_pictures, figures  # noqa: E402
+from gudgeon_plots.program import release_program  # noqa: E402
+from gudgeon_plots.results import MissingResult, load_run  # noqa: E402
+
+CASE = TOP / "cases" / "elastic" / "first_impact.nml"
+TABLE = TOP / "data" / "measured" / "members.md"
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=Path, default=TOP / "results" / "members", metavar="DIR", help="(default: results/members)")
+    parser.add_argument("--format", action="append", choices=("png", "svg", "pdf"), help="repeatable (default: png)")
+    parser.add_argument("--table", action="store_true", help="write data/measured/members.md too")
+    parser.add_argument("--program", type=Path, help="this program instead of a release build")
+    options = parser.parse_args()
+    runs = []
+    try:
+        program = options.program or release_program()
+        with tempfile.TemporaryDirectory(prefix="members") as scratch:
+            for i, (_, settings) in enumerate(elastic_pictures.MEMBERS):
+                out = Path(scratch) / str(i)
+                words = [word for setting in (*elastic_pictures.MEMBER_RUN, *settings) for word in ("--set", setting)]
+                subprocess.run([program, "-q", "-o", out, *words, CASE], check=True)
+                runs.append(load_run(out / f"{CASE.stem}.csv"))
+    except (MissingResult, subprocess.CalledProcessError) as failure:
+        print(failure, file=sys.stderr)
+        return 1
+    table = elastic_pictures.describe_members(runs)
+    print(table)
+    if options.table:
+        TABLE.parent.mkdir(parents=True, exist_ok=True)
+        TABLE.write_text("# What each loose joint and each elastic member changes\n\n    scripts/plot_members.py --table\n\n"
+                         f"{datetime.date.today()}. {elastic_pictures.MEMBERS_SAY}\n\n{table}\n")
+    for path in figures.save(elastic_pictures.draw_members(runs), options.out, "members", options.format or ["png"]):
+        print(path)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
