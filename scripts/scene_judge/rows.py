@@ -8,7 +8,8 @@ from .contact import Contact
 from .drive import Drive
 from .gas import gas_of
 from .guide import Guide
-from .laws import ROUNDING, Friction, squeeze_film
+from .films import Asperities, Film
+from .laws import ROUNDING, Friction
 from .mechanics import Bodies, Row
 from .trace import Run
 
@@ -17,6 +18,12 @@ SUM = 1e-9        # of a sum's terms: what may be left of one that vanishes
 LAW = 1e-6        # of a force: what a law may be missed by, beyond the rounding of the speeds it was given
 DETAILED = 1500   # rows of a run in which the equations of an elastic rod are looked at
 STICKS = 10       # tolerances of the speeds: how fast surfaces that stick may seem to slide
+INTEGRATED = 1500  # rows in which a film is judged whose pressure is integrated or
+SOLVED = 8         # solved for
+LEAST_GAP = 1e-4   # over the clearance: where the table of a film ends
+OSCILLATING = 1e-5  # of a force: of the oscillating film's means
+ASPERITIES = 1e-5  # of a force: of the series of F52 and of the spline through the forces
+CLEAR = 0.01       # of a force: what its film's velocity, taken from the rows, may leave open
 LEAST_BEND = 5e-9  # [m] bristles that give way sooner do so within a step: rows between the steps cannot tell how
 BENT = 1000       # tolerances of the static friction: what bristles may be bent beyond it in rows between the steps
 
@@ -43,6 +50,21 @@ class Miss:
         return f"{self.check}: {self.share:.3g} times what is allowed at t = {self.time:.9g} s"
 
 
+def slope(times: list[float], values: list[float]) -> float:
+    """Of the polynomial through values at times, at the time in the middle."""
+    middle = len(times) // 2
+    here, total = times[middle], 0.0
+    for j, t in enumerate(times):
+        if j == middle:
+            continue
+        weight = 1 / (t - here)
+        for k, other in enumerate(times):
+            if k not in (j, middle):
+                weight *= (here - other) / (t - other)
+        total += weight * (values[j] - values[middle])
+    return total
+
+
 def inside(value: float, low: float, high: float) -> float:
     """How far a value is outside of a range."""
     return max(low - value, value - high, 0.0) if value == value else math.nan
@@ -53,12 +75,15 @@ class RowChecks:
 
     def __init__(self, whole: Run, joint: str = "piston_pin") -> None:
         run = self.run = whole.at(joint)
+        self.joint = joint
         self.crank_pin = RowChecks(whole, "crank_pin") if joint == "piston_pin" and whole.has_loose_crank_pin else None
         self.bodies = Bodies.of(run)
         self.misses: dict[str, Miss] = {}
         self.begins = [float(event["time[s]"]) for event in run.events if event["event"] == "contact_begins"]
         self.has_joint = run.has_clearance
         self.film = run.text("lubrication.law")
+        self.film_law = Film(run) if self.has_joint and self.film else None
+        self.asperities = Asperities(run) if self.has_joint and "asperities.roughness" in run.case else None
         self.contact = Contact(run) if self.has_joint and run.text("contact.law") else None
         self.friction = Friction(run) if self.has_joint and run.text("friction.law") else None
         self.elastic = self.run.case.get("lubrication.elastic_film", [False])[0]
@@ -101,7 +126,7 @@ class RowChecks:
             return None
         if self.weighted and self.film == "oscillating_film":
             return None
-        if phase == CONTACT and self.friction:
+        if phase == CONTACT and self.friction or phase == FILM and self.asperities:
             return row.get["friction_force"] * self.bodies.pin_radius
         return None if phase == FILM and self.film == "oscillating_film" else 0.0
 
@@ -116,9 +141,9 @@ class RowChecks:
             for name, found in row.balances(*moments).items():
                 self.take(name, found.miss, SUM * found.size + found.noise + 1e-300, t)
             if self.crank_pin:
-                self.crank_pin.check_joint(at_crank_pin, t)
+                self.crank_pin.check_joint(at_crank_pin, i)
             if self.has_joint:
-                self.check_joint(row, t)
+                self.check_joint(row, i)
             for name, (miss, allowed) in (self.drive.misses(row, t) if self.drive else {}).items():
                 self.take(name, miss, allowed + 1e-300, t)
             if self.gas:
@@ -130,8 +155,8 @@ class RowChecks:
                             for name, miss in self.crank_pin.misses.items()}
         return self.misses
 
-    def check_joint(self, row: Row, t: float) -> None:
-        get, c = row.get, self.run.number("joint.clearance")
+    def check_joint(self, row: Row, i: int) -> None:
+        get, c, t = row.get, self.run.number("joint.clearance"), row.get["time"]
         e = get["eccentricity_x"], get["eccentricity_y"]
         size = math.hypot(*e)
         thinnest = math.hypot(get["film_eccentricity_x"], get["film_eccentricity_y"]) if self.elastic else size
@@ -145,12 +170,12 @@ class RowChecks:
         if phase == FREE:
             self.take("no force in free flight", math.hypot(*row.force), row.law_noise, t)
         if phase == FILM:
-            self.check_film(row, n, give, t)
+            self.check_film(row, n, give, i)
         if phase == CONTACT and self.contact:
-            self.check_contact(row, n, give, t)
+            self.check_contact(row, n, give, i)
 
-    def check_contact(self, row: Row, n: tuple[float, float], give: float, t: float) -> None:
-        get = row.get
+    def check_contact(self, row: Row, n: tuple[float, float], give: float, i: int) -> None:
+        get, t = row.get, row.get["time"]
         depth, rate = -get["film_thickness"], n[0] * row.slip[0] + n[1] * row.slip[1]
         share = self.share(depth)
         low, high = (share * self.contact.force(depth, rate + d, t) for d in (-give, give))
@@ -166,7 +191,7 @@ class RowChecks:
         self.take("contact force on the pin", math.hypot(row.force[0] - want[0] - film[0], row.force[1] - want[1] - film[1]),
                   SUM * (abs(normal) + abs(friction) + math.hypot(*film)) + row.law_noise, t)
         if self.weighted:
-            self.check_film_law(row, n, film, 1 - share, give, t)
+            self.check_film_law(row, n, film, 1 - share, give, i)
         sliding = n[0] * row.slip[1] - n[1] * row.slip[0] + (row.journal_turn - row.bearing_turn) * self.bodies.pin_radius
         sliding -= row.bearing_turn * (self.run.number("joint.clearance") + depth)
         self.take("sliding speed", abs(sliding - get["sliding_speed"]), 10 * give, t)
@@ -200,14 +225,34 @@ class RowChecks:
         self.take("contact half-angle", abs(x - want), (LAW + 2 * blur) * want, t)
         self.take("peak pressure", abs(force - normal), (LAW + 2 * blur) * normal + 1e-300, t)
 
-    def check_film(self, row: Row, n: tuple[float, float], give: float, t: float) -> None:
-        get = row.get
-        self.take("film force on the pin", math.hypot(row.force[0] - get["film_force_x"], row.force[1] - get["film_force_y"]), row.law_noise, t)
+    def check_film(self, row: Row, n: tuple[float, float], give: float, i: int) -> None:
+        get, t = row.get, row.get["time"]
+        film = get["film_force_x"], get["film_force_y"]
+        rest = row.force[0] - film[0], row.force[1] - film[1]
+        if self.asperities:
+            normal, friction = get["asperity_force"], get["friction_force"]
+            rest = rest[0] + normal * n[0] + friction * n[1], rest[1] + normal * n[1] - friction * n[0]
+            self.check_asperities(row, n, give, t)
+        self.take("film force on the pin", math.hypot(*rest), row.law_noise + (SUM * math.hypot(*row.force) if self.asperities else 0.0), t)
         if self.elastic:
             self.check_walls(row, give, t)
+            self.check_moving_film(row, film, i)
             return
-        self.take("no contact force in a film", abs(get["normal_force"]) + abs(get["friction_force"]), 0.0, t)
-        self.check_film_law(row, n, row.force, 1.0, give, t)
+        if self.contact:
+            self.take("no contact force in a film", abs(get["normal_force"]) + abs(get["friction_force"]), 0.0, t)
+        self.check_film_law(row, n, film if self.asperities else row.force, 1.0, give, i)
+
+    def check_asperities(self, row: Row, n: tuple[float, float], give: float, t: float) -> None:
+        """Those that touch press the pin to the middle, and rub."""
+        get, rough = row.get, self.asperities
+        size, gap = math.hypot(get["eccentricity_x"], get["eccentricity_y"]), get["film_thickness"]
+        normal, friction = get["asperity_force"], get["friction_force"]
+        want = rough.force(size, gap)
+        self.take("asperities", abs(normal - want), ASPERITIES * want + 1e-6 * rough.scale * ASPERITIES, t)
+        radius = self.bodies.pin_radius
+        speed = n[0] * row.slip[1] - n[1] * row.slip[0] + row.journal_turn * radius - row.bearing_turn * (size + radius)
+        low, high = sorted(-rough.coefficient * normal * math.tanh((speed + d) / rough.speed) for d in (10 * give, -10 * give))
+        self.take("boundary friction", inside(friction, low, high), LAW * abs(normal) * rough.coefficient + 1e-300, t)
 
     def check_walls(self, row: Row, give: float, t: float) -> None:
         """Walls that give way under a film bear what it bears, along their deflection."""
@@ -220,23 +265,81 @@ class RowChecks:
         self.take("elastic walls", miss, (LAW + blur) * want + row.law_noise + 1e-300, t)
         self.take("wall deflection", abs(depth - get["wall_deflection"]), 1e-14 * (depth + self.run.number("joint.clearance")), t)
 
-    def check_film_law(self, row: Row, n: tuple[float, float], force: tuple[float, float], share: float, give: float, t: float) -> None:
+    def is_judged(self, i: int) -> bool:
+        """Whether a film is judged in a row: not in each where that takes long."""
+        if self.film == "pinkus_sternlicht" and self.film_law.variant != "half_film":
+            return True
+        return i % max(1, len(self.run.times) // (SOLVED if self.film_law.is_solved else INTEGRATED)) == 0
+
+    def check_film_law(self, row: Row, n: tuple[float, float], force: tuple[float, float], share: float, give: float, i: int) -> None:
         """A share of the film that the case names."""
-        get = row.get
-        if self.film == "oscillating_film":
-            self.take("no load along the line of centres", abs(force[0] * n[0] + force[1] * n[1]), SUM * math.hypot(*force) + row.law_noise, t)
-            return
-        eps, rate = get["eccentricity_ratio"], n[0] * row.slip[0] + n[1] * row.slip[1]
-        if self.run.text("lubrication.variant") != "closed_form" or not (1e-3 < eps < 1 or self.weighted and eps > 1e-3) or abs(rate) < 1e6 * give:
-            return
-        want = squeeze_film(self.run, row, row.slip)
-        others = [squeeze_film(self.run, row, (row.slip[0] + dx, row.slip[1] + dy)) for dx, dy in ((give, 0), (0, give))]
-        blur = sum(math.hypot(other[0] - want[0], other[1] - want[1]) for other in others)
+        get, law, c, t = row.get, self.film_law, self.run.number("joint.clearance"), row.get["time"]
+        eps, gap = get["eccentricity_ratio"], get["film_thickness"] / c
         least = self.run.number("lubrication.least_film_ratio") if self.weighted else 0.0
-        blur += 1e-15 / max(1 - eps, least) * math.hypot(*want)
+        size = math.hypot(*row.slip) + c * abs(row.journal_turn + row.bearing_turn)
+        if self.film == "oscillating_film":
+            self.check_oscillating(row, n, force, share, eps, gap, i)
+            return
+        if not self.is_judged(i) or eps <= 1e-3 or size < 1e6 * give:
+            return
+        along, across = n[0] * row.slip[0] + n[1] * row.slip[1], n[0] * row.slip[1] - n[1] * row.slip[0]
+        if law.law == "pinkus_sternlicht" and law.variant != "half_film" and abs(along) < 1e6 * give:
+            return
+        if self.asperities:
+            mean, slope = self.asperities.mean_gap(get["film_thickness"])
+            along, across = slope * along, (1 - mean / c) / eps * across
+            gap, eps = mean / c, 1 - mean / c
+        elif self.weighted and gap < least:
+            gap, eps = least, 1 - least
+        if not 1e-3 < eps < 1 or law.is_solved and gap < LEAST_GAP:
+            return
+        turn = row.journal_turn + row.bearing_turn
+        want = law.force(eps, gap, along, across, turn)
+        others = [] if law.is_solved else [law.force(eps, gap, along + dx, across + dy, turn) for dx, dy in ((give, 0), (0, give))]
+        blur = sum(math.hypot(other[0] - want[0], other[1] - want[1]) for other in others)
+        blur += 1e-15 / max(gap, least) * math.hypot(*want)
         if self.weighted:   # the share is a difference of two lengths over another
-            blur += 4e-15 * self.run.number("joint.clearance") / self.run.number("lubrication.transition_depth") * math.hypot(*want)
-        self.take("film law", math.hypot(force[0] - share * want[0], force[1] - share * want[1]), LAW * share * math.hypot(*want) + 10 * blur, t)
+            blur += 4e-15 * c / self.run.number("lubrication.transition_depth") * math.hypot(*want)
+        miss = math.hypot(n[0] * force[0] + n[1] * force[1] - share * want[0], n[0] * force[1] - n[1] * force[0] - share * want[1])
+        self.take("film law", miss, (LAW + law.margin) * share * math.hypot(*want) + 10 * blur, t)
+
+    def check_oscillating(self, row: Row, n: tuple[float, float], force: tuple[float, float], share: float, eps: float, gap: float,
+                          i: int) -> None:
+        """A film without load along the line of centres."""
+        t = row.get["time"]
+        if self.film_law.is_known:
+            self.take("no load along the line of centres", abs(force[0] * n[0] + force[1] * n[1]), SUM * math.hypot(*force) + row.law_noise, t)
+        if self.joint != "piston_pin" or not self.film_law.is_known or not self.is_judged(i) or not abs(row.turn) > 1e-3:
+            return
+        want = share * self.film_law.oscillating(row, eps, gap)
+        found = n[0] * force[1] - n[1] * force[0]
+        self.take("film law", abs(found - want), OSCILLATING * abs(want) + row.law_noise, t)
+
+    def check_moving_film(self, row: Row, force: tuple[float, float], i: int) -> None:
+        """Between elastic walls the film's own place moves as its load asks for: at the rate of the rows round this one."""
+        times, law = self.run.times, self.film_law
+        if not self.is_judged(i) or i < 2 or i > len(times) - 3 or len({*times[i - 2:i + 3]}) < 5:
+            return
+        columns = self.run.columns["film_eccentricity_x"], self.run.columns["film_eccentricity_y"]
+        place = columns[0][i], columns[1][i]
+        size, c = math.hypot(*place), self.run.number("joint.clearance")
+        if not 1e-3 < size / c < 1 or {self.run.columns["phase"][k] for k in range(i - 2, i + 3)} != {FILM}:
+            return
+        n = place[0] / size, place[1] / size
+        load = math.hypot(*force)
+        thicker = math.exp(self.run.number("lubrication.pressure_viscosity") * load / (2 * law.radius * law.length))
+
+        def at_rate(reach: int) -> tuple[float, float]:
+            rows = range(i - reach, i + reach + 1)
+            x, y = (slope([times[k] for k in rows], [column[k] for k in rows]) for column in columns)
+            return law.force(size / c, row.get["film_thickness"] / c, n[0] * x + n[1] * y, n[0] * y - n[1] * x, row.journal_turn + row.bearing_turn)
+
+        want, coarse = at_rate(2), at_rate(1)
+        blur = thicker * math.hypot(want[0] - coarse[0], want[1] - coarse[1])
+        if blur > CLEAR * load:
+            return
+        miss = math.hypot(n[0] * force[0] + n[1] * force[1] - thicker * want[0], n[0] * force[1] - n[1] * force[0] - thicker * want[1])
+        self.take("film law", miss, (LAW + law.margin) * load + blur + row.law_noise, row.get["time"])
 
     def check_gas(self, row: Row, i: int, t: float) -> None:
         get, gas = row.get, self.gas
