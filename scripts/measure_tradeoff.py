@@ -4,7 +4,7 @@
     scripts/measure_tradeoff.py cases/sim_I.nml               table, picture and recommendation, in results/tradeoff
     scripts/measure_tradeoff.py cases/flores/*.nml --repeat 9 several cases, wall times the median of nine
     scripts/measure_tradeoff.py --presets                     what --accuracy draft, standard, reference give in every case
-    scripts/measure_tradeoff.py --films cases/sim_I.nml       every film in this scene: cost and answers
+    scripts/measure_tradeoff.py --films cases/sim_I.nml       every film in this scene: cost and answers, to data/measured/films.md
 
 Runs a case over tolerance x method x max_order x contact entry with the release build, side by side on the cores there
 are, and compares each run with a reference at the tightest setting, whose own error it estimates from the next
@@ -279,7 +279,7 @@ def main() -> int:
     try:
         program = release_program()
         if options.films:
-            film_tradeoff.print_table(program, options.cases, options.repeat, options.timeout)
+            film_tradeoff.write_table(program, options.cases, options.repeat, options.timeout, options.out)
             return 0
         if options.presets:
             print("| case | length | reference known to | draft | standard | reference |", "|---|---|---|---|---|---|", sep="\n")

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """Whether the independent judge of runs (scripts/scene_judge) sees what is wrong.
 
-    tests/test_judge.py [--program FILE] [--mutants]
+    tests/test_judge.py [--program FILE] [--mutants [FOLDER]]
 
 Sound runs must pass. Then each column of their traces is changed a little, by a sign or a part in a thousand; programs say that they
 ran one case and ran another (another restitution, friction, damping, heat), or with a looser tolerance than asked for: the check
-that is meant for it must go red. --mutants builds copies of the program with one line of their physics broken, and judges those: a
-minute or so each. Ends with the line "N passed, N failed".
+that is meant for it must go red. --mutants builds copies of the program with one line of their physics broken, and judges those, or only those
+whose line is in src/FOLDER: half a minute or so each. Ends with the line "N passed, N failed".
 """
 from __future__ import annotations
 
@@ -30,6 +30,10 @@ from scene_judge.verdict import judge_files, judge_scene, summary_of  # noqa: E4
 
 assertions = Assertions()
 check = assertions.check
+
+SMALL_TABLE = {"lubrication.table_points": "33", "lubrication.film_points": "64"}
+OIL = {f"lubrication.{key}": value for key, value in {"viscosity": "0", "viscosity_law": "'walther'", "temperature": "350", "density": "870",
+                                                      "known_temperatures": "313.15, 373.15", "known_viscosities": "1e-4, 1.1e-5"}.items()}
 
 #: Runs by name: the case, and settings that keep it short. Between them they have every law and both joints.
 SCENES = {
@@ -58,6 +62,18 @@ SCENES = {
     "ramp": ("drive/start_up", {"integrator.method": "'auto'", "integrator.end_time": "0.05", "output.interval": "2.5e-4"}),
     "motor": ("drive/motor", {"integrator.method": "'auto'", "integrator.end_time": "0.1", "output.interval": "5e-4"}),
     "elastic": ("film/elastic", {"integrator.revolutions": "0.1", "lubrication.variant": "short"}),
+    "thickening": ("film/elastic", {"integrator.revolutions": "0.1", "lubrication.law": "pinkus_sternlicht", "lubrication.variant": "closed_form",
+                                    "lubrication.pressure_viscosity": "1.8e-8"}),
+    "printed": ("sim_I", {"integrator.method": "'auto'", "integrator.revolutions": "0.05", "lubrication.variant": "as_printed"}),
+    "half": ("sim_II", {"integrator.method": "'auto'", "integrator.revolutions": "0.5", "lubrication.variant": "half_film"}),
+    "short": ("film/sim_II_finite", {"integrator.revolutions": "0.5", "lubrication.variant": "short"}),
+    "finite": ("film/sim_II_finite", {"integrator.revolutions": "0.5", **SMALL_TABLE}),
+    "gumbel": ("film/sim_II_finite", {"integrator.revolutions": "0.5", **SMALL_TABLE, "lubrication.cavitation": "gumbel"}),
+    "full": ("film/sim_II_finite", {"integrator.revolutions": "0.5", **SMALL_TABLE, "lubrication.cavitation": "none"}),
+    "direct": ("film/sim_II_finite", {"integrator.revolutions": "0.02", "integrator.relative_tolerance": "1e-4", "lubrication.variant": "direct",
+                                      "lubrication.film_points": "32"}),
+    "rough": ("film/sim_IV_mixed", {"integrator.revolutions": "1.2", "initial.crank_angle_deg": "170", "lubrication.variant": "short"}),
+    "warm": ("sim_I", {"integrator.method": "'auto'", "integrator.revolutions": "0.2", **OIL}),
     "both": ("joints/both_pins", {"integrator.revolutions": "0.2", "drive.kind": "'free'", "mechanism.gravity_angle_deg": "25"}),
     "crank": ("joints/crank_pin", {"integrator.revolutions": "0.2", "integrator.relative_tolerance": "1e-7"}),
     "slap": ("joints/piston_slap", {"integrator.revolutions": "0.3", "mechanism.gravity_angle_deg": "25"}),
@@ -74,7 +90,8 @@ SCENES = {
 }
 
 LONG_STEPS = ("sim_V", {"integrator.method": "'auto'", "integrator.revolutions": "1.2", "initial.crank_angle_deg": "170"})
-PHASES = {"dry": {0, 2}, "sticks": {0, 2}, "threlfall": {0, 2}, "brown_mcphee": {0, 2}, "stribeck": {0, 2}, "lugre": {0, 2},
+PHASES = {**dict.fromkeys(("thickening", "printed", "half", "short", "finite", "gumbel", "full", "direct", "rough", "warm"), {1}),
+          "dry": {0, 2}, "sticks": {0, 2}, "threlfall": {0, 2}, "brown_mcphee": {0, 2}, "stribeck": {0, 2}, "lugre": {0, 2},
           "elasto_plastic": {0, 2}, "conformal": {0, 2}, "johnson": {0, 2},
           "liner": {0, 2}, "pereira": {0, 2}, "dissipation": {0, 2}, "film": {1}, "contact": {1, 2}, "weighted": {1, 2}, "elastic": {1},
           "compressor": {1}, "two_stroke": {1}, "measured": {1}, "ramp": {1}, "motor": {1}, "both": {0, 2}, "crank": {0}, "films": {1},
@@ -155,6 +172,15 @@ CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
     ("harder contact beside a film", "weighted", "normal_force", lambda v, i: v * (1 + 1e-5), "contact law"),
     ("a film elsewhere between elastic walls", "elastic", "film_eccentricity_x", lambda v, i: v * (1 + 1e-5), "elastic walls"),
     ("walls that give way more", "elastic", "wall_deflection", lambda v, i: v * (1 + 1e-6), "wall deflection"),
+    ("another printed film", "printed", "pin_force_x", lambda v, i: v * (1 + 1e-5), "film law"),
+    ("another half film", "half", "pin_force_y", lambda v, i: v * (1 + 1e-5), "film law"),
+    ("another short film", "short", "pin_force_x", lambda v, i: v * (1 + 1e-5), "film law"),
+    ("another film of a finite bearing", "finite", "pin_force_x", lambda v, i: 1.05 * v, "film law"),
+    ("another oscillating film", "contact", "pin_force_y", lambda v, i: v * (1 + 1e-4), "film law"),
+    ("harder asperities", "rough", "asperity_force", lambda v, i: v * (1 + 1e-4), "asperities"),
+    ("asperities that rub forwards", "rough", "friction_force", lambda v, i: -v, "boundary friction"),
+    ("another film between asperities", "rough", "film_force_x", lambda v, i: v * (1 + 1e-5), "film law"),
+    ("another film between elastic walls", "thickening", "film_force_x", lambda v, i: v * 1.001, "film law"),
     ("more pressure", "film", "cylinder_pressure", lambda v, i: v * 1.001, "gas law"),
     ("more pressure in a compressor", "compressor", "cylinder_pressure", lambda v, i: v * 1.001, "gas law"),
     ("more pressure in a two-stroke engine", "two_stroke", "cylinder_pressure", lambda v, i: v * 1.001, "gas law"),
@@ -203,6 +229,13 @@ LIARS = [
     ("a film held farther out", "weighted", "lubrication.least_film_ratio", "0.0299", "film law"),
     ("thicker oil beside a contact", "weighted", "lubrication.viscosity", "0.0201", "film law"),
     ("another stiffness under the film", "elastic", "contact.housing_compliance", "0.3864", "elastic walls"),
+    ("a thicker half film", "half", "lubrication.viscosity", "0.0118", "film law"),
+    ("a thicker short film", "short", "lubrication.viscosity", "0.0118", "film law"),
+    ("another cavitation", "finite", "lubrication.cavitation", "'none'", "film law"),
+    ("rougher surfaces", "rough", "asperities.roughness", "0.401e-6", "asperities"),
+    ("more boundary friction", "rough", "asperities.coefficient", "0.101", "boundary friction"),
+    ("a warmer oil", "warm", "lubrication.temperature", "350.1", "film law"),
+    ("more pressure-viscosity", "thickening", "lubrication.pressure_viscosity", "1.9e-8", "film law"),
     ("a heavier piston", "ideal", "mechanism.piston_mass", "0.92", "Newton, piston"),
     ("gravity from elsewhere", "both", "mechanism.gravity_angle_deg", "25.01", "Newton, crank"),
     ("a heavier rod between two loose pins", "both", "mechanism.rod_mass", "0.2101", "energy column"),
@@ -226,6 +259,28 @@ MUTANTS = [
     ("static friction grips too early", "brown_mcphee.f90", "0.25_dp*u**2 + 0.75_dp)**2", "0.25_dp*u**2 + 0.76_dp)**2", "brown_mcphee", "friction law"),
     ("bristles give way too late", "lugre.f90", "abs(v)*z/g\n  end function", "0.99_dp*abs(v)*z/g\n  end function", "lugre", "bristle is not the integral"),
     ("film holds too much as it withdraws", "pinkus_sternlicht.f90", "if (eps_dot < 0) radial = self%withdrawal_sign*radial", "if (eps_dot < 0) radial = self%withdrawal_sign*(1.001_dp*radial)", "film", "film law"),
+    ("a printed film that lets go", "pinkus_sternlicht.f90", "self%withdrawal_sign = -1", "self%withdrawal_sign = 1", "printed", "film law"),
+    ("half a film with an arc too long", "half_film.f90", "    radial = -scale*b*square*(2 + square)", "    radial = -1.001_dp*scale*b*square*(2 + square)", "half", "film law"),
+    ("a short film that swerves", "short_bearing.f90", "cs = 2*eps*s**3", "cs = 2.002_dp*eps*s**3", "short", "film law"),
+    ("a film that does not rupture", "finite_film.f90", "if (cavitation == cavitation_reynolds) call find_film", "if (cavitation < 0) call find_film",
+     "finite", "film law"),
+    ("a film that pulls a little", "finite_film.f90", "max(left, 0.0_dp), max(right, 0.0_dp))", "left, right)", "gumbel", "film law"),
+    ("a thinner film than there is", "reynolds_grid.f90", "height = gap + 2*(1 - gap)", "height = gap + 1.9_dp*(1 - gap)", "direct", "film law"),
+    ("a table that draws the pin the other way", "film_map.f90", "if (t < 0) tangential = -tangential", "if (t > 0) tangential = -tangential", "finite", "film law"),
+    ("a table without cavitation that is scaled as the others", "film_map.f90", "      s_r = b/(w2*w)", "      s_r = abs(b)/(w2*w)", "full", "film law"),
+    ("half of the wedge", "finite_bearing.f90", "[v(1) + 0.5_dp*motion%pin_speed*e(2), v(2) - 0.5_dp*motion%pin_speed*e(1)]",
+     "[v(1) + 0.25_dp*motion%pin_speed*e(2), v(2) - 0.25_dp*motion%pin_speed*e(1)]", "short", "film law"),
+    ("an oscillating film with the shear of another one", "oscillating_film.f90", "along*(real(response%shear) -", "along*(1.01_dp*real(response%shear) -",
+     "contact", "film law"),
+    ("asperities a thousandth too many", "asperities.f90", "self%density_product**2*sqrt", "self%density_product**2*1.001_dp*sqrt", "rough", "asperities"),
+    ("asperities that rub at any speed", "asperities.f90", "*tanh(sliding_speed/self%transition_speed)", "*tanh(2*sliding_speed/self%transition_speed)", "rough",
+     "boundary friction"),
+    ("the film of rough surfaces moves as smooth ones do", "mixed_film.f90", "slope*radial*n + ratio", "radial*n + ratio", "rough", "film law"),
+    ("a held film farther in", "film_transition.f90", "(1 - least_film_ratio)*bearing%clearance", "(1 - 1.01_dp*least_film_ratio)*bearing%clearance", "weighted",
+     "film law"),
+    ("a film between elastic walls that does not turn with them", "clearance_joint.f90", " + drawn*[-e(2), e(1)]", "", "elastic", "film law"),
+    ("oil that thickens half as fast under pressure", "elastic_film.f90", "self%per_area*norm2(load))", "0.5_dp*self%per_area*norm2(load))", "thickening", "film law"),
+    ("oil of another temperature", "oil_viscosity.f90", "(log(self%temperature) - x(1))", "(log(self%temperature + 0.1_dp) - x(1))", "warm", "film law"),
     ("the film keeps a thousandth too much", "film_transition.f90", "w = s**2*(3 - 2*s)", "w = s**2*(2.999_dp - 2*s)", "weighted", "contact law"),
     ("the crank pin slides without its bearing's turning", "joint_motion.f90", "- joint%bearing_speed*(joint%distance + pin_radius)",
      "- joint%bearing_speed*pin_radius", "both", "crank pin: sliding speed"),
@@ -307,14 +362,19 @@ def test_liars(program: Path, folder: Path) -> None:
         check(any(says in fault for fault in verdict.faults), f"a program with {what}: seen", "; ".join(summary_of(verdict)))
 
 
-def test_mutants(folder: Path) -> None:
-    """Copies of the program with one line broken."""
+def test_mutants(folder: Path, part: str) -> None:
+    """Copies of the program with one line broken, of those in src/part. What the lines before have not touched is not built again."""
+    tree = folder / "mutant"
+    shutil.copytree(ROOT, tree, ignore=shutil.ignore_patterns("build", ".git", ".venv", "results"))
+    whole: tuple[Path, str] | None = None
     for what, file, old, new, scene, says in MUTANTS:
-        tree = folder / "mutant"
-        shutil.rmtree(tree, ignore_errors=True)
-        shutil.copytree(ROOT, tree, ignore=shutil.ignore_patterns("build", ".git", ".venv", "results"))
         source = next((tree / "src").rglob(file))
+        if not source.is_relative_to(tree / "src" / part):
+            continue
+        if whole:
+            whole[0].write_text(whole[1])
         text = source.read_text()
+        whole = source, text
         check(text.count(old) == 1, f"mutant ({what}): the line is there", file)
         source.write_text(text.replace(old, new))
         path = {**os.environ, "PATH": f"{ROOT / '.venv' / 'bin'}:{os.environ['PATH']}"}
@@ -330,7 +390,8 @@ def test_mutants(folder: Path) -> None:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", type=Path, help="this program instead of a release build")
-    parser.add_argument("--mutants", action="store_true", help="build and judge broken copies of the program too")
+    parser.add_argument("--mutants", nargs="?", const="", metavar="FOLDER",
+                        help="build and judge broken copies of the program alone; those broken in src/FOLDER")
     options = parser.parse_args()
     program = options.program
     if not program:
@@ -338,11 +399,12 @@ def main() -> int:
         if run.returncode:
             sys.exit(f"{run.stderr}\n0 passed, 1 failed")
         program = ROOT / run.stdout.strip()
-    test_corruptions(program)
     with tempfile.TemporaryDirectory(prefix="judge") as folder:
-        test_liars(program, Path(folder))
-        if options.mutants:
-            test_mutants(Path(folder))
+        if options.mutants is not None:
+            test_mutants(Path(folder), options.mutants)
+        else:
+            test_corruptions(program)
+            test_liars(program, Path(folder))
     return assertions.report()
 
 

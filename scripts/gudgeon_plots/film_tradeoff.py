@@ -1,15 +1,26 @@
 """Films against each other: what an evaluation and a run cost with each, and what the run says.
 
 The same scene with every film, integrated by `auto` at the relative tolerance of the cases. Times are the least of some runs; a direct
-solution takes too long to be repeated. Answers come from a run of its own, since they cost evaluations.
+solution takes too long to be repeated. Instructions of an evaluation are counted by valgrind, where it is installed, as the difference
+of two short runs: they do not depend on what else the computer does. Rows are kept, so that the same command goes on where it was
+interrupted, unless the case or the program has changed.
 """
 
+import datetime
+import hashlib
+import json
+import platform
+import re
+import shutil
 import subprocess
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
+from .environment import TOP
 from .results import read_summary
+
+MEASURED = TOP / "data" / "measured" / "films.md"
 
 
 @dataclass(frozen=True)
@@ -20,6 +31,7 @@ class Film:
     overrides: tuple[str, ...]
     repeats: bool = True  # quick enough to be run several times
     reports: bool = True  # and to be looked at three times in each step
+    counted: tuple[float, float] = (0.05, 0.35)  # revolutions of the two runs whose instructions are counted
 
 
 def table(points: int, nodes: int) -> Film:
@@ -30,7 +42,7 @@ def table(points: int, nodes: int) -> Film:
 LONG = ("lubrication.law=pinkus_sternlicht",)
 FINITE = ("lubrication.law=finite_bearing",)
 FILMS = (
-    Film("as_printed", (*LONG, "lubrication.variant=as_printed"), repeats=False, reports=False),
+    Film("as_printed", (*LONG, "lubrication.variant=as_printed"), repeats=False, reports=False, counted=(0.01, 0.02)),
     Film("closed_form", (*LONG, "lubrication.variant=closed_form")),
     Film("half_film", (*LONG, "lubrication.variant=half_film")),
     Film("oscillating", ("lubrication.law=oscillating_film", "lubrication.kinematic_viscosity=1.38e-5")),
@@ -38,52 +50,132 @@ FILMS = (
     table(17, 64),
     table(33, 64),
     table(65, 128),
-    Film("direct, 64 nodes", (*FINITE, "lubrication.variant=direct", "lubrication.film_points=64"), repeats=False, reports=False),
+    Film("direct, 32 nodes", (*FINITE, "lubrication.variant=direct", "lubrication.film_points=32"), repeats=False, counted=(0.002, 0.004)),
 )
+YARDSTICK = "closed_form"  # whose costs are 1
 
 
-def run(program: Path, case: Path, out: str, values: tuple[str, ...], timeout: float) -> dict[str, float] | None:
-    """The numbers in the summary of a run without rows; None if it does not come to an end."""
+def command(program: Path, case: Path, out: str, values: tuple[str, ...]) -> list[str]:
+    """A run without rows."""
     always = ("integrator.method=auto", "output.ideal_twin=.false.", "output.columns=time", "output.samples_per_revolution=1")
     overrides = [part for value in (*always, *values) for part in ("-s", value)]
+    return [str(program), "-q", "-j", "1", "-o", out, *overrides, str(case)]
+
+
+def run(program: Path, case: Path, out: str, values: tuple[str, ...], timeout: float) -> dict[str, float | str]:
+    """The numbers in the summary of a run; `stopped` says why it did not come to an end."""
     try:
-        done = subprocess.run([str(program), "-q", "-j", "1", "-o", out, *overrides, str(case)], capture_output=True, text=True, check=False,
-                              timeout=timeout)
+        done = subprocess.run(command(program, case, out, values), capture_output=True, text=True, check=False, timeout=timeout)
     except subprocess.TimeoutExpired:
-        return None
-    if done.returncode != 0:
-        return None
-    numbers = {}
-    for name, (value, _) in read_summary(Path(out) / f"{case.stem}.summary.csv").items():
+        return {"stopped": f"does not end in {timeout:.0f} s"}
+    numbers: dict[str, float | str] = {}
+    summary = Path(out) / f"{case.stem}.summary.csv"
+    for name, (value, _) in (read_summary(summary).items() if summary.exists() else ()):
         try:
             numbers[name] = float(value)
         except ValueError:
             continue
+    if done.returncode != 0:
+        at = re.search(r"crank angle ([-.0-9]+) deg", done.stderr)
+        why = "too much work in a revolution" if "too much work" in done.stderr else f"exit status {done.returncode}"
+        numbers["stopped"] = f"stopped, {why}" + (f", at {float(at[1]):.0f} deg" if at else "")
     return numbers
 
 
-def row(program: Path, case: Path, film: Film, repeat: int, timeout: float) -> str:
-    """One line of the table."""
+def instructions(program: Path, case: Path, film: Film, timeout: float) -> float | None:
+    """Of an evaluation with all that goes with it."""
+    valgrind = shutil.which("valgrind")
+    if valgrind is None:
+        return None
+    found = []
+    for revolutions in film.counted:
+        with tempfile.TemporaryDirectory() as out:
+            values = (*film.overrides, f"integrator.revolutions={revolutions}")
+            try:
+                done = subprocess.run([valgrind, "--tool=callgrind", "--callgrind-out-file=/dev/null", *command(program, case, out, values)],
+                                      capture_output=True, text=True, check=False, timeout=timeout)
+                evaluations = float(read_summary(Path(out) / f"{case.stem}.summary.csv")["rhs_evaluations"][0])
+            except (subprocess.TimeoutExpired, OSError, KeyError):
+                return None
+            counted = re.search(r"Collected : (\d+)", done.stderr)
+            if done.returncode != 0 or counted is None:
+                return None
+            found.append((int(counted[1]), evaluations))
+    (few, fewer), (many, more) = found
+    return (many - few) / (more - fewer) if more > fewer else None
+
+
+def measure(program: Path, case: Path, film: Film, repeat: int, timeout: float) -> dict[str, float | str | None]:
+    """What one film costs and says in one scene."""
     with tempfile.TemporaryDirectory() as out:
-        if film.repeats:   # the first one makes its table
-            run(program, case, out, film.overrides, timeout)
-        runs = [run(program, case, out, film.overrides, timeout) for _ in range(repeat if film.repeats else 1)]
-        answers = run(program, case, out, (*film.overrides, "lubrication.report=.true."), timeout) if film.reports else runs[0]
-    if answers is None or any(one is None for one in runs):
-        return f"| `{case.stem}` | {film.name} | does not end in {timeout:.0f} s | | | | | |"
-    seconds = min(one["wall_time"] for one in runs)
-    evaluations = runs[0]["rhs_evaluations"]
-    thinnest = answers["min_film_thickness"]
-    cells = [f"`{case.stem}`", film.name, f"{evaluations:.0f}", f"{1e6 * seconds / evaluations:.2g}", f"{1e3 * seconds:.3g}",
-             f"{1e6 * thinnest:.3f}" if thinnest > 0 else f"{1e6 * thinnest:.1f}, touches",
-             f"{1e-6 * answers['max_film_pressure']:.4g}" if "max_film_pressure" in answers else "",
-             f"{1e3 * answers['film_energy_lost']:.4g}" if "film_energy_lost" in answers else ""]
+        report = ("lubrication.report=.true.",) if film.reports else ()
+        answers = run(program, case, out, (*film.overrides, *report), timeout)   # the first run makes the table of a film
+        seconds = answers.get("wall_time")
+        if film.repeats and "stopped" not in answers:
+            seconds = min(run(program, case, out, film.overrides, timeout)["wall_time"] for _ in range(repeat))
+    wanted = ("stopped", "rhs_evaluations", "min_film_thickness", "max_film_pressure", "film_energy_lost", "film_table_error")
+    return {"seconds": seconds, "instructions": instructions(program, case, film, timeout), **{key: answers.get(key) for key in wanted}}
+
+
+def line(case: str, film: str, row: dict[str, float | str | None], yardstick: dict[str, float | str | None]) -> str:
+    def cell(key: str, text: str, factor: float = 1.0) -> str:
+        return text.format(factor * row[key]) if row.get(key) is not None else ""
+
+    thinnest = row.get("min_film_thickness")
+    each = row.get("instructions")
+    over = f"{each / yardstick['instructions']:.2g}" if each and yardstick.get("instructions") else ""
+    whole = ""
+    if row.get("seconds") and yardstick.get("seconds") and not row.get("stopped"):
+        whole = f"{row['seconds'] / yardstick['seconds']:.2g}"
+    cells = [f"`{case}`", film, cell("rhs_evaluations", "{:.0f}"), f"{each:.4g}" if each else "", over,
+             cell("seconds", "{:.3g}", 1e3), whole,
+             "" if thinnest is None else f"{1e6 * thinnest:.3f}" if thinnest > 0 else f"{1e6 * thinnest:.1f}, touches",
+             cell("max_film_pressure", "{:.4g}", 1e-6), cell("film_energy_lost", "{:.4g}", 1e3), row.get("stopped") or ""]
     return "| " + " | ".join(cells) + " |"
 
 
-def print_table(program: Path, cases: list[Path], repeat: int, timeout: float) -> None:
-    print("| case | film | evaluations | us each | run [ms] | thinnest film [um] | largest pressure [MPa] | lost in the film [mJ] |")
-    print("|---|---|---|---|---|---|---|---|")
+def write_table(program: Path, cases: list[Path], repeat: int, timeout: float, out: Path) -> None:
+    """Measure what is missing, and write the table to data/measured."""
+    kept = out / "films.json"
+    rows: dict[str, dict] = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
+    mark = hashlib.sha1(program.read_bytes()).hexdigest()[:10]
+    lines = []
     for case in cases:
+        text = hashlib.sha1(case.read_bytes()).hexdigest()[:10]
+        found = {}
         for film in FILMS:
-            print(row(program, case.resolve(), film, repeat, timeout), flush=True)
+            key = " ".join((mark, text, str(repeat), *film.overrides))
+            if key not in rows:
+                rows[key] = measure(program, case.resolve(), film, repeat, timeout)
+                kept.parent.mkdir(parents=True, exist_ok=True)
+                kept.write_text(json.dumps(rows, indent=1), encoding="utf-8")
+            found[film.name] = rows[key]
+            print(line(case.stem, film.name, rows[key], found.get(YARDSTICK, {})), flush=True)
+        lines += [line(case.stem, film.name, found[film.name], found[YARDSTICK]) for film in FILMS]
+    names = " ".join(str(case) for case in cases)
+    MEASURED.parent.mkdir(parents=True, exist_ok=True)
+    MEASURED.write_text(HEAD.format(names=names, date=datetime.date.today(), machine=machine()) + "\n".join(lines) + "\n", encoding="utf-8")
+    print(MEASURED)
+
+
+def machine() -> str:
+    """The processor, and how many cores of it there are."""
+    cores = subprocess.run(["nproc"], capture_output=True, text=True, check=False).stdout.strip() or "?"
+    try:
+        found = re.search(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text(encoding="utf-8"))
+    except OSError:
+        found = None
+    return f"{found[1] if found else platform.processor() or platform.machine()}, {cores} cores"
+
+
+HEAD = """# Films against each other
+
+`scripts/measure_tradeoff.py --films {names}`, {date}, {machine}.
+
+The same scenes with every film, by `auto` at 1e-6. Instructions are those of an evaluation of the whole scene with its share of the
+integrator, counted by valgrind. The time of a run is the least of some; `as_printed` and `direct` ran once. "Over" is what it is over
+that of `closed_form` in the same scene. An oscillating film follows the ideal motion and gets its energy there: its loss may be negative.
+
+| case | film | evaluations | instructions each | over | run [ms] | over | thinnest film [um] | largest pressure [MPa] | lost in the film [mJ] | |
+|---|---|---|---|---|---|---|---|---|---|---|
+"""

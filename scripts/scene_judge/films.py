@@ -66,7 +66,7 @@ class Film:
         self.scale = self.viscosity * self.length * self.radius**3 / self.clearance**2
         self.lever = number("mechanism.crank_length") / number("mechanism.rod_length")
         self.is_solved = self.law == "finite_bearing" and self.variant != "short"
-        self.margin = 0.06 if self.is_solved else 0.0   # of the force: what the coarse solution may be off
+        self.margin = 0.03 if self.is_solved else 0.0   # of the force: what the coarse solution may be off
 
     @property
     def is_known(self) -> bool:

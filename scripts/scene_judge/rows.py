@@ -23,7 +23,8 @@ SOLVED = 8         # solved for
 LEAST_GAP = 1e-4   # over the clearance: where the table of a film ends
 OSCILLATING = 1e-5  # of a force: of the oscillating film's means
 ASPERITIES = 1e-5  # of a force: of the series of F52 and of the spline through the forces
-CLEAR = 0.01       # of a force: what its film's velocity, taken from the rows, may leave open
+CLEAR = 0.01       # of a force: what the velocity of its film, taken from the rows, may leave open
+MOVING = 2e-4      # and what it is off by between rows of one step
 LEAST_BEND = 5e-9  # [m] bristles that give way sooner do so within a step: rows between the steps cannot tell how
 BENT = 1000       # tolerances of the static friction: what bristles may be bent beyond it in rows between the steps
 
@@ -126,7 +127,7 @@ class RowChecks:
             return None
         if self.weighted and self.film == "oscillating_film":
             return None
-        if phase == CONTACT and self.friction or phase == FILM and self.asperities:
+        if phase == CONTACT and self.friction or phase == FILM and self.asperities and self.film != "oscillating_film":
             return row.get["friction_force"] * self.bodies.pin_radius
         return None if phase == FILM and self.film == "oscillating_film" else 0.0
 
@@ -309,7 +310,7 @@ class RowChecks:
         t = row.get["time"]
         if self.film_law.is_known:
             self.take("no load along the line of centres", abs(force[0] * n[0] + force[1] * n[1]), SUM * math.hypot(*force) + row.law_noise, t)
-        if self.joint != "piston_pin" or not self.film_law.is_known or not self.is_judged(i) or not abs(row.turn) > 1e-3:
+        if self.joint != "piston_pin" or not self.film_law.is_known or not self.is_judged(i) or not (abs(row.turn) > 1e-3 and eps > 1e-3):
             return
         want = share * self.film_law.oscillating(row, eps, gap)
         found = n[0] * force[1] - n[1] * force[0]
@@ -339,7 +340,7 @@ class RowChecks:
         if blur > CLEAR * load:
             return
         miss = math.hypot(n[0] * force[0] + n[1] * force[1] - thicker * want[0], n[0] * force[1] - n[1] * force[0] - thicker * want[1])
-        self.take("film law", miss, (LAW + law.margin) * load + blur + row.law_noise, row.get["time"])
+        self.take("film law", miss, (MOVING + law.margin) * load + 3 * blur + row.law_noise, row.get["time"])
 
     def check_gas(self, row: Row, i: int, t: float) -> None:
         get, gas = row.get, self.gas
