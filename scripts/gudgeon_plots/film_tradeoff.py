@@ -6,10 +6,8 @@ of two short runs: they do not depend on what else the computer does. Rows are k
 interrupted, unless the case or the program has changed.
 """
 
-import datetime
 import hashlib
 import json
-import platform
 import re
 import shutil
 import subprocess
@@ -17,10 +15,8 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from .environment import TOP
+from .measured import write_table as write_measured
 from .results import read_summary
-
-MEASURED = TOP / "data" / "measured" / "films.md"
 
 
 @dataclass(frozen=True)
@@ -153,28 +149,13 @@ def write_table(program: Path, cases: list[Path], repeat: int, timeout: float, o
             print(line(case.stem, film.name, rows[key], found.get(YARDSTICK, {})), flush=True)
         lines += [line(case.stem, film.name, found[film.name], found[YARDSTICK]) for film in FILMS]
     names = " ".join(str(case) for case in cases)
-    MEASURED.parent.mkdir(parents=True, exist_ok=True)
-    MEASURED.write_text(HEAD.format(names=names, date=datetime.date.today(), machine=machine()) + "\n".join(lines) + "\n", encoding="utf-8")
-    print(MEASURED)
+    print(write_measured("films", "Films against each other", f"scripts/measure_tradeoff.py --films {names}", HEAD + "\n".join(lines)))
 
 
-def machine() -> str:
-    """The processor, and how many cores of it there are."""
-    cores = subprocess.run(["nproc"], capture_output=True, text=True, check=False).stdout.strip() or "?"
-    try:
-        found = re.search(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text(encoding="utf-8"))
-    except OSError:
-        found = None
-    return f"{found[1] if found else platform.processor() or platform.machine()}, {cores} cores"
-
-
-HEAD = """# Films against each other
-
-`scripts/measure_tradeoff.py --films {names}`, {date}, {machine}.
-
-The same scenes with every film, by `auto` at 1e-6. Instructions are those of an evaluation of the whole scene with its share of the
+HEAD = """The same scenes with every film, by `auto` at 1e-6. Instructions are those of an evaluation of the whole scene with its share of the
 integrator, counted by valgrind. The time of a run is the least of some; `as_printed` and `direct` ran once. "Over" is what it is over
-that of `closed_form` in the same scene. An oscillating film follows the ideal motion and gets its energy there: its loss may be negative.
+that of `closed_form` in the same scene. An oscillating film follows the ideal rotation and does not resist the motion of the pin's centre: it may
+give energy.
 
 | case | film | evaluations | instructions each | over | run [ms] | over | thinnest film [um] | largest pressure [MPa] | lost in the film [mJ] | |
 |---|---|---|---|---|---|---|---|---|---|---|

@@ -17,7 +17,7 @@ from .trace import Run
 RATIO = 3.0     # from one piece of the film to the next one away from the thinnest place
 NODES = ((-0.9739065285171717, 0.0666713443086881), (-0.8650633666889845, 0.1494513491505806), (-0.6794095682990244, 0.2190863625159820),
          (-0.4333953941292472, 0.2692667193099963), (-0.1488743389816312, 0.2955242247147529))   # of Gauss and Legendre, the left half
-POINTS = 256    # round an oscillating film
+POINTS = 512    # round an oscillating film
 GRID = (64, 6)  # nodes round half of a film of finite length, and along it
 SWEEPS = 600    # at most, of its relaxation
 GAP_AT_WALL = 1e-6   # 1 - eps at which films that do not end at the wall are held

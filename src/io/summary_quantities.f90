@@ -78,6 +78,9 @@ contains
   function quantities_of_joints() result(list)
     type(quantity_t), allocatable :: list(:)
     list = [quantity_t('viscosity', 'Pa s', 'dynamic viscosity of the oil at the temperature of the film'), &
+      quantity_t('film_table_error', '1', &
+        'largest relative error of the force in the table of the film, measured when it was made'), &
+      quantity_t('film_table_mean_error', '1', 'root mean square of the same'), &
       quantity_t('min_film_thickness', 'm', 'smallest film thickness; negative: deepest penetration'), &
       quantity_t('contacts', '1', 'contacts that began'), &
       quantity_t('contact_time_fraction', '1', 'share of the simulated time in contact'), &
@@ -88,7 +91,7 @@ contains
       quantity_t('contacts_beyond_validity', '1', &
         'contacts that at some instant were deeper than their elastic force is valid for'), &
       quantity_t('friction_work', 'J', 'work of the friction on the bodies; negative: energy lost'), &
-      quantity_t('film_energy_lost', 'J', 'energy that the film took from the bodies'), &
+      quantity_t('film_energy_lost', 'J', 'energy that the film took from the bodies; an oscillating film may give energy: then negative'), &
       quantity_t('max_film_pressure', 'Pa', 'largest pressure in the film'), &
       quantity_t('mean_film_side_flow', 'm3/s', 'mean oil flow out of both ends of the bearing'), &
       quantity_t('max_force', 'N', 'largest contact force of this corner of the skirt'), &
