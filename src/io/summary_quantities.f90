@@ -91,7 +91,8 @@ contains
       quantity_t('contacts_beyond_validity', '1', &
         'contacts that at some instant were deeper than their elastic force is valid for'), &
       quantity_t('friction_work', 'J', 'work of the friction on the bodies; negative: energy lost'), &
-      quantity_t('film_energy_lost', 'J', 'energy that the film took from the bodies; an oscillating film may give energy: then negative'), &
+      quantity_t('film_energy_lost', 'J', &
+        'energy that the film took from the bodies; negative: it gave energy, as an oscillating film may'), &
       quantity_t('max_film_pressure', 'Pa', 'largest pressure in the film'), &
       quantity_t('mean_film_side_flow', 'm3/s', 'mean oil flow out of both ends of the bearing'), &
       quantity_t('max_force', 'N', 'largest contact force of this corner of the skirt'), &

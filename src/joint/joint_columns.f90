@@ -98,7 +98,8 @@ contains
     end if
     if (.not. joint%film%film_moment) call row%put_on_request('film_moment[N.m]', figures%moment, &
       'moment of the oil shear on the pin about its centre, positive from x to y')
-    call row%put_on_request('film_power[W]', figures%power, 'power that the film takes from the bodies, by pressure and shear; < 0: it gives')
+    call row%put_on_request('film_power[W]', figures%power, &
+      'power that the film takes from the bodies, by pressure and shear; < 0: it gives')
     if (joint%film%gives_pressure()) call row%put_on_request('max_film_pressure[Pa]', figures%max_pressure, &
       'largest pressure in the film')
     if (joint%film%gives_side_flow()) call row%put_on_request('film_side_flow[m3/s]', figures%side_flow, &
