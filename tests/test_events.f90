@@ -36,6 +36,19 @@ module test_events
     procedure :: handle_event => changes_side
   end type chatterer_t
 
+  !> A ball on a moving floor: y = (height, speed), falling like t^2. Its event is that it leaves a table, and then that it comes back;
+  !> as it leaves, `handle_event` puts it below the table by `sunk`, as an inexact landing does.
+  type, extends(ode_problem_t) :: ball_t
+    logical :: is_off = .false.
+    real(dp) :: sunk = 0
+    integer :: left = 0, came_back = 0
+    real(dp) :: time_back = 0
+  contains
+    procedure :: derivatives => falls
+    procedure :: events => leaves_or_comes
+    procedure :: handle_event => leave_or_come
+  end type ball_t
+
   !> Looks at each event root: the function is not negative there, and negative one spacing before.
   type, extends(observer_t) :: root_checker_t
     integer :: loose = 0
@@ -52,6 +65,7 @@ contains
     call several_events(check)
     call close_passages(check)
     call grazing(check)
+    call turns_before_it_is_out(check)
     call chatter(check)
   end subroutine run_test_events
 
@@ -150,6 +164,34 @@ contains
     passages_of = problem%passages
   end function passages_of
 
+  !> A ball that leaves a table upwards at the speed v, sunk by d: with d < v^2/(2 g) it comes out and back; with more it turns below
+  !> the table, and comes back as it turns. Never is it lost below the table.
+  subroutine turns_before_it_is_out(check)
+    class(checks_t), intent(inout) :: check
+    type(ball_t) :: problem
+    type(adams_t) :: method
+    type(silent_observer_t) :: observer
+    real(dp), parameter :: sunk(5) = [0.0_dp, 1e-14_dp, 4e-9_dp, 6e-9_dp, 1e-6_dp]   ! v^2/(2 g) = 5e-9
+    real(dp) :: y(2), t
+    integer :: status, i
+    do i = 1, size(sunk)
+      problem = ball_t(n=2, n_events=1, sunk=sunk(i))
+      method = adams_t()
+      call prepare(method, 2, 1e-12_dp, 1.0_dp)
+      t = 0
+      y = [-1.0_dp, sqrt(2.0_dp + 1e-8_dp)]
+      call integrate(problem, method, t, y, 3.0_dp, 0, observer, status)
+      call check%that(status == integration_done .and. problem%left == 1, 'the ball leaves the table')
+      call check%that(problem%came_back == 1, 'the ball comes back to the table')
+      if (sunk(i) < 5e-9_dp) then
+        call check%close_to(problem%time_back, sqrt(2 + 1e-8_dp) + sqrt(1e-8_dp - 2*sunk(i)), 1e-7_dp, &
+          'it comes back when it falls')
+      else
+        call check%close_to(problem%time_back, sqrt(2 + 1e-8_dp), 1e-6_dp, 'or when it turns')
+      end if
+    end do
+  end subroutine turns_before_it_is_out
+
   subroutine chatter(check)
     class(checks_t), intent(inout) :: check
     type(chatterer_t) :: problem
@@ -227,6 +269,48 @@ contains
     g_rate = 0
     g_rate(merge(1, 2, self%side > 0)) = 1
   end subroutine passes_zero
+
+  !> y'' = -1.
+  pure subroutine falls(self, t, y, dydt, inside)
+    class(ball_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: dydt(self%n)
+    logical, intent(out) :: inside
+    associate (unused_t => t)
+    end associate
+    dydt = [y(2), -1.0_dp]
+    inside = .true.
+  end subroutine falls
+
+  pure subroutine leaves_or_comes(self, t, y, g, g_rate)
+    class(ball_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
+    associate (unused_t => t)
+    end associate
+    g = merge(-1, 1, self%is_off)*y(1)
+    g_rate = merge(-1, 1, self%is_off)*y(2)
+    if (self%came_back > 0) g = -1
+  end subroutine leaves_or_comes
+
+  subroutine leave_or_come(self, index, t, y, action)
+    class(ball_t), intent(inout) :: self
+    integer, intent(in) :: index
+    real(dp), intent(in) :: t
+    real(dp), intent(inout) :: y(:)
+    integer, intent(out) :: action
+    associate (unused_index => index)
+    end associate
+    action = event_continue
+    if (self%is_off) then
+      self%came_back = self%came_back + 1
+      self%time_back = t
+    else
+      self%left = self%left + 1
+      y(1) = y(1) - self%sunk
+    end if
+    self%is_off = .true.
+  end subroutine leave_or_come
 
   subroutine changes_side(self, index, t, y, action)
     class(chatterer_t), intent(inout) :: self

@@ -3,7 +3,8 @@
 !> All functions are followed with their rate. A cubic through values and rates at both ends of the step, with a margin for
 !> its own curvature, tells the steps in which nothing is to be expected; the rest is sampled on the interpolant, so that a
 !> function that passes zero and comes back within one step is found in general. So it is, for any function, in the first step
-!> after a restart until it has become negative.
+!> after a restart until it has become negative. A function whose event has been taken, that is on its way to become negative (as
+!> the penetration of a contact that has ended) and turns before it is, has its event again where it turns.
 module gudgeon_events
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t, max_events
@@ -24,6 +25,7 @@ module gudgeon_events
     private
     integer :: n = 0                      !! functions
     logical :: low(max_events) = .false.  !! it has been negative since the last restart: a passage counts
+    logical :: leaving(max_events) = .false.       !! its event has been taken, it is not negative yet, but becomes so
     logical :: on_step_end(max_events) = .false.   !! its passage is taken at the end of the step
     integer :: just_taken = 0             !! the event that led to the last restart
     logical :: fresh = .true.             !! no step since the restart
@@ -52,6 +54,8 @@ contains
     if (self%n == 0) return
     call look(self, problem, t, y)
     self%low(:self%n) = self%g(:self%n) < 0
+    if (just_taken > 0) self%leaving(just_taken) = self%rate(just_taken) < 0
+    self%leaving(:self%n) = self%leaving(:self%n) .and. .not. self%low(:self%n)
   end subroutine begin
 
   !> What the problem tells of its functions from now to the next restart.
@@ -84,6 +88,7 @@ contains
     if (archive%is_reading) call prepare(self, problem)
     do i = 1, self%n
       call archive%exchange(self%low(i))
+      call archive%exchange(self%leaving(i))
     end do
     call archive%exchange(self%just_taken)
     call archive%exchange(self%fresh)
@@ -129,7 +134,9 @@ contains
         index = i
         t_event = t_found
       end if
-      if (self%g(i) < 0) self%low(i) = .true.
+      if (.not. self%g(i) < 0) cycle
+      self%low(i) = .true.
+      self%leaving(i) = .false.
     end do
   end subroutine search
 
@@ -214,6 +221,11 @@ contains
     if (.not. low .and. right%g >= 0 .and. left%rate < 0 .and. right%rate > 0) then
       start = extremum(self, method, problem, index, left, right)   ! it may dip below zero in between
       low = start%g < 0
+      if (.not. low .and. self%leaving(index)) then
+        found = .true.
+        t_found = start%t
+        return
+      end if
     end if
     if (low .and. start%g < 0 .and. right%g >= 0) then
       found = .true.

@@ -224,25 +224,30 @@ contains
   end subroutine exchange_all
 
   !> Land on an event inside the last step. Where the landing is more accurate than the interpolant on which the event was
-  !> found, the instant is corrected by Newton's method.
+  !> found, the instant is corrected by Newton's method. Where this cannot be done, since the function hardly changes, and the event
+  !> has not happened in the landing, the interpolant is taken, in which it has.
   subroutine land(problem, method, event, t, y)
     class(ode_problem_t), intent(in) :: problem
     class(ode_method_t), intent(inout) :: method
     integer, intent(in) :: event
     real(dp), intent(inout) :: t, y(:)
-    real(dp) :: g(max_events), rate(max_events), longest, correction
+    real(dp) :: g(max_events), rate(max_events), longest, correction, t_found
     integer :: i
+    t_found = t
     longest = 0.01_dp*(method%t - method%t_old)
     call method%land_on(problem, t, y)
     do i = 1, 3
       call problem%events(t, y, g, rate)
-      if (.not. abs(rate(event)) > 0) return
+      if (.not. abs(rate(event)) > 0) exit
       correction = -g(event)/rate(event)
-      if (abs(correction) <= 1e-8_dp*longest .or. .not. abs(correction) < longest) return
-      if (.not. t + correction > method%t_old) return
+      if (abs(correction) <= 1e-8_dp*longest) return
+      if (.not. (abs(correction) < longest .and. t + correction > method%t_old)) exit
       t = t + correction
       call method%land_on(problem, t, y)
     end do
+    if (i > 3 .or. .not. g(event) < 0) return
+    t = t_found
+    call method%interpolate(t, y)
   end subroutine land
 
   subroutine ignore_step(self, method, problem, t_to)
