@@ -1,5 +1,5 @@
 #!/bin/sh
-# Builds a library of scenes that C and Python can call (scripts/scene_library.f90, optimised as the program is) and prints its
+# Builds a library of scenes that C and Python can call (scripts/scene_library/scene_library.f90, optimised as the program is) and prints its
 # path. Its objects are position-independent, so they have a build folder of their own: build/scene_library.
 cd "$(dirname "$0")/.." || exit 1
 . scripts/setup.sh || exit 1
@@ -21,7 +21,7 @@ said=$(fpm build --directory "$folder" --no-prune --flag "$flags" 2>&1) &&
   modules=$(dirname "$(find "$folder/build" -name scene_builder.mod | head -n 1)") &&
   objects=$(find "$folder/build" -name '*.o' ! -name '*main.f90.o') &&
   said=$(gfortran $flags -shared -fopenmp -I "$modules" -J "$folder" tests/state_watcher.f90 tests/event_watcher.f90 \
-    scripts/scene_library.f90 $objects -o "$folder/scene_library.so" 2>&1) &&
+    scripts/scene_library/scene_library.f90 $objects -o "$folder/scene_library.so" 2>&1) &&
   echo "$folder/scene_library.so" && exit 0
 printf '%s\n' "$said" >&2
 echo "build_scene_library: cannot build the library of scenes" >&2

@@ -24,7 +24,7 @@ mkdir -p "$out" || exit 5
 scripts/build_scene_library.sh >&2 || exit 1
 folder=build/scene_library
 if [ -e /usr/include/cvode/cvode.h ]; then
-  cc -O2 -shared -fPIC scripts/cvode_run.c -o $folder/cvode_run.so -lsundials_cvode -lsundials_nvecserial \
+  cc -O2 -shared -fPIC scripts/scene_library/cvode_run.c -o $folder/cvode_run.so -lsundials_cvode -lsundials_nvecserial \
     -lsundials_sunmatrixdense -lsundials_sunlinsoldense -lm || exit 1
 else
   rm -f $folder/cvode_run.so

@@ -27,12 +27,13 @@ program measure_costs
 
   integer, parameter :: n_states = 64, blocks = 31, calls = 6400, steps_in_block = 2000
   real(dp), parameter :: no_difference = 1e-200_dp   !! times any result: added to an angle or a state it changes nothing
-  integer, parameter :: name_length = 28, n_scenes = 25, n_quantities = 8
+  integer, parameter :: name_length = 28, n_scenes = 32, n_quantities = 8
   character(len=name_length), parameter :: scenes(n_scenes) = [character(len=name_length) :: 'ideal', 'ideal+gas', 'free', &
     'free+gas', 'contact_hertz', 'contact', 'contact_johnson', 'contact_conformal', 'contact+quadrature', 'contact+ambrosio', &
     'contact+coulomb', 'contact+brown_mcphee', 'contact+stribeck', 'contact+lugre', 'contact+elasto_plastic', &
     'closed_form', 'closed_form+quadrature', 'closed_form+gas', 'as_printed', 'half_film', 'oscillating', &
-    'oscillating_as_printed', 'finite_short', 'finite_table', 'finite_mixed']
+    'oscillating_as_printed', 'finite_short', 'finite_table', 'finite_mixed', 'closed_form+rod_0_1', 'closed_form+rod_0_4', &
+    'closed_form+rod_2_4', 'closed_form+rod_4_8', 'closed_form+shaft', 'closed_form+rubbing_guide', 'closed_form+loose_piston']
   character(len=name_length), parameter :: quantities(n_quantities) = [character(len=name_length) :: 'rhs', &
     'rhs_in_turn', 'step', 'events', 'step+figures', 'row', 'row_no_reactions', 'row_time_and_angle']
   character(len=name_length) :: scene_name, quantity, text
@@ -98,7 +99,7 @@ contains
     else if (index(name, 'oscillating') == 1) then
       call read_case('cases/sim_IV.nml', [law, oscillating], case, error)
     else
-      call read_case('cases/sim_IV.nml', [law, friction_law, at_rest, friction], case, error)
+      call read_case('cases/sim_IV.nml', [law, friction_law, at_rest, friction, member(name)], case, error)
     end if
     if (allocated(error)) error stop 'measure_costs: run it from the top of the checkout'
     if (index(name, '+gas') == 0 .and. allocated(case%combustion)) deallocate (case%combustion)
@@ -114,6 +115,22 @@ contains
     if (allocated(error)) error stop 'measure_costs: no such scene'
     if (index(name, '+quadrature') > 0) call scene%measure_joint()
   end subroutine make
+
+  !> What makes a member of simulation IV elastic or loose. Of a rod the name ends with its transverse modes and axial shapes.
+  function member(name) result(settings)
+    character(len=*), intent(in) :: name
+    character(len=40) :: settings(6)
+    settings = 'friction.transition_speed=1e-3'   ! as in every scene
+    if (index(name, '+rod') > 0) settings(:4) = [character(len=40) :: 'elastic_rod.section_area=426e-6', &
+      'elastic_rod.section_inertia=3e-8', 'elastic_rod.transverse_modes='//name(len(name) - 2:len(name) - 2), &
+      'elastic_rod.axial_shapes='//name(len(name):)]
+    if (index(name, '+shaft') > 0) settings(:2) = [character(len=40) :: 'crankshaft.flywheel_inertia=0.004', &
+      'crankshaft.torsional_stiffness=2e4']
+    if (index(name, '+rubbing_guide') > 0) settings(:3) = [character(len=40) :: 'guide.coefficient=0.1', 'guide.v0=1e-3', &
+      'guide.v1=1e-2']
+    if (index(name, '+loose_piston') > 0) settings = [character(len=40) :: 'guide.kind=clearance', 'guide.bore_clearance=1e-4', &
+      'guide.skirt_top=0.03', 'guide.skirt_bottom=0.03', 'guide.piston_radius=0.035', 'guide.piston_inertia=1e-3']
+  end function member
 
   !> States along one compression stroke, the pin in the film, or touching where the scene does.
   subroutine make_states(name, scene, y)

@@ -59,7 +59,7 @@ def load_library(path: Path = FOLDER / "scene_library.so") -> c.CDLL:
 
 
 class CvodeRun(c.Structure):
-    """run_t of scripts/cvode_run.c."""
+    """run_t of scripts/scene_library/cvode_run.c."""
 
     _fields_ = [("handle", c.c_void_p), ("rates", c.c_void_p), ("events", c.c_void_p), ("handle_event", c.c_void_p),
                 ("sizes", c.c_void_p), ("n", c.c_int), ("most_rates", c.c_int), ("n_rates", c.c_int), ("n_jacobians", c.c_int),
@@ -123,7 +123,7 @@ class Scene:
         return Outcome(status == 0, int(counts[0]), int(counts[1]), int(counts[2]), seconds.value, y, instants, f"status {status}")
 
     def run_compiled(self, driver: c.CDLL, name: str, method: int, tolerance: float, most: int) -> Outcome:
-        """By a driver in C, such as scripts/cvode_run.c."""
+        """By a driver in C, such as scripts/scene_library/cvode_run.c."""
         y = self.start()
         relative, absolute = self.tolerances(tolerance)
         address = {f: c.cast(getattr(self.library, f"scene_{f}"), c.c_void_p) for f in ("rates", "events", "handle_event", "sizes")}

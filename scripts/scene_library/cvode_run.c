@@ -1,6 +1,6 @@
-/* SUNDIALS CVODE on a scene of scripts/scene_library.f90, for scripts/compare_integrators. Needs Debian's libsundials-dev (6.x):
+/* SUNDIALS CVODE on a scene of scripts/scene_library/scene_library.f90, for scripts/compare_integrators. Needs Debian's libsundials-dev (6.x):
  *
- *   cc -O2 -shared -fPIC scripts/cvode_run.c -o build/scene_library/cvode_run.so -lsundials_cvode -lsundials_nvecserial \
+ *   cc -O2 -shared -fPIC scripts/scene_library/cvode_run.c -o build/scene_library/cvode_run.so -lsundials_cvode -lsundials_nvecserial \
  *      -lsundials_sunmatrixdense -lsundials_sunlinsoldense -lm
  */
 #include <cvode/cvode.h>
