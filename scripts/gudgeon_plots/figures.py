@@ -18,6 +18,7 @@ from .results import MissingResult, Results, Run
 from .style import GREY, WIDTH
 
 WIDE_HEIGHT = 1.75  # of an axis with a curve over time [inch]
+SQUARE_WIDTH = 4.2  # of a figure of one orbit, the room for its title [inch]
 LEGEND_HEIGHT = 0.55  # of title and legend [inch]
 
 #: Letters of a legend that have room side by side, and those that a handle takes the room of.
@@ -150,6 +151,8 @@ def draw(figure: Figure, results: Results, cycles: Results | None = None) -> Dra
                 lowest[column][0].set_xlabel("")  # curves over the same time: numbers below the lowest only
                 lowest[column][0].tick_params(labelbottom=False)
             lowest[column] = (axis, place)
+    if len(drawing.axes) == 1 and drawing.axes[0].get_aspect() == 1:
+        drawing.set_figwidth(SQUARE_WIDTH)
     drawing.align_ylabels()
     add_legend(drawing, drawing.axes)
     drawing.suptitle(

@@ -129,8 +129,9 @@ def start_note(values: Callable[[Run], np.ndarray]) -> Callable[[Run], str]:
 
 def is_band(run: Run, y: np.ndarray) -> bool:
     """Whether a curve over time rings faster than a picture can show. At a held speed pictures have two revolutions, in which single
-    impacts are told apart."""
-    return not held_speed(run) and rings(abscissa(run)[0], y)
+    impacts are told apart; the start, which is cut off, does not count."""
+    counted = after_start(run)
+    return not held_speed(run) and rings(abscissa(run)[0][counted], y[counted])
 
 
 def plot_curve(axis: Axes, run: Run, y: np.ndarray, colour: str) -> None:
