@@ -200,7 +200,7 @@ contains
     call check%close_to(worst, 0.0_dp, 1e-4_dp, 'their times')
   end subroutine double_passages_are_found
   !> A start long after t = 0 with a component at zero, whose tolerance is then so small that it moves by it in less than the
-  !> time can resolve: the first step is longer, and the integration goes on.
+  !> time can resolve: the first step is longer, and the integration continues.
   subroutine late_start_at_zero(check)
     class(checks_t), intent(inout) :: check
     type(oscillator_t) :: problem

@@ -225,7 +225,7 @@ contains
   subroutine refuses(check)
     class(checks_t), intent(inout) :: check
     call expect(check, "&lubrication viscosity=0.01 / &contact / &asperities roughness=1e-7 /", &
-      '&asperities roughness = 1e-7: goes without the group contact', 'asperities beside a contact law')
+      '&asperities roughness = 1e-7: cannot be combined with the group contact', 'asperities beside a contact law')
     call expect(check, "&contact / &asperities roughness=1e-7 /", &
       '&asperities roughness = 1e-7: needs the group lubrication', 'asperities without a film')
     call expect(check, "&lubrication viscosity=0.01 / &asperities roughness=1e-5 /", &

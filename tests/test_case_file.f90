@@ -143,8 +143,8 @@ contains
 
   subroutine test_syntax(check)
     class(checks_t), intent(inout) :: check
-    call refused(check, '', 'x.nml: the file holds no group; gudgeon --template prints a case')
-    call refused(check, n//' ! only a comment', 'x.nml: the file holds no group; gudgeon --template prints a case')
+    call refused(check, '', 'x.nml: the file contains no group; gudgeon --template prints a case')
+    call refused(check, n//' ! only a comment', 'x.nml: the file contains no group; gudgeon --template prints a case')
     call refused(check, 'words', 'x.nml:1: text outside a group: words')
     call refused(check, whole//'/', 'x.nml:8: text outside a group: /')
     call refused(check, '&joint', 'x.nml:1: &joint: not closed: / is missing before the end of the file')
@@ -173,7 +173,7 @@ contains
     character(len=*), parameter :: groups = ' (allowed: case, mechanism, drive, initial, joint, contact, friction, '// &
       'lubrication, asperities, guide, elastic_rod, crankshaft, combustion, cylinder_pressure, run, integrator, output)'
     call refused(check, '&jiont /', 'x.nml:1: &jiont: unknown group; did you mean joint?'//groups)
-    call refused(check, '&joint /'//n//'&joint /', 'x.nml:2: &joint: this group stands here twice')
+    call refused(check, '&joint /'//n//'&joint /', 'x.nml:2: &joint: this group is given twice')
     call refused(check, '&joint'//n//'clearnce=1 /', 'x.nml:2: &joint clearnce: unknown key; did you mean clearance?'//joint_keys)
     call refused(check, '&joint rod_length=1 /', &
                  'x.nml:1: &joint rod_length: unknown key of this group; it belongs to &mechanism'//joint_keys)
@@ -231,7 +231,7 @@ contains
     call refused_with(check, 'contact.least_impact_speed=0', &
                       'x.nml: &contact least_impact_speed = 0: must be >= 1e-9 and <= 1 (m/s)')
     call refused_with(check, 'initial.eccentricity=1,0', 'x.nml: &initial eccentricity(1) = 1: must be shorter than '// &
-                      'bearing_radius: the pin would be through its bearing (m)')
+                      'bearing_radius: the pin would leave its bearing (m)')
     call refused_with(check, 'initial.crank_pin_eccentricity=1e-5,0', &
                       'x.nml: &initial crank_pin_eccentricity(1) = 1e-5: must be 0 in an ideal joint (m)')
     call refused_with(check, 'initial.crank_pin_eccentricity_rate=0,1', &
@@ -313,7 +313,7 @@ contains
   subroutine test_joint(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: no_play = 'must be clearance with contact, friction or lubrication: an ideal joint has '// &
-      'no play for them; leave those groups out, as --set contact=none does'
+      'no clearance; remove these groups, for example with --set contact=none'
     call refused_with(check, 'joint.kind=ideal', 'x.nml: &joint kind = ideal: '//no_play)
     call refused(check, bodies//run//contact, 'x.nml: &joint kind: '//no_play)
     call refused(check, bodies//run//'&lubrication viscosity=1 /', 'x.nml: &joint kind: '//no_play)
@@ -324,7 +324,7 @@ contains
     call refused(check, bodies//run//'&joint kind=''clearance'' clearance=1e-5 /'//contact, &
                  'x.nml: &joint bearing_radius: required with kind = ''clearance'' (m)')
     call refused(check, bodies//run//joint, &
-                 'x.nml: &joint kind = clearance: needs contact or lubrication: nothing would hold the pin')
+                 'x.nml: &joint kind = clearance: needs contact or lubrication: without them no force would act on the pin')
     call refused_with(check, 'joint.bearing_radius=5e-4', &
                       'x.nml: &joint bearing_radius = 5e-4: must be > clearance: the pin''s radius is the difference (m)')
     call refused_with(check, 'friction.coefficient=0.1', 'x.nml: &friction v0: required with law = ''ambrosio'' (m/s)')
@@ -389,15 +389,15 @@ contains
     call check%that(.not. allocated(c%crank_pin%contact), 'an ideal joint has no laws')
     call parse_case(whole//second, 'x.nml', [character(len=40) :: 'joint=none'], c, error)
     call check%that(.not. allocated(error) .and. .not. allocated(c%joint%contact), 'the crank pin alone')
-    call refused(check, whole//second//second, 'x.nml:9: &joint of crank_pin: this group stands here twice')
-    call refused(check, whole//'&joint place=''piston_pin'' kind=''ideal'' /', 'x.nml:8: &joint: this group stands here twice')
+    call refused(check, whole//second//second, 'x.nml:9: &joint of crank_pin: this group is given twice')
+    call refused(check, whole//'&joint place=''piston_pin'' kind=''ideal'' /', 'x.nml:8: &joint: this group is given twice')
     call refused(check, '&joint place=''wrist'' /', 'x.nml:1: &joint place = wrist: must be one of piston_pin, crank_pin')
     call refused(check, '&joint place=''crank_pin'' place=''crank_pin'' /', 'x.nml:1: &joint place = crank_pin: given twice')
     call refused(check, '&drive place=''crank_pin'' /', 'x.nml:1: &drive place: unknown key (allowed: kind, torque, damping, '// &
       'flywheel_inertia, torque_table, torque_table_digest, ramp_time, ramp_from)')
     call refused(check, whole//'&contact place=''crank_pin'' /', 'x.nml: &joint of crank_pin kind: must be clearance with '// &
-                 'contact, friction or lubrication: an ideal joint has no play for them; leave those groups out, as '// &
-                 '--set contact=none does')
+                 'contact, friction or lubrication: an ideal joint has no clearance; remove these groups, for '// &
+                 'example with --set contact=none')
     call refused(check, whole//'&joint place=''crank_pin'' kind=''clearance'' clearance=1e-4 /', &
                  'x.nml: &joint of crank_pin bearing_radius: required with kind = ''clearance'' (m)')
     call refused_on(check, whole//second, ['crank_pin.joint.clearance=0.2'], &
@@ -411,7 +411,7 @@ contains
     call refused_on(check, whole//second//'&lubrication viscosity=0.01 /', [character(len=40) :: 'joint.bearing_length=0.01'], &
                     'x.nml: &joint of crank_pin bearing_length: required with lubrication (m)')
     call refused_on(check, whole//second, [character(len=40) :: 'contact=none', 'crank_pin.contact.law=hertz'], &
-                    'x.nml: &joint kind = clearance: needs contact or lubrication: nothing would hold the pin')
+                    'x.nml: &joint kind = clearance: needs contact or lubrication: without them no force would act on the pin')
   end subroutine test_places
 
   subroutine test_runs(check)
@@ -549,7 +549,7 @@ contains
     call check%that(index(resolved, n//'  '//second) > 0, second//' after '//trim(overrides(size(overrides))))
   end subroutine resolves
 
-  !> GROUP=none: as if the file and the overrides before did not have the group; what comes later begins anew.
+  !> GROUP=none: as if the file and the overrides before did not have the group; what comes later starts from the beginning.
   subroutine test_groups_taken_out(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: film = '&lubrication viscosity=0.01 variant=''half_film'' /'//n// &
@@ -576,9 +576,9 @@ contains
     call check%that(.not. allocated(error), 'no joint is an ideal one')
     call check%equal_text(trim(c%joint%kind), 'ideal', 'no joint')
     call refused_with(check, 'joint=none', 'x.nml: &joint kind: must be clearance with contact, friction or lubrication: an '// &
-                      'ideal joint has no play for them; leave those groups out, as --set contact=none does')
-    call refused_with(check, 'contact=none', 'x.nml: &joint kind = clearance: needs contact or lubrication: nothing would '// &
-                      'hold the pin')
+                      'ideal joint has no clearance; remove these groups, for example with --set contact=none')
+    call refused_with(check, 'contact=none', 'x.nml: &joint kind = clearance: needs contact or lubrication: without '// &
+                      'them no force would act on the pin')
     call refused_on(check, whole//film, [character(len=40) :: long, 'friction.coefficient=0.1', 'friction=none', &
                                          'friction.v0=1'], 'x.nml: &friction coefficient: required')
     call refused_with(check, 'mechanism=none', 'x.nml: &mechanism: this group is required')
@@ -693,7 +693,7 @@ contains
     type(error_t), allocatable :: error
     character(len=1) :: none(0)
     call refused(check, '&joint clearance='//achar(27)//'[31m /', 'x.nml:1: &joint clearance = \x1B[31m: must be a number (m)')
-    call refused(check, '&case title=''a'//achar(7)//''' /', 'x.nml:1: &case title = a\x07: must not hold control '// &
+    call refused(check, '&case title=''a'//achar(7)//''' /', 'x.nml:1: &case title = a\x07: must not contain control '// &
                  'characters or bytes that are not UTF-8')
     call refused(check, achar(0)//char(255), 'x.nml:1: text outside a group: \x00\xFF')
     call parse_case('&joint '//repeat('k', 5000)//'=1 /', repeat('p', 5000)//n//achar(27), none, c, error)

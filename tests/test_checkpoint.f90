@@ -216,7 +216,7 @@ contains
     call compare_cases(one, one, difference)
     call check%equal_text(difference, '', 'a case is like itself')
     call compare_cases(one, other, difference)
-    call check%equal_text(difference, '&integrator max_step = 1, where the run to go on with has max_step = 2', 'a key differs')
+    call check%equal_text(difference, '&integrator max_step = 1, but the stopped run has max_step = 2', 'a key differs')
     call compare_cases(one, other(:index(other, '  max_step =') - 1)//'  max_step = 1'//n//'/'//n, difference)
     call check%equal_text(difference, '', 'a limit may differ')
     call compare_cases(one, one//'&output'//n//'/'//n, difference)

@@ -116,9 +116,9 @@ contains
     call refused(check, ['-j-1'], '--jobs -1: must be a whole number from 1 to 1024'//hint)
     call refused(check, ['-j4 ', '-jx '], '--jobs x: must be a whole number from 1 to 1024'//hint)
     call refused(check, ['a/x.nml', 'b/x.nml'], &
-                 'a/x.nml and b/x.nml: their results would have the same names; run them apart with --out')
+                 'a/x.nml and b/x.nml: their results would have the same names; run them separately with --out')
     call refused(check, [character(len=12) :: 'x.nml', 'x.ideal.nml'], &
-                 'x.nml and x.ideal.nml: their results would have the same names; run them apart with --out')
+                 'x.nml and x.ideal.nml: their results would have the same names; run them separately with --out')
     call refused(check, ['--'//achar(27)//achar(10)], '--\x1B\x0A: unknown option'//hint)
   end subroutine test_refusals
 

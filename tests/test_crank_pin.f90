@@ -126,13 +126,13 @@ contains
     call says('phase free flight at the crank pin')
     call check%that(index(trace%error%message, 'piston pin') == 0, 'an ideal piston pin has no phase')
     trace = run_case(both, [character(len=long) :: 'crank_pin.contact.law=hertz', 'crank_pin.contact.youngs_modulus=1e6,1e6'])
-    call says('the state leaves the model (the crank pin its bearing or its film)')
+    call says('the state left the range of the model (the crank pin left its bearing or its film)')
     trace = run_case(both, [character(len=long) :: 'contact.youngs_modulus=1e6,1e6', 'crank_pin.contact.law=hertz', &
       'crank_pin.contact.youngs_modulus=2e11,2e11'])
-    call says('the state leaves the model (the piston pin its bearing or its film)')
+    call says('the state left the range of the model (the piston pin left its bearing or its film)')
     trace = run_case(films, [character(len=long) :: 'initial.crank_pin_eccentricity=2.02e-5,0', &
       'integrator.max_evaluations=300000'])
-    call says('ill-posed: a film of next to no thickness at the crank pin, whose force')
+    call says('ill-posed: the film at the crank pin has almost no thickness')
     trace = run_case('cases/flores/dry_0500um.nml', ['integrator.max_steps=5'])
     call check%that(index(trace%error%message, ' at the ') == 0, 'a joint that is alone is not named')
 

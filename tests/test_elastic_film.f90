@@ -289,13 +289,13 @@ contains
     call expect(check, contact//"&lubrication viscosity=0.01 variant='as_printed' elastic_film=T /", &
       '&lubrication elastic_film = T: is for films of wedge and squeeze', 'a misprinted film')
     call expect(check, contact//"&friction coefficient=0.1 law='coulomb' / &lubrication viscosity=0.01 elastic_film=T /", &
-      '&lubrication elastic_film = T: goes without the group friction', 'friction on a film')
+      '&lubrication elastic_film = T: cannot be combined with the group friction', 'friction on a film')
     call expect(check, contact//"&lubrication viscosity=0.01 elastic_film=T transition='weighted' transition_depth=1e-6 /", &
-      '&lubrication elastic_film = T: goes without transition', 'a transition beside an elastic film')
+      '&lubrication elastic_film = T: cannot be combined with transition', 'a transition beside an elastic film')
     call expect(check, '&lubrication viscosity=0.01 pressure_viscosity=1e-8 /', &
       '&lubrication pressure_viscosity = 1e-8: needs elastic_film', 'pressure between rigid walls')
     call expect(check, contact//'&lubrication viscosity=0.01 elastic_film=T / &asperities roughness=1e-7 /', &
-      '&asperities roughness = 1e-7: goes without the group contact', 'rough elastic walls')
+      '&asperities roughness = 1e-7: cannot be combined with the group contact', 'rough elastic walls')
   end subroutine refuses
 
   subroutine expect(check, groups, wanted, name)

@@ -134,7 +134,7 @@ contains
     end do
   end subroutine close_passages
 
-  !> A level that is touched to within rounding: found or not, but nothing twice, and the run goes on. A little lower every top
+  !> A level that is touched to within rounding: found or not, but nothing twice, and the run continues. A little lower every top
   !> is found, a little higher none.
   subroutine grazing(check)
     class(checks_t), intent(inout) :: check

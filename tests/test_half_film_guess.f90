@@ -1,4 +1,4 @@
-!> The first guess at the zeros of the half film's pressure: its coefficients computed anew, and how far it is off.
+!> The first guess at the zeros of the half film's pressure: its coefficients computed again, and how far it is off.
 module test_half_film_guess
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi

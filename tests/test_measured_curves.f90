@@ -70,7 +70,7 @@ contains
     call check%close_to(curve%value(1.25_dp), 4.0_dp, 1e-15_dp, 'two points are a straight line')
   end subroutine straight_lines
 
-  !> Values and slopes go on over the seam, wherever the table begins, and the error falls with their distance.
+  !> Values and slopes continue over the seam, wherever the table begins, and the error falls with their distance.
   subroutine periodic_cubic(check)
     class(checks_t), intent(inout) :: check
     real(dp) :: errors(2)
@@ -110,20 +110,20 @@ contains
   subroutine bad_files(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: units = 'the header must name this column with its unit, the '
-    call refused('', 1, 'a header and at least two rows are wanted')
-    call refused(head//'1,2'//n, 2, 'a header and at least two rows are wanted')
+    call refused('', 1, 'needs a header and at least two rows')
+    call refused(head//'1,2'//n, 2, 'needs a header and at least two rows')
     call refused('0,1'//n//'1,2'//n, 1, '0: '//units//'crank angle in one of deg, rad, as in crank_angle[deg]')
     call refused('crank_angle[deg],pressure[atm]'//n, 1, 'pressure[atm]: '//units// &
       'pressure in one of Pa, hPa, kPa, MPa, mbar, bar, psi, as in pressure[Pa]')
-    call refused('crank_angle[deg];pressure[bar]'//n, 1, 'crank_angle[deg];pressure[bar]: two columns with a comma between '// &
-      'them are wanted')
-    call refused(head//'0,1,5', 2, '0,1,5: two columns with a comma between them are wanted')
+    call refused('crank_angle[deg];pressure[bar]'//n, 1, 'crank_angle[deg];pressure[bar]: needs two columns '// &
+      'separated by a comma')
+    call refused(head//'0,1,5', 2, '0,1,5: needs two columns separated by a comma')
     call refused(head//'0,1'//n//'1,nan', 3, 'pressure = nan: must be a finite number')
     call refused(head//'0,1'//n//'inf,1', 3, 'crank angle = inf: must be a finite number')
     call refused(head//'0,1'//n//'1,', 3, 'pressure is missing')
     call refused(head//'0,1'//n//',1', 3, 'crank angle is missing')
     call refused(head//'0,1'//n//'1,2 bar', 3, 'pressure = 2 bar: must be a number')
-    call refused(head//'0,1'//n//'1,2'//n//'1,3', 4, 'crank angle = 1: stands in line 3 already')
+    call refused(head//'0,1'//n//'1,2'//n//'1,3', 4, 'crank angle = 1: already given in line 3')
     call refused(head//'0,1'//n//'2,2'//n//n//'1,3', 5, 'crank angle = 1: must be larger than that of line 3: rows must be in '// &
       'increasing order')
 

@@ -143,7 +143,7 @@ contains
     call expect(check, "law='oscillating_film' viscosity=1", &
       "kinematic_viscosity: required with law = 'oscillating_film' (m^2/s)", 'no kinematic viscosity')
     call expect(check, vg32//warm//'viscosity=0.01', &
-      "viscosity = 0.01: must not be given where viscosity_law = 'walther' gives it", 'two viscosities')
+      "viscosity = 0.01: must not be given: viscosity_law = 'walther' computes it", 'two viscosities')
     call expect(check, vg32//"viscosity_law='vogel'", "temperature: required with viscosity_law = 'vogel' (K)", 'no temperature')
     call expect(check, warm//'density=865 known_viscosities=2e-5,1e-5', 'known_temperatures(1): required', 'no temperatures')
     call expect(check, warm//'density=865 known_temperatures=313.15,373.15', 'known_viscosities(1): required', 'no points')

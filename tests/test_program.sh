@@ -107,7 +107,7 @@ advised() {   # advised ARGUMENTS...: whether the run says within 20 s that it i
   done
   kill -TERM $pid 2>/dev/null
   wait $pid
-  grep -q "sim_I.nml: some .* to go; bound by the stability.*method = 'auto' needs 1/[0-9]* of the evaluations up to here" "$work/err"
+  grep -q "sim_I.nml: about .* left; the stability of Adams.*method = 'auto' needs 1/[0-9]* of the evaluations so far" "$work/err"
 }
 check "a long run bound by stability says so while it goes" advised -s integrator.revolutions=4000 cases/sim_I.nml
 check "once" [ "$(grep -c "needs 1/" "$work/err")" = 1 ]
@@ -129,7 +129,7 @@ check "and its summary" grep -q '^status,"too many steps' "$work/f/sim_I.summary
 for method in adams radau auto; do
   run -o "$work/f" -s integrator.max_evaluations=2000 -s integrator.method=$method cases/sim_I.nml
   check "$method: too much work is a named reason, status $status" [ "$status" = 4 ]
-  check "$method: with its place" grep -q 'too much work.*max_evaluations.*t = .*crank angle' "$work/err"
+  check "$method: with its place" grep -q 'limit of evaluations reached.*max_evaluations.*t = .*crank angle' "$work/err"
   check "$method: and ends soon after" awk -F, '$1 == "rhs_evaluations" { exit $2 < 2000 || $2 > 2200 }' "$work/f/sim_I.summary.csv"
 done
 run -o "$work/f" -s integrator.relative_tolerance=1e-9 -s integrator.absolute_tolerance=0.1 cases/flores/dry_0100um.nml

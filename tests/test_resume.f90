@@ -1,4 +1,4 @@
-!> A run put away and taken up again, between any two steps, ends bit for bit as one that was not.
+!> A run put away and resumed, between any two steps, ends bit for bit as one that was not.
 module test_resume
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp
@@ -67,7 +67,7 @@ contains
     call split(check, 'cases/flores/ideal.nml', 'revolutions=4', 'adams', 'integrator.max_evaluations_per_revolution=200', .true.)
   end subroutine run_test_resume
 
-  !> One scene: whole, stopped and taken up after every step, and after every few.
+  !> One scene: whole, stopped and read back after every step, and after every few.
   subroutine split(check, file, revolutions, method, change, ideal_joint, from_rest)
     class(checks_t), intent(inout) :: check
     character(len=*), intent(in) :: file, revolutions, method, change
@@ -105,7 +105,7 @@ contains
     end do
   end subroutine split
 
-  !> Run a case, stopping after every `stride` steps (0: never) to go on with everything made anew but the sink.
+  !> Run a case, stopping after every `stride` steps (0: never) to continue with everything made again but the sink.
   subroutine run_in_parts(case, ideal, list, stride, kept, report, pieces)
     type(case_t), intent(in) :: case
     logical, intent(in) :: ideal
@@ -147,7 +147,7 @@ contains
     end select
   end subroutine run_in_parts
 
-  !> Fill what the heap has to give with numbers of no meaning: an array that is allocated anew but not given back its
+  !> Fill what the heap has to give with numbers of no meaning: an array that is allocated again but not given back its
   !> values must not find the old ones in its place.
   subroutine soil_memory()
     integer, parameter :: blocks = 12, largest = 400

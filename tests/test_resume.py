@@ -52,10 +52,10 @@ def stopped_by_limits(gudgeon: Gudgeon, work: Path) -> None:
     for limit in (1, 100, 101, 333, 700):
         status, _, err = gudgeon.run(*SHORT, "--set", f"integrator.max_steps={limit}", "-o", parts, "--resume", *files)
         check("too many steps" in err and status == 4, f"stopped by a limit: {status} {err}")
-        check(limit > 1 or "--resume goes on" in err, "and says how to go on")
+        check(limit > 1 or "--resume continues" in err, "and says how to go on")
         check(all("from the beginning" not in line for line in err.splitlines()) or limit == 1, f"each goes on: {err}")
     status, _, err = gudgeon.run(*SHORT, "--set", "integrator.max_evaluations=2000", "-o", parts, "--resume", *files)
-    check(status == 4 and "too much work" in err, "another limit")
+    check(status == 4 and "limit of evaluations reached" in err, "another limit")
     status, _, err = gudgeon.run(*SHORT, "-o", parts, "--resume", *files)
     check(status == 0, f"and to the end: {status} {err}")
     for file in files:
@@ -241,7 +241,7 @@ def rerun_with_other_values(gudgeon: Gudgeon, work: Path, kills: int, chance: ra
             check(not foreign(found), f"kill {i}: {foreign(found)}")
         wanted = speed if present is None or chance.random() < 0.7 else present   # with the new values, or the old ones again
         status, out, err = gudgeon.run("--resume", *words, f"initial.crank_speed={wanted}")
-        if status == 3 and wanted != found and "where the run to go on with has" in err:   # the checkpoint of other values
+        if status == 3 and wanted != found and "but the stopped run has" in err:   # the checkpoint of other values
             status, out, err = gudgeon.run(*words, f"initial.crank_speed={wanted}")
         done_before += "done already" in out
         wrong = [end for end in RESULTS if b"".join(contents(folder / (name + end))) != expected[wanted][end]]

@@ -273,14 +273,14 @@ contains
     trace = run_case('cases/flores/dry_0100um.nml', [character(len=long) :: 'contact.youngs_modulus=1e6, 1e6'])
     call check%that(allocated(trace%error), 'a pin that goes through its bearing ends a run')
     if (.not. allocated(trace%error)) return
-    call check%that(index(trace%error%message, 'leaves the model') > 0 .and. index(trace%error%message, 'contact') > 0, &
+    call check%that(index(trace%error%message, 'left the range of the model') > 0 .and. index(trace%error%message, 'contact') > 0, &
       'and says that it left the model')
     trace = run_case('cases/sim_I.nml', [character(len=long) :: 'integrator.relative_tolerance=1e-16'])
     call check%that(allocated(trace%error), 'a tolerance below rounding is refused')
     call ends_with(check, 'cases/sim_I_oscillating.nml', [character(len=long) :: 'integrator.relative_tolerance=1e-15', &
       'integrator.method=auto'], 'tolerance below the rounding of the')
     call ends_with(check, 'cases/sim_I.nml', [character(len=long) :: 'initial.eccentricity=-2.02e-5,0', &
-      'integrator.method=auto'], 'ill-posed: a film')
+      'integrator.method=auto'], 'ill-posed: the film')
     call small_steps_have_causes(check)
   end subroutine failures_name_their_place
 
@@ -299,8 +299,8 @@ contains
     allocate (y(scene%n))
     y = scene%initial_state()
     call check%equal_text(reason(step_too_small, scene, settings, 1e3_dp, y), &
-      'stiff: within the rounding of the time the state changes by more than the tolerance allows', 'late')
-    call check%equal_text(reason(step_too_small, scene, settings, 1e-6_dp, y), 'step too small', 'early')
+      'too stiff: in the smallest representable time step the state changes by more than the tolerance', 'late')
+    call check%equal_text(reason(step_too_small, scene, settings, 1e-6_dp, y), 'the step size became too small', 'early')
   end subroutine small_steps_have_causes
 
   !> A run ends with a reason.

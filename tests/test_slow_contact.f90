@@ -147,13 +147,14 @@ contains
     call check%relative(trace%event(1)%normal_speed, 0.5_dp, 1e-9_dp, 'as fast as it was')
   end subroutine start_off_centre
 
-  !> A budget for a revolution stops a run that a budget for the whole would let go on, and says where.
+  !> A budget for a revolution stops a run that a budget for the whole would let continue, and says where.
   subroutine revolution_has_a_budget(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
     trace = run_case(dry, [character(len=long) :: 'integrator.max_evaluations_per_revolution=1000'])
     call check%that(allocated(trace%error), 'the run stops')
-    if (allocated(trace%error)) call check%that(index(trace%error%message, 'too much work in one revolution') == 1, 'by name')
+    if (allocated(trace%error)) &
+      call check%that(index(trace%error%message, 'limit of evaluations in one revolution reached') == 1, 'by name')
     call check%that(trace%report%statistics%evaluations >= 1000 .and. trace%report%statistics%evaluations < 1100, 'soon')
     trace = run_case(dry, [character(len=long) :: 'integrator.max_evaluations_per_revolution=8000', &
       'integrator.revolutions=6'])

@@ -173,7 +173,7 @@ contains
     call check%that(power < 0.2_dp, 'the steps of Radau with states grow with a tenth to a fifth power of the accuracy')
   end subroutine order_of_radau
 
-  !> Stopped after every step and taken up with everything made anew: bit for bit the same.
+  !> Stopped after every step and read back with everything made again: bit for bit the same.
   subroutine resumed(check)
     class(checks_t), intent(inout) :: check
     class(ode_method_t), allocatable :: method

@@ -224,7 +224,7 @@ contains
     call check%that(table%rows == 1000 .and. table%longest == 20000, 'a table with one long field')
     call check%that(table%field(1, 499) == repeat('x', 10) .and. table%field(2, 500) == repeat('y', 20000) .and. &
                     table%field(1, 1000) == repeat('x', 30) .and. table%field(2, 1000) == 'y', 'its fields')
-    call refused(check, '', 't.csv: the table is empty: a header of GROUP.KEY and a row for each run are wanted')
+    call refused(check, '', 't.csv: the table is empty; it needs a header of GROUP.KEY and a row for each run')
     call refused(check, 'a.b'//n, 't.csv: the table has a header but no run')
     call refused(check, 'a.b,c.d'//n//'1,2'//n//'3'//n, 't.csv:3: column 1: the header has 2 fields, this row fewer')
     call refused(check, 'a.b,c.d'//n//'1,2,3'//n, 't.csv:2: column 3: the header has 2 fields, this row more')
@@ -233,7 +233,7 @@ contains
       't.csv:2: column 2: a quote inside a field that does not begin with one')
     call refused(check, 'a.b,c.d'//n//'1,'//q//'2'//q//'3'//n, 't.csv:2: column 2: text behind a closing quote')
     call refused(check, 'a.b,clearance'//n//'1,2'//n, 't.csv:1: column 2: '//q//'clearance'//q//' must have the form GROUP.KEY')
-    call refused(check, 'a.b,A.B'//n//'1,2'//n, 't.csv:1: column 2: a.b stands here twice')
+    call refused(check, 'a.b,A.B'//n//'1,2'//n, 't.csv:1: column 2: a.b is given twice')
   end subroutine test_tables
 
   !> The time for a table of 50,000 rows is no more than 40 times that for one of 5,000, and some tenths of a second.

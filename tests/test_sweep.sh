@@ -184,10 +184,10 @@ cp "$work/one/grid.study.nml" "$work/torn"
   grep '^4,' "$work/one/grid.cycles.csv"; printf '5,1'; } >"$work/torn/grid.cycles.csv"
 { head -n 1 "$work/one/grid.strobe.csv"; grep -e '^4,' -e '^9,' "$work/one/grid.strobe.csv"; } >"$work/torn/grid.strobe.csv"
 run sweep -o "$work/torn" "$work/grid.nml"
-check "a torn sweep is taken up" grep -q '12 runs, 2 of them there already' "$work/out"
+check "a torn sweep is taken up" grep -q '12 runs, 2 of them already done' "$work/out"
 same "taken up" "$work/torn"
 run sweep -o "$work/torn" "$work/grid.nml"
-check "nothing is run twice" grep -q '12 runs, 12 of them there already; [^;]*csv$' "$work/out"
+check "nothing is run twice" grep -q '12 runs, 12 of them already done; [^;]*csv$' "$work/out"
 same "run again" "$work/torn"
 run sweep -o "$work/torn" -a standard "$work/grid.nml"
 check "another base case is not mixed in, status $status" [ "$status" = 5 ]
@@ -231,7 +231,7 @@ fits "no strobes" 12
 sed '/^3,/{s/,done,.*//;q}' "$work/one/grid.runs.csv" >"$work/broken/grid.runs.csv"
 tail -n +5 "$work/one/grid.runs.csv" >>"$work/broken/grid.runs.csv"
 run sweep -o "$work/broken" "$work/grid.nml"
-check "a row cut is run again, got $(cat "$work/out")" grep -q '12 runs, 11 of them there already;' "$work/out"
+check "a row cut is run again, got $(cat "$work/out")" grep -q '12 runs, 11 of them already done;' "$work/out"
 same "a row cut" "$work/broken"
 printf '4,\0\0\0\0\n' >>"$work/broken/grid.runs.csv"
 run sweep -o "$work/broken" "$work/grid.nml"
@@ -241,7 +241,7 @@ run sweep -o "$work/broken" "$work/traced.nml"
 rm "$work/broken/traced/5.csv"
 run sweep -o "$work/broken" "$work/traced.nml"
 check "a trace that has gone is written again" [ -s "$work/broken/traced/5.csv" ]
-check "and only its run is run" grep -q '11 of them there already, 1 not there whole' "$work/out"
+check "and only its run is run" grep -q '11 of them already done, 1 incomplete' "$work/out"
 
 # a real kill, and an interrupt
 study long <<'END'
@@ -266,7 +266,7 @@ for signal in KILL TERM; do
   [ "$signal" = TERM ] && check "interrupted: exit status 4, got $status" [ "$status" = 4 ]
   [ "$signal" = TERM ] && check "interrupted: says how to go on" grep -q 'interrupted after .* of 3000 runs; the same command' "$work/err"
   run sweep -o "$work/$signal" "$work/long.nml"
-  check "$signal: taken up" grep -q 'of them there already' "$work/out"
+  check "$signal: taken up" grep -q 'of them already done' "$work/out"
   check "$signal: the same runs" cmp -s "$work/whole/long.runs.csv" "$work/$signal/long.runs.csv"
   check "$signal: the same revolutions" cmp -s "$work/whole/long.cycles.csv" "$work/$signal/long.cycles.csv"
 done

@@ -10,7 +10,7 @@ module gudgeon_errors
   integer, parameter :: status_internal = 1      !! a defect of the program
   integer, parameter :: status_command_line = 2  !! the command line is wrong
   integer, parameter :: status_case_file = 3     !! a case file is unreadable or wrong
-  integer, parameter :: status_integration = 4   !! the integration could not go on
+  integer, parameter :: status_integration = 4   !! the integration could not continue
   integer, parameter :: status_output = 5        !! a result could not be written
 
   !> What went wrong, as one line without the program's name, and the exit status it leads to.

@@ -31,8 +31,9 @@ contains
   subroutine parameters(self, list)
     class(adams_impact_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('damping', self%full_damping, 'of the damper beside the elastic force', 'N s/m', '>= 0', example='100.0')
-    call list%add('full_damping_depth', self%full_damping_depth, 'penetration from which on it damps in full', 'm', '> 0', &
+    call list%add('damping', self%full_damping, &
+      'coefficient of the damper that acts beside the elastic force', 'N s/m', '>= 0', example='100.0')
+    call list%add('full_damping_depth', self%full_damping_depth, 'penetration above which the damper acts fully', 'm', '> 0', &
       example='1.0e-6')
   end subroutine parameters
 

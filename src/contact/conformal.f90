@@ -49,7 +49,8 @@ contains
     class(conformal_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call self%material_parameters(list)
-    call list%add('housing_compliance', self%compliance, 'of all beyond the contact; the default joins Johnson''s law', &
+    call list%add('housing_compliance', self%compliance, &
+      'compliance of pin and housing outside the contact; the default agrees with Johnson at small loads', &
       range='>= -0.5', default='0.386294')
   end subroutine parameters
 

@@ -34,9 +34,10 @@ contains
   subroutine parameters(self, list)
     class(hertz_sphere_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('exponent', self%exponent, 'of the penetration', range='>= 1', default='1.5', only_here=.true.)
+    call list%add('exponent', self%exponent, 'exponent of the penetration', range='>= 1', default='1.5', only_here=.true.)
     call self%material_parameters(list)
-    call list%add('stiffness', self%given_stiffness, '0: from the materials', 'N/m^exponent', '> 0', default='0.0', &
+    call list%add('stiffness', self%given_stiffness, &
+      'contact stiffness; 0: from geometry and materials', 'N/m^exponent', '> 0', default='0.0', &
       only_here=.true.)
   end subroutine parameters
 

@@ -11,7 +11,7 @@ module johnson
   public :: johnson_t
 
   !> D = x [ln(4/x) - 1] with D = delta/c and x = f/(pi E* L c). There is no x for D > 4/e^2 = 0.541, and the stiffness grows
-  !> without bound on the way there, so the force goes on in a straight line from D = 0.3 on, which is beyond its validity.
+  !> without bound on the way there, so the force continues in a straight line from D = 0.3 on, which is beyond its validity.
   type, extends(contact_geometry_t) :: johnson_t
     real(dp) :: clearance = 1    !! c [m]
     real(dp) :: modulus = 0      !! pi E* L [N/m]

@@ -41,9 +41,11 @@ contains
     class(parameter_list_t), intent(inout) :: list
     call list%add('restitution', self%restitution, 'coefficient of restitution', range='>= 0 and <= 1', default='0.9', &
       family='loss')
-    call list%add('dissipation', self%dissipation, 'a of force = elastic (1 + a rate), whatever the law; 0: from restitution', &
+    call list%add('dissipation', self%dissipation, &
+      'factor a in force = elastic force (1 + a rate), instead of restitution; 0: from restitution', &
       's/m', '> 0', default='0.0', family='loss')
-    call list%add('least_impact_speed', self%least_impact_speed, 'slower impacts are damped as one of this speed', 'm/s', &
+    call list%add('least_impact_speed', self%least_impact_speed, &
+      'impacts slower than this are damped as if they had this speed', 'm/s', &
       '>= 1e-9 and <= 1', default='1.0e-5')
   end subroutine parameters
 

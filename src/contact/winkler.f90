@@ -38,10 +38,12 @@ contains
     class(winkler_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call self%material_parameters(list)
-    call list%add('bedding_modulus', self%given_modulus, 'pressure for a depth; 0: from the liner', 'Pa/m', '> 0', default='0.0')
+    call list%add('bedding_modulus', self%given_modulus, &
+      'pressure per penetration depth; 0: from the data of the liner', 'Pa/m', '> 0', default='0.0')
     call list%add('liner_modulus', self%liner_modulus, 'Young''s modulus of a thin liner', 'Pa', '> 0', default='0.0')
-    call list%add('liner_poissons_ratio', self%liner_poissons_ratio, 'of the liner', range='>= 0 and <= 0.49', default='0.0')
-    call list%add('liner_thickness', self%liner_thickness, 'of the liner', 'm', '> 0', default='0.0')
+    call list%add('liner_poissons_ratio', self%liner_poissons_ratio, &
+      'Poisson''s ratio of the liner', range='>= 0 and <= 0.49', default='0.0')
+    call list%add('liner_thickness', self%liner_thickness, 'thickness of the liner', 'm', '> 0', default='0.0')
   end subroutine parameters
 
   !> The bedding is given, or the liner.

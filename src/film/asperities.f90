@@ -43,17 +43,20 @@ contains
   subroutine parameters(self, list)
     class(asperities_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('roughness', self%roughness, 'of both surfaces, the root of the sum of their squares', 'm', '> 0', &
+    call list%add('roughness', self%roughness, 'combined roughness of both surfaces, the root of the sum of squares', 'm', '> 0', &
       example='0.4e-6')
-    call list%add('density_product', self%density_product, 'asperities in an area, by their radius and the roughness', &
+    call list%add('density_product', self%density_product, 'asperity density times asperity radius times roughness', &
       range='> 0 and <= 1', default='0.05')
-    call list%add('sharpness', self%sharpness, 'roughness over the radius of the asperities', range='> 0 and <= 1', &
+    call list%add('sharpness', self%sharpness, 'roughness over asperity radius', range='> 0 and <= 1', &
       default='1.0e-2')
-    call list%word('integral', self%integral, 'exact, fit', 'exact', 'fit: the power (4 - h/s)^6.804 in common use')
-    call list%add('youngs_modulus', self%youngs_modulus, 'of pin and bearing', 'Pa', '> 0', default='207.0e9')
-    call list%add('poissons_ratio', self%poissons_ratio, 'of pin and bearing', range='>= 0 and <= 0.5', default='0.3')
-    call list%add('coefficient', self%coefficient, 'of boundary friction', range='>= 0 and <= 10', default='0.1')
-    call list%add('transition_speed', self%transition_speed, 'of sliding, at which friction is 0.76 of its full size', 'm/s', &
+    call list%word('integral', self%integral, 'exact, fit', 'exact', &
+      'Greenwood-Tripp integral; fit: the common approximation (4 - h/s)^6.804')
+    call list%add('youngs_modulus', self%youngs_modulus, 'Young''s moduli of pin and bearing', 'Pa', '> 0', default='207.0e9')
+    call list%add('poissons_ratio', self%poissons_ratio, &
+      'Poisson''s ratios of pin and bearing', range='>= 0 and <= 0.5', default='0.3')
+    call list%add('coefficient', self%coefficient, 'coefficient of boundary friction', range='>= 0 and <= 10', default='0.1')
+    call list%add('transition_speed', self%transition_speed, &
+      'sliding speed at which friction reaches 76 % of its full value', 'm/s', &
       '> 0', default='0.01')
   end subroutine parameters
 

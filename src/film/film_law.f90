@@ -97,7 +97,7 @@ contains
   subroutine add_viscosity(self, list)
     class(film_law_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('viscosity', self%viscosity, 'dynamic viscosity, required unless viscosity_law gives it', 'Pa s', '> 0', &
+    call list%add('viscosity', self%viscosity, 'dynamic viscosity; required unless viscosity_law gives it', 'Pa s', '> 0', &
       default='0.0', example='0.0117')
   end subroutine add_viscosity
 
@@ -116,7 +116,7 @@ contains
     class(film_law_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call list%add('least_film_ratio', self%least_film_ratio, &
-      'part of the clearance below which an oscillating or a weighted film is no thinner', range='>= 0.000001 and <= 0.5', &
+      'smallest thickness of an oscillating or weighted film, as a fraction of the clearance', range='>= 0.000001 and <= 0.5', &
       default='0.001')
   end subroutine add_least_film
 

@@ -46,7 +46,7 @@ module film_map
 
 contains
 
-  !> Find the table, and how far it is from solutions between its values. Rows are solved in parallel. If somebody stops it there is
+  !> Find the table, and how far it is from solutions between its values. Rows are solved in parallel. If it is interrupted there is
   !> none.
   subroutine build(self, half_length, cavitation, points, film_points, watch)
     class(film_map_t), intent(inout) :: self

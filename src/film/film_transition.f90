@@ -43,11 +43,12 @@ contains
     class(film_transition_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call list%word('transition', self%transition, 'switch, weighted', 'switch', &
-      'from film to contact: at the clearance, or shared over transition_depth')
-    call list%add('transition_depth', self%depth, 'weighted: penetration from which on the contact bears all', 'm', '> 0', &
+      'from film to contact; switch: at the clearance; weighted: both share the load over transition_depth')
+    call list%add('transition_depth', self%depth, &
+      'weighted: penetration above which the contact alone carries the load', 'm', '> 0', &
       default='0.0')
     call list%word('transition_shape', self%shape, 'linear, smooth', 'linear', &
-      'weighted: how the contact''s share grows with the penetration')
+      'weighted: growth of the share of the contact with the penetration')
   end subroutine parameters
 
   pure logical function is_weighted(self)
@@ -82,7 +83,7 @@ contains
     end function is_beyond
   end subroutine begin
 
-  !> Share w of the contact in a penetration [m], and its slope [1/m]. A linear share goes on beyond its ends on trial states; its kinks
+  !> Share w of the contact in a penetration [m], and its slope [1/m]. A linear share continues beyond its ends on trial states; its kinks
   !> are events. The smooth one is held there: its slope has no kink.
   pure subroutine weight(self, penetration, w, slope)
     class(film_transition_t), intent(in) :: self

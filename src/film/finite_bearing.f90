@@ -67,17 +67,20 @@ contains
     class(finite_bearing_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call list%word('variant', self%variant, 'table, direct, short', 'table', &
-      'table: made once, then fast; direct: solved at every evaluation; short: Ocvirk''s closed form', example='table')
+      'form of the film force; finite_bearing: table (computed once), direct (solved each time), short (Ocvirk)', example='table')
     call list%word('cavitation', self%cavitation, 'reynolds, gumbel, none', 'reynolds', &
-      'where the pressure would be negative: reynolds: the film ruptures with pressure and slope 0; gumbel: it is cut off')
+      'negative pressures; reynolds: film ruptures with zero pressure and slope; gumbel: they are set to 0')
     call self%add_viscosity(list)
-    call list%add('film_moment', self%film_moment, 'its shear turns the pin; not given: .true. of finite_bearing, else .false.', &
+    call list%add('film_moment', self%film_moment, &
+      'the oil shear acts on the pin with a moment; default .true. for finite_bearing, else .false.', &
       '.true.')
     call list%add('table_points', self%table_points, &
-      'of the table in each direction; 0: from the tolerance, 33 above 3e-5, else 65', '>= 17 and <= 513', '0')
+      'points of the table in each direction; 0: 33 for tolerances above 3e-5, else 65', '>= 17 and <= 513', '0')
     call list%add('film_points', self%film_points, &
-      'round the film, divisible by 4; 0: from the tolerance, 64 above 3e-5, 128, 192 below 1e-8', '>= 32 and <= 1024', '0')
-    call list%text('table_file', self%table_file, 'keeps the table, by its way from the case; '''': the user''s cache does', '')
+      'grid points round the film, a multiple of 4; 0: by the tolerance 64 (above 3e-5), 128, 192 (below 1e-8)', &
+      '>= 32 and <= 1024', '0')
+    call list%text('table_file', self%table_file, &
+      'file that keeps the table, path relative to the case file; '''': in the cache of the user', '')
     call self%add_least_film(list)
   end subroutine parameters
 

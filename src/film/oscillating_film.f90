@@ -53,11 +53,12 @@ contains
     class(oscillating_film_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call list%word('variant', self%variant, 'bearing_frame, as_printed', 'bearing_frame', &
-      'the frame of the fluid''s acceleration')
+      'form of the film force')
     call self%add_viscosity(list)
     call list%add('kinematic_viscosity', self%kinematic_viscosity, &
-      'kinematic viscosity, required unless viscosity_law gives it', 'm^2/s', '> 0', default='0.0', example='1.38e-5')
-    call list%add('quadrature_points', self%quadrature_points, '0: chosen from the tolerance', '>= 4 and <= 1000000', &
+      'kinematic viscosity; required unless viscosity_law gives it', 'm^2/s', '> 0', default='0.0', example='1.38e-5')
+    call list%add('quadrature_points', self%quadrature_points, &
+      'points of the integral round the film; 0: chosen from the tolerance', '>= 4 and <= 1000000', &
       default='0')
     call self%add_least_film(list)
   end subroutine parameters

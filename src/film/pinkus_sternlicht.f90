@@ -61,9 +61,10 @@ contains
     class(pinkus_sternlicht_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call list%word('variant', self%variant, 'closed_form, as_printed, half_film', 'closed_form', &
-      'how its pressure is integrated', example='closed_form')
+      'form of the film force', example='closed_form')
     call self%add_viscosity(list)
-    call list%add('film_moment', self%film_moment, 'its shear turns the pin; not given: .true. of finite_bearing, else .false.', &
+    call list%add('film_moment', self%film_moment, &
+      'the oil shear acts on the pin with a moment; default .true. for finite_bearing, else .false.', &
       '.false.', example='.false.')
     call self%add_least_film(list)
   end subroutine parameters

@@ -31,8 +31,8 @@ contains
     class(ambrosio_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call self%add_coefficient(list)
-    call list%add('v0', self%v0, 'no friction up to this sliding speed', 'm/s', '>= 0', example='0.001')
-    call list%add('v1', self%v1, 'full friction from this sliding speed on', 'm/s', '>= 0', example='0.010')
+    call list%add('v0', self%v0, 'sliding speed below which there is no friction', 'm/s', '>= 0', example='0.001')
+    call list%add('v1', self%v1, 'sliding speed above which friction is full', 'm/s', '>= 0', example='0.010')
   end subroutine parameters
 
   pure subroutine conflict(self, key, wanted)

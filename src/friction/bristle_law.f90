@@ -63,20 +63,23 @@ contains
     class(bristle_law_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call self%add_coefficient(list)
-    call list%add('bristle_stiffness', self%bristle_stiffness, 'friction over normal force by the bristles'' deflection', &
+    call list%add('bristle_stiffness', self%bristle_stiffness, &
+      'stiffness of the bristles: friction over normal force per deflection', &
       '1/m', '> 0', example='2.0e4')
   end subroutine add_common
 
-  !> Those of friction at rest, and of what hangs on the speed.
+  !> Those of friction at rest, and of what depends on the speed.
   subroutine add_sliding(self, list)
     class(bristle_law_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call self%add_static(list)
-    call list%add('stribeck_speed', self%stribeck_speed, 'sliding speed over which the static part of the friction falls', 'm/s', &
+    call list%add('stribeck_speed', self%stribeck_speed, &
+      'sliding speed at which the static part of the friction has mostly vanished (Stribeck)', 'm/s', &
       '> 0', example='0.010')
-    call list%add('bristle_damping', self%bristle_damping, 'friction over normal force by the bristles'' rate', 's/m', &
+    call list%add('bristle_damping', self%bristle_damping, &
+      'damping of the bristles: friction over normal force per rate of deflection', 's/m', &
       '>= 0', default='0.0')
-    call list%add('damping_speed', self%damping_speed, 'sliding speed over which the bristles'' damping falls; 0: it does not', &
+    call list%add('damping_speed', self%damping_speed, 'sliding speed over which bristle_damping decreases; 0: it is constant', &
       'm/s', '>= 0', default='0.0')
     call self%add_viscous(list)
   end subroutine add_sliding

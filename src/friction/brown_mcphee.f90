@@ -30,7 +30,7 @@ contains
     class(parameter_list_t), intent(inout) :: list
     call self%add_coefficient(list)
     call self%add_static(list)
-    call list%add('transition_speed', self%transition_speed, 'sliding speed that turns the friction round', 'm/s', '> 0', &
+    call list%add('transition_speed', self%transition_speed, 'sliding speed over which friction changes its sign', 'm/s', '> 0', &
       example='0.010')
     call self%add_viscous(list)
   end subroutine parameters

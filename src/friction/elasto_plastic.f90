@@ -32,7 +32,8 @@ contains
     class(parameter_list_t), intent(inout) :: list
     call self%add_common(list)
     call self%add_sliding(list)
-    call list%add('breakaway_ratio', self%breakaway_ratio, 'elastic deflection of the bristles over that of sliding', &
+    call list%add('breakaway_ratio', self%breakaway_ratio, &
+      'break-away deflection of the bristles over their deflection in steady sliding', &
       range='>= 0 and < 1', default='0.7')
   end subroutine parameters
 

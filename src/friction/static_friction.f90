@@ -51,7 +51,8 @@ contains
   subroutine add_static(self, list)
     class(static_friction_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('static_coefficient', self%static_coefficient, 'of friction at rest; 0: as coefficient', range='>= 0', &
+    call list%add('static_coefficient', self%static_coefficient, &
+      'coefficient of friction at rest; 0: equal to coefficient', range='>= 0', &
       default='0.0')
   end subroutine add_static
 
@@ -59,7 +60,7 @@ contains
   subroutine add_viscous(self, list)
     class(static_friction_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('viscous_coefficient', self%viscous_coefficient, 'friction over normal force that grows with the sliding speed', &
+    call list%add('viscous_coefficient', self%viscous_coefficient, 'viscous part: friction over normal force per sliding speed', &
       's/m', '>= 0', default='0.0')
   end subroutine add_viscous
 end module static_friction

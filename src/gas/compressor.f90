@@ -35,12 +35,13 @@ contains
     class(compressor_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call self%add_bore(list)
-    call list%add('dead_space', self%dead_space, 'smallest volume over displacement', range='>= 1e-4 and <= 100', &
+    call list%add('dead_space', self%dead_space, 'clearance volume over displacement', range='>= 1e-4 and <= 100', &
       example='0.05')
-    call list%add('suction_pressure', self%suction_pressure, 'while the suction valve is open', 'Pa', '> 0', default='101325.0')
-    call list%add('discharge_pressure', self%discharge_pressure, 'while the discharge valve is open', 'Pa', '> 0', &
+    call list%add('suction_pressure', self%suction_pressure, &
+      'pressure while the suction valve is open', 'Pa', '> 0', default='101325.0')
+    call list%add('discharge_pressure', self%discharge_pressure, 'pressure while the discharge valve is open', 'Pa', '> 0', &
       example='4.0e5')
-    call list%add('polytropic_exponent', self%polytropic_exponent, 'n of p V^n = const. with both valves closed', &
+    call list%add('polytropic_exponent', self%polytropic_exponent, 'exponent n of p V^n = const. while both valves are closed', &
       range='>= 0.1 and <= 10', example='1.3')
     call self%add_crankcase_pressure(list)
   end subroutine parameters

@@ -49,6 +49,7 @@ contains
   subroutine add_crankcase_pressure(self, list)
     class(gas_law_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('crankcase_pressure', self%crankcase_pressure, 'under the piston', 'Pa', '> 0', default='101325.0')
+    call list%add('crankcase_pressure', self%crankcase_pressure, &
+      'pressure on the crank side of the piston', 'Pa', '> 0', default='101325.0')
   end subroutine add_crankcase_pressure
 end module gas_law

@@ -37,13 +37,17 @@ contains
   subroutine parameters(self, list)
     class(measured_pressure_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call self%curve%parameters(list, 'table', 'CSV file, relative to the case file: crank_angle[deg],pressure[bar]', &
+    call self%curve%parameters(list, 'table', &
+      'CSV file with columns crank_angle[deg],pressure[bar] (absolute), path relative to the case file', &
       example='pressure.csv')
-    call list%add('period_deg', self%period_deg, '720 (four-stroke) or 360', '>= 360 and <= 720', '720')
-    call list%add('offset_deg', self%offset_deg, 'crank angle at which the table says 0', 'degrees', '>= -1080 and <= 1080', '0.0')
+    call list%add('period_deg', self%period_deg, &
+      'period of the table: 720 (four-stroke) or 360 degrees', '>= 360 and <= 720', '720')
+    call list%add('offset_deg', self%offset_deg, &
+      'crank angle of the simulation at angle 0 of the table', 'degrees', '>= -1080 and <= 1080', '0.0')
     call self%add_bore(list)
     call list%add('compression_ratio', self%compression_ratio, &
-      'largest over smallest volume, for the column cylinder_volume; 0: swept volume', range='> 1 and <= 1000', default='0.0')
+      'largest over smallest volume, for the column cylinder_volume only; 0: it shows the swept volume', &
+      range='> 1 and <= 1000', default='0.0')
     call self%add_crankcase_pressure(list)
   end subroutine parameters
 

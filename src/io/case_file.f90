@@ -110,7 +110,7 @@ contains
       return
     end if
     if (size(list%groups) == 0) then
-      call fail(error, values%file//': the file holds no group; gudgeon --template prints a case', status_case_file)
+      call fail(error, values%file//': the file contains no group; gudgeon --template prints a case', status_case_file)
       return
     end if
     do i = 1, size(list%groups)
@@ -127,7 +127,7 @@ contains
       end if
       if (values%is_present(group)) then
         call fail(error, at_line(values, list%groups(i)%line)//shown_group(list%groups(i)%name)// &
-                  ': this group stands here twice', status_case_file)
+                  ': this group is given twice', status_case_file)
         return
       end if
       values%is_present(group) = .true.

@@ -57,7 +57,7 @@ contains
     character(len=:), allocatable :: text
     text = ''
     if (c%drive%kind == 'constant_speed' .and. abs(c%drive%torque) > 0) text = '&drive torque has no effect with kind = '// &
-      '''constant_speed'': the drive gives whatever moment keeps the speed (crank_moment); free lets the torque turn the crank'
+      '''constant_speed'': the drive supplies the moment that holds the speed (crank_moment); with kind = ''free'' the torque acts'
   end function case_warning
 
   !> The rod reaches round, and the mass matrix of crank and rod is positive definite at every angle. With
@@ -115,7 +115,7 @@ contains
       if (allocated(joint%contact) .or. allocated(joint%friction) .or. allocated(joint%film) .or. allocated(joint%asperities) &
           .or. has_own_law(values, place)) then
         call values%refuse(group, 'kind', 'must be clearance with contact, friction or lubrication: an ideal joint '// &
-                           'has no play for them; leave those groups out, as --set contact=none does', error)
+                           'has no clearance; remove these groups, for example with --set contact=none', error)
       else if (joint%clearance > 0 .and. .not. values%is_given(group, 'kind')) then
         call values%refuse(group, 'clearance', 'needs kind = ''clearance''; the default is ideal', error)
       end if
@@ -132,7 +132,7 @@ contains
     else if (allocated(joint%film) .and. joint%bearing_length <= 0) then
       call values%refuse(group, 'bearing_length', needed(group, 'bearing_length', values, 'with lubrication'), error)
     else if (.not. allocated(joint%contact) .and. .not. allocated(joint%film)) then
-      call values%refuse(group, 'kind', 'needs contact or lubrication: nothing would hold the pin', error)
+      call values%refuse(group, 'kind', 'needs contact or lubrication: without them no force would act on the pin', error)
     else if (allocated(joint%friction) .and. .not. allocated(joint%contact)) then
       call values%refuse(law_group(values, 'friction', place), 'law', &
                          'needs the group contact: dry friction follows the normal force', error)
@@ -161,7 +161,7 @@ contains
       place = find_key(values%keys, group, trim(names(i)))
       is_said = values%is_said(place)
       if (joint%oil%is_known() .and. is_said) then
-        call values%refuse(group, trim(names(i)), 'must not be given where viscosity_law = '''//joint%oil%law//''' gives it', error)
+        call values%refuse(group, trim(names(i)), 'must not be given: viscosity_law = '''//joint%oil%law//''' computes it', error)
       else if (.not. joint%oil%is_known() .and. values%is_used(place) .and. .not. is_said) then
         call values%refuse(group, trim(names(i)), needed(group, trim(names(i)), values, &
           adjustl(values%by_law(values%keys(place)))), error)
@@ -204,15 +204,16 @@ contains
     type(error_t), allocatable, intent(out) :: error
     if (.not. joint%elastic%is_wanted) then
       if (joint%elastic%pressure_viscosity > 0) call values%refuse(own, 'pressure_viscosity', &
-        'needs elastic_film = .true.: between rigid walls the pressures are fiction', error)
+        'needs elastic_film = .true.: the pressures between rigid walls are not realistic', error)
     else if (.not. allocated(joint%contact)) then
       call values%refuse(own, 'elastic_film', 'needs the group contact, whose geometry is the stiffness of the walls', error)
     else if (joint%contact%name() /= 'hertz') then
-      call values%refuse(contact, 'law', 'must be hertz with elastic_film: the film damps, the walls do not', error)
+      call values%refuse(contact, 'law', 'must be hertz with elastic_film: the film dissipates, the walls do not', error)
     else if (allocated(joint%friction)) then
-      call values%refuse(own, 'elastic_film', 'goes without the group friction: the surfaces do not touch', error)
+      call values%refuse(own, 'elastic_film', 'cannot be combined with the group friction: the surfaces never touch', error)
     else if (joint%transition%is_weighted()) then
-      call values%refuse(own, 'elastic_film', 'goes without transition = ''weighted'': the film carries at every depth', error)
+      call values%refuse(own, 'elastic_film', &
+        'cannot be combined with transition = ''weighted'': the film carries at every depth', error)
     else if (.not. joint%film%is_quasi_static()) then
       call values%refuse(own, 'elastic_film', 'is for films of wedge and squeeze: finite_bearing, '// &
         'and closed_form and half_film of pinkus_sternlicht', error)
@@ -229,7 +230,8 @@ contains
     if (.not. allocated(joint%film)) then
       call values%refuse(group, 'roughness', 'needs the group lubrication: asperities touch through a film', error)
     else if (allocated(joint%contact)) then
-      call values%refuse(group, 'roughness', 'goes without the group contact: asperities are the contact of rough surfaces', error)
+      call values%refuse(group, 'roughness', &
+        'cannot be combined with the group contact: asperities are the contact of rough surfaces', error)
     else if (joint%asperities%roughness > roughest*joint%clearance) then
       call values%refuse(group, 'roughness', 'must be <= clearance/8: a centred pin may not touch', error)
     end if
@@ -331,7 +333,7 @@ contains
       else if (.not. (joint%can_touch() .or. allocated(joint%asperities)) .and. distance >= joint%clearance) then
         call values%refuse('initial', key, 'must be shorter than the clearance where there is no contact', error)
       else if (distance >= joint%bearing_radius) then
-        call values%refuse('initial', key, 'must be shorter than bearing_radius: the pin would be through its bearing', error)
+        call values%refuse('initial', key, 'must be shorter than bearing_radius: the pin would leave its bearing', error)
       end if
     end associate
   end subroutine check_pin
@@ -371,7 +373,8 @@ contains
     type(error_t), allocatable, intent(out) :: error
     if (.not. allocated(c%measured)) return
     if (allocated(c%combustion)) then
-      call values%refuse('cylinder_pressure', 'table', 'goes without the group combustion: one pressure acts on the piston', error)
+      call values%refuse('cylinder_pressure', &
+        'table', 'cannot be combined with the group combustion: one pressure acts on the piston', error)
     else if (all(c%measured%period_deg /= measured_pressure_periods)) then
       call values%refuse('cylinder_pressure', 'period_deg', 'must be 360 or 720', error)
     end if
@@ -384,15 +387,17 @@ contains
     type(error_t), allocatable, intent(out) :: error
     associate (drive => c%drive)
       if (drive%table%is_wanted() .and. drive%kind /= 'free') then
-        call values%refuse('drive', 'torque_table', 'needs kind = ''free'': a held speed takes whatever torque it needs', error)
+        call values%refuse('drive', &
+          'torque_table', 'needs kind = ''free'': at constant speed the drive supplies whatever torque is needed', error)
       else if (drive%ramp_time > 0 .and. drive%kind /= 'constant_speed') then
         call values%refuse('drive', 'ramp_time', 'needs kind = ''constant_speed'': the loads make the speed of a free crank', error)
       else if (abs(drive%ramp_from) > 0 .and. .not. drive%ramp_time > 0) then
-        call values%refuse('drive', 'ramp_from', 'needs ramp_time, in which the speed goes from there to crank_speed', error)
+        call values%refuse('drive', &
+          'ramp_from', 'needs ramp_time, the time in which the speed rises from here to crank_speed', error)
       else if (drive%ramp_time > 0 .and. c%is_elastic()) then
-        call values%refuse('drive', 'ramp_time', 'goes without elastic_rod and crankshaft', error)
+        call values%refuse('drive', 'ramp_time', 'cannot be combined with elastic_rod and crankshaft', error)
       else if (drive%ramp_time > 0 .and. c%integrator%crank_revolutions > 0) then
-        call values%refuse('drive', 'ramp_time', 'goes with revolutions or end_time, not with crank_revolutions', error)
+        call values%refuse('drive', 'ramp_time', 'needs revolutions or end_time instead of crank_revolutions', error)
       else if (drive%flywheel_inertia > 0 .and. allocated(c%crankshaft)) then
         call values%refuse('drive', 'flywheel_inertia', 'must be 0 with the group crankshaft, which has its own flywheel_inertia', &
           error)

@@ -93,7 +93,7 @@ contains
     if (self%start%is_done) self%line = self%case%file//': done already; '//self%base//'.csv'
   end subroutine look_for_earlier
 
-  !> Unless it goes on or is done, remove what would have other results under this name taken for done or for resumable: first
+  !> Unless it continues or is done, remove what would have other results under this name taken for done or for resumable: first
   !> of all, so that it never stands beside new ones. This makes no text, and neither does `clear`.
   subroutine disown(self, was_there, status)
     class(case_run_t), intent(in) :: self
@@ -104,7 +104,7 @@ contains
     call remove(self%base//'.checkpoint', was_there, status)
   end subroutine disown
 
-  !> Unless it goes on or is done, remove the other results that have these names.
+  !> Unless it continues or is done, remove the other results that have these names.
   subroutine clear(self, was_there, status)
     class(case_run_t), intent(in) :: self
     logical, intent(inout) :: was_there
@@ -282,7 +282,7 @@ contains
     has_events = self%case%has_contact() .and. .not. self%is_twin
   end function has_events
 
-  !> Add to the message of a run that was stopped how it can go on.
+  !> Add to the message of a run that was stopped how it can continue.
   subroutine tell_how_to_go_on(files, error)
     type(trace_files_t), intent(in) :: files
     type(error_t), intent(inout) :: error
@@ -290,7 +290,7 @@ contains
     if (allocated(files%checkpoint_error)) then
       error%message = error%message//'; no checkpoint: '//files%checkpoint_error%message
     else
-      error%message = error%message//'; --resume goes on from there'
+      error%message = error%message//'; --resume continues from there'
     end if
   end subroutine tell_how_to_go_on
 

@@ -142,7 +142,7 @@ contains
     call fail(error, printable(path, 200)//': '//what//'interrupted before it began', status_integration)
   end subroutine not_begun
 
-  !> Make the folder for the results, lock them, and look for what is there where the runs are to go on; remove what is there of
+  !> Make the folder for the results, lock them, and look for what is there where the runs are to continue; remove what is there of
   !> other runs, and begin the resolved case.
   subroutine take_place(self, options)
     class(case_job_t), intent(inout) :: self

@@ -18,7 +18,7 @@ module case_schema
     logical :: is_law = .false.           !! of a law for every joint that has none of its own
     logical :: is_model = .false.
     character(len=24) :: instead_of = ''  !! group that a case cannot have beside it
-    character(len=100) :: description = ''
+    character(len=170) :: description = ''
     integer :: first = 1, last = 0        !! its keys in the table
   end type group_definition_t
 

@@ -27,7 +27,7 @@ contains
       out = ''
       text = text//newline//'! '//trim(groups(group)%description)//newline
       if (groups(group)%instead_of /= '') then
-        text = text//'! (not beside &'//trim(groups(group)%instead_of)//', so out of this case)'//newline
+        text = text//'! (cannot be combined with &'//trim(groups(group)%instead_of)//', therefore commented out here)'//newline
         out = '! '
       end if
       text = text//out//'&'//trim(groups(group)%name)//newline

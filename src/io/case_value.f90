@@ -64,7 +64,7 @@ contains
       if (.not. is_listed(value%text, key%words) .and. value%text /= key%default) wanted = 'must be one of '// &
         key%words
     case default
-      if (.not. is_clean(token%text)) wanted = 'must not hold control characters or bytes that are not UTF-8'
+      if (.not. is_clean(token%text)) wanted = 'must not contain control characters or bytes that are not UTF-8'
       if (element > 1 .and. key%count > 1 .and. token%quoted) then
         value%text = value%text//','//token%text
       else

@@ -77,7 +77,7 @@ contains
     integer :: n
 
     if (case%integrator%relative_tolerance < 10*finest_tolerance) then
-      certificate%reason = 'not certified: no run can be closer than its tolerance by a factor of ten'
+      certificate%reason = 'not certified: no tolerance ten times smaller is possible'
       return
     end if
     call prepare(case, report, plain, certificate%list, error)
@@ -91,7 +91,7 @@ contains
     call run(close, certificate%list, 0, closer_run, error)
     if (allocated(error)) return
     if (.not. (own%is_done .and. closer_run%is_done)) then
-      certificate%reason = 'not certified: the run at a hundredth of the tolerance could not go on'
+      certificate%reason = 'not certified: the run at a hundredth of the tolerance could not continue'
       return
     end if
     close%integrator%method = merge('auto ', 'radau', case%integrator%method == 'radau')

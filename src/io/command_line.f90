@@ -15,14 +15,14 @@ module command_line
     character(len=:), allocatable :: accuracy     !! draft, standard, reference, or empty: as the case says
     integer :: jobs = 0                           !! threads; 0: as many as there are cores
     real(dp) :: checkpoint_interval = 60          !! seconds between checkpoints of a run; 0: none
-    logical :: resume = .false.                   !! go on where runs were stopped
+    logical :: resume = .false.                   !! continue where runs were stopped
     logical :: certify = .false.                  !! find out how far runs can be believed
     character(len=:), allocatable :: reference    !! case, study or results: a page of the manual; empty: none
     logical :: check = .false., template = .false., quiet = .false., help = .false., version = .false.
     character(len=:), allocatable :: progress     !! auto, always, never
     character(len=:), allocatable :: cases(:)     !! paths of case files, or of study files, blanks behind
     logical :: sweep = .false.                    !! the files are studies
-    logical :: fresh = .false.                    !! a sweep begins anew
+    logical :: fresh = .false.                    !! a sweep starts from the beginning
     integer :: first_row = 1, last_row = 0        !! runs of a sweep; last_row 0: all
   end type command_line_t
 
@@ -96,7 +96,7 @@ contains
       call fail(error, '--fresh and --rows are for gudgeon sweep'//hint, status_command_line)
       return
     else if (line%sweep .and. line%resume) then
-      call fail(error, '--resume is for cases: a sweep goes on where it stopped without it'//hint, status_command_line)
+      call fail(error, '--resume is for cases; a stopped sweep continues without it'//hint, status_command_line)
       return
     end if
     call check_names(line%cases, error)
@@ -275,7 +275,7 @@ contains
         do s = 1, size(suffixes)
           if (other /= one//trim(suffixes(s)) .or. len(other) /= len_trim(one//suffixes(s))) cycle
           call fail(error, printable(trim(cases(i)), 100)//' and '//printable(trim(cases(k)), 100)// &
-                    ': their results would have the same names; run them apart with --out', status_command_line)
+                    ': their results would have the same names; run them separately with --out', status_command_line)
           return
         end do
       end do
@@ -314,34 +314,33 @@ contains
     character(len=*), parameter :: n = achar(10)
     text = 'gudgeon [options] CASE.nml [CASE.nml ...]'//n// &
       'gudgeon sweep [options] STUDY.nml [STUDY.nml ...]'//n// &
-      'Dynamics of the slider-crank mechanism with clearance in its piston-pin joint.'//n//n// &
-      '  -o, --out DIR             where results go (default: results)'//n// &
-      '  -s, --set GROUP.KEY=VALUE give a key another value; repeatable, the last one counts, and one way to say where the'//n// &
-      '                            run ends (revolutions, crank_revolutions, end_time) takes the file''s other away'//n// &
-      '      --set GROUP=none      take a group out, as if the file did not have it; a later --set of one of its keys'//n// &
-      '                            brings it back with nothing but that'//n// &
-      '  -a, --accuracy LEVEL      draft, standard or reference: some 3, 5 or 8 digits of a motion without impacts;'//n// &
-      '                            method auto whatever the case says, contact entry root, the tolerance of the'//n// &
-      '                            level, which the models'' own accuracy follows; --set wins over it'//n// &
-      '  -j, --jobs N              how many threads run cases, and their ideal twins, side by side (default: the cores'//n// &
-      '                            there are)'//n// &
-      '      --resume              go on with runs that were stopped, each from its checkpoint in DIR: the results'//n// &
-      '                            are those of a run that was not; give the same options as then (but the limits'//n// &
-      '                            max_steps, max_evaluations, max_evaluations_per_revolution)'//n// &
-      '      --checkpoint SECONDS  how often a run writes CASE.checkpoint (default: 60; 0: never)'//n// &
-      '      --certify             run each case again at a hundredth of its tolerance and with another method, and say'//n// &
-      '                            in its line, summary and CASE.certificate.csv how far it can be believed'//n// &
-      '      --check               read and validate the cases, run nothing'//n// &
-      '      --template            print a complete, commented case (sweep: study) file with every key and default'//n// &
-      '      --progress WHEN       auto, always or never: progress on standard error (auto: a terminal)'//n// &
-      '  -q, --quiet               errors only'//n// &
-      '      --fresh               sweep: forget the rows of an earlier sweep (default: go on from there)'//n// &
-      '      --rows A:B            sweep: only runs A to B, into STUDY.A-B.runs.csv'//n// &
-      '  -h, --help                print this'//n// &
+      'Simulates the slider-crank mechanism with clearance in its joints. sweep runs parameter studies.'//n//n// &
+      '  -o, --out DIR             folder for the results (default: results)'//n// &
+      '  -s, --set GROUP.KEY=VALUE change a value of the case; repeatable, the last one counts. A new end of the run'//n// &
+      '                            (revolutions, crank_revolutions or end_time) replaces the one in the file'//n// &
+      '      --set GROUP=none      remove a group from the case; a later --set of one of its keys starts an empty group'//n// &
+      '  -a, --accuracy LEVEL      draft, standard or reference: about 3, 5 or 8 digits of a motion without impacts. Sets'//n// &
+      '                            method auto, contact entry root and the tolerance 1e-4, 1e-6 or 1e-10; --set has'//n// &
+      '                            priority'//n// &
+      '  -j, --jobs N              number of threads for cases and their ideal twins (default: number of processor cores)'//n// &
+      '      --resume              continue runs that were stopped, each from its checkpoint in DIR. Give the same case and'//n// &
+      '                            options as before; only the limits max_steps, max_evaluations and'//n// &
+      '                            max_evaluations_per_revolution may change. The results are those of an uninterrupted run'//n// &
+      '      --checkpoint SECONDS  time between checkpoints, in CASE.checkpoint (default: 60; 0: none)'//n// &
+      '      --certify             estimate the accuracy of each case by running it again at a hundredth of its tolerance'//n// &
+      '                            and with another method; results in the summary and in CASE.certificate.csv'//n// &
+      '      --check               read and validate the cases without running them'//n// &
+      '      --template            print a complete, commented case file (sweep: study file) with every key'//n// &
+      '      --reference SUBJECT   print a reference page in Markdown; SUBJECT is case, study or results'//n// &
+      '      --progress WHEN       show progress on standard error: auto (on a terminal), always or never'//n// &
+      '  -q, --quiet               print errors only'//n// &
+      '      --fresh               sweep: discard the rows of an earlier sweep (default: continue it)'//n// &
+      '      --rows A:B            sweep: run only the rows A to B, into STUDY.A-B.runs.csv'//n// &
+      '  -h, --help                print this text'//n// &
       '  -V, --version             print the version'//n//n// &
-      'Results for CASE.nml: CASE.csv, CASE.events.csv, CASE.summary.csv, CASE.resolved.nml;'//n// &
-      'for STUDY.nml: STUDY.runs.csv, a row for each run, and STUDY.study.nml.'//n// &
-      'Exit status: 0 done; 1 internal error; 2 command line; 3 a case file or checkpoint; 4 the integration'//n// &
-      'could not go on, of one run of a sweep at least; 5 a result could not be written.'//n
+      'Results of CASE.nml: CASE.csv (trace), CASE.events.csv (contacts), CASE.summary.csv, CASE.resolved.nml (the case with'//n// &
+      'all defaults). Results of STUDY.nml: STUDY.runs.csv, one row for each run, and STUDY.study.nml.'//n// &
+      'Exit status: 0 all done; 1 internal error; 2 wrong command line; 3 wrong case file or checkpoint; 4 an integration'//n// &
+      'could not continue (sweep: in at least one run); 5 a result could not be written.'//n
   end function help_text
 end module command_line

@@ -73,7 +73,7 @@ contains
         if (message == '' .and. n > 1) call compare_rows(x_is, row, x(n - 1), lines(n - 1), x(n), message)
       end if
     end do
-    if (message == '' .and. n < 2) message = 'a header and at least two rows are wanted'
+    if (message == '' .and. n < 2) message = 'needs a header and at least two rows'
     line = max(1, line)
     x = x(:n)
     y = y(:n)
@@ -105,7 +105,7 @@ contains
     comma = index(row, ',')
     fields = ''
     if (comma == 0 .or. index(row(comma + 1:), ',') > 0) then
-      message = printable(row, 60)//': two columns with a comma between them are wanted'
+      message = printable(row, 60)//': needs two columns separated by a comma'
       return
     end if
     fields = [character(len=len(row)) :: adjustl(row(:comma - 1)), adjustl(row(comma + 1:))]
@@ -215,7 +215,7 @@ contains
     if (here < before) then
       message = message//': must be larger than that of line '//integer_text(line)//': rows must be in increasing order'
     else
-      message = message//': stands in line '//integer_text(line)//' already'
+      message = message//': already given in line '//integer_text(line)
     end if
   end subroutine compare_rows
 end module curve_file

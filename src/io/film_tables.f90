@@ -41,7 +41,7 @@ contains
     logical :: was_stopped
     call provide_table(case%joint, case, shows_progress, was_stopped, error)
     if (.not. (was_stopped .or. allocated(error))) call provide_table(case%crank_pin, case, shows_progress, was_stopped, error)
-    if (was_stopped) call fail(error, 'interrupted before it began, while the table of its film was made', status_integration)
+    if (was_stopped) call fail(error, 'interrupted before it began, while its film table was computed', status_integration)
   end subroutine provide_tables
 
   subroutine provide_table(joint, case, shows_progress, was_stopped, error)
@@ -70,7 +70,7 @@ contains
       end if
       call load(path, key, joint%film, is_there, is_foreign)
       if (is_named .and. is_foreign) call fail(error, '&lubrication table_file = '//joint%film%table_file// &
-        ': holds something else than a film table: must name a new file or one of this program', status_case_file)
+        ': is not a film table of this program: name another file', status_case_file)
       if (.not. (is_there .or. allocated(error))) then
         call watch%progress%start(case%name//': film table', shows_progress)
         call joint%film%make_table(bearing, tolerance, watch)

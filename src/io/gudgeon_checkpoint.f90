@@ -1,4 +1,4 @@
-!> A checkpoint: what a stopped run needs to go on as if it had never stopped, in one file that is written whole or not at
+!> A checkpoint: what a stopped run needs to continue as if it had never stopped, in one file that is written whole or not at
 !> all.
 !>
 !> The file holds a line that says what it is, an archive and a checksum of all that.

@@ -18,7 +18,7 @@ module gudgeon_summary
   public :: summary_table, summary_value, summary_line, energy_warning, build_advice, relative_residual
 
   character(len=*), parameter :: newline = achar(10)
-  character(len=*), parameter :: no_exponent = 'no Lyapunov exponent: the runs that it is measured with could not go on'
+  character(len=*), parameter :: no_exponent = 'no Lyapunov exponent: the runs that measure it could not continue'
 
 contains
 
@@ -258,7 +258,7 @@ contains
     if (report%figures%max_energy > 0) relative_residual = report%figures%max_energy_residual/report%figures%max_energy
   end function relative_residual
 
-  !> What somebody should know who waits for a program that the compiler has not optimised, or an empty text.
+  !> Advice for the user of a program that the compiler has not optimised, or an empty text.
   pure function build_advice(flags, seconds) result(text)
     character(len=*), intent(in) :: flags   !! of the compiler, separated by blanks
     real(dp), intent(in) :: seconds         !! that the cases took
@@ -271,7 +271,7 @@ contains
     do i = 1, size(worth_it)
       if (index(' '//flags, trim(worth_it(i))) > 0) return
     end do
-    text = 'this is a build for debugging, several times slower than the fast one: fpm @release -- ...'
+    text = 'this is a build for debugging, several times slower than the fast program: scripts/install.sh installs that'
   end function build_advice
 
   !> What to say of a run that is done with a large energy residual.
@@ -279,9 +279,9 @@ contains
     type(case_t), intent(in) :: case
     type(run_report_t), intent(in) :: report
     character(len=:), allocatable :: text
-    text = 'the energy is kept no better than to '//short_text(relative_residual(report))//', which is '// &
+    text = 'the energy is conserved only to '//short_text(relative_residual(report))//', that is '// &
       short_text(relative_residual(report)/case%integrator%relative_tolerance)// &
-      ' relative tolerances: compare with a run at a tenth of &integrator relative_tolerance'
+      ' relative tolerances: compare with a run with a tenth of &integrator relative_tolerance'
   end function energy_warning
 
   !> One line for people.
@@ -307,9 +307,9 @@ contains
         integer_text(s%accepted)//' steps, '//integer_text(s%evaluations)//' evaluations; '
       text = text//pin_text(case%joint, f%pin(piston_pin))
       if (case%crank_pin%has_clearance()) text = text//'; crank pin: '//pin_text(case%crank_pin, f%pin(crank_pin))
-      if (case%has_loose_guide()) text = text//'; piston in its bore: '//integer_text(sum(f%corner%contacts))// &
-        ' contacts, up to '//short_text(maxval(f%corner%max_force))//' N'
-      text = text//', energy residual '//short_text(relative_residual(report))
+      if (case%has_loose_guide()) text = text//'; piston skirt: '//integer_text(sum(f%corner%contacts))// &
+        ' contacts, largest force '//short_text(maxval(f%corner%max_force))//' N'
+      text = text//', relative energy residual '//short_text(relative_residual(report))
       if (report%energy_is_poor) text = text//' ('//energy_warning(case, report)//')'
       text = text//'; '//path//'.csv'
     end associate
@@ -327,7 +327,7 @@ contains
     case default
       text = 'repeats every '//integer_text(periods%period)//' revolutions'
     end select
-    if (periods%period > 0) text = text//', found after '//integer_text(periods%found_after)
+    if (periods%period > 0) text = text//', recognised after '//integer_text(periods%found_after)
   end function period_text
 
   !> What it says of a pin.
@@ -338,8 +338,12 @@ contains
     text = ''
     if (joint%has_clearance()) then
       if (joint%can_touch()) text = integer_text(pin%contacts)//' contacts, '
-      text = text//'film at least '//short_text(pin%min_film_thickness)//' m, '
+      if (pin%min_film_thickness < 0) then
+        text = text//'deepest penetration '//short_text(-pin%min_film_thickness)//' m, '
+      else
+        text = text//'smallest film thickness '//short_text(pin%min_film_thickness)//' m, '
+      end if
     end if
-    text = text//'pin force up to '//short_text(pin%max_force)//' N'
+    text = text//'largest pin force '//short_text(pin%max_force)//' N'
   end function pin_text
 end module gudgeon_summary

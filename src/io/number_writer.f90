@@ -79,7 +79,7 @@ contains
     end do
   end subroutine prepare
 
-  !> Halve a power that has come to have one bit more.
+  !> Halve a power that has reached have one bit more.
   pure subroutine normalise(power, exponent)
     integer(wide), intent(inout) :: power
     integer, intent(inout) :: exponent

@@ -42,7 +42,7 @@ contains
     do group = 1, size(groups)
       if (index(groups(group)%name, '.') > 0) cycle   ! the same for another joint
       text = text//'## &'//trim(groups(group)%name)//newline//newline//sentence(trim(groups(group)%description))//newline
-      if (groups(group)%instead_of /= '') text = text//'Cannot stand beside `&'//trim(groups(group)%instead_of)//'`.'//newline
+      if (groups(group)%instead_of /= '') text = text//'Cannot be combined with `&'//trim(groups(group)%instead_of)//'`.'//newline
       if (groups(group)%place /= '' .or. groups(group)%is_law) &
         text = text//'`place = ''crank_pin''` in a second group of this name makes it that of the crank pin.'//newline
       text = text//newline//'| key | unit | limits | default | meaning |'//newline//'|---|---|---|---|---|'//newline

@@ -112,8 +112,8 @@ contains
       if (line == other) then
         if (index(line, '&') == 1) group = line
       else
-        difference = group//' '//trim(adjustl(line))//', where the run to go on with has '//trim(adjustl(other))
-        if (index(line//other, '&') > 0) difference = 'the groups '//line//' and '//other//' where the run to go on with differs'
+        difference = group//' '//trim(adjustl(line))//', but the stopped run has '//trim(adjustl(other))
+        if (index(line//other, '&') > 0) difference = 'the groups '//line//' and '//other//' differ from those of the stopped run'
       end if
     end do
   end subroutine compare_cases

@@ -26,7 +26,7 @@ module stability_advice
 
 contains
 
-  !> A run that is bound by stability has come to `time` of `end_time` [s] in `elapsed` seconds. Once, where there is long to go, try
+  !> A run that is bound by stability has reached `time` of `end_time` [s] in `elapsed` seconds. Once, where there is long to go, try
   !> what method auto needs up to here, and say so on standard error.
   subroutine consider(self, time, end_time, elapsed, statistics, progress)
     class(stability_advice_t), intent(inout) :: self
@@ -43,8 +43,8 @@ contains
     if (needed == 0 .or. statistics%evaluations < worth_it*needed) return
     self%was_given = .true.
     !$omp critical (texts)
-    call progress%tell(printable(self%case%file, 200)//': some '//duration_text(to_go)//' to go; '// &
-      advice(real(statistics%evaluations, dp)/needed)//' up to here (--set integrator.method=auto)')
+    call progress%tell(printable(self%case%file, 200)//': about '//duration_text(to_go)//' left; '// &
+      advice(real(statistics%evaluations, dp)/needed)//' so far (--set integrator.method=auto)')
     !$omp end critical (texts)
   end subroutine consider
 
@@ -53,7 +53,7 @@ contains
     real(dp), intent(in) :: ratio
     character(len=:), allocatable :: text
     text = ''
-    if (ratio > 1.5_dp) text = "bound by the stability of Adams, not by its accuracy (a stiff film, contact or friction): "// &
+    if (ratio > 1.5_dp) text = "the stability of Adams, not its accuracy, limits the steps (stiff film, contact or friction): "// &
       "method = 'auto' needs 1/"//integer_text(nint(ratio))//" of the evaluations"
   end function advice
 end module stability_advice

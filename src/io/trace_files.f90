@@ -139,7 +139,7 @@ contains
       call mark%move_to(name, wanted%length, is_there)
       if (is_there .and. mark%checksum == wanted%checksum) return
     end do
-    call fail(error, printable(path, 200)//': not what the stopped run had written'//restart_hint, status_case_file)
+    call fail(error, printable(path, 200)//': differs from what the stopped run had written'//restart_hint, status_case_file)
   end subroutine find_marked
 
   !> From now on write a checkpoint every `interval` seconds (0: never) and where the run stops before its end. Path, identity and

@@ -44,9 +44,11 @@ contains
   subroutine parameters(self, list)
     class(elastic_film_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('elastic_film', self%is_wanted, 'walls that give way under the film, as a contact of law = ''hertz'' would', &
+    call list%add('elastic_film', self%is_wanted, &
+      'elastic walls in series with the film; &contact with law = ''hertz'' gives their stiffness', &
       '.false.')
-    call list%add('pressure_viscosity', self%pressure_viscosity, 'elastic_film: growth of the viscosity with the mean pressure', &
+    call list%add('pressure_viscosity', self%pressure_viscosity, &
+      'elastic_film: exponential growth of the viscosity with the mean pressure (Barus)', &
       '1/Pa', '>= 0 and <= 1e-6', default='0.0')
   end subroutine parameters
 

@@ -226,7 +226,7 @@ contains
     if (allocated(guide%friction)) friction_ratio = guide%friction%friction_ratio(speed, nint(sign(1.0_dp, speed)))
   end function friction_ratio
 
-  !> Friction of an ideal guide on the piston at its speed x' [m/s]: what hangs on the normal force, over it, and the rest [N].
+  !> Friction of an ideal guide on the piston at its speed x' [m/s]: what depends on the normal force, over it, and the rest [N].
   pure subroutine friction_on_guide(self, speed, ratio, rest)
     class(piston_guide_t), intent(in) :: self
     real(dp), intent(in) :: speed

@@ -1,4 +1,4 @@
-!> A measured curve that a case names by its file: two columns of numbers. A model declares it as a parameter; whoever reads
+!> A measured curve that a case names by its file: two columns of numbers. A model declares it as a parameter; the code that reads
 !> cases fills in the numbers.
 module measured_curve
   use gudgeon_kinds, only: dp

@@ -1,7 +1,7 @@
 !> Adams where the problem is not stiff, Radau where it is, chosen while integrating.
 !>
 !> Every phase of the problem (its `mode`) begins with the method that it ended with the last time, at first with Adams. A
-!> phase in which Adams is bound by its stability for a number of steps goes on with Radau from the same point. What Radau then
+!> phase in which Adams is bound by its stability for a number of steps continues with Radau from the same point. What Radau then
 !> costs in this mode is held against what Adams would need, which is proportional to the rate of the fastest mode; where it comes
 !> to a loss, the phase goes back and asks for more patience the next time.
 module auto_method

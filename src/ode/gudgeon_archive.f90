@@ -1,4 +1,4 @@
-!> The state of a run as a string of bytes, so that it can be put away and taken up again bit for bit.
+!> The state of a run as a string of bytes, so that it can be put away and resumed bit for bit.
 !>
 !> Every type with a state has one procedure `exchange` that names its components once; the archive either takes them or
 !> gives them back, so that both directions cannot disagree.

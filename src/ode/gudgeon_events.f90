@@ -41,7 +41,7 @@ module gudgeon_events
 contains
 
   !> Start watching at (t, y), after a start or restart of the method. Event `just_taken` (0: none) is not taken again
-  !> before its function has been negative; any other that is past zero already and goes on is taken at once.
+  !> before its function has been negative; any other that is past zero already and continues is taken at once.
   subroutine begin(self, problem, t, y, just_taken)
     class(event_watch_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem

@@ -20,7 +20,7 @@ module gudgeon_solver
   integer, parameter :: chattering = 13               !! event after event without progress in time
   integer, parameter :: evaluation_limit_reached = 14 !! more evaluations of the right-hand side than the settings allow
 
-  integer, parameter :: unreadable_archive = 15       !! the archive to go on from does not fit the problem and the method
+  integer, parameter :: unreadable_archive = 15       !! the archive to continue from does not fit the problem and the method
 
   integer, parameter :: most_events_in_place = 100    !! events within the chatter time: chatter
 
@@ -28,7 +28,7 @@ module gudgeon_solver
   type, abstract :: observer_t
     logical :: wants_to_stop = .false.
     logical :: wants_archive = .false.    !! the state is to be handed over now
-    logical :: keeps_archives = .false.   !! and whenever the integration ends so that it could go on
+    logical :: keeps_archives = .false.   !! and whenever the integration ends so that it could continue
   contains
     procedure :: take_archive => ignore_archive
     procedure :: exchange => exchange_nothing
@@ -76,7 +76,7 @@ module gudgeon_solver
 contains
 
   !> Integrate from (t, y) to t_end, or from where `archive` was filled: with the same settings, problem and observer it then
-  !> goes on as if it had never stopped. At return (t, y) is where it ended. max_steps = 0: no limit.
+  !> continues as if it had never stopped. At return (t, y) is where it ended. max_steps = 0: no limit.
   subroutine integrate(problem, method, t, y, t_end, max_steps, observer, status, archive)
     class(ode_problem_t), intent(inout) :: problem
     class(ode_method_t), intent(inout) :: method
@@ -183,7 +183,7 @@ contains
         .and. status == step_done) status = evaluation_limit_reached
   end subroutine look_around
 
-  !> Hand the state over, where the observer asks for it or the integration ends here though it could go on.
+  !> Hand the state over, where the observer asks for it or the integration ends here though it could continue.
   subroutine hand_over(problem, method, observer, at, status)
     class(ode_problem_t), intent(inout) :: problem
     class(ode_method_t), intent(inout) :: method

@@ -152,7 +152,7 @@ contains
     else if (self%has_top .and. value >= self%value(2)) then
       rank = 2
     end if
-    ! the lower of this point and the best bounds the peak on its side; at first the best is an end and goes on being one
+    ! the lower of this point and the best bounds the peak on its side; at first the best is an end and continues being one
     bound = sample_t(t, value, 0.0_dp)
     is_left = t < self%t(1)
     if (rank == 1) then

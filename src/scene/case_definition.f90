@@ -197,13 +197,15 @@ contains
     type(case_t), intent(inout) :: case
     class(parameter_list_t), intent(inout) :: list
 
-    call list%group('case', 'SI units; angles in degrees only where the key ends in _deg', .false.)
-    call list%text('title', case%title, 'what the case is', '')
-    call list%group('mechanism', 'bodies; centres of mass along and across each body, from its inner pin', .false.)
+    call list%group('case', 'All values are in SI units; angles are in degrees only where the key ends in _deg', .false.)
+    call list%text('title', case%title, 'title of the case, for pictures and pages', '')
+    call list%group('mechanism', &
+      'Crank, rod and piston. A centre of mass is given along and across its body, from the end nearer to the crank axis', .false.)
     call case%mechanism%parameters(list)
-    call list%group('drive', 'what turns the crank', .false.)
+    call list%group('drive', 'What drives the crank', .false.)
     call case%drive%parameters(list)
-    call list%group('initial', 'start: velocities as with an ideal joint, but for those of the pin in its bearing', .false.)
+    call list%group('initial', &
+      'Initial state. Velocities are those of the mechanism with ideal joints, plus the rates given here', .false.)
     call case%initial%parameters(list)
     call visit_joint(case%joint, piston_pin_place, list)
     call visit_joint(case%crank_pin, crank_pin_place, list)
@@ -216,11 +218,12 @@ contains
     call visit_crankshaft(case%crankshaft, list)
     call visit_gas(case%combustion, list)
     call visit_measured(case%measured, list)
-    call list%group('run', 'how long it lasts: until = ''periodic'' stands instead of the end that &integrator gives', .false.)
+    call list%group('run', 'When the run ends. until = ''periodic'' replaces the end given in &integrator', .false.)
     call case%run%parameters(list)
-    call list%group('integrator', 'how it is integrated; the run''s end by revolutions, crank_revolutions or end_time', .false.)
+    call list%group('integrator', &
+      'Integration. The run ends after revolutions, crank_revolutions or end_time; give one of them', .false.)
     call case%integrator%parameters(list)
-    call list%group('output', 'what is written', .false.)
+    call list%group('output', 'Rows and columns of the results', .false.)
     call case%output%parameters(list)
   end subroutine visit_case
 
@@ -229,7 +232,7 @@ contains
     type(joint_case_t), intent(inout) :: joint
     character(len=*), intent(in) :: place
     class(parameter_list_t), intent(inout) :: list
-    call list%group('joint', 'piston-pin joint', .false., place)
+    call list%group('joint', 'Joint of rod and piston (piston pin)', .false., place)
     call joint%parameters(list)
     call visit_contact(joint%contact, place, list)
     call visit_friction(joint%friction, joint%reports_friction_work, place, list)
@@ -252,8 +255,8 @@ contains
     class(contact_law_t), allocatable, intent(inout) :: law
     character(len=*), intent(in) :: place
     class(parameter_list_t), intent(inout) :: list
-    call list%group('contact', 'pin against bearing: leave the group out for no contact', .true., place)
-    call list%choice('law', 'lankarani_nikravesh', 'how an impact is damped; hertz: without dissipation')
+    call list%group('contact', 'Contact of pin and bearing. Without this group there is no contact', .true., place)
+    call list%choice('law', 'lankarani_nikravesh', 'energy loss of an impact; hertz: no loss')
     call offer_contact_laws(list)
     if (list%sets) then
       if (allocated(law)) deallocate (law)
@@ -264,7 +267,7 @@ contains
         end select
       end if
     end if
-    call list%choice('geometry', 'hertz_sphere', 'the elastic force')
+    call list%choice('geometry', 'hertz_sphere', 'elastic force of the contact')
     call offer_contact_geometries(list)
     if (.not. list%sets .or. .not. allocated(list%chosen)) return
     select type (chosen => list%chosen)
@@ -278,9 +281,11 @@ contains
     logical, intent(inout) :: reports_work
     character(len=*), intent(in) :: place
     class(parameter_list_t), intent(inout) :: list
-    call list%group('friction', 'dry friction of the contact: leave the group out for none', .true., place)
-    call list%choice('law', 'ambrosio', 'coulomb, lugre, dahl, elasto_plastic hold a load at rest; under the others it creeps')
-    call list%add('report_work', reports_work, 'its work in the summary, also of a law without bristles', '.false.')
+    call list%group('friction', 'Dry friction of the contact. Without this group there is no friction', .true., place)
+    call list%choice('law', 'ambrosio', &
+      'friction law; coulomb, lugre, dahl and elasto_plastic hold a load at rest, the others let it creep')
+    call list%add('report_work', reports_work, &
+      'write the work of friction into the summary (laws with bristles always do)', '.false.')
     call offer_friction_laws(list)
     if (.not. list%sets) return
     if (allocated(law)) deallocate (law)
@@ -299,12 +304,13 @@ contains
     logical, intent(inout) :: reports
     character(len=*), intent(in) :: place
     class(parameter_list_t), intent(inout) :: list
-    call list%group('lubrication', 'oil film in the clearance: leave the group out for a dry joint', .true., place)
-    call list%choice('law', 'pinkus_sternlicht', 'journal bearing or oscillating film')
+    call list%group('lubrication', 'Oil film in the clearance. Without this group the joint is dry', .true., place)
+    call list%choice('law', 'pinkus_sternlicht', 'film theory: long journal bearing, oscillating film, or bearing of finite length')
     call oil%parameters(list)
     call transition%parameters(list)
     call elastic%parameters(list)
-    call list%add('report', reports, 'energy lost in it, largest pressure and mean side flow in the summary', '.false.')
+    call list%add('report', reports, &
+      'write energy loss, largest pressure and mean side flow of the film into the summary', '.false.')
     call offer_film_laws(list)
     if (.not. list%sets) return
     if (allocated(law)) deallocate (law)
@@ -320,7 +326,7 @@ contains
     character(len=*), intent(in) :: place
     class(parameter_list_t), intent(inout) :: list
     type(asperities_t) :: described
-    call list%group('asperities', 'rough surfaces that touch through the film: leave the group out for smooth ones', .true., &
+    call list%group('asperities', 'Contact of rough surfaces through the film. Without this group surfaces are smooth', .true., &
       place, instead_of='contact')
     if (.not. list%sets) then
       call described%parameters(list)
@@ -336,7 +342,7 @@ contains
     type(guide_case_t), allocatable, intent(inout) :: guide
     class(parameter_list_t), intent(inout) :: list
     type(guide_case_t) :: described
-    call list%group('guide', 'the piston in its bore: leave the group out for an ideal guide', .true.)
+    call list%group('guide', 'Piston in its bore. Without this group the guide is ideal', .true.)
     if (.not. list%sets) then   ! of a case whose other groups are set it stays as it is
       call offer_guide(described, list)
       return
@@ -352,12 +358,12 @@ contains
     type(guide_case_t), intent(inout) :: guide
     class(parameter_list_t), intent(inout) :: list
     call guide%parameters(list)
-    call list%choice('law', 'ambrosio', 'friction on the bore; coefficient = 0: none')
+    call list%choice('law', 'ambrosio', 'friction law of piston and bore; coefficient = 0: no friction')
     call list%make_optional('coefficient')
     call offer_speed_laws(list)
     call list%make_optional('')
     call guide%take_friction(list%chosen)
-    call list%choice('contact_law', 'exact', 'how an impact of the skirt is damped, with kind = ''clearance''')
+    call list%choice('contact_law', 'exact', 'energy loss of an impact of the skirt, for kind = ''clearance''')
     call offer_contact_laws(list)
     call guide%take_contact(list%chosen)
   end subroutine offer_guide
@@ -366,7 +372,7 @@ contains
     type(elastic_rod_t), allocatable, intent(inout) :: rod
     class(parameter_list_t), intent(inout) :: list
     type(elastic_rod_t) :: described
-    call list%group('elastic_rod', 'connecting rod that bends and stretches: leave the group out for a rigid one', .true.)
+    call list%group('elastic_rod', 'Elastic connecting rod. Without this group the rod is rigid', .true.)
     if (.not. list%sets) then
       call described%parameters(list)
       return
@@ -381,7 +387,7 @@ contains
     type(elastic_crankshaft_t), allocatable, intent(inout) :: crankshaft
     class(parameter_list_t), intent(inout) :: list
     type(elastic_crankshaft_t) :: described
-    call list%group('crankshaft', 'elastic in torsion, with a flywheel that is driven: leave the group out for a rigid one', &
+    call list%group('crankshaft', 'Elastic crankshaft with a driven flywheel. Without this group the crankshaft is rigid', &
       .true.)
     if (.not. list%sets) then
       call described%parameters(list)
@@ -396,8 +402,9 @@ contains
   subroutine visit_gas(gas, list)
     class(gas_law_t), allocatable, intent(inout) :: gas
     class(parameter_list_t), intent(inout) :: list
-    call list%group('combustion', 'gas on the piston, of an engine or a compressor: leave the group out for none', .true.)
-    call list%choice('cycle', 'four_stroke', 'of the gas; compressor: it is driven, and there is no combustion')
+    call list%group('combustion', &
+      'Gas pressure on the piston, of an engine or a compressor. Without this group there is none', .true.)
+    call list%choice('cycle', 'four_stroke', 'working cycle; compressor: without combustion')
     call offer_gas_cycles(list)
     if (.not. list%sets) return
     if (allocated(gas)) deallocate (gas)
@@ -413,7 +420,7 @@ contains
     type(measured_pressure_t), allocatable, intent(inout) :: gas
     class(parameter_list_t), intent(inout) :: list
     type(measured_pressure_t) :: described
-    call list%group('cylinder_pressure', 'measured gas pressure on the piston: leave the group out for none', .true., &
+    call list%group('cylinder_pressure', 'Measured gas pressure on the piston, from a table', .true., &
       instead_of='combustion')
     if (.not. list%sets) then
       call described%parameters(list)
@@ -428,66 +435,81 @@ contains
   subroutine mechanism_parameters(self, list)
     class(mechanism_case_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('crank_length', self%crank_length, 'crank pin from crank axis', 'm', '> 0', example='0.0508')
-    call list%add('crank_mass', self%crank_mass, 'mass', 'kg', '>= 0', example='0.80')
-    call list%add('crank_inertia', self%crank_inertia, 'moment of inertia about its centre of mass', 'kg m^2', '>= 0', &
+    call list%add('crank_length', self%crank_length, 'distance from the crank axis to the crank pin', 'm', '> 0', example='0.0508')
+    call list%add('crank_mass', self%crank_mass, 'mass of the crank', 'kg', '>= 0', example='0.80')
+    call list%add('crank_inertia', self%crank_inertia, &
+      'moment of inertia of the crank about its centre of mass', 'kg m^2', '>= 0', &
       example='0.006')
-    call list%add('crank_com', self%crank_com, 'centre of mass from the crank axis', 'm', default='0.0')
-    call list%add('rod_length', self%rod_length, 'piston pin from crank pin', 'm', '> 0', example='0.2032')
-    call list%add('rod_mass', self%rod_mass, 'mass', 'kg', '>= 0', example='1.36')
-    call list%add('rod_inertia', self%rod_inertia, 'moment of inertia about its centre of mass', 'kg m^2', '>= 0', &
+    call list%add('crank_com', self%crank_com, &
+      'centre of mass of the crank from the crank axis, along and across the crank', 'm', default='0.0')
+    call list%add('rod_length', self%rod_length, 'distance from the crank pin to the piston pin', 'm', '> 0', example='0.2032')
+    call list%add('rod_mass', self%rod_mass, 'mass of the connecting rod', 'kg', '>= 0', example='1.36')
+    call list%add('rod_inertia', self%rod_inertia, 'moment of inertia of the rod about its centre of mass', 'kg m^2', '>= 0', &
       example='0.010')
-    call list%add('rod_com', self%rod_com, 'centre of mass from the crank pin', 'm', default='0.0', example='0.0508, 0.0')
-    call list%add('piston_mass', self%piston_mass, 'mass', 'kg', '> 0', example='0.91')
-    call list%add('gravity', self%gravity, 'from the cylinder to the crank, unless gravity_angle_deg turns it', 'm/s^2', &
+    call list%add('rod_com', self%rod_com, &
+      'centre of mass of the rod from the crank pin, along and across the rod', 'm', default='0.0', example='0.0508, 0.0')
+    call list%add('piston_mass', self%piston_mass, 'mass of the piston', 'kg', '> 0', example='0.91')
+    call list%add('gravity', self%gravity, &
+      'acceleration of gravity; acts from the cylinder towards the crank unless gravity_angle_deg turns it', 'm/s^2', &
       default='9.80665')
     call list%add('gravity_angle_deg', self%gravity_angle_deg, &
-      'of gravity: 0 along the cylinder from piston to crank, 90 across it, against y', 'degrees', default='0.0')
+      'direction of gravity: 0 from piston to crank along the cylinder; 90 across it, along -y', 'degrees', default='0.0')
   end subroutine mechanism_parameters
 
   subroutine drive_parameters(self, list)
     class(drive_case_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%word('kind', self%kind, 'free, constant_speed', 'free', 'free: the crank turns as the forces make it')
-    call list%add('torque', self%torque, 'on a free crank, in the sense of its angle', 'N m', default='0.0')
-    call list%add('damping', self%damping, 'moment against the crank speed; at constant_speed it adds to crank_moment alone', &
+    call list%word('kind', self%kind, 'free, constant_speed', 'free', &
+      'free: the forces accelerate the crank; constant_speed: the crank is held at crank_speed')
+    call list%add('torque', self%torque, &
+      'constant moment on a free crank, positive in the sense of the crank angle', 'N m', default='0.0')
+    call list%add('damping', self%damping, &
+      'damping moment per crank speed; with constant_speed it only adds to the column crank_moment', &
       'N m s/rad', '>= 0', default='0.0')
-    call list%add('flywheel_inertia', self%flywheel_inertia, 'of a flywheel fixed to the crank, which adds to crank_inertia', &
+    call list%add('flywheel_inertia', self%flywheel_inertia, &
+      'moment of inertia of a flywheel fixed to the crank, added to crank_inertia', &
       'kg m^2', '>= 0', default='0.0')
     call self%table%parameters(list, 'torque_table', &
-      'CSV file, relative to the case file: speed[rad/s],torque[N.m]; beside torque', &
+      'CSV file with columns speed[rad/s],torque[N.m], path relative to the case file; added to torque', &
       default='')
-    call list%add('ramp_time', self%ramp_time, 'in which a held speed is run up to crank_speed; 0: held from the start', 's', &
+    call list%add('ramp_time', self%ramp_time, &
+      'time in which the held speed rises to crank_speed; 0: crank_speed from the start', 's', &
       '> 0', default='0.0')
-    call list%add('ramp_from', self%ramp_from, 'held speed at the start, with ramp_time', 'rad/s', default='0.0')
+    call list%add('ramp_from', self%ramp_from, 'held speed at the start of the ramp (ramp_time)', 'rad/s', default='0.0')
   end subroutine drive_parameters
 
   subroutine initial_parameters(self, list)
     class(initial_case_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('crank_angle_deg', self%crank_angle_deg, 'from the cylinder axis', 'degrees', default='0.0')
-    call list%add('crank_speed', self%crank_speed, 'held there by drive kind constant_speed', 'rad/s', example='250.0')
-    call list%add('eccentricity', self%eccentricity, 'piston pin from its bearing''s centre; from the clearance on it touches', &
+    call list%add('crank_angle_deg', self%crank_angle_deg, 'crank angle from the cylinder axis', 'degrees', default='0.0')
+    call list%add('crank_speed', self%crank_speed, &
+      'crank speed; with drive kind constant_speed it is held', 'rad/s', example='250.0')
+    call list%add('eccentricity', self%eccentricity, &
+      'centre of the piston pin from the centre of its bearing (x, y); in contact if longer than the clearance', &
       'm', default='0.0')
-    call list%add('eccentricity_rate', self%eccentricity_rate, 'its rate', 'm/s', default='0.0')
-    call list%add('crank_pin_eccentricity', self%crank_pin_eccentricity, 'crank pin from its bearing''s centre', 'm', default='0.0')
-    call list%add('crank_pin_eccentricity_rate', self%crank_pin_eccentricity_rate, 'its rate', 'm/s', default='0.0')
-    call list%add('piston_offset', self%piston_offset, 'piston''s centre of mass across its bore, with clearance there', 'm', &
+    call list%add('eccentricity_rate', self%eccentricity_rate, 'rate of eccentricity', 'm/s', default='0.0')
+    call list%add('crank_pin_eccentricity', self%crank_pin_eccentricity, &
+      'centre of the crank pin from the centre of its bearing (x, y)', 'm', default='0.0')
+    call list%add('crank_pin_eccentricity_rate', self%crank_pin_eccentricity_rate, &
+      'rate of crank_pin_eccentricity', 'm/s', default='0.0')
+    call list%add('piston_offset', self%piston_offset, &
+      'centre of mass of the piston from the cylinder axis along y (guide with clearance)', 'm', &
       default='0.0')
-    call list%add('piston_offset_rate', self%piston_offset_rate, 'its rate', 'm/s', default='0.0')
-    call list%add('piston_tilt', self%piston_tilt, 'of the piston in its bore, from x to y', 'rad', default='0.0')
-    call list%add('piston_tilt_rate', self%piston_tilt_rate, 'its rate', 'rad/s', default='0.0')
+    call list%add('piston_offset_rate', self%piston_offset_rate, 'rate of piston_offset', 'm/s', default='0.0')
+    call list%add('piston_tilt', self%piston_tilt, 'tilt of the piston in its bore, positive from x to y', 'rad', default='0.0')
+    call list%add('piston_tilt_rate', self%piston_tilt_rate, 'rate of piston_tilt', 'rad/s', default='0.0')
   end subroutine initial_parameters
 
   subroutine joint_parameters(self, list)
     class(joint_case_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%word('kind', self%kind, 'ideal, clearance', 'ideal', 'ideal: no play', example='clearance')
-    call list%add('clearance', self%clearance, 'radial: bearing radius minus pin radius', 'm', '> 0', default='0.0', &
+    call list%word('kind', self%kind, 'ideal, clearance', 'ideal', 'ideal: no clearance', example='clearance')
+    call list%add('clearance', self%clearance, 'radial clearance: bearing radius minus pin radius', 'm', '> 0', default='0.0', &
       example='2.0e-5')
-    call list%add('bearing_radius', self%bearing_radius, 'radius of the bearing around the pin', 'm', '> 0', default='0.0', &
+    call list%add('bearing_radius', self%bearing_radius, 'radius of the bearing', 'm', '> 0', default='0.0', &
       example='0.010')
-    call list%add('bearing_length', self%bearing_length, 'its width, for a film, or a contact that is not of spheres', &
+    call list%add('bearing_length', self%bearing_length, &
+      'width of the bearing; needed with a film and with contact geometries other than hertz_sphere', &
       'm', '> 0', default='0.0', example='0.015')
   end subroutine joint_parameters
 
@@ -495,50 +517,60 @@ contains
     class(integrator_case_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call list%word('method', self%method, 'auto, adams, radau', 'auto', &
-      'adams: Shampine and Gordon; radau: implicit; auto: as the phase needs')
+      'adams: Shampine and Gordon; radau: implicit, for stiff films; auto: Radau in stiff phases, else Adams')
     call list%add('revolutions', self%revolutions, &
-      'the run ends when so many would be made at crank_speed: a crank that slows makes fewer', range='> 0', default='0.0', &
+      'end of the run: time of this many revolutions at crank_speed; a crank that slows down makes fewer', &
+      range='> 0', default='0.0', &
       example='4.0', family='end')
     call list%add('crank_revolutions', self%crank_revolutions, &
-      'the run ends when the crank itself has made so many; if it stops or turns back: exit status 4', range='> 0', default='0.0', &
+      'end of the run: revolutions that the crank itself has made; exit status 4 if it stops or turns back', &
+      range='> 0', default='0.0', &
       family='end', beside='end_time')
     call list%add('end_time', self%end_time, &
-      'of the run; with crank_revolutions its latest end, or else when one takes as long as 100 at crank_speed', 's', '> 0', &
+      'end of the run; with crank_revolutions an upper limit (default: when one takes as long as 100 at crank_speed)', 's', '> 0', &
       default='0.0', family='end')
-    call list%add('relative_tolerance', self%relative_tolerance, 'of each step; above 1e-3 it counts as 1e-3', &
+    call list%add('relative_tolerance', self%relative_tolerance, &
+      'relative error allowed in each step; values above 1e-3 act as 1e-3', &
       range='> 0 and <= 0.1', default='1.0e-6')
-    call list%add('absolute_tolerance', self%absolute_tolerance, '0: relative_tolerance by the natural scales', &
+    call list%add('absolute_tolerance', self%absolute_tolerance, &
+      'absolute error allowed in each step; 0: relative_tolerance times natural scales', &
       range='> 0 and <= 0.1', default='0.0')
-    call list%add('max_step', self%max_step, '0: no limit', 's', '> 0', default='0.0')
-    call list%add('max_order', self%max_order, 'of the method', '>= 1 and <= 12', '12')
-    call list%word('contact_entry', self%contact_entry, 'root, step_rejection', 'root', 'how the start of a contact is found')
-    call list%add('max_penetration', self%max_penetration, 'limit at contact entry, needed by step_rejection', 'm', '> 0', &
+    call list%add('max_step', self%max_step, 'largest step; 0: no limit', 's', '> 0', default='0.0')
+    call list%add('max_order', self%max_order, 'highest order of the method', '>= 1 and <= 12', '12')
+    call list%word('contact_entry', self%contact_entry, 'root, step_rejection', 'root', &
+      'how the beginning of a contact is found: root of the film thickness, or rejection of deep steps')
+    call list%add('max_penetration', self%max_penetration, &
+      'largest penetration at the beginning of a contact; required by step_rejection', 'm', '> 0', &
       default='0.0')
-    call list%add('max_steps', self%max_steps, '0: no limit', '> 0', '0')
+    call list%add('max_steps', self%max_steps, 'largest number of steps; 0: no limit', '> 0', '0')
     call list%add('max_evaluations', self%max_evaluations, &
-      'of the right-hand side: a run that needs more ends there, exit status 4', '> 0 and <= 2000000000', '1000000000')
+      'largest number of evaluations of the right-hand side; a run that needs more ends with exit status 4', &
+      '> 0 and <= 2000000000', '1000000000')
     call list%add('max_evaluations_per_revolution', self%max_evaluations_per_revolution, &
-      'the same within a revolution; 0: no limit', '> 0 and <= 2000000000', '100000000')
+      'the same limit for one revolution; 0: no limit', '> 0 and <= 2000000000', '100000000')
   end subroutine integrator_parameters
 
   subroutine output_parameters(self, list)
     class(output_case_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call list%word('sampling', self%sampling, 'time, crank_angle', 'time', &
-      'rows at equal times, or at equal crank angles whenever the crank passes them')
-    call list%add('samples_per_revolution', self%samples_per_revolution, 'rows in a revolution', '>= 1 and <= 1000000', '720')
-    call list%add('angle_origin_deg', self%angle_origin_deg, 'one of the angles of sampling = ''crank_angle''', 'degrees', &
+      'time: rows at equal times; crank_angle: rows at equal crank angles')
+    call list%add('samples_per_revolution', self%samples_per_revolution, &
+      'number of rows for each revolution', '>= 1 and <= 1000000', '720')
+    call list%add('angle_origin_deg', self%angle_origin_deg, &
+      'one of the crank angles at which sampling = ''crank_angle'' takes rows', 'degrees', &
       default='0.0')
-    call list%add('interval', self%interval, 'between rows; 0: samples_per_revolution counts', 's', '> 0', default='0.0')
-    call list%add('start_time', self%start_time, 'of the first row', 's', '>= 0', default='0.0')
-    call list%text('columns', self%columns, '''standard'', names of columns without their units, or both, with commas', &
+    call list%add('interval', self%interval, 'time between rows; 0: given by samples_per_revolution', 's', '> 0', default='0.0')
+    call list%add('start_time', self%start_time, 'time of the first row', 's', '>= 0', default='0.0')
+    call list%text('columns', self%columns, &
+      'columns of the trace: ''standard'', names without units, or both, separated by commas', &
       'standard', many=.true.)
-    call list%add('digits', self%digits, 'significant, of every number in a trace; 17 read back exactly', '>= 9 and <= 17', '10')
+    call list%add('digits', self%digits, 'significant digits of the numbers in a trace; 17 keep every bit', '>= 9 and <= 17', '10')
     call list%text('film_times', self%film_times, &
-      'pressure fields in NAME.film.csv at these times [s]: t1, t2, .. or from:to:count', '')
-    call list%add('every_step', self%every_step, 'a row also at each step of the integrator', '.false.')
-    call list%add('ideal_twin', self%ideal_twin, 'run the same scene with ideal joints and rigid bodies too', '.false.')
+      'times [s] of pressure fields in NAME.film.csv: t1, t2, ... or from:to:count', '')
+    call list%add('every_step', self%every_step, 'write a row at each step of the integrator as well', '.false.')
+    call list%add('ideal_twin', self%ideal_twin, 'also run the same mechanism with ideal joints and rigid bodies', '.false.')
     call list%word('window', self%window, 'all, last_period', 'all', &
-      'last_period: of a run until = ''periodic'' rows and events of its last period alone')
+      'all: the whole run; last_period: only the last period of a run until = ''periodic''')
   end subroutine output_parameters
 end module case_definition

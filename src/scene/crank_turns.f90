@@ -12,7 +12,7 @@ module crank_turns
   private
   public :: crank_turns_t, new_crank_turns, n_turn_events, on_the_way, all_made, turned_back, turn_patience_t
 
-  integer, parameter :: n_turn_events = 2   !! event functions: where the crank has to come to, and its speed against its sense
+  integer, parameter :: n_turn_events = 2   !! event functions: where the crank has to reach, and its speed against its sense
 
   !> What has become of the turns.
   integer, parameter :: on_the_way = 0, all_made = 1, turned_back = 2
@@ -68,7 +68,7 @@ contains
     way_out = min(degree, 0.5_dp*two_pi*self%wanted)
   end function way_out
 
-  !> Event functions of a free crank: it has come to its end (has left its start), and it turns back. The rate of the second
+  !> Event functions of a free crank: it has reached its end (has left its start), and it turns back. The rate of the second
   !> would take an evaluation; without it the search for events samples steps in which the speed changes fourfold.
   pure subroutine events(self, crank_angle, crank_speed, g, g_rate)
     class(crank_turns_t), intent(in) :: self

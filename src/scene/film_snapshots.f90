@@ -1,4 +1,4 @@
-!> The pressure of films over the bore at chosen times of a run. While it goes on the motions are kept, which is next to nothing; the
+!> The pressure of films over the bore at chosen times of a run. While it continues the motions are kept, which is very little; the
 !> pressures are found when it has ended.
 module film_snapshots
   use gudgeon_kinds, only: dp
@@ -107,7 +107,7 @@ contains
     end do
   end subroutine take
 
-  !> The pressures at the times that the run has come to.
+  !> The pressures at the times that the run has reached.
   function fields(self, scene) result(all)
     class(film_snapshots_t), intent(in) :: self
     type(scene_t), intent(in) :: scene

@@ -50,7 +50,7 @@ module gudgeon_scene
   end type event_owner_t
 
   !> A scene as an ode_problem. Of the state it claims the crank angle, unless the crank speed is held; the joints claim their
-  !> eccentricities; quadratures are the work of all non-conservative forces and the drive [J] and, where somebody asks for them,
+  !> eccentricities; quadratures are the work of all non-conservative forces and the drive [J] and, where they are requested,
   !> the measures of the joints: the integrals of the sizes of the forces on the piston pin and on a loose crank pin [N s] and, where
   !> the work does not tell it, what the joints take from the bodies [J].
   type, extends(ode_problem_t) :: scene_t
@@ -163,7 +163,7 @@ module gudgeon_scene
     end function rough_time
 
     !> Find the discrete state at t = 0 when all else is set. A journal touches where it is beyond the clearance; exactly there it
-    !> does if it goes on outwards, or, at rest, is pressed outwards.
+    !> does if it continues outwards, or, at rest, is pressed outwards.
     module subroutine prepare_start(self)
       class(scene_t), intent(inout) :: self
     end subroutine prepare_start
@@ -183,7 +183,7 @@ module gudgeon_scene
       type(evaluation_t), intent(inout) :: now
     end subroutine load_guide
 
-    !> Add the friction of an ideal guide that hangs on the accelerations which it changes, when these are known without it and without
+    !> Add the friction of an ideal guide that depends on the accelerations which it changes, when these are known without it and without
     !> the friction of surfaces that stick. `inside` is false where it would jam the piston.
     pure module subroutine add_guide_friction(self, joints, now, inside)
       class(scene_t), intent(in) :: self

@@ -34,7 +34,7 @@ module gudgeon_simulation
     type(film_field_t), allocatable :: films(:)  !! pressure fields, where the case asks for them
     real(dp), allocatable :: time_with(:, :)     !! by method auto: time with Adams and with Radau in each mode, (2, 0:highest mode) [s]
     logical :: can_go_on = .false.               !! stopped from outside or by a limit: the sink was given its state
-    logical :: energy_is_poor = .false.          !! done, but with a residual that somebody should know of
+    logical :: energy_is_poor = .false.          !! done, but with a residual that the user should know of
     type(period_watch_t) :: periods              !! whether the motion repeats, where that was to end the run
     type(exponent_t) :: exponent                 !! of Lyapunov, where it is asked for
     real(dp) :: auto_saves = 0                   !! > 0: evaluations of this run over those that method auto needs, measured
@@ -44,8 +44,8 @@ contains
 
   !> Run a case, or its ideal twin. The sink is lent to the run and given back, and so is the watch over the revolutions of
   !> the crank, which also has the measures of the joint integrated. Errors: the scene cannot be built
-  !> (status_case_file); the integration could not go on (status_integration, `report` and the sink hold what there is).
-  !> With an `archive` that the sink was given by an earlier run of the same case, that run goes on.
+  !> (status_case_file); the integration could not continue (status_integration, `report` and the sink hold what there is).
+  !> With an `archive` that the sink was given by an earlier run of the same case, that run continues.
   subroutine simulate(case, ideal_joint, list, sink, report, error, archive, cycles)
     type(case_t), intent(in) :: case
     logical, intent(in) :: ideal_joint

@@ -35,20 +35,26 @@ contains
     class(guide_case_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call list%word('kind', self%kind, guide_friction//', '//guide_clearance, guide_friction, &
-      'friction: on the cylinder''s axis; clearance: the piston moves across and tilts')
-    call list%add('viscous', self%viscous, 'force over piston velocity, as of a ring pack', 'N s/m', '>= 0', default='0.0')
+      'friction: piston on the cylinder axis; clearance: piston moves across its bore and tilts (slap)')
+    call list%add('viscous', self%viscous, &
+      'viscous friction force per piston velocity, such as that of piston rings', 'N s/m', '>= 0', default='0.0')
     call list%add('bore_clearance', self%bore_clearance, &
-      'kind clearance needs it, and the next five keys: half of bore less piston diameter', 'm', '> 0', default='0.0')
-    call list%add('skirt_top', self%skirt_top, 'upper corners of the skirt above the pin, along the piston', 'm', '> 0', &
-      default='0.0')
-    call list%add('skirt_bottom', self%skirt_bottom, 'its lower corners below the pin', 'm', '> 0', default='0.0')
-    call list%add('piston_radius', self%piston_radius, 'corners from the piston''s axis, on which its centre of mass is', &
+      'half of bore diameter minus piston diameter; required with kind = ''clearance'', as the next five keys', &
       'm', '> 0', default='0.0')
-    call list%add('piston_inertia', self%piston_inertia, 'of the piston about its centre of mass', 'kg m^2', '> 0', default='0.0')
-    call list%add('stiffness', self%stiffness, 'of a corner on the bore', 'N/m^exponent', '> 0', default='0.0')
-    call list%add('piston_com', self%piston_com, 'centre of mass from the pin, along and across the piston (pin offset)', 'm', &
+    call list%add('skirt_top', self%skirt_top, &
+      'height of the upper corners of the skirt above the pin, along the piston', 'm', '> 0', &
       default='0.0')
-    call list%add('exponent', self%exponent, 'of the depth', range='>= 1', default='1.0')
+    call list%add('skirt_bottom', self%skirt_bottom, &
+      'depth of the lower corners of the skirt below the pin, along the piston', 'm', '> 0', default='0.0')
+    call list%add('piston_radius', self%piston_radius, 'distance of the skirt corners from the piston axis', &
+      'm', '> 0', default='0.0')
+    call list%add('piston_inertia', self%piston_inertia, &
+      'moment of inertia of the piston about its centre of mass', 'kg m^2', '> 0', default='0.0')
+    call list%add('stiffness', self%stiffness, 'contact stiffness of a corner of the skirt', 'N/m^exponent', '> 0', default='0.0')
+    call list%add('piston_com', self%piston_com, &
+      'centre of mass of the piston from the pin, along and across the piston (pin offset)', 'm', &
+      default='0.0')
+    call list%add('exponent', self%exponent, 'exponent of the penetration', range='>= 1', default='1.0')
   end subroutine parameters
 
   !> The friction law that the case names.

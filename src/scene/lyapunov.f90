@@ -1,4 +1,4 @@
-!> The largest Lyapunov exponent of the motion that a run has come to: the rate at which two neighbouring motions part, or come
+!> The largest Lyapunov exponent of the motion that a run has reached: the rate at which two neighbouring motions part, or come
 !> together, per revolution of the crank.
 !>
 !> Two scenes run on from where the run ended, the second one with its state a little beside. Each quarter of a revolution their
@@ -61,7 +61,7 @@ module lyapunov
 contains
 
   !> Measure over so many revolutions, or a few more that make whole periods, after those that the difference needs to find its
-  !> direction. `sink` is asked whether to go on.
+  !> direction. `sink` is asked whether to continue.
   subroutine measure_exponent(case, scene, t, y, period, sink, exponent)
     type(case_t), intent(in) :: case
     type(scene_t), intent(in) :: scene         !! as the run left it

@@ -28,7 +28,7 @@ module period_watch
     integer :: longest = longest_period    !! period looked for [revolutions]
     real(dp) :: tolerance = 0
     integer :: most_revolutions = 0        !! of the run
-    logical :: keeps_one_more = .false.    !! the run goes on for one period, which is its window
+    logical :: keeps_one_more = .false.    !! the run continues for one period, which is its window
     integer :: period = 0                  !! found [revolutions]; 0: none
     integer :: found_after = 0             !! revolutions made when it was found
     real(dp) :: difference = 0             !! of states a period apart then, over their ranges

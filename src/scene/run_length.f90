@@ -1,5 +1,5 @@
 !> How long a run lasts: to the end that the integrator is given, or until the motion repeats; and what is to be found out of the motion
-!> that it has come to.
+!> that it has reached.
 module run_length
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t
@@ -26,18 +26,20 @@ contains
     class(run_length_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call list%word('until', self%until, 'end, periodic', 'end', &
-      'end: what &integrator says; periodic: the motion repeats, or most_revolutions')
-    call list%add('period_revolutions', self%period_revolutions, 'longest period looked for, in revolutions', '>= 1 and <= 16', &
+      'end: by the keys of &integrator; periodic: when the motion repeats')
+    call list%add('period_revolutions', self%period_revolutions, &
+      'longest period that is recognised, in revolutions', '>= 1 and <= 16', &
       '16')
-    call list%add('periodic_tolerance', self%periodic_tolerance, 'of the state a period later, over the range of each component', &
+    call list%add('periodic_tolerance', self%periodic_tolerance, &
+      'allowed change of the state after one period, over the range of each component', &
       range='> 0 and <= 0.1', default='1.0e-4')
-    call list%add('most_revolutions', self%most_revolutions, 'of a run until = ''periodic'', at which it ends in any case', &
+    call list%add('most_revolutions', self%most_revolutions, 'upper limit of revolutions of a run until = ''periodic''', &
       '>= 1 and <= 1000000', '1000')
     call list%add('lyapunov_revolutions', self%lyapunov_revolutions, &
-      'revolutions after the end over which the largest Lyapunov exponent is measured; 0: none', '>= 0 and <= 1000000', '0')
+      'revolutions after the run that measure the largest Lyapunov exponent; 0: it is not measured', '>= 0 and <= 1000000', '0')
   end subroutine parameters
 
-  !> Whether the run goes on until the motion repeats.
+  !> Whether the run continues until the motion repeats.
   pure logical function is_until_periodic(self)
     class(run_length_t), intent(in) :: self
     is_until_periodic = .false.

@@ -67,7 +67,7 @@ contains
     if (self%guide%is_loose) call corner_events(self%guide, y, g(k + 1:k + n_corners), g_rate(k + 1:k + n_corners))
   end procedure all_events
 
-  !> That of set-valued friction, which hangs on the accelerations.
+  !> That of set-valued friction, which depends on the accelerations.
   pure subroutine find_sliding_event(scene, t, y, i, g, g_rate)
     class(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
@@ -220,7 +220,7 @@ contains
     end do
   end procedure prepare_start
 
-  !> Which corners of the skirt touch at t = 0: those in the wall, and those exactly at it that go on into it or, at rest, are pressed
+  !> Which corners of the skirt touch at t = 0: those in the wall, and those exactly at it that continue into it or, at rest, are pressed
   !> into it.
   subroutine prepare_corners(scene, y)
     class(scene_t), intent(inout) :: scene

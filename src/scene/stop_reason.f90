@@ -36,26 +36,26 @@ contains
     case (tolerance_too_small)
       text = 'tolerance below the rounding of the state'
     case (left_domain, start_outside)
-      text = 'the state leaves the model ('//leaving_pin(scene, y)//' its bearing or its film)'
+      text = 'the state left the range of the model ('//leaving_pin(scene, y)//' left its bearing or its film)'
       if (scene%chain%has_elastic_rod()) text = text(:len(text) - 1)// &
-        ', or the elastic rod bends or stretches beyond its equations)'
+        ', or the elastic rod bent or stretched beyond the validity of its equations)'
       if (scene%is_singular(y)) text = ill_posed_text(scene, y)
     case (step_limit_reached)
       text = 'too many steps (&integrator max_steps)'
     case (evaluation_limit_reached)
-      text = 'too much work (&integrator max_evaluations)'
+      text = 'limit of evaluations reached (&integrator max_evaluations)'
     case (revolution_budget_spent)
-      text = 'too much work in one revolution (&integrator max_evaluations_per_revolution)'
+      text = 'limit of evaluations in one revolution reached (&integrator max_evaluations_per_revolution)'
     case (crank_turned_back)
-      text = 'the crank stops, or turns back, after '//turns_text(scene, t, y)
+      text = 'the crank stopped or turned back after '//turns_text(scene, t, y)
     case (turns_not_made)
-      text = 'the crank has made only '//turns_text(scene, t, y)//' by the latest end (&integrator end_time)'
+      text = 'the crank has made only '//turns_text(scene, t, y)//' until the time limit (&integrator end_time)'
     case (crank_creeps)
       text = 'the crank creeps: one revolution takes longer than 100 at its starting speed, after '//turns_text(scene, t, y)
     case (integration_interrupted)
       text = interrupted_text
     case (unreadable_archive)
-      text = 'the state to go on from does not fit the case'
+      text = 'the state of the checkpoint does not belong to this case'
     case (chattering)
       text = 'contact events without progress in time (chatter)'
     case default
@@ -97,7 +97,7 @@ contains
       if (at /= '') at = at//' and'
       at = at//' at the '//joint_name(scene, i)
     end do
-    text = 'ill-posed: a film of next to no thickness'//at//', whose force has no bound'
+    text = 'ill-posed: the film'//at//' has almost no thickness and an unbounded force'
   end function ill_posed_text
 
   !> The pin that is nearest to where it may not be, in parts of the way there from the centre.
@@ -146,9 +146,9 @@ contains
     else if (settings%tolerance <= tight_tolerance) then
       text = 'tolerance below the rounding of the forces'
     else if (change_in_rounding(scene, settings, t, y) > appreciable) then
-      text = 'stiff: within the rounding of the time the state changes by more than the tolerance allows'
+      text = 'too stiff: in the smallest representable time step the state changes by more than the tolerance'
     else
-      text = 'step too small'
+      text = 'the step size became too small'
     end if
   end function small_step_reason
 

@@ -1,4 +1,4 @@
-!> Where a run puts what it finds: implemented by whoever writes files, or by tests.
+!> Where a run puts what it finds: implemented by the code that writes files, or by tests.
 module trace_sink
   use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t

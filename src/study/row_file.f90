@@ -1,8 +1,8 @@
-!> A results file of a study. While the study goes on the rows of each run are added in one piece, in the order in which runs
-!> end; at the end rows stand in the order of the runs. What a killed program or a power cut has left can be taken up again.
+!> A results file of a study. While the study continues the rows of each run are added in one piece, in the order in which runs
+!> end; at the end rows stand in the order of the runs. What a killed program or a power cut has left can be resumed.
 !>
 !> The first field of a row is the number of its run. Only where each run's rows stand in the file is kept in memory, and the
-!> rows that wait to be written: whoever has several files decides which is on the disk before another. A file that was not
+!> rows that wait to be written: the code that has several files decides which is on the disk before another. A file that was not
 !> prepared is not wanted: nothing is done with it.
 module row_file
   use, intrinsic :: iso_fortran_env, only: int64
@@ -18,7 +18,7 @@ module row_file
   private
   public :: row_file_t
 
-  character(len=*), parameter :: newline = achar(10), fresh = '; --fresh begins anew'
+  character(len=*), parameter :: newline = achar(10), fresh = '; --fresh starts from the beginning'
 
   type :: row_file_t
     private
@@ -33,8 +33,8 @@ module row_file
     integer :: first = 1                           !! run
     integer(int64), allocatable :: at(:)           !! where the rows of each run begin
     integer, allocatable :: length(:)              !! their bytes
-    integer, allocatable, public :: rows(:)        !! how many of each run were taken up
-    integer, allocatable, public :: numbers(:, :)  !! (columns, runs) in its last row taken up; 0 where there is none
+    integer, allocatable, public :: rows(:)        !! how many of each run were read back
+    integer, allocatable, public :: numbers(:, :)  !! (columns, runs) in its last row read back; 0 where there is none
   contains
     procedure :: prepare
     procedure :: take_up
@@ -53,7 +53,7 @@ module row_file
 
 contains
 
-  !> The file at `path` of the runs first .. last. `header` is its first row. Of rows taken up the whole numbers in these
+  !> The file at `path` of the runs first .. last. `header` is its first row. Of rows read back the whole numbers in these
   !> columns are kept.
   subroutine prepare(self, path, header, first, last, columns)
     class(row_file_t), intent(inout) :: self
@@ -78,7 +78,7 @@ contains
     has = self%length(run) > 0
   end function has
 
-  !> Leave out the rows of a run that were taken up.
+  !> Leave out the rows of a run that were read back.
   pure subroutine drop(self, run)
     class(row_file_t), intent(inout) :: self
     integer, intent(in) :: run
@@ -187,8 +187,8 @@ contains
     end do
   end subroutine read_fields
 
-  !> Be ready to add rows: to the file as it is, where it holds the rows that were taken up and nothing else, or to one written
-  !> anew.
+  !> Be ready to add rows: to the file as it is, where it holds the rows that were read back and nothing else, or to one written
+  !> again.
   subroutine begin(self, error)
     class(row_file_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
@@ -284,7 +284,7 @@ contains
     is_in_order = .true.
   end function is_in_order
 
-  !> The file anew, rows in the order of the runs, under its name when it is whole and on the disk.
+  !> The file again, rows in the order of the runs, under its name when it is whole and on the disk.
   subroutine rewrite(self, error)
     class(row_file_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
@@ -310,8 +310,8 @@ contains
         if (status /= 0) call fail_with_file(self%path, status, error)
       end associate
       if (mod(run, 1000) == 0) then
-        if (interrupted()) call fail(error, printable(self%path, 200)//': interrupted while its rows were put in order; the '// &
-                                     'same command goes on from there', status_integration)
+        if (interrupted()) call fail(error, printable(self%path, 200)//': interrupted while its rows were sorted; the '// &
+                                     'same command continues from there', status_integration)
       end if
       if (allocated(error)) exit
       self%at(run) = at

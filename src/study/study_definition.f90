@@ -54,9 +54,9 @@ contains
     type(study_t) :: study
     type(parameter_t) :: parameter
     call schema%begin()
-    call schema%group('study', 'a base case run many times; its case must be correct by itself', .true.)
+    call schema%group('study', 'A base case that is run many times. The case itself must be correct', .true.)
     call study%parameters(schema)
-    call schema%group('parameter', 'one key that is varied; the group stands here once for each', .true.)
+    call schema%group('parameter', 'One key that is varied. Give one group for each key', .true.)
     call parameter%parameters(schema)
     call schema%take(groups, keys)
   end subroutine study_schema_of
@@ -64,30 +64,33 @@ contains
   subroutine parameters_of_study(self, list)
     class(study_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%text('title', self%title, 'what the study is', '')
-    call list%text('case', self%case, 'base case; its path begins at this file', example='sim_I.nml')
-    call list%text('table', self%table, 'CSV, a column for each key, a row for each run, instead of &parameter; path as case', '')
+    call list%text('title', self%title, 'title of the study', '')
+    call list%text('case', self%case, 'base case, path relative to the study file', example='sim_I.nml')
+    call list%text('table', self%table, &
+      'CSV file with a column for each key and a row for each run, instead of &parameter; path relative to the study file', '')
     call list%word('design', self%design, 'grid, latin_hypercube, sobol', 'grid', &
-      'how the runs fill the ranges; a grid''s last parameter goes fastest')
-    call list%add('runs', self%runs, 'of a sampled design', '> 0 and <= 10000000', '0')
-    call list%add('seed', self%seed, 'of a sampled design; sobol: 0 gives the points as they are, others shift them', '>= 0', '0')
-    call list%add('settle_cycles', self%settle_cycles, 'crank revolutions at the start that the statistics leave out', '>= 0', '0')
-    call list%word('traces', self%traces, 'none, all, failed', 'none', 'runs whose trace is written, as NAME/RUN.csv')
-    call list%add('cycles', self%cycles, 'write the statistics of each revolution too, as NAME.cycles.csv', '.false.')
+      'how runs fill the ranges; in a grid the last parameter changes fastest')
+    call list%add('runs', self%runs, 'number of runs of a latin_hypercube or sobol design', '> 0 and <= 10000000', '0')
+    call list%add('seed', self%seed, 'seed of a latin_hypercube or sobol design; sobol with 0: unshifted points', '>= 0', '0')
+    call list%add('settle_cycles', self%settle_cycles, &
+      'crank revolutions at the start that are left out of the statistics', '>= 0', '0')
+    call list%word('traces', self%traces, 'none, all, failed', 'none', 'runs whose trace is written to NAME/RUN.csv')
+    call list%add('cycles', self%cycles, 'also write the statistics of each revolution to NAME.cycles.csv', '.false.')
     call list%add('strobe_angle_deg', self%strobe_angle_deg, &
-      'crank angle at which the strobe columns are taken, once in a revolution', 'degrees', default='0.0')
-    call list%text('strobe_columns', self%strobe_columns, 'columns for NAME.strobe.csv; empty: none', '', .true.)
-    call list%add('strobe_cycles', self%strobe_cycles, 'strobes of a run, from settle_cycles on; 0: to its end', '>= 0', '0')
+      'crank angle at which the strobe columns are recorded, once in each revolution', 'degrees', default='0.0')
+    call list%text('strobe_columns', self%strobe_columns, 'columns of NAME.strobe.csv; empty: the file is not written', '', .true.)
+    call list%add('strobe_cycles', self%strobe_cycles, &
+      'number of strobe rows of a run, after settle_cycles; 0: until its end', '>= 0', '0')
   end subroutine parameters_of_study
 
   subroutine parameters_of_parameter(self, list)
     class(parameter_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%text('key', self%key, 'GROUP.KEY of the base case', example='joint.clearance')
+    call list%text('key', self%key, 'GROUP.KEY that is varied', example='joint.clearance')
     call list%add('from', self%from, 'first value of the range', default='0.0', example='1.0e-5')
-    call list%add('to', self%to, 'last value', default='0.0', example='5.0e-5')
-    call list%add('count', self%count, 'of values on a grid', '>= 2 and <= 10000000', '0', '5')
-    call list%word('scale', self%scale, 'linear, log', 'linear', 'values even in this scale')
-    call list%text('values', self%values, 'a list of values, with commas, instead of from, to, count', '', .true.)
+    call list%add('to', self%to, 'last value of the range', default='0.0', example='5.0e-5')
+    call list%add('count', self%count, 'number of values in a grid', '>= 2 and <= 10000000', '0', '5')
+    call list%word('scale', self%scale, 'linear, log', 'linear', 'scale in which the values are equidistant')
+    call list%text('values', self%values, 'list of values separated by commas, instead of from, to and count', '', .true.)
   end subroutine parameters_of_parameter
 end module study_definition

@@ -84,7 +84,7 @@ contains
       select case (list%groups(i)%name)
       case ('study')
         if (groups(1)%is_present(1)) then
-          call fail(error, at_line(path, list%groups(i)%line)//'&study: this group stands here twice', status_case_file)
+          call fail(error, at_line(path, list%groups(i)%line)//'&study: this group is given twice', status_case_file)
           return
         end if
         place(i) = 1

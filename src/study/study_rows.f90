@@ -82,7 +82,7 @@ contains
     may_have_crank_pin = base%crank_pin%has_clearance() .or. any(index(keys, crank_pin_place//'.') == 1)
   end function may_have_crank_pin
 
-  !> Whether runs of a study may go on until their motion repeats, or have their Lyapunov exponent measured.
+  !> Whether runs of a study may continue until their motion repeats, or have their Lyapunov exponent measured.
   pure logical function looks_at_motion(keys, base)
     character(len=*), intent(in) :: keys(:)   !! of the parameters
     type(case_t), intent(in) :: base

@@ -66,7 +66,7 @@ contains
     call conclude(sweep, real(ended - began, dp)/real(rate, dp), line, error)
   end subroutine run_study_file
 
-  !> Take up the results of the same study, or begin anew. Results of another study of that name are not touched.
+  !> Take up the results of the same study, or start from the beginning. Results of another study of that name are not touched.
   subroutine open_files(options, sweep, error)
     type(command_line_t), intent(in) :: options
     type(sweep_t), intent(inout) :: sweep
@@ -88,7 +88,8 @@ contains
     call read_text_file(sweep%path//'.study.nml', 100, 'study', before, nothing_there)
     resumes = .not. options%fresh .and. .not. allocated(nothing_there)
     if (resumes .and. index(before, label) /= 1) then
-      call fail(error, printable(sweep%path, 200)//'.runs.csv: holds another study, base case or program; --fresh replaces it', &
+      call fail(error, printable(sweep%path, 200)// &
+        '.runs.csv: belongs to another study, base case or program; --fresh replaces it', &
                 status_output)
       return
     end if
@@ -268,8 +269,8 @@ contains
     integer :: total
     total = sweep%last - sweep%first + 1
     line = sweep%study%name//': '//integer_text(total)//' runs'
-    if (sweep%began > 0) line = line//', '//integer_text(sweep%began)//' of them there already'
-    if (sweep%incomplete > 0) line = line//', '//integer_text(sweep%incomplete)//' not there whole and run again'
+    if (sweep%began > 0) line = line//', '//integer_text(sweep%began)//' of them already done'
+    if (sweep%incomplete > 0) line = line//', '//integer_text(sweep%incomplete)//' incomplete and run again'
     if (sweep%done > sweep%began) line = line//'; '//short_text(wall_time)//' s, '// &
       rate_text((sweep%done - sweep%began)/max(wall_time, 1e-6_dp))
     line = line//'; '//sweep%path//'.runs.csv'
@@ -277,7 +278,7 @@ contains
       call move_alloc(sweep%error, error)
     else if (sweep%done < total) then
       call fail(error, printable(sweep%study%file, 200)//': interrupted after '//integer_text(sweep%done)//' of '// &
-                integer_text(total)//' runs; the same command goes on from there', status_integration)
+                integer_text(total)//' runs; the same command continues from there', status_integration)
     else if (sweep%failed > 0) then
       call fail(error, printable(sweep%study%file, 200)//': '//integer_text(sweep%failed)//' of '//integer_text(total)// &
                 ' runs failed; '//sweep%path//'.runs.csv says why', status_integration)

@@ -110,7 +110,7 @@ contains
     end do
     table%rows = row
     if (row < 0) then
-      call fail(error, printable(path, 200)//': the table is empty: a header of GROUP.KEY and a row for each run are wanted', &
+      call fail(error, printable(path, 200)//': the table is empty; it needs a header of GROUP.KEY and a row for each run', &
                 status_case_file)
     else if (row == 0) then
       call fail(error, printable(path, 200)//': the table has a header but no run', status_case_file)
@@ -201,7 +201,7 @@ contains
       end if
       do k = 1, i - 1
         if (table%keys(k) /= table%keys(i)) cycle
-        call fail(error, at//printable(trim(table%keys(i)), 60)//' stands here twice', status_case_file)
+        call fail(error, at//printable(trim(table%keys(i)), 60)//' is given twice', status_case_file)
         return
       end do
     end do

@@ -46,7 +46,7 @@ module adams
   !> The state of the method between two steps.
   type, extends(ode_method_t) :: adams_t
     private
-    logical, public :: goes_on = .false.   !! the next start goes on inside a phase, after another method
+    logical, public :: goes_on = .false.   !! the next start continues inside a phase, after another method
     type(adams_coefficients_t) :: coefficients
     real(dp) :: moulton(highest_order + 1) = 0    !! |gamma*_i|
     integer :: n = 0                    !! equations
