@@ -299,10 +299,8 @@ is released from the centre of its bearing: there friction seems to do the oppos
 
 **The noise of the Pinkus-Sternlicht film.** The dissertation reports noise in the accelerations of II, and of IV and V, where the pin nears the wall.
 The program finds none. The noise is the integration error of the dissertation: it integrates the coordinates (q, A, x) with a relative and absolute
-error of 1e-6, and 1e-6 m is more than the film of II, which is 0.77 um thick. `scripts/show_noise.py` integrates the same equations in this way
-([table](noise.md)): I stays smooth; in II the crank acceleration is off by up to 17 % of its peak where the eccentricity ratio is about 0.98,
-without contact, in III by 22 %, in IV by 54 %, in V by 140 %, in spells at the times of combustion and of the load's reversals, as the dissertation
-shows them. With an error of 1e-8 at most 1.2 % is left in I to IV, and 5.7 % in V.
+error of 1e-6, and 1e-6 m is more than the film of II, which is 0.77 um thick. Integrated in this way the same equations show it, in I not, in II to V near
+the wall; with an error of 1e-8 it is nearly gone. `scripts/show_noise.py` measures it: [noise](noise.md).
 """
 
 

@@ -405,7 +405,7 @@ contains
     call refused_on(check, whole//second, ['mechanism.rod_inertia=0'], &
                     'x.nml: &mechanism rod_inertia = 0: must be > 0 with clearance at the crank pin (kg m^2)')
     call refused_on(check, whole//second, ['initial.crank_pin_eccentricity=0.012,0'], 'x.nml: &initial '// &
-                    'crank_pin_eccentricity(1) = 0.012: must be shorter than bearing_radius: the pin would be through its '// &
+                    'crank_pin_eccentricity(1) = 0.012: must be shorter than bearing_radius: the pin would leave its '// &
                     'bearing (m)')
     call accepted(check, whole//second, 'a crank pin that starts in contact', ['initial.crank_pin_eccentricity=1.1e-4,0'])
     call refused_on(check, whole//second//'&lubrication viscosity=0.01 /', [character(len=40) :: 'joint.bearing_length=0.01'], &

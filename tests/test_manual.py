@@ -106,6 +106,21 @@ def check_reference(program: Path) -> None:
                         check(is_described(name, unit, known), f"the manual describes the column {column}", trace.name)
 
 
+def check_study(program: Path) -> None:
+    """The study of the page "Studies" runs, and the page describes every column of its results."""
+    page = (ROOT / "data/manual/studies.md").read_text(encoding="utf-8")
+    with tempfile.TemporaryDirectory() as folder:
+        study = Path(folder) / "study.nml"
+        text = code_after(page, "A study over the clearance").replace("'../sim_I.nml'", f"'{ROOT}/cases/sim_I.nml'")
+        study.write_text(text.replace("count = 10", "count = 2"), encoding="utf-8")
+        done = subprocess.run([program, "sweep", "-q", "-o", folder, "-s", "integrator.method=auto", "-s", "run.lyapunov_revolutions=1", study],
+                              capture_output=True, text=True)
+        check(done.returncode == 0, "the study of the manual runs", done.stderr)
+        runs = Path(folder) / "study.runs.csv"
+        for column in runs.read_text(encoding="utf-8").splitlines()[0].split(",") if runs.exists() else []:
+            check("." in column or f"`{column.partition('[')[0]}`" in page, f"the manual describes the column {column} of a study")
+
+
 def code_after(text: str, words: str) -> str:
     """The indented block behind these words."""
     lines: list[str] = []
@@ -144,6 +159,7 @@ def main() -> int:
     check_markdown()
     program = (options.program or program_built()).resolve()
     check_reference(program)
+    check_study(program)
     check_built(program)
     check_law()
     return assertions.report()

@@ -191,7 +191,7 @@ check "nothing is run twice" grep -q '12 runs, 12 of them already done; [^;]*csv
 same "run again" "$work/torn"
 run sweep -o "$work/torn" -a standard "$work/grid.nml"
 check "another base case is not mixed in, status $status" [ "$status" = 5 ]
-check "and the way out is named" grep -q 'grid.runs.csv: holds another study.*--fresh' "$work/err"
+check "and the way out is named" grep -q 'grid.runs.csv: belongs to another study.*--fresh' "$work/err"
 run sweep -o "$work/torn" -s initial.crank_angle_deg=10 --fresh "$work/grid.nml"
 check "--fresh begins anew, status $status" [ "$status" = 0 ]
 check "with other results" [ "$(cmp -s "$work/torn/grid.runs.csv" "$work/one/grid.runs.csv"; echo $?)" = 1 ]
@@ -217,7 +217,7 @@ check "and it is named" grep -q 'grid.runs.csv: Is a directory' "$work/err"
 # files that do not fit together: what is missing is run again
 fits() {   # fits NAME RUNS: the sweep in $work/broken runs that many again, and is as the whole one then
   run sweep -o "$work/broken" "$work/grid.nml"
-  check "$1: $2 run again, got $(cat "$work/out")" grep -q " $2 not there whole and run again;" "$work/out"
+  check "$1: $2 run again, got $(cat "$work/out")" grep -q " $2 incomplete and run again;" "$work/out"
   same "$1" "$work/broken"
 }
 cp -R "$work/one" "$work/broken"
@@ -315,7 +315,7 @@ if gcc -shared -fPIC -O1 -o "$work/power_cut.so" "$work/power_cut.c"; then
     run sweep -o "$work/power" "$work/long.nml"
     check "cut at call $cut, $rows rows: taken up, status $status" [ "$status" = 0 ]
     check "cut at call $cut: every row has its revolutions and strobes, $(cat "$work/out")" \
-      [ "$(grep -c 'not there whole' "$work/out")" = 0 ]
+      [ "$(grep -c 'incomplete and run again' "$work/out")" = 0 ]
     for kind in runs cycles strobe; do
       check "cut at call $cut: $kind" cmp -s "$work/whole/long.$kind.csv" "$work/power/long.$kind.csv"
     done
