@@ -56,12 +56,12 @@ def collect(program: str) -> None:
         title = title_of(text, path)
         if page.stem != "findings":
             tables.append(f"- [{title}]({page.name})\n")
-        (PAGES / f"{page.stem}.md").write_text(f"---\ntitle: {title}\n---\n\n{relinked(text, path, page)}", encoding="utf-8")
+        (PAGES / f"{page.stem}.md").write_text(f"---\ntitle: {title}\n---\n\n{re.sub(r"^# .*\n+", "", relinked(text, path, page), count=1, flags=re.MULTILINE)}", encoding="utf-8")
     for path in sorted(SOURCE.glob("*.md")):
         page = place_in_manual(path)
         text = path.read_text(encoding="utf-8")
         head, _, body = text.partition("\n\n")
-        body = relinked(body, path, page)
+        body = re.sub(r"\A# .*\n+", "", relinked(body, path, page))   # FORD prints the title
         if path.stem in REFERENCE:
             body += subprocess.run([program, "--reference", REFERENCE[path.stem]], check=True, capture_output=True, text=True).stdout
         if path.stem == "measured":
