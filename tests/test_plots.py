@@ -790,7 +790,7 @@ class Portuguese(unittest.TestCase):
         for english, said in (
             ("crank speed [rad/s]", "velocidade da manivela [rad/s]"),
             ("6.1  Simulation I: crank speed", "6.1  Simulação I: velocidade da manivela"),
-            ("Pinkus–Sternlicht film, film at least 4.22 µm", "filme de Pinkus–Sternlicht, filme mínimo 4,22 µm"),
+            ("Pinkus–Sternlicht film, smallest film thickness 4.22 µm", "filme de Pinkus–Sternlicht, filme mínimo 4,22 µm"),
             ("piston velocity\n[m/s]", "velocidade do pistão\n[m/s]"),
             ("$10^{0.5}$", "$10^{0{,}5}$"),
             ("1.75", "1,75"),
