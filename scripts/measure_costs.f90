@@ -119,7 +119,7 @@ contains
   !> What makes a member of simulation IV elastic or loose. Of a rod the name ends with its transverse modes and axial shapes.
   function member(name) result(settings)
     character(len=*), intent(in) :: name
-    character(len=40) :: settings(6)
+    character(len=40) :: settings(7)
     settings = 'friction.transition_speed=1e-3'   ! as in every scene
     if (index(name, '+rod') > 0) settings(:4) = [character(len=40) :: 'elastic_rod.section_area=426e-6', &
       'elastic_rod.section_inertia=3e-8', 'elastic_rod.transverse_modes='//name(len(name) - 2:len(name) - 2), &
@@ -129,7 +129,8 @@ contains
     if (index(name, '+rubbing_guide') > 0) settings(:3) = [character(len=40) :: 'guide.coefficient=0.1', 'guide.v0=1e-3', &
       'guide.v1=1e-2']
     if (index(name, '+loose_piston') > 0) settings = [character(len=40) :: 'guide.kind=clearance', 'guide.bore_clearance=1e-4', &
-      'guide.skirt_top=0.03', 'guide.skirt_bottom=0.03', 'guide.piston_radius=0.035', 'guide.piston_inertia=1e-3']
+      'guide.skirt_top=0.03', 'guide.skirt_bottom=0.03', 'guide.piston_radius=0.035', 'guide.piston_inertia=1e-3', &
+      'guide.stiffness=1e8']
   end function member
 
   !> States along one compression stroke, the pin in the film, or touching where the scene does.
