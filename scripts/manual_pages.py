@@ -56,7 +56,8 @@ def collect(program: str) -> None:
         title = title_of(text, path)
         if page.stem != "findings":
             tables.append(f"- [{title}]({page.name})\n")
-        (PAGES / f"{page.stem}.md").write_text(f"---\ntitle: {title}\n---\n\n{re.sub(r"^# .*\n+", "", relinked(text, path, page), count=1, flags=re.MULTILINE)}", encoding="utf-8")
+        body = re.sub(r"^# .*\n+", "", relinked(text, path, page), count=1, flags=re.MULTILINE)   # FORD prints the title
+        (PAGES / f"{page.stem}.md").write_text(f"---\ntitle: {title}\n---\n\n{body}", encoding="utf-8")
     for path in sorted(SOURCE.glob("*.md")):
         page = place_in_manual(path)
         text = path.read_text(encoding="utf-8")
