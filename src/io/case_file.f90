@@ -57,11 +57,9 @@ contains
     character(len=*), intent(in) :: text, path, overrides(:)
     type(case_values_t), intent(out) :: values
     type(error_t), allocatable, intent(out) :: error
-    type(group_definition_t), allocatable :: groups(:)
-    type(key_t), allocatable :: keys(:)
     integer :: i
-    call case_schema_of(groups, keys)
-    call values%set_schema(path, groups, keys)
+    call case_schema_of(values%groups, values%keys)
+    call values%set_defaults(path)
     call take_file(values, text, error)
     if (allocated(error)) return
     do i = 1, size(overrides)

@@ -48,7 +48,6 @@ contains
     type(value_t), intent(inout) :: value
     integer, intent(in) :: element
     character(len=:), allocatable, intent(out) :: wanted
-    value%written(min(element, most_reals)) = printable(token%text, 45)
     select case (key%kind)
     case (real_kind)
       call read_real(token%text, value%reals(element), wanted)

@@ -18,7 +18,7 @@ module case_values
     logical, allocatable :: is_present(:)          !! by group
     type(value_t), allocatable :: values(:)        !! by key
   contains
-    procedure :: set_schema
+    procedure :: set_defaults
     procedure :: find         !! the place of a key
     procedure :: assign       !! values as written, to a key
     procedure :: take_out     !! a group, as if the file did not have it
@@ -39,22 +39,18 @@ module case_values
 
 contains
 
-  !> Every key of a schema at its default, every group absent.
-  subroutine set_schema(self, file, groups, keys)
+  !> Every key of the schema, which is there, at its default, every group absent.
+  subroutine set_defaults(self, file)
     class(case_values_t), intent(inout) :: self
     character(len=*), intent(in) :: file
-    type(group_definition_t), intent(in) :: groups(:)
-    type(key_t), intent(in) :: keys(:)
     integer :: i
     self%file = printable(file, 200)
-    allocate (self%groups, source=groups)
-    allocate (self%keys, source=keys)
     allocate (self%is_present(size(self%groups)), source=.false.)
     allocate (self%values(size(self%keys)))
     do i = 1, size(self%keys)
       call set_to_default(self%keys(i), self%values(i))
     end do
-  end subroutine set_schema
+  end subroutine set_defaults
 
   !> Take a group out, with all that has been given for it so far: as if the file did not have it. `at` names what asks for it.
   subroutine take_out(self, name, at, error)
@@ -238,6 +234,7 @@ contains
             return
           end if
           value%given(min(element, most_reals)) = .true.
+          value%written(min(element, most_reals)) = printable(tokens(i)%text, 45)
           value%is_override = is_override
           element = element + 1
         end do

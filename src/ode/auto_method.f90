@@ -186,8 +186,8 @@ contains
     self%t = method%t
     self%t_old = method%t_old
     self%order = method%order
-    self%y = method%y
-    self%y_old = method%y_old
+    self%y(:) = method%y   ! of the same size: no look at bounds
+    self%y_old(:) = method%y_old
     self%statistics%accepted = method%statistics%accepted
     self%statistics%evaluations = method%statistics%evaluations
   end subroutine take_over

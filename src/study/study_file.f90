@@ -76,7 +76,9 @@ contains
     call study_schema_of(schema_groups, schema_keys)
     allocate (groups(count([(list%groups(i)%name == 'parameter', i=1, size(list%groups))]) + 1))
     do i = 1, size(groups)
-      call groups(i)%set_schema(path, schema_groups, schema_keys)
+      groups(i)%groups = schema_groups
+      groups(i)%keys = schema_keys
+      call groups(i)%set_defaults(path)
     end do
     n = 1
     place = 0
