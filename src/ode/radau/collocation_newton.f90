@@ -59,7 +59,7 @@ contains
 
     last_change = 0
     last_ratio = 0
-    self%trust = max(self%trust, epsilon(1.0_dp))**0.8_dp
+    self%trust = max(least_trust, max(self%trust, epsilon(1.0_dp))**0.8_dp)
     self%contraction = least_contraction
     outcome = newton_outside
     call evaluate_stages(self, problem, inside)

@@ -24,7 +24,7 @@ contains
     real(dp) :: tolerance, s
     s = self%stages%stages()
     tolerance = inner_tolerance(working_tolerance(self), self%stages%stages())
-    newton_goal = max(10*epsilon(1.0_dp)/tolerance, min(0.03_dp, tolerance**(2*s/(s + 1) - 1)))
+    newton_goal = max(10*epsilon(1.0_dp)/tolerance, min(0.03_dp, 2*tolerance**(2*s/(s + 1) - 1)))
   end procedure newton_goal
 
   module procedure estimate_error
