@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """The program's integrators beside public ones on the shipped scenes; run by scripts/compare_integrators.sh.
 
-    compare_integrators.py DIR           writes DIR/integrators.md, integrators.csv and integrators.png
-    compare_integrators.py DIR --own     measures the program's own methods anew, and takes the others from DIR/integrators.csv
+    compare_integrators.py DIR              writes DIR/integrators.md, integrators.csv and integrators.png
+    compare_integrators.py DIR --compiled   measures the compiled codes anew, and takes SciPy's counts from DIR/integrators.csv
 
 All codes integrate the same right-hand side, from build/scene_library/scene_library.so, in the program's own coordinates with its own
 absolute tolerances. Each runs at tolerances of 1e-3 to 1e-12, compiled codes at two a decade, until one takes more than a given number
@@ -10,7 +10,7 @@ of right-hand sides. Those that a code spends on difference Jacobians are counte
 
 Smooth scenes: the error is the largest of q, A, x and of their rates at the end over its largest value on the way, against a run of
 the program's own at 1e-13. Dry contact: that of the first 40 instants at which contacts begin and end, over the time of one radian of
-the crank; a run with other contacts has failed. Times are of compiled codes only, over that of one right-hand side in turn.
+the crank; a run with other contacts has failed. Times are of compiled codes only, the processor's, over that of one right-hand side in turn.
 """
 from __future__ import annotations
 
@@ -30,6 +30,7 @@ from scipy import integrate
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: E402
 
 TOLERANCES = [10 ** (-k / 2) for k in range(6, 25)]
 TARGETS = (1e-4, 1e-6, 1e-8, 1e-10)
@@ -99,8 +100,8 @@ class Judge:
         return off if off < 0.1 else np.nan
 
 
-def measure(problem: Problem, library: ctypes.CDLL, cvode: ctypes.CDLL | None, has_public: bool) -> list[dict]:
-    """All runs on one scene, or those of the program's own methods alone."""
+def measure(problem: Problem, library: ctypes.CDLL, cvode: ctypes.CDLL | None, has_scipy: bool) -> list[dict]:
+    """All runs on one scene, or those of the compiled codes alone."""
     np.seterr(all="ignore")   # of codes that leave the model's domain
     scene = Scene(library, problem.case, f"integrator.revolutions={problem.revolutions}", problem.twin)
     judge, in_turn, rows = Judge(scene, problem), scene.seconds_in_turn(), []
@@ -117,10 +118,10 @@ def measure(problem: Problem, library: ctypes.CDLL, cvode: ctypes.CDLL | None, h
 
     for name in OWN:
         follow(name, lambda tolerance, name=name: scene.run_own(name, tolerance), REPEATS, MOST_COMPILED, True)
-    for name, number in CVODE.items() if has_public and cvode else ():
+    for name, number in CVODE.items() if cvode else ():
         follow(name, lambda tolerance, k=number: scene.run_compiled(cvode, "cvode_run", k, tolerance, MOST_COMPILED), REPEATS,
                MOST_COMPILED, True)
-    for name, method in SCIPY.items() if has_public else ():
+    for name, method in SCIPY.items() if has_scipy else ():
         follow(name, lambda tolerance, m=method: scene.run_scipy(m, tolerance, MOST_PYTHON), 1, MOST_PYTHON, False)
     np.seterr(all="warn")
     print(f"{problem.name}: right-hand side in turn {1e9 * in_turn:.0f} ns", file=sys.stderr, flush=True)
@@ -128,11 +129,11 @@ def measure(problem: Problem, library: ctypes.CDLL, cvode: ctypes.CDLL | None, h
     return [row | {"ns_in_turn": 1e9 * in_turn, "date": today} for row in rows]
 
 
-def with_public_rows(own: pd.DataFrame, path: Path) -> pd.DataFrame:
-    """Rows of the program's own methods with those of the other codes that were measured before."""
+def with_rows_of_scipy(new: pd.DataFrame, path: Path) -> pd.DataFrame:
+    """Rows of compiled codes with those of SciPy that were measured before."""
     before = pd.read_csv(path)
-    before = before[~before["method"].isin(OWN)]
-    return pd.concat([rows for problem in PROBLEMS for rows in (own[own["scene"] == problem.name], before[before["scene"] == problem.name])])
+    before = before[before["method"].isin(SCIPY)]
+    return pd.concat([rows for problem in PROBLEMS for rows in (new[new["scene"] == problem.name], before[before["scene"] == problem.name])])
 
 
 def cheapest(rows: pd.DataFrame, target: float, by: str = "evaluations") -> pd.Series | None:
@@ -202,6 +203,11 @@ def draw(data: pd.DataFrame, path: Path) -> None:
                 colour, marker, line = STYLE[method]
                 axis.loglog(done[quantity], done["error"].clip(lower=1e-14), color=colour, marker=marker, linestyle=line,
                             markersize=3.5, linewidth=1, label=method)
+            low, high = axis.get_xlim()
+            axis.xaxis.set_minor_formatter(NullFormatter())
+            if high < 30 * low:   # hardly a decade: name what lies between
+                axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+                axis.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
             axis.set_xlabel(label)
             axis.grid(True, which="major", linewidth=0.4, alpha=0.5)
             if i == 0:
@@ -215,16 +221,16 @@ def draw(data: pd.DataFrame, path: Path) -> None:
 
 def main() -> int:
     """Measure, write the page."""
-    own_only = sys.argv[2:] == ["--own"]
-    if len(sys.argv) != (3 if own_only else 2):
+    compiled_only = sys.argv[2:] == ["--compiled"]
+    if len(sys.argv) != (3 if compiled_only else 2):
         print(__doc__, file=sys.stderr)
         return 2
     folder, library = Path(sys.argv[1]), load_library()
     driver = FOLDER / "cvode_run.so"
     cvode = ctypes.CDLL(str(driver)) if driver.exists() else None
-    data = pd.DataFrame([row for problem in PROBLEMS for row in measure(problem, library, cvode, not own_only)])
-    if own_only:
-        data = with_public_rows(data, folder / "integrators.csv")
+    data = pd.DataFrame([row for problem in PROBLEMS for row in measure(problem, library, cvode, not compiled_only)])
+    if compiled_only:
+        data = with_rows_of_scipy(data, folder / "integrators.csv")
     data.to_csv(folder / "integrators.csv", index=False, float_format="%.7g")
     (folder / "integrators.md").write_text(report(data, cvode is not None), encoding="utf-8")
     draw(data, folder / "integrators.png")

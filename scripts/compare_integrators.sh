@@ -2,19 +2,19 @@
 # The program's methods beside public codes on its own right-hand side, in its own coordinates and scales: SciPy's DOP853, Radau and
 # LSODA, SUNDIALS CVODE (Debian: apt-get install libsundials-dev; left out where it is missing).
 #
-#   scripts/compare_integrators.sh [DIR]           writes DIR/integrators.md, .csv and .png (default: data/measured)
-#   scripts/compare_integrators.sh [DIR] --own     measures only the program's own methods anew
+#   scripts/compare_integrators.sh [DIR]                writes DIR/integrators.md, .csv and .png (default: data/measured)
+#   scripts/compare_integrators.sh [DIR] --compiled     measures only the program's own methods and CVODE anew
 #
-# Takes about 15 minutes, most of it Python's. Evaluations are the same on any machine with this compiler; times need a quiet one.
+# Takes about 15 minutes, most of it Python's. Evaluations are the same on any machine with this compiler; times are the processor's.
 cd "$(dirname "$0")/.." || exit 1
 scripts/setup.sh --python || exit 1
-own=
+part=
 out=data/measured
 for argument; do
   case $argument in
-    --own) own=--own ;;
+    --compiled) part=--compiled ;;
     -*)
-      echo "compare_integrators: usage: scripts/compare_integrators.sh [DIR] [--own]" >&2
+      echo "compare_integrators: usage: scripts/compare_integrators.sh [DIR] [--compiled]" >&2
       exit 2
       ;;
     *) out=$argument ;;
@@ -31,4 +31,4 @@ else
   echo "compare_integrators: no CVODE: apt-get install libsundials-dev" >&2
 fi
 # shellcheck disable=SC2086  # an option or nothing
-exec .venv/bin/python scripts/compare_integrators.py "$out" $own
+exec .venv/bin/python scripts/compare_integrators.py "$out" $part

@@ -380,7 +380,7 @@ contains
     call check%that(sum(auto%report%time_with(1, :)) > 0.9_dp*auto%report%figures%time, 'and is given to it')
   end subroutine auto_chooses
 
-  !> A Jacobian from inside the step: with that of its beginning they took 5478, 3978 and 3889 evaluations, now 3824, 2895 and 2993.
+  !> A Jacobian from inside the step: with that of its beginning they took 5478, 3978 and 3889 evaluations, now 3545, 2655 and 2499.
   subroutine films_are_cheap(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: run

@@ -160,7 +160,8 @@ contains
     values = look%values
   end subroutine scene_look
 
-  !> Integrate to the end by one of the program's own methods. `counts`: right-hand sides, Jacobians, accepted steps, contact
+  !> Integrate to the end by one of the program's own methods. `seconds` are the processor's: what else it does meanwhile is not in
+  !> them. `counts`: right-hand sides, Jacobians, accepted steps, contact
   !> events. `watches`: look at the largest values on the way, or, 0, at nothing but events. The return value is that of the
   !> integration.
   integer(c_int) function scene_integrate(handle, method_name, tolerance, watches, y, seconds, counts) bind(c)
@@ -174,9 +175,8 @@ contains
     class(ode_method_t), allocatable :: method
     type(error_t), allocatable :: error
     type(step_statistics_t) :: statistics
-    real(dp) :: t, part
+    real(dp) :: t, part, before, after
     integer :: status
-    integer(int64) :: before, after, rate
 
     call c_f_pointer(handle, self)
     scene_integrate = 99
@@ -192,14 +192,14 @@ contains
     self%states = state_watcher_t()
     self%instants = event_watcher_t()
     t = 0
-    call system_clock(before, rate)
+    call cpu_time(before)
     if (watches /= 0) then
       call integrate(self%scene, method, t, self%y, simulated_time(self%case), 0, self%states, status)
     else
       call integrate(self%scene, method, t, self%y, simulated_time(self%case), 0, self%instants, status)
     end if
-    call system_clock(after)
-    seconds = real(after - before, dp)/real(rate, dp)
+    call cpu_time(after)
+    seconds = after - before
     statistics = method%totals()
     counts = int([statistics%evaluations, statistics%jacobians, statistics%accepted, self%instants%n], c_int)
     y(:self%n) = self%y(:self%n)
