@@ -35,8 +35,8 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: 
 TOLERANCES = [10 ** (-k / 2) for k in range(6, 25)]
 TARGETS = (1e-4, 1e-6, 1e-8, 1e-10)
 CONTACTS = 40      # instants that are compared
-REPEATS = 9        # of short runs: the best time counts
-MOST_COMPILED, MOST_PYTHON = 10_000_000, 50_000   # right-hand sides, then a run is given up
+REPEATS = 3        # of short runs: the best time counts
+MOST_COMPILED, MOST_PYTHON = 1_000_000, 50_000   # right-hand sides, then a run is given up
 OWN = ("adams", "radau", "auto")
 SCIPY = {"SciPy DOP853": integrate.DOP853, "SciPy Radau": integrate.Radau, "SciPy LSODA": integrate.LSODA}
 CVODE = {"CVODE Adams": 1, "CVODE BDF": 2}
