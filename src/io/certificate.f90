@@ -4,31 +4,22 @@
 !> The error of a row is the difference from the closer run, with a margin for what that errs itself and for what happens between the
 !> rows. A run is certified up to where the error of any coordinate or speed, so far, exceeds 1e-3 of its range, and not beyond where the
 !> run with the other method differs from the closer one by that. (The error itself is not taken from that run, which at the same tolerance
-!> may well be the worst of the three.) Beyond, means over whole revolutions are compared.
+!> may well be the worst of the three.) Beyond, means over whole revolutions are compared. Figures of the whole run, largest forces and the
+!> like, are compared too, wherever the certified time ends.
 module certificate
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
-  use gudgeon_errors, only: error_t, fail, status_integration
+  use gudgeon_errors, only: error_t
   use case_definition, only: case_t
-  use chain_motion, only: piston_pin, crank_pin
   use gudgeon_columns, only: column_list_t, choose_columns
-  use cycle_statistics, only: cycle_t
-  use cycle_watch, only: cycle_watch_t
-  use film_tables, only: provide_tables
-  use gudgeon_simulation, only: simulate, run_report_t
-  use row_store, only: row_store_t, take_store
-  use trace_sink, only: trace_sink_t, trace_event_t
-  use gudgeon_scene, only: event_contact_begins
+  use gudgeon_simulation, only: run_report_t
+  use run_witness, only: witness_t, run, figures_of, means_of, n_statistics, n_figures, loss_figure
   implicit none
   private
-  public :: certificate_t, make_certificate, n_statistics, statistic_names
-
-  integer, parameter :: n_statistics = 4
-  character(len=*), parameter :: statistic_names(n_statistics) = [character(len=23) :: 'mean_pin_force', 'contact_time_fraction', &
-    'impacts_per_revolution', 'loss_per_revolution']
+  public :: certificate_t, make_certificate
 
   real(dp), parameter :: limit = 1e-3_dp              !! error of a certified state, over its range
-  real(dp), parameter :: margin = 1.5_dp              !! for what happens between the rows
+  real(dp), parameter :: margin = 2.5_dp              !! for what the closer run errs itself, half as much at worst, and between the rows
   real(dp), parameter :: closer = 1e-2_dp             !! tolerance of the runs to compare with, over that of the run
   real(dp), parameter :: finest_tolerance = 1e-13_dp  !! that they can have
   real(dp), parameter :: loosest_tolerance = 1e-3_dp  !! a looser one counts as this one
@@ -51,17 +42,12 @@ module certificate
     integer :: revolutions_beyond = 0            !! whole ones
     real(dp) :: statistic(n_statistics) = 0      !! means over them
     real(dp) :: difference(n_statistics) = 0     !! largest difference of the other runs, over the mean
+    logical :: has_figure(n_figures) = .false.
+    real(dp) :: figure(n_figures) = 0            !! of the whole run
+    real(dp) :: figure_difference(n_figures) = 0 !! largest one of the other runs
     type(column_list_t) :: list
     real(dp), allocatable :: range(:), error(:), rms(:)   !! of each column: range over the run; largest error and its mean square up to there
   end type certificate_t
-
-  !> One of the runs.
-  type :: witness_t
-    real(dp), allocatable :: values(:, :)              !! (columns, rows)
-    type(trace_event_t), allocatable :: impact(:)      !! contacts that begin
-    type(cycle_watch_t), allocatable :: cycles
-    logical :: is_done = .false.
-  end type witness_t
 
 contains
 
@@ -105,6 +91,7 @@ contains
     call find_column_errors(own, closer_run, certificate)
     call match_impacts(own, closer_run, certificate)
     call compare_statistics(own, closer_run, other_run, certificate)
+    call compare_figures(case, own, closer_run, other_run, certificate)
     certificate%is_made = .true.
   end subroutine make_certificate
 
@@ -138,41 +125,6 @@ contains
     if (speed > 0) plain%output%interval = min(plain%output%interval, two_pi/(speed*rows_per_revolution))
     plain%output%interval = max(plain%output%interval, report%figures%time/most_rows)
   end subroutine prepare
-
-  !> Run a case into memory; `is_done` is false where it does not come to its end, or needs more than `most_evaluations` (0: no limit).
-  subroutine run(case, list, most_evaluations, witness, error)
-    type(case_t), intent(in) :: case
-    type(column_list_t), intent(in) :: list
-    integer, intent(in) :: most_evaluations
-    type(witness_t), intent(out) :: witness
-    type(error_t), allocatable, intent(out) :: error   !! the user interrupted
-    type(error_t), allocatable :: failure
-    type(run_report_t) :: report
-    type(case_t) :: limited
-    class(trace_sink_t), allocatable :: sink
-    type(trace_event_t), allocatable :: event(:)
-    logical :: was_interrupted
-    limited = case
-    if (most_evaluations > 0) limited%integrator%max_evaluations = min(limited%integrator%max_evaluations, most_evaluations)
-    call provide_tables(limited, .false., error)
-    if (allocated(error)) return
-    allocate (row_store_t :: sink)
-    if (case%has_play()) then   ! without clearance the measures of the joint would change the steps
-      allocate (witness%cycles)
-      witness%cycles%keeps_cycles = .true.
-      call simulate(limited, .false., list, sink, report, failure, cycles=witness%cycles)
-    else
-      call simulate(limited, .false., list, sink, report, failure)
-    end if
-    witness%is_done = .not. allocated(failure)
-    was_interrupted = sink%wants_to_stop
-    call take_store(sink, size(list%id), witness%values, event)
-    witness%impact = pack(event, event%kind == event_contact_begins)
-    if (.not. was_interrupted) return
-    !$omp critical (texts)
-    call fail(error, 'interrupted before it was certified', status_integration)
-    !$omp end critical (texts)
-  end subroutine run
 
   !> Evaluations that the run with the other method may need, given those of the run: four times as many, and some to start with. A
   !> method that is not fit for the case needs hundreds of times as many.
@@ -328,18 +280,18 @@ contains
     end function relative
   end subroutine compare_statistics
 
-  !> The statistics of some revolutions, at both pins.
-  pure function means_of(cycles) result(means)
-    type(cycle_t), intent(in) :: cycles(:)
-    real(dp) :: means(n_statistics), duration
-    integer :: i
-    means = 0
-    duration = sum(cycles%duration)
-    do i = 1, size(cycles)
-      means(1) = means(1) + cycles(i)%pin(piston_pin)%force_integral/duration
-      means(2) = means(2) + (cycles(i)%pin(piston_pin)%contact_time + cycles(i)%pin(crank_pin)%contact_time)/duration
-      means(3) = means(3) + real(cycles(i)%pin(piston_pin)%impacts + cycles(i)%pin(crank_pin)%impacts, dp)/size(cycles)
-      means(4) = means(4) + cycles(i)%dissipated_energy/size(cycles)
-    end do
-  end function means_of
+  !> How far the figures of the other runs are from those of the run.
+  subroutine compare_figures(case, own, closer_run, other_run, certificate)
+    type(case_t), intent(in) :: case
+    type(witness_t), intent(in) :: own, closer_run, other_run
+    type(certificate_t), intent(inout) :: certificate
+    certificate%has_figure = [.true., case%joint%has_clearance(), case%joint%has_clearance(), case%crank_pin%has_clearance(), &
+      case%crank_pin%has_clearance(), case%crank_pin%has_clearance(), own%figures%time > 0, .false.]
+    if (allocated(own%cycles)) certificate%has_figure(loss_figure) = min(own%cycles%statistics%cycles, &
+      closer_run%cycles%statistics%cycles) > 0
+    certificate%figure = figures_of(own)
+    certificate%figure_difference = abs(figures_of(closer_run) - certificate%figure)
+    if (other_run%is_done) certificate%figure_difference = max(certificate%figure_difference, &
+      abs(figures_of(other_run) - certificate%figure))
+  end subroutine compare_figures
 end module certificate

@@ -1,0 +1,105 @@
+!> A run kept in memory, to be compared with others of the same case: its rows, impacts, revolutions and figures.
+module run_witness
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t, fail, status_integration
+  use case_definition, only: case_t
+  use chain_motion, only: piston_pin, crank_pin
+  use cycle_statistics, only: cycle_t
+  use cycle_watch, only: cycle_watch_t
+  use film_tables, only: provide_tables
+  use gudgeon_columns, only: column_list_t
+  use gudgeon_scene, only: event_contact_begins
+  use gudgeon_simulation, only: simulate, run_report_t
+  use row_store, only: row_store_t, take_store
+  use run_figures, only: run_figures_t
+  use trace_sink, only: trace_sink_t, trace_event_t
+  implicit none
+  private
+  public :: witness_t, run, means_of, figures_of, n_statistics, statistic_names, n_figures, figure_names, loss_figure
+
+  integer, parameter :: n_statistics = 4
+  character(len=*), parameter :: statistic_names(n_statistics) = [character(len=23) :: 'mean_pin_force', 'contact_time_fraction', &
+    'impacts_per_revolution', 'loss_per_revolution']
+
+  !> Figures of the whole run, by their names in the summary; the last one is the mean over its whole revolutions.
+  integer, parameter :: n_figures = 8, loss_figure = 8
+  character(len=*), parameter :: figure_names(n_figures) = [character(len=31) :: 'max_pin_force', 'contact_time_fraction', &
+    'min_film_thickness', 'crank_pin_max_pin_force', 'crank_pin_contact_time_fraction', 'crank_pin_min_film_thickness', &
+    'mean_crank_speed', 'loss_per_revolution']
+
+  !> One run.
+  type :: witness_t
+    real(dp), allocatable :: values(:, :)              !! (columns, rows)
+    type(trace_event_t), allocatable :: impact(:)      !! contacts that begin
+    type(cycle_watch_t), allocatable :: cycles
+    type(run_figures_t) :: figures
+    logical :: is_done = .false.
+  end type witness_t
+
+contains
+
+  !> Run a case into memory; `is_done` is false where it does not come to its end, or needs more than `most_evaluations` (0: no limit).
+  subroutine run(case, list, most_evaluations, witness, error)
+    type(case_t), intent(in) :: case
+    type(column_list_t), intent(in) :: list
+    integer, intent(in) :: most_evaluations
+    type(witness_t), intent(out) :: witness
+    type(error_t), allocatable, intent(out) :: error   !! the user interrupted
+    type(error_t), allocatable :: failure
+    type(run_report_t) :: report
+    type(case_t) :: limited
+    class(trace_sink_t), allocatable :: sink
+    type(trace_event_t), allocatable :: event(:)
+    logical :: was_interrupted
+    limited = case
+    if (most_evaluations > 0) limited%integrator%max_evaluations = min(limited%integrator%max_evaluations, most_evaluations)
+    call provide_tables(limited, .false., error)
+    if (allocated(error)) return
+    allocate (row_store_t :: sink)
+    if (case%has_play()) then   ! without clearance the measures of the joint would change the steps
+      allocate (witness%cycles)
+      witness%cycles%keeps_cycles = .true.
+      call simulate(limited, .false., list, sink, report, failure, cycles=witness%cycles)
+    else
+      call simulate(limited, .false., list, sink, report, failure)
+    end if
+    witness%is_done = .not. allocated(failure)
+    witness%figures = report%figures
+    was_interrupted = sink%wants_to_stop
+    call take_store(sink, size(list%id), witness%values, event)
+    witness%impact = pack(event, event%kind == event_contact_begins)
+    if (.not. was_interrupted) return
+    !$omp critical (texts)
+    call fail(error, 'interrupted before it was certified', status_integration)
+    !$omp end critical (texts)
+  end subroutine run
+
+  !> Figures of a run, in the order of `figure_names`; 0 for those that it does not have.
+  pure function figures_of(witness) result(values)
+    type(witness_t), intent(in) :: witness
+    real(dp) :: values(n_figures)
+    values = 0
+    if (.not. witness%figures%time > 0) return
+    associate (f => witness%figures, piston => witness%figures%pin(piston_pin), crank => witness%figures%pin(crank_pin))
+      values(:7) = [piston%max_force, piston%contact_time/f%time, piston%min_film_thickness, crank%max_force, &
+        crank%contact_time/f%time, crank%min_film_thickness, f%crank_travel/f%time]
+    end associate
+    if (.not. allocated(witness%cycles)) return
+    if (witness%cycles%statistics%cycles > 0) values(loss_figure) = witness%cycles%statistics%dissipated_energy_mean()
+  end function figures_of
+
+  !> The statistics of some revolutions, at both pins.
+  pure function means_of(cycles) result(means)
+    type(cycle_t), intent(in) :: cycles(:)
+    real(dp) :: means(n_statistics), duration
+    integer :: i
+    means = 0
+    duration = sum(cycles%duration)
+    do i = 1, size(cycles)
+      means(1) = means(1) + cycles(i)%pin(piston_pin)%force_integral/duration
+      means(2) = means(2) + (cycles(i)%pin(piston_pin)%contact_time + cycles(i)%pin(crank_pin)%contact_time)/duration
+      means(3) = means(3) + real(cycles(i)%pin(piston_pin)%impacts + cycles(i)%pin(crank_pin)%impacts, dp)/size(cycles)
+      means(4) = means(4) + cycles(i)%dissipated_energy/size(cycles)
+    end do
+  end function means_of
+end module run_witness
