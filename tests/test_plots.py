@@ -13,6 +13,7 @@ import re
 import sys
 import tempfile
 import unittest
+from dataclasses import replace
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[1]
@@ -254,6 +255,35 @@ class Poincare(unittest.TestCase):
         np.testing.assert_allclose(velocity, [4 * np.pi])
         velocity, _ = once_a_cycle(run(columns), 1.0)
         np.testing.assert_allclose(velocity, [1.0, 1 + 2 * np.pi])
+
+
+class Certified(unittest.TestCase):
+    """What a run's certificate does not reach is shaded."""
+
+    def shaded(self, until: str | None, held: bool) -> list[tuple[float, float]]:
+        angle = np.linspace(0, 8 * np.pi, 2001)
+        columns = {"time": angle / 100, "crank_angle": angle, "crank_speed": np.cos(angle)}
+        made = replace(
+            run(columns, {"drive": {"kind": "constant_speed" if held else "free"}}),
+            summary={"certified_until": (until, "s")} if until else {},
+        )
+        drawing, axis = plt.subplots()
+        QUANTITIES["crank_speed"].draw(axis, made, None, "blue")
+        found = [patch.get_extents().transformed(axis.transData.inverted()) for patch in axis.patches if patch.get_gid() == "uncertified"]
+        plt.close(drawing)
+        return [(box.x0, box.x1) for box in found]
+
+    def test_from_the_certified_time_to_the_end(self) -> None:
+        ((begin, end),) = self.shaded("0.1", held=False)
+        self.assertAlmostEqual(begin, 100, delta=0.2)
+        self.assertAlmostEqual(end, 80 * np.pi, delta=1e-9)
+        ((begin, end),) = self.shaded("0.1", held=True)
+        self.assertAlmostEqual(begin, np.degrees(10), delta=1)
+        self.assertAlmostEqual(end, 4 * 360, delta=1e-9)
+
+    def test_nothing_where_all_is_certified_or_nobody_asked(self) -> None:
+        self.assertEqual(self.shaded(f"{8 * np.pi / 100:.9e}", held=False), [])
+        self.assertEqual(self.shaded(None, held=False), [])
 
 
 class FilmPressure(unittest.TestCase):

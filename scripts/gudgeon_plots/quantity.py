@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
+from .certified import shade_uncertified
 from .results import Run
 from .ringing import draw_envelope, rings, zoom_window
 from .style import BLACK, BLUE, GREY, VERMILION
@@ -190,6 +191,7 @@ def mark_abscissa(axis: Axes, run: Run) -> None:
     x, name = abscissa(run)
     axis.set_xlabel(name)
     axis.set_xlim(x[0], x[-1])
+    shade_uncertified(axis, run, x)
     if held_speed(run):
         step = 90.0
         while np.ptp(x) > 6 * step:

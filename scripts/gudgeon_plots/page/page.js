@@ -393,11 +393,15 @@
   const charts = [];
   let linking = false, marked = null;
 
+  // What the run's certificate does not reach.
+  const uncertified = scene.certified === null ? [] : [{ type: "rect", layer: "below", x0: 1e3 * scene.certified, x1: 1e3 * end,
+    yref: "paper", y0: 0, y1: 1, fillcolor: "rgba(127,127,127,0.18)", line: { width: 0 } }];
+
   function markPlots() {   // the moment shown, on the time axes; not while playing, it would be too slow
     clearTimeout(marked);
     marked = setTimeout(() => {
       for (const chart of charts.filter((c) => c.timed)) {
-        Plotly.relayout(chart.div, { shapes: [{ type: "line", x0: 1e3 * now, x1: 1e3 * now, yref: "paper", y0: 0, y1: 1,
+        Plotly.relayout(chart.div, { shapes: [...uncertified, { type: "line", x0: 1e3 * now, x1: 1e3 * now, yref: "paper", y0: 0, y1: 1,
           line: { color: COLOUR.vermilion, width: 1 } }] });
       }
     }, 150);
@@ -432,7 +436,7 @@
       const touching = (i) => phase[i] === 2 || phase[i - 1] === 2 || phase[i + 1] === 2;
       return [trace(W("apart"), curve.colour, (i) => phase[i] !== 2), trace(W("in contact"), COLOUR.purple, touching)];
     });
-    const shapes = plot.circle ? [{ type: "circle", x0: -1, x1: 1, y0: -1, y1: 1, line: { color: COLOUR.ink, width: 1 } }] : [];
+    const shapes = plot.circle ? [{ type: "circle", x0: -1, x1: 1, y0: -1, y1: 1, line: { color: COLOUR.ink, width: 1 } }] : plot.timed ? uncertified : [];
     await Plotly.newPlot(div, data, {
       title: { text: plot.title, font: { size: 14 }, x: 0, xref: "paper", xanchor: "left", y: 1, yref: "container",
         yanchor: "top", pad: { t: 10 } }, margin: { l: 70, r: 15, t: data.length > 1 ? 54 : 40, b: 45 }, shapes,
