@@ -27,10 +27,9 @@ use_virtual_environment(more=("scipy",))
 import pandas as pd  # noqa: E402
 
 from gudgeon_plots import cycle_pictures, figures, language  # noqa: E402
-from gudgeon_plots.cycles import Cycles, orders, whole_cycles, work  # noqa: E402
+from gudgeon_plots.cycles import orders, whole_cycles, work  # noqa: E402
+from gudgeon_plots.report_cycles import COLUMNS, chosen  # noqa: E402
 from gudgeon_plots.results import MissingResult, Results  # noqa: E402
-
-COLUMNS = ("crank_speed", "piston_acceleration", "guide_force", "frame_force_x", "crank_moment", "film_thickness")
 
 
 def arguments() -> argparse.Namespace:
@@ -45,16 +44,6 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--format", action="append", choices=("png", "svg", "pdf"), help="repeatable (default: png)")
     language.add_option(parser)
     return parser.parse_args()
-
-
-def chosen(cycles: Cycles, wanted: list[str] | None) -> list[str]:
-    """Columns to look at. Raises MissingResult for one that the trace does not have."""
-    if wanted:
-        for name in wanted:
-            if name not in cycles:
-                raise MissingResult(f"no column {name} in the trace; it has: {' '.join(cycles.values)}")
-        return wanted
-    return [name for name in COLUMNS if name in cycles and cycles[name].max() > cycles[name].min()]
 
 
 def main() -> int:

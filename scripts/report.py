@@ -3,6 +3,7 @@
 
     scripts/report.py sim_V_oscillating             -> results/sim_V_oscillating.html
     scripts/report.py cases/flores/dry_0500um.nml -o dry.html
+    scripts/report.py sim_IV --cycles crank_speed guide_force
 
 The page is one file that needs no network. The pressure round the pin in a film of finite length is there where the run has
 written it (&output film_times = 'from:to:count').
@@ -15,7 +16,7 @@ from pathlib import Path
 
 from gudgeon_plots.environment import TOP, use_virtual_environment
 
-use_virtual_environment()
+use_virtual_environment(more=("scipy",))
 
 from gudgeon_plots import language  # noqa: E402
 from gudgeon_plots.film_pressure import fields_of  # noqa: E402
@@ -30,6 +31,7 @@ def main() -> int:
         "--results", type=Path, metavar="DIR", help="where traces are (default: results, or the trace's)"
     )
     parser.add_argument("-o", "--out", type=Path, metavar="FILE", help="the page (default: CASE.html beside the trace)")
+    parser.add_argument("--cycles", nargs="+", metavar="COLUMN", help="columns whose cycles and orders are shown, also of a run that has not settled")
     parser.add_argument("--no-run", action="store_true", help="say what to run if the result is missing")
     language.add_option(parser)
     options = parser.parse_args()
@@ -46,7 +48,7 @@ def main() -> int:
             raise MissingResult(f"{name}.resolved.nml is missing beside the trace")
         twin = results[f"{name}.ideal"] if results.path(f"{name}.ideal").exists() else None
         pressures = directory / f"{name}.film.csv"
-        text = page(run, twin, fields_of(pressures) if pressures.exists() else None, language.current)
+        text = page(run, twin, fields_of(pressures) if pressures.exists() else None, language.current, options.cycles)
         language.current.warn("report.py")
     except MissingResult as problem:
         print(f"report.py: {problem}", file=sys.stderr)

@@ -25,6 +25,8 @@ from assertions import Assertions  # noqa: E402
 
 from gudgeon_plots.cycles import bearing_loads, orders, spectrum, whole_cycles, work  # noqa: E402
 from gudgeon_plots.program import release_program  # noqa: E402
+from gudgeon_plots.report_cycles import section  # noqa: E402
+from gudgeon_plots.report_page import page  # noqa: E402
 from gudgeon_plots.results import MissingResult, Run, load_run  # noqa: E402
 
 check = Assertions().check
@@ -118,6 +120,9 @@ def runs(folder: Path) -> None:
     size = np.hypot(*loads["piston on the rod, in the rod's frame"])
     check(np.allclose(size, np.hypot(cycles["pin_force_x"], cycles["pin_force_y"])), "a frame changes no size")
     fired = run("sim_IV", "run.until=periodic", "output.window=last_period", "integrator.method=auto", *sampled)
+    text = page(fired)
+    check('<section id="cycles">' in text and text.count("data:image/png") == 2, "the page of a periodic run shows its cycles")
+    check("which is periodic" in text and "crank speed [rad/s]" in text, "and says so")
     table = work(whole_cycles(fired)).set_index("quantity")
     gas, damping = table.loc["gas (p-V)", "work[J]"], table.loc["damping", "work[J]"]
     check(gas > 0 and abs(gas + damping) < 0.05 * gas, "a settled engine: the gas gives what the damping takes, nearly", f"{gas}, {damping}")
@@ -135,6 +140,31 @@ def runs(folder: Path) -> None:
         [TOP / "scripts" / "orders.py", folder / "sim_IV.csv", "--columns", "nonsense"], capture_output=True, text=True, check=False
     )
     check(told.returncode == 1 and "no column nonsense" in told.stderr and told.stderr.count("\n") == 1, "an unknown column", told.stderr)
+
+
+def settled(drift: float, revolutions: int = 8) -> Run:
+    """A made run whose crank speed swings by 2 rad/s at order 3, and drifts by so much from revolution to revolution."""
+    angle = np.linspace(0, revolutions * TURN, revolutions * 360 + 1)
+    columns = {name: np.zeros_like(angle) for name in ("crank_moment", "energy", "energy_residual")}
+    speed = 100 + 2 * np.cos(3 * angle) + drift * angle / TURN
+    return made(columns | {"time": angle / 100, "crank_angle": angle, "crank_speed": speed})
+
+
+def sections_of_pages() -> None:
+    """The page's section on settled cycles, its figures, and where it says why there is none."""
+    text = section(settled(0.0))
+    check("4 cycles of one revolution" in text and text.count("data:image/png") == 2, "a settled run: cycles and pictures", text[:200])
+    check("<td>crank speed</td><td>100</td><td>3: 2</td>" in text, "a settled run: mean and strongest order")
+    check("<th>work[J]</th>" in text, "a settled run: work")
+    check("None: the motion has not settled. The mean of crank_speed drifts by" in section(settled(1.0)), "a run that drifts")
+    check("data:image/png" in section(settled(1.0), ["crank_speed"]), "a run that drifts, where it is asked for")
+    check("None: no whole cycle" in section(settled(0.0, 1)), "a run too short")
+    check("None: one whole cycle" in section(settled(0.0, 2)), "a run of one cycle")
+    try:
+        section(settled(0.0), ["nonsense"])
+        check(False, "a column that is not there")
+    except MissingResult as problem:
+        check("no column nonsense" in str(problem), "a column that is not there", str(problem))
 
 
 def refusals() -> None:
@@ -156,6 +186,7 @@ def main() -> int:
             known_orders(uneven, backwards)
     scatter_is_seen()
     known_work()
+    sections_of_pages()
     refusals()
     with tempfile.TemporaryDirectory() as folder:
         runs(Path(folder))

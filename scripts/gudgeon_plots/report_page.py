@@ -14,7 +14,8 @@ import numpy as np
 import pandas as pd
 from plotly.offline import get_plotlyjs
 
-from . import film_pressure
+from . import film_pressure, report_cycles
+from .certified import certified_until
 from .language import Language
 from .names import prefixed
 from .results import Run
@@ -228,6 +229,11 @@ def warnings(run: Run) -> list[str]:
         except ValueError:
             return None
 
+    if (until := certified_until(run)) is not None:
+        found.append(
+            f"The run is certified up to {1e3 * until:.4g} ms: beyond, shaded in the plots, single values cannot be believed, and "
+            f"only means over revolutions count ({run.name}.summary.csv)."
+        )
     status = run.summary.get("status", ("unknown", ""))[0]
     if status != "done":
         found.append(f"The run did not end as asked: {status}.")
@@ -321,9 +327,13 @@ def largest_deflection(columns: dict[str, np.ndarray]) -> float:
 
 
 def page(
-    run: Run, ideal: Run | None = None, fields: list[pd.DataFrame] | None = None, language: Language | None = None
+    run: Run,
+    ideal: Run | None = None,
+    fields: list[pd.DataFrame] | None = None,
+    language: Language | None = None,
+    cycle_columns: list[str] | None = None,
 ) -> str:
-    """The page as text; `fields`: the pressures of a NAME.film.csv."""
+    """The page as text; `fields`: the pressures of a NAME.film.csv; `cycle_columns`: those whose cycles and orders are shown."""
     say = (language or Language()).say
     columns = with_sizes(run)
     if ideal is not None:
@@ -361,6 +371,7 @@ def page(
         "start": first_moment(columns),
         "angles": ANGLES if film else 0,
         "signed": bool(film and film[2]),
+        "certified": certified_until(run),
         "clearance": run.clearance,
         "crank": float(run.parameter("mechanism", "crank_length")),
         "rod": float(run.parameter("mechanism", "rod_length")),
@@ -407,6 +418,7 @@ def page(
         "script": (PAGE / "page.js").read_text(encoding="utf-8"),
         "warnings": "".join(f'<p class="warning">{html.escape(text)}</p>' for text in said)
         or f'<p class="fine">{html.escape(say("Nothing to warn of."))}</p>',
+        "cycles": report_cycles.section(run, cycle_columns, language),
         "summary": f"<table>{summary(False)}</table>",
         "program": f"<table>{summary(True)}</table>",
         "case": f"<table>{case}</table>",
