@@ -107,7 +107,7 @@ def judge(program: Path, case: Path, options: argparse.Namespace, out: Path) -> 
     wrong = ""
     if true_until < known - row_gap and until > true_until + row_gap:
         wrong = "claims more time than is true"
-    elif until <= known and error < largest:
+    elif until <= known + row_gap and error < largest:
         wrong = "claims a smaller error than is true"
     elif until < min(0.95 * true_until, true_decade) - row_gap:
         wrong = "claims far less time than is true"

@@ -47,6 +47,7 @@ count "faults" tests/test_faults.py --kills 10
 count "runs taken up again" tests/test_resume.py --kills 10
 count "the plots" sh -c 'scripts/setup.sh --python && tests/test_plots.py'
 count "orders and cycles" sh -c 'scripts/setup.sh --python && .venv/bin/python tests/test_orders.py'
+count "what each model changes" sh -c 'scripts/setup.sh --python && .venv/bin/python tests/test_models.py'
 count "the pages of runs, in a browser" sh -c 'scripts/setup.sh --browser && tests/test_report.py'
 count "the manual" sh -c 'scripts/setup.sh --manual && tests/test_manual.py'
 count "what holds of the dissertation" sh -c 'scripts/setup.sh --python && .venv/bin/python scripts/check_findings.py --check'

@@ -1,0 +1,253 @@
+"""Which models a case has and what else it could have: variants of a case by one model each, found in its resolved file and in the
+program's template, whatever the case is."""
+
+import re
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+PLACES = ("", "crank_pin.")  # in front of a group: the piston pin's or every joint's, and the crank pin's own
+LAWS = ("friction", "asperities", "lubrication", "contact")
+OTHER_GROUPS = ("guide", "elastic_rod", "crankshaft", "combustion", "cylinder_pressure")
+WORDS = {
+    "friction": "friction",
+    "asperities": "asperities",
+    "lubrication": "film",
+    "contact": "contact",
+    "guide": "model of the guide",
+    "elastic_rod": "elasticity of the rod",
+    "crankshaft": "elasticity of the crankshaft",
+    "combustion": "gas",
+    "cylinder_pressure": "gas",
+}
+EXCHANGED = {"contact": ("law", "geometry"), "friction": ("law",), "lubrication": ("law", "variant", "cavitation"), "guide": ("law", "contact_law")}
+STEEL_DENSITY = 7850.0  # kg/m^3
+MOST_SHAPES = 8
+
+Case = dict[str, dict[str, object]]
+
+
+@dataclass(frozen=True)
+class Key:
+    """A key of the template: its value there, and what it may be."""
+
+    value: str
+    choices: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A case with one model taken out, exchanged, refined or added."""
+
+    kind: str
+    label: str
+    settings: tuple[str, ...]  # GROUP.KEY=VALUE of the program's --set
+    assumed: str = ""  # what the case does not say
+    fuller: bool = False  # closer to the machine than the case: a part of the fullest scene
+
+
+def read_template(text: str) -> dict[str, dict[str, Key]]:
+    """What `gudgeon --template` prints: group -> key -> Key, groups in comments too."""
+    groups: dict[str, dict[str, Key]] = {}
+    name = ""
+    for line in text.splitlines():
+        line = re.sub(r"^! (?=(&|\s))", "", line)
+        if match := re.match(r"&(\w+)", line):
+            name = match[1]
+            groups[name] = {}
+        elif name and (match := re.match(r"\s+(\w+) = (.*?)\s+! (.*)$", line)):
+            choices = re.match(r"one of ((?:\w+, )*\w+)", match[3])
+            names = choices[1].split(", ") if choices else []
+            groups[name][match[1]] = Key(match[2].strip("'"), tuple(word for word in names if word != "default"))
+    return groups
+
+
+def groups_named(case: Case, group: str) -> list[str]:
+    """The case's groups of that name, with their places."""
+    return [place + group for place in PLACES if place + group in case]
+
+
+def loose_joints(case: Case) -> list[str]:
+    return [name for name in groups_named(case, "joint") if case[name].get("kind") == "clearance"]
+
+
+def place_of(name: str) -> str:
+    """' at the crank pin' behind what belongs to that joint alone."""
+    return " at the crank pin" if name.startswith("crank_pin.") else ""
+
+
+def variants_of(case: Case, template: dict[str, dict[str, Key]]) -> list[Variant]:
+    """All variants of a case, given as its resolved file. Not all of them need be possible: the program says so."""
+    return [*taken_out(case), *exchanged(case, template), *refined(case), *added(case, template)]
+
+
+def taken_out(case: Case) -> list[Variant]:
+    found = []
+    loose = loose_joints(case)
+    for group in LAWS + OTHER_GROUPS:
+        for name in groups_named(case, group):
+            settings = [f"{name}=none"]
+            if group == "contact":  # friction follows its normal force
+                settings += [f"{other}=none" for other in groups_named(case, "friction") if place_of(other) == place_of(name)]
+            label = f"no {WORDS[group]}{place_of(name)}"
+            if group == "contact" and len(settings) > 1:
+                label = f"no contact{place_of(name)}, and so no friction"
+            found.append(Variant("taken out", label, tuple(settings)))
+    if len(loose) > 1:
+        for group in LAWS:
+            if group in case and f"crank_pin.{group}" not in case:
+                found.append(Variant("taken out", f"no {WORDS[group]} at the crank pin", (f"crank_pin.{group}=none",)))
+    rigid = tuple(f"{name}=none" for name in ("elastic_rod", "crankshaft") if name in case)
+    for name in loose:
+        settings = ideal_joints(case, [name])
+        label = "ideal crank pin" if name.startswith("crank_pin.") else "ideal piston pin"
+        found.append(Variant("taken out", label, settings))
+    bore = ("guide=none",) if case.get("guide", {}).get("kind") == "clearance" else ()
+    if len(loose) > 1 or (loose and (rigid or bore)):
+        found.append(Variant("taken out", "ideal twin: no clearance, rigid members", ideal_joints(case, loose) + rigid + bore))
+    if case["mechanism"]["gravity"]:
+        found.append(Variant("taken out", "no gravity", ("mechanism.gravity=0",)))
+    if case["drive"]["kind"] == "free":
+        found.append(Variant("taken out", "crank held at its starting speed", ("drive.kind=constant_speed",)))
+    return found
+
+
+def ideal_joints(case: Case, names: list[str]) -> tuple[str, ...]:
+    """Settings that make these joints ideal; laws that no joint has then go too."""
+    settings = [f"{name}.kind=ideal" for name in names]
+    if len(loose_joints(case)) == len(names):
+        settings += [f"{law}=none" for group in LAWS for law in groups_named(case, group)]
+    else:
+        settings += [f"{law}=none" for name in names for group in LAWS if (law := name.replace("joint", group)) in case and "." in law]
+    return tuple(settings)
+
+
+def exchanged(case: Case, template: dict[str, dict[str, Key]]) -> list[Variant]:
+    found = []
+    for group, keys in EXCHANGED.items():
+        for name in groups_named(case, group):
+            for key in keys:
+                if key == "contact_law" and case[name].get("kind") != "clearance":
+                    continue
+                now = case[name].get(key)
+                for choice in template[group][key].choices:
+                    if choice == now or now is None:
+                        continue
+                    what = WORDS.get(group, group) if group != "guide" else "guide"
+                    word = "" if key == "law" else f" {key.replace('_', ' ')}"
+                    found.append(
+                        Variant(
+                            "exchanged",
+                            f"{what}{word} {choice}{place_of(name)}",
+                            (f"{name}.{key}={choice}",),
+                            fuller=is_fuller(case, name, key, choice),
+                        )
+                    )
+    return found
+
+
+def is_fuller(case: Case, name: str, key: str, choice: str) -> bool:
+    """Whether a law is closer to the machine than the case's: a bearing of its real length, a pin in a bore."""
+    now = case[name][key]
+    return (key, now, choice) in (("law", "pinkus_sternlicht", "finite_bearing"), ("geometry", "hertz_sphere", "conformal"))
+
+
+def refined(case: Case) -> list[Variant]:
+    found = []
+    if "elastic_rod" in case:
+        rod = case["elastic_rod"]
+        modes = min(MOST_SHAPES, int(rod["transverse_modes"]) + 2)
+        shapes = min(MOST_SHAPES, int(rod["axial_shapes"]) + 2)
+        settings = (f"elastic_rod.transverse_modes={modes}", f"elastic_rod.axial_shapes={shapes}")
+        found.append(Variant("refined", f"rod with {modes} modes and {shapes} axial shapes", settings, fuller=True))
+    return found
+
+
+def added(case: Case, template: dict[str, dict[str, Key]]) -> list[Variant]:
+    """Models that the case does not have, as far as it has what they need; what is assumed beyond it is said."""
+    found = []
+    loose, mechanism = loose_joints(case), case["mechanism"]
+    for name in ("joint", "crank_pin.joint"):
+        if len(loose) != 1 or name in loose:
+            continue
+        like = case[loose[0]]
+        keys = [key for key in ("clearance", "bearing_radius", "bearing_length") if like.get(key)]
+        settings = (f"{name}.kind=clearance", *(f"{name}.{key}={like[key]:.9g}" for key in keys))
+        other = "crank" if name.startswith("crank_pin.") else "piston"
+        found.append(
+            Variant("added", f"clearance at the {other} pin too", settings, "its bearing, clearance and laws those of the other pin", fuller=True)
+        )
+    if loose and not groups_named(case, "friction") and groups_named(case, "contact"):
+        value = template["friction"]["coefficient"].value
+        found.append(
+            Variant("added", "friction", ("friction.law=ambrosio", f"friction.coefficient={value}"), f"coefficient {value}", fuller=True)
+        )
+    if "guide" not in case:
+        coefficient = case.get("friction", {}).get("coefficient") or float(template["guide"]["coefficient"].value)
+        settings = ("guide.kind=friction", f"guide.coefficient={coefficient:.9g}")
+        found.append(Variant("added", "friction of the guide", settings, f"coefficient {coefficient:g}", fuller=True))
+    if "elastic_rod" not in case:
+        found.append(added_rod(mechanism, template["elastic_rod"]))
+    if not mechanism["gravity"]:
+        found.append(Variant("added", "gravity", ("mechanism.gravity=9.80665",), fuller=True))
+    return found
+
+
+def added_rod(mechanism: dict[str, object], template: dict[str, Key]) -> Variant:
+    """A steel rod whose shank has the rod's mass, and a section of the template's proportions."""
+    area = float(mechanism["rod_mass"]) / (STEEL_DENSITY * float(mechanism["rod_length"]))
+    proportion = float(template["section_inertia"].value) / float(template["section_area"].value) ** 2
+    settings = (f"elastic_rod.section_area={area:.4g}", f"elastic_rod.section_inertia={proportion * area**2:.4g}")
+    assumed = f"steel, its mass in the shank: section {1e6 * area:.3g} mm^2, {1e12 * proportion * area**2:.3g} mm^4"
+    return Variant("added", "elastic rod", settings, assumed, fuller=True)
+
+
+def together(*parts: Variant) -> tuple[str, ...]:
+    """Settings of several variants at once: a later one wins, and one that takes a group out takes its settings with it."""
+    settings: dict[str, str] = {}
+    for part in parts:
+        for setting in part.settings:
+            key, value = setting.split("=", 1)
+            if value == "none":
+                settings = {one: other for one, other in settings.items() if not one.startswith(f"{key}.")}
+            settings[key] = value
+    return tuple(f"{key}={value}" for key, value in settings.items())
+
+
+REQUIRED = re.compile(r"&(\w+) (\w+): required\b")
+NOT_OF_LAW = re.compile(r"&(\w+) (\w+) = \S+: must be one of (\w+)")
+
+
+def completed(variant: Variant, message: str, case: Case, template: dict[str, dict[str, Key]]) -> Variant | None:
+    """The variant with what the program missed when it refused it, taken from the template; None where nothing can be done."""
+    if match := REQUIRED.search(message):
+        group, key = match[1], match[2]
+        place = next((name for name in PLACES if any(one.startswith(f"{name}{group}.") for one in variant.settings)), "")
+        value = missing_value(f"{place}{group}", group, key, case, template)
+        if value is None:
+            return None
+        setting, assumed = f"{place}{group}.{key}={value}", f"{key} = {value}"
+    elif match := NOT_OF_LAW.search(message):
+        setting, assumed = f"{match[1]}.{match[2]}={match[3]}", ""
+    else:
+        return None
+    if any(one.split("=")[0] == setting.split("=")[0] for one in variant.settings):
+        return None
+    joined = ", ".join(part for part in (variant.assumed, assumed) if part)
+    return replace(variant, settings=(*variant.settings, setting), assumed=joined)
+
+
+def missing_value(name: str, group: str, key: str, case: Case, template: dict[str, dict[str, Key]]) -> str | None:
+    if key == "kinematic_viscosity" and case.get(name, {}).get("viscosity"):
+        density = float(template[group]["viscosity"].value) / float(template[group][key].value)
+        return f"{float(case[name]['viscosity']) / density:.6g}"
+    if key == "bedding_modulus":  # of a bearing wall as thick as its radius
+        joint = case.get(name.replace(group, "joint"), {})
+        modulus = case.get(name, {}).get("youngs_modulus", [0.0])
+        modulus = modulus[0] if isinstance(modulus, list) else modulus
+        return f"{modulus / joint['bearing_radius']:.6g}" if joint.get("bearing_radius") and modulus else None
+    found = template.get(group, {}).get(key)
+    return found.value if found else None
+
+
+def case_name(path: Path) -> str:
+    return path.name.removesuffix(".nml")
