@@ -29,6 +29,14 @@ edit 's/samples_per_revolution = 720/columns = "time, cylinder_pressure"/'
 refused "a column that the scene does not have" 3 "cylinder_pressure" "$work/case.nml"
 refused "a folder for a case" 3 "." cases
 
+# a table that results would replace
+mkdir "$work/motor"
+cp cases/drive/motor.nml cases/drive/motor.csv "$work/motor"
+refused "a table with the name of a result" 2 "motor.nml: &drive torque_table: .*/motor.csv would be replaced by the results" -o "$work/motor" "$work/motor/motor.nml"
+check "it is still there" cmp cases/drive/motor.csv "$work/motor/motor.csv"
+run -q -o "$work/motor/results" -s integrator.end_time=0.01 "$work/motor/motor.nml"
+check "another folder will do, status $status" [ "$status" = 0 ]
+
 # bad command lines
 refused "no case" 2 "no case"
 refused "unknown option" 2 "unknown option" --colour cases/sim_I.nml

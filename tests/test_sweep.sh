@@ -156,6 +156,30 @@ while read -r key value; do
   [ "$status" = 0 ] && [ "$(awk -F, 'NR > 1' "$work/key/key.runs.csv" | cut -d, -f4- | sort -u | wc -l)" = 2 ] || stuck="$stuck $key"
 done <"$work/keys"
 check "each of them in a study, without effect or refused:$stuck" [ -z "$stuck" ]
+# tables: a key beside one, the table itself, each run as a single one
+cp cases/gas/measured.nml cases/gas/indicator.csv cases/drive/motor.nml cases/drive/motor.csv "$work"
+sed 's/^0,30$/0,20/' "$work/motor.csv" >"$work/weak.csv"
+study gas <<'END'
+&study case = 'measured.nml' /
+&parameter key = 'cylinder_pressure.offset_deg', values = -5, 0, 5 /
+END
+study motors <<'END'
+&study case = 'motor.nml' /
+&parameter key = 'drive.torque_table', values = 'motor.csv', 'weak.csv', 'none.csv' /
+END
+run sweep -j 1 -o "$work/tables" -s integrator.method=auto "$work/gas.nml"
+check "a study with a table of pressures, status $status" [ "$status" = 0 ]
+run -q -o "$work/tables" -s integrator.method=auto -s cylinder_pressure.offset_deg=5 "$work/measured.nml"
+for names in 'rhs_evaluations[-] rhs_evaluations' 'max_pin_force[N] max_pin_force'; do
+  check "a run with a table is the case: $names" [ "$(named "$work/tables/gas.runs.csv" 3 "${names% *}")" = "$(field "$work/tables/measured.summary.csv" "${names#* }")" ]
+done
+run sweep -j 1 -o "$work/tables" -s integrator.method=auto "$work/motors.nml"
+check "a study over tables says which is missing, status $status" [ "$status" = 4 ]
+check "in its row" grep -q '^3,.*none.csv: No such file' "$work/tables/motors.runs.csv"
+run -q -o "$work/tables" -s integrator.method=auto -s drive.torque_table=weak.csv "$work/motor.nml"
+check "a run over tables is the case" [ "$(named "$work/tables/motors.runs.csv" 2 'rhs_evaluations[-]')" = "$(field "$work/tables/motor.summary.csv" rhs_evaluations)" ]
+check "its motor is weaker" awk -v a="$(named "$work/tables/motors.runs.csv" 1 'mean_crank_speed[rad/s]')" \
+  -v b="$(named "$work/tables/motors.runs.csv" 2 'mean_crank_speed[rad/s]')" 'BEGIN { exit !(b < 0.95*a) }'
 
 # runs until the motion repeats: its period, its exponent, the statistics of the last period alone
 cp cases/flores/lubricated_400cP.nml "$work/film.nml"

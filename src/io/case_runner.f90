@@ -1,6 +1,6 @@
 !> A case from its file to its results: a run of the scene and, where it is asked for, one of its ideal twin.
 module case_runner
-  use gudgeon_errors, only: error_t, fail, status_output, status_integration
+  use gudgeon_errors, only: error_t, fail, status_command_line, status_output, status_integration
   use case_definition, only: case_t
   use accuracy_presets, only: with_preset
   use case_file, only: read_case_values, complete_case
@@ -15,8 +15,9 @@ module case_runner
   use result_file, only: result_file_t, fail_with_file
   use run_identity, only: identity_length, identity_of, twin_identity
   use case_lock, only: case_lock_t
-  use gudgeon_posix, only: make_directory, synchronise_folder, file_length, interrupted, error_text
+  use gudgeon_posix, only: absolute_path, make_directory, synchronise_folder, file_length, interrupted, error_text
   use gudgeon_progress, only: tell
+  use measured_curve, only: measured_curve_t
   use text_tools, only: printable
   implicit none
   private
@@ -76,6 +77,8 @@ contains
     end if
     if (.not. options%quiet) call tell_warning(case)
     base = options%out//'/'//case%name
+    call keep_tables(case, base, self%error)
+    if (allocated(self%error)) return
     text = resolved_text(values)
     self%has_twin = case%output%ideal_twin .and. (case%has_clearance() .or. case%is_elastic())
     identity = identity_of(text, program)
@@ -93,6 +96,34 @@ contains
     call self%run%make_ready()
     if (allocated(self%run%error)) call name_file(self%path, self%run%error)
   end subroutine make_ready
+
+  !> A run must not replace the tables that it reads: motor.nml with motor.csv beside it and its results.
+  subroutine keep_tables(case, base, error)
+    type(case_t), intent(in) :: case
+    character(len=*), intent(in) :: base
+    type(error_t), allocatable, intent(out) :: error
+    character(len=*), parameter :: suffixes(*) = [character(len=17) :: '.csv', '.events.csv', '.film.csv', '.summary.csv', &
+      '.certificate.csv', '.ideal.csv', '.ideal.summary.csv', '.ideal.events.csv']
+    character(len=:), allocatable :: written
+    integer :: i
+    do i = 1, size(suffixes)
+      written = absolute_path(base//trim(suffixes(i)))
+      call refuse_table('&drive torque_table', case%drive%table)
+      if (.not. allocated(error) .and. allocated(case%measured)) call refuse_table('&cylinder_pressure table', case%measured%curve)
+      if (allocated(error)) return
+    end do
+
+  contains
+
+    subroutine refuse_table(key, table)
+      character(len=*), intent(in) :: key
+      type(measured_curve_t), intent(in) :: table
+      if (.not. allocated(table%path)) return
+      if (table%path == written) call fail(error, printable(case%file, 200)//': '//key//': '//printable(base, 200)// &
+        trim(suffixes(i))//' would be replaced by the results: give another folder with --out, or the table another name', &
+        status_command_line)
+    end subroutine refuse_table
+  end subroutine keep_tables
 
   !> Tell what in a case is right but has no effect.
   subroutine tell_warning(case)
