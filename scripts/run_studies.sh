@@ -24,8 +24,10 @@ program=$(scripts/build.sh) || exit 1
 
 status=0
 for study in map_I map_IV map_I_oscillating map_IV_oscillating bifurcation_clearance bifurcation_speed restitution contact_laws; do
+  more=
+  case $study in bifurcation_*) more='-s run.lyapunov_revolutions=20' ;; esac   # which colours the picture
   # shellcheck disable=SC2086  # options are words
-  "$program" sweep -o "$out" $options "cases/studies/$study.nml" || status=$?
+  "$program" sweep -o "$out" $options $more "cases/studies/$study.nml" || status=$?
 done
 scripts/plot_study.py --results "$out" --format png --format svg || status=1
 

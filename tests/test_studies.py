@@ -289,6 +289,31 @@ class Pictures(InDirectory):
         self.assertIn("of 3 values from 10 to 30 m 1 repeat every revolution, 1 after 2 to 8, 1 do not", text)
         self.assertIn("that repeat lie from 10 to 20; those that do not lie from 30 to 30", text)
 
+    def test_bifurcation_coloured_by_the_exponent(self) -> None:
+        rows = [
+            {"run": run, "joint.clearance": value, "eccentricity_y": point * value, "piston_velocity": point, "lyapunov_exponent": exponent}
+            for run, (value, exponent) in enumerate(((1e-5, -2.0), (2e-5, -0.1), (4e-5, 0.3)))
+            for point in (0.1, 0.2, 0.3)
+        ]
+        strobe = study_pictures.with_ratios(pd.DataFrame(rows), None, 100.0)
+        drawing = study_pictures.draw_bifurcation({"one": (strobe, "joint.clearance", "held")}, "title")
+        panels = [axis for axis in drawing.axes if axis.collections and axis.get_label() != "<colorbar>"]
+        self.assertEqual(len(panels), 2)
+        for axis in panels:
+            (points,) = axis.collections
+            np.testing.assert_array_equal(points.get_array(), strobe["lyapunov_exponent"])
+            red, _, blue = points.to_rgba([0.3])[0][:3]
+            self.assertGreater(red, blue)
+            red, _, blue = points.to_rgba([-0.3])[0][:3]
+            self.assertGreater(blue, red)
+        labels = [axis.get_xlabel() for axis in drawing.axes if axis.get_label() == "<colorbar>"]
+        self.assertEqual(labels, ["Lyapunov exponent [1/revolution]"])
+        plt.close(drawing)
+        plain = strobe.drop(columns="lyapunov_exponent")
+        drawing = study_pictures.draw_bifurcation({"one": (plain, "joint.clearance", "held")}, "title")
+        self.assertFalse([axis for axis in drawing.axes if axis.get_label() == "<colorbar>"])
+        plt.close(drawing)
+
     def test_restitution_of_the_law(self) -> None:
         for nominal in (0.0, 0.4, 0.9):
             q = 0.75 * (1 - nominal**2)

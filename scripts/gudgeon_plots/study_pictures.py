@@ -7,7 +7,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.colors import LogNorm, Normalize
+from matplotlib.collections import PathCollection
+from matplotlib.colors import LogNorm, Normalize, TwoSlopeNorm
 from matplotlib.figure import Figure as Drawing
 from matplotlib.ticker import MaxNLocator
 from scipy.optimize import brentq
@@ -166,7 +167,8 @@ def read_strobe(path: Path, runs: Runs) -> pd.DataFrame:
         raise MissingResult(f"no result {path}")
     strobe, units = read_table(path)
     parameters = runs.table.columns[1 : runs.table.columns.get_loc("status")]
-    found = strobe.merge(runs.table[["run", *parameters]], on="run", validate="many_to_one")
+    exponent = [EXPONENT] if EXPONENT in runs.table and runs.table[EXPONENT].notna().any() else []
+    found = strobe.merge(runs.table[["run", *parameters, *exponent]], on="run", validate="many_to_one")
     found.attrs = units
     return found
 
@@ -215,6 +217,10 @@ def strobe_panel(axis: Axes, strobe: pd.DataFrame, parameter: str, column: str, 
     axis.set_ylabel(label)
 
 
+#: Column of the largest Lyapunov exponent [1/revolution], where a study has it, and the largest size that colours tell apart.
+EXPONENT = "lyapunov_exponent"
+EXPONENT_SHOWN = 1.0
+
 #: Columns of a strobe over the clearance, or over the speed at which it turns.
 RATIOS = {
     "eccentricity_ratio_y": "eccentricity across the cylinder / c",
@@ -227,15 +233,44 @@ def draw_bifurcation(strobes: dict[str, tuple[pd.DataFrame, str, str]], title: s
     drawing, axes = plt.subplots(
         len(RATIOS), len(strobes), figsize=(WIDTH, 0.6 + 2.4 * len(RATIOS)), sharey="row", sharex="col", squeeze=False
     )
+    coloured = None
     for (strobe, parameter, held), panels in zip(strobes.values(), axes.T):
         repeats = strobe[parameter].map(periods(strobe, parameter)).to_numpy()
         for axis, (column, label) in zip(panels, RATIOS.items()):
-            strobe_panel(axis, strobe, parameter, column, repeats, label if axis in axes[:, 0] else "")
+            label = label if axis in axes[:, 0] else ""
+            if EXPONENT in strobe:
+                coloured = exponent_panel(axis, strobe, parameter, column, label)
+            else:
+                strobe_panel(axis, strobe, parameter, column, repeats, label)
         panels[0].set_title(held)
         panels[0].set_xlabel("")
-    add_legend(drawing, axes.flat, markerscale=3)
+    if coloured is not None:
+        label = of_column(EXPONENT, "1/revolution", [EXPONENT_SHOWN]).label
+        drawing.colorbar(coloured, ax=axes, location="bottom", aspect=50, pad=0.02, extend="both").set_label(label)
+    if any(EXPONENT not in strobe for strobe, _, _ in strobes.values()):
+        add_legend(drawing, axes.flat, markerscale=3)
     drawing.suptitle(title)
     return drawing
+
+
+def exponent_panel(axis: Axes, strobe: pd.DataFrame, parameter: str, column: str, label: str) -> PathCollection:
+    """Points of a column once in a revolution over the parameter, coloured by the largest Lyapunov exponent of their run: blue where
+    neighbours come together, red where they part."""
+    shown = of_parameter(parameter, strobe[parameter])
+    points = axis.scatter(
+        shown.factor * strobe[parameter],
+        strobe[column],
+        s=np.where(strobe[EXPONENT] > 0, 0.5, 3.0),
+        c=strobe[EXPONENT],
+        cmap="coolwarm",
+        norm=TwoSlopeNorm(0.0, -EXPONENT_SHOWN, EXPONENT_SHOWN),
+        linewidths=0,
+        rasterized=True,
+    )
+    scale_axis(axis, "x", strobe[parameter])
+    axis.set_xlabel(shown.label)
+    axis.set_ylabel(label)
+    return points
 
 
 def draw_strobes(strobe: pd.DataFrame, parameter: str, title: str) -> Drawing:
