@@ -102,7 +102,7 @@ contains
     type(case_t), intent(in) :: case
     character(len=*), intent(in) :: base
     type(error_t), allocatable, intent(out) :: error
-    character(len=*), parameter :: suffixes(*) = [character(len=17) :: '.csv', '.events.csv', '.film.csv', '.summary.csv', &
+    character(len=*), parameter :: suffixes(*) = [character(len=18) :: '.csv', '.events.csv', '.film.csv', '.summary.csv', &
       '.certificate.csv', '.ideal.csv', '.ideal.summary.csv', '.ideal.events.csv']
     character(len=:), allocatable :: written
     integer :: i
