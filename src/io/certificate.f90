@@ -13,7 +13,8 @@ module certificate
   use case_definition, only: case_t
   use gudgeon_columns, only: column_list_t, choose_columns
   use gudgeon_simulation, only: run_report_t
-  use run_witness, only: witness_t, run, figures_of, means_of, n_statistics, n_figures, loss_figure
+  use run_witness, only: witness_t, run, has_coarse_table, keep_own_tables, figures_of, means_of, n_statistics, n_figures, &
+    loss_figure
   implicit none
   private
   public :: certificate_t, make_certificate
@@ -22,6 +23,7 @@ module certificate
   real(dp), parameter :: margin = 2.5_dp              !! for what the closer run errs itself, half as much at worst, and between the rows
   real(dp), parameter :: closer = 1e-2_dp             !! tolerance of the runs to compare with, over that of the run
   real(dp), parameter :: finest_tolerance = 1e-13_dp  !! that they can have
+  real(dp), parameter :: finest_table = 9e-9_dp       !! tolerance at which the tables of films are finest
   real(dp), parameter :: loosest_tolerance = 1e-3_dp  !! a looser one counts as this one
   integer, parameter :: rows_per_revolution = 10000, fewest_rows = 2000, most_rows = 60000
 
@@ -72,6 +74,8 @@ contains
     if (allocated(error)) return
     close = plain
     close%integrator%relative_tolerance = max(finest_tolerance, closer*min(case%integrator%relative_tolerance, loosest_tolerance))
+    if (has_coarse_table(close, finest_table)) close%integrator%relative_tolerance = &
+      min(close%integrator%relative_tolerance, finest_table)
     if (case%integrator%absolute_tolerance > 0) &
       close%integrator%absolute_tolerance = max(finest_tolerance, closer*case%integrator%absolute_tolerance)
     call run(close, certificate%list, 0, closer_run, error)
@@ -117,6 +121,7 @@ contains
     end if
     call choose_columns(plain, .false., list, error)
     !$omp end critical (texts)
+    call keep_own_tables(plain)
     plain%run%lyapunov_revolutions = 0
     plain%output%start_time = 0
     plain%output%every_step = .false.

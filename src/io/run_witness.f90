@@ -2,7 +2,7 @@
 module run_witness
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_integration
-  use case_definition, only: case_t
+  use case_definition, only: case_t, joint_case_t
   use chain_motion, only: piston_pin, crank_pin
   use cycle_statistics, only: cycle_t
   use cycle_watch, only: cycle_watch_t
@@ -15,7 +15,8 @@ module run_witness
   use trace_sink, only: trace_sink_t, trace_event_t
   implicit none
   private
-  public :: witness_t, run, means_of, figures_of, n_statistics, statistic_names, n_figures, figure_names, loss_figure
+  public :: witness_t, run, has_coarse_table, keep_own_tables, means_of, figures_of, n_statistics, statistic_names, &
+    n_figures, figure_names, loss_figure
 
   integer, parameter :: n_statistics = 4
   character(len=*), parameter :: statistic_names(n_statistics) = [character(len=23) :: 'mean_pin_force', 'contact_time_fraction', &
@@ -73,6 +74,33 @@ contains
     call fail(error, 'interrupted before it was certified', status_integration)
     !$omp end critical (texts)
   end subroutine run
+
+  !> Whether the table of a film of the case would be a finer one at a closer tolerance.
+  logical function has_coarse_table(case, tolerance)
+    type(case_t), intent(in) :: case
+    real(dp), intent(in) :: tolerance   !! the closer one
+    has_coarse_table = .false.
+    call look_at(case%joint)
+    call look_at(case%crank_pin)
+
+  contains
+
+    subroutine look_at(joint)
+      type(joint_case_t), intent(in) :: joint
+      character(len=:), allocatable :: own, finer
+      if (.not. (allocated(joint%film) .and. joint%has_clearance())) return
+      own = joint%film%table_key(joint%bearing(case%mechanism%rod_length), case%integrator%relative_tolerance)
+      finer = joint%film%table_key(joint%bearing(case%mechanism%rod_length), tolerance)
+      if (finer /= own) has_coarse_table = .true.
+    end subroutine look_at
+  end function has_coarse_table
+
+  !> Let no run of this case write into the files that the user names for the tables of films.
+  subroutine keep_own_tables(case)
+    type(case_t), intent(inout) :: case
+    if (allocated(case%joint%film)) case%joint%film%table_file = ''
+    if (allocated(case%crank_pin%film)) case%crank_pin%film%table_file = ''
+  end subroutine keep_own_tables
 
   !> Figures of a run, in the order of `figure_names`; 0 for those that it does not have.
   pure function figures_of(witness) result(values)

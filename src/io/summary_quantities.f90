@@ -124,6 +124,12 @@ contains
       quantity_t('certified_impacts', '1', 'impacts up to there'), &
       quantity_t('certified_impacts_matched', '1', 'those that the closer run has at the same times'), &
       quantity_t('certified_with_other_method', '', 'whether the run with another method could be compared: yes or no'), &
+      quantity_t('max_pin_force_difference', 'N', 'largest difference of `max_pin_force` in the two closer runs'), &
+      quantity_t('contact_time_fraction_difference', '1', 'the same of `contact_time_fraction`'), &
+      quantity_t('min_film_thickness_difference', 'm', 'the same of `min_film_thickness`'), &
+      quantity_t('mean_crank_speed_difference', 'rad/s', 'the same of `mean_crank_speed`'), &
+      quantity_t('loss_per_revolution', 'J', 'energy lost at the joints in a revolution, mean of the whole revolutions'), &
+      quantity_t('loss_per_revolution_difference', 'J', 'its largest difference in the two closer runs'), &
       quantity_t('beyond_revolutions', '1', 'whole revolutions after `certified_until`'), &
       quantity_t('beyond_mean_pin_force', 'N', 'mean force at the piston pin in these revolutions'), &
       quantity_t('beyond_contact_time_fraction', '1', 'share of the time in contact in these revolutions'), &
