@@ -22,10 +22,10 @@ def machine() -> str:
     return f"{model}, {os.cpu_count()} cores, {platform.system()}"
 
 
-def write_table(name: str, title: str, command: str, text: str) -> Path:
-    """Write data/measured/NAME.md: title, command, date, machine, and the text."""
-    FOLDER.mkdir(parents=True, exist_ok=True)
-    path = FOLDER / f"{name}.md"
+def write_table(name: str, title: str, command: str, text: str, folder: Path = FOLDER) -> Path:
+    """Write NAME.md into data/measured or another folder: title, command, date, machine, and the text."""
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{name}.md"
     head = f"# {title}\n\n    {command}\n\n{datetime.date.today().isoformat()}, {machine()}.\n\n"
     path.write_text(head + text.strip() + "\n", encoding="utf-8")
     return path

@@ -1,44 +1,15 @@
 """The table and the picture of what each model changes."""
 
-import datetime
-import platform
-import subprocess
-from pathlib import Path
-
 import matplotlib.pyplot as plt
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
-from .environment import TOP
 from .model_effects import QUANTITIES, Outcome, Search, change, largest_change, percent
 from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION, WIDTH
 
 COLOURS = {"taken out": VERMILION, "exchanged": BLUE, "refined": GREEN, "added": ORANGE, "fullest": PURPLE, "cheapest": PURPLE}
 SMALLEST = 1e-3  # change that the picture tells apart from none [%]
-
-
-def machine() -> str:
-    """The processor, its number of cores and the system."""
-    name = platform.processor() or platform.machine()
-    cpuinfo = Path("/proc/cpuinfo")
-    cores = 1
-    if cpuinfo.exists():
-        lines = cpuinfo.read_text(encoding="utf-8").splitlines()
-        names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
-        name, cores = (names[0] if names else name), max(1, len(names))
-    return f"{name}, {cores} cores, {platform.system()} {platform.release()}"
-
-
-def commit() -> str:
-    found = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=TOP, capture_output=True, text=True, check=False)
-    return found.stdout.strip() or "unknown"
-
-
-def heading(command: str) -> list[str]:
-    """The first lines of a measured table: command, date, machine."""
-    date = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d")
-    return [f"Command: `{command}`  ", f"Date: {date}, commit {commit()}  ", f"Machine: {machine()}", ""]
 
 
 def as_data(outcomes: list[Outcome]) -> pd.DataFrame:
@@ -64,11 +35,11 @@ def ratio(value: float, reference: float) -> str:
     return f"{value / reference:.2g}" if reference > 0 else "-"
 
 
-def as_markdown(name: str, command: str, outcomes: list[Outcome], search: Search, names: list[str], limit: float) -> str:
+def as_markdown(file: str, outcomes: list[Outcome], search: Search, names: list[str], limit: float) -> str:
+    """The table and the answer; `file`: the case's, as a command would name it."""
     given = outcomes[0]
     shown = [quantity for quantity in QUANTITIES if quantity in given.values]
-    lines = [f"# What each model of {name} changes", "", *heading(command)]
-    lines += [
+    lines = [
         "One model at a time is taken out, exchanged, refined or added; all scenes with method auto. Cost: evaluations of the right-hand",
         "side and processor time over those of the case (least of three runs). Changes are those of the whole run: of the peak force at the piston pin, the loss in",
         "a revolution and the mean crank speed relative, of the minimum film over the clearance, of the contact share in parts of the time.",
@@ -97,7 +68,7 @@ def as_markdown(name: str, command: str, outcomes: list[Outcome], search: Search
         lines += ["\\* Assumed beyond the case: " + "; ".join(assumed) + ".", ""]
     if refused := [(outcome.variant.label, outcome.refusal) for outcome in outcomes if not (outcome.is_there or outcome.is_no_choice)]:
         lines += ["Not to be had:", "", *(f"- {label}: {why}" for label, why in refused), ""]
-    return "\n".join([*lines, *answer(search, given, names, limit, command.split()[1])]) + "\n"
+    return "\n".join([*lines, *answer(search, given, names, limit, file)]) + "\n"
 
 
 def idle_scenes(outcomes: list[Outcome]) -> list[int]:

@@ -92,10 +92,6 @@ def taken_out(case: Case) -> list[Variant]:
             if group == "contact" and len(settings) > 1:
                 label = f"no contact{place_of(name)}, and so no friction"
             found.append(Variant("taken out", label, tuple(settings)))
-    if len(loose) > 1:
-        for group in LAWS:
-            if group in case and f"crank_pin.{group}" not in case:
-                found.append(Variant("taken out", f"no {WORDS[group]} at the crank pin", (f"crank_pin.{group}=none",)))
     rigid = tuple(f"{name}=none" for name in ("elastic_rod", "crankshaft") if name in case)
     for name in loose:
         settings = ideal_joints(case, [name])
