@@ -9,6 +9,7 @@ Ends with the line "N passed, N failed".
 import subprocess
 import sys
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[1]
@@ -24,6 +25,7 @@ import pandas as pd  # noqa: E402
 from assertions import Assertions  # noqa: E402
 
 from gudgeon_plots.cycles import bearing_loads, orders, spectrum, whole_cycles, work  # noqa: E402
+from gudgeon_plots.language import Language  # noqa: E402
 from gudgeon_plots.program import release_program  # noqa: E402
 from gudgeon_plots.report_cycles import section  # noqa: E402
 from gudgeon_plots.report_page import page  # noqa: E402
@@ -159,6 +161,11 @@ def sections_of_pages() -> None:
     check("None: the motion has not settled. The mean of crank_speed drifts by" in section(settled(1.0)), "a run that drifts")
     check("data:image/png" in section(settled(1.0), ["crank_speed"]), "a run that drifts, where it is asked for")
     check("None: no whole cycle" in section(settled(0.0, 1)), "a run too short")
+    whole = settled(0.0, 2)
+    cut = replace(whole, trace=whole.trace.iloc[:-1], case={"output": {"window": "last_period"}})
+    check("2 cycles of one revolution" in section(cut), "a last period whose rows by time end before it does")
+    portuguese = Language("pt")
+    check("Trabalho em um ciclo" in section(settled(0.0), None, portuguese) and portuguese.unknown <= {"made"}, "in Portuguese", str(portuguese.unknown))
     check("None: one whole cycle" in section(settled(0.0, 2)), "a run of one cycle")
     try:
         section(settled(0.0), ["nonsense"])

@@ -55,6 +55,8 @@ def whole_cycles(run: Run, settle: float | None = None, most: int | None = None)
     if settle is None:
         settle = 0.0 if run.parameter("output", "window") == "last_period" else travel[-1] / TURN / 2
     rounding = 1e-6
+    if run.parameter("output", "window") == "last_period" and len(travel) > 1:  # rows by time end before the period does
+        rounding = 1.01 * float(np.max(np.diff(travel)))
     number = int((travel[-1] - settle * TURN + rounding) // run.cycle)
     if most is not None:
         number = min(number, most)

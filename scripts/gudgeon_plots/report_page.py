@@ -232,7 +232,7 @@ def warnings(run: Run) -> list[str]:
     if (until := certified_until(run)) is not None:
         found.append(
             f"The run is certified up to {1e3 * until:.4g} ms: beyond, shaded in the plots, single values cannot be believed, and "
-            f"only means over revolutions count ({run.name}.summary.csv)."
+            "only means over revolutions count (beyond_..., in the summary)."
         )
     status = run.summary.get("status", ("unknown", ""))[0]
     if status != "done":
