@@ -158,7 +158,7 @@ def sections_of_pages() -> None:
     check("4 cycles of one revolution" in text and text.count("data:image/png") == 2, "a settled run: cycles and pictures", text[:200])
     check("<td>crank speed</td><td>100</td><td>3: 2</td>" in text, "a settled run: mean and strongest order")
     check("<th>work[J]</th>" in text, "a settled run: work")
-    check("None: the motion has not settled. The mean of crank_speed drifts by" in section(settled(1.0)), "a run that drifts")
+    check("None: the motion has not settled. The mean of crank speed drifts by" in section(settled(1.0)), "a run that drifts")
     check("data:image/png" in section(settled(1.0), ["crank_speed"]), "a run that drifts, where it is asked for")
     check("None: no whole cycle" in section(settled(0.0, 1)), "a run too short")
     whole = settled(0.0, 2)

@@ -79,7 +79,7 @@ def why_none(run: Run, cycles: Cycles, columns: list[str], is_wanted: bool) -> s
     if drift(cycles, worst) <= SETTLED:
         return ""
     share = f"{100 * drift(cycles, worst):.0f} %"
-    return f"None: the motion has not settled. The mean of {worst} drifts by {share} of its range over the last half of the run."
+    return f"None: the motion has not settled. The mean of {worst.replace('_', ' ')} drifts by {share} of its range over the last half of the run."
 
 
 def strongest(cycles: Cycles, columns: list[str]) -> pd.DataFrame:
