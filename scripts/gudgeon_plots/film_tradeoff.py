@@ -120,11 +120,13 @@ def line(case: str, film: str, row: dict[str, float | str | None], yardstick: di
     thinnest = row.get("min_film_thickness")
     each = row.get("instructions")
     over = f"{each / yardstick['instructions']:.2g}" if each and yardstick.get("instructions") else ""
-    whole = ""
-    if row.get("seconds") and yardstick.get("seconds") and not row.get("stopped"):
-        whole = f"{row['seconds'] / yardstick['seconds']:.2g}"
+    whole, over_whole = "", ""
+    if each and row.get("rhs_evaluations"):
+        whole = f"{1e-6 * each * row['rhs_evaluations']:.3g}"
+        if yardstick.get("instructions") and not row.get("stopped"):
+            over_whole = f"{each * row['rhs_evaluations'] / yardstick['instructions'] / yardstick['rhs_evaluations']:.3g}"
     cells = [f"`{case}`", film, cell("rhs_evaluations", "{:.0f}"), f"{each:.4g}" if each else "", over,
-             cell("seconds", "{:.3g}", 1e3), whole,
+             whole, over_whole, cell("seconds", "{:.3g}", 1e3),
              "" if thinnest is None else f"{1e6 * thinnest:.3f}" if thinnest > 0 else f"{1e6 * thinnest:.1f}, touches",
              cell("max_film_pressure", "{:.4g}", 1e-6), cell("film_energy_lost", "{:.4g}", 1e3), row.get("stopped") or ""]
     return "| " + " | ".join(cells) + " |"
@@ -153,10 +155,10 @@ def write_table(program: Path, cases: list[Path], repeat: int, timeout: float, o
 
 
 HEAD = """The same scenes with every film, by `auto` at 1e-6. Instructions are those of an evaluation of the whole scene with its share of the
-integrator, counted by valgrind. The time of a run is the least of some; `as_printed` and `direct` ran once. "Over" is what it is over
-that of `closed_form` in the same scene. An oscillating film follows the ideal rotation and does not resist the motion of the pin's centre: it may
-give energy.
+integrator, counted by valgrind; times, the least of some (`as_printed` and `direct`: the only one), hang on what else the computer does.
+"Over" is what it is over that of `closed_form` in the same scene. An oscillating film follows the ideal rotation and does not resist the
+motion of the pin's centre: it may give energy.
 
-| case | film | evaluations | instructions each | over | run [ms] | over | thinnest film [um] | largest pressure [MPa] | lost in the film [mJ] | |
-|---|---|---|---|---|---|---|---|---|---|---|
+| case | film | evaluations | instructions each | over | in the run [10^6] | over | time [ms] | thinnest film [um] | largest pressure [MPa] | lost in the film [mJ] | |
+|---|---|---|---|---|---|---|---|---|---|---|---|
 """
