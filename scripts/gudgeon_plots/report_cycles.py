@@ -15,6 +15,7 @@ from .language import Language
 from .results import MissingResult, Run
 
 COLUMNS = ("crank_speed", "piston_acceleration", "guide_force", "frame_force_x", "crank_moment", "film_thickness")
+FOR_WORK = ("energy", "energy_residual", "crank_moment", "crank_speed", "time")  # columns that the table of work needs
 SETTLED = 0.05  # most that the mean of a column may drift over the cycles, over its range
 HIGHEST = 20.0  # order shown
 
@@ -58,7 +59,7 @@ def section(run: Run, wanted: list[str] | None = None, language: Language | None
             picture(cycle_pictures.draw_means(cycles, columns), means, language),
             picture(cycle_pictures.draw_orders(cycles, columns, HIGHEST), by_order, language),
             table(strongest(cycles, columns), "Strongest orders (amplitude; order 0: mean)", language),
-            table(work(cycles).map(number), "Work in a cycle", language),
+            table(work(cycles).map(number), "Work in a cycle", language) if all(name in cycles for name in FOR_WORK) else "",
         )
     )
 
@@ -105,6 +106,7 @@ def paragraph(text: str) -> str:
 def picture(drawing: Drawing, said: str, language: Language) -> str:
     """A drawing inside the page."""
     said = language.say(said)
+    drawing.suptitle("")  # the page has the run's name
     language.localise(drawing)
     buffer = io.BytesIO()
     drawing.savefig(buffer, format="png", dpi=110, metadata={"Software": None})
