@@ -1,8 +1,8 @@
-!> How close the film of finite length comes to the tables of an independent solver (data/film/phi_LD*.csv), bearing by bearing: worst
-!> relative error of the force, of the side flow and of the largest pressure up to eps = 0.99, and of the force at 0.999.
+!> How close the film of finite length comes to the tables of an independent solver (data/film/phi_LD*.csv), bearing by bearing:
+!> worst relative error of the force, of the side flow and of the largest pressure up to eps = 0.99, and of the force at 0.999.
 !>
 !>     check_films                  solved in every row with 64, 128 and 192 nodes round the film: draft, standard, reference
-!>     check_films POINTS NODES     from tables of POINTS values in each direction, solved with NODES; with the processor's time that took
+!>     check_films POINTS NODES     from tables of POINTS values in each direction, solved with NODES; and processor times
 !>     check_films POINTS NODES 0.75 gumbel     of one bearing and condition alone
 program check_films
   use gudgeon_kinds, only: dp

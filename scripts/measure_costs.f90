@@ -70,7 +70,8 @@ contains
     type(error_t), allocatable :: error
     character(len=*), parameter :: oscillating(2) = [character(len=40) :: 'lubrication.law=oscillating_film', &
       'lubrication.kinematic_viscosity=1.38e-5']
-    character(len=*), parameter :: small_table(3) = [character(len=40) :: 'lubrication.cavitation=gumbel', &   ! its size costs nothing
+    ! the size of a table costs an evaluation nothing
+    character(len=*), parameter :: small_table(3) = [character(len=40) :: 'lubrication.cavitation=gumbel', &
       'lubrication.table_points=17', 'lubrication.film_points=32']
     character(len=*), parameter :: friction(3) = [character(len=40) :: &
       'friction.transition_speed=1e-3', 'friction.stribeck_speed=1e-2', 'friction.bristle_stiffness=2e4']

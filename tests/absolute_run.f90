@@ -1,11 +1,11 @@
-!> A case in the coordinates (q, A, x) of its bodies, by the numerics of the print: one tolerance for relative and absolute error, steps of
-!> limited length.
+!> A case in the coordinates (q, A, x) of its bodies, by the numerics of the print: one tolerance for relative and absolute error,
+!> steps of limited length.
 !>
 !>     absolute_run CASE.nml REVOLUTIONS SAMPLES TOLERANCE MAX_STEP
 !>
-!> Prints time [s], crank acceleration [rad/s^2] and eccentricity over clearance, SAMPLES times in the time of a revolution at the starting
-!> speed, as CSV. The right-hand side is the program's own. The pin must stay in its film: the run ends, with exit status 1, where it
-!> touches.
+!> Prints time [s], crank acceleration [rad/s^2] and eccentricity over clearance, SAMPLES times in the time of a revolution at the
+!> starting speed, as CSV. The right-hand side is the program's own. The pin must stay in its film: the run ends, with exit status
+!> 1, where it touches.
 program absolute_run
   use, intrinsic :: iso_fortran_env, only: error_unit
   use gudgeon_kinds, only: dp
@@ -68,8 +68,8 @@ contains
     read (text, *) argument
   end function argument
 
-  !> The samples. The gas is that of the end of the run, whose part of the cycle does not tell on earlier rows: they are sampled as they
-  !> were, with the accelerations that the sampled state had.
+  !> The samples. The gas is that of the end of the run, whose part of the cycle does not tell on earlier rows: they are sampled as
+  !> they were, with the accelerations that the sampled state had.
   subroutine print_rows(engine, clearance)
     type(absolute_gas_engine_t), intent(inout) :: engine
     real(dp), intent(in) :: clearance   !! [m]

@@ -12,8 +12,8 @@ module energy_of_bodies
 contains
 
   !> dE/dt [W] of kinetic and potential energy where the coordinates (q, c_x, c_y, e_x, e_y) and, of a piston with clearance in its
-  !> bore, y of its centre of mass and its tilt have these values, rates and accelerations. The crank pin is at R (cos q, sin q), the
-  !> rod's big end at that less c, its small end on the guide's axis but for e_y.
+  !> bore, y of its centre of mass and its tilt have these values, rates and accelerations. The crank pin is at R (cos q, sin q),
+  !> the rod's big end at that less c, its small end on the guide's axis but for e_y.
   real(dp) function energy_slope(bodies, z, z_rate, z_acceleration)
     type(bodies_t), intent(in) :: bodies
     real(dp), intent(in) :: z(:), z_rate(:), z_acceleration(:)

@@ -266,8 +266,8 @@ contains
     chain%drive%free_crank = .false.
   end function flores
 
-  !> Slider acceleration at the dead centres and the largest crank moment of the ideal Flores mechanism at 5000 rpm; and a free crank
-  !> under the moment that holds the speed does not accelerate.
+  !> Slider acceleration at the dead centres and the largest crank moment of the ideal Flores mechanism at 5000 rpm; and a free
+  !> crank under the moment that holds the speed does not accelerate.
   subroutine published_values(check)
     class(checks_t), intent(inout) :: check
     type(chain_t) :: chain

@@ -110,8 +110,8 @@ contains
     end do
   end subroutine cranks_that_do_not_get_there
 
-  !> A damping leaves a crank the speed tau/D. The run ends when a turn has taken as long as a hundred at the starting speed; but not
-  !> with a latest end of its own.
+  !> A damping leaves a crank the speed tau/D. The run ends when a turn has taken as long as a hundred at the starting speed; but
+  !> not with a latest end of its own.
   subroutine cranks_that_creep(check)
     class(checks_t), intent(inout) :: check
     character(len=long), parameter :: slow(4) = [character(len=long) :: 'initial.crank_speed=30', 'drive.torque=0.001', &

@@ -1,5 +1,5 @@
-!> A film between elastic walls: the inverse of a film's force, derivatives, energy, the limit of stiff walls, every method, the start,
-!> the viscosity under pressure, and what a case may not ask of it.
+!> A film between elastic walls: the inverse of a film's force, derivatives, energy, the limit of stiff walls, every method, the
+!> start, the viscosity under pressure, and what a case may not ask of it.
 module test_elastic_film
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t
@@ -140,8 +140,8 @@ contains
     end do
   end subroutine derivatives
 
-  !> Undriven, the bodies' energy, what the walls store and what the film has taken (the integral of a column that knows nothing of the
-  !> walls) stay together; the film never gives.
+  !> Undriven, the bodies' energy, what the walls store and what the film has taken (the integral of a column that knows nothing of
+  !> the walls) stay together; the film never gives.
   subroutine energy_is_known(check)
     class(checks_t), intent(inout) :: check
     character(len=long) :: set(9)

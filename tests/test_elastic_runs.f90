@@ -221,8 +221,8 @@ contains
   end subroutine cases_that_cannot_be
 
   !> A moment tau on the flywheel of a mechanism at rest: the twist is tau/(J_f omega^2) (1 - cos omega t), with
-  !> omega^2 = k (1/J_f + 1/m), m the moment of inertia of the mechanism, at q = 0 that of crank, of a rod that turns about the piston
-  !> pin and of no piston.
+  !> omega^2 = k (1/J_f + 1/m), m the moment of inertia of the mechanism, at q = 0 that of crank, of a rod that turns about the
+  !> piston pin and of no piston.
   subroutine crankshaft_swings(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: flywheel = 0.02_dp, stiffness = 2e4_dp, tau = 10

@@ -36,8 +36,8 @@ module test_events
     procedure :: handle_event => changes_side
   end type chatterer_t
 
-  !> A ball on a moving floor: y = (height, speed), falling like t^2. Its event is that it leaves a table, and then that it comes back;
-  !> as it leaves, `handle_event` puts it below the table by `sunk`, as an inexact landing does.
+  !> A ball on a moving floor: y = (height, speed), falling like t^2. Its event is that it leaves a table, and then that it comes
+  !> back; as it leaves, `handle_event` puts it below the table by `sunk`, as an inexact landing does.
   type, extends(ode_problem_t) :: ball_t
     logical :: is_off = .false.
     real(dp) :: sunk = 0
@@ -164,8 +164,8 @@ contains
     passages_of = problem%passages
   end function passages_of
 
-  !> A ball that leaves a table upwards at the speed v, sunk by d: with d < v^2/(2 g) it comes out and back; with more it turns below
-  !> the table, and comes back as it turns. Never is it lost below the table.
+  !> A ball that leaves a table upwards at the speed v, sunk by d: with d < v^2/(2 g) it comes out and back; with more it turns
+  !> below the table, and comes back as it turns. Never is it lost below the table.
   subroutine turns_before_it_is_out(check)
     class(checks_t), intent(inout) :: check
     type(ball_t) :: problem

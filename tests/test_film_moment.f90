@@ -1,5 +1,5 @@
-!> The moment of a long film on its pin: against the shear stress integrated over the pin, its derivatives, the power that it takes, and
-!> the key that asks for it.
+!> The moment of a long film on its pin: against the shear stress integrated over the pin, its derivatives, the power that it takes,
+!> and the key that asks for it.
 module test_film_moment
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
@@ -24,8 +24,8 @@ contains
     call key_has_a_default_by_law(check)
   end subroutine run_test_film_moment
 
-  !> Integral over the pin of R times the stress -(mu U/h + h p'/2), p' = dp/(R dtheta), of the flow u = U y/h + y (y - h) p'/(2 mu):
-  !> with the pressure of the law, by differences.
+  !> Integral over the pin of R times the stress -(mu U/h + h p'/2), p' = dp/(R dtheta), of the flow u = U y/h + y (y - h) p'/(2
+  !> mu): with the pressure of the law, by differences.
   subroutine moment_is_the_shear(check)
     class(checks_t), intent(inout) :: check
     integer, parameter :: points = 40000

@@ -237,8 +237,8 @@ contains
     end do
   end subroutine short_bearing_next_to_wall
 
-  !> The integrals of cos(phi - alpha) cos phi/H^3 and cos(phi - alpha) sin phi/H^3 over the half of the film in which cos(phi - alpha) is
-  !> positive, by Romberg's method on pieces that grow from the thinnest place on.
+  !> The integrals of cos(phi - alpha) cos phi/H^3 and cos(phi - alpha) sin phi/H^3 over the half of the film in which cos(phi -
+  !> alpha) is positive, by Romberg's method on pieces that grow from the thinnest place on.
   function precise_integrals(square, b, t) result(sums)
     real(dp), intent(in) :: square, b, t   !! eps^2; cos(alpha) and sin(alpha)
     real(dp) :: sums(2)
@@ -282,8 +282,8 @@ contains
     end function weighed
   end function precise_integrals
 
-  !> With Reynolds' condition the force is the gradient of a potential of the velocity: its change along the direction is half of that
-  !> of its product with the velocity. With Gumbel's it is not.
+  !> With Reynolds' condition the force is the gradient of a potential of the velocity: its change along the direction is half of
+  !> that of its product with the velocity. With Gumbel's it is not.
   subroutine potential_of_the_velocity(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: step = 0.02_dp

@@ -112,8 +112,8 @@ contains
     end do
   end subroutine two_strokes_repeat
 
-  !> W = n/(n-1) p1 (V1 - V4) ((p2/p1)^((n-1)/n) - 1), with V4 = V0 (p2/p1)^(1/n) where suction begins; n = 1: p1 (V1 - V4) ln(p2/p1).
-  !> Where the pressure never reaches the discharge's, no gas goes through and the work is 0.
+  !> W = n/(n-1) p1 (V1 - V4) ((p2/p1)^((n-1)/n) - 1), with V4 = V0 (p2/p1)^(1/n) where suction begins; n = 1: p1 (V1 - V4)
+  !> ln(p2/p1). Where the pressure never reaches the discharge's, no gas goes through and the work is 0.
   subroutine compressor_work(check, discharge, n, dead_space)
     class(checks_t), intent(inout) :: check
     real(dp), intent(in) :: discharge, n, dead_space

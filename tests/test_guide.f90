@@ -75,8 +75,8 @@ contains
     call check%close_to(worst, 0.0_dp, 1e-9_dp, 'normal force and friction of a massless rod [N]')
   end subroutine massless_rod_with_friction
 
-  !> With ideal pins, a free crank, gravity and heavy bodies: the law of friction holds in every row for the guide's force that Newton
-  !> finds, the energy balances, the piston obeys Newton, and friction takes energy.
+  !> With ideal pins, a free crank, gravity and heavy bodies: the law of friction holds in every row for the guide's force that
+  !> Newton finds, the energy balances, the piston obeys Newton, and friction takes energy.
   subroutine friction_of_an_ideal_guide(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: got, without
@@ -227,8 +227,8 @@ contains
     end do
   end subroutine energy_with_all_losses
 
-  !> The same with an elastic rod and an elastic crankshaft: at a loose pin, at ideal pins with clearance in the bore and with friction
-  !> on the guide alone.
+  !> The same with an elastic rod and an elastic crankshaft: at a loose pin, at ideal pins with clearance in the bore and with
+  !> friction on the guide alone.
   subroutine energy_with_elastic_members(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: ideal_pin(3) = [character(len=long) :: 'joint=none', 'contact=none', 'friction=none']
@@ -328,8 +328,8 @@ contains
     call check%that(miss(1) < 2e-3_dp .and. miss(2) < 2e-4_dp, 'a narrow bore is nearly an ideal guide')
   end subroutine narrow_bore_is_an_ideal_guide
 
-  !> The benchmark of Flores, Leine and Glocker (2010) against Siconos, whose walls are rigid: the same motion up to the first impact,
-  !> and near to it after that.
+  !> The benchmark of Flores, Leine and Glocker (2010) against Siconos, whose walls are rigid: the same motion up to the first
+  !> impact, and near to it after that.
   subroutine compare_with_siconos(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: got
@@ -356,8 +356,8 @@ contains
     end do
   end subroutine compare_with_siconos
 
-  !> From Siconos's state just after that impact, where both ends of the slider hit nearly at once, on: nearer to rigid walls with the
-  !> stiffness until both ends hit again, at 26 ms.
+  !> From Siconos's state just after that impact, where both ends of the slider hit nearly at once, on: nearer to rigid walls with
+  !> the stiffness until both ends hit again, at 26 ms.
   subroutine follow_siconos(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: stiffness(3) = [character(len=5) :: '1e8', '1e9', '1e10']

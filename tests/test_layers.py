@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The folders of src are layers: a module uses modules of its own folder and of layers below, never of one beside or above.
+"""The folders of src are layers: a module uses modules of its own folder and of layers below, never of one beside or above. Lines
+of Fortran have at most 132 characters, comments too.
 
     tests/test_layers.py
 
@@ -23,6 +24,8 @@ LAYERS = [
     ["study"],
     ["main"],
 ]
+MOST = 132  # characters of a line
+
 RANK = {folder: rank for rank, row in enumerate(LAYERS) for folder in row}
 
 
@@ -77,6 +80,10 @@ def main() -> int:
             f"{path.relative_to(SRC.parent)} holds the module of its name, or of that with the prefix gudgeon_",
             name == "main" or re.search(rf"^\s*(module|submodule\s*\(\w+\))\s+(gudgeon_)?{name}\s*$", path.read_text(), re.M | re.I) is not None,
         )
+    top = SRC.parent
+    for path in sorted(file for folder in ("src", "tests", "scripts") for file in (top / folder).rglob("*.f90") if "build" not in file.parts):
+        long = [number for number, line in enumerate(path.read_text().splitlines(), 1) if len(line) > MOST]
+        check(f"{path.relative_to(top)}: lines {long} have more than {MOST} characters", not long)
     print(f"{passed} passed, {failed} failed")
     return failed > 0
 

@@ -26,8 +26,8 @@ contains
     call exponent_is_the_growth(check)
   end subroutine run_test_periodic
 
-  !> The film forgets within a revolution. The run ends where it should, with the rows of one revolution, and the state then continues
-  !> to repeat in a run that does not stop.
+  !> The film forgets within a revolution. The run ends where it should, with the rows of one revolution, and the state then
+  !> continues to repeat in a run that does not stop.
   subroutine held_crank_with_film(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: whole, last, plain

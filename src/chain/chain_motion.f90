@@ -11,7 +11,8 @@
 !> In (q, A, x) an eccentricity is a difference of numbers 10^4 times larger; here it is known to full precision.
 !>
 !> A piston with clearance in its bore has two coordinates more: y of its centre of mass and the angle b of its tilt. With
-!> p = Rot(b) (U_p, V_p), the centre of mass from the pin's bearing, that bearing is at y - p_y across, and o = c + e + (0, y - p_y).
+!> p = Rot(b) (U_p, V_p), the centre of mass from the pin's bearing, that bearing is at y - p_y across, and o = c + e + (0, y -
+!> p_y).
 module chain_motion
   use gudgeon_kinds, only: dp
   implicit none

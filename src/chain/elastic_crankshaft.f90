@@ -93,8 +93,8 @@ contains
     damping_power = -self%damping*(motion%flywheel_speed - motion%crank_speed)**2
   end function damping_power
 
-  !> Frequency with which crank and flywheel swing against each other [rad/s], the crank and what moves with it having this moment of
-  !> inertia; `is_held`: with a flywheel whose speed is held.
+  !> Frequency with which crank and flywheel swing against each other [rad/s], the crank and what moves with it having this moment
+  !> of inertia; `is_held`: with a flywheel whose speed is held.
   pure real(dp) function natural_frequency(self, crank_inertia, is_held)
     class(elastic_crankshaft_t), intent(in) :: self
     real(dp), intent(in) :: crank_inertia   !! [kg m^2]

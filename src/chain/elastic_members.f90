@@ -40,8 +40,8 @@ contains
     if (allocated(self%rod)) n_shapes = self%rod%n
   end function n_shapes
 
-  !> Claim the shapes and the flywheel. Each shape is measured by what the largest of the forces of inertia and gravity would bend or
-  !> stretch it at rest, or a small part of the joints' own speeds would, its rate by what this is at its natural frequency.
+  !> Claim the shapes and the flywheel. Each shape is measured by what the largest of the forces of inertia and gravity would bend
+  !> or stretch it at rest, or a small part of the joints' own speeds would, its rate by what this is at its natural frequency.
   subroutine claim(self, layout, bodies, crank_speed, own_speed)
     class(elastic_members_t), intent(inout) :: self
     type(layout_t), intent(inout) :: layout

@@ -258,8 +258,8 @@ contains
     if (self%n_bending > 0) bending_frequency = self%natural_frequency(1)
   end function bending_frequency
 
-  !> Lowest frequency of stretching with a mass on the piston pin and the crank pin at rest [rad/s], by power iteration; 0: it does not
-  !> stretch.
+  !> Lowest frequency of stretching with a mass on the piston pin and the crank pin at rest [rad/s], by power iteration; 0: it does
+  !> not stretch.
   pure real(dp) function axial_frequency(self, mass)
     class(elastic_rod_t), intent(in) :: self
     real(dp), intent(in) :: mass   !! [kg]

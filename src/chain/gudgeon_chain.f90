@@ -44,8 +44,8 @@ contains
 
   !> Accelerations under gravity, the drive and the loads of gas and loose pins; the loads of ideal pins that the piece finds with
   !> them; and the moment of the drive on what it turns, the crank or the flywheel of an elastic crankshaft [N m]: its torque where
-  !> this moves freely, the moment that holds its speed where not. `solvable` is false where the mass matrix of an elastic rod is not
-  !> positive definite.
+  !> this moves freely, the moment that holds its speed where not. `solvable` is false where the mass matrix of an elastic rod is
+  !> not positive definite.
   pure subroutine accelerate(self, motion, loads, accelerations, crank_moment, solvable)
     class(chain_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
@@ -178,7 +178,8 @@ contains
     if (allocated(self%elastic)) has_crankshaft = allocated(self%elastic%crankshaft)
   end function has_crankshaft
 
-  !> The rod of a motion whose crank and offset are known, and the shapes of an elastic one. `reachable` is false where it cannot be.
+  !> The rod of a motion whose crank and offset are known, and the shapes of an elastic one. `reachable` is false where it cannot
+  !> be.
   pure subroutine move_rod(self, motion, reachable)
     class(chain_t), intent(in) :: self
     type(motion_t), intent(inout) :: motion

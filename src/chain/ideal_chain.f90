@@ -102,8 +102,8 @@ contains
     accelerations%pin = 0
   end subroutine respond_ideal_chain
 
-  !> k = dA/dq = R cos q/(L cos A), p = dx/dq and the inertia of all on q. With them A'' = k q'' + k' q'^2, x'' = p q'' + p' q'^2, and
-  !> k' = tan A (k^2 - 1).
+  !> k = dA/dq = R cos q/(L cos A), p = dx/dq and the inertia of all on q. With them A'' = k q'' + k' q'^2, x'' = p q'' + p' q'^2,
+  !> and k' = tan A (k^2 - 1).
   pure subroutine find_ratios(bodies, motion, m12, per_arm, ratio, rate, inertia)
     type(bodies_t), intent(in) :: bodies
     type(motion_t), intent(in) :: motion

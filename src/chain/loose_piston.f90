@@ -1,8 +1,8 @@
 !> A piston with clearance in its bore: where it is, how it is accelerated, its energy.
 !>
-!> Its coordinates are y of its centre of mass and the tilt b, from x to y. What its bore does to it is known from them: a force along
-!> x that is part of `axial_force`, `bore_force` along y and `bore_moment` about the centre of mass. The gas acts along x on the
-!> piston's axis, which goes through the centre of mass.
+!> Its coordinates are y of its centre of mass and the tilt b, from x to y. What its bore does to it is known from them: a force
+!> along x that is part of `axial_force`, `bore_force` along y and `bore_moment` about the centre of mass. The gas acts along x on
+!> the piston's axis, which goes through the centre of mass.
 !>
 !>     m x_c'' = -F_axial - F_x + m g_x,    m y_c'' = F_bore - F_y + m g_y
 !>     I b'' = M_bearing + p_x F_y - p_y F_x + M_bore

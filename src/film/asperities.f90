@@ -180,8 +180,8 @@ contains
     end if
   end function pressure_integral
 
-  !> Mean gap of the surfaces where the smooth ones are h apart, h/2 (1 + erf(h/(sqrt2 s))) + s/sqrt(2 pi) exp(-h^2/(2 s^2)) > 0 [m],
-  !> and its slope by h.
+  !> Mean gap of the surfaces where the smooth ones are h apart, h/2 (1 + erf(h/(sqrt2 s))) + s/sqrt(2 pi) exp(-h^2/(2 s^2)) > 0
+  !> [m], and its slope by h.
   pure subroutine mean_gap(self, h, gap, slope)
     class(asperities_t), intent(in) :: self
     real(dp), intent(in) :: h   !! [m]

@@ -120,9 +120,9 @@ contains
       default='0.001')
   end subroutine add_least_film
 
-  !> Moment of the film on the pin about its centre [N m] of the shear u = U y/h + y (y - h) p'/(2 mu) in a film whose pressure gives
-  !> `force`: -2 pi mu omega R^3 L/(c sqrt(1 - eps^2)) - e x F/2. (The gap counts as full, where the film has ruptured too.) With it
-  !> the power that a film of pressure takes is never negative.
+  !> Moment of the film on the pin about its centre [N m] of the shear u = U y/h + y (y - h) p'/(2 mu) in a film whose pressure
+  !> gives `force`: -2 pi mu omega R^3 L/(c sqrt(1 - eps^2)) - e x F/2. (The gap counts as full, where the film has ruptured too.)
+  !> With it the power that a film of pressure takes is never negative.
   pure real(dp) function shear_moment(self, force_scale, motion, force) result(moment)
     class(film_law_t), intent(in) :: self
     real(dp), intent(in) :: force_scale   !! mu L R^3/c^2 [N s]
@@ -151,8 +151,8 @@ contains
     end associate
   end function shear_moment_slopes
 
-  !> Whether the force is in proportion to v* = e' - (omega/2) z x e, depends on nothing else of the motion and is against it; whether
-  !> the law has a pressure above that at the film's ends, and a flow out of these. The default is none of it.
+  !> Whether the force is in proportion to v* = e' - (omega/2) z x e, depends on nothing else of the motion and is against it;
+  !> whether the law has a pressure above that at the film's ends, and a flow out of these. The default is none of it.
   pure logical function no(self)
     class(film_law_t), intent(in) :: self
     associate (unused => self)
@@ -170,8 +170,8 @@ contains
     none = 0
   end function none
 
-  !> Pressure in the middle of the film [Pa], where the law has it in closed form, at the angle theta [rad] from the thinnest place (the
-  !> direction of the eccentricity), x towards y.
+  !> Pressure in the middle of the film [Pa], where the law has it in closed form, at the angle theta [rad] from the thinnest place
+  !> (the direction of the eccentricity), x towards y.
   pure real(dp) function nowhere(self, motion, theta)
     class(film_law_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
@@ -192,8 +192,8 @@ contains
     most = max(largest_pressure(self, motion, 1.0_dp), largest_pressure(self, motion, sqrt((1 - eps)/(1 + eps))))
   end subroutine peak_without_flow
 
-  !> The pressure over half of the bearing [Pa], (angles, places): at angles [rad] from the direction of the eccentricity and places from
-  !> the middle (0) to the end (1). The default is that of a long film, the same everywhere along it.
+  !> The pressure over half of the bearing [Pa], (angles, places): at angles [rad] from the direction of the eccentricity and places
+  !> from the middle (0) to the end (1). The default is that of a long film, the same everywhere along it.
   pure subroutine long_field(self, motion, angles, places, field)
     class(film_law_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion

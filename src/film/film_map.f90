@@ -10,8 +10,8 @@
 !>
 !> leave two smooth and bounded functions G of tau and chi, even and odd about chi = 0 and pi, which are splines of the fifth
 !> degree here. They depend on L/(2R) and on the cavitation. So do two more, even both: the largest pressure over mu R^2/c^2 is
-!> M q^2 G_p, the flow out of both ends over c R^2 is V G_q. A film without cavitation pulls as much as it pushes: its force is linear
-!> in B and T, V Phi_r = B w^-3 G_r and V Phi_t = T w^-1 G_t, with G of tau alone.
+!> M q^2 G_p, the flow out of both ends over c R^2 is V G_q. A film without cavitation pulls as much as it pushes: its force is
+!> linear in B and T, V Phi_r = B w^-3 G_r and V Phi_t = T w^-1 G_t, with G of tau alone.
 module film_map
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
@@ -147,8 +147,8 @@ contains
     gap_at = 2*sin(0.5_dp*(0.5_dp*pi - tau))**2
   end function gap_at
 
-  !> A point of the sample at which the table is compared with solutions. It lies where the table's size has no part in it: tau and chi
-  !> are spread by the golden section, so that no number of values has them as nodes.
+  !> A point of the sample at which the table is compared with solutions. It lies where the table's size has no part in it: tau and
+  !> chi are spread by the golden section, so that no number of values has them as nodes.
   pure subroutine place_sample(i, j, gap, alpha)
     integer, intent(in) :: i, j   !! the row of one eccentricity ratio, the direction in it
     real(dp), intent(out) :: gap  !! 1 - eps

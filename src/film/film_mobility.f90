@@ -1,7 +1,7 @@
 !> The inverse of a film's force: with what velocity a film lets the pin go under a load (Booker 1965).
 !>
-!> A quasi-static film knows the velocity v* = e' - (omega/2) z x e alone, and its force grows in proportion to it. So the direction of
-!> v* is that in which the force is against the load, and its size the load over the force of unit velocity.
+!> A quasi-static film knows the velocity v* = e' - (omega/2) z x e alone, and its force grows in proportion to it. So the direction
+!> of v* is that in which the force is against the load, and its size the load over the force of unit velocity.
 module film_mobility
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
@@ -13,8 +13,8 @@ module film_mobility
 contains
 
   !> v* [m/s] at an eccentricity e, |e| < c, under a load on the pin [N]: the film's force is against it. The direction is sought
-  !> along beta, v* = (w cos beta, sin beta) with w = sqrt(1 - eps^2), in which the load turns evenly up to the wall: between 0 and pi, by
-  !> regula falsi as Anderson and Björck have it, to the rounding. It is mirrored where the load has the other sense.
+  !> along beta, v* = (w cos beta, sin beta) with w = sqrt(1 - eps^2), in which the load turns evenly up to the wall: between 0 and
+  !> pi, by regula falsi as Anderson and Björck have it, to the rounding. It is mirrored where the load has the other sense.
   pure subroutine driven_velocity(film, e, load, velocity)
     class(film_law_t), intent(in) :: film
     real(dp), intent(in) :: e(2)          !! [m]

@@ -1,5 +1,5 @@
-!> The film of finite length at one eccentricity ratio, closer than one grid gives it: from pairs of grids, of which one has half as many
-!> nodes in each direction, by Richardson's extrapolation. The table of `film_map` is made of such solutions.
+!> The film of finite length at one eccentricity ratio, closer than one grid gives it: from pairs of grids, of which one has half as
+!> many nodes in each direction, by Richardson's extrapolation. The table of `film_map` is made of such solutions.
 module film_solution
   use gudgeon_kinds, only: dp
   use finite_film, only: film_solver_t, film_answer_t, cavitation_reynolds
@@ -47,8 +47,8 @@ contains
     end do
   end subroutine begin
 
-  !> Nodes round the film at a thickness: more where it is thin, since the pressure of a film that is left is small beside the one that
-  !> is cut off, and its edge moves from node to node. The mean of several grids needs fewer of them.
+  !> Nodes round the film at a thickness: more where it is thin, since the pressure of a film that is left is small beside the one
+  !> that is cut off, and its edge moves from node to node. The mean of several grids needs fewer of them.
   pure integer function nodes_at(film_points, grids, gap)
     integer, intent(in) :: film_points, grids
     real(dp), intent(in) :: gap
@@ -64,17 +64,17 @@ contains
     end if
   end function nodes_at
 
-  !> Grids whose mean is taken. Where the film ruptures at a free edge the force has an error that changes with the place of the edge
-  !> between two nodes, and that Richardson's extrapolation leaves: the mean of grids a quarter of this distance apart is five to ten
-  !> times closer. Coarse films have larger errors than this one.
+  !> Grids whose mean is taken. Where the film ruptures at a free edge the force has an error that changes with the place of the
+  !> edge between two nodes, and that Richardson's extrapolation leaves: the mean of grids a quarter of this distance apart is five
+  !> to ten times closer. Coarse films have larger errors than this one.
   pure integer function grids_for(film_points, cavitation)
     integer, intent(in) :: film_points, cavitation
     integer, parameter :: fine_film = 160
     grids_for = merge(4, 1, cavitation == cavitation_reynolds .and. film_points >= fine_film)
   end function grids_for
 
-  !> The film for a velocity in the direction alpha [rad] from n to t: in a pair errors of the second order cancel. `warm`: begin with
-  !> the film of the solution before.
+  !> The film for a velocity in the direction alpha [rad] from n to t: in a pair errors of the second order cancel. `warm`: begin
+  !> with the film of the solution before.
   pure subroutine solve(self, alpha, warm, film)
     class(film_solution_t), intent(inout) :: self
     real(dp), intent(in) :: alpha

@@ -1,9 +1,10 @@
-!> How a film gives way to the contact: at once where journal and bearing touch, or weighted over a band of depths (chapter 7 of Reis
-!> 2013 asks for it; the weights after Flores et al. 2004).
+!> How a film gives way to the contact: at once where journal and bearing touch, or weighted over a band of depths (chapter 7 of
+!> Reis 2013 asks for it; the weights after Flores et al. 2004).
 !>
 !> With the penetration d = |e| - c the forces are (1 - w) F_film + w F_contact, friction included: w = s, or s^2 (3 - 2 s), with
-!> s = d/e0 between 0 and 1. The film of theory is infinite at |e| = c, so beyond |e| = (1 - q) c it is that of this eccentricity, with
-!> the true direction of the eccentricity and its true rate. The depths e0 and q are no properties of the joint: results depend on them.
+!> s = d/e0 between 0 and 1. The film of theory is infinite at |e| = c, so beyond |e| = (1 - q) c it is that of this eccentricity,
+!> with the true direction of the eccentricity and its true rate. The depths e0 and q are no properties of the joint: results depend
+!> on them.
 module film_transition
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t
@@ -83,8 +84,8 @@ contains
     end function is_beyond
   end subroutine begin
 
-  !> Share w of the contact in a penetration [m], and its slope [1/m]. A linear share continues beyond its ends on trial states; its kinks
-  !> are events. The smooth one is held there: its slope has no kink.
+  !> Share w of the contact in a penetration [m], and its slope [1/m]. A linear share continues beyond its ends on trial states; its
+  !> kinks are events. The smooth one is held there: its slope has no kink.
   pure subroutine weight(self, penetration, w, slope)
     class(film_transition_t), intent(in) :: self
     real(dp), intent(in) :: penetration

@@ -1,8 +1,8 @@
 !> The film of a bearing of finite length: Reynolds' equation, quasi-static, with its own pressure solved for (`finite_film`), as a
 !> table (`film_map`) or at every evaluation.
 !>
-!> Wedge and squeeze are one velocity, v* = e' - (omega/2) z x e (Booker 1965), and the force is mu L R^3/c^2 |v*|/c times a function of
-!> eps = |e|/c and of the direction of v*.
+!> Wedge and squeeze are one velocity, v* = e' - (omega/2) z x e (Booker 1965), and the force is mu L R^3/c^2 |v*|/c times a
+!> function of eps = |e|/c and of the direction of v*.
 module finite_bearing
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: parameter_list_t

@@ -8,8 +8,9 @@ module finite_film
   public :: film_answer_t, film_solver_t
   public :: cavitation_none, cavitation_gumbel, cavitation_reynolds
 
-  !> What happens where the pressure would be negative: nothing (Sommerfeld); the negative part is cut off (Gumbel); the film ruptures
-  !> where both pressure and its slope are 0 (Swift and Stieber: P >= 0, r = div(H^3 grad P) + 12 cos(phi - alpha) <= 0, P r = 0).
+  !> What happens where the pressure would be negative: nothing (Sommerfeld); the negative part is cut off (Gumbel); the film
+  !> ruptures where both pressure and its slope are 0 (Swift and Stieber: P >= 0, r = div(H^3 grad P) + 12 cos(phi - alpha) <= 0, P
+  !> r = 0).
   integer, parameter :: cavitation_none = 1, cavitation_gumbel = 2, cavitation_reynolds = 3
 
   !> Force over mu V L R^3/c^2 along n and t, flow out of both ends over V c R^2, and largest pressure over mu V R^2/c^2.
@@ -17,8 +18,8 @@ module finite_film
     real(dp) :: force(2) = 0, flow = 0, most = 0
   end type film_answer_t
 
-  !> Solves for one eccentricity and any direction of the velocity. Unknowns are the nodes of the grid, first along the film, then in
-  !> the order of the ring's places. The matrix, minus div(H^3 grad), is symmetric with the half bandwidth 2m and has an inverse
+  !> Solves for one eccentricity and any direction of the velocity. Unknowns are the nodes of the grid, first along the film, then
+  !> in the order of the ring's places. The matrix, minus div(H^3 grad), is symmetric with the half bandwidth 2m and has an inverse
   !> without negative elements.
   type :: film_solver_t
     private
@@ -37,8 +38,8 @@ module finite_film
 
 contains
 
-  !> Prepare for one thickness `gap` = 1 - eps (> 0, <= 1) and half length L/(2R) on n times m nodes, those round the film shifted by a
-  !> part of their distance.
+  !> Prepare for one thickness `gap` = 1 - eps (> 0, <= 1) and half length L/(2R) on n times m nodes, those round the film shifted
+  !> by a part of their distance.
   pure subroutine begin(self, n, m, gap, half_length, shift)
     class(film_solver_t), intent(inout) :: self
     integer, intent(in) :: n, m

@@ -9,8 +9,8 @@ module half_film
   private
   public :: half_film_t, first_guess
 
-  !> Coefficients of y, y x, y x^2, y x^3, y^3, y^3 x in the guess at the root t of `terms_at_zeros`: its least squares over the disc
-  !> |x + i y| <= 1, as tests/test_half_film_guess.f90 computes them. It is off by 3.1e-3 at most.
+  !> Coefficients of y, y x, y x^2, y x^3, y^3, y^3 x in the guess at the root t of `terms_at_zeros`: its least squares over the
+  !> disc |x + i y| <= 1, as tests/test_half_film_guess.f90 computes them. It is off by 3.1e-3 at most.
   real(dp), parameter :: first_guess(6) = [-0.125016720340661_dp, 0.062511782496429_dp, -0.02863078399815_dp, &
     0.013439865718855_dp, 0.012887033929145_dp, -0.020353783206739_dp]
 

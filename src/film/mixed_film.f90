@@ -37,8 +37,8 @@ contains
     call see_gap(film, rough, motion, seen, distance, tangential)
   end function motion_in_gap
 
-  !> It is that in the mean gap h_T of the surfaces: at the eccentricity ratio 1 - h_T/c, which grows towards 1 as the smooth surfaces
-  !> would touch and pass, with its true turning.
+  !> It is that in the mean gap h_T of the surfaces: at the eccentricity ratio 1 - h_T/c, which grows towards 1 as the smooth
+  !> surfaces would touch and pass, with its true turning.
   pure subroutine see_gap(film, rough, motion, seen, distance, tangential)
     class(film_law_t), intent(in) :: film
     type(asperities_t), intent(in) :: rough
@@ -62,8 +62,8 @@ contains
     end associate
   end subroutine see_gap
 
-  !> Derivatives of the whole force and moment on the pin (rows F_x, F_y, moment) by e_x, e_y, e_x', e_y' and the pin's speed (columns),
-  !> by central differences.
+  !> Derivatives of the whole force and moment on the pin (rows F_x, F_y, moment) by e_x, e_y, e_x', e_y' and the pin's speed
+  !> (columns), by central differences.
   pure subroutine mixed_derivatives(film, rough, pin_radius, motion, derivatives)
     class(film_law_t), intent(in) :: film
     type(asperities_t), intent(in) :: rough

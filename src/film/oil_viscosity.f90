@@ -1,8 +1,9 @@
 !> The viscosity of an oil at the temperature of the film, from two that its data sheet gives.
 !>
 !> walther (ASTM D341): lg lg Z = A - B lg T, Z = nu + 0.7 + exp(-1.47 - 1.84 nu - 0.51 nu^2), nu in mm^2/s, T in K, for 0.21 mm^2/s
-!> and more. vogel: nu = a exp(b/(T - T0)), T0 = 178.15 K (-95 degrees C) unless given (Cameron 1966). The density follows the temperature
-!> as that of lubricating oils (ASTM D1250, table 54D): rho = rho_15 exp(-k (1 + 0.8 k)), k = 0.6278 (T - 288.15)/rho_15 in kg/m^3.
+!> and more. vogel: nu = a exp(b/(T - T0)), T0 = 178.15 K (-95 degrees C) unless given (Cameron 1966). The density follows the
+!> temperature as that of lubricating oils (ASTM D1250, table 54D): rho = rho_15 exp(-k (1 + 0.8 k)), k = 0.6278 (T - 288.15)/rho_15
+!> in kg/m^3.
 module oil_viscosity
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t
@@ -57,8 +58,8 @@ contains
     if (allocated(self%law)) is_known = self%law /= 'given'
   end function is_known
 
-  !> What does not fit between the parameters of an oil: the key of the wrong one and what is wanted of it. An empty key means that all
-  !> is well.
+  !> What does not fit between the parameters of an oil: the key of the wrong one and what is wanted of it. An empty key means that
+  !> all is well.
   pure subroutine conflict(self, key, wanted)
     class(oil_t), intent(in) :: self
     character(len=:), allocatable, intent(out) :: key, wanted

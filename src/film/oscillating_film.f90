@@ -1,8 +1,8 @@
 !> The oscillating film (5.1-5.9, after Gandara 2006 and Bannwart et al. 2010): a long bearing, full film, wedge and fluid
 !> inertia, no squeeze. The pin's surface moves with the real part of a phasor U that turns at the crank's frequency w.
 !> It carries no load along the line of centres: only forces along the tangent, and the shear's moment. Without squeeze it does not
-!> resist the motion of the pin's centre: where that runs along the film faster than half the surface of the pin, the film gives energy
-!> to the bodies instead of taking it.
+!> resist the motion of the pin's centre: where that runs along the film faster than half the surface of the pin, the film gives
+!> energy to the bodies instead of taking it.
 module oscillating_film
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi, two_pi

@@ -125,7 +125,8 @@ contains
 
   !> (5.34-5.37), (5.36) with its sign corrected unless `as_printed`. With S = sqrt((1-eps^2)((eps W)^2 + 4 eps_dot^2)),
   !> |eps_dot| k eps = S/2 and both quotients of k are (S + 6 eps max(eps_dot, 0))/(S + 3 eps |eps_dot|), so that nothing
-  !> is singular at eps = 0 or eps_dot = 0. The theory has pressure only; the moment is that of `shear_moment`, where it is asked for.
+  !> is singular at eps = 0 or eps_dot = 0. The theory has pressure only; the moment is that of `shear_moment`, where it is asked
+  !> for.
   pure subroutine film_force(self, motion, force, moment)
     class(pinkus_sternlicht_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion

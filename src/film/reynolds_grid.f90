@@ -34,8 +34,8 @@ module reynolds_grid
 
 contains
 
-  !> The grid of n (even, >= 8) times m (>= 2) nodes for a film of the thickness `gap` = 1 - eps (0 to 1, over c) where it is thinnest.
-  !> Its nodes round the film are a part `shift` (0 to 1) of their distance further on than those of an unshifted one.
+  !> The grid of n (even, >= 8) times m (>= 2) nodes for a film of the thickness `gap` = 1 - eps (0 to 1, over c) where it is
+  !> thinnest. Its nodes round the film are a part `shift` (0 to 1) of their distance further on than those of an unshifted one.
   pure function new_reynolds_grid(n, m, gap, half_length, shift) result(grid)
     integer, intent(in) :: n, m
     real(dp), intent(in) :: gap, half_length, shift

@@ -39,10 +39,10 @@ contains
     wanted = 'none is for the variants table and direct: of the short bearing the positive pressure acts'
   end subroutine conflict
 
-  !> P = 6 cos(phi - alpha) (lambda^2 - zeta^2)/H^3 where cos(phi - alpha) > 0, from phi = alpha - pi/2 to alpha + pi/2. The force is
-  !> made of the integrals of cos^2 phi, cos phi sin phi and sin^2 phi over H^3 (Booker 1965). The second one is
-  !> 2 eps sin^3 alpha/(1 - eps^2 sin^2 alpha)^2. The others are sums of parts beyond an angle (`parts_beyond`): of the film that is left,
-  !> on both sides of its thickest place; or the rest of the whole circle, (1 + 2 eps^2) pi/w^5 and pi/w^3, w = sqrt(1 - eps^2). So
+  !> P = 6 cos(phi - alpha) (lambda^2 - zeta^2)/H^3 where cos(phi - alpha) > 0, from phi = alpha - pi/2 to alpha + pi/2. The force
+  !> is made of the integrals of cos^2 phi, cos phi sin phi and sin^2 phi over H^3 (Booker 1965). The second one is 2 eps sin^3
+  !> alpha/(1 - eps^2 sin^2 alpha)^2. The others are sums of parts beyond an angle (`parts_beyond`): of the film that is left, on
+  !> both sides of its thickest place; or the rest of the whole circle, (1 + 2 eps^2) pi/w^5 and pi/w^3, w = sqrt(1 - eps^2). So
   !> nothing cancels next to the wall, where these integrals grow as w^-5 and those of a film that is left do not.
   pure subroutine reduced_force(self, eps_squared, b, t, radial, tangential)
     class(short_bearing_t), intent(in) :: self
@@ -70,8 +70,8 @@ contains
   end subroutine reduced_force
 
   !> The largest of 6 lambda^2 cos(phi - alpha)/H^3, and 4 lambda, over V. At the peak d ln P/dphi = 0, that is
-  !> (1 - eps cos phi) sin(phi - alpha) + 3 eps sin phi cos(phi - alpha) = 0; between the end of the positive arc on the thick film's
-  !> side of the thinnest place and that place, or alpha, there is one.
+  !> (1 - eps cos phi) sin(phi - alpha) + 3 eps sin phi cos(phi - alpha) = 0; between the end of the positive arc on the thick
+  !> film's side of the thinnest place and that place, or alpha, there is one.
   pure subroutine reduced_peak_and_flow(self, eps_squared, b, t, most, flow)
     class(short_bearing_t), intent(in) :: self
     real(dp), intent(in) :: eps_squared, b, t
@@ -123,9 +123,9 @@ contains
     end associate
   end subroutine pressure_field
 
-  !> w^5 and w^3 times the integrals of cos^2 phi/H^3 and sin^2 phi/H^3 from an angle phi to pi. With Sommerfeld's angle as seen from
-  !> the thickest place, tan(delta/2) = kappa cot(phi/2) = y/x, they are those of (2 sin^2(delta/2) - gap)^2 and sin^2(delta) from 0 to
-  !> delta; below one radian as power series, since their closed forms cancel there.
+  !> w^5 and w^3 times the integrals of cos^2 phi/H^3 and sin^2 phi/H^3 from an angle phi to pi. With Sommerfeld's angle as seen
+  !> from the thickest place, tan(delta/2) = kappa cot(phi/2) = y/x, they are those of (2 sin^2(delta/2) - gap)^2 and sin^2(delta)
+  !> from 0 to delta; below one radian as power series, since their closed forms cancel there.
   pure function parts_beyond(y, x, gap) result(parts)
     real(dp), intent(in) :: y, x   !! >= 0, not both 0
     real(dp), intent(in) :: gap    !! 1 - eps

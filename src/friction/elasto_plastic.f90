@@ -9,8 +9,8 @@ module elasto_plastic
   private
   public :: elasto_plastic_t
 
-  !> z' = v [1 - a(z, v) z sign(v)/z_ss], z_ss = g(v)/s_0. The share a that gives way is 0 up to |z| = z_ba = k c_f/s_0, and where the
-  !> bristles unbend (v z <= 0), 1 from |z| = z_ss on, and half a period of a sine between.
+  !> z' = v [1 - a(z, v) z sign(v)/z_ss], z_ss = g(v)/s_0. The share a that gives way is 0 up to |z| = z_ba = k c_f/s_0, and where
+  !> the bristles unbend (v z <= 0), 1 from |z| = z_ss on, and half a period of a sine between.
   type, extends(bristle_law_t) :: elasto_plastic_t
     real(dp) :: breakaway_ratio = 0.7_dp   !! k [-], 0 to less than 1
   contains

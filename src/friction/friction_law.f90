@@ -34,7 +34,7 @@ module friction_law
       import :: friction_law_t, dp
       class(friction_law_t), intent(in) :: self
       real(dp), value, intent(in) :: sliding_speed   !! material sliding speed of the pin surface along t [m/s]
-      integer, value, intent(in) :: direction        !! sign of sliding of the current motion: -1 or +1 (used by set-valued laws only)
+      integer, value, intent(in) :: direction        !! sign of sliding of the current motion: -1 or +1 (for set-valued laws)
       real(dp) :: ratio
     end function friction_ratio
   end interface

@@ -1,11 +1,11 @@
-!> How far a run can be believed: it is run again at a hundredth of its tolerance, and at that with another method, and compared with
-!> both up to where they part.
+!> How far a run can be believed: it is run again at a hundredth of its tolerance, and at that with another method, and compared
+!> with both up to where they part.
 !>
-!> The error of a row is the difference from the closer run, with a margin for what that errs itself and for what happens between the
-!> rows. A run is certified up to where the error of any coordinate or speed, so far, exceeds 1e-3 of its range, and not beyond where the
-!> run with the other method differs from the closer one by that. (The error itself is not taken from that run, which at the same tolerance
-!> may well be the worst of the three.) Beyond, means over whole revolutions are compared. Figures of the whole run, largest forces and the
-!> like, are compared too, wherever the certified time ends.
+!> The error of a row is the difference from the closer run, with a margin for what that errs itself and for what happens between
+!> the rows. A run is certified up to where the error of any coordinate or speed, so far, exceeds 1e-3 of its range, and not beyond
+!> where the run with the other method differs from the closer one by that. (The error itself is not taken from that run, which at
+!> the same tolerance may well be the worst of the three.) Beyond, means over whole revolutions are compared. Figures of the whole
+!> run, largest forces and the like, are compared too, wherever the certified time ends.
 module certificate
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
@@ -20,7 +20,7 @@ module certificate
   public :: certificate_t, make_certificate
 
   real(dp), parameter :: limit = 1e-3_dp              !! error of a certified state, over its range
-  real(dp), parameter :: margin = 2.5_dp              !! for what the closer run errs itself, half as much at worst, and between the rows
+  real(dp), parameter :: margin = 2.5_dp              !! for the error of the closer run, half as large at worst, and between rows
   real(dp), parameter :: closer = 1e-2_dp             !! tolerance of the runs to compare with, over that of the run
   real(dp), parameter :: finest_tolerance = 1e-13_dp  !! that they can have
   real(dp), parameter :: finest_table = 9e-9_dp       !! tolerance at which the tables of films are finest
@@ -48,7 +48,8 @@ module certificate
     real(dp) :: figure(n_figures) = 0            !! of the whole run
     real(dp) :: figure_difference(n_figures) = 0 !! largest one of the other runs
     type(column_list_t) :: list
-    real(dp), allocatable :: range(:), error(:), rms(:)   !! of each column: range over the run; largest error and its mean square up to there
+    real(dp), allocatable :: range(:)             !! of each column over the run
+    real(dp), allocatable :: error(:), rms(:)     !! largest error of each column and its root mean square up to there
   end type certificate_t
 
 contains
@@ -228,8 +229,8 @@ contains
     certificate%rms = sqrt(certificate%rms)
   end subroutine find_column_errors
 
-  !> Impacts of the run up to there, and those that the closer run has at the same pin, in the same order and at the same time: closer
-  !> than half the way to the next one.
+  !> Impacts of the run up to there, and those that the closer run has at the same pin, in the same order and at the same time:
+  !> closer than half the way to the next one.
   subroutine match_impacts(own, closer_run, certificate)
     type(witness_t), intent(in) :: own, closer_run
     type(certificate_t), intent(inout) :: certificate

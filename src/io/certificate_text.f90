@@ -14,8 +14,8 @@ module certificate_text
 
 contains
 
-  !> NAME.certificate.csv: of every column its range over the run, and up to the certified time its largest error, the root of its mean
-  !> square, and the largest one over the range.
+  !> NAME.certificate.csv: of every column its range over the run, and up to the certified time its largest error, the root of its
+  !> mean square, and the largest one over the range.
   function certificate_table(certificate) result(text)
     type(certificate_t), intent(in) :: certificate
     character(len=:), allocatable :: text

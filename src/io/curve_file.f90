@@ -1,5 +1,5 @@
-!> Measured curves from CSV files: a header that names two columns with their units, such as crank_angle[deg],pressure[bar], and a row
-!> of two numbers for each point. Lines that are empty or begin with # are passed over.
+!> Measured curves from CSV files: a header that names two columns with their units, such as crank_angle[deg],pressure[bar], and a
+!> row of two numbers for each point. Lines that are empty or begin with # are passed over.
 module curve_file
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi

@@ -13,8 +13,8 @@ module film_file
 
 contains
 
-  !> One row a node of the film: in the bearing's frame the angle from x towards y, and how far from the middle. The other half of the
-  !> bore has the same pressures. Error: the file cannot be written (status_output).
+  !> One row a node of the film: in the bearing's frame the angle from x towards y, and how far from the middle. The other half of
+  !> the bore has the same pressures. Error: the file cannot be written (status_output).
   subroutine write_film_file(path, fields, error)
     character(len=*), intent(in) :: path
     type(film_field_t), intent(in) :: fields(:)

@@ -1,9 +1,9 @@
-!> The tables of film laws that take long to make: kept in the user's cache folder, or in a file that the case names, from one run to
-!> the next.
+!> The tables of film laws that take long to make: kept in the user's cache folder, or in a file that the case names, from one run
+!> to the next.
 !>
 !> A file holds a line that says what it is, the key of the table, the table as an archive, and a checksum of all that. One that is
-!> damaged, or that another version of the program wrote, is made again; one that cannot be written into the cache is done without. A file
-!> that a case names is replaced only if it is such a table, of whatever film.
+!> damaged, or that another version of the program wrote, is made again; one that cannot be written into the cache is done without.
+!> A file that a case names is replaced only if it is such a table, of whatever film.
 module film_tables
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_integration, status_case_file

@@ -208,8 +208,8 @@ contains
     end subroutine add
   end function summary_table
 
-  !> The phases of the joints with clearance in a mode, the piston pin's first: its digits to the base of three; before them that of a
-  !> guide with clearance, which counts last.
+  !> The phases of the joints with clearance in a mode, the piston pin's first: its digits to the base of three; before them that of
+  !> a guide with clearance, which counts last.
   function phases_of(case, mode) result(text)
     type(case_t), intent(in) :: case
     integer, intent(in) :: mode   !! from 0 on

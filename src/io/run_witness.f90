@@ -39,7 +39,8 @@ module run_witness
 
 contains
 
-  !> Run a case into memory; `is_done` is false where it does not come to its end, or needs more than `most_evaluations` (0: no limit).
+  !> Run a case into memory; `is_done` is false where it does not come to its end, or needs more than `most_evaluations` (0: no
+  !> limit).
   subroutine run(case, list, most_evaluations, witness, error)
     type(case_t), intent(in) :: case
     type(column_list_t), intent(in) :: list

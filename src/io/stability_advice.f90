@@ -1,5 +1,5 @@
-!> What a run should be told that the stability of Adams bounds, not its accuracy: while it goes, as soon as it is plain that it will
-!> take long, or else when it has ended.
+!> What a run should be told that the stability of Adams bounds, not its accuracy: while it goes, as soon as it is plain that it
+!> will take long, or else when it has ended.
 module stability_advice
   use gudgeon_kinds, only: dp
   use ode_method, only: step_statistics_t
@@ -26,8 +26,8 @@ module stability_advice
 
 contains
 
-  !> A run that is bound by stability has reached `time` of `end_time` [s] in `elapsed` seconds. Once, where there is long to go, try
-  !> what method auto needs up to here, and say so on standard error.
+  !> A run that is bound by stability has reached `time` of `end_time` [s] in `elapsed` seconds. Once, where there is long to go,
+  !> try what method auto needs up to here, and say so on standard error.
   subroutine consider(self, time, end_time, elapsed, statistics, progress)
     class(stability_advice_t), intent(inout) :: self
     real(dp), intent(in) :: time, end_time, elapsed

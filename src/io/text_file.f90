@@ -13,8 +13,8 @@ module text_file
 
 contains
 
-  !> A text file of the user: all bytes of a regular file, or of the standard input under the name /dev/stdin. One of more than `most` MB is not the `kind`
-  !> of file that it should be.
+  !> A text file of the user: all bytes of a regular file, or of the standard input under the name /dev/stdin. One of more than
+  !> `most` MB is not the `kind` of file that it should be.
   subroutine read_text_file(path, most, kind, text, error)
     character(len=*), intent(in) :: path, kind
     integer, intent(in) :: most                        !! [MB], up to 2000

@@ -94,8 +94,8 @@ module clearance_joint
   end type clearance_joint_t
 
   interface
-    !> Derivatives of the force and the moment on the journal (rows F_x, F_y, moment) by e_x, e_y, e_x', e_y' and the journal's speed
-    !> (columns), for implicit integration. Surfaces that stick have none.
+    !> Derivatives of the force and the moment on the journal (rows F_x, F_y, moment) by e_x, e_y, e_x', e_y' and the journal's
+    !> speed (columns), for implicit integration. Surfaces that stick have none.
     pure module subroutine slopes(self, bodies, motion, joint, own, derivatives)
       class(clearance_joint_t), intent(in) :: self
       type(bodies_t), intent(in) :: bodies
@@ -106,8 +106,8 @@ module clearance_joint
     end subroutine slopes
 
     !> What the states of the friction law or of an elastic film add to `slopes`: derivatives of the force and the moment on the
-    !> journal (rows F_x, F_y, moment) by these states, and of the states' rates by e_x, e_y, e_x', e_y', the journal's speed and the
-    !> states (columns).
+    !> journal (rows F_x, F_y, moment) by these states, and of the states' rates by e_x, e_y, e_x', e_y', the journal's speed and
+    !> the states (columns).
     pure module subroutine state_slopes(self, bodies, motion, joint, own, by_states, of_rates)
       class(clearance_joint_t), intent(in) :: self
       type(bodies_t), intent(in) :: bodies
@@ -121,8 +121,9 @@ module clearance_joint
 contains
 
   !> Claim the eccentricity, the states of the friction law and its work. The eccentricity is measured by the clearance, its rate by
-  !> the clearance in the time of one radian. Measured (scripts/compare_adams.sh, simulation IV, c = 20 um): at the relative tolerance
-  !> 1e-4 the pin is off by 4e-5 c at the end, at 1e-6 by 4e-9 c, at 1e-12 by 1e-14 c; in (q, A, x) rounding alone makes 4e-12 c.
+  !> the clearance in the time of one radian. Measured (scripts/compare_adams.sh, simulation IV, c = 20 um): at the relative
+  !> tolerance 1e-4 the pin is off by 4e-5 c at the end, at 1e-6 by 4e-9 c, at 1e-12 by 1e-14 c; in (q, A, x) rounding alone makes
+  !> 4e-12 c.
   !>
   !> A journal may have a speed of its own where the crank hardly turns: see `own_speed`. The rate is measured by a hundredth of
   !> that in which it crosses the clearance: at first a journal at rest is slow, and it may stay so.
@@ -188,8 +189,8 @@ contains
       self%start_eccentricity - self%start_deflection
   end subroutine put_start
 
-  !> Rates of the states of an elastic film; of those of its friction law and of the work of friction: 0 while journal and bearing are
-  !> apart.
+  !> Rates of the states of an elastic film; of those of its friction law and of the work of friction: 0 while journal and bearing
+  !> are apart.
   pure subroutine put_own_rates(self, motion, own, dydt)
     class(clearance_joint_t), intent(in) :: self
     type(joint_motion_t), intent(in) :: motion
@@ -391,8 +392,8 @@ contains
       own%moment = self%elastic%moment(self%film, self%motion_of_film(bodies, motion, joint), -own%film)
   end subroutine find_elastic
 
-  !> The thickness of an elastic film, which is not that of its pin's place, in the terms of a penetration. Its rate has no part of the
-  !> turning.
+  !> The thickness of an elastic film, which is not that of its pin's place, in the terms of a penetration. Its rate has no part of
+  !> the turning.
   pure subroutine find_elastic_thickness(self, joint)
     type(clearance_joint_t), intent(in) :: self
     type(joint_motion_t), intent(inout) :: joint

@@ -1,14 +1,14 @@
 !> A film between elastic walls, in its simplest form: the walls are a spring in series with the film.
 !>
-!> The film sees its own eccentricity e_f, a state of the joint; the rest of the pin's, d = e - e_f, is what the walls give, and their
-!> force f(|d|) d/|d| is the load on the film, f the elastic force of a contact geometry. The film lets e_f go with the velocity that
-!> carries this load (`film_mobility`):
+!> The film sees its own eccentricity e_f, a state of the joint; the rest of the pin's, d = e - e_f, is what the walls give, and
+!> their force f(|d|) d/|d| is the load on the film, f the elastic force of a contact geometry. The film lets e_f go with the
+!> velocity that carries this load (`film_mobility`):
 !>
 !>     e_f' = v*(e_f, load) + (omega/2) z x e_f
 !>
-!> Nothing is singular where |e| passes the clearance, there is no equation to be solved for the force, and the work on the joint is what
-!> the film takes, load . e_f', and what the walls store. With `pressure_viscosity` the whole film has the viscosity
-!> mu exp(alpha p) (Barus) of its mean pressure p = load/(2 R L).
+!> Nothing is singular where |e| passes the clearance, there is no equation to be solved for the force, and the work on the joint is
+!> what the film takes, load . e_f', and what the walls store. With `pressure_viscosity` the whole film has the viscosity mu
+!> exp(alpha p) (Barus) of its mean pressure p = load/(2 R L).
 module elastic_film
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t
@@ -120,7 +120,8 @@ contains
     call driven_velocity(film, film_eccentricity, load/self%thickening(load), velocity)
   end function velocity
 
-  !> Moment of the film on the pin about its centre [N m]; about the film's own centre it is the same, since the load goes through both.
+  !> Moment of the film on the pin about its centre [N m]; about the film's own centre it is the same, since the load goes through
+  !> both.
   pure real(dp) function moment(self, film, motion, load)
     class(elastic_film_t), intent(in) :: self
     class(film_law_t), intent(in) :: film

@@ -1,5 +1,5 @@
-!> What a film does in a joint beyond its force: moment, power, largest pressure, flow out of its ends. It takes work that the right-hand
-!> side does not need: it is found where it is requested.
+!> What a film does in a joint beyond its force: moment, power, largest pressure, flow out of its ends. It takes work that the
+!> right-hand side does not need: it is found where it is requested.
 module film_figures
   use gudgeon_kinds, only: dp
   use film_law, only: film_motion_t

@@ -63,8 +63,9 @@ contains
     end associate
   end subroutine contact_event
 
-  !> Event functions of the kinks of a weighted transition, and their rates: half of what e . e is beyond the kink [m^2], signed so that the
-  !> passage to the other side is from negative to positive. (At the end of a smooth share it is the bend that jumps; the event costs no more than it spares.)
+  !> Event functions of the kinks of a weighted transition, and their rates: half of what e . e is beyond the kink [m^2], signed so
+  !> that the passage to the other side is from negative to positive. (At the end of a smooth share it is the bend that jumps; the
+  !> event costs no more than it spares.)
   pure subroutine transition_events(joint, y, g, g_rate)
     type(clearance_joint_t), intent(in) :: joint
     real(dp), intent(in) :: y(*)
@@ -191,8 +192,8 @@ contains
     joint%phase = joint%phase_apart()
   end subroutine end_contact
 
-  !> Set-valued friction, from an evaluation as if the surfaces stuck: where the sliding speed is not zero it tells the direction. At
-  !> zero (where it `may_slide` at the beginning of a contact it is taken as it is) the surfaces stick if friction can hold them
+  !> Set-valued friction, from an evaluation as if the surfaces stuck: where the sliding speed is not zero it tells the direction.
+  !> At zero (where it `may_slide` at the beginning of a contact it is taken as it is) the surfaces stick if friction can hold them
   !> and slide against it if not.
   pure subroutine choose_sliding(joint, motion, own, was_sliding, may_slide)
     type(clearance_joint_t), intent(inout) :: joint

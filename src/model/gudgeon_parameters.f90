@@ -28,7 +28,7 @@ module gudgeon_parameters
     character(len=:), allocatable :: choice  !! the key that names the laws which have this one; not allocated: all have
     character(len=:), allocatable :: laws    !! those laws, separated by a comma and a blank
     character(len=170) :: description = ''
-    character(len=12) :: family = ''         !! of the keys of its group that say one thing in different ways: one alone may be given
+    character(len=12) :: family = ''         !! of the keys of its group that say one thing in different ways: one may be given
     character(len=32) :: beside = ''         !! the one of them that may stand beside this one, as a bound
     logical :: only_here = .false.           !! must not be given where a law is chosen that does not have it
   end type key_t

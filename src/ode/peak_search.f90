@@ -34,8 +34,8 @@ module peak_search
 contains
 
   !> Whether the quantity may come above `known` between two instants where its values and slopes are given, and, unless it rises at
-  !> the first and falls at the second, above its values there too. It stays below the cubic through them in Bernstein form, with its
-  !> deviation from the straight line counted twice.
+  !> the first and falls at the second, above its values there too. It stays below the cubic through them in Bernstein form, with
+  !> its deviation from the straight line counted twice.
   pure logical function may_peak(t_left, left, left_slope, t_right, right, right_slope, known)
     real(dp), intent(in) :: t_left, left, left_slope, t_right, right, right_slope, known
     real(dp), parameter :: third = 1/3.0_dp

@@ -10,8 +10,8 @@ module crank_passage
 
 contains
 
-  !> The first time from t_from to t_to, both inside the last step, at which the crank is at `target` or beyond, where it is beyond at
-  !> t_to; where it is beyond already at t_from, that. The state there is left in y.
+  !> The first time from t_from to t_to, both inside the last step, at which the crank is at `target` or beyond, where it is beyond
+  !> at t_to; where it is beyond already at t_from, that. The state there is left in y.
   subroutine find_passage(method, scene, target, sense, t_from, t_to, closeness, t, y)
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene

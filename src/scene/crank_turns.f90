@@ -1,8 +1,8 @@
 !> A run that ends when the crank has turned by itself so many times, wherever that is: counted by its angle, not by the time.
 !>
-!> The crank must not stop or turn back on its way. Its sense is that of its start speed; of a crank that starts from rest, the sense in
-!> which it has left its start by one degree (by half of what is wanted, where that is less). A crank that only creeps does neither:
-!> how long it may take for one turn is its `turn_patience_t`.
+!> The crank must not stop or turn back on its way. Its sense is that of its start speed; of a crank that starts from rest, the
+!> sense in which it has left its start by one degree (by half of what is wanted, where that is less). A crank that only creeps does
+!> neither: how long it may take for one turn is its `turn_patience_t`.
 module crank_turns
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi, degree

@@ -230,8 +230,8 @@ contains
   end function next_strobe
 
   !> The first time in the last step, up to t_to, at which the travel reaches `target`; where it was there before the step, its
-  !> beginning. The state there is left in y. It is that of the interpolant: with the method's own step to there means change by 2e-5
-  !> at most (simulation I from six crank angles, tolerance 1e-4; 2e-6 at 1e-6).
+  !> beginning. The state there is left in y. It is that of the interpolant: with the method's own step to there means change by
+  !> 2e-5 at most (simulation I from six crank angles, tolerance 1e-4; 2e-6 at 1e-6).
   real(dp) function passage(self, method, scene, target, t_to)
     class(cycle_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method

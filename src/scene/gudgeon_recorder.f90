@@ -1,5 +1,5 @@
-!> The observer of a run: samples on a fixed grid of time or of crank angles, events of contact, the figures of the summary and, where they are
-!> asked for, those of each revolution.
+!> The observer of a run: samples on a fixed grid of time or of crank angles, events of contact, the figures of the summary and,
+!> where they are asked for, those of each revolution.
 !>
 !> What belongs to a pin is in its `pin_record`: the piston pin has one, and a crank pin with clearance. Peaks are searched
 !> between accepted points too, and none is below what a row says. The energy is looked at in accepted points.

@@ -51,8 +51,8 @@ module gudgeon_scene
 
   !> A scene as an ode_problem. Of the state it claims the crank angle, unless the crank speed is held; the joints claim their
   !> eccentricities; quadratures are the work of all non-conservative forces and the drive [J] and, where they are requested,
-  !> the measures of the joints: the integrals of the sizes of the forces on the piston pin and on a loose crank pin [N s] and, where
-  !> the work does not tell it, what the joints take from the bodies [J].
+  !> the measures of the joints: the integrals of the sizes of the forces on the piston pin and on a loose crank pin [N s] and,
+  !> where the work does not tell it, what the joints take from the bodies [J].
   type, extends(ode_problem_t) :: scene_t
     type(chain_t) :: chain
     integer :: n_joints = 0         !! with clearance: 0, 1 or 2
@@ -168,8 +168,8 @@ module gudgeon_scene
       class(scene_t), intent(inout) :: self
     end subroutine prepare_start
 
-    !> Where the piston in its bore, the shapes of the rod and the flywheel are, in a scene with elastic members or a guide. `inside` is
-    !> false where they cannot be.
+    !> Where the piston in its bore, the shapes of the rod and the flywheel are, in a scene with elastic members or a guide.
+    !> `inside` is false where they cannot be.
     pure module subroutine place_more_bodies(self, t, y, now, inside)
       class(scene_t), intent(in) :: self
       real(dp), intent(in) :: t, y(self%n)
@@ -183,8 +183,8 @@ module gudgeon_scene
       type(evaluation_t), intent(inout) :: now
     end subroutine load_guide
 
-    !> Add the friction of an ideal guide that depends on the accelerations which it changes, when these are known without it and without
-    !> the friction of surfaces that stick. `inside` is false where it would jam the piston.
+    !> Add the friction of an ideal guide that depends on the accelerations which it changes, when these are known without it and
+    !> without the friction of surfaces that stick. `inside` is false where it would jam the piston.
     pure module subroutine add_guide_friction(self, joints, now, inside)
       class(scene_t), intent(in) :: self
       type(clearance_joint_t), intent(in) :: joints(:)
@@ -203,8 +203,8 @@ module gudgeon_scene
       class(scene_t), intent(inout) :: self
     end subroutine claim_elastic
 
-    !> Frequency with which crank and flywheel of an elastic crankshaft swing against each other about the starting angle [rad/s], with
-    !> ideal joints and a rigid rod.
+    !> Frequency with which crank and flywheel of an elastic crankshaft swing against each other about the starting angle [rad/s],
+    !> with ideal joints and a rigid rod.
     pure real(dp) module function twist_frequency(self)
       class(scene_t), intent(in) :: self
     end function twist_frequency

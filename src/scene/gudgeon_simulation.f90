@@ -32,7 +32,7 @@ module gudgeon_simulation
     type(step_statistics_t) :: statistics
     type(run_figures_t) :: figures
     type(film_field_t), allocatable :: films(:)  !! pressure fields, where the case asks for them
-    real(dp), allocatable :: time_with(:, :)     !! by method auto: time with Adams and with Radau in each mode, (2, 0:highest mode) [s]
+    real(dp), allocatable :: time_with(:, :)     !! method auto: time with Adams, with Radau in each mode, (2, 0:highest mode) [s]
     logical :: can_go_on = .false.               !! stopped from outside or by a limit: the sink was given its state
     logical :: energy_is_poor = .false.          !! done, but with a residual that the user should know of
     type(period_watch_t) :: periods              !! whether the motion repeats, where that was to end the run
@@ -193,8 +193,8 @@ contains
     if (needed > 0) report%auto_saves = real(report%statistics%evaluations, dp)/needed
   end subroutine measure_auto
 
-  !> Evaluations that method auto needs for a case up to a time [s], found by running it without any output; 0 if it does not come there
-  !> in so many steps.
+  !> Evaluations that method auto needs for a case up to a time [s], found by running it without any output; 0 if it does not come
+  !> there in so many steps.
   subroutine try_auto(case, time, max_steps, evaluations)
     type(case_t), intent(in) :: case
     real(dp), intent(in) :: time

@@ -79,7 +79,8 @@ contains
     end select
   end subroutine take_contact
 
-  !> Largest friction over normal force [-] at speeds up to one [m/s], to 2 %: the laws are looked at in steps of a tenth of a speed.
+  !> Largest friction over normal force [-] at speeds up to one [m/s], to 2 %: the laws are looked at in steps of a tenth of a
+  !> speed.
   real(dp) function most_friction(self, highest_speed)
     class(guide_case_t), intent(in) :: self
     real(dp), intent(in) :: highest_speed

@@ -8,7 +8,8 @@
 !> out the difference along the motion itself, which would keep the exponent of a periodic motion of a free crank at 0.
 !>
 !> Both runs are integrated at the tolerance 1e-11; differences are 1e-7 of the natural sizes of the state. A quarter in which a
-!> difference shrinks by more than a factor of some 1e3 is lost in the errors of the integration: exponents below -30 are upper bounds.
+!> difference shrinks by more than a factor of some 1e3 is lost in the errors of the integration: exponents below -30 are upper
+!> bounds.
 module lyapunov
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
@@ -161,8 +162,8 @@ contains
     size_of = norm2(difference/scale)
   end function size_of
 
-  !> Put the other one beside the first: its discrete state too. Where both touch, the speeds of their impacts differ as they did, by
-  !> as much less or more as the states.
+  !> Put the other one beside the first: its discrete state too. Where both touch, the speeds of their impacts differ as they did,
+  !> by as much less or more as the states.
   subroutine put_beside(one, other, at, difference)
     type(companion_t), intent(inout) :: one, other
     integer, intent(in) :: at(:)

@@ -1,11 +1,12 @@
 !> Looks whether the motion repeats: compares the state each time that the crank has made a whole revolution with the states one to
 !> sixteen revolutions before.
 !>
-!> Compared are positions, rates and first-order states, but for the crank angle and the quadratures, each over its range in the last
-!> revolutions. The motion has the period p, the shortest one, when for three periods on end every state differs from that p revolutions
-!> before by the tolerance at most, and when what is still to come is no more: differences that shrink by the factor q from period to
-!> period leave d q/(1 - q). A motion that creeps towards its end is so not taken for one that is there. Differences below a hundredth
-!> of the tolerance may do as they like: they are those of the integration. Periods are multiples of that of the gas.
+!> Compared are positions, rates and first-order states, but for the crank angle and the quadratures, each over its range in the
+!> last revolutions. The motion has the period p, the shortest one, when for three periods on end every state differs from that p
+!> revolutions before by the tolerance at most, and when what is still to come is no more: differences that shrink by the factor q
+!> from period to period leave d q/(1 - q). A motion that creeps towards its end is so not taken for one that is there. Differences
+!> below a hundredth of the tolerance may do as they like: they are those of the integration. Periods are multiples of that of the
+!> gas.
 module period_watch
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
@@ -94,8 +95,8 @@ contains
     end do
   end subroutine take_point
 
-  !> The solution is final up to t_to, inside the last step: close the revolutions that end before, and find out whether the run is to
-  !> end (`has_ended`), or its window to begin (`window_start`).
+  !> The solution is final up to t_to, inside the last step: close the revolutions that end before, and find out whether the run is
+  !> to end (`has_ended`), or its window to begin (`window_start`).
   subroutine follow(self, method, scene, t_to)
     class(period_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method

@@ -1,5 +1,5 @@
-!> How long a run lasts: to the end that the integrator is given, or until the motion repeats; and what is to be found out of the motion
-!> that it has reached.
+!> How long a run lasts: to the end that the integrator is given, or until the motion repeats; and what is to be found out of the
+!> motion that it has reached.
 module run_length
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t

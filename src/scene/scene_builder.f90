@@ -34,7 +34,7 @@ module scene_builder
   !> What grows without bound is held no closer than this share of itself, its rounding.
   real(dp), parameter :: rounding_share = 1e-14_dp
 
-  real(dp), parameter :: first_angle = 0.1_dp   !! most that the crank may turn in the first step, which could else be revolutions [rad]
+  real(dp), parameter :: first_angle = 0.1_dp   !! largest turn of the crank in the first step [rad]
   real(dp), parameter :: most_patience = 100   !! with a crank that slows
   real(dp), parameter :: longest_chatter = 1e-8_dp   !! [s]; a crank that hardly turns has no time scale for its pin
 

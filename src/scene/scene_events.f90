@@ -220,8 +220,8 @@ contains
     end do
   end procedure prepare_start
 
-  !> Which corners of the skirt touch at t = 0: those in the wall, and those exactly at it that continue into it or, at rest, are pressed
-  !> into it.
+  !> Which corners of the skirt touch at t = 0: those in the wall, and those exactly at it that continue into it or, at rest, are
+  !> pressed into it.
   subroutine prepare_corners(scene, y)
     class(scene_t), intent(inout) :: scene
     real(dp), intent(in) :: y(:)
@@ -243,8 +243,8 @@ contains
     end do
   end subroutine prepare_corners
 
-  !> The walls of elastic films start with the deflection that keeps the pin from being accelerated in its bearing, as in an ideal joint: a
-  !> pin on walls without load would bounce on them. But the film keeps a tenth of its thickness.
+  !> The walls of elastic films start with the deflection that keeps the pin from being accelerated in its bearing, as in an ideal
+  !> joint: a pin on walls without load would bounce on them. But the film keeps a tenth of its thickness.
   subroutine load_walls(scene)
     class(scene_t), intent(inout) :: scene
     real(dp), parameter :: trial = 1e-8_dp   !! [m]

@@ -46,9 +46,9 @@ contains
     end if
   end procedure load_guide
 
-  !> F = mu |N| of an ideal guide, where N = N_0 + N_1 F depends on the accelerations, in which all is linear: N_0 is that without F, N_1
-  !> is found by a trial, and N = N_0/(1 - mu N_1 sign N_0). While |mu N_1| < 1 that is the one solution, and the other sign has none;
-  !> from there on the piston would jam.
+  !> F = mu |N| of an ideal guide, where N = N_0 + N_1 F depends on the accelerations, in which all is linear: N_0 is that without
+  !> F, N_1 is found by a trial, and N = N_0/(1 - mu N_1 sign N_0). While |mu N_1| < 1 that is the one solution, and the other sign
+  !> has none; from there on the piston would jam.
   module procedure add_guide_friction
     type(loads_t) :: unit
     type(accelerations_t) :: change
@@ -69,8 +69,8 @@ contains
     if (inside) call add_friction(self, ratio*abs(normal/(1 - ratio*slope*sign(1.0_dp, normal))), change, moment, now)
   end procedure add_guide_friction
 
-  !> Whether the force between an ideal guide and the piston does not depend on the accelerations: that of a piston pin with clearance
-  !> whose surfaces do not stick.
+  !> Whether the force between an ideal guide and the piston does not depend on the accelerations: that of a piston pin with
+  !> clearance whose surfaces do not stick.
   pure logical function normal_is_known(scene)
     class(scene_t), intent(in) :: scene
     normal_is_known = scene%chain%is_loose(piston_pin) .and. .not. scene%may_stick

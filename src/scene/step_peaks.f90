@@ -181,8 +181,8 @@ contains
   end subroutine meet_beginning
 
   !> Whether a force, whose slopes are not known, may come above what is known, inside the piece up to t. It may not where it is too
-  !> far below at both ends for its changes in this piece and the one before, nor where the parabola through three points, with twice
-  !> its bend, only rises or only falls.
+  !> far below at both ends for its changes in this piece and the one before, nor where the parabola through three points, with
+  !> twice its bend, only rises or only falls.
   pure logical function may_exceed(self, i, t, value, known)
     class(peak_watch_t), intent(in) :: self
     integer, intent(in) :: i

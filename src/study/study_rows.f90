@@ -1,5 +1,5 @@
-!> What is written of a run of a study: its row among all runs, one for each of its revolutions, one for each strobe. The first row of
-!> each file, which names its columns, is put together by the same procedure as the others: name and value stand in one place.
+!> What is written of a run of a study: its row among all runs, one for each of its revolutions, one for each strobe. The first row
+!> of each file, which names its columns, is put together by the same procedure as the others: name and value stand in one place.
 module study_rows
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
@@ -74,8 +74,8 @@ contains
     self%has_motion = looks_at_motion(keys, base)
   end subroutine choose
 
-  !> Whether runs of a study may have clearance at the crank pin, and so its columns: those of the base case do, or a parameter is of
-  !> that joint.
+  !> Whether runs of a study may have clearance at the crank pin, and so its columns: those of the base case do, or a parameter is
+  !> of that joint.
   pure logical function may_have_crank_pin(keys, base)
     character(len=*), intent(in) :: keys(:)   !! of the parameters
     type(case_t), intent(in) :: base

@@ -24,7 +24,7 @@ module study_sweep
   private
   public :: sweep_t, read_sweep, check_rows, study_checksum, file_cycles, file_strobes, file_runs
 
-  integer, parameter :: file_cycles = 1, file_strobes = 2, file_runs = 3   !! of a sweep's files, the first two where they are wanted
+  integer, parameter :: file_cycles = 1, file_strobes = 2, file_runs = 3   !! of a sweep's files, two where they are wanted
   integer, parameter :: most_checked = 100000   !! runs of a design that a check looks at
 
   !> A study under way, shared by the threads that run it.

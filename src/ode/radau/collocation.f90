@@ -28,7 +28,7 @@ module collocation
   integer, parameter :: most_iterations = 10   !! of Newton's method in a step
   integer, parameter :: most_halvings = 8      !! of one Newton step that leaves the model
   real(dp), parameter :: least_contraction = 1e-3_dp   !! where one iteration was enough to tell none
-  real(dp), parameter :: least_trust = 0.03_dp   !! in the contraction of the step before: a contact that begins may contract far less
+  real(dp), parameter :: least_trust = 0.03_dp   !! in the contraction of the last step: a contact that begins may contract far less
 
   type :: collocation_t
     type(radau_formula_t) :: formula(n_formulas)

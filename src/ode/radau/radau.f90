@@ -100,8 +100,8 @@ module radau
       real(dp), intent(in) :: x(:)
     end function scaled_norm
 
-    !> How small the rest of Newton's iteration must be, relative to the inner tolerance: twice what Hairer & Wanner ask, which saves
-    !> films 2 to 6 % of their evaluations at equal error.
+    !> How small the rest of Newton's iteration must be, relative to the inner tolerance: twice what Hairer & Wanner ask, which
+    !> saves films 2 to 6 % of their evaluations at equal error.
     pure real(dp) module function newton_goal(self)
       class(radau_t), intent(in) :: self
     end function newton_goal
@@ -227,9 +227,9 @@ contains
 
   !> The Jacobian of a try is that at three quarters of it, on the last step's polynomial continued: the stiffness of a film changes
   !> within a step, and with the Jacobian of a point among the stages Newton's method contracts faster than with that of the
-  !> beginning. Measured on seven film scenes: 25 to 30 % fewer evaluations and Jacobians at equal error of 1e-4 to 1e-8; at half of the
-  !> step, or at its end, 17 to 20 %. After a start, and where f is not defined on the way (all derivatives are 0), it is that of the
-  !> beginning.
+  !> beginning. Measured on seven film scenes: 25 to 30 % fewer evaluations and Jacobians at equal error of 1e-4 to 1e-8; at half of
+  !> the step, or at its end, 17 to 20 %. After a start, and where f is not defined on the way (all derivatives are 0), it is that
+  !> of the beginning.
   subroutine find_jacobian(self, problem)
     class(radau_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
