@@ -18,6 +18,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Callable
 
@@ -30,6 +31,8 @@ from scene_judge.verdict import judge_files, judge_scene, summary_of  # noqa: E4
 
 assertions = Assertions()
 check = assertions.check
+
+Finding = tuple[bool, str, str]   # whether an assertion holds, its name, what was found instead
 
 SMALL_TABLE = {"lubrication.table_points": "33", "lubrication.film_points": "64"}
 OIL = {f"lubrication.{key}": value for key, value in {"viscosity": "0", "viscosity_law": "'walther'", "temperature": "350", "density": "870",
@@ -242,7 +245,7 @@ LIARS = [
     ("a heavier rod between two loose pins", "both", "mechanism.rod_mass", "0.2101", "energy column"),
     ("less gravity", "film", "mechanism.gravity", "9.8", "Newton, piston"),
     ("a looser tolerance than asked for, in contact", "contact", "integrator.relative_tolerance", "1e-4", "grown tolerances off"),
-    ("a looser tolerance than asked for, in a film", "long steps", "integrator.relative_tolerance", "1e-3", "grown tolerances off"),
+    ("a looser tolerance than asked for, in a film", "long steps", "integrator.relative_tolerance", "1e-2", "grown tolerances off"),
     ("a heavier piston in one method alone", "dry", "mechanism.piston_mass", "0.25", "beyond the horizon"),
 ]
 
@@ -315,18 +318,20 @@ def changed(run: Run, column: str, change: Callable[[float, int], float]) -> Run
     return dataclasses.replace(run, columns=columns)
 
 
-def test_corruptions(program: Path) -> None:
-    """A column is changed: the check that reads it goes red."""
-    runs = {scene: traced(program, scene) for scene in SCENES}
-    for scene, run in runs.items():
-        verdict = judge_files(copy.deepcopy(run))
-        check(not verdict.faults, f"{scene}: sound", "; ".join(verdict.faults))
-        check(verdict.checks > 10 and verdict.energy is not None, f"{scene}: checked", "; ".join(summary_of(verdict)))
-        phases = set(run.columns.get("phase", [0.0]))
-        check(phases == PHASES[scene], f"{scene}: has the phases that it is there for", str(phases))
-    for what, scene, column, change, says in CORRUPTIONS:
-        faults = judge_files(changed(runs[scene], column, change)).faults
-        check(any(says in fault for fault in faults), f"{what}: seen", "; ".join(faults) or "no fault found")
+def corrupted(program: Path, scene: str) -> list[Finding]:
+    """A sound run passes; with a column of it changed, the check that reads it goes red."""
+    found: list[Finding] = []
+    run = traced(program, scene)
+    verdict = judge_files(copy.deepcopy(run))
+    found.append((not verdict.faults, f"{scene}: sound", "; ".join(verdict.faults)))
+    found.append((verdict.checks > 10 and verdict.energy is not None, f"{scene}: checked", "; ".join(summary_of(verdict))))
+    phases = set(run.columns.get("phase", [0.0]))
+    found.append((phases == PHASES[scene], f"{scene}: has the phases that it is there for", str(phases)))
+    for what, where, column, change, says in CORRUPTIONS:
+        if where == scene:
+            faults = judge_files(changed(run, column, change)).faults
+            found.append((any(says in fault for fault in faults), f"{what}: seen", "; ".join(faults) or "no fault found"))
+    return found
 
 
 LIAR = """#!/usr/bin/env python3
@@ -344,23 +349,35 @@ sys.exit(code)
 """
 
 
-def liar(folder: Path, program: Path, key: str, value: str, said: float, once: bool) -> Path:
+def liar(file: Path, program: Path, key: str, value: str, said: float, once: bool) -> Path:
     """A program that runs with one value and says that it ran with another. `once`: not where a tolerance is asked for, as in the
     runs that are compared with."""
-    file = folder / "liar"
     file.write_text(LIAR.format(program=str(program.resolve()), key=key, value=value, said=repr(said), once=once))
     file.chmod(0o755)
     return file
 
 
-def test_liars(program: Path, folder: Path) -> None:
-    """A program with other physics than it says."""
-    for what, scene, key, value, says in LIARS:
-        name, settings = LONG_STEPS if scene == "long steps" else SCENES[scene]
-        case = ROOT / "cases" / f"{name}.nml"
-        said = run_case(program, case, {**settings, "output.ideal_twin": ".false."}).number(key)
-        verdict = judge_scene(liar(folder, program, key, value, said, once="tolerance" in what or "alone" in what), case, settings)
-        check(any(says in fault for fault in verdict.faults), f"a program with {what}: seen", "; ".join(summary_of(verdict)))
+def lied(program: Path, folder: Path, number: int) -> list[Finding]:
+    """A program with other physics than it says is found out."""
+    what, scene, key, value, says = LIARS[number]
+    name, settings = LONG_STEPS if scene == "long steps" else SCENES[scene]
+    case = ROOT / "cases" / f"{name}.nml"
+    said = run_case(program, case, {**settings, "output.ideal_twin": ".false."}).number(key)
+    lies = liar(folder / f"liar{number}", program, key, value, said, once="tolerance" in what or "alone" in what)
+    verdict = judge_scene(lies, case, settings)
+    return [(any(says in fault for fault in verdict.faults), f"a program with {what}: seen", "; ".join(summary_of(verdict)))]
+
+
+def test_judge(program: Path, folder: Path) -> None:
+    """All scenes, corruptions and liars, on all processor cores."""
+    missing = {where for _, where, _, _, _ in CORRUPTIONS} - set(SCENES)
+    check(not missing, "every corruption has its scene", str(missing))
+    with ProcessPoolExecutor() as pool:
+        tasks = [pool.submit(corrupted, program, scene) for scene in SCENES]
+        tasks += [pool.submit(lied, program, folder, number) for number in range(len(LIARS))]
+        for task in tasks:
+            for finding in task.result():
+                check(*finding)
 
 
 def test_mutants(folder: Path, part: str) -> None:
@@ -405,8 +422,7 @@ def main() -> int:
         if options.mutants is not None:
             test_mutants(Path(folder), options.mutants)
         else:
-            test_corruptions(program)
-            test_liars(program, Path(folder))
+            test_judge(program, Path(folder))
     return assertions.report()
 
 

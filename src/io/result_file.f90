@@ -192,7 +192,7 @@ contains
     call self%tell_error(error)
   end subroutine close_result
 
-  !> Leave what is written under the temporary name.
+  !> Leave what is written under the temporary name; a file without any of it is removed.
   subroutine leave(self)
     class(result_file_t), intent(inout) :: self
     integer :: ignored
@@ -200,6 +200,7 @@ contains
     call self%flush()
     call close_file(self%descriptor, ignored)
     self%descriptor = -1
+    if (.not. self%written > 0) call remove_file(self%path//'.part', ignored)
   end subroutine leave
 
   !> Give the file up: nothing of it stays.
