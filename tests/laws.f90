@@ -8,6 +8,7 @@ module laws
   use contact_law, only: contact_law_t
   use friction_law, only: friction_law_t
   use film_law, only: film_law_t
+  use case_checks, only: bodies
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t, key_t
   implicit none
   private
@@ -20,11 +21,6 @@ module laws
   contains
     procedure :: visit
   end type look_up_t
-
-  !> Bodies and a run, with a bearing of 10 mm and a clearance of 20 um.
-  character(len=*), parameter :: bodies = '&mechanism crank_length=0.05 crank_mass=1 crank_inertia=1 rod_length=0.2 '// &
-    'rod_mass=1 rod_inertia=1 piston_mass=1 / &initial crank_speed=100 / &integrator revolutions=1 / '// &
-    '&joint kind=''clearance'' clearance=20e-6 bearing_radius=10e-3 bearing_length=15e-3 /'
 
 contains
 

@@ -10,8 +10,7 @@ module test_asperities
   use mixed_film, only: mixed_forces, mixed_derivatives
   use film_law, only: film_law_t, film_motion_t
   use laws, only: film_law_of
-  use case_definition, only: case_t
-  use case_file, only: parse_case
+  use case_checks, only: expect
   use collecting_sink, only: trace_t, run_case, column
   implicit none
   private
@@ -232,20 +231,6 @@ contains
       '&asperities roughness = 1e-5: must be <= clearance/8', 'surfaces as rough as the clearance is wide')
     call expect(check, "&lubrication viscosity=0.01 / &asperities /", '&asperities roughness', 'no roughness')
   end subroutine refuses
-
-  subroutine expect(check, groups, wanted, name)
-    class(checks_t), intent(inout) :: check
-    character(len=*), intent(in) :: groups, wanted, name
-    character(len=*), parameter :: bodies = '&mechanism crank_length=0.05 crank_mass=1 crank_inertia=1 rod_length=0.2 '// &
-      'rod_mass=1 rod_inertia=1 piston_mass=1 / &initial crank_speed=100 / &integrator revolutions=1 / '// &
-      '&joint kind=''clearance'' clearance=20e-6 bearing_radius=10e-3 bearing_length=15e-3 / '
-    character(len=1) :: nothing(0)
-    type(case_t) :: case
-    type(error_t), allocatable :: error
-    call parse_case(bodies//groups, 'x.nml', nothing, case, error)
-    call check%that(allocated(error), name//' is refused')
-    if (allocated(error)) call check%that(index(error%message, wanted) > 0, name//' is refused in words')
-  end subroutine expect
 
   function rough_bearing(integral, roughness) result(rough)
     character(len=*), intent(in) :: integral

@@ -8,12 +8,13 @@ module test_elastic_film
   use film_mobility, only: driven_velocity
   use laws, only: film_law_of
   use case_definition, only: case_t
-  use case_file, only: parse_case, read_case
+  use case_file, only: read_case
   use chain_motion, only: piston_pin
   use gudgeon_scene, only: scene_t, evaluation_t
   use scene_builder, only: build_scene
   use ode_problem, only: difference_jacobian
   use state_making, only: put_crank, put_pin
+  use case_checks, only: expect, methods_agree
   use collecting_sink, only: trace_t, run_case, column
   implicit none
   private
@@ -34,7 +35,7 @@ contains
     call derivatives(check)
     call energy_is_known(check)
     call stiff_walls_are_rigid(check)
-    call methods_agree(check)
+    call methods_agree_on_it(check)
     call starts_on_loaded_walls(check)
     call goes_beyond_the_clearance(check)
     call oil_under_pressure(check)
@@ -195,33 +196,16 @@ contains
     call check%that(off(1) < 1e-2_dp*c .and. off(2) < 2e-5_dp*c, 'stiff walls are rigid')
   end subroutine stiff_walls_are_rigid
 
-  subroutine methods_agree(check)
+  subroutine methods_agree_on_it(check)
     class(checks_t), intent(inout) :: check
-    character(len=6), parameter :: methods(3) = [character(len=6) :: 'adams', 'radau', 'auto']
-    character(len=long) :: set(7)
-    type(trace_t) :: trace, first
-    integer :: i, k, at
-    do k = 1, 2
-      do i = 1, 3
-        set(1:2) = plain
-        if (k == 2) set(1:2) = [character(len=long) :: 'lubrication.law=finite_bearing', 'lubrication.variant=short']
-        set(3) = 'integrator.method='//methods(i)
-        set(4) = 'integrator.relative_tolerance=1e-9'
-        set(5) = 'integrator.revolutions=0.3'
-        set(6) = 'lubrication.pressure_viscosity=1e-8'
-        set(7) = 'lubrication.film_moment=T'
-        trace = run_case(file, set)
-        call check%that(.not. allocated(trace%error), 'an elastic film runs by '//methods(i))
-        if (allocated(trace%error)) return
-        associate (figures => trace%report%figures)
-          call check%that(figures%max_energy_residual < 1e-8_dp*figures%max_energy, 'and keeps the energy')
-        end associate
-        if (i == 1) first = trace
-        at = column(trace, 'film_thickness[m]')
-        call check%close_to(maxval(abs(trace%values(at, :) - first%values(at, :))), 0.0_dp, 1e-6_dp*c, 'methods agree on the film')
-      end do
-    end do
-  end subroutine methods_agree
+    character(len=long), parameter :: others(3) = [character(len=long) :: 'integrator.revolutions=0.3', &
+      'lubrication.pressure_viscosity=1e-8', 'lubrication.film_moment=T']
+    character(len=long), parameter :: short(2) = [character(len=long) :: 'lubrication.law=finite_bearing', &
+      'lubrication.variant=short']
+    type(trace_t) :: trace
+    call methods_agree(check, file, [plain, others], c, 'an elastic film', trace)
+    call methods_agree(check, file, [short, others], c, 'a short elastic film', trace)
+  end subroutine methods_agree_on_it
 
   !> At t = 0 the walls carry what an ideal joint does.
   subroutine starts_on_loaded_walls(check)
@@ -297,18 +281,4 @@ contains
     call expect(check, contact//'&lubrication viscosity=0.01 elastic_film=T / &asperities roughness=1e-7 /', &
       '&asperities roughness = 1e-7: cannot be combined with the group contact', 'rough elastic walls')
   end subroutine refuses
-
-  subroutine expect(check, groups, wanted, name)
-    class(checks_t), intent(inout) :: check
-    character(len=*), intent(in) :: groups, wanted, name
-    character(len=*), parameter :: bodies = '&mechanism crank_length=0.05 crank_mass=1 crank_inertia=1 rod_length=0.2 '// &
-      'rod_mass=1 rod_inertia=1 piston_mass=1 / &initial crank_speed=100 / &integrator revolutions=1 / '// &
-      '&joint kind=''clearance'' clearance=20e-6 bearing_radius=10e-3 bearing_length=15e-3 / '
-    character(len=1) :: nothing(0)
-    type(case_t) :: case
-    type(error_t), allocatable :: error
-    call parse_case(bodies//groups, 'x.nml', nothing, case, error)
-    call check%that(allocated(error) .neqv. wanted == '', name//' is judged')
-    if (allocated(error)) call check%that(index(error%message, wanted) > 0, name//' in words: '//error%message)
-  end subroutine expect
 end module test_elastic_film

@@ -9,13 +9,14 @@ module test_film_transition
   use film_law, only: film_law_t, film_motion_t
   use laws, only: film_law_of
   use case_definition, only: case_t
-  use case_file, only: parse_case, read_case
+  use case_file, only: read_case
   use chain_motion, only: piston_pin
   use clearance_joint, only: phase_film, phase_contact
   use gudgeon_scene, only: scene_t, evaluation_t
   use scene_builder, only: build_scene
   use ode_problem, only: difference_jacobian
   use state_making, only: put_crank, put_pin
+  use case_checks, only: expect, methods_agree
   use collecting_sink, only: trace_t, run_case, column
   implicit none
   private
@@ -34,7 +35,7 @@ contains
     call forces_have_no_jumps(check)
     call derivatives(check)
     call meets_the_reference(check)
-    call methods_agree(check)
+    call methods_agree_on_it(check)
     call moment_has_its_share(check)
     call kinks_are_events(check)
     call starts_anywhere(check)
@@ -228,29 +229,19 @@ contains
     end do
   end subroutine meets_the_reference
 
-  subroutine methods_agree(check)
+  subroutine methods_agree_on_it(check)
     class(checks_t), intent(inout) :: check
-    character(len=6), parameter :: methods(3) = [character(len=6) :: 'adams', 'radau', 'auto']
-    character(len=long) :: set(4)
-    type(trace_t) :: trace, first
-    integer :: i, k, at
+    type(trace_t) :: trace
+    character(len=long) :: settings(2)
+    integer :: k
     do k = 1, 2
-      do i = 1, 3
-        set = [character(len=long) :: 'integrator.method='//methods(i), 'integrator.relative_tolerance=1e-9', &
-          'integrator.revolutions=0.7', 'lubrication.transition_shape='//merge('linear', 'smooth', k == 1)]
-        trace = run_case(file, set)
-        call check%that(.not. allocated(trace%error), 'a weighted transition runs by '//methods(i))
-        if (allocated(trace%error)) return
-        associate (figures => trace%report%figures)
-          call check%that(figures%max_energy_residual < 1e-8_dp*figures%max_energy, 'and keeps the energy')
-        end associate
-        if (i == 1) first = trace
-        at = column(trace, 'film_thickness[m]')
-        call check%close_to(maxval(abs(trace%values(at, :) - first%values(at, :))), 0.0_dp, 1e-6_dp*c, 'methods agree on the film')
-      end do
+      settings(1) = 'integrator.revolutions=0.7'
+      settings(2) = 'lubrication.transition_shape='//merge('linear', 'smooth', k == 1)
+      call methods_agree(check, file, settings, c, 'a weighted transition', trace)
+      if (allocated(trace%error)) return
       call share_of_columns(check, trace)
     end do
-  end subroutine methods_agree
+  end subroutine methods_agree_on_it
 
   !> Rows in which film and contact both bear, with the share that belongs to their depth; and none of the film beyond the depth.
   subroutine share_of_columns(check, trace)
@@ -352,20 +343,6 @@ contains
       '&lubrication transition_depth = -1e-6: must be > 0', 'a negative depth')
     call expect(check, "&contact / "//weighted//" &friction law='coulomb' coefficient=0.1 /", '', 'a good case')
   end subroutine refuses
-
-  subroutine expect(check, groups, wanted, name)
-    class(checks_t), intent(inout) :: check
-    character(len=*), intent(in) :: groups, wanted, name
-    character(len=*), parameter :: bodies = '&mechanism crank_length=0.05 crank_mass=1 crank_inertia=1 rod_length=0.2 '// &
-      'rod_mass=1 rod_inertia=1 piston_mass=1 / &initial crank_speed=100 / &integrator revolutions=1 / '// &
-      '&joint kind=''clearance'' clearance=20e-6 bearing_radius=10e-3 bearing_length=15e-3 / '
-    character(len=1) :: nothing(0)
-    type(case_t) :: case
-    type(error_t), allocatable :: error
-    call parse_case(bodies//groups, 'x.nml', nothing, case, error)
-    call check%that(allocated(error) .neqv. wanted == '', name//' is judged')
-    if (allocated(error)) call check%that(index(error%message, wanted) > 0, name//' is refused in words: '//error%message)
-  end subroutine expect
 
   function new_transition(shape) result(transition)
     character(len=*), intent(in) :: shape

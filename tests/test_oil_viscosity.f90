@@ -7,9 +7,10 @@ module test_oil_viscosity
   use checks, only: checks_t
   use oil_viscosity, only: oil_t
   use case_definition, only: case_t
-  use case_file, only: parse_case, read_case
+  use case_file, only: read_case
   use gudgeon_summary, only: summary_table, summary_value
   use number_text, only: real_text
+  use case_checks, only: expect
   use collecting_sink, only: trace_t, run_case
   implicit none
   private
@@ -137,45 +138,44 @@ contains
   subroutine refuses(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: warm = " viscosity_law='walther' temperature=353.15 "
-    call expect(check, vg32//warm, '', 'an oil')
-    call expect(check, '', 'viscosity: required (Pa s)', 'no viscosity')
-    call expect(check, 'viscosity=0', 'viscosity = 0: must be > 0 (Pa s)', 'no viscosity at all')
-    call expect(check, "law='oscillating_film' viscosity=1", &
+    call expect_oil(check, vg32//warm, '', 'an oil')
+    call expect_oil(check, '', 'viscosity: required (Pa s)', 'no viscosity')
+    call expect_oil(check, 'viscosity=0', 'viscosity = 0: must be > 0 (Pa s)', 'no viscosity at all')
+    call expect_oil(check, "law='oscillating_film' viscosity=1", &
       "kinematic_viscosity: required with law = 'oscillating_film' (m^2/s)", 'no kinematic viscosity')
-    call expect(check, vg32//warm//'viscosity=0.01', &
+    call expect_oil(check, vg32//warm//'viscosity=0.01', &
       "viscosity = 0.01: must not be given: viscosity_law = 'walther' computes it", 'two viscosities')
-    call expect(check, vg32//"viscosity_law='vogel'", "temperature: required with viscosity_law = 'vogel' (K)", 'no temperature')
-    call expect(check, warm//'density=865 known_viscosities=2e-5,1e-5', 'known_temperatures(1): required', 'no temperatures')
-    call expect(check, warm//'density=865 known_temperatures=313.15,373.15', 'known_viscosities(1): required', 'no points')
-    call expect(check, warm//'known_temperatures=313.15,373.15 known_viscosities=2e-5,1e-5', 'density: required', 'no density')
-    call expect(check, warm//'density=865 known_temperatures=313.15,313.2 known_viscosities=2e-5,1e-5', &
+    call expect_oil(check, vg32//"viscosity_law='vogel'", "temperature: required with viscosity_law = 'vogel' (K)", &
+      'no temperature')
+    call expect_oil(check, warm//'density=865 known_viscosities=2e-5,1e-5', 'known_temperatures(1): required', 'no temperatures')
+    call expect_oil(check, warm//'density=865 known_temperatures=313.15,373.15', 'known_viscosities(1): required', 'no points')
+    call expect_oil(check, warm//'known_temperatures=313.15,373.15 known_viscosities=2e-5,1e-5', 'density: required', 'no density')
+    call expect_oil(check, warm//'density=865 known_temperatures=313.15,313.2 known_viscosities=2e-5,1e-5', &
       'known_temperatures(1) = 313.15: must be 1 K apart', 'one point twice')
-    call expect(check, warm//'density=865 known_temperatures=313.15,373.15 known_viscosities=1e-5,2e-5', &
+    call expect_oil(check, warm//'density=865 known_temperatures=313.15,373.15 known_viscosities=1e-5,2e-5', &
       'known_viscosities(1) = 1e-5: must be smaller at the higher temperature', 'an oil that thickens')
-    call expect(check, warm//'density=865 known_temperatures=313.15,373.15 known_viscosities=1e-6,1e-7', &
+    call expect_oil(check, warm//'density=865 known_temperatures=313.15,373.15 known_viscosities=1e-6,1e-7', &
       'known_viscosities(1) = 1e-6: must be >= 2.1e-7', 'thinner than the standard')
-    call expect(check, vg32//"viscosity_law='walther' temperature=90", &
+    call expect_oil(check, vg32//"viscosity_law='walther' temperature=90", &
       'temperature = 90: must be >= 200 and <= 700 (K)', 'degrees Celsius')
-    call expect(check, vg32//"viscosity_law='vogel' temperature=353.15 vogel_temperature=310", &
+    call expect_oil(check, vg32//"viscosity_law='vogel' temperature=353.15 vogel_temperature=310", &
       'vogel_temperature = 310: must be 10 K or more below', 'a pole next to the points')
-    call expect(check, 'viscosity=0.01 temperature=353.15', "temperature = 353.15: needs viscosity_law = 'walther' or 'vogel'", &
+    call expect_oil(check, 'viscosity=0.01 temperature=353.15', &
+      "temperature = 353.15: needs viscosity_law = 'walther' or 'vogel'", &
       'a temperature without a law')
-    call expect(check, warm//"viscosity_law='reynolds'", 'viscosity_law', 'an unknown law')
+    call expect_oil(check, warm//"viscosity_law='reynolds'", 'viscosity_law', 'an unknown law')
   end subroutine refuses
 
-  subroutine expect(check, keys, wanted, name)
+  !> A case with these keys of its film is taken, or refused.
+  subroutine expect_oil(check, keys, wanted, name)
     class(checks_t), intent(inout) :: check
     character(len=*), intent(in) :: keys, wanted, name
-    character(len=*), parameter :: bodies = '&mechanism crank_length=0.05 crank_mass=1 crank_inertia=1 rod_length=0.2 '// &
-      'rod_mass=1 rod_inertia=1 piston_mass=1 / &initial crank_speed=100 / &integrator revolutions=1 / '// &
-      '&joint kind=''clearance'' clearance=20e-6 bearing_radius=10e-3 bearing_length=15e-3 / &lubrication '
-    character(len=1) :: nothing(0)
-    type(case_t) :: case
-    type(error_t), allocatable :: error
-    call parse_case(bodies//keys//' /', 'x.nml', nothing, case, error)
-    call check%that(allocated(error) .neqv. wanted == '', name//' is judged')
-    if (allocated(error)) call check%that(index(error%message, '&lubrication '//wanted) > 0, name//' in words: '//error%message)
-  end subroutine expect
+    if (wanted == '') then
+      call expect(check, '&lubrication '//keys//' /', '', name)
+    else
+      call expect(check, '&lubrication '//keys//' /', '&lubrication '//wanted, name)
+    end if
+  end subroutine expect_oil
 
   !> An oil known at 40 and 100 degrees C.
   pure function new_oil(law, temperature, viscosities) result(oil)

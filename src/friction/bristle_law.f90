@@ -73,9 +73,7 @@ contains
     class(bristle_law_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call self%add_static(list)
-    call list%add('stribeck_speed', self%stribeck_speed, &
-      'sliding speed at which the static part of the friction has mostly vanished (Stribeck)', 'm/s', &
-      '> 0', example='0.010')
+    call self%add_stribeck_speed(self%stribeck_speed, list)
     call list%add('bristle_damping', self%bristle_damping, &
       'damping of the bristles: friction over normal force per rate of deflection', 's/m', &
       '>= 0', default='0.0')

@@ -21,6 +21,7 @@ module static_friction
     procedure, non_overridable :: holding_coefficient
     procedure, non_overridable :: add_static
     procedure, non_overridable :: add_viscous
+    procedure, nopass, non_overridable :: add_stribeck_speed
   end type static_friction_t
 
 contains
@@ -63,4 +64,12 @@ contains
     call list%add('viscous_coefficient', self%viscous_coefficient, 'viscous part: friction over normal force per sliding speed', &
       's/m', '>= 0', default='0.0')
   end subroutine add_viscous
+
+  !> The key of the speed over which friction falls from that at rest to that of sliding.
+  subroutine add_stribeck_speed(stribeck_speed, list)
+    real(dp), intent(inout) :: stribeck_speed   !! [m/s]
+    class(parameter_list_t), intent(inout) :: list
+    call list%add('stribeck_speed', stribeck_speed, &
+      'sliding speed at which the static part of the friction has mostly vanished (Stribeck)', 'm/s', '> 0', example='0.010')
+  end subroutine add_stribeck_speed
 end module static_friction

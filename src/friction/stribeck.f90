@@ -31,9 +31,7 @@ contains
     class(parameter_list_t), intent(inout) :: list
     call self%add_coefficient(list)
     call self%add_static(list)
-    call list%add('stribeck_speed', self%stribeck_speed, &
-      'sliding speed at which the static part of the friction has mostly vanished (Stribeck)', 'm/s', &
-      '> 0', example='0.010')
+    call self%add_stribeck_speed(self%stribeck_speed, list)
     call list%add('stribeck_exponent', self%stribeck_exponent, 'exponent of the Stribeck curve', '', '>= 0.1 and <= 10', '2.0')
     call list%add('transition_speed', self%transition_speed, 'sliding speed over which friction changes its sign', 'm/s', '> 0', &
       example='0.010')

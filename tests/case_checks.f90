@@ -1,0 +1,61 @@
+!> Checks of cases that tests of joints share: a short case with further groups is accepted, or refused with the expected message;
+!> every method gives the same result for a case.
+module case_checks
+  use gudgeon_kinds, only: dp
+  use gudgeon_errors, only: error_t
+  use checks, only: checks_t
+  use case_definition, only: case_t
+  use case_file, only: parse_case
+  use collecting_sink, only: trace_t, run_case, column
+  implicit none
+  private
+  public :: expect, methods_agree, bodies
+
+  !> Bodies and a run, with a bearing of 10 mm and a clearance of 20 um.
+  character(len=*), parameter :: bodies = '&mechanism crank_length=0.05 crank_mass=1 crank_inertia=1 rod_length=0.2 '// &
+    'rod_mass=1 rod_inertia=1 piston_mass=1 / &initial crank_speed=100 / &integrator revolutions=1 / '// &
+    '&joint kind=''clearance'' clearance=20e-6 bearing_radius=10e-3 bearing_length=15e-3 / '
+
+contains
+
+  !> The bodies with these groups are refused with a message that contains `wanted`; where that is empty, they are accepted.
+  subroutine expect(check, groups, wanted, name)
+    class(checks_t), intent(inout) :: check
+    character(len=*), intent(in) :: groups, wanted, name
+    character(len=1) :: nothing(0)
+    type(case_t) :: case
+    type(error_t), allocatable :: error
+    call parse_case(bodies//groups, 'x.nml', nothing, case, error)
+    call check%that(allocated(error) .neqv. wanted == '', name//' is judged')
+    if (allocated(error)) call check%that(index(error%message, wanted) > 0, name//' in words: '//error%message)
+  end subroutine expect
+
+  !> A case with these settings runs with each method, keeps its energy, and has the same film thickness within 1e-6 of the
+  !> clearance. `trace` is that of the last method.
+  subroutine methods_agree(check, file, settings, clearance, name, trace)
+    class(checks_t), intent(inout) :: check
+    character(len=*), intent(in) :: file, settings(:), name
+    real(dp), intent(in) :: clearance   !! [m]
+    type(trace_t), intent(out) :: trace
+    character(len=6), parameter :: methods(3) = [character(len=6) :: 'adams', 'radau', 'auto']
+    integer, parameter :: long = 60
+    character(len=long) :: all(size(settings) + 2)
+    type(trace_t) :: first
+    integer :: i, at
+    all(:size(settings)) = settings
+    all(size(all)) = 'integrator.relative_tolerance=1e-9'
+    do i = 1, size(methods)
+      all(size(all) - 1) = 'integrator.method='//methods(i)
+      trace = run_case(file, all)
+      call check%that(.not. allocated(trace%error), name//' runs by '//methods(i))
+      if (allocated(trace%error)) return
+      associate (figures => trace%report%figures)
+        call check%that(figures%max_energy_residual < 1e-8_dp*figures%max_energy, 'and keeps the energy')
+      end associate
+      if (i == 1) first = trace
+      at = column(trace, 'film_thickness[m]')
+      call check%close_to(maxval(abs(trace%values(at, :) - first%values(at, :))), 0.0_dp, 1e-6_dp*clearance, &
+        'methods agree on the film')
+    end do
+  end subroutine methods_agree
+end module case_checks
