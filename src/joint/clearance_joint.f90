@@ -75,6 +75,7 @@ module clearance_joint
     procedure :: put_start
     procedure :: put_own_rates
     procedure :: reset_friction
+    procedure :: has_friction_work
     procedure :: work_of_friction
     procedure, non_overridable :: read_state
     procedure, non_overridable :: admits
@@ -169,7 +170,7 @@ contains
     call layout%settle(self%at)
     if (allocated(self%elastic)) call layout%settle(self%film_states)
     if (self%n_friction_states > 0) call layout%settle(self%friction_states)
-    if (self%has_own_rates .and. allocated(self%friction)) call layout%settle(self%friction_work)
+    if (self%has_friction_work()) call layout%settle(self%friction_work)
   end subroutine settle
 
   !> How many first-order states its laws have.
@@ -217,12 +218,18 @@ contains
     if (self%n_friction_states > 0) y(self%friction_states%first:self%friction_states%last) = 0
   end subroutine reset_friction
 
+  !> Whether the work of friction is integrated.
+  pure logical function has_friction_work(self)
+    class(clearance_joint_t), intent(in) :: self
+    has_friction_work = self%has_own_rates .and. allocated(self%friction)
+  end function has_friction_work
+
   !> Work of friction so far [J], where it is integrated; else 0. What it takes from the bodies is negative.
   pure real(dp) function work_of_friction(self, y)
     class(clearance_joint_t), intent(in) :: self
     real(dp), intent(in) :: y(:)
     work_of_friction = 0
-    if (self%has_own_rates .and. allocated(self%friction)) work_of_friction = y(self%friction_work%first)
+    if (self%has_friction_work()) work_of_friction = y(self%friction_work%first)
   end function work_of_friction
 
   !> The eccentricity and its rate.

@@ -10,6 +10,8 @@ module joint_columns
   private
   public :: put_joint_columns
 
+  character(len=*), parameter :: shear_moment = 'moment of the oil shear on the pin about its centre, positive from x to y'
+
 contains
 
   !> Of what the case asks for: with a contact law its forces, with a film the film's.
@@ -33,10 +35,7 @@ contains
     if (allocated(joint%contact)) then
       call row%put('normal_force[N]', loads%normal_force, &
         'contact force along the line of centres, positive where it presses; 0 without contact')
-      call row%put('friction_force[N]', loads%friction_force, &
-        'friction on the pin along the tangent t = (-n_y, n_x), n from the bearing centre to the pin centre')
-      call row%put('sliding_speed[m/s]', motion%sliding_speed, &
-        'velocity of the pin surface relative to the bearing along the same tangent')
+      call put_friction(motion, loads, row)
       call joint%contact%geometry%put_columns(merge(motion%penetration, 0.0_dp, joint%phase == phase_contact), &
         loads%normal_force, row)
       if (allocated(joint%friction)) call joint%friction%put_columns(motion%friction_states, row)
@@ -50,17 +49,25 @@ contains
       if (allocated(joint%asperities)) then
         call row%put('asperity_force[N]', loads%normal_force, &
           'contact force of the asperities along the line of centres, positive where it presses')
-        call row%put('friction_force[N]', loads%friction_force, &
-          'friction on the pin along the tangent t = (-n_y, n_x), n from the bearing centre to the pin centre')
-        call row%put('sliding_speed[m/s]', motion%sliding_speed, &
-          'velocity of the pin surface relative to the bearing along the same tangent')
+        call put_friction(motion, loads, row)
       end if
       if (joint%film%film_moment) call row%put('film_moment[N.m]', film_moment(joint, loads), &
-        'moment of the oil shear on the pin about its centre, positive from x to y')
+        shear_moment)
       call put_film_figures(joint, motion, loads, row)
     end if
     row%place = ''
   end subroutine put_joint_columns
+
+  !> Friction, of a contact or of asperities.
+  pure subroutine put_friction(motion, loads, row)
+    type(joint_motion_t), intent(in) :: motion
+    type(joint_loads_t), intent(in) :: loads
+    type(trace_row_t), intent(inout) :: row
+    call row%put('friction_force[N]', loads%friction_force, &
+      'friction on the pin along the tangent t = (-n_y, n_x), n from the bearing centre to the pin centre')
+    call row%put('sliding_speed[m/s]', motion%sliding_speed, &
+      'velocity of the pin surface relative to the bearing along the same tangent')
+  end subroutine put_friction
 
   !> Where the film is of which the walls give way, by how much they do, and what they store.
   pure subroutine put_elastic_film(joint, motion, row)
@@ -97,7 +104,7 @@ contains
       return
     end if
     if (.not. joint%film%film_moment) call row%put_on_request('film_moment[N.m]', figures%moment, &
-      'moment of the oil shear on the pin about its centre, positive from x to y')
+      shear_moment)
     call row%put_on_request('film_power[W]', figures%power, &
       'power that the film takes from the bodies, by pressure and shear; < 0: it gives')
     if (joint%film%gives_pressure()) call row%put_on_request('max_film_pressure[Pa]', figures%max_pressure, &

@@ -337,7 +337,7 @@ contains
         if (self%pins(i)%joint == 0) cycle
         associate (figures => f%pin(self%pins(i)%pin), joint => scene%joints(self%pins(i)%joint))
           if (self%pins(i)%is_touching(scene)) figures%contact_time = figures%contact_time + (t - f%time)
-          if (joint%has_own_rates .and. allocated(joint%friction)) figures%friction_work = joint%work_of_friction(y)
+          if (joint%has_friction_work()) figures%friction_work = joint%work_of_friction(y)
         end associate
       end do
       call self%guide%take_time(scene, t - f%time, f)
