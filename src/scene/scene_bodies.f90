@@ -1,8 +1,9 @@
-!> What a scene with elastic members or a guide that is not ideal has more: the piston in its bore, the guide's forces.
-submodule (gudgeon_scene) scene_guide
+!> What a scene has beyond rigid bodies on an ideal guide: elastic members, a guide with friction, a piston with clearance in its bore.
+submodule (gudgeon_scene) scene_bodies
   use chain_motion, only: crank_pin, piston_pin
   use chain_loads, only: unloaded
   use sticking, only: hold_surfaces
+  use ideal_chain, only: ideal_motion
   use loose_piston, only: place_piston, move_centre
   implicit none
 
@@ -128,10 +129,32 @@ contains
     end associate
   end procedure add_power
 
+  module procedure claim_elastic
+    real(dp) :: own_speed
+    integer :: i
+    own_speed = 0
+    do i = 1, self%n_joints
+      own_speed = max(own_speed, self%joints(i)%own_speed(self%span))
+    end do
+    associate (elastic => self%chain%elastic)
+      elastic%start_angle = self%start_angle
+      elastic%start_speed = self%start_speed
+      elastic%holds_flywheel = .not. self%chain%drive%free_crank
+      call elastic%claim(self%layout, self%chain%bodies, self%speed_scale(self%span), own_speed)
+    end associate
+  end procedure claim_elastic
+
+  module procedure twist_frequency
+    associate (bodies => self%chain%bodies)
+      twist_frequency = self%chain%elastic%crankshaft%natural_frequency(2*bodies%kinetic_energy(ideal_motion(bodies, &
+        self%start_angle, 1.0_dp)), self%chain%elastic%holds_flywheel)
+    end associate
+  end procedure twist_frequency
+
   !> N of the piston on an ideal guide, from the force of the pin's joint [N].
   pure real(dp) function normal_force(scene, now)
     class(scene_t), intent(in) :: scene
     type(evaluation_t), intent(in) :: now
     normal_force = scene%chain%bodies%piston%mass*scene%chain%bodies%gravity(2) - now%loads%force(2, piston_pin)
   end function normal_force
-end submodule scene_guide
+end submodule scene_bodies
