@@ -21,14 +21,13 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from gudgeon_plots.environment import use_virtual_environment
+from gudgeon_plots.environment import TOP, use_virtual_environment
 
 use_virtual_environment()
 
 import numpy as np  # noqa: E402
 from gudgeon_plots.measured import write_table  # noqa: E402
 
-TOP = Path(__file__).resolve().parent.parent
 START = 0.02   # share of a run that is left out: the pin, released from the centre, hits the bearing
 SIMULATION = ("-a", "reference", "-s", "output.sampling=crank_angle")
 LONG = ("-a", "standard", "-s", "integrator.revolutions=62", "-s", "output.sampling=crank_angle", "-s", "output.samples_per_revolution=3600")

@@ -15,7 +15,6 @@ the crank; a run with other contacts has failed. Times are of compiled codes onl
 from __future__ import annotations
 
 import ctypes
-import platform
 import sys
 import time
 from dataclasses import dataclass
@@ -24,6 +23,7 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 import pandas as pd
+from gudgeon_plots.measured import write_table
 from scene_problem import FOLDER, Outcome, Scene, load_library
 from scipy import __version__ as scipy_version
 from scipy import integrate
@@ -160,26 +160,17 @@ def table(data: pd.DataFrame) -> list[str]:
     return lines
 
 
-def processor() -> str:
-    """Its name."""
-    for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines() if Path("/proc/cpuinfo").exists() else ():
-        if line.startswith("model name"):
-            return line.split(":", 1)[1].strip()
-    return platform.processor() or platform.machine()
-
-
 def report(data: pd.DataFrame, has_cvode: bool) -> str:
-    """The measured page."""
-    compiler = "gfortran, -O3 -flto"
+    """The measured page, without its head."""
     codes = f"SciPy {scipy_version}" + (", SUNDIALS CVODE of Debian (libsundials-dev)" if has_cvode else "; CVODE was not installed")
     dates = " to ".join(sorted({data["date"].min(), data["date"].max()}))
-    head = [f"Written by `scripts/compare_integrators.sh`, {dates}, on {processor()}, {compiler}; {codes}.", "",
-            "# Integrators at equal error", "",
+    head = [f"gfortran, -O3 -flto; {codes}. Measured {dates}.", "",
             "Right-hand sides that the cheapest run needs for an error, of those at tolerances 1e-3 to 1e-12 (two a decade; SciPy",
             "one); in brackets the shortest time of a compiled code, in bare right-hand sides that wait for each other. All codes integrate the",
             "program's own right-hand side in its own coordinates, with its own absolute tolerances (but not with the hundredth to which a run holds",
-            "the crank's speed), without the work integral that the program's own methods carry. Right-hand sides for difference Jacobians are counted; `radau` and `auto` have theirs in closed form where the piston pin",
-            "alone is loose, and these are in the time, not in the count. SciPy's time is Python's: only its counts are compared. \"–\": not",
+            "the crank's speed), without the work integral that the program's own methods carry. Right-hand sides for difference Jacobians are",
+            "counted; `radau` and `auto` have theirs in closed form where the piston pin alone is loose, and these are in the time, not in the",
+            "count. SciPy's time is Python's: only its counts are compared. \"–\": not",
             f"reached, or given up after {MOST_PYTHON:,} right-hand sides (SciPy) or {MOST_COMPILED:,}.", "",
             "Errors: largest of crank angle, rod angle, piston position and their rates at the end, over the largest value on the way (lubricated, IV",
             "and V 2 revolutions, I and ideal 4); dry contact: of the first 40 instants at which contacts begin and end, to 10 ms, over the time of",
@@ -232,9 +223,9 @@ def main() -> int:
     if compiled_only:
         data = with_rows_of_scipy(data, folder / "integrators.csv")
     data.to_csv(folder / "integrators.csv", index=False, float_format="%.7g")
-    (folder / "integrators.md").write_text(report(data, cvode is not None), encoding="utf-8")
+    page = write_table("integrators", "Integrators at equal error", "scripts/compare_integrators.sh", report(data, cvode is not None), folder)
     draw(data, folder / "integrators.png")
-    print((folder / "integrators.md").read_text(encoding="utf-8"))
+    print(page.read_text(encoding="utf-8"))
     return 0
 
 

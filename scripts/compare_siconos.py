@@ -1,25 +1,25 @@
 #!/usr/bin/env python3
 """Piston slap against Siconos: the benchmark of Flores, Leine and Glocker (2010), and what its first impact makes of it.
 
-    scripts/compare_siconos.py [--program FILE] [--out FILE]
+    scripts/compare_siconos.py [--program FILE] [--out DIR]
 
 Siconos (data/siconos_guide_clearance.csv) has rigid walls; a stiff contact should come near to them. Both ends of the slider hit its
 guide 2 us apart, and what two impacts at once leave of the motion no law of a single impact says. Runs cases/joints/slider_clearance.nml
 with stiffnesses from 1e7 to 1e11 N/m, once from the start, once from Siconos's own state just after that impact, once without the
 tilt, and works out the first impact by itself with rigid walls, impact after impact and by Moreau's time stepping at several steps.
-Writes the tables to --out (default: data/measured/slider_clearance.md).
+Writes slider_clearance.md into the folder --out (default: data/measured).
 """
 from __future__ import annotations
 
 import argparse
 import csv
-import datetime
 import math
-import platform
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
+
+from gudgeon_plots.measured import FOLDER, write_table
 
 ROOT = Path(__file__).resolve().parent.parent
 CASE, LATER = ROOT / "cases/joints/slider_clearance.nml", ROOT / "cases/joints/slider_after_impact.nml"
@@ -215,13 +215,11 @@ def lines_of(program: Path) -> list[str]:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", type=Path, help="this program instead of a release build")
-    parser.add_argument("--out", type=Path, default=ROOT / "data/measured/slider_clearance.md")
+    parser.add_argument("--out", type=Path, default=FOLDER, metavar="DIR", help="folder of slider_clearance.md (default: data/measured)")
     options = parser.parse_args()
     lines = lines_of(options.program or build())
-    options.out.parent.mkdir(parents=True, exist_ok=True)
-    head = ["# Piston slap against Siconos", "", f"`scripts/compare_siconos.py`, {datetime.date.today()}, {platform.machine()}. Differences from "
-            "`data/siconos_guide_clearance.csv`; what they mean is in cases/README.md.", ""]
-    options.out.write_text("\n".join([*head, *lines]) + "\n")
+    write_table("slider_clearance", "Piston slap against Siconos", "scripts/compare_siconos.py",
+                "\n".join(["Differences from `data/siconos_guide_clearance.csv`; what they mean is in data/README.md.", "", *lines]), options.out)
     print("\n".join(lines))
     return 0
 

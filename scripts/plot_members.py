@@ -9,7 +9,6 @@ the second and third revolution have of impacts, forces and losses.
 """
 
 import argparse
-import datetime
 import subprocess
 import sys
 import tempfile
@@ -20,11 +19,11 @@ from gudgeon_plots.environment import TOP, use_virtual_environment
 use_virtual_environment()
 
 from gudgeon_plots import elastic_pictures, figures  # noqa: E402
+from gudgeon_plots.measured import write_table  # noqa: E402
 from gudgeon_plots.program import release_program  # noqa: E402
 from gudgeon_plots.results import MissingResult, load_run  # noqa: E402
 
 CASE = TOP / "cases" / "elastic" / "first_impact.nml"
-TABLE = TOP / "data" / "measured" / "members.md"
 
 
 def main() -> int:
@@ -49,9 +48,8 @@ def main() -> int:
     table = elastic_pictures.describe_members(runs)
     print(table)
     if options.table:
-        TABLE.parent.mkdir(parents=True, exist_ok=True)
-        TABLE.write_text("# What each loose joint and each elastic member changes\n\n    scripts/plot_members.py --table\n\n"
-                         f"{datetime.date.today()}. {elastic_pictures.MEMBERS_SAY}\n\n{table}\n")
+        write_table("members", "What each loose joint and each elastic member changes", "scripts/plot_members.py --table",
+                    f"{elastic_pictures.MEMBERS_SAY}\n\n{table}")
     for path in figures.save(elastic_pictures.draw_members(runs), options.out, "members", options.format or ["png"]):
         print(path)
     return 0
