@@ -1,4 +1,5 @@
-!> Equal crank angles, and when the crank passes them: also one that turns back, which passes some of them again.
+!> A grid of equally spaced crank angles, and the instants at which the crank passes them. A crank that turns back passes some of
+!> them again.
 module angle_grid
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
@@ -13,9 +14,9 @@ module angle_grid
   !> Angle number k of the grid is `origin` + 2 pi k/`per_revolution`.
   type :: angle_grid_t
     real(dp) :: origin = 0                     !! [rad]
-    real(dp) :: per_revolution = 0             !! angles in a revolution; 0: no grid
-    real(dp), private :: last = 0              !! number of the angle that the crank was at last, a whole number
-    real(dp), private :: side = 0              !! on which side of it the crank is: 1 above, -1 below, 0 there
+    real(dp) :: per_revolution = 0             !! number of angles in a revolution; 0: no grid
+    real(dp), private :: last = 0              !! number k of the angle that the crank passed last, a whole number
+    real(dp), private :: side = 0              !! position of the crank relative to that angle: 1 above it, -1 below it, 0 at it
   contains
     procedure :: begin
     procedure :: next_passage
@@ -34,7 +35,7 @@ contains
     angle = self%origin + two_pi*(k/self%per_revolution)
   end function angle
 
-  !> The crank starts here, and whether that is an angle of the grid, but for the rounding of degrees.
+  !> Start the grid at the initial crank angle. `is_there` is true if that is an angle of the grid, up to the rounding of degrees.
   pure subroutine begin(self, crank_angle, is_there)
     class(angle_grid_t), intent(inout) :: self
     real(dp), intent(in) :: crank_angle   !! [rad]
@@ -47,15 +48,15 @@ contains
     if (.not. is_there) self%side = sign(1.0_dp, crank_angle - self%angle(self%last))
   end subroutine begin
 
-  !> The next time from t_from to t_to, both inside the last step of the method and without a turn between them, at which the crank
-  !> is at an angle of the grid; ask until there is none.
+  !> Find the next time between t_from and t_to at which the crank is at an angle of the grid. Both times must lie inside the last
+  !> step of the method, and the crank must not turn back between them. Call it repeatedly until `is_found` is false.
   subroutine next_passage(self, method, scene, t_from, t_to, t, y, is_found)
     class(angle_grid_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t_from, t_to     !! [s]
     real(dp), intent(out) :: t               !! [s]
-    real(dp), intent(inout) :: y(:)          !! the state there
+    real(dp), intent(inout) :: y(:)          !! state at that time
     logical, intent(out) :: is_found
     real(dp) :: target, sense, crank_angle
     call method%interpolate(t_to, y)
@@ -71,7 +72,7 @@ contains
     end if
   end subroutine next_passage
 
-  !> Which angle of the grid the crank passes next on its way to an angle, and in what sense.
+  !> Number of the grid angle that the crank passes next on its way to `crank_angle`, and the sense in which it passes it.
   pure subroutine find_target(self, crank_angle, target, sense, is_found)
     class(angle_grid_t), intent(in) :: self
     real(dp), intent(in) :: crank_angle   !! [rad]
@@ -81,7 +82,7 @@ contains
     if (self%side >= 0) target = target + 1
     sense = 1
     is_found = crank_angle >= self%angle(target)
-    if (self%side < 0) is_found = crank_angle > self%angle(target)   ! back again, and not still there
+    if (self%side < 0) is_found = crank_angle > self%angle(target)   ! it has turned back, and is not at the angle any more
     if (is_found) return
     target = self%last
     if (self%side <= 0) target = target - 1
@@ -90,7 +91,7 @@ contains
     if (self%side > 0) is_found = crank_angle < self%angle(target)
   end subroutine find_target
 
-  !> Whether the crank stands at the next angle of the grid, but for `rounding`, and at which.
+  !> Whether the crank is at the next angle of the grid, within `rounding`, and the value of that angle.
   pure subroutine is_due(self, crank_angle, rounding, is_there, grid_angle)
     class(angle_grid_t), intent(in) :: self
     real(dp), intent(in) :: crank_angle   !! [rad]
@@ -103,7 +104,7 @@ contains
     is_there = abs(nearest_one - self%last) > 0 .and. abs(crank_angle - grid_angle) <= rounding
   end subroutine is_due
 
-  !> What changes on the way, to or from an archive.
+  !> Write the variables that change during a run to an archive, or read them from it.
   subroutine exchange(self, archive)
     class(angle_grid_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive

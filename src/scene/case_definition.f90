@@ -1,7 +1,9 @@
-!> A case: every value that a case file can give, group by group, with the units of the case file (SI; angles in degrees
-!> only where the name ends in _deg). A model whose group was left out is not allocated, and absent from the scene.
+!> A case: every value that a case file can give, group by group, in the units of the case file (SI; angles in degrees only where
+!> the name ends in _deg). The component of a model whose group is not in the file is not allocated, and the scene does not contain
+!> that model.
 !>
-!> `visit_case` is the one list of groups. Each group hands its parameters to the visitor, and so do the laws that it can name.
+!> `visit_case` is the only list of the groups. Each group, and each law that a group can name, declares its parameters to the
+!> visitor.
 module case_definition
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t
@@ -42,21 +44,22 @@ module case_definition
     character(len=:), allocatable :: kind
     real(dp) :: torque = 0, damping = 0, flywheel_inertia = 0
     type(measured_curve_t) :: table              !! speed [rad/s], torque [N m]
-    real(dp) :: ramp_time = 0, ramp_from = 0     !! of the held speed
+    real(dp) :: ramp_time = 0, ramp_from = 0     !! run-up time [s] and initial speed [rad/s] of a prescribed speed
   contains
     procedure :: parameters => drive_parameters
   end type drive_case_t
 
   type, extends(has_parameters_t) :: initial_case_t
     real(dp) :: crank_angle_deg = 0, crank_speed = 0
-    real(dp) :: eccentricity(2) = 0, eccentricity_rate(2) = 0   !! of the piston pin in its bearing
+    real(dp) :: eccentricity(2) = 0, eccentricity_rate(2) = 0   !! of a piston with clearance
     real(dp) :: crank_pin_eccentricity(2) = 0, crank_pin_eccentricity_rate(2) = 0   !! of the crank pin in its bearing
-    real(dp) :: piston_offset = 0, piston_offset_rate = 0, piston_tilt = 0, piston_tilt_rate = 0   !! of a piston loose in its bore
+    real(dp) :: piston_offset = 0, piston_offset_rate = 0, piston_tilt = 0, piston_tilt_rate = 0  !! of a piston with clearance in
+                                                                                                  !! its bore
   contains
     procedure :: parameters => initial_parameters
   end type initial_case_t
 
-  !> A joint with the laws that act in it. An ideal one has none.
+  !> A joint with the laws that act in it. An ideal joint has no laws.
   type, extends(has_parameters_t) :: joint_case_t
     character(len=:), allocatable :: kind
     real(dp) :: clearance = 0, bearing_radius = 0, bearing_length = 0
@@ -78,7 +81,8 @@ module case_definition
 
   type, extends(has_parameters_t) :: integrator_case_t
     character(len=:), allocatable :: method, contact_entry
-    real(dp) :: revolutions = 0, crank_revolutions = 0, end_time = 0   !! one is given, the others are 0; or the last two are
+    real(dp) :: revolutions = 0, crank_revolutions = 0, end_time = 0  !! length of the run, in one of three ways (or in the last
+                                                                      !! two); 0: not given
     real(dp) :: relative_tolerance = 0, absolute_tolerance = 0, max_step = 0
     integer :: max_order = 0, max_steps = 0, max_evaluations = 0, max_evaluations_per_revolution = 0
     real(dp) :: max_penetration = 0
@@ -90,9 +94,10 @@ module case_definition
     character(len=:), allocatable :: sampling  !! 'time' or 'crank_angle'
     integer :: samples_per_revolution = 0
     real(dp) :: angle_origin_deg = 0
-    real(dp) :: interval = 0, start_time = 0   !! interval > 0 wins over samples_per_revolution
+    real(dp) :: interval = 0, start_time = 0   !! interval is used instead of samples_per_revolution if it is > 0
     character(len=:), allocatable :: columns   !! 'standard' or column names without units, separated by commas
-    character(len=:), allocatable :: film_times   !! of pressure fields, as `read_times` knows them; or empty
+    character(len=:), allocatable :: film_times  !! times at which pressure fields are written, in the format of `read_times`; may
+                                                 !! be empty
     integer :: digits = 0                      !! significant digits of the numbers in traces
     logical :: every_step = .false., ideal_twin = .false.
     character(len=:), allocatable :: window    !! 'all' or 'last_period'
@@ -108,13 +113,13 @@ module case_definition
     type(mechanism_case_t) :: mechanism
     type(drive_case_t) :: drive
     type(initial_case_t) :: initial
-    type(joint_case_t) :: joint        !! of rod and piston, at the piston pin
-    type(joint_case_t) :: crank_pin    !! of crank and rod
-    type(guide_case_t), allocatable :: guide   !! not allocated: an ideal one
-    type(elastic_rod_t), allocatable :: elastic_rod          !! rigid where it is not allocated
-    type(elastic_crankshaft_t), allocatable :: crankshaft    !! the same
+    type(joint_case_t) :: joint        !! joint of rod and piston, at the piston pin
+    type(joint_case_t) :: crank_pin    !! joint of crank and rod
+    type(guide_case_t), allocatable :: guide   !! not allocated: the guide is ideal
+    type(elastic_rod_t), allocatable :: elastic_rod          !! not allocated: the rod is rigid
+    type(elastic_crankshaft_t), allocatable :: crankshaft    !! not allocated: the crankshaft is rigid
     class(gas_law_t), allocatable :: combustion
-    type(measured_pressure_t), allocatable :: measured   !! instead of combustion
+    type(measured_pressure_t), allocatable :: measured   !! used instead of combustion
     type(run_length_t) :: run
     type(integrator_case_t) :: integrator
     type(output_case_t) :: output
@@ -127,13 +132,13 @@ module case_definition
     procedure :: is_elastic
   end type case_t
 
-  !> The places of joints, as a case names them. A group &joint without a place is the first's, a law's group without one is for
-  !> every joint with clearance that has none of its own.
+  !> Names of the places of joints in a case. A group &joint that names no place describes the first joint; a group of a law that
+  !> names no place applies to every joint with clearance that has no group of its own for that law.
   character(len=*), parameter :: piston_pin_place = trim(pin_names(piston_pin)), crank_pin_place = trim(pin_names(crank_pin))
 
 contains
 
-  !> After how many revolutions the gas repeats; 1 where there is none.
+  !> Number of revolutions after which the gas pressure repeats; 1 without gas.
   pure integer function gas_revolutions(self)
     class(case_t), intent(in) :: self
     gas_revolutions = 1
@@ -141,13 +146,13 @@ contains
     if (allocated(self%measured)) gas_revolutions = self%measured%revolutions()
   end function gas_revolutions
 
-  !> Whether there is a joint with a contact law, or a piston with clearance in its bore.
+  !> Whether a joint has a contact law, or the piston has clearance in its bore.
   pure logical function has_contact(self)
     class(case_t), intent(in) :: self
     has_contact = self%joint%can_touch() .or. self%crank_pin%can_touch() .or. self%has_loose_guide()
   end function has_contact
 
-  !> Whether there is a joint with clearance.
+  !> Whether at least one joint has clearance.
   pure logical function has_play(self)
     class(case_t), intent(in) :: self
     has_play = self%joint%has_clearance() .or. self%crank_pin%has_clearance()
@@ -160,19 +165,19 @@ contains
     if (allocated(self%guide)) has_loose_guide = self%guide%kind == guide_clearance
   end function has_loose_guide
 
-  !> Whether there is clearance at a pin or in the bore, which the ideal twin does not have.
+  !> Whether a pin or the piston in its bore has clearance. The ideal twin has none.
   pure logical function has_clearance_anywhere(self)
     class(case_t), intent(in) :: self
     has_clearance_anywhere = self%has_play() .or. self%has_loose_guide()
   end function has_clearance_anywhere
 
-  !> Whether there is an elastic member.
+  !> Whether the rod or the crankshaft is elastic.
   pure logical function is_elastic(self)
     class(case_t), intent(in) :: self
     is_elastic = allocated(self%elastic_rod) .or. allocated(self%crankshaft)
   end function is_elastic
 
-  !> Whether a contact acts in the joint: not where it is the walls of an elastic film.
+  !> Whether a contact law acts in the joint. It does not where the contact is with the walls of an elastic film.
   pure logical function can_touch(self)
     class(joint_case_t), intent(in) :: self
     can_touch = allocated(self%contact) .and. .not. (allocated(self%film) .and. self%elastic%is_wanted)
@@ -185,14 +190,14 @@ contains
     if (allocated(self%kind)) has_clearance = self%kind == 'clearance'
   end function has_clearance
 
-  !> The bearing of the joint, whose pin a rod of this length [m] carries.
+  !> The bearing of the joint; `rod_length` [m] is the length of the rod that carries its pin.
   pure type(bearing_t) function bearing_of(self, rod_length)
     class(joint_case_t), intent(in) :: self
     real(dp), intent(in) :: rod_length
     bearing_of = bearing_t(self%bearing_radius, self%bearing_length, self%clearance, rod_length)
   end function bearing_of
 
-  !> Hand every group, key and law of a case to a visitor, in the order of the template and of the resolved case.
+  !> Declare every group, key and law of a case to a visitor, in the order of the template and of the resolved case.
   subroutine visit_case(case, list)
     type(case_t), intent(inout) :: case
     class(parameter_list_t), intent(inout) :: list
@@ -227,7 +232,7 @@ contains
     call case%output%parameters(list)
   end subroutine visit_case
 
-  !> A joint and its laws.
+  !> Visit the groups of one joint and of its laws.
   subroutine visit_joint(joint, place, list)
     type(joint_case_t), intent(inout) :: joint
     character(len=*), intent(in) :: place
@@ -240,7 +245,7 @@ contains
     call visit_asperities(joint%asperities, place, list)
   end subroutine visit_joint
 
-  !> Of laws for every joint an ideal one has none, if the other joint has clearance.
+  !> Remove laws that were given for all joints from an ideal joint, if the other joint has clearance.
   subroutine drop_laws(joint, other)
     type(joint_case_t), intent(inout) :: joint
     type(joint_case_t), intent(in) :: other
@@ -343,7 +348,7 @@ contains
     class(parameter_list_t), intent(inout) :: list
     type(guide_case_t) :: described
     call list%group('guide', 'Piston in its bore. Without this group the guide is ideal', .true.)
-    if (.not. list%sets) then   ! of a case whose other groups are set it stays as it is
+    if (.not. list%sets) then   ! a guide whose keys are not set keeps the values of the case
       call offer_guide(described, list)
       return
     end if
@@ -353,7 +358,7 @@ contains
     call offer_guide(guide, list)
   end subroutine visit_guide
 
-  !> The keys and laws of a guide.
+  !> Visit the keys and laws of a guide.
   subroutine offer_guide(guide, list)
     type(guide_case_t), intent(inout) :: guide
     class(parameter_list_t), intent(inout) :: list
@@ -415,7 +420,7 @@ contains
     end select
   end subroutine visit_gas
 
-  !> A measured pressure, whose curve stays where it has been read before.
+  !> Visit a measured pressure. If its table has been read before, it is kept.
   subroutine visit_measured(gas, list)
     type(measured_pressure_t), allocatable, intent(inout) :: gas
     class(parameter_list_t), intent(inout) :: list

@@ -1,4 +1,4 @@
-!> When the crank passes an angle, or turns back, inside the last step of a method: on its interpolant.
+!> Finds the instants at which the crank passes an angle or turns back, on the interpolant of the last step of a method.
 module crank_passage
   use gudgeon_kinds, only: dp
   use ode_method, only: ode_method_t
@@ -10,15 +10,15 @@ module crank_passage
 
 contains
 
-  !> The first time from t_from to t_to, both inside the last step, at which the crank is at `target` or beyond, where it is beyond
-  !> at t_to; where it is beyond already at t_from, that. The state there is left in y.
+  !> Find the first time between t_from and t_to, both inside the last step, at which the crank is at or beyond `target`. The crank
+  !> must be beyond it at t_to; if it is beyond it at t_from already, the result is t_from. The state at that time is returned in y.
   subroutine find_passage(method, scene, target, sense, t_from, t_to, closeness, t, y)
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: target         !! crank angle [rad]
-    real(dp), intent(in) :: sense          !! 1: beyond is above, -1: below
+    real(dp), intent(in) :: sense          !! 1: beyond means larger angles, -1: smaller ones
     real(dp), intent(in) :: t_from, t_to   !! [s]
-    real(dp), intent(in) :: closeness      !! of the time, over the length of the step; 0: to its rounding
+    real(dp), intent(in) :: closeness  !! tolerance of the time, relative to the length of the step; 0: as close as rounding allows
     real(dp), intent(out) :: t             !! [s]
     real(dp), intent(inout) :: y(:)
     type(bracket_t) :: bracket
@@ -36,7 +36,7 @@ contains
 
   contains
 
-    !> How far the crank is beyond its target at a time [rad].
+    !> Angle by which the crank is beyond its target at a time [rad].
     real(dp) function beyond(time)
       real(dp), intent(in) :: time
       call method%interpolate(time, y)
@@ -44,14 +44,14 @@ contains
     end function beyond
   end subroutine find_passage
 
-  !> Whether a free crank turns back between t_from and t_to, inside the last step, and when.
+  !> Whether a free crank turns back between t_from and t_to, both inside the last step, and the time at which it does.
   subroutine find_turning(method, scene, t_from, t_to, turns, t, y)
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t_from, t_to   !! [s]
     logical, intent(out) :: turns
-    real(dp), intent(out) :: t             !! [s]; t_to where it does not
-    real(dp), intent(inout) :: y(:)        !! room for a state
+    real(dp), intent(out) :: t             !! [s]; t_to if it does not turn back
+    real(dp), intent(inout) :: y(:)        !! work space for a state
     type(bracket_t) :: bracket
     real(dp) :: speed_from, speed_to
     t = t_to

@@ -1,8 +1,8 @@
-!> A run that ends when the crank has turned by itself so many times, wherever that is: counted by its angle, not by the time.
+!> Ends a run when a free crank has made a given number of turns. Turns are counted by the crank angle, not by the time.
 !>
-!> The crank must not stop or turn back on its way. Its sense is that of its start speed; of a crank that starts from rest, the
-!> sense in which it has left its start by one degree (by half of what is wanted, where that is less). A crank that only creeps does
-!> neither: how long it may take for one turn is its `turn_patience_t`.
+!> The crank must not stop or turn back before that. The sense of the turns is that of the starting speed. If the crank starts from
+!> rest, it is the sense in which it has first moved by one degree (or by half of the wanted angle, if that is less). A crank that
+!> creeps without stopping is stopped by `turn_patience_t`, which limits the time for one turn.
 module crank_turns
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi, degree
@@ -12,17 +12,18 @@ module crank_turns
   private
   public :: crank_turns_t, new_crank_turns, n_turn_events, on_the_way, all_made, turned_back, turn_patience_t
 
-  integer, parameter :: n_turn_events = 2   !! event functions: where the crank has to reach, and its speed against its sense
+  integer, parameter :: n_turn_events = 2  !! event functions: the crank angle still to go, and the crank speed against the sense of
+                                           !! the turns
 
-  !> What has become of the turns.
+  !> State of the count.
   integer, parameter :: on_the_way = 0, all_made = 1, turned_back = 2
 
   type :: crank_turns_t
-    real(dp) :: wanted = 0         !! turns
-    character(len=29) :: key = '&integrator crank_revolutions'   !! that wants them
+    real(dp) :: wanted = 0         !! number of turns
+    character(len=29) :: key = '&integrator crank_revolutions'   !! key of the case file that asks for the turns
     integer :: outcome = on_the_way
     real(dp), private :: start_angle = 0
-    integer, private :: sense = 0  !! in which the crank turns: 1, -1 or, of a crank that has not left its start yet, 0
+    integer, private :: sense = 0  !! sense of rotation: 1, -1, or 0 if the crank has not left its start yet
   contains
     procedure :: made
     procedure :: events
@@ -30,12 +31,12 @@ module crank_turns
     procedure :: exchange
   end type crank_turns_t
 
-  !> How long a crank may take for one turn.
+  !> Limit of the time that the crank may take for one turn.
   type :: turn_patience_t
     real(dp) :: longest = huge(1.0_dp)   !! [s]
-    logical :: is_over = .false.         !! it takes longer: the run is to end
-    integer, private :: made = 0         !! whole turns away from the start, at most so far
-    real(dp), private :: since = 0       !! when it had made them [s]
+    logical :: is_over = .false.         !! the limit has been exceeded: the run is to end
+    integer, private :: made = 0         !! largest number of whole turns made so far
+    real(dp), private :: since = 0       !! time at which they had been made [s]
   contains
     procedure :: follow
     procedure :: limit_end
@@ -44,7 +45,7 @@ module crank_turns
 
 contains
 
-  !> To be counted from here on.
+  !> A count that begins at the given crank angle.
   pure function new_crank_turns(wanted, start_angle, start_speed) result(turns)
     real(dp), intent(in) :: wanted        !! > 0
     real(dp), intent(in) :: start_angle   !! [rad]
@@ -55,21 +56,22 @@ contains
     if (abs(start_speed) > 0) turns%sense = nint(sign(1.0_dp, start_speed))
   end function new_crank_turns
 
-  !> Turns that the crank is away from its start.
+  !> Number of turns between the start and a crank angle, in the sense of the turns.
   pure real(dp) function made(self, crank_angle)
     class(crank_turns_t), intent(in) :: self
     real(dp), intent(in) :: crank_angle   !! [rad]
     made = abs(crank_angle - self%start_angle)/two_pi
   end function made
 
-  !> How far from its start a crank at rest must come before it has a sense [rad].
+  !> Angle by which a crank at rest must move before its sense of rotation is known [rad].
   pure real(dp) function way_out(self)
     class(crank_turns_t), intent(in) :: self
     way_out = min(degree, 0.5_dp*two_pi*self%wanted)
   end function way_out
 
-  !> Event functions of a free crank: it has reached its end (has left its start), and it turns back. The rate of the second
-  !> would take an evaluation; without it the search for events samples steps in which the speed changes fourfold.
+  !> Event functions of a free crank: it has reached the end of the run (or, from rest, has left its start), and it turns back. The
+  !> rate of the second would need an evaluation of the scene. It is not given; the search for events therefore samples steps in
+  !> which the speed changes fourfold.
   pure subroutine events(self, crank_angle, crank_speed, g, g_rate)
     class(crank_turns_t), intent(in) :: self
     real(dp), intent(in) :: crank_angle, crank_speed   !! [rad], [rad/s]
@@ -86,7 +88,7 @@ contains
     end if
   end subroutine events
 
-  !> The event happened.
+  !> Handle one of the two events.
   pure subroutine pass(self, index, crank_angle, action)
     class(crank_turns_t), intent(inout) :: self
     integer, intent(in) :: index
@@ -101,14 +103,14 @@ contains
     end if
   end subroutine pass
 
-  !> What changes on the way, to or from an archive.
+  !> Write the variables that change during a run to an archive, or read them from it.
   subroutine exchange(self, archive)
     class(crank_turns_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
     call archive%exchange(self%sense)
   end subroutine exchange
 
-  !> At time t the crank is so many turns away from its start.
+  !> Report that the crank is `turns` turns away from its start at time t.
   pure subroutine follow(self, t, turns)
     class(turn_patience_t), intent(inout) :: self
     real(dp), intent(in) :: t       !! [s]
@@ -118,7 +120,7 @@ contains
     self%since = t
   end subroutine follow
 
-  !> The run is to end before t_end, if the crank has not made its next turn by then.
+  !> Move t_end to the instant at which the time for the next turn is over, if that is earlier.
   pure subroutine limit_end(self, t_end)
     class(turn_patience_t), intent(inout) :: self
     real(dp), intent(inout) :: t_end   !! [s]
@@ -126,7 +128,7 @@ contains
     if (self%is_over) t_end = self%since + self%longest
   end subroutine limit_end
 
-  !> What changes on the way, to or from an archive.
+  !> Write the variables that change during a run to an archive, or read them from it.
   subroutine exchange_patience(self, archive)
     class(turn_patience_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive

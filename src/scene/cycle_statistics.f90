@@ -1,4 +1,4 @@
-!> What a run does in each revolution of its crank, and over all of them.
+!> Results of each revolution of the crank, and statistics over all revolutions.
 module cycle_statistics
   use gudgeon_kinds, only: dp
   use chain_motion, only: n_pins
@@ -6,37 +6,37 @@ module cycle_statistics
   private
   public :: cycle_t, cycle_statistics_t
 
-  !> One revolution at one pin. What belongs to a joint with clearance is 0 without one, and an ideal crank pin has nothing. Peaks
-  !> are searched between the accepted points of the integration too.
+  !> Results of one revolution at one pin. Those of contact and film are 0 at a pin without clearance; an ideal crank pin has no
+  !> results. Peaks are searched also between the accepted points of the integration.
   type :: pin_cycle_t
     real(dp) :: min_film_thickness = huge(1.0_dp)     !! c - |e| [m]
     real(dp) :: max_penetration = 0                   !! [m]
     real(dp) :: contact_time = 0                      !! [s]
-    integer :: impacts = 0                            !! contacts begun
+    integer :: impacts = 0                            !! number of contacts that began
     real(dp) :: max_force = 0                         !! [N]
-    real(dp) :: force_integral = 0                    !! of the size of the force over time [N s]
+    real(dp) :: force_integral = 0                    !! integral of the magnitude of the force over time [N s]
   end type pin_cycle_t
 
-  !> One revolution of a piston with clearance in its bore: of the corners of its skirt together.
+  !> Results of one revolution for a piston with clearance in its bore, over all corners of its skirt.
   type :: skirt_cycle_t
-    real(dp) :: contact_time = 0                      !! while one of them or more touch [s]
-    integer :: impacts = 0                            !! contacts begun
-    real(dp) :: max_penetration = 0                   !! of a corner [m]
-    real(dp) :: max_force = 0                         !! on a corner [N]
+    real(dp) :: contact_time = 0                      !! time during which at least one corner touches [s]
+    integer :: impacts = 0                            !! number of contacts that began
+    real(dp) :: max_penetration = 0                   !! of any corner [m]
+    real(dp) :: max_force = 0                         !! on any corner [N]
   end type skirt_cycle_t
 
-  !> One revolution.
+  !> Results of one revolution.
   type :: cycle_t
     real(dp) :: duration = 0                          !! [s]
-    real(dp) :: dissipated_energy = 0                 !! taken from the bodies by the joints [J]
+    real(dp) :: dissipated_energy = 0                 !! energy taken from the bodies by the joints [J]
     type(pin_cycle_t) :: pin(n_pins)
     type(skirt_cycle_t) :: skirt
   end type cycle_t
 
-  !> Sums and extremes over revolutions.
+  !> Sums and extremes over the revolutions.
   type :: cycle_statistics_t
     integer :: cycles = 0
-    type(cycle_t) :: total                            !! sums; of extremes the extreme
+    type(cycle_t) :: total                            !! sums of times, counts and energies; extremes of the other quantities
     real(dp), private :: film_sum(n_pins) = 0, force_sum(n_pins) = 0, skirt_force_sum = 0
   contains
     procedure :: add
@@ -49,7 +49,7 @@ module cycle_statistics
 
 contains
 
-  !> Count one more revolution.
+  !> Add the results of one revolution.
   pure subroutine add(self, cycle)
     class(cycle_statistics_t), intent(inout) :: self
     type(cycle_t), intent(in) :: cycle
@@ -75,34 +75,35 @@ contains
     self%force_sum = self%force_sum + cycle%pin%max_force
   end subroutine add
 
-  !> Mean over the revolutions of the thinnest film of each at a pin [m]. Of these means all need a revolution to be there.
+  !> Mean over the revolutions of the smallest film thickness of each at a pin [m]. This and the following means need at least one
+  !> revolution.
   pure real(dp) function min_film_thickness_mean(self, pin)
     class(cycle_statistics_t), intent(in) :: self
     integer, intent(in) :: pin
     min_film_thickness_mean = self%film_sum(pin)/self%cycles
   end function min_film_thickness_mean
 
-  !> Mean of the largest force of each on a pin [N].
+  !> Mean over the revolutions of the largest force of each on a pin [N].
   pure real(dp) function max_force_mean(self, pin)
     class(cycle_statistics_t), intent(in) :: self
     integer, intent(in) :: pin
     max_force_mean = self%force_sum(pin)/self%cycles
   end function max_force_mean
 
-  !> Mean of the largest force of each on a corner of the skirt [N].
+  !> Mean over the revolutions of the largest force of each on a corner of the skirt [N].
   pure real(dp) function skirt_force_mean(self)
     class(cycle_statistics_t), intent(in) :: self
     skirt_force_mean = self%skirt_force_sum/self%cycles
   end function skirt_force_mean
 
-  !> Contacts begun in a revolution at a pin.
+  !> Mean number of contacts at a pin that begin in one revolution.
   pure real(dp) function impacts_mean(self, pin)
     class(cycle_statistics_t), intent(in) :: self
     integer, intent(in) :: pin
     impacts_mean = real(self%total%pin(pin)%impacts, dp)/self%cycles
   end function impacts_mean
 
-  !> Energy lost in a revolution [J].
+  !> Mean energy lost in one revolution [J].
   pure real(dp) function dissipated_energy_mean(self)
     class(cycle_statistics_t), intent(in) :: self
     dissipated_energy_mean = self%total%dissipated_energy/self%cycles

@@ -1,8 +1,8 @@
-!> Follows the crank through its revolutions: tells accepted points apart by revolution, and finds the instants at which the
-!> crank passes an angle on the interpolant of the method.
+!> Divides a run into the revolutions of its crank: assigns accepted points to revolutions, and finds on the interpolant of the
+!> method the instants at which a revolution ends or the crank passes a given angle.
 !>
-!> Revolution k ends when the crank has turned k times 2 pi away from its start in the sense of its start speed (from rest, of
-!> its torque). A crank that swings back is still in the revolution that it has reached.
+!> Revolution k ends when the crank has turned by 2 pi k from its start, in the sense of its starting speed (from rest: of its
+!> torque). If the crank swings back, it is still in the revolution that it has reached.
 module cycle_watch
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
@@ -19,25 +19,25 @@ module cycle_watch
 
   real(dp), parameter :: rounding = 1e-9_dp   !! of the crank angle at the end of a run [rad]
 
-  !> A watch over one run. It can be used for the next one, and keeps its memory.
+  !> Follows one run. It can be used again for another run, and keeps its allocated memory.
   type :: cycle_watch_t
-    integer :: settle = 0                          !! revolutions at the start that are not to be counted
-    integer :: uncounted = 0                       !! that are not, in the present run
-    logical :: keeps_cycles = .false.              !! keep the figures of every revolution counted
+    integer :: settle = 0                          !! number of revolutions at the start that are left out of the statistics
+    integer :: uncounted = 0                       !! number of revolutions left out in the present run
+    logical :: keeps_cycles = .false.              !! keep the results of every revolution counted
     type(cycle_statistics_t) :: statistics         !! of the revolutions counted
-    type(cycle_t), allocatable :: cycles(:)        !! them, statistics%cycles of them, where they are kept
-    type(column_list_t) :: strobe_list             !! columns to be taken at one angle
+    type(cycle_t), allocatable :: cycles(:)        !! results of the first statistics%cycles revolutions counted, if they are kept
+    type(column_list_t) :: strobe_list             !! columns to be sampled once in each revolution, at one crank angle
     real(dp) :: strobe_angle = 0                   !! that crank angle [rad]
-    integer :: most_strobes = 0                    !! how many times, from the first revolution counted on; 0: to the end
-    integer :: strobes = 0                         !! times taken; strobe i is in revolution uncounted + i
+    integer :: most_strobes = 0                    !! largest number of samples, from the first revolution counted; 0: no limit
+    integer :: strobes = 0                         !! number of samples taken; sample i is in revolution uncounted + i
     real(dp), allocatable :: strobe_values(:, :)   !! (columns, strobes)
-    real(dp) :: direction = 1                      !! sense in which the crank turns
+    real(dp) :: direction = 1                      !! sense in which the crank turns: 1 or -1
     type(cycle_t), private :: present
-    integer, private :: ended = 0                  !! revolutions
-    integer, private :: passed = 0                 !! times that the crank has passed the strobe angle
+    integer, private :: ended = 0                  !! number of revolutions that have ended
+    integer, private :: passed = 0                 !! number of times that the crank has passed the strobe angle
     real(dp), private :: start_angle = 0, strobe_offset = 0, initial_energy = 0
-    real(dp), private :: t = 0                     !! of the last point [s]
-    real(dp), private :: cycle_start = 0           !! [s]
+    real(dp), private :: t = 0                     !! time of the last point [s]
+    real(dp), private :: cycle_start = 0           !! time at which the present revolution began [s]
     real(dp), private :: force_integral(n_pins) = 0, loss = 0   !! at the start of the revolution
     logical, private :: has_strobe = .false.
     real(dp), allocatable :: y(:)                  !! state at the end of the present revolution, from `find_end`
@@ -90,7 +90,7 @@ contains
     if (.not. allocated(self%y)) allocate (self%y(size(y)))
   end subroutine begin
 
-  !> Forget the revolutions so far, and count those after this number of them.
+  !> Discard the revolutions so far, and count those that begin after the given number of revolutions.
   pure subroutine count_from(self, revolutions)
     class(cycle_watch_t), intent(inout) :: self
     integer, intent(in) :: revolutions
@@ -99,14 +99,15 @@ contains
     self%strobes = 0
   end subroutine count_from
 
-  !> The solution is final up to (t_to, y_to), inside the last step of the method: whether the present revolution `ends` before, and
-  !> when. A step may pass several ends: take what is before this one, end the revolution, and ask again.
+  !> Find out whether the present revolution ends before (t_to, y_to), and when. The solution must be final up to there, inside the
+  !> last step of the method. A step may contain several ends of revolutions: handle the points before this end, end the revolution,
+  !> and call again.
   subroutine find_end(self, method, scene, t_to, y_to, t_end, ends)
     class(cycle_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t_to, y_to(:)
-    real(dp), intent(out) :: t_end   !! the state there is left in y
+    real(dp), intent(out) :: t_end   !! the state at this time is left in self%y
     logical, intent(out) :: ends
     real(dp) :: travel
     travel = travel_at(self, scene, t_to, y_to)
@@ -115,7 +116,7 @@ contains
     if (ends) t_end = passage(self, method, scene, next_end(self), t_to)
   end subroutine find_end
 
-  !> The crank has passed the strobe angle before (t_to, y_to), perhaps several times.
+  !> Sample the columns at the strobe angle, if the crank has passed it before (t_to, y_to), perhaps several times.
   subroutine take_strobes(self, method, scene, t_to, y_to)
     class(cycle_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
@@ -130,11 +131,11 @@ contains
     end do
   end subroutine take_strobes
 
-  !> Values of interest are those above what is `known` of the run, or of the present revolution if that is to be counted.
+  !> Lower the values above which peaks are searched from those of the run to those of the present revolution, if that is counted.
   pure subroutine lower_to_peaks(self, pin, known)
     class(cycle_watch_t), intent(in) :: self
     integer, intent(in) :: pin
-    real(dp), intent(inout) :: known(n_peaks)   !! huge: not of interest at all
+    real(dp), intent(inout) :: known(n_peaks)   !! huge: this quantity is not searched
     if (self%ended < self%uncounted) return
     associate (c => self%present%pin(pin))
       known(of_pin_force) = min(known(of_pin_force), c%max_force)
@@ -142,7 +143,7 @@ contains
     end associate
   end subroutine lower_to_peaks
 
-  !> Values at a pin, in the present revolution, of the quantities that have peaks.
+  !> Account for values of the quantities with peaks, at a pin in the present revolution.
   pure subroutine take_peaks(self, pin, is_touching, values)
     class(cycle_watch_t), intent(inout) :: self
     integer, intent(in) :: pin
@@ -155,7 +156,7 @@ contains
     end associate
   end subroutine take_peaks
 
-  !> An accepted point at time t, in the present revolution.
+  !> Account for an accepted point at time t in the present revolution.
   pure subroutine take_point(self, scene, t)
     class(cycle_watch_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
@@ -173,20 +174,20 @@ contains
     self%t = t
   end subroutine take_point
 
-  !> A contact begins at a pin.
+  !> Count a contact that begins at a pin.
   pure subroutine take_impact(self, pin)
     class(cycle_watch_t), intent(inout) :: self
     integer, intent(in) :: pin
     self%present%pin(pin)%impacts = self%present%pin(pin)%impacts + 1
   end subroutine take_impact
 
-  !> A contact of a corner of the skirt begins.
+  !> Count a contact of a corner of the skirt that begins.
   pure subroutine take_slap(self)
     class(cycle_watch_t), intent(inout) :: self
     self%present%skirt%impacts = self%present%skirt%impacts + 1
   end subroutine take_slap
 
-  !> The deepest and the hardest pressed corner of the skirt in the present revolution.
+  !> Account for the largest penetration and force of the corners of the skirt in the present revolution.
   pure subroutine take_skirt(self, penetration, force)
     class(cycle_watch_t), intent(inout) :: self
     real(dp), intent(in) :: penetration, force   !! [m], [N]
@@ -194,7 +195,7 @@ contains
     self%present%skirt%max_force = force
   end subroutine take_skirt
 
-  !> The run ended at (t, y): a revolution that rounding left open is whole.
+  !> End the run at (t, y). A revolution that is complete except for rounding is ended too.
   subroutine finish(self, scene, t, y)
     class(cycle_watch_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
@@ -217,21 +218,21 @@ contains
     travel_at = self%direction*(scene%crank_angle(t, y) - self%start_angle)
   end function travel_at
 
-  !> Where the present revolution ends [rad].
+  !> Angle of travel at which the present revolution ends [rad].
   pure real(dp) function next_end(self)
     class(cycle_watch_t), intent(in) :: self
     next_end = two_pi*(self%ended + 1)
   end function next_end
 
-  !> Where the crank passes the strobe angle next [rad].
+  !> Angle of travel at which the crank passes the strobe angle next [rad].
   pure real(dp) function next_strobe(self)
     class(cycle_watch_t), intent(in) :: self
     next_strobe = self%strobe_offset + two_pi*self%passed
   end function next_strobe
 
-  !> The first time in the last step, up to t_to, at which the travel reaches `target`; where it was there before the step, its
-  !> beginning. The state there is left in y. It is that of the interpolant: with the method's own step to there means change by
-  !> 2e-5 at most (simulation I from six crank angles, tolerance 1e-4; 2e-6 at 1e-6).
+  !> The first time in the last step, up to t_to, at which the travel reaches `target`, or the beginning of the step if it had
+  !> reached it before. The state there, taken from the interpolant, is returned in y. If the method stepped to that instant
+  !> instead, means would change by 2e-5 at most (simulation I from six crank angles at tolerance 1e-4; 2e-6 at 1e-6).
   real(dp) function passage(self, method, scene, target, t_to)
     class(cycle_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
@@ -241,7 +242,7 @@ contains
       passage, self%y)
   end function passage
 
-  !> The present revolution ends at t with the state y.
+  !> End the present revolution at time t, with the state in self%y.
   subroutine end_cycle(self, scene, t)
     class(cycle_watch_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
@@ -274,7 +275,7 @@ contains
     self%loss = loss
   end subroutine end_cycle
 
-  !> The crank passes the strobe angle at (t, y).
+  !> Sample the columns at (t, y), where the crank passes the strobe angle.
   subroutine strobe(self, scene, t, y)
     class(cycle_watch_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene

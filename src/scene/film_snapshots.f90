@@ -1,5 +1,5 @@
-!> The pressure of films over the bore at chosen times of a run. While it continues the motions are kept, which is very little; the
-!> pressures are found when it has ended.
+!> Pressure fields of the films at chosen times of a run. During the run only the motions at these times are stored; the pressures
+!> are computed when it has ended.
 module film_snapshots
   use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
@@ -13,22 +13,23 @@ module film_snapshots
 
   integer, parameter :: most_times = 10000
 
-  !> A pressure over half of a bearing, which is the same in the other half.
+  !> Pressure over one half of a bearing. The other half is its mirror image.
   type :: film_field_t
     real(dp) :: time = 0, crank_angle = 0     !! [s], [rad]
     integer :: place = 0                      !! pin of the chain
-    real(dp) :: clearance = 0, distance = 0   !! c, |e| as the film sees it [m]
-    real(dp) :: direction = 0                 !! of the eccentricity, from x towards y [rad]
-    real(dp), allocatable :: angle(:)         !! from that direction [rad]
-    real(dp), allocatable :: along(:)         !! from the middle [m]
+    real(dp) :: clearance = 0, distance = 0   !! c and the magnitude of the eccentricity that the film model uses [m]
+    real(dp) :: direction = 0                 !! of the eccentricity, counted from x towards y [rad]
+    real(dp), allocatable :: angle(:)         !! measured from that direction [rad]
+    real(dp), allocatable :: along(:)         !! axial distance from the middle of the bearing [m]
     real(dp), allocatable :: pressure(:, :)   !! [Pa]
   end type film_field_t
 
   type :: film_snapshots_t
-    real(dp), allocatable :: times(:)         !! at which they are wanted, rising [s]
-    integer :: next = 1                       !! of them
-    integer, private :: n = 0                 !! kept
-    real(dp), allocatable, private :: kept(:, :)   !! time, crank angle, joint, share, e, e', both speeds; by snapshot
+    real(dp), allocatable :: times(:)         !! requested times, increasing [s]
+    integer :: next = 1                       !! index of the next of them
+    integer, private :: n = 0                 !! number of snapshots stored
+    real(dp), allocatable, private :: kept(:, :)  !! (quantity, snapshot): time, crank angle, joint, share, e, e', both angular
+                                                  !! speeds
   contains
     procedure :: prepare
     procedure :: take
@@ -38,7 +39,7 @@ module film_snapshots
 
 contains
 
-  !> Times in a text: numbers with commas, or from:to:count. Not allocated where it holds something else.
+  !> Read times from a text: numbers separated by commas, or first:last:count. Not allocated if the text is neither.
   subroutine read_times(text, times)
     character(len=*), intent(in) :: text
     real(dp), allocatable, intent(out) :: times(:)
@@ -70,17 +71,17 @@ contains
     times = numbers(:count)
   end subroutine read_times
 
-  !> For a scene that is ready to run.
+  !> Prepare for a scene that is ready to run.
   subroutine prepare(self, text, scene)
     class(film_snapshots_t), intent(inout) :: self
-    character(len=*), intent(in) :: text   !! as `read_times`; empty: none
+    character(len=*), intent(in) :: text   !! in the format of `read_times`; empty: no snapshots
     type(scene_t), intent(in) :: scene
     if (text /= '') call read_times(text, self%times)
     if (.not. allocated(self%times)) allocate (self%times(0))
     allocate (self%kept(10, size(self%times)*scene%n_joints), source=0.0_dp)
   end subroutine prepare
 
-  !> Keep what is due in the last step of the method, up to t_to.
+  !> Store the motions at the requested times in the last step of the method, up to t_to.
   subroutine take(self, method, scene, t_to)
     class(film_snapshots_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
@@ -107,7 +108,7 @@ contains
     end do
   end subroutine take
 
-  !> The pressures at the times that the run has reached.
+  !> The pressure fields at the requested times that the run has reached.
   function fields(self, scene) result(all)
     class(film_snapshots_t), intent(in) :: self
     type(scene_t), intent(in) :: scene
@@ -132,7 +133,7 @@ contains
     end do
   end function fields
 
-  !> What has been kept, to or from an archive.
+  !> Write the stored motions to an archive, or read them from it.
   subroutine exchange(self, archive)
     class(film_snapshots_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive

@@ -1,4 +1,4 @@
-!> The columns of a trace: which of them a scene has, which the case wants, and the values of a row.
+!> The columns of a trace: which columns a scene has, which the case asks for, and the values of a row.
 module gudgeon_columns
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_case_file
@@ -17,10 +17,11 @@ module gudgeon_columns
 
 contains
 
-  !> The columns that the case asks for, of those that its scene has. Error: a name that the scene does not have.
+  !> The columns that the case asks for. Error: a column that the scene does not have.
   subroutine choose_columns(case, ideal_joint, list, error)
     type(case_t), intent(in) :: case
-    logical, intent(in) :: ideal_joint   !! of the ideal twin: it has what ideal joints have, and ignores other names
+    logical, intent(in) :: ideal_joint  !! true for the ideal twin: it has the columns of ideal joints, and ignores names of other
+                                        !! columns
     type(column_list_t), intent(out) :: list
     type(error_t), allocatable, intent(out) :: error
     type(scene_t), allocatable :: scene
@@ -45,8 +46,8 @@ contains
   !> Mark the columns named in a text such as 'time, crank_angle' or 'standard, film_power'.
   subroutine read_names(text, names, on_request, ignores_missing, wanted, error)
     character(len=*), intent(in) :: text
-    character(len=name_length), intent(in) :: names(:)   !! of the scene
-    logical, intent(in) :: on_request(:)   !! those that are not standard
+    character(len=name_length), intent(in) :: names(:)   !! names of the columns of the scene
+    logical, intent(in) :: on_request(:)   !! true for columns that are not standard
     logical, intent(in) :: ignores_missing
     logical, intent(out) :: wanted(:)
     type(error_t), allocatable, intent(out) :: error
@@ -87,25 +88,25 @@ contains
     name = trim(list%names(list%id(i)))
   end function column_name
 
-  !> The values of a row from one evaluation of the scene at time t, with the work of the non-conservative forces so far.
+  !> The values of a row at time t, from an evaluation of the scene and the work of the non-conservative forces.
   pure subroutine row_values(list, scene, t, now, work, initial_energy, values)
     type(column_list_t), intent(in) :: list
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t                !! [s]
     type(evaluation_t), intent(in) :: now
-    real(dp), intent(in) :: work             !! [J]
+    real(dp), intent(in) :: work             !! of the non-conservative forces since t = 0 [J]
     real(dp), intent(in) :: initial_energy   !! [J]
     real(dp), intent(out) :: values(:)       !! (size(list%id))
     type(trace_row_t) :: row
     integer :: i
     call row%choose(list)
     call put_columns(scene, t, now, work, initial_energy, row)
-    do i = 1, size(values)   ! row%values(list%id) would allocate a copy of the subscripts
+    do i = 1, size(values)   ! row%values(list%id) would allocate a copy of the indices
       values(i) = row%values(list%id(i))
     end do
   end subroutine row_values
 
-  !> Every column of a scene, in their order.
+  !> Add every column of a scene to a row, in the order of the trace.
   pure subroutine put_columns(scene, t, now, work, initial_energy, row)
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, work, initial_energy
@@ -149,7 +150,7 @@ contains
     call row%put('piston_acceleration[m/s2]', a%piston, 'rate of piston_velocity')
   end subroutine put_motion
 
-  !> The forces between the bodies.
+  !> Add the columns of the forces between the bodies.
   pure subroutine put_forces(scene, now, row)
     type(scene_t), intent(in) :: scene
     type(evaluation_t), intent(in) :: now

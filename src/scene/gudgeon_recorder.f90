@@ -1,8 +1,8 @@
-!> The observer of a run: samples on a fixed grid of time or of crank angles, events of contact, the figures of the summary and,
-!> where they are asked for, those of each revolution.
+!> The observer of a run. It records samples on a fixed grid of time or crank angle, the events of contact, the values for the
+!> summary and, on request, the results of each revolution.
 !>
-!> What belongs to a pin is in its `pin_record`: the piston pin has one, and a crank pin with clearance. Peaks are searched
-!> between accepted points too, and none is below what a row says. The energy is looked at in accepted points.
+!> Results that belong to a pin are in its `pin_record`: one for the piston pin, and one for a crank pin with clearance. Peaks are
+!> searched also between accepted points, and no peak is below the largest value of a row. The energy is checked at accepted points.
 module gudgeon_recorder
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
@@ -28,30 +28,31 @@ module gudgeon_recorder
   public :: recorder_t
 
   type, extends(observer_t) :: recorder_t
-    type(column_list_t) :: list       !! of a row; empty: no rows
+    type(column_list_t) :: list       !! columns of a row; empty: no rows are written
     type(run_figures_t) :: figures
-    type(film_snapshots_t), allocatable :: films   !! pressure fields, where they are asked for
+    type(film_snapshots_t), allocatable :: films   !! pressure fields, if they are requested
     class(trace_sink_t), allocatable :: sink
-    type(cycle_watch_t), allocatable :: cycles   !! revolution by revolution
-    type(period_watch_t) :: periods   !! whether the motion repeats, where that ends the run
-    type(scene_t), allocatable :: scene_at_end   !! where it does: as it was then
-    type(turn_patience_t) :: patience   !! with a crank that has to make turns
+    type(cycle_watch_t), allocatable :: cycles   !! results of each revolution, if they are requested
+    type(period_watch_t) :: periods   !! search for a periodic motion that ends the run
+    type(scene_t), allocatable :: scene_at_end   !! the scene at the end of that period
+    type(turn_patience_t) :: patience   !! time limit for a turn, if turns of the crank end the run
     real(dp) :: first_sample = 0      !! time of the first row [s]
-    real(dp) :: interval = 0          !! from row to row [s]
-    type(angle_grid_t) :: angles      !! of the rows, where these are not spaced by time
-    real(dp) :: end_time = 0          !! at the latest [s]
-    real(dp) :: expected_end = 0      !! [s]
-    logical :: every_step = .false.   !! a row at every accepted step instead
-    integer :: max_evaluations_per_revolution = 0   !! budget for one revolution, or the time it takes at first; 0: none
-    real(dp) :: revolution_time = huge(1.0_dp)      !! that time [s]
-    logical :: over_budget = .false.                !! the run is to stop for it
+    real(dp) :: interval = 0          !! time between rows [s]
+    type(angle_grid_t) :: angles      !! crank angles of the rows, if rows are spaced by crank angle
+    real(dp) :: end_time = 0          !! latest end of the run [s]
+    real(dp) :: expected_end = 0      !! expected end of the run [s]
+    logical :: every_step = .false.   !! write a row at every accepted step
+    integer :: max_evaluations_per_revolution = 0  !! largest number of evaluations in one revolution, or in the time of the first
+                                                   !! revolution; 0: no limit
+    real(dp) :: revolution_time = huge(1.0_dp)      !! duration of a revolution at the starting speed [s]
+    logical :: over_budget = .false.                !! the run is to end because that number was exceeded
     real(dp), private :: initial_energy = 0, start_angle = 0
     integer, private :: next_row = 0, steps = 0
-    integer, private :: evaluations_then = 0        !! when the present revolution was begun, and then
-    real(dp), private :: time_then = 0, angle_then = 0   !! [s], [rad]
-    integer, private :: n_pins = 1                 !! that have a record
+    integer, private :: evaluations_then = 0        !! number of evaluations at the beginning of the present revolution
+    real(dp), private :: time_then = 0, angle_then = 0   !! time [s] and crank angle [rad] at that beginning
+    integer, private :: n_pins = 1                 !! number of pins that have a record
     type(pin_record_t), private :: pins(most_pins)
-    type(guide_record_t), private :: guide         !! of a piston with clearance in its bore
+    type(guide_record_t), private :: guide         !! record of a piston with clearance in its bore
     real(dp), allocatable, private :: y(:), values(:)
   contains
     procedure :: prepare
@@ -66,7 +67,7 @@ module gudgeon_recorder
 
 contains
 
-  !> Before anything else, for a scene that is ready to run.
+  !> Prepare for a scene that is ready to run. Must be called before the other procedures.
   subroutine prepare(self, scene)
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
@@ -84,12 +85,12 @@ contains
       if (scene%chain%has_crankshaft()) self%figures%elastic%twist_frequency = scene%twist_frequency()
     end if
     allocate (self%y(scene%n), self%values(size(self%list%id)))
-    self%keeps_archives = self%sink%keeps_archives .and. .not. allocated(self%cycles)   ! whose state is not put away
+    self%keeps_archives = self%sink%keeps_archives .and. .not. allocated(self%cycles)   ! the revolution counts cannot be archived
     if (self%periods%is_on) call self%periods%begin(scene)
-    if (self%periods%keeps_one_more) self%first_sample = huge(self%first_sample)        ! until the window begins
+    if (self%periods%keeps_one_more) self%first_sample = huge(self%first_sample)        ! no rows until the window begins
   end subroutine prepare
 
-  !> Look at the initial state, and write the first row if it is due.
+  !> Record the initial state, and write the first row if it is due.
   subroutine begin(self, scene, y)
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
@@ -159,12 +160,12 @@ contains
     if (self%periods%has_ended) self%keeps_archives = .false.
   end subroutine step_taken
 
-  !> Whether the motion repeats: the run may end before t_end, or its window begin.
+  !> Check whether the motion is periodic. If so, t_end may be moved to an earlier time, or the window of the output begins.
   subroutine watch_periods(self, method, scene, t_end)
     class(recorder_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
-    real(dp), intent(inout) :: t_end   !! in: of the last step, as far as it stands
+    real(dp), intent(inout) :: t_end   !! on entry: end of the part of the last step that is final
     call self%periods%follow(method, scene, t_end)
     if (self%periods%has_ended) then
       t_end = self%periods%t
@@ -182,7 +183,7 @@ contains
     if (allocated(self%cycles)) call self%cycles%count_from(self%periods%window_after)
   end subroutine watch_periods
 
-  !> The rows that are due in the last step, up to t_to.
+  !> Write the rows that are due in the last step, up to t_to.
   subroutine put_samples(self, method, scene, t_to)
     class(recorder_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
@@ -216,8 +217,8 @@ contains
     end do
   end subroutine put_samples
 
-  !> Tell the sink how far the run is. Where the turns of the crank end it, that is expected to be when it has made them at its mean
-  !> speed so far.
+  !> Report the progress of the run to the sink. If the run ends after a number of turns, its end is estimated from the mean speed
+  !> so far.
   subroutine tell_progress(self, problem, t)
     class(recorder_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
@@ -231,7 +232,7 @@ contains
     call self%sink%take_progress(t)
   end subroutine tell_progress
 
-  !> The end of a step, or of the part of it that stands; before it, the ends of revolutions inside.
+  !> Record the end of a step, or of its final part, after the ends of revolutions inside it.
   subroutine take_end(self, method, scene, t, y)
     class(recorder_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
@@ -258,7 +259,8 @@ contains
     call take_point(self, scene, t, y, now, inside, self%every_step .and. t >= self%first_sample)
   end subroutine take_end
 
-  !> Peaks between the last point looked at, or the beginning of a step after an event, and t, where the scene is evaluated.
+  !> Search for peaks between the last point recorded (or the beginning of a step after an event) and t, where the scene is
+  !> evaluated.
   subroutine search_peaks(self, method, scene, t, now)
     class(recorder_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
@@ -272,11 +274,11 @@ contains
     call self%guide%search(method, scene, t, now, self%figures)
   end subroutine search_peaks
 
-  !> Whether the present revolution costs more than it may. One that takes longer than the first would have ends there: a crank
-  !> at rest must not spend for ever.
+  !> Check the number of evaluations in the present revolution. A revolution that takes longer than the first would have taken is
+  !> counted as ended there: a crank at rest must not use an unlimited number of evaluations.
   subroutine keep_budget(self, evaluations)
     class(recorder_t), intent(inout) :: self
-    integer, intent(in) :: evaluations   !! so far
+    integer, intent(in) :: evaluations   !! number so far
     if (self%max_evaluations_per_revolution <= 0) return
     associate (f => self%figures)
       if (abs(f%crank_travel - self%angle_then) >= two_pi .or. f%time - self%time_then >= self%revolution_time) then
@@ -288,7 +290,7 @@ contains
     self%over_budget = evaluations - self%evaluations_then >= self%max_evaluations_per_revolution
   end subroutine keep_budget
 
-  !> Evaluate the scene for the trace or the figures, which is counted.
+  !> Evaluate the scene for the trace or the summary. These evaluations are counted.
   subroutine look_at(self, scene, t, y, now, inside)
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
@@ -300,7 +302,7 @@ contains
     if (inside .and. allocated(scene%chain%elastic)) call take_elastic(self%figures%elastic, scene, now)
   end subroutine look_at
 
-  !> The largest values of elastic members.
+  !> Update the largest values of the elastic members.
   pure subroutine take_elastic(figures, scene, now)
     type(elastic_figures_t), intent(inout) :: figures
     type(scene_t), intent(in) :: scene
@@ -317,7 +319,7 @@ contains
     end associate
   end subroutine take_elastic
 
-  !> The figures of one accepted point, evaluated before, and its row where one is due.
+  !> Record an accepted point at which the scene has been evaluated, and write a row if one is due.
   subroutine take_point(self, scene, t, y, now, inside, has_row)
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
@@ -373,7 +375,7 @@ contains
     end select
   end subroutine event_taken
 
-  !> A contact begins or ends at a pin, at time t; `now` is evaluated before that.
+  !> Record that a contact begins or ends at a pin at time t; `now` is evaluated before that event.
   subroutine take_contact(self, pin, kind, t, now)
     class(recorder_t), intent(inout) :: self
     type(pin_record_t), intent(inout) :: pin
@@ -386,7 +388,7 @@ contains
     call self%sink%take_event(event)
   end subroutine take_contact
 
-  !> A contact of corner i of the skirt begins or ends at time t; `now` is evaluated before that.
+  !> Record that a contact of corner i of the skirt begins or ends at time t; `now` is evaluated before that event.
   subroutine take_corner_contact(self, i, kind, t, now)
     class(recorder_t), intent(inout) :: self
     integer, intent(in) :: i, kind
@@ -398,7 +400,7 @@ contains
     call self%sink%take_event(event)
   end subroutine take_corner_contact
 
-  !> The run ended at (t, y): with a row at every step, and for the last of a grid that rounding left out.
+  !> End the run at (t, y). Writes the last row if rows are written at every step, or if rounding left out the last row of the grid.
   subroutine finish(self, scene, t, y)
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
@@ -417,12 +419,12 @@ contains
     call self%sink%take_progress(t)
   end subroutine finish
 
-  !> The row at the angle at which the run ends, where rounding left it out.
+  !> Write the row at the final crank angle, if rounding left it out.
   subroutine put_last_angle(self, scene, t, y)
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
-    real(dp), parameter :: rounding = 1e-9_dp   !! of the end of a run [rad]
+    real(dp), parameter :: rounding = 1e-9_dp   !! tolerance of the final crank angle [rad]
     real(dp) :: crank_angle
     logical :: is_due
     call self%angles%is_due(scene%crank_angle(t, y), rounding, is_due, crank_angle)
@@ -432,7 +434,7 @@ contains
     call self%write_row(scene, t, self%y)
   end subroutine put_last_angle
 
-  !> What has been found so far, to or from an archive; not what is set from outside.
+  !> Write the results so far to an archive, or read them from it. Settings are not archived.
   subroutine exchange_recorder(self, archive)
     class(recorder_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
@@ -456,14 +458,14 @@ contains
     call archive%exchange(self%angle_then)
   end subroutine exchange_recorder
 
-  !> The sink keeps the state of the run.
+  !> Hand the state of the run to the sink.
   subroutine take_archive(self, archive)
     class(recorder_t), intent(inout) :: self
     type(archive_t), intent(in) :: archive
     call self%sink%take_archive(archive)
   end subroutine take_archive
 
-  !> The row at a time where nothing else is looked at.
+  !> Write a row at a time at which nothing else is recorded.
   subroutine write_row(self, scene, t, y)
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
@@ -474,7 +476,7 @@ contains
     if (size(self%values) == 0) return
     call look_at(self, scene, t, y, now, inside)
     if (.not. inside) return
-    do i = 1, self%n_pins   ! for no revolution: these must not depend on whether anybody wants rows
+    do i = 1, self%n_pins   ! without revolution counts: those must not depend on whether rows are written
       call self%pins(i)%take_values(scene, now, self%figures)
     end do
     call self%guide%take_values(scene, now, self%figures)

@@ -1,4 +1,4 @@
-!> One run of one case: build the scene, integrate it, give rows, events and figures to a sink.
+!> Runs one case: builds its scene, integrates it, and hands rows, events and results to a sink.
 module gudgeon_simulation
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_integration, status_internal
@@ -26,26 +26,26 @@ module gudgeon_simulation
   private
   public :: simulate, try_auto, run_report_t, interrupted_text
 
-  !> What is known of a run when it has ended.
+  !> The results of a run that are known when it has ended.
   type :: run_report_t
-    character(len=:), allocatable :: status      !! 'done', or in words why and where it ended
+    character(len=:), allocatable :: status      !! 'done', or a text that says why and where the run ended
     type(step_statistics_t) :: statistics
     type(run_figures_t) :: figures
-    type(film_field_t), allocatable :: films(:)  !! pressure fields, where the case asks for them
-    real(dp), allocatable :: time_with(:, :)     !! method auto: time with Adams, with Radau in each mode, (2, 0:highest mode) [s]
-    logical :: can_go_on = .false.               !! stopped from outside or by a limit: the sink was given its state
-    logical :: energy_is_poor = .false.          !! done, but with a residual that the user should know of
-    type(period_watch_t) :: periods              !! whether the motion repeats, where that was to end the run
-    type(exponent_t) :: exponent                 !! of Lyapunov, where it is asked for
-    real(dp) :: auto_saves = 0                   !! > 0: evaluations of this run over those that method auto needs, measured
+    type(film_field_t), allocatable :: films(:)  !! pressure fields, if the case asks for them
+    real(dp), allocatable :: time_with(:, :)  !! method auto: time with Adams and with Radau, for each mode, (2, 0:highest mode) [s]
+    logical :: can_go_on = .false.  !! the run was stopped from outside or by a limit, and its state was given to the sink
+    logical :: energy_is_poor = .false.          !! the run is done, but the user must be told of its energy residual
+    type(period_watch_t) :: periods              !! search for a periodic motion that ends the run
+    type(exponent_t) :: exponent                 !! Lyapunov exponent, if it is requested
+    real(dp) :: auto_saves = 0  !! > 0: evaluations of this run divided by those that method auto needs, as measured
   end type run_report_t
 
 contains
 
-  !> Run a case, or its ideal twin. The sink is lent to the run and given back, and so is the watch over the revolutions of
-  !> the crank, which also has the measures of the joint integrated. Errors: the scene cannot be built
-  !> (status_case_file); the integration could not continue (status_integration, `report` and the sink hold what there is).
-  !> With an `archive` that the sink was given by an earlier run of the same case, that run continues.
+  !> Run a case, or its ideal twin. The sink is moved into the run and returned at the end. So is `cycles`, the count of the
+  !> revolutions of the crank; if it is present, the impulse and the loss of the joint are integrated too. Errors: the scene cannot
+  !> be built (status_case_file); the integration failed (status_integration; `report` and the sink then hold the results up to that
+  !> instant). With an `archive` that an earlier run of the same case gave to its sink, that run is continued.
   subroutine simulate(case, ideal_joint, list, sink, report, error, archive, cycles)
     type(case_t), intent(in) :: case
     logical, intent(in) :: ideal_joint
@@ -147,19 +147,19 @@ contains
     !$omp end critical (texts)
   end subroutine simulate
 
-  !> From which energy residual on, relative to the largest energy, a run that is done says so: 1e-3, which shows in results, or
-  !> a hundred tolerances, which no more than 1 in 1000 extreme scenes reach; 1e-10 may be rounding.
+  !> Energy residual, relative to the largest energy, from which the user of a completed run is told: 1e-3, which is visible in
+  !> results, or a hundred tolerances, which at most 1 in 1000 extreme scenes reach. A residual up to 1e-10 may be rounding.
   pure real(dp) function remarkable_residual(tolerance)
     real(dp), intent(in) :: tolerance      !! relative
     remarkable_residual = max(1e-10_dp, min(1e-3_dp, 100*tolerance))
   end function remarkable_residual
 
-  !> Whether a crank that ends the run by its turns has made them.
+  !> Check whether the crank has made the turns that are to end the run.
   subroutine judge_turns(scene, t, y, status)
     class(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     integer, intent(inout) :: status
-    real(dp), parameter :: rounding = 1e-12_dp   !! the latest end may be that instant
+    real(dp), parameter :: rounding = 1e-12_dp   !! the latest end of the run may coincide with them
     if (.not. allocated(scene%turns)) return
     select case (status)
     case (integration_stopped)
@@ -170,17 +170,18 @@ contains
     end select
   end subroutine judge_turns
 
-  !> Largest energy residual of a run that is done, relative to the largest energy: ten tolerances a revolution, since local
-  !> errors add up, and a thousand at least. Of 1767 extreme scenes that ended, half stay below 0.003 tolerances and 99.5 %
-  !> below 46; 10^4 revolutions of simulation V come to 1250 (tests/README.md). A residual of 5 % is no result at any
-  !> tolerance, one of 1e-10 may be rounding.
+  !> Largest energy residual of a completed run, relative to the largest energy: ten tolerances for each revolution, since local
+  !> errors add up, and at least a thousand tolerances. Of 1767 extreme scenes that ended, half stay below 0.003 tolerances and 99.5
+  !> % below 46; 10^4 revolutions of simulation V reach 1250 (tests/README.md). The limit is never above 5 %, which makes any result
+  !> useless, and never below 1e-10, which may be rounding.
   pure real(dp) function energy_limit(tolerance, crank_travel)
     real(dp), intent(in) :: tolerance      !! relative
     real(dp), intent(in) :: crank_travel   !! [rad]
     energy_limit = min(0.05_dp, max(1e-10_dp, 1e3_dp*tolerance*max(1.0_dp, abs(crank_travel)/(100*two_pi))))
   end function energy_limit
 
-  !> After an Adams run that was bound by its stability most of the time: what it cost over what method auto needs.
+  !> After an Adams run that was limited by stability for most of its time: measure how many more evaluations it took than method
+  !> auto.
   subroutine measure_auto(case, report)
     type(case_t), intent(in) :: case
     type(run_report_t), intent(inout) :: report
@@ -193,8 +194,8 @@ contains
     if (needed > 0) report%auto_saves = real(report%statistics%evaluations, dp)/needed
   end subroutine measure_auto
 
-  !> Evaluations that method auto needs for a case up to a time [s], found by running it without any output; 0 if it does not come
-  !> there in so many steps.
+  !> Number of evaluations that method auto needs to run a case up to a time [s], measured by a run without output; 0 if it does not
+  !> reach that time in `max_steps` steps.
   subroutine try_auto(case, time, max_steps, evaluations)
     type(case_t), intent(in) :: case
     real(dp), intent(in) :: time

@@ -1,4 +1,4 @@
-!> What a case says of the piston's guide.
+!> The parameters of the piston's guide in a case.
 module guide_case
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t, law_t
@@ -10,7 +10,7 @@ module guide_case
   private
   public :: guide_case_t, guide_clearance, guide_friction
 
-  character(len=*), parameter :: guide_friction = 'friction', guide_clearance = 'clearance'   !! the kinds
+  character(len=*), parameter :: guide_friction = 'friction', guide_clearance = 'clearance'   !! the kinds of guide
 
   type, extends(has_parameters_t) :: guide_case_t
     character(len=:), allocatable :: kind
@@ -30,7 +30,7 @@ module guide_case
 
 contains
 
-  !> All but those of its laws.
+  !> Declare the parameters, except those of the laws.
   subroutine parameters(self, list)
     class(guide_case_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
@@ -57,7 +57,7 @@ contains
     call list%add('exponent', self%exponent, 'exponent of the penetration', range='>= 1', default='1.0')
   end subroutine parameters
 
-  !> The friction law that the case names.
+  !> Allocate the friction law that the case names.
   subroutine take_friction(self, law)
     class(guide_case_t), intent(inout) :: self
     class(law_t), allocatable, intent(in) :: law
@@ -68,7 +68,7 @@ contains
     end select
   end subroutine take_friction
 
-  !> The contact law that the case names.
+  !> Allocate the contact law that the case names.
   subroutine take_contact(self, law)
     class(guide_case_t), intent(inout) :: self
     class(law_t), allocatable, intent(in) :: law
@@ -79,8 +79,8 @@ contains
     end select
   end subroutine take_contact
 
-  !> Largest friction over normal force [-] at speeds up to one [m/s], to 2 %: the laws are looked at in steps of a tenth of a
-  !> speed.
+  !> Largest ratio of friction to normal force [-] at sliding speeds up to a given one [m/s], within 2 %: the law is evaluated at
+  !> speeds that differ by a tenth.
   real(dp) function most_friction(self, highest_speed)
     class(guide_case_t), intent(in) :: self
     real(dp), intent(in) :: highest_speed
@@ -98,7 +98,7 @@ contains
     end do
   end function most_friction
 
-  !> The guide, all but its start.
+  !> Build the guide. Its initial state is set elsewhere.
   subroutine build(self, guide)
     class(guide_case_t), intent(in) :: self
     type(piston_guide_t), intent(inout) :: guide

@@ -1,7 +1,7 @@
-!> What a run does at the corners of a skirt in its bore: their contacts, how deep they go and how hard they press.
+!> Records what happens at the corners of the skirt in its bore: contacts, penetrations and forces.
 !>
-!> Depths and forces follow from the place of the piston alone, so that peaks inside a step are searched on the interpolant of the
-!> method, without evaluations of the scene.
+!> Penetrations and forces follow from the position and speed of the piston alone. Peaks inside a step are therefore searched on the
+!> interpolant of the method, without evaluations of the scene.
 module guide_record
   use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
@@ -18,15 +18,16 @@ module guide_record
   public :: guide_record_t
 
   integer, parameter :: of_depth = 1, of_force = 2, n_peaks = 2
-  real(dp), parameter :: short = 1e-4_dp      !! part of a piece over which the slope of a force is taken
+  real(dp), parameter :: short = 1e-4_dp      !! fraction of an interval over which the slope of a force is taken
 
   type :: guide_record_t
     logical :: is_there = .false.      !! the scene has a piston with clearance in its bore
-    type(trace_event_t), private :: contact(n_corners)   !! the present or the last one of each corner
-    real(dp), private :: t = 0         !! end of the last piece of the run that was searched [s]
-    real(dp), private :: last(n_peaks, n_corners) = 0    !! depths and forces there
-    real(dp), private :: rate(n_corners) = 0             !! rates of the depths there
-    real(dp), private :: highest(n_peaks) = huge(1.0_dp) !! depth and force in the present revolution, where revolutions are counted
+    type(trace_event_t), private :: contact(n_corners)   !! present or last contact of each corner
+    real(dp), private :: t = 0         !! end of the last interval that was searched [s]
+    real(dp), private :: last(n_peaks, n_corners) = 0    !! penetrations and forces at that time
+    real(dp), private :: rate(n_corners) = 0             !! rates of the penetrations at that time
+    real(dp), private :: highest(n_peaks) = huge(1.0_dp)  !! largest penetration and force in the present revolution, if revolutions
+                                                          !! are counted
   contains
     procedure, non_overridable :: prepare
     procedure, non_overridable :: stand_at
@@ -41,7 +42,7 @@ module guide_record
 
 contains
 
-  !> The record of this scene.
+  !> Prepare the record for a scene.
   subroutine prepare(self, scene)
     class(guide_record_t), intent(out) :: self
     type(scene_t), intent(in) :: scene
@@ -52,7 +53,7 @@ contains
     end do
   end subroutine prepare
 
-  !> The next piece begins at t, with what has been evaluated there.
+  !> Let the next interval to be searched begin at t, where the scene has been evaluated.
   pure subroutine stand_at(self, t, now)
     class(guide_record_t), intent(inout) :: self
     real(dp), intent(in) :: t
@@ -64,21 +65,22 @@ contains
     self%rate = now%guide%corner%depth_rate
   end subroutine stand_at
 
-  !> A revolution that is counted begins: its peaks are searched, and not only those of the contacts.
+  !> Begin a revolution whose results are wanted: all its peaks are searched, not only those above the peaks of the present
+  !> contacts.
   pure subroutine begin_revolution(self)
     class(guide_record_t), intent(inout) :: self
     self%highest = 0
   end subroutine begin_revolution
 
-  !> The revolution ends: its largest depth [m] and force [N] of a corner.
+  !> End the revolution: its largest penetration [m] and force [N] at a corner are added to the results.
   pure subroutine end_revolution(self, cycles)
     class(guide_record_t), intent(inout) :: self
     type(cycle_watch_t), intent(inout) :: cycles
     if (self%is_there) call cycles%take_skirt(self%highest(of_depth), self%highest(of_force))
   end subroutine end_revolution
 
-  !> Peaks of corners that touch, between the end of the last piece and t, inside the last step of the method, where the scene is
-  !> evaluated.
+  !> Search the peaks of the corners that touch, between the end of the last interval and t, where the scene is evaluated. Both must
+  !> lie inside the last step of the method.
   subroutine search(self, method, scene, t, now, figures)
     class(guide_record_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
@@ -107,7 +109,8 @@ contains
 
   contains
 
-    !> Slope of the force at one end of the piece, by two values `short` of it apart, to the side (1 or -1) that is inside.
+    !> Slope of the force at one end of the interval, from two values a fraction `short` of it apart; `way` is the direction (1 or
+    !> -1) into the interval.
     real(dp) function slope_at(at, way) result(slope)
       real(dp), intent(in) :: at
       integer, intent(in) :: way
@@ -119,7 +122,7 @@ contains
     end function slope_at
   end subroutine search
 
-  !> The peak of one quantity between two samples, if it is above `known`.
+  !> Search the peak of one quantity between two samples, if it may exceed `known`.
   subroutine search_between(method, scene, corner, quantity, left, right, known, largest)
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
@@ -140,7 +143,7 @@ contains
     largest = max(largest, peak%value(1))
   end subroutine search_between
 
-  !> A quantity of a corner inside the last step.
+  !> The value of a quantity of a corner at a time inside the last step.
   real(dp) function value_at(method, scene, corner, quantity, t) result(value)
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
@@ -153,7 +156,7 @@ contains
     value = merge(corners(corner)%depth, corners(corner)%normal_force, quantity == of_depth)
   end function value_at
 
-  !> Depths and forces in one evaluation.
+  !> Account for the penetrations and forces of one evaluation.
   subroutine take_values(self, scene, now, figures)
     class(guide_record_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
@@ -167,7 +170,7 @@ contains
     end do
   end subroutine take_values
 
-  !> The largest of a corner, for its contact and for the run.
+  !> Account for values of one corner, for its contact and for the run.
   pure subroutine put_values(self, i, values, figures)
     type(guide_record_t), intent(inout) :: self
     integer, intent(in) :: i
@@ -182,7 +185,7 @@ contains
     self%highest = max(self%highest, values)
   end subroutine put_values
 
-  !> Time [s] that has passed since the last point looked at.
+  !> Account for the time [s] that has passed since the last point.
   pure subroutine take_time(self, scene, passed, figures)
     class(guide_record_t), intent(in) :: self
     type(scene_t), intent(in) :: scene
@@ -192,7 +195,7 @@ contains
     where (scene%guide%touches) figures%corner%contact_time = figures%corner%contact_time + passed
   end subroutine take_time
 
-  !> A contact of corner i begins or ends at time t; `now` is evaluated before that. `event` is what the trace tells of it.
+  !> A contact of corner i begins or ends at time t; `now` is evaluated before that event. `event` is its entry in the trace.
   subroutine take_contact(self, i, kind, t, now, figures, event)
     class(guide_record_t), intent(inout) :: self
     integer, intent(in) :: i, kind
@@ -217,7 +220,7 @@ contains
     end associate
   end subroutine take_contact
 
-  !> What has been found so far, to or from an archive.
+  !> Write the results so far to an archive, or read them from it.
   subroutine exchange(self, archive)
     class(guide_record_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive

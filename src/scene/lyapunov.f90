@@ -1,15 +1,16 @@
-!> The largest Lyapunov exponent of the motion that a run has reached: the rate at which two neighbouring motions part, or come
-!> together, per revolution of the crank.
+!> The largest Lyapunov exponent of the motion that a run has reached: the mean rate, per revolution of the crank, at which
+!> neighbouring motions diverge (positive) or converge (negative).
 !>
-!> Two scenes run on from where the run ended, the second one with its state a little beside. Each quarter of a revolution their
-!> difference is measured when the crank of each is at the same angle, and brought back to its first size in the direction that it
-!> has (Benettin, Galgani, Giorgilli and Strelcyn 1980, Meccanica 15, 9-20). Both go through every contact by themselves, so no
-!> derivative of an impact is needed. The exponent is the mean of the logarithms of the growth. States at the same crank angle leave
-!> out the difference along the motion itself, which would keep the exponent of a periodic motion of a free crank at 0.
+!> Two scenes continue from the end of the run, the second one with a slightly different state. Every quarter of a revolution their
+!> difference is measured when the crank of each is at the same angle, and scaled back to its initial size without changing its
+!> direction (Benettin, Galgani, Giorgilli and Strelcyn 1980, Meccanica 15, 9-20). The exponent is the mean of the logarithms of the
+!> growth factors. Both scenes pass through every contact by themselves, so no derivative of an impact is needed. Comparing states
+!> at equal crank angles excludes differences along the motion itself, which would keep the exponent of a periodic motion of a free
+!> crank at 0.
 !>
-!> Both runs are integrated at the tolerance 1e-11; differences are 1e-7 of the natural sizes of the state. A quarter in which a
-!> difference shrinks by more than a factor of some 1e3 is lost in the errors of the integration: exponents below -30 are upper
-!> bounds.
+!> Both runs are integrated with the tolerance 1e-11; differences are 1e-7 of the natural sizes of the state. If a difference
+!> shrinks by more than a factor of about 1e3 in a quarter of a revolution, it is lost in the errors of the integration: exponents
+!> below -30 are upper bounds.
 module lyapunov
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
@@ -29,30 +30,31 @@ module lyapunov
   private
   public :: exponent_t, measure_exponent
 
-  integer, parameter :: per_revolution = 4             !! measurements
+  integer, parameter :: per_revolution = 4             !! measurements in one revolution
   real(dp), parameter :: tolerance = 1e-11_dp          !! relative, of both runs
-  real(dp), parameter :: first_size = 1e-7_dp          !! of the difference, over the natural sizes
-  real(dp), parameter :: smallest_growth = 1e-12_dp    !! that is told from nothing
-  real(dp), parameter :: patience = 100                !! times what a revolution takes at the speed at which it begins
+  real(dp), parameter :: first_size = 1e-7_dp          !! initial size of the difference, relative to the natural sizes
+  real(dp), parameter :: smallest_growth = 1e-12_dp    !! smallest growth factor that is resolved
+  real(dp), parameter :: patience = 100  !! longest time for one revolution, relative to its time at the crank speed at which it
+                                         !! begins
 
-  !> What is found.
+  !> Result of the measurement.
   type :: exponent_t
     logical :: is_known = .false.
     real(dp) :: mean = 0          !! per revolution
-    real(dp) :: error = 0         !! standard error of the mean, from the scatter of the periods, or else of the revolutions
-    integer :: revolutions = 0    !! that it is the mean of
+    real(dp) :: error = 0  !! standard error of the mean, from the scatter between periods or, without a period, between revolutions
+    integer :: revolutions = 0    !! number of revolutions of which it is the mean
   end type exponent_t
 
-  !> One of the two.
+  !> One of the two scenes.
   type, extends(observer_t) :: companion_t
     type(scene_t), allocatable :: scene
     class(ode_method_t), allocatable :: method
     real(dp) :: t = 0                        !! [s]
     real(dp), allocatable :: y(:)
-    real(dp) :: target = 0, direction = 1    !! crank angle to which it runs [rad]
+    real(dp) :: target = 0, direction = 1    !! crank angle to which it runs [rad], and the sense of rotation
     logical :: is_there = .false.
-    type(archive_t) :: there                 !! its discrete state there
-    type(scene_t), allocatable :: kept       !! itself there, before an event that the last step ends with
+    type(archive_t) :: there                 !! its discrete state at that angle
+    type(scene_t), allocatable :: kept       !! the scene at that angle, before an event at the end of the last step
   contains
     procedure :: run_to
     procedure :: step_taken
@@ -61,13 +63,13 @@ module lyapunov
 
 contains
 
-  !> Measure over so many revolutions, or a few more that make whole periods, after those that the difference needs to find its
-  !> direction. `sink` is asked whether to continue.
+  !> Measure the exponent over the given number of revolutions, extended to whole periods, after some revolutions in which the
+  !> difference finds its direction. `sink` is asked whether to continue.
   subroutine measure_exponent(case, scene, t, y, period, sink, exponent)
     type(case_t), intent(in) :: case
-    type(scene_t), intent(in) :: scene         !! as the run left it
-    real(dp), intent(in) :: t, y(:)            !! where the run ended
-    integer, intent(in) :: period              !! of the motion [revolutions]; 0: it has none
+    type(scene_t), intent(in) :: scene         !! at the end of the run
+    real(dp), intent(in) :: t, y(:)            !! end of the run
+    integer, intent(in) :: period              !! of the motion [revolutions]; 0: it is not periodic
     class(trace_sink_t), intent(inout) :: sink
     type(exponent_t), intent(out) :: exponent
     type(companion_t) :: one, other
@@ -112,7 +114,7 @@ contains
     if (blocks > 1) exponent%error = sqrt(max(0.0_dp, sum_of_squares/blocks - (sum_of/blocks)**2)/(blocks - 1))/block
   end subroutine measure_exponent
 
-  !> A companion of the run at its end.
+  !> Prepare a scene that continues the run from its end.
   subroutine prepare(case, scene, t, y, companion)
     type(case_t), intent(in) :: case
     type(scene_t), intent(in) :: scene
@@ -124,8 +126,8 @@ contains
     close%integrator%relative_tolerance = tolerance
     close%integrator%absolute_tolerance = 0
     allocate (companion%scene, source=scene)
-    companion%scene%refuses_steps = .false.   ! contacts begin at the root
-    if (allocated(companion%scene%turns)) companion%scene%turns%wanted = 1e30_dp   ! never made
+    companion%scene%refuses_steps = .false.   ! contacts are entered at the root of the event function
+    if (allocated(companion%scene%turns)) companion%scene%turns%wanted = 1e30_dp   ! never reached
     call new_method('auto', companion%method, ignored)
     companion%method%settings = settings_for(close, companion%scene)
     companion%method%settings%max_evaluations = 0
@@ -134,7 +136,7 @@ contains
     companion%direction = sign(1.0_dp, companion%scene%crank_speed(t, y))
   end subroutine prepare
 
-  !> What of the state is compared: all but the crank angle and the quadratures; and its natural sizes.
+  !> The components of the state that are compared, all except the crank angle and the quadratures, and their natural sizes.
   subroutine choose_components(scene, at, scale)
     type(scene_t), intent(in) :: scene
     integer, allocatable, intent(out) :: at(:)
@@ -148,7 +150,7 @@ contains
     scale = scales(at)
   end subroutine choose_components
 
-  !> A direction that is no direction of the state's own: parts of multiples of the golden ratio.
+  !> An initial direction that is not a special direction of the system: fractional parts of multiples of the golden ratio.
   pure function first_direction(n) result(direction)
     integer, intent(in) :: n
     real(dp) :: direction(n)
@@ -156,14 +158,14 @@ contains
     direction = [(modulo(i*0.6180339887498949_dp, 1.0_dp) - 0.45_dp, i=1, n)]
   end function first_direction
 
-  !> Size of a difference, over the natural sizes.
+  !> Size of a difference relative to the natural sizes.
   pure real(dp) function size_of(difference, scale)
     real(dp), intent(in) :: difference(:), scale(:)
     size_of = norm2(difference/scale)
   end function size_of
 
-  !> Put the other one beside the first: its discrete state too. Where both touch, the speeds of their impacts differ as they did,
-  !> by as much less or more as the states.
+  !> Set the state of the second scene to that of the first plus a scaled difference; its discrete state is copied too. If both are
+  !> in contact, the difference of their impact speeds is scaled by the same factor.
   subroutine put_beside(one, other, at, difference)
     type(companion_t), intent(inout) :: one, other
     integer, intent(in) :: at(:)
@@ -191,7 +193,7 @@ contains
     end do
   end subroutine put_beside
 
-  !> Run until the crank is at an angle; `is_there` tells whether it comes there.
+  !> Run until the crank is at an angle; `is_there` is false if it does not reach it.
   subroutine run_to(self, angle)
     class(companion_t), intent(inout) :: self
     real(dp), intent(in) :: angle   !! [rad]

@@ -1,12 +1,12 @@
-!> Looks whether the motion repeats: compares the state each time that the crank has made a whole revolution with the states one to
-!> sixteen revolutions before.
+!> Detects a periodic motion: each time the crank completes a revolution, the state is compared with the states one to sixteen
+!> revolutions earlier.
 !>
-!> Compared are positions, rates and first-order states, but for the crank angle and the quadratures, each over its range in the
-!> last revolutions. The motion has the period p, the shortest one, when for three periods on end every state differs from that p
-!> revolutions before by the tolerance at most, and when what is still to come is no more: differences that shrink by the factor q
-!> from period to period leave d q/(1 - q). A motion that creeps towards its end is so not taken for one that is there. Differences
-!> below a hundredth of the tolerance may do as they like: they are those of the integration. Periods are multiples of that of the
-!> gas.
+!> Positions, rates and first-order states are compared, without the crank angle and the quadratures, each relative to its range in
+!> the last revolutions. The motion has the period p (the shortest possible) if for three consecutive periods every state differs
+!> from that p revolutions earlier by at most the tolerance, and the remaining change is expected to be at most that too:
+!> differences d that shrink by the factor q from period to period leave d q/(1 - q). Without this second condition a motion that
+!> approaches its limit slowly would be accepted too early. Differences below a hundredth of the tolerance are not tested for this,
+!> since they are errors of the integration. Periods are multiples of the period of the gas.
 module period_watch
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
@@ -19,33 +19,36 @@ module period_watch
   private
   public :: period_watch_t, repeats_needed
 
-  integer, parameter :: repeats_needed = 3                                !! periods on end that must repeat
-  integer, parameter :: depth = (repeats_needed + 1)*longest_period       !! revolutions that are remembered
-  real(dp), parameter :: least_range = 1e-3_dp      !! of a component, over its natural size, so that rest is not resolved
-  real(dp), parameter :: noise = 1e-2_dp            !! differences of the integration itself, over the tolerance
+  integer, parameter :: repeats_needed = 3                                !! consecutive periods that must agree
+  integer, parameter :: depth = (repeats_needed + 1)*longest_period       !! number of revolutions that are stored
+  real(dp), parameter :: least_range = 1e-3_dp  !! least range of a component, relative to its natural size, so that a component at
+                                                !! rest does not require infinite accuracy
+  real(dp), parameter :: noise = 1e-2_dp            !! differences due to the integration, relative to the tolerance
 
   type :: period_watch_t
     logical :: is_on = .false.
-    integer :: longest = longest_period    !! period looked for [revolutions]
+    integer :: longest = longest_period    !! longest period searched [revolutions]
     real(dp) :: tolerance = 0
-    integer :: most_revolutions = 0        !! of the run
-    logical :: keeps_one_more = .false.    !! the run continues for one period, which is its window
+    integer :: most_revolutions = 0        !! largest number of revolutions of the run
+    logical :: keeps_one_more = .false.    !! the run continues for one more period, the window of the output
     integer :: period = 0                  !! found [revolutions]; 0: none
-    integer :: found_after = 0             !! revolutions made when it was found
-    real(dp) :: difference = 0             !! of states a period apart then, over their ranges
-    real(dp) :: duration = 0               !! of the period [s]
+    integer :: found_after = 0             !! number of revolutions made when it was found
+    real(dp) :: difference = 0             !! difference between states one period apart at that time, relative to their ranges
+    real(dp) :: duration = 0               !! duration of the period [s]
     logical :: has_ended = .false.         !! the run is to end at (t, y)
-    integer :: window_after = -1           !! revolutions made when the window began; -1: not yet
+    integer :: window_after = -1           !! number of revolutions made when the window began; -1: it has not begun
     real(dp) :: window_start = huge(1.0_dp)   !! [s]
-    real(dp) :: t = 0                      !! when the crank has made the last whole revolution [s]
-    real(dp), allocatable :: y(:)          !! the state then
-    integer, private :: forcing = 1        !! period of what drives the motion [revolutions]
-    integer, private :: made = 0           !! whole revolutions
+    real(dp) :: t = 0                      !! time at which the crank completed the last revolution [s]
+    real(dp), allocatable :: y(:)          !! state at that time
+    integer, private :: forcing = 1        !! period of the excitation [revolutions]
+    integer, private :: made = 0           !! number of complete revolutions
     real(dp), private :: start_angle = 0, direction = 1
-    integer, allocatable, private :: at(:)       !! components that are compared
+    integer, allocatable, private :: at(:)       !! indices of the components that are compared
     real(dp), allocatable, private :: smallest_range(:)
-    real(dp), allocatable, private :: turning(:)   !! 1 of an angle that grows with the crank's, which is taken from it; else 0
-    real(dp), allocatable, private :: states(:, :), low(:, :), high(:, :)   !! of revolution k in column mod(k, depth)
+    real(dp), allocatable, private :: turning(:)  !! 1 for an angle that grows with the crank angle, which is subtracted from it;
+                                                  !! else 0
+    real(dp), allocatable, private :: states(:, :), low(:, :), high(:, :)  !! states and ranges of revolution k, in column mod(k,
+                                                                           !! depth)
     real(dp), private :: times(0:depth - 1) = 0
   contains
     procedure :: begin
@@ -59,7 +62,7 @@ module period_watch
 
 contains
 
-  !> Before the run, for a scene that is ready.
+  !> Prepare for a scene that is ready to run.
   subroutine begin(self, scene)
     class(period_watch_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
@@ -80,7 +83,7 @@ contains
     allocate (self%y(scene%n), source=0.0_dp)
   end subroutine begin
 
-  !> An accepted point of the present revolution.
+  !> Account for an accepted point of the present revolution.
   pure subroutine take_point(self, y, crank_angle)
     class(period_watch_t), intent(inout) :: self
     real(dp), intent(in) :: y(:)
@@ -95,8 +98,8 @@ contains
     end do
   end subroutine take_point
 
-  !> The solution is final up to t_to, inside the last step: close the revolutions that end before, and find out whether the run is
-  !> to end (`has_ended`), or its window to begin (`window_start`).
+  !> End the revolutions that are complete before t_to, up to which the solution is final, inside the last step. Decide whether the
+  !> run is to end (`has_ended`), or the window of the output to begin (`window_start`).
   subroutine follow(self, method, scene, t_to)
     class(period_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
@@ -116,7 +119,7 @@ contains
     end do
   end subroutine follow
 
-  !> The crank has made one more revolution, at (t, y).
+  !> Account for a complete revolution, which ends at (t, y).
   subroutine close_revolution(self)
     class(period_watch_t), intent(inout) :: self
     integer :: next
@@ -141,7 +144,7 @@ contains
     end if
   end subroutine close_revolution
 
-  !> The shortest period that the states so far have.
+  !> Search the shortest period of the stored states.
   subroutine look_for_period(self)
     class(period_watch_t), intent(inout) :: self
     real(dp) :: range(size(self%at)), newest, oldest, any_of_them, factor
@@ -171,7 +174,7 @@ contains
 
   contains
 
-    !> Largest difference of the states first to last from those a period before.
+    !> Largest difference of states `first` to `last` from those one period earlier.
     real(dp) function largest(first, last)
       integer, intent(in) :: first, last
       integer :: j
@@ -182,7 +185,7 @@ contains
     end function largest
   end subroutine look_for_period
 
-  !> Largest difference of any component of state k from state k - p, over its range.
+  !> Largest difference between the components of states k and k - p, relative to their ranges.
   pure real(dp) function difference_at(self, k, p, range)
     class(period_watch_t), intent(in) :: self
     integer, intent(in) :: k, p
@@ -194,7 +197,7 @@ contains
     end do
   end function difference_at
 
-  !> What has been found so far, to or from an archive.
+  !> Write the results so far to an archive, or read them from it.
   subroutine exchange(self, archive)
     class(period_watch_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive

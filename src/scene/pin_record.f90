@@ -1,4 +1,4 @@
-!> What a run does at one pin: its contacts, and the peaks of the force on it, of penetration, film thickness and normal force.
+!> Records what happens at one pin: its contacts, and the peaks of its force, penetration, film thickness and normal force.
 module pin_record
   use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
@@ -15,14 +15,14 @@ module pin_record
   public :: pin_record_t
 
   type :: pin_record_t
-    integer :: pin = piston_pin                !! of the chain
-    integer :: joint = 0                       !! which of the scene's is there; 0: the pin is ideal
-    real(dp) :: validity_limit = huge(1.0_dp)  !! largest impact speed that the contact law is meant for [m/s]
-    real(dp) :: deepest = huge(1.0_dp)         !! largest penetration that its geometry is meant for [m]
-    type(trace_event_t), private :: contact    !! the present or the last one
+    integer :: pin = piston_pin                !! place of the pin in the chain
+    integer :: joint = 0                       !! index of the scene's joint at this pin; 0: the pin is ideal
+    real(dp) :: validity_limit = huge(1.0_dp)  !! largest impact speed for which the contact law is valid [m/s]
+    real(dp) :: deepest = huge(1.0_dp)         !! largest penetration for which the contact geometry is valid [m]
+    type(trace_event_t), private :: contact    !! present or last contact
     type(peak_watch_t), private :: peaks
     logical, private :: reports_film = .false.
-    real(dp), private :: film_time = 0         !! up to which its film has been summed up [s]
+    real(dp), private :: film_time = 0         !! time up to which the results of its film have been integrated [s]
   contains
     procedure, non_overridable :: prepare
     procedure, non_overridable :: begin
@@ -36,7 +36,7 @@ module pin_record
 
 contains
 
-  !> The record of a pin of this scene.
+  !> Prepare the record of a pin of a scene.
   subroutine prepare(self, pin, scene)
     class(pin_record_t), intent(out) :: self
     integer, intent(in) :: pin
@@ -55,7 +55,7 @@ contains
     end associate
   end subroutine prepare
 
-  !> The run begins at t with what has been evaluated there.
+  !> Begin the run at t, where the scene has been evaluated.
   subroutine begin(self, t, now)
     class(pin_record_t), intent(inout) :: self
     real(dp), intent(in) :: t
@@ -63,13 +63,13 @@ contains
     call self%peaks%begin(t, now)
   end subroutine begin
 
-  !> An event has changed the phase of the scene.
+  !> Account for an event that changes the phase of a joint.
   pure subroutine change_phase(self)
     class(pin_record_t), intent(inout) :: self
     call self%peaks%change_phase()
   end subroutine change_phase
 
-  !> Whether the joint is in contact.
+  !> Whether the joint at the pin is in contact.
   pure logical function is_touching(self, scene)
     class(pin_record_t), intent(in) :: self
     type(scene_t), intent(in) :: scene
@@ -77,7 +77,8 @@ contains
     if (self%joint > 0) is_touching = scene%joints(self%joint)%phase == phase_contact
   end function is_touching
 
-  !> Peaks between the last point looked at, or the beginning of a step after an event, and t, where the scene is evaluated.
+  !> Search the peaks between the last point recorded (or the beginning of a step after an event) and t, where the scene is
+  !> evaluated.
   subroutine search(self, method, scene, t, now, figures, cycles)
     class(pin_record_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
@@ -107,7 +108,7 @@ contains
     if (self%reports_film) call sum_film(self, method, scene, t, now, figures)
   end subroutine search
 
-  !> What the film does from where it was left to t: the rule of Gauss with three points.
+  !> Integrate the power, the side flow and the pressure of the film up to t, with Gauss's rule of three points.
   subroutine sum_film(self, method, scene, t, now, figures)
     class(pin_record_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
@@ -139,8 +140,7 @@ contains
     self%film_time = t
   end subroutine sum_film
 
-  !> The quantities that have peaks in one evaluation, for the run, for the present contact and, where it is given, for the present
-  !> revolution.
+  !> Account for the values of one evaluation, for the run, for the present contact and, if it is given, for the present revolution.
   subroutine take_values(self, scene, now, figures, cycles)
     class(pin_record_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
@@ -174,7 +174,7 @@ contains
     if (present(cycles)) call cycles%take_peaks(self%pin, touches, values)
   end subroutine put_values
 
-  !> A contact begins or ends at time t; `now` is evaluated before that. `event` is what the trace tells of it.
+  !> A contact begins or ends at time t; `now` is evaluated before that event. `event` is its entry in the trace.
   subroutine take_contact(self, kind, t, now, figures, event, cycles)
     class(pin_record_t), intent(inout) :: self
     integer, intent(in) :: kind
@@ -204,7 +204,7 @@ contains
     end associate
   end subroutine take_contact
 
-  !> What has been found so far, to or from an archive; not which pin it is.
+  !> Write the results so far to an archive, or read them from it. The place of the pin is not archived.
   subroutine exchange(self, archive)
     class(pin_record_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive

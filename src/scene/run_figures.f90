@@ -1,4 +1,4 @@
-!> The figures of a run, most of them for its summary.
+!> The results of a run that are single numbers, most of them for its summary.
 module run_figures
   use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
@@ -8,41 +8,41 @@ module run_figures
   private
   public :: run_figures_t, pin_figures_t, corner_figures_t, elastic_figures_t
 
-  !> Those of one pin. Without clearance there is no more than the force, and of an ideal crank pin not even that.
+  !> Results at one pin. A pin without clearance has only a force; an ideal crank pin has no results.
   type :: pin_figures_t
-    integer :: contacts = 0                   !! contacts begun
-    integer :: impacts_beyond_validity = 0    !! of them faster than the contact law is meant for
-    integer :: contacts_beyond_validity = 0   !! and deeper than its geometry is meant for
+    integer :: contacts = 0                   !! number of contacts that began
+    integer :: impacts_beyond_validity = 0    !! number of impacts faster than the contact law is valid for
+    integer :: contacts_beyond_validity = 0   !! number of contacts deeper than the contact geometry is valid for
     real(dp) :: contact_time = 0              !! [s]
     real(dp) :: max_penetration = 0           !! [m]
-    real(dp) :: max_entry_penetration = 0     !! penetration at the beginning of a contact [m]
-    real(dp) :: max_force = 0                 !! size of the joint's force on the pin [N]
+    real(dp) :: max_entry_penetration = 0     !! penetration at the first accepted point of a contact [m]
+    real(dp) :: max_force = 0                 !! magnitude of the force of the joint on the pin [N]
     real(dp) :: min_film_thickness = huge(1.0_dp)  !! c - |e| [m]
-    real(dp) :: film_energy_lost = 0          !! of the bodies, by a film whose figures are asked for [J]
-    real(dp) :: film_volume = 0               !! that has left it at its ends [m^3]
+    real(dp) :: film_energy_lost = 0  !! energy that the film takes from the bodies, if results of the film are requested [J]
+    real(dp) :: film_volume = 0               !! volume of oil that has left the film at its ends [m^3]
     real(dp) :: max_film_pressure = 0         !! [Pa]
-    real(dp) :: friction_work = huge(1.0_dp)  !! of friction on the bodies so far [J]; huge: it is not integrated
+    real(dp) :: friction_work = huge(1.0_dp)  !! work of the friction forces on the bodies so far [J]; huge: not integrated
   contains
     procedure :: exchange => exchange_pin
   end type pin_figures_t
 
-  !> Those of a corner of the skirt, where the piston has clearance in its bore.
+  !> Results at one corner of the skirt, for a piston with clearance in its bore.
   type :: corner_figures_t
-    integer :: contacts = 0                   !! contacts begun
+    integer :: contacts = 0                   !! number of contacts that began
     real(dp) :: contact_time = 0              !! [s]
     real(dp) :: max_penetration = 0           !! [m]
     real(dp) :: max_force = 0                 !! normal to the wall [N]
   end type corner_figures_t
 
-  !> Those of elastic members: largest values of steps and rows.
+  !> Results of the elastic members: largest values at steps and rows.
   type :: elastic_figures_t
-    real(dp) :: mid_deflection = 0            !! of the rod, across its chord [m]
-    real(dp) :: stretch = 0                   !! largest |change of its length| along its axis [m]
+    real(dp) :: mid_deflection = 0            !! deflection of the rod at mid-length, perpendicular to its chord [m]
+    real(dp) :: stretch = 0                   !! largest magnitude of the change of the rod's length [m]
     real(dp) :: strain_energy = 0             !! of the rod [J]
-    real(dp) :: twist = 0                     !! largest |twist| of the crankshaft [rad]
-    real(dp) :: bending_frequency = 0         !! of the rod on two pins that do not move [rad/s]
-    real(dp) :: axial_frequency = 0           !! of its stretch with the piston on it [rad/s]
-    real(dp) :: twist_frequency = 0           !! of the crankshaft, at the starting angle [rad/s]
+    real(dp) :: twist = 0                     !! largest magnitude of the twist of the crankshaft [rad]
+    real(dp) :: bending_frequency = 0         !! of the rod between two fixed pins [rad/s]
+    real(dp) :: axial_frequency = 0           !! of the axial vibration of the rod with the piston [rad/s]
+    real(dp) :: twist_frequency = 0           !! of the crankshaft at the starting angle [rad/s]
   contains
     procedure :: exchange => exchange_elastic
   end type elastic_figures_t
@@ -51,19 +51,19 @@ module run_figures
     type(pin_figures_t) :: pin(n_pins)        !! crank_pin, piston_pin
     type(corner_figures_t) :: corner(n_corners)
     type(elastic_figures_t) :: elastic
-    integer :: evaluations = 0                !! of the scene for rows, events and these figures
-    integer :: peak_evaluations = 0           !! of them for peaks between accepted points
+    integer :: evaluations = 0                !! number of evaluations of the scene for rows, events and these results
+    integer :: peak_evaluations = 0           !! number of those evaluations that search peaks between accepted points
     real(dp) :: max_energy = 0                !! largest |kinetic + potential energy| [J]
     real(dp) :: max_energy_residual = 0       !! largest |energy residual| [J]
     real(dp) :: crank_travel = 0              !! crank angle turned through, signed [rad]
-    real(dp) :: time = 0                      !! simulated [s]
+    real(dp) :: time = 0                      !! time simulated [s]
   contains
     procedure :: exchange => exchange_figures
   end type run_figures_t
 
 contains
 
-  !> The figures to or from an archive.
+  !> Write the results to an archive, or read them from it.
   subroutine exchange_figures(self, archive)
     class(run_figures_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
@@ -86,7 +86,7 @@ contains
     call archive%exchange(self%time)
   end subroutine exchange_figures
 
-  !> Those of elastic members; not what a scene has from its beginning.
+  !> Write the results of elastic members, except those known at the beginning, to an archive, or read them from it.
   subroutine exchange_elastic(self, archive)
     class(elastic_figures_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
@@ -96,7 +96,7 @@ contains
     call archive%exchange(self%twist)
   end subroutine exchange_elastic
 
-  !> Those of a pin.
+  !> Write the results at a pin to an archive, or read them from it.
   subroutine exchange_pin(self, archive)
     class(pin_figures_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive

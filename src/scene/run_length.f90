@@ -1,5 +1,5 @@
-!> How long a run lasts: to the end that the integrator is given, or until the motion repeats; and what is to be found out of the
-!> motion that it has reached.
+!> Parameters of the end of a run: at the end given to the integrator, or when the motion is periodic. Also the analysis of the
+!> motion that the run has reached.
 module run_length
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t
@@ -7,14 +7,16 @@ module run_length
   private
   public :: run_length_t, longest_period
 
-  integer, parameter :: longest_period = 16   !! that is looked for [revolutions]
+  integer, parameter :: longest_period = 16   !! longest period that can be searched [revolutions]
 
   type, extends(has_parameters_t) :: run_length_t
     character(len=:), allocatable :: until   !! 'end' or 'periodic'
-    integer :: period_revolutions = 0        !! longest period looked for
-    real(dp) :: periodic_tolerance = 0       !! of a state that repeats, over the ranges of its components
-    integer :: most_revolutions = 0          !! of a run until 'periodic'
-    integer :: lyapunov_revolutions = 0      !! over which the Lyapunov exponent is measured, after the run; 0: it is not
+    integer :: period_revolutions = 0        !! longest period that is searched
+    real(dp) :: periodic_tolerance = 0  !! largest difference between states one period apart, relative to the ranges of their
+                                        !! components
+    integer :: most_revolutions = 0          !! largest number of revolutions of a run until 'periodic'
+    integer :: lyapunov_revolutions = 0  !! revolutions after the run over which the Lyapunov exponent is measured; 0: it is not
+                                         !! measured
   contains
     procedure :: parameters
     procedure :: is_until_periodic
@@ -39,7 +41,7 @@ contains
       'revolutions after the run that measure the largest Lyapunov exponent; 0: it is not measured', '>= 0 and <= 1000000', '0')
   end subroutine parameters
 
-  !> Whether the run continues until the motion repeats.
+  !> Whether the run continues until the motion is periodic.
   pure logical function is_until_periodic(self)
     class(run_length_t), intent(in) :: self
     is_until_periodic = .false.

@@ -1,8 +1,9 @@
-!> The largest force on a pin, the deepest penetration and the largest normal force between the ends of accepted steps.
+!> Searches the largest force on a pin, the largest penetration and the largest normal force between accepted points.
 !>
-!> A step is searched where a quantity may come above what is known already. Penetration and normal force follow from the place of
-!> the pin alone, on the interpolant of the method. The force on the pin takes evaluations of the scene: where three points do not
-!> show that it only rises or only falls, its slope at both ends is found, and where it rises and then falls its peak.
+!> A step is searched only if a quantity may exceed the largest value known so far. Penetration and normal force follow from the
+!> eccentricity alone and are taken from the interpolant of the method. The force on the pin needs evaluations of the scene: unless
+!> three points show that it only rises or only falls, its slopes at both ends are computed, and the peak is searched if it rises
+!> and then falls.
 module step_peaks
   use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
@@ -16,26 +17,27 @@ module step_peaks
   private
   public :: peak_watch_t, of_pin_force, of_penetration, of_normal_force, n_peaks
 
-  !> The quantities, each with one value in an array.
-  integer, parameter :: of_pin_force = 1     !! size of the joint's force on the pin [N]
-  integer, parameter :: of_penetration = 2   !! |e| - c, negative while apart: the film thickness with its sign turned [m]
-  integer, parameter :: of_normal_force = 3  !! of the contact [N]
+  !> The quantities: indices into arrays of values.
+  integer, parameter :: of_pin_force = 1     !! magnitude of the force of the joint on the pin [N]
+  integer, parameter :: of_penetration = 2   !! |e| - c, negative without contact: the negative of the film thickness [m]
+  integer, parameter :: of_normal_force = 3  !! normal force of the contact [N]
   integer, parameter :: n_peaks = 3
 
   real(dp), parameter :: no_peak = -huge(1.0_dp)
-  real(dp), parameter :: short = 1e-4_dp      !! part of a piece over which a slope is taken
+  real(dp), parameter :: short = 1e-4_dp      !! fraction of an interval over which a slope is taken
 
-  !> Follows one pin from piece to piece of a run, a piece being a step or the part of it up to an event or the end of a revolution.
+  !> Follows one pin through a run, interval by interval. An interval is a step, or a part of it that ends at an event or at the end
+  !> of a revolution.
   type :: peak_watch_t
-    integer :: pin = piston_pin                   !! of the chain
-    integer :: joint = 0                          !! which of the scene's is there; 0: the pin is ideal, and has its force alone
-    integer :: evaluations = 0                    !! of the scene, so far
-    logical, private :: fresh = .true.            !! the scene has changed its phase: the next piece begins there
-    logical, private :: has_before = .false.      !! there was a piece before the last one in this phase
-    real(dp), private :: t_before = 0, t = 0      !! where the last piece began and ended [s]
-    real(dp), private :: before(n_peaks) = 0, last(n_peaks) = 0   !! what the quantities were there
-    real(dp), private :: slope(n_peaks) = 0       !! of the penetration at t, of forces
-    real(dp), private :: slope_time(n_peaks) = -huge(1.0_dp)   !! when it was found [s]
+    integer :: pin = piston_pin                   !! place of the pin in the chain
+    integer :: joint = 0  !! index of the scene's joint at this pin; 0: the pin is ideal, and only its force is searched
+    integer :: evaluations = 0                    !! number of evaluations of the scene so far
+    logical, private :: fresh = .true.            !! an event has changed the phase of a joint: the next interval begins there
+    logical, private :: has_before = .false.      !! there was an earlier interval in this phase
+    real(dp), private :: t_before = 0, t = 0      !! beginning and end of the last interval [s]
+    real(dp), private :: before(n_peaks) = 0, last(n_peaks) = 0   !! values of the quantities there
+    real(dp), private :: slope(n_peaks) = 0       !! slopes at t, of the penetration and of the forces
+    real(dp), private :: slope_time(n_peaks) = -huge(1.0_dp)   !! time at which the slope was computed [s]
   contains
     procedure, non_overridable :: begin
     procedure, non_overridable :: change_phase
@@ -46,7 +48,7 @@ module step_peaks
 
 contains
 
-  !> A run begins at t with what has been evaluated there.
+  !> Begin a run at t, where the scene has been evaluated.
   pure subroutine begin(self, t, now)
     class(peak_watch_t), intent(inout) :: self
     real(dp), intent(in) :: t
@@ -56,7 +58,7 @@ contains
     call stand_at(self, t, self%values(now), rate_of(self, now))
   end subroutine begin
 
-  !> The next piece begins at t.
+  !> Let the next interval begin at t.
   pure subroutine stand_at(self, t, values, rate)
     class(peak_watch_t), intent(inout) :: self
     real(dp), intent(in) :: t, values(n_peaks), rate
@@ -65,7 +67,7 @@ contains
     self%slope(of_penetration) = rate
   end subroutine stand_at
 
-  !> An event has changed the phase of the scene: nothing that was before it tells of what comes.
+  !> An event has changed the phase of a joint: earlier values cannot be used to predict later ones.
   pure subroutine change_phase(self)
     class(peak_watch_t), intent(inout) :: self
     self%fresh = .true.
@@ -73,7 +75,7 @@ contains
     self%slope_time = -huge(1.0_dp)
   end subroutine change_phase
 
-  !> What has been found so far, to or from an archive; not which pin it is.
+  !> Write the variables that change during a run to an archive, or read them from it. The place of the pin is not archived.
   subroutine exchange(self, archive)
     class(peak_watch_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
@@ -88,7 +90,7 @@ contains
     call archive%exchange(self%slope_time)
   end subroutine exchange
 
-  !> The quantities in one evaluation.
+  !> The values of the quantities in one evaluation.
   pure function values(self, now)
     class(peak_watch_t), intent(in) :: self
     type(evaluation_t), intent(in) :: now
@@ -109,16 +111,16 @@ contains
     if (self%joint > 0) rate = now%relative(self%joint)%penetration_rate
   end function rate_of
 
-  !> Search the last step of the method from where the piece before ended, or from its beginning, to t_to, for values above
-  !> `known`. `largest` is the largest value in the piece, its end among them, as far as it has been looked for. Most pieces are
-  !> done with by a few comparisons: nothing is copied or called for them.
+  !> Search the last step of the method, from the end of the last interval or from the beginning of the step to t_to, for values
+  !> above `known`. `largest` is the largest value found in the interval, including its end. Most intervals are finished after a few
+  !> comparisons, without copies or calls.
   subroutine search(self, method, scene, t_to, now, known, largest)
     class(peak_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t_to               !! inside the last step
-    type(evaluation_t), intent(in) :: now      !! there
-    real(dp), intent(in) :: known(n_peaks)     !! huge: not of interest
+    type(evaluation_t), intent(in) :: now      !! evaluation at t_to
+    real(dp), intent(in) :: known(n_peaks)     !! huge: this quantity is not searched
     real(dp), intent(out) :: largest(n_peaks)
     real(dp) :: ends(n_peaks), rate
 
@@ -154,13 +156,13 @@ contains
     end subroutine search_force
   end subroutine search
 
-  !> The quantities at the beginning of the step, after a change of phase. In free flight there is no force, and at the beginning
-  !> of a contact next to none: then the scene need not be evaluated.
+  !> Find the quantities at the beginning of the step, after a change of phase. In free flight there is no force, and at the
+  !> beginning of a contact nearly none: the scene is then not evaluated.
   subroutine meet_beginning(self, method, scene, later_force)
     class(peak_watch_t), intent(inout) :: self
     class(ode_method_t), intent(in) :: method
     type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: later_force   !! normal force at the end of the piece [N]
+    real(dp), intent(in) :: later_force   !! normal force at the end of the interval [N]
     real(dp), parameter :: next_to_none = 1e-9_dp
     type(evaluation_t) :: now
     type(joint_motion_t) :: motion
@@ -180,9 +182,9 @@ contains
     if (inside) call stand_at(self, method%t_old, self%values(now), rate_of(self, now))
   end subroutine meet_beginning
 
-  !> Whether a force, whose slopes are not known, may come above what is known, inside the piece up to t. It may not where it is too
-  !> far below at both ends for its changes in this piece and the one before, nor where the parabola through three points, with
-  !> twice its bend, only rises or only falls.
+  !> Whether a force whose slopes are not known may exceed the known maximum inside the interval that ends at t. It cannot if it is
+  !> far below the maximum at both ends, compared with its changes in this interval and the one before, or if the parabola through
+  !> three points, with its curvature doubled, is monotonic.
   pure logical function may_exceed(self, i, t, value, known)
     class(peak_watch_t), intent(in) :: self
     integer, intent(in) :: i
@@ -198,7 +200,7 @@ contains
     may_exceed = abs(rate) <= 2*bend
   end function may_exceed
 
-  !> Search a force that may come above what is known, up to `value` at t_to: its slopes are found first.
+  !> Search the peak of a force that may exceed the known maximum, and is `value` at t_to. Its slopes are computed first.
   subroutine find_force_peak(self, method, scene, quantity, t_to, value, known, largest)
     class(peak_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
@@ -228,7 +230,7 @@ contains
         call search_between(self, method, scene, quantity, left, right, largest)
     end subroutine search
 
-    !> Slope at one end of the piece, by one more value `short` of it, later (1) or earlier (-1).
+    !> Slope at one end of the interval, from one more value at a fraction `short` of the interval later (1) or earlier (-1).
     real(dp) function slope_at(at, way)
       type(sample_t), intent(in) :: at
       integer, intent(in) :: way
@@ -239,7 +241,7 @@ contains
     end function slope_at
   end subroutine find_force_peak
 
-  !> The peak between two samples, if it is above `largest`.
+  !> Search the peak between two samples, if it may exceed `largest`.
   subroutine search_between(self, method, scene, quantity, left, right, largest)
     class(peak_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
@@ -259,7 +261,7 @@ contains
     largest = max(largest, peak%value(1))
   end subroutine search_between
 
-  !> A quantity inside the step, where the scene is defined.
+  !> The value of a quantity at a time inside the step. `inside` is false if the scene is not defined there.
   real(dp) function value_inside(self, method, scene, quantity, t) result(value)
     class(peak_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method

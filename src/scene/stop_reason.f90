@@ -1,4 +1,4 @@
-!> Why and where a run ended before its end, in words.
+!> Describes in words why and where a run ended early.
 module stop_reason
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: degree
@@ -13,17 +13,17 @@ module stop_reason
 
   character(len=*), parameter :: interrupted_text = 'interrupted'
 
-  !> Besides the status codes of `solver` and `ode_method`.
+  !> Status codes in addition to those of `gudgeon_solver` and `ode_method`.
   integer, parameter :: revolution_budget_spent = 21
-  integer, parameter :: crank_turned_back = 22         !! or stopped, before it had made the turns that end the run
-  integer, parameter :: turns_not_made = 23            !! at the latest end
-  integer, parameter :: crank_creeps = 24              !! it takes too long for one of them
+  integer, parameter :: crank_turned_back = 22         !! or stopped, before the turns that end the run were complete
+  integer, parameter :: turns_not_made = 23            !! not complete at the latest end of the run
+  integer, parameter :: crank_creeps = 24              !! the crank takes too long for one turn
 
-  real(dp), parameter :: tight_tolerance = 1e-12_dp    !! from here on the forces' own rounding counts
+  real(dp), parameter :: tight_tolerance = 1e-12_dp    !! at tighter tolerances the rounding of the forces matters
 
 contains
 
-  !> Why an integration with these settings ended at (t, y).
+  !> Text that says why an integration with these settings ended at (t, y).
   function reason(status, scene, settings, t, y) result(text)
     integer, intent(in) :: status
     type(scene_t), intent(in) :: scene
@@ -63,7 +63,7 @@ contains
     end select
   end function reason
 
-  !> How many of its turns the crank has made, in a scene that counts them.
+  !> Number of turns that the crank has made, as a text, in a scene that counts them.
   function turns_text(scene, t, y) result(text)
     class(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
@@ -72,7 +72,7 @@ contains
       ' revolutions ('//trim(scene%turns%key)//')'
   end function turns_text
 
-  !> A number from 0 on with four decimals at most.
+  !> A number >= 0 with at most four decimals.
   function decimal_text(number) result(text)
     real(dp), intent(in) :: number
     character(len=:), allocatable :: text
@@ -100,7 +100,7 @@ contains
     text = 'ill-posed: the film'//at//' has almost no thickness and an unbounded force'
   end function ill_posed_text
 
-  !> The pin that is nearest to where it may not be, in parts of the way there from the centre.
+  !> The pin that is nearest to the limit of its eccentricity, relative to that limit, as a text.
   function leaving_pin(scene, y) result(text)
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: y(:)
@@ -119,13 +119,13 @@ contains
     end do
   end function leaving_pin
 
-  !> Whether there is no joint but the piston pin's to be told apart.
+  !> Whether the piston pin has the only joint with clearance, so that texts need not name it.
   pure logical function has_plain_names(scene)
     type(scene_t), intent(in) :: scene
     has_plain_names = scene%joint_at(crank_pin) == 0
   end function has_plain_names
 
-  !> The pin of a joint in words.
+  !> The name of the pin of a joint, for messages.
   pure function joint_name(scene, i) result(text)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: i
@@ -134,7 +134,7 @@ contains
     text = trim(text)
   end function joint_name
 
-  !> Why no step was short enough.
+  !> Text that says why no step size was small enough.
   function small_step_reason(scene, settings, t, y) result(text)
     type(scene_t), intent(in) :: scene
     type(ode_settings_t), intent(in) :: settings
@@ -152,7 +152,7 @@ contains
     end if
   end function small_step_reason
 
-  !> How far the state goes in the shortest step that the time resolves, in tolerances.
+  !> Change of the state in the shortest step that the time resolves, relative to the tolerance.
   real(dp) function change_in_rounding(scene, settings, t, y)
     type(scene_t), intent(in) :: scene
     type(ode_settings_t), intent(in) :: settings
@@ -170,7 +170,7 @@ contains
     end do
   end function change_in_rounding
 
-  !> Where a run stands: time, crank angle and the phase of each joint.
+  !> Time, crank angle and the phase of each joint at the present point of a run.
   function place(scene, t, y) result(text)
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)

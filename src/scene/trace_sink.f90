@@ -1,4 +1,4 @@
-!> Where a run puts what it finds: implemented by the code that writes files, or by tests.
+!> Receiver of the results of a run. It is implemented by the code that writes files, and by tests.
 module trace_sink
   use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
@@ -9,29 +9,29 @@ module trace_sink
   private
   public :: trace_sink_t, trace_event_t, joint_names
 
-  !> Of the pins, and of the corners of the skirt in the bore.
+  !> Names of the places of contacts: the pins, and the corners of the skirt in the bore.
   character(len=*), parameter :: joint_names(n_pins + n_corners) = [character(len=10) :: pin_names, corner_names]
 
-  !> One event of the trace.
+  !> One event in the trace.
   type :: trace_event_t
     integer :: kind = 0                    !! event_contact_begins or event_contact_ends
     real(dp) :: time = 0                   !! [s]
     real(dp) :: crank_angle = 0            !! [rad]
     real(dp) :: normal_speed = 0           !! d|e|/dt [m/s]
-    real(dp) :: duration = 0               !! of the contact that ends [s]
-    real(dp) :: max_penetration = 0        !! in it [m]
-    real(dp) :: max_normal_force = 0       !! in it [N]
-    integer :: pin = piston_pin            !! whose joint it is, by its place among `joint_names`
+    real(dp) :: duration = 0               !! duration of the contact that ends [s]
+    real(dp) :: max_penetration = 0        !! largest penetration during it [m]
+    real(dp) :: max_normal_force = 0       !! largest normal force during it [N]
+    integer :: pin = piston_pin            !! index of the place in `joint_names`
   contains
     procedure :: exchange
   end type trace_event_t
 
-  !> Takes rows and events as they come.
+  !> Takes rows and events in the order of time.
   type, abstract :: trace_sink_t
-    logical :: wants_to_stop = .false.   !! set where the run should end (interrupted, cannot write)
-    logical :: wants_archive = .false.   !! set where the state of the run is to be handed over
-    logical :: keeps_archives = .false.  !! the state is wanted too where the run stops before its end
-    real(dp) :: expected_end = 1         !! when the run will end, set before `take_progress` [s]
+    logical :: wants_to_stop = .false.   !! set by the sink if the run should end (interrupted, or files cannot be written)
+    logical :: wants_archive = .false.   !! set by the sink if it wants the state of the run
+    logical :: keeps_archives = .false.  !! the sink also wants the state of the run if the run stops early
+    real(dp) :: expected_end = 1         !! expected end of the run, set before `take_progress` is called [s]
   contains
     procedure :: take_archive => ignore_archive
     procedure :: take_cost => ignore_cost
@@ -41,7 +41,7 @@ module trace_sink
   end type trace_sink_t
 
   abstract interface
-    !> One row of the trace, in the order of its columns.
+    !> Take one row of the trace, with values in the order of its columns.
     subroutine take_row(self, values)
       import :: trace_sink_t, dp
       class(trace_sink_t), intent(inout) :: self
@@ -54,7 +54,7 @@ module trace_sink
       type(trace_event_t), intent(in) :: event
     end subroutine take_event
 
-    !> Called now and then with the time simulated so far [s].
+    !> Called at intervals with the time simulated so far [s].
     subroutine take_progress(self, time)
       import :: trace_sink_t, dp
       class(trace_sink_t), intent(inout) :: self
@@ -64,7 +64,7 @@ module trace_sink
 
 contains
 
-  !> To or from an archive.
+  !> Write the state of the sink to an archive, or read it from it.
   subroutine exchange(self, archive)
     class(trace_event_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
@@ -78,16 +78,17 @@ contains
     call archive%exchange(self%pin)
   end subroutine exchange
 
-  !> Called now and then while most of the time simulated so far was bound by the stability of Adams. The default does nothing.
+  !> Called at intervals while the steps of the Adams method were limited by stability for most of the time simulated so far. The
+  !> default does nothing.
   subroutine ignore_cost(self, time, statistics)
     class(trace_sink_t), intent(inout) :: self
-    real(dp), intent(in) :: time                        !! so far [s]
+    real(dp), intent(in) :: time                        !! simulated so far [s]
     type(step_statistics_t), intent(in) :: statistics   !! so far
     associate (unused_self => self, unused_time => time, unused_statistics => statistics)
     end associate
   end subroutine ignore_cost
 
-  !> The state of the run after the rows and events taken so far. The default is for sinks that keep none.
+  !> Take the state of the run after the rows and events taken so far. The default is for sinks that do not store it.
   subroutine ignore_archive(self, archive)
     class(trace_sink_t), intent(inout) :: self
     type(archive_t), intent(in) :: archive
