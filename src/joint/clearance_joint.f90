@@ -1,7 +1,7 @@
-!> A joint with clearance: its laws, its discrete state, its loads, its events.
+!> A joint with clearance: its laws, its discrete state, its loads and its events.
 !>
-!> While journal and bearing are apart the joint is free, or a film carries it; while they touch, the contact does (Reis 2013,
-!> fig. 3.9). A law that the case does not ask for is not allocated.
+!> Without contact between journal and bearing the joint is free, or a film carries the load; in contact the contact law acts (Reis
+!> 2013, fig. 3.9). A law that the case does not name is not allocated.
 module clearance_joint
   use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
@@ -26,48 +26,50 @@ module clearance_joint
 
   integer, parameter :: most_joints = 2
 
-  !> What the joint is doing: the values of the column `phase`.
+  !> States of the joint: the values of the column `phase`.
   integer, parameter :: phase_free = 0, phase_film = 1, phase_contact = 2
   integer, parameter :: n_phases = 3
 
-  !> What a joint does to its journal. The bearing receives the opposite forces.
+  !> Loads of a joint on its journal. The opposite forces act on the bearing.
   type :: joint_loads_t
-    real(dp) :: contact(2)        !! of contact and friction [N]
-    real(dp) :: film(2)           !! of the film [N]
-    real(dp) :: moment            !! of all about the journal's centre, from x to y [N m]
-    real(dp) :: normal_force      !! of the contact, pressing [N]
-    real(dp) :: friction_force    !! along t [N]
-    real(dp) :: power             !! of all on the bodies [W]
-    real(dp) :: friction_rates(most_friction_states)   !! of a friction law's states
-    logical :: sticks             !! set-valued friction holds the surfaces: its force is found with the accelerations
+    real(dp) :: contact(2)        !! force of contact and friction [N]
+    real(dp) :: film(2)           !! force of the film [N]
+    real(dp) :: moment            !! total moment about the journal's centre, positive from x to y [N m]
+    real(dp) :: normal_force      !! normal force of the contact, positive in compression [N]
+    real(dp) :: friction_force    !! friction force along the tangent t [N]
+    real(dp) :: power             !! power of all these loads on the bodies [W]
+    real(dp) :: friction_rates(most_friction_states)   !! rates of the states of the friction law
+    logical :: sticks             !! set-valued friction holds the surfaces together: its force follows from the accelerations
   end type joint_loads_t
 
   type :: clearance_joint_t
-    integer :: place = piston_pin           !! pin of the chain
-    logical :: bearing_turns = .false.      !! that of the crank pin does, that of the piston pin in a piston loose in its bore
+    integer :: place = piston_pin           !! place of the pin in the chain
+    logical :: bearing_turns = .false.  !! the bearing rotates: true for the crank pin, and for the piston pin if the piston has
+                                        !! clearance in its bore
     type(bearing_t) :: bearing
     real(dp) :: pin_radius = 0              !! of the journal [m]
     class(contact_law_t), allocatable :: contact
     class(friction_law_t), allocatable :: friction
     class(film_law_t), allocatable :: film
-    type(asperities_t), allocatable :: asperities   !! of rough surfaces, beside the film; without contact then
-    type(film_transition_t), allocatable :: transition   !! film and contact share the load beyond the clearance
-    type(elastic_film_t), allocatable :: elastic    !! walls that give way under the film; without contact then
-    type(slice_t) :: film_states            !! where the film's own eccentricity stands
-    type(coordinates_t) :: at               !! where the eccentricity stands in the state
-    integer :: n_friction_states = 0        !! of the friction law
-    type(slice_t) :: friction_states        !! where they stand
-    logical :: reports_friction_work = .false.   !! integrate it, also where the friction law has no states
-    logical :: reports_film = .false.       !! its figures are in the summary
-    type(slice_t) :: friction_work          !! where the work of friction stands, if anywhere [J]
-    logical :: has_own_rates = .false.      !! one of these
+    type(asperities_t), allocatable :: asperities   !! contact of rough surfaces in parallel with the film; without contact law
+    type(film_transition_t), allocatable :: transition   !! film and contact share the load near the wall
+    type(elastic_film_t), allocatable :: elastic    !! film between elastic walls; without contact law
+    type(slice_t) :: film_states            !! indices of the film's own eccentricity in the state
+    type(coordinates_t) :: at               !! indices of the eccentricity in the state
+    integer :: n_friction_states = 0        !! number of states of the friction law
+    type(slice_t) :: friction_states        !! their indices in the state
+    logical :: reports_friction_work = .false.   !! integrate the work of friction even if the friction law has no states
+    logical :: reports_film = .false.       !! report the results of the film in the summary
+    type(slice_t) :: friction_work          !! index of the work of friction in the state, if it is integrated [J]
+    logical :: has_own_rates = .false.      !! the joint has states other than the eccentricity
     integer :: phase = phase_free
-    integer :: sliding = 0                  !! set-valued friction: sign of sliding, 0 sticking
-    real(dp) :: impact_speed = 0            !! penetration rate at which the present contact began [m/s]
-    real(dp) :: max_penetration = 0         !! deepest entry where steps are refused: contact begins at the end of a step [m]
-    real(dp) :: start_eccentricity(2) = 0   !! at t = 0 [m]
-    real(dp) :: start_rate(2) = 0           !! [m/s]
-    real(dp) :: start_deflection(2) = 0     !! of the walls of an elastic film [m]
+    integer :: sliding = 0                  !! set-valued friction: sign of the sliding speed, 0 while the surfaces stick
+    real(dp) :: impact_speed = 0            !! penetration rate at the beginning of the present contact [m/s]
+    real(dp) :: max_penetration = 0  !! largest penetration at the end of the step in which a contact begins, for contact entry by
+                                     !! step rejection [m]
+    real(dp) :: start_eccentricity(2) = 0   !! initial value [m]
+    real(dp) :: start_rate(2) = 0           !! initial value [m/s]
+    real(dp) :: start_deflection(2) = 0     !! initial deflection of the walls of an elastic film [m]
   contains
     procedure :: claim
     procedure :: own_speed
@@ -95,8 +97,8 @@ module clearance_joint
   end type clearance_joint_t
 
   interface
-    !> Derivatives of the force and the moment on the journal (rows F_x, F_y, moment) by e_x, e_y, e_x', e_y' and the journal's
-    !> speed (columns), for implicit integration. Surfaces that stick have none.
+    !> Derivatives of the force and the moment on the journal (rows F_x, F_y, moment) with respect to e_x, e_y, e_x', e_y' and the
+    !> angular speed of the journal (columns), for implicit integration. Not defined for surfaces that stick.
     pure module subroutine slopes(self, bodies, motion, joint, own, derivatives)
       class(clearance_joint_t), intent(in) :: self
       type(bodies_t), intent(in) :: bodies
@@ -106,9 +108,9 @@ module clearance_joint
       real(dp), intent(out) :: derivatives(3, 5)
     end subroutine slopes
 
-    !> What the states of the friction law or of an elastic film add to `slopes`: derivatives of the force and the moment on the
-    !> journal (rows F_x, F_y, moment) by these states, and of the states' rates by e_x, e_y, e_x', e_y', the journal's speed and
-    !> the states (columns).
+    !> Additions to `slopes` for the states of the friction law or of an elastic film: derivatives of the force and the moment on
+    !> the journal (rows F_x, F_y, moment) with respect to these states, and of the rates of the states with respect to e_x, e_y,
+    !> e_x', e_y', the angular speed of the journal and the states (columns).
     pure module subroutine state_slopes(self, bodies, motion, joint, own, by_states, of_rates)
       class(clearance_joint_t), intent(in) :: self
       type(bodies_t), intent(in) :: bodies
@@ -121,18 +123,18 @@ module clearance_joint
 
 contains
 
-  !> Claim the eccentricity, the states of the friction law and its work. The eccentricity is measured by the clearance, its rate by
-  !> the clearance in the time of one radian. Measured (scripts/compare_adams.sh, simulation IV, c = 20 um): at the relative
-  !> tolerance 1e-4 the pin is off by 4e-5 c at the end, at 1e-6 by 4e-9 c, at 1e-12 by 1e-14 c; in (q, A, x) rounding alone makes
-  !> 4e-12 c.
+  !> Claim the eccentricity, the states of the friction law and its work in the state vector. The scale of the eccentricity is the
+  !> clearance, that of its rate the clearance divided by the time in which the crank turns by one radian. Measured
+  !> (scripts/compare_adams.sh, simulation IV, c = 20 um): the error of the eccentricity at the end is 4e-5 c at the relative
+  !> tolerance 1e-4, 4e-9 c at 1e-6, and 1e-14 c at 1e-12; in the coordinates (q, A, x) rounding alone causes 4e-12 c.
   !>
-  !> A journal may have a speed of its own where the crank hardly turns: see `own_speed`. The rate is measured by a hundredth of
-  !> that in which it crosses the clearance: at first a journal at rest is slow, and it may stay so.
+  !> Where the crank hardly turns the journal has a speed scale of its own, `own_speed`. The scale of the rate is then a hundredth
+  !> of the speed that crosses the clearance, since a journal that starts at rest is slow at first and may remain slow.
   subroutine claim(self, layout, crank_speed, span)
     class(clearance_joint_t), intent(inout) :: self
     type(layout_t), intent(inout) :: layout
-    real(dp), intent(in) :: crank_speed   !! natural size of it [rad/s]
-    real(dp), intent(in) :: span          !! of the simulation [s]
+    real(dp), intent(in) :: crank_speed   !! natural size of the crank speed [rad/s]
+    real(dp), intent(in) :: span          !! duration of the simulation [s]
     if (self%place /= piston_pin) self%bearing_turns = .true.
     call layout%claim_positions(2, self%bearing%clearance, max(self%bearing%clearance*crank_speed, norm2(self%start_rate), &
       0.01_dp*crossing_speed(self, span)), self%at, grows=.false.)
@@ -148,15 +150,15 @@ contains
     if (self%has_own_rates) call layout%claim_quadratures(1, 0.0_dp, self%friction_work)
   end subroutine claim
 
-  !> Natural size of the journal's speed in its bearing where the crank does not give it [m/s]: the one that it starts with, or that
-  !> in which it crosses the clearance in the time simulated.
+  !> Natural size of the journal's speed in its bearing where it does not follow from the crank speed [m/s]: the initial speed, or
+  !> the speed that crosses the clearance in the time simulated.
   pure real(dp) function own_speed(self, span)
     class(clearance_joint_t), intent(in) :: self
     real(dp), intent(in) :: span   !! [s]
     own_speed = max(norm2(self%start_rate), crossing_speed(self, span))
   end function own_speed
 
-  !> Speed that crosses the clearance in the time simulated; where this time is short, `most_crossing_speed` [m/s].
+  !> Speed that crosses the clearance in the time simulated, at most `most_crossing_speed` [m/s].
   pure real(dp) function crossing_speed(joint, span)
     type(clearance_joint_t), intent(in) :: joint
     real(dp), intent(in) :: span   !! [s]
@@ -173,14 +175,14 @@ contains
     if (self%has_friction_work()) call layout%settle(self%friction_work)
   end subroutine settle
 
-  !> How many first-order states its laws have.
+  !> Number of first-order states of the laws.
   pure integer function n_states(self)
     class(clearance_joint_t), intent(in) :: self
     n_states = self%n_friction_states
     if (allocated(self%elastic)) n_states = n_film_states
   end function n_states
 
-  !> Its part of the state at t = 0.
+  !> Put the initial values of the joint's states into the state vector.
   pure subroutine put_start(self, y)
     class(clearance_joint_t), intent(in) :: self
     real(dp), intent(inout) :: y(:)
@@ -190,8 +192,8 @@ contains
       self%start_eccentricity - self%start_deflection
   end subroutine put_start
 
-  !> Rates of the states of an elastic film; of those of its friction law and of the work of friction: 0 while journal and bearing
-  !> are apart.
+  !> Rates of the states of an elastic film, of the states of the friction law and of the work of friction. The last two are 0
+  !> without contact.
   pure subroutine put_own_rates(self, motion, own, dydt)
     class(clearance_joint_t), intent(in) :: self
     type(joint_motion_t), intent(in) :: motion
@@ -211,7 +213,7 @@ contains
     if (self%phase == phase_contact) dydt(self%friction_work%first) = own%friction_force*motion%sliding_speed
   end subroutine put_own_rates
 
-  !> The states of its friction law are 0 where a contact begins or ends.
+  !> Set the states of the friction law to 0, at the beginning or end of a contact.
   pure subroutine reset_friction(self, y)
     class(clearance_joint_t), intent(in) :: self
     real(dp), intent(inout) :: y(:)
@@ -224,7 +226,7 @@ contains
     has_friction_work = self%has_own_rates .and. allocated(self%friction)
   end function has_friction_work
 
-  !> Work of friction so far [J], where it is integrated; else 0. What it takes from the bodies is negative.
+  !> Work of friction so far [J] if it is integrated, else 0. It is negative where friction takes energy from the bodies.
   pure real(dp) function work_of_friction(self, y)
     class(clearance_joint_t), intent(in) :: self
     real(dp), intent(in) :: y(:)
@@ -232,7 +234,7 @@ contains
     if (self%has_friction_work()) work_of_friction = y(self%friction_work%first)
   end function work_of_friction
 
-  !> The eccentricity and its rate.
+  !> Read the eccentricity and its rate from the state vector.
   pure subroutine read_state(self, y, joint)
     class(clearance_joint_t), intent(in) :: self
     real(dp), intent(in) :: y(*)
@@ -247,7 +249,8 @@ contains
     end if
   end subroutine read_state
 
-  !> Whether the journal may be there: inside the bearing's wall and, where a film is singular, inside the clearance.
+  !> Whether the eccentricity is admissible: inside the wall of the bearing and, where the film force is singular at the wall,
+  !> inside the clearance.
   pure logical function admits(self, joint)
     class(clearance_joint_t), intent(in) :: self
     type(joint_motion_t), intent(in) :: joint
@@ -259,7 +262,7 @@ contains
     if (allocated(self%elastic)) admits = admits .and. sum(joint%film_eccentricity**2) < self%bearing%clearance**2
   end function admits
 
-  !> Whether the film of the present phase grows without bound at the wall.
+  !> Whether the film of the present phase has a force without bound at the wall.
   pure logical function is_unbounded(joint)
     type(clearance_joint_t), intent(in) :: joint
     is_unbounded = .false.
@@ -268,13 +271,13 @@ contains
     if (allocated(joint%transition)) is_unbounded = is_unbounded .and. .not. joint%transition%film_is_held
   end function is_unbounded
 
-  !> The loads of the present phase, also among those of the chain, and their power on the bodies. What the phase does not have is
-  !> left as it is.
+  !> Compute the loads of the present phase and their power on the bodies, and add them to the loads of the chain. Components that
+  !> the present phase does not need are not set.
   pure subroutine loads(self, bodies, motion, y, joint, own, all)
     class(clearance_joint_t), intent(in) :: self
     type(bodies_t), intent(in) :: bodies
     type(motion_t), intent(in) :: motion
-    real(dp), intent(in) :: y(*)          !! whole, for the states of its laws
+    real(dp), intent(in) :: y(*)          !! the whole state vector, for the states of the laws
     type(joint_motion_t), intent(inout) :: joint
     type(joint_loads_t), intent(inout) :: own
     type(loads_t), intent(inout) :: all
@@ -317,8 +320,8 @@ contains
     all%moment(self%place) = own%moment
   end subroutine loads
 
-  !> Contact and friction: -F_N n + F_T t on the journal, and the moment F_T R. Where the surfaces stick there is no friction yet:
-  !> it is found with the accelerations.
+  !> Contact and friction: the force -F_N n + F_T t on the journal and the moment F_T R. If the surfaces stick, friction is not set
+  !> here; it follows from the accelerations.
   pure subroutine find_contact(self, y, joint, own)
     type(clearance_joint_t), intent(in) :: self
     real(dp), intent(in) :: y(*)
@@ -343,7 +346,7 @@ contains
     end associate
   end subroutine find_contact
 
-  !> The contact, which has been found as if it were alone, bears its share, the film the rest.
+  !> Weight the contact force, computed as if there were no film, and the film force with their shares of the load.
   pure subroutine share_with_film(self, motion, joint, own)
     type(clearance_joint_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
@@ -361,7 +364,7 @@ contains
     own%friction_force = w*own%friction_force
   end subroutine share_with_film
 
-  !> Share of the contact in the loads of a joint with a weighted transition, at a penetration [m]; 0 while apart.
+  !> Share of the contact in the load of a joint with a weighted transition, at a penetration [m]; 0 without contact.
   pure real(dp) function contact_weight(self, penetration) result(w)
     class(clearance_joint_t), intent(in) :: self
     real(dp), intent(in) :: penetration
@@ -369,7 +372,7 @@ contains
     if (self%phase == phase_contact) call self%transition%weight(penetration, w)
   end function contact_weight
 
-  !> A film between rough surfaces, and the contact of their asperities.
+  !> Loads of a film between rough surfaces and of the contact of their asperities.
   pure subroutine find_mixed(self, motion, joint, own)
     type(clearance_joint_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
@@ -384,7 +387,7 @@ contains
     own%moment = own%moment + own%friction_force*self%pin_radius
   end subroutine find_mixed
 
-  !> A film between elastic walls: the force of the walls, and how the film lets its own eccentricity go under it.
+  !> Loads of a film between elastic walls: the force of the walls, and the rate of the film's own eccentricity under this load.
   pure subroutine find_elastic(self, bodies, motion, joint, own)
     type(clearance_joint_t), intent(in) :: self
     type(bodies_t), intent(in) :: bodies
@@ -399,8 +402,8 @@ contains
       own%moment = self%elastic%moment(self%film, self%motion_of_film(bodies, motion, joint), -own%film)
   end subroutine find_elastic
 
-  !> The thickness of an elastic film, which is not that of its pin's place, in the terms of a penetration. Its rate has no part of
-  !> the turning.
+  !> The thickness of an elastic film, which does not follow from the eccentricity of its pin, expressed as a penetration. Its rate
+  !> does not include the rotation of the film.
   pure subroutine find_elastic_thickness(self, joint)
     type(clearance_joint_t), intent(in) :: self
     type(joint_motion_t), intent(inout) :: joint
@@ -414,7 +417,7 @@ contains
     end associate
   end subroutine find_elastic_thickness
 
-  !> The motion as an elastic film sees it.
+  !> The motion of an elastic film.
   pure type(film_motion_t) function motion_of_film(self, bodies, motion, joint) result(film)
     class(clearance_joint_t), intent(in) :: self
     type(bodies_t), intent(in) :: bodies
@@ -425,7 +428,7 @@ contains
     film%eccentricity_rate = joint%film_rate
   end function motion_of_film
 
-  !> Friction of a law with states.
+  !> Friction by a law with states.
   pure subroutine find_state_friction(self, y, joint, own)
     type(clearance_joint_t), intent(in) :: self
     real(dp), intent(in) :: y(*)
@@ -440,8 +443,8 @@ contains
     own%friction_force = own%normal_force*ratio
   end subroutine find_state_friction
 
-  !> What `loads` has left: how journal and bearing move against each other, whatever the phase asks for, and loads that the phase
-  !> does not have. Where the motion of the bodies is not known there are no turning and sliding speeds.
+  !> Set what `loads` does not: the relative motion of journal and bearing in any phase, and zeros for loads that the phase does not
+  !> have. If the motion of the bodies is not known, angular speeds and sliding speed are set to 0.
   pure subroutine complete(self, motion, is_known, joint, own)
     class(clearance_joint_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
@@ -463,8 +466,8 @@ contains
     call find_sliding(self%pin_radius, joint)
   end subroutine complete
 
-  !> Where the journal is and how it moves there, without turning and sliding speeds, and the normal force: all that a state tells
-  !> without the motion of the bodies.
+  !> The position and velocity of the journal in its bearing, without angular and sliding speeds, and the normal force: all that
+  !> follows from the state without the motion of the bodies.
   pure subroutine look(self, y, joint, normal_force)
     class(clearance_joint_t), intent(in) :: self
     real(dp), intent(in) :: y(:)
@@ -479,7 +482,7 @@ contains
     if (allocated(self%transition)) normal_force = normal_force*self%contact_weight(joint%penetration)
   end subroutine look
 
-  !> The motion as a film sees it. Where both bodies turn the film is drawn along by the sum of their speeds.
+  !> The motion on which the film force depends. If both bodies rotate, the film is entrained with the sum of their angular speeds.
   pure function film_motion(self, bodies, motion, joint) result(film)
     class(clearance_joint_t), intent(in) :: self
     type(bodies_t), intent(in) :: bodies
@@ -500,29 +503,29 @@ contains
     end if
   end function film_motion
 
-  !> The phase while journal and bearing are apart.
+  !> The phase of the joint while there is no contact.
   pure integer function phase_apart(self)
     class(clearance_joint_t), intent(in) :: self
     phase_apart = merge(phase_film, phase_free, allocated(self%film))
   end function phase_apart
 
-  !> How far from the centre the journal may be in the present phase [m].
+  !> Largest admissible eccentricity in the present phase [m].
   pure real(dp) function reach(self)
     class(clearance_joint_t), intent(in) :: self
     reach = self%bearing%radius
     if (is_unbounded(self)) reach = min(reach, self%bearing%clearance)
   end function reach
 
-  !> Whether the film grows without bound at the wall, and has next to no thickness.
+  !> Whether the film force has no bound at the wall and the film thickness is almost 0.
   pure logical function is_singular(self, y)
     class(clearance_joint_t), intent(in) :: self
     real(dp), intent(in) :: y(:)
-    real(dp), parameter :: thin = 1e-6_dp   !! of the clearance
+    real(dp), parameter :: thin = 1e-6_dp   !! film thickness over clearance
     is_singular = .false.
     if (is_unbounded(self)) is_singular = norm2(y(self%at%position:self%at%position + 1)) > (1 - thin)*self%bearing%clearance
   end function is_singular
 
-  !> The discrete state, to or from an archive.
+  !> Write the discrete state to an archive, or read it from it.
   subroutine exchange(self, archive)
     class(clearance_joint_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive

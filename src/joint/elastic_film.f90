@@ -1,14 +1,14 @@
 !> A film between elastic walls, in its simplest form: the walls are a spring in series with the film.
 !>
-!> The film sees its own eccentricity e_f, a state of the joint; the rest of the pin's, d = e - e_f, is what the walls give, and
-!> their force f(|d|) d/|d| is the load on the film, f the elastic force of a contact geometry. The film lets e_f go with the
-!> velocity that carries this load (`film_mobility`):
+!> The film has its own eccentricity e_f, a state of the joint. The rest of the pin's eccentricity, d = e - e_f, is the deflection
+!> of the walls. Their force f(|d|) d/|d| is the load on the film; f is the elastic force of a contact geometry. The eccentricity
+!> e_f changes with the velocity at which the film carries this load (`film_mobility`):
 !>
 !>     e_f' = v*(e_f, load) + (omega/2) z x e_f
 !>
-!> Nothing is singular where |e| passes the clearance, there is no equation to be solved for the force, and the work on the joint is
-!> what the film takes, load . e_f', and what the walls store. With `pressure_viscosity` the whole film has the viscosity mu
-!> exp(alpha p) (Barus) of its mean pressure p = load/(2 R L).
+!> Nothing is singular where |e| exceeds the clearance, and no equation has to be solved for the force. The work on the joint is the
+!> loss in the film, load . e_f', plus the change of the elastic energy of the walls. With `pressure_viscosity` the whole film has
+!> the viscosity mu exp(alpha p) (Barus) at its mean pressure p = load/(2 R L).
 module elastic_film
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t
@@ -25,7 +25,7 @@ module elastic_film
   type, extends(has_parameters_t) :: elastic_film_t
     logical :: is_wanted = .false.
     real(dp) :: pressure_viscosity = 0                     !! alpha [1/Pa]
-    class(contact_geometry_t), allocatable :: walls        !! of the group contact
+    class(contact_geometry_t), allocatable :: walls        !! geometry of the group contact
     real(dp) :: per_area = 0                               !! 1/(2 R L) [1/m^2]
   contains
     procedure :: parameters
@@ -59,7 +59,7 @@ contains
     self%per_area = 1/(2*bearing%pin_radius()*bearing%length)
   end subroutine prepare
 
-  !> Load on the film [N] where the walls give way by d [m].
+  !> Load on the film [N] at the deflection d [m] of the walls.
   pure function load(self, d)
     class(elastic_film_t), intent(in) :: self
     real(dp), intent(in) :: d(2)
@@ -70,7 +70,7 @@ contains
     if (depth > 0) load = self%walls%elastic_force(depth)/depth*d
   end function load
 
-  !> By what the walls give way under a load [N]: d [m], by bisection.
+  !> Deflection d [m] of the walls under a load [N], by bisection.
   pure function deflection(self, load) result(d)
     class(elastic_film_t), intent(in) :: self
     real(dp), intent(in) :: load(2)
@@ -95,7 +95,7 @@ contains
     d = load*(high/norm2(load))
   end function deflection
 
-  !> What the walls store [J].
+  !> Elastic energy of the walls [J].
   pure real(dp) function energy(self, d)
     class(elastic_film_t), intent(in) :: self
     real(dp), intent(in) :: d(2)
@@ -103,7 +103,7 @@ contains
     if (norm2(d) > 0) energy = self%walls%elastic_energy(norm2(d))
   end function energy
 
-  !> The viscosity over that without pressure [-].
+  !> Ratio of the viscosity under a load to that without pressure [-].
   pure real(dp) function thickening(self, load)
     class(elastic_film_t), intent(in) :: self
     real(dp), intent(in) :: load(2)   !! [N]
@@ -111,7 +111,7 @@ contains
     if (self%pressure_viscosity > 0) thickening = exp(self%pressure_viscosity*self%per_area*norm2(load))
   end function thickening
 
-  !> v* [m/s] at the film's eccentricity under a load.
+  !> v* [m/s] at an eccentricity of the film under a load.
   pure function velocity(self, film, film_eccentricity, load)
     class(elastic_film_t), intent(in) :: self
     class(film_law_t), intent(in) :: film
@@ -120,24 +120,25 @@ contains
     call driven_velocity(film, film_eccentricity, load/self%thickening(load), velocity)
   end function velocity
 
-  !> Moment of the film on the pin about its centre [N m]; about the film's own centre it is the same, since the load goes through
-  !> both.
+  !> Moment of the film on the pin about the pin's centre [N m]. It equals that about the film's own centre, since the load passes
+  !> through both.
   pure real(dp) function moment(self, film, motion, load)
     class(elastic_film_t), intent(in) :: self
     class(film_law_t), intent(in) :: film
-    type(film_motion_t), intent(in) :: motion   !! of the film
+    type(film_motion_t), intent(in) :: motion   !! with the film's own eccentricity
     real(dp), intent(in) :: load(2)
     real(dp) :: factor
     factor = self%thickening(load)
     moment = factor*film%drag_moment(motion, -load/factor)
   end function moment
 
-  !> Derivatives, for implicit integration, by e, e', the journal's speed and e_f (columns): of force and moment on the pin (rows of
-  !> `of_loads`) and of e_f' (rows of `of_rates`). The film's own are those of its force, which is against the load at every moment.
+  !> Derivatives with respect to e, e', the angular speed of the journal and e_f (columns), for implicit integration: of force and
+  !> moment on the pin (rows of `of_loads`) and of e_f' (rows of `of_rates`). The derivatives of the film's velocity follow from
+  !> those of its force, which is opposite to the load at every instant.
   pure subroutine slopes(self, film, motion, d, has_moment, of_loads, of_rates)
     class(elastic_film_t), intent(in) :: self
     class(film_law_t), intent(in) :: film
-    type(film_motion_t), intent(in) :: motion   !! of the film
+    type(film_motion_t), intent(in) :: motion   !! with the film's own eccentricity
     real(dp), intent(in) :: d(2)
     logical, intent(in) :: has_moment
     real(dp), intent(out) :: of_loads(3, 7), of_rates(2, 7)
@@ -152,7 +153,7 @@ contains
     if (has_moment) then
       turning = motion
       turning%turning_speed = 1
-      drag = factor*film%drag_moment(turning, [0.0_dp, 0.0_dp])   ! of unit turning speed
+      drag = factor*film%drag_moment(turning, [0.0_dp, 0.0_dp])   ! at unit angular speed
       by_load = 0.5_dp*[-motion%eccentricity(2), motion%eccentricity(1)] &
         + drag*motion%turning_speed*self%pressure_viscosity*self%per_area*pressing/max(norm2(pressing), tiny(1.0_dp))
       of_loads(3, 1:2) = matmul(by_load, wall)

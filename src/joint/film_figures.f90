@@ -1,5 +1,5 @@
-!> What a film does in a joint beyond its force: moment, power, largest pressure, flow out of its ends. It takes work that the
-!> right-hand side does not need: it is found where it is requested.
+!> Results of a film besides its force: moment, power, largest pressure, side flow. The right-hand side does not need them, and they
+!> take additional evaluations; they are computed only on request.
 module film_figures
   use gudgeon_kinds, only: dp
   use film_law, only: film_motion_t
@@ -12,15 +12,16 @@ module film_figures
   public :: film_figures_t, film_figures_of, film_moment, acting_film
 
   type :: film_figures_t
-    real(dp) :: moment = 0        !! on the pin about its centre, whether or not the case lets the shear act [N m]
-    real(dp) :: power = 0         !! taken from the bodies by the film's force and that moment [W]
+    real(dp) :: moment = 0        !! on the pin about its centre, computed even if the case neglects the shear [N m]
+    real(dp) :: power = 0         !! taken from the bodies by the film's force and this moment [W]
     real(dp) :: max_pressure = 0  !! [Pa]
-    real(dp) :: side_flow = 0     !! out of both ends [m^3/s]
+    real(dp) :: side_flow = 0     !! out of both ends of the bearing [m^3/s]
   end type film_figures_t
 
 contains
 
-  !> Those of a joint with a film; all 0 while it does not act. Where film and contact share the load they are its share.
+  !> Results of the film of a joint; all are 0 while the film does not act. If film and contact share the load, the film's results
+  !> are multiplied by its share.
   pure type(film_figures_t) function film_figures_of(joint, motion, loads) result(figures)
     type(clearance_joint_t), intent(in) :: joint
     type(joint_motion_t), intent(in) :: motion
@@ -30,7 +31,7 @@ contains
     call acting_film(joint, motion, seen, share)
     if (.not. share > 0) return
     rate = motion%eccentricity_rate
-    if (allocated(joint%elastic)) rate = motion%film_rate   ! what the walls store is not the film's
+    if (allocated(joint%elastic)) rate = motion%film_rate   ! the elastic energy of the walls does not belong to the film
     figures%moment = film_moment(joint, loads)
     if (.not. joint%film%film_moment) &
       figures%moment = figures%moment + share*joint%film%drag_moment(seen, loads%film/share)
@@ -42,7 +43,7 @@ contains
     figures%side_flow = film_share(joint, motion)*figures%side_flow
   end function film_figures_of
 
-  !> The motion that the film of a joint sees, and the part of the whole film that acts.
+  !> The motion on which the film of a joint depends, and the share of the full film that acts.
   pure subroutine acting_film(joint, motion, seen, share)
     type(clearance_joint_t), intent(in) :: joint
     type(joint_motion_t), intent(in) :: motion
@@ -61,7 +62,7 @@ contains
     seen%eccentricity_rate = motion%film_rate
   end subroutine acting_film
 
-  !> The part of the whole film that acts.
+  !> Share of the full film that acts.
   pure real(dp) function film_share(joint, motion)
     type(clearance_joint_t), intent(in) :: joint
     type(joint_motion_t), intent(in) :: motion
@@ -70,7 +71,7 @@ contains
     if (.not. joint%transition%film_is_gone) film_share = 1 - joint%contact_weight(motion%penetration)
   end function film_share
 
-  !> Moment on the journal [N m] of a film's shear that acts: what friction has no part in.
+  !> Moment on the journal [N m] from the shear of the film, if the case includes it; without the moment of friction.
   pure real(dp) function film_moment(joint, loads)
     type(clearance_joint_t), intent(in) :: joint
     type(joint_loads_t), intent(in) :: loads

@@ -10,7 +10,8 @@ module guide_columns
 
 contains
 
-  !> Friction on the piston along x; with clearance in the bore where the piston is there, and each corner of its skirt.
+  !> Put the columns of the guide into a row: the friction force on the piston along x and, with clearance in the bore, position and
+  !> tilt of the piston and the quantities of each corner of its skirt.
   pure subroutine put_guide_columns(guide, motion, accelerations, loads, row)
     type(piston_guide_t), intent(in) :: guide
     type(motion_t), intent(in) :: motion

@@ -1,4 +1,4 @@
-!> Events of a piston with clearance in its bore: a corner of its skirt touches the bore, or leaves it.
+!> Events of a piston with clearance in its bore: contacts of the corners of its skirt begin and end.
 module guide_events
   use gudgeon_kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t
@@ -10,13 +10,14 @@ module guide_events
 
 contains
 
-  !> How many event functions the guide has: one for each corner, or none on an ideal guide.
+  !> Number of event functions of the guide: one for each corner, or none for an ideal guide.
   pure integer function n_guide_events(guide)
     type(piston_guide_t), intent(in) :: guide
     n_guide_events = merge(n_corners, 0, guide%is_loose)
   end function n_guide_events
 
-  !> Event functions and their rates: the depth of each corner [m] while it is apart, less it while it touches.
+  !> Event functions and their rates: the penetration of a corner [m] while it is not in contact, and minus the penetration while it
+  !> is.
   pure subroutine corner_events(guide, y, g, g_rate)
     type(piston_guide_t), intent(in) :: guide
     real(dp), intent(in) :: y(:)
@@ -27,7 +28,7 @@ contains
     g_rate = merge(-corner%depth_rate, corner%depth_rate, guide%touches)
   end subroutine corner_events
 
-  !> A corner that touched leaves the wall, or one that was apart touches it.
+  !> Change the state of corner i: its contact ends, or a new contact begins.
   pure subroutine change_contact(guide, i, y)
     type(piston_guide_t), intent(inout) :: guide
     integer, intent(in) :: i
@@ -41,7 +42,7 @@ contains
     end if
   end subroutine change_contact
 
-  !> Corner i touches the wall, going into it at a speed [m/s].
+  !> Begin a contact of corner i with a penetration rate [m/s].
   pure subroutine begin_corner_contact(guide, i, rate)
     type(piston_guide_t), intent(inout) :: guide
     integer, intent(in) :: i
@@ -50,13 +51,13 @@ contains
     guide%impact_speed(i) = max(rate, 0.0_dp)
   end subroutine begin_corner_contact
 
-  !> Whether the force begins and ends with a broken power of the depth.
+  !> Whether the force begins and ends with a power of the penetration that is not an integer.
   pure logical function contact_is_rough(guide)
     type(piston_guide_t), intent(in) :: guide
     contact_is_rough = guide%contact%geometry%three_halves > 0
   end function contact_is_rough
 
-  !> When the next of such contacts ends, of corners on their way out; else the largest number.
+  !> Predicted end of the first of such contacts, of corners that are moving out of the wall; else the largest number.
   pure real(dp) function rough_corner_end(guide, t, y) result(t_end)
     type(piston_guide_t), intent(in) :: guide
     real(dp), intent(in) :: t, y(:)
@@ -72,7 +73,7 @@ contains
     end do
   end function rough_corner_end
 
-  !> Second derivative of the depth of corner i [m/s^2].
+  !> Second derivative of the penetration of corner i [m/s^2].
   pure real(dp) function inward_acceleration(i, corner, motion, accelerations) result(a)
     integer, intent(in) :: i
     type(corner_t), intent(in) :: corner

@@ -1,4 +1,4 @@
-!> The columns of a joint with clearance. Those of the piston pin have plain names, others the place in front.
+!> The columns of a joint with clearance. Columns of the piston pin have plain names, those of the crank pin have a prefix.
 module joint_columns
   use gudgeon_kinds, only: dp
   use trace_row, only: trace_row_t
@@ -14,7 +14,7 @@ module joint_columns
 
 contains
 
-  !> Of what the case asks for: with a contact law its forces, with a film the film's.
+  !> Put the columns of a joint into a row: those of the forces only for the laws that the case names.
   pure subroutine put_joint_columns(joint, motion, loads, row)
     type(clearance_joint_t), intent(in) :: joint
     type(joint_motion_t), intent(in) :: motion
@@ -23,7 +23,8 @@ contains
     if (joint%place /= piston_pin) row%place = name_prefix(joint%place)
     call row%put('eccentricity_x[m]', motion%eccentricity(1), 'centre of the pin from the centre of its bearing, along x')
     call row%put('eccentricity_y[m]', motion%eccentricity(2), 'the same along y')
-    if (joint%place /= piston_pin) then   ! whose rates follow from crank, rod and piston only where the other pin is ideal
+    if (joint%place /= piston_pin) then  ! the rates of the crank pin follow from crank, rod and piston only if the other pin is
+                                         ! ideal
       call row%put('eccentricity_rate_x[m/s]', motion%eccentricity_rate(1), 'rate of eccentricity_x')
       call row%put('eccentricity_rate_y[m/s]', motion%eccentricity_rate(2), 'rate of eccentricity_y')
     end if
@@ -69,7 +70,7 @@ contains
       'velocity of the pin surface relative to the bearing along the same tangent')
   end subroutine put_friction
 
-  !> Where the film is of which the walls give way, by how much they do, and what they store.
+  !> Put the columns of an elastic film: its own eccentricity, the deflection of its walls and their elastic energy.
   pure subroutine put_elastic_film(joint, motion, row)
     type(clearance_joint_t), intent(in) :: joint
     type(joint_motion_t), intent(in) :: motion
@@ -85,7 +86,7 @@ contains
     call row%put('wall_energy[J]', stored, 'elastic energy stored in the bearing walls')
   end subroutine put_elastic_film
 
-  !> The columns of a film that take more work than its force, each only where the case names it.
+  !> Put the columns of a film that need more computation than its force. Each is computed only if the case names it.
   pure subroutine put_film_figures(joint, motion, loads, row)
     type(clearance_joint_t), intent(in) :: joint
     type(joint_motion_t), intent(in) :: motion

@@ -11,9 +11,8 @@ module joint_events
   public :: contact_event, sliding_event, judge_entry, rough_end, begin_contact, end_contact, choose_sliding
   public :: penetration_and_rate, transition_events, pass_kink
 
-  !> The events of a joint, in this order. One without contact has none, and only set-valued friction has the second. A contact
-  !> begins where journal and bearing are apart, and ends where they touch. Only one where film and contact share the load has
-  !> the others, the kinks of its forces.
+  !> The events of a joint, in this order. A joint without contact law has no events. The second event exists only for set-valued
+  !> friction, the last two only for joints in which film and contact share the load: there the forces have kinks.
   integer, parameter :: contact_changes = 1, sliding_changes = 2, film_held_changes = 3, film_gone_changes = 4
 
 contains
@@ -47,8 +46,8 @@ contains
     end associate
   end function penetration_and_rate
 
-  !> Event function of a contact that begins or ends, and its rate: (e . e - c^2)/2 [m^2] while apart, which is smooth in every
-  !> state, and less it in contact.
+  !> Event function of the beginning or end of a contact, and its rate: (e . e - c^2)/2 [m^2] without contact, which is smooth in
+  !> every state, and its negative in contact.
   pure subroutine contact_event(joint, y, g, g_rate)
     type(clearance_joint_t), intent(in) :: joint
     real(dp), intent(in) :: y(*)
@@ -63,9 +62,9 @@ contains
     end associate
   end subroutine contact_event
 
-  !> Event functions of the kinks of a weighted transition, and their rates: half of what e . e is beyond the kink [m^2], signed so
-  !> that the passage to the other side is from negative to positive. (At the end of a smooth share it is the bend that jumps; the
-  !> event costs no more than it spares.)
+  !> Event functions of the kinks of a weighted transition, and their rates: half the difference between e . e and its value at the
+  !> kink [m^2], with the sign that makes the next passage one from negative to positive. (At the end of a smooth share only the
+  !> curvature is discontinuous; the event costs no more evaluations than it saves.)
   pure subroutine transition_events(joint, y, g, g_rate)
     type(clearance_joint_t), intent(in) :: joint
     real(dp), intent(in) :: y(*)
@@ -94,7 +93,7 @@ contains
     end associate
   end subroutine pass_kink
 
-  !> Event function of set-valued friction in contact: surfaces slip that stuck, or the sliding speed passes zero.
+  !> Event function of set-valued friction in contact: sticking surfaces begin to slide, or the sliding speed passes zero.
   pure subroutine sliding_event(joint, motion, own, accelerations, g, g_rate)
     type(clearance_joint_t), intent(in) :: joint
     type(joint_motion_t), intent(in) :: motion
@@ -111,16 +110,16 @@ contains
     end if
   end subroutine sliding_event
 
-  !> Largest friction force that a set-valued law can hold surfaces with [N].
+  !> Largest friction force of a set-valued law while the surfaces stick [N].
   pure real(dp) function sticking_limit(joint, normal_force)
     type(clearance_joint_t), intent(in) :: joint
     real(dp), intent(in) :: normal_force
     sticking_limit = joint%friction%holding_ratio()*normal_force
   end function sticking_limit
 
-  !> A step that begins apart may go no deeper into contact than `max_penetration` (4.12-4.13), nor pass through it. The
-  !> penetration inside the step is taken as the cubic through its values and rates at both ends. Where the step goes too deep
-  !> `fraction` of it lands half way into the allowed depth.
+  !> Judge a step that begins without contact: at its end the penetration must be at most `max_penetration` (4.12-4.13), and the
+  !> step must not pass through a contact. The penetration inside the step is approximated by the cubic through its values and rates
+  !> at both ends. If the penetration is too large, a step shortened by `fraction` ends at half of the largest penetration.
   pure subroutine judge_entry(joint, t_old, y_old, t, y, verdict, fraction)
     type(clearance_joint_t), intent(in) :: joint
     real(dp), intent(in) :: t_old, y_old(:), t, y(:)
@@ -163,8 +162,8 @@ contains
     hermite = (1 + 2*s)*(1 - s)**2*left(1) + s*(1 - s)**2*left(2) + s**2*(3 - 2*s)*right(1) - s**2*(1 - s)*right(2)
   end function hermite
 
-  !> When a contact ends, where the journal is on its way there: the force ends with the power 1.5 of the penetration. Else the
-  !> largest number.
+  !> Predicted end of a contact, if the journal is moving out of the wall: near it the force varies with the power 1.5 of the
+  !> penetration. Else the largest number.
   pure real(dp) function rough_end(joint, t, y)
     type(clearance_joint_t), intent(in) :: joint
     real(dp), intent(in) :: t, y(:)
@@ -179,7 +178,7 @@ contains
     end associate
   end function rough_end
 
-  !> The journal touches, at a penetration rate [m/s].
+  !> Begin a contact with a penetration rate [m/s].
   pure subroutine begin_contact(joint, rate)
     type(clearance_joint_t), intent(inout) :: joint
     real(dp), intent(in) :: rate
@@ -192,9 +191,9 @@ contains
     joint%phase = joint%phase_apart()
   end subroutine end_contact
 
-  !> Set-valued friction, from an evaluation as if the surfaces stuck: where the sliding speed is not zero it tells the direction.
-  !> At zero (where it `may_slide` at the beginning of a contact it is taken as it is) the surfaces stick if friction can hold them
-  !> and slide against it if not.
+  !> Choose the state of set-valued friction from an evaluation in which the surfaces are assumed to stick. A nonzero sliding speed
+  !> gives the direction; at the beginning of a contact (`may_slide`) this holds for any value. At zero speed the surfaces stick if
+  !> friction can hold them; otherwise they begin to slide in the direction of the force.
   pure subroutine choose_sliding(joint, motion, own, was_sliding, may_slide)
     type(clearance_joint_t), intent(inout) :: joint
     type(joint_motion_t), intent(in) :: motion

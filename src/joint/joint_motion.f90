@@ -1,4 +1,4 @@
-!> How journal and bearing of a joint move against each other (Reis 2013, 3.70-3.78).
+!> Relative motion of journal and bearing of a joint (Reis 2013, 3.70-3.78).
 module joint_motion
   use gudgeon_kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin
@@ -7,28 +7,28 @@ module joint_motion
   private
   public :: joint_motion_t, most_joint_states, find_polar, find_speeds, find_sliding, sliding_acceleration, outward_acceleration
 
-  integer, parameter :: most_joint_states = max(most_friction_states, 2)   !! of friction, or of an elastic film
+  integer, parameter :: most_joint_states = max(most_friction_states, 2)   !! of the friction law, or of an elastic film
 
-  !> Where the journal is in its bearing, and how it moves there.
+  !> Position and velocity of the journal in its bearing.
   type :: joint_motion_t
-    real(dp) :: eccentricity(2)       !! e, centre of the journal - centre of the bearing [m]
+    real(dp) :: eccentricity(2)       !! e, from the centre of the bearing to the centre of the journal [m]
     real(dp) :: eccentricity_rate(2)  !! [m/s]
-    real(dp) :: journal_speed         !! turning speeds of both bodies, from x to y [rad/s]
+    real(dp) :: journal_speed         !! angular speeds of both bodies, positive from x to y [rad/s]
     real(dp) :: bearing_speed
     real(dp) :: normal(2)             !! n = e/|e|, (1, 0) at e = 0; the tangent is t = (-n_y, n_x)
     real(dp) :: distance              !! |e| [m]
-    real(dp) :: penetration           !! |e| - c [m], negative while apart
+    real(dp) :: penetration           !! |e| - c [m], negative without contact
     real(dp) :: penetration_rate      !! n . e' [m/s]
     real(dp) :: tangential_rate       !! t . e' [m/s]
-    real(dp) :: sliding_speed         !! v_T, of the journal's surface on the bearing [m/s]
-    real(dp) :: friction_states(most_friction_states)   !! of a friction law that has them
+    real(dp) :: sliding_speed         !! v_T, of the journal's surface relative to the bearing's [m/s]
+    real(dp) :: friction_states(most_friction_states)   !! states of the friction law, if it has any
     real(dp) :: film_eccentricity(2)  !! e_f of an elastic film [m]
     real(dp) :: film_rate(2)          !! [m/s]
   end type joint_motion_t
 
 contains
 
-  !> Eccentricity and rate in polar terms.
+  !> Compute distance, normal, penetration and the components of the rate from the eccentricity and its rate.
   pure subroutine find_polar(clearance, joint)
     real(dp), intent(in) :: clearance   !! [m]
     type(joint_motion_t), intent(inout) :: joint
@@ -45,7 +45,7 @@ contains
     end associate
   end subroutine find_polar
 
-  !> Turning speeds of the bodies on both sides of a pin of the chain, the piston on an ideal guide.
+  !> Angular speeds of the bodies on both sides of a pin of the chain, for a piston in an ideal guide.
   pure subroutine find_speeds(place, motion, joint)
     integer, intent(in) :: place   !! crank_pin or piston_pin
     type(motion_t), intent(in) :: motion
@@ -59,8 +59,9 @@ contains
     end if
   end subroutine find_speeds
 
-  !> v_T = t . e' + omega_journal R - omega_bearing (|e| + R), R of the journal: the material one, at the point of contact.
-  !> (3.74)-(3.76) as printed turn the contact points with the eccentricity, which leaves no sliding.
+  !> Sliding speed v_T = t . e' + omega_journal R - omega_bearing (|e| + R), with the journal's radius R: the relative velocity of
+  !> the material points in contact. Equations (3.74)-(3.76) as printed let the contact points rotate with the eccentricity, so that
+  !> no sliding remains.
   pure subroutine find_sliding(pin_radius, joint)
     real(dp), intent(in) :: pin_radius   !! [m]
     type(joint_motion_t), intent(inout) :: joint
@@ -68,11 +69,11 @@ contains
       - joint%bearing_speed*(joint%distance + pin_radius)
   end subroutine find_sliding
 
-  !> v_T' [m/s^2] = t . e'' - gamma' n . e' + omega_journal' R - omega_bearing' (|e| + R) - omega_bearing |e|', with
-  !> gamma' = t . e'/|e|; `at_rest` what the accelerations alone make of it.
+  !> Rate of the sliding speed, v_T' [m/s^2] = t . e'' - gamma' n . e' + omega_journal' R - omega_bearing' (|e| + R) - omega_bearing
+  !> |e|', with gamma' = t . e'/|e|. With `at_rest` only the terms with accelerations are included.
   pure real(dp) function sliding_acceleration(place, bearing_turns, pin_radius, joint, accelerations, at_rest) result(a)
     integer, intent(in) :: place
-    logical, intent(in) :: bearing_turns   !! that of the piston pin: the piston has clearance in its bore
+    logical, intent(in) :: bearing_turns   !! the bearing of the piston pin rotates: the piston has clearance in its bore
     real(dp), intent(in) :: pin_radius
     type(joint_motion_t), intent(in) :: joint
     type(accelerations_t), intent(in) :: accelerations

@@ -1,4 +1,4 @@
-!> How the loads of a joint change with the state, for implicit integration.
+!> Derivatives of the loads of a joint with respect to the state, for implicit integration.
 submodule (clearance_joint) joint_slopes
   implicit none
 
@@ -28,7 +28,7 @@ contains
     end if
   end procedure slopes
 
-  !> Those of a contact and a film that share the load: of both, weighted, and of the weights.
+  !> Derivatives for a contact and a film that share the load: those of both forces, weighted, and those of the weights.
   pure subroutine weighted_slopes(self, motion, joint, derivatives)
     type(clearance_joint_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
@@ -86,7 +86,7 @@ contains
     end associate
   end subroutine contact_slopes
 
-  !> Derivatives of the sliding speed by e_x, e_y, e_x', e_y' and the journal's speed.
+  !> Derivatives of the sliding speed with respect to e_x, e_y, e_x', e_y' and the angular speed of the journal.
   pure function sliding_gradient(self, joint) result(gradient)
     type(clearance_joint_t), intent(in) :: self
     type(joint_motion_t), intent(in) :: joint
@@ -96,8 +96,8 @@ contains
     end associate
   end function sliding_gradient
 
-  !> Friction force over normal force, and derivatives of it (row 1) and of the rates of the friction law's states (rows behind) by
-  !> the sliding speed (column 1) and these states (columns behind).
+  !> Ratio of friction to normal force, and derivatives of it (row 1) and of the rates of the states of the friction law (following
+  !> rows) with respect to the sliding speed (column 1) and to these states (following columns).
   pure subroutine find_friction_slopes(self, joint, ratio, slopes)
     type(clearance_joint_t), intent(in) :: self
     type(joint_motion_t), intent(in) :: joint

@@ -1,12 +1,12 @@
-!> The guide of the piston: the bore, where it has friction or the piston has clearance in it.
+!> The guide of the piston in its bore, with friction or with clearance.
 !>
-!> With friction alone the piston stays on the cylinder's axis and F_x = mu(x') |N| - c x', N being the force of the piston on the
-!> guide. With clearance (slap) the piston moves across and tilts, and the four corners of its skirt may touch the bore, each in
-!> a contact and with friction of its own. Corner i is at
+!> With friction alone the piston stays on the cylinder's axis and F_x = mu(x') |N| - c x', where N is the force of the piston on
+!> the guide. With clearance (piston slap) the piston also moves transversely and tilts, and the four corners of its skirt may touch
+!> the bore, each with its own contact and friction. Corner i is at
 !>
 !>     r_i = (x, y) + Rot(b) (h_i - U_p, b_i),   h_i along the piston from the pin's bearing, b_i = +-R_p from its axis
 !>
-!> and the depth to which it is in the bore's wall is d_i = +-(y_i) - R_p - c, with -d_i its gap.
+!> and its penetration into the wall of the bore is d_i = +-(y_i) - R_p - c; -d_i is its gap.
 module piston_guide
   use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
@@ -22,36 +22,36 @@ module piston_guide
   public :: piston_guide_t, guide_loads_t, corner_t, n_corners, corner_names
 
   integer, parameter :: n_corners = 4
-  !> Towards +y: top, bottom; towards -y: top, bottom.
+  !> The corners: on the side of +y top and bottom, on the side of -y top and bottom.
   character(len=*), parameter :: corner_names(n_corners) = [character(len=7) :: 'guide_1', 'guide_2', 'guide_3', 'guide_4']
 
   !> A corner of the skirt at the wall of the bore.
   type :: corner_t
     real(dp) :: from_com(2)       !! the corner from the piston's centre of mass, along x and y [m]
-    real(dp) :: depth             !! in the wall [m], negative while apart
+    real(dp) :: depth             !! penetration [m], negative without contact
     real(dp) :: depth_rate        !! [m/s]
     real(dp) :: sliding_speed     !! of the corner along x [m/s]
-    real(dp) :: normal_force      !! pressing [N]
+    real(dp) :: normal_force      !! positive in compression [N]
     real(dp) :: friction_force    !! on the piston along x [N]
   end type corner_t
 
-  !> What the guide does to the piston.
+  !> Loads of the guide on the piston.
   type :: guide_loads_t
     real(dp) :: friction_force    !! along x [N]
-    type(corner_t) :: corner(n_corners)   !! where there is clearance
+    type(corner_t) :: corner(n_corners)   !! with clearance in the bore
   end type guide_loads_t
 
   type :: piston_guide_t
     logical :: is_loose = .false.         !! the piston has clearance in its bore
-    class(friction_law_t), allocatable :: friction   !! not allocated: none but the viscous one
+    class(friction_law_t), allocatable :: friction   !! not allocated: only viscous friction
     real(dp) :: viscous = 0               !! c [N s/m]
     class(contact_law_t), allocatable :: contact     !! of a corner with the bore
-    real(dp) :: clearance = 0             !! half of the bore's diameter less the piston's [m]
+    real(dp) :: clearance = 0             !! radial clearance: half the difference of the diameters of bore and piston [m]
     real(dp) :: radius = 0                !! R_p, of the piston [m]
-    real(dp) :: height(2) = 0             !! top and bottom of the skirt from the centre of mass, along the piston [m]
-    type(coordinates_t) :: offset, tilt   !! where they stand in the state
+    real(dp) :: height(2) = 0             !! top and bottom of the skirt, measured from the centre of mass along the piston [m]
+    type(coordinates_t) :: offset, tilt   !! their indices in the state
     logical :: touches(n_corners) = .false.
-    real(dp) :: impact_speed(n_corners) = 0   !! rate of the depth at which the present contact began [m/s]
+    real(dp) :: impact_speed(n_corners) = 0   !! penetration rate at the beginning of the present contact [m/s]
     real(dp) :: start(2) = 0              !! offset [m] and tilt [rad] at t = 0
     real(dp) :: start_rate(2) = 0         !! [m/s], [rad/s]
   contains
@@ -72,20 +72,20 @@ module piston_guide
 
 contains
 
-  !> Find what the laws need to know before the first force is asked for.
+  !> Prepare the laws before the first evaluation of a force.
   subroutine prepare(self)
     class(piston_guide_t), intent(inout) :: self
     if (allocated(self%friction)) call self%friction%prepare()
     if (allocated(self%contact)) call self%contact%prepare(bearing_t())
   end subroutine prepare
 
-  !> Claim offset and tilt. The offset is measured by the clearance, its rate as that of a pin in its bearing; the tilt by the angle
-  !> at which top and bottom of the skirt touch opposite walls.
+  !> Claim offset and tilt in the state vector. The scale of the offset is the clearance, that of its rate as for a pin in its
+  !> bearing; the scale of the tilt is the angle at which top and bottom of the skirt touch opposite walls.
   subroutine claim(self, layout, crank_speed, span)
     class(piston_guide_t), intent(inout) :: self
     type(layout_t), intent(inout) :: layout
-    real(dp), intent(in) :: crank_speed   !! natural size of it [rad/s]
-    real(dp), intent(in) :: span          !! of the simulation [s]
+    real(dp), intent(in) :: crank_speed   !! natural size of the crank speed [rad/s]
+    real(dp), intent(in) :: span          !! duration of the simulation [s]
     real(dp) :: speed, arm
     if (.not. self%is_loose) return
     arm = 0.5_dp*(self%height(1) - self%height(2))
@@ -102,7 +102,7 @@ contains
     crossing_speed = min(guide%clearance/span, 1.0_dp)
   end function crossing_speed
 
-  !> Natural size of the piston's speed across its bore where the crank does not give it [m/s]; 0 without clearance.
+  !> Natural size of the piston's transverse speed where it does not follow from the crank speed [m/s]; 0 without clearance.
   pure real(dp) function own_speed(self, span)
     class(piston_guide_t), intent(in) :: self
     real(dp), intent(in) :: span   !! [s]
@@ -119,7 +119,7 @@ contains
     call layout%settle(self%tilt)
   end subroutine settle
 
-  !> Its part of the state at t = 0.
+  !> Put the initial offset and tilt into the state vector.
   pure subroutine put_start(self, y)
     class(piston_guide_t), intent(in) :: self
     real(dp), intent(inout) :: y(:)
@@ -128,7 +128,7 @@ contains
     y([self%offset%rate, self%tilt%rate]) = self%start_rate
   end subroutine put_start
 
-  !> Offset and tilt, and their rates.
+  !> Read offset and tilt, and their rates, from the state vector.
   pure subroutine read_state(self, y, tilting)
     class(piston_guide_t), intent(in) :: self
     real(dp), intent(in) :: y(*)
@@ -139,7 +139,7 @@ contains
     tilting%tilt_rate = y(self%tilt%rate)
   end subroutine read_state
 
-  !> Where the corners are: all but their sliding speeds and forces.
+  !> Positions, penetrations and penetration rates of the corners, without sliding speeds and forces.
   pure subroutine place_corners(self, tilting, corners)
     class(piston_guide_t), intent(in) :: self
     type(tilting_t), intent(in) :: tilting
@@ -159,7 +159,7 @@ contains
     end do
   end subroutine place_corners
 
-  !> Depths of the corners, their rates and normal forces: all that a state tells without the motion of the bodies.
+  !> Penetrations of the corners, their rates and normal forces: all that follows from the state without the motion of the bodies.
   pure subroutine look(self, y, corners)
     class(piston_guide_t), intent(in) :: self
     real(dp), intent(in) :: y(:)
@@ -173,7 +173,7 @@ contains
     end do
   end subroutine look
 
-  !> Pressing force of a corner [N]; 0 while it is apart.
+  !> Normal force of a corner [N]; 0 without contact.
   pure real(dp) function normal_force(guide, i, corner)
     type(piston_guide_t), intent(in) :: guide
     integer, intent(in) :: i
@@ -182,14 +182,15 @@ contains
     if (guide%touches(i)) normal_force = guide%contact%normal_force(corner%depth, corner%depth_rate, guide%impact_speed(i))
   end function normal_force
 
-  !> Whether the piston may be there: no corner through the wall by more than the piston's radius, and not turned round.
+  !> Whether the position of the piston is admissible: no corner penetrates the wall by more than the piston's radius, and the tilt
+  !> is less than 1 rad.
   pure logical function admits(self, tilting)
     class(piston_guide_t), intent(in) :: self
     type(tilting_t), intent(in) :: tilting
     admits = abs(tilting%offset) < self%clearance + self%radius .and. abs(tilting%tilt) < 1
   end function admits
 
-  !> What the bore does to a piston with clearance in it, also among the loads of the chain.
+  !> Loads of the bore on a piston with clearance; they are also added to the loads of the chain.
   pure subroutine slide(self, motion, own, all)
     class(piston_guide_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
@@ -218,7 +219,7 @@ contains
     all%axial_force = all%axial_force - own%friction_force
   end subroutine slide
 
-  !> Friction over normal force [-] along x.
+  !> Ratio of the friction force along x to the normal force [-].
   pure real(dp) function friction_ratio(guide, speed)
     type(piston_guide_t), intent(in) :: guide
     real(dp), intent(in) :: speed   !! [m/s]
@@ -226,17 +227,18 @@ contains
     if (allocated(guide%friction)) friction_ratio = guide%friction%friction_ratio(speed, nint(sign(1.0_dp, speed)))
   end function friction_ratio
 
-  !> Friction of an ideal guide on the piston at its speed x' [m/s]: what depends on the normal force, over it, and the rest [N].
+  !> Friction of an ideal guide on the piston at the speed x' [m/s]: the ratio of the part that depends on the normal force to that
+  !> force, and the remaining force [N].
   pure subroutine friction_on_guide(self, speed, ratio, rest)
     class(piston_guide_t), intent(in) :: self
     real(dp), intent(in) :: speed
-    real(dp), intent(out) :: ratio   !! mu [-], of the other sign than the speed
+    real(dp), intent(out) :: ratio   !! mu [-], opposite in sign to the speed
     real(dp), intent(out) :: rest
     ratio = friction_ratio(self, speed)
     rest = -self%viscous*speed
   end subroutine friction_on_guide
 
-  !> Rates of what it claimed.
+  !> Rates of the guide's states.
   pure subroutine put_rates(self, tilting, offset_acceleration, tilt_acceleration, dydt)
     class(piston_guide_t), intent(in) :: self
     type(tilting_t), intent(in) :: tilting
@@ -249,7 +251,7 @@ contains
     dydt(self%tilt%rate) = tilt_acceleration
   end subroutine put_rates
 
-  !> The discrete state, to or from an archive.
+  !> Write the discrete state to an archive, or read it from it.
   subroutine exchange(self, archive)
     class(piston_guide_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive

@@ -1,4 +1,4 @@
-!> The friction that holds surfaces which stick.
+!> Friction forces of surfaces that stick.
 module sticking
   use gudgeon_kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, piston_pin
@@ -12,8 +12,8 @@ module sticking
 
 contains
 
-  !> Add to joints that stick the friction forces that keep their sliding speeds constant. The accelerations are known without
-  !> these forces; all is linear in them. `power` is that of all joints.
+  !> Add to joints whose surfaces stick the friction forces that keep their sliding speeds constant. The accelerations must be known
+  !> without these forces; everything is linear in them. `power` is the power of all joints.
   pure subroutine hold_surfaces(chain, joints, motion, relative, own, loads, accelerations, crank_moment, power)
     type(chain_t), intent(in) :: chain
     type(clearance_joint_t), intent(in) :: joints(:)
@@ -65,7 +65,7 @@ contains
     if (.not. chain%is_loose(piston_pin)) call chain%complete_loads(motion, accelerations, loads)
   end subroutine hold_surfaces
 
-  !> A friction force of 1 N on one journal.
+  !> Loads of a friction force of 1 N on one journal.
   pure function unit_friction(joint, relative) result(loads)
     type(clearance_joint_t), intent(in) :: joint
     type(joint_motion_t), intent(in) :: relative
