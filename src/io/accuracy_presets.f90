@@ -1,5 +1,5 @@
-!> The accuracy levels of the command line, as values of the case. Defined by measurement: scripts/measure_tradeoff.py --presets
-!> tells the error that each really gives in every shipped case (data/measured/presets.md).
+!> The accuracy levels of the command line, as values of keys of the case. They were chosen by measurement:
+!> scripts/measure_tradeoff.py --presets reports the errors that each level has in every shipped case (data/measured/presets.md).
 module accuracy_presets
   implicit none
   private
@@ -9,9 +9,9 @@ module accuracy_presets
 
 contains
 
-  !> The overrides of the command line with those of an accuracy level before them, so that what is set by hand wins. The method is
-  !> `auto`: what a level costs would otherwise depend more on the case's method than on the level. What the models
-  !> do by quadrature (the oscillating film, the gas tables) follows the tolerance by itself. An empty level adds nothing.
+  !> The keys of an accuracy level, followed by the overrides of the command line, so that explicit values take precedence. The
+  !> method is `auto`; otherwise the cost of a level would depend more on the method of the case than on the level. The accuracy of
+  !> quadratures inside the models (the oscillating film, the gas tables) follows the tolerance. An empty level adds nothing.
   pure function with_preset(level, overrides) result(all)
     character(len=*), intent(in) :: level           !! draft, standard, reference or empty
     character(len=*), intent(in) :: overrides(:)    !! GROUP.KEY=VALUE

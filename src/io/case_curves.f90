@@ -1,4 +1,4 @@
-!> Measured curves of a case: their files, read and checked, and what the case knows of them.
+!> Reads and checks the files of measured curves that a case names, and puts the curves into the case.
 module case_curves
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_case_file
@@ -18,14 +18,16 @@ module case_curves
   public :: provide_curves, period_fault
 
   integer, parameter :: largest_file = 100   !! MB
-  real(dp), parameter :: widest_gap = 30     !! between two points of a pressure [degrees]
-  real(dp), parameter :: gap_ratio = 4       !! of a lone wide interval to both of its neighbours: points are missing
-  real(dp), parameter :: same_pressure = 0.01_dp   !! most that a period may be off at its end, over the largest pressure
+  real(dp), parameter :: widest_gap = 30     !! largest interval between two points of a pressure curve [degrees]
+  real(dp), parameter :: gap_ratio = 4  !! an interval that is this much wider than both its neighbours is an error: points are
+                                        !! missing
+  real(dp), parameter :: same_pressure = 0.01_dp  !! largest difference between the pressures at the beginning and end of a period,
+                                                  !! relative to the largest pressure
 
 contains
 
-  !> Read the curves that a case names, unless it has them already. The values then name each file by its absolute path, and its
-  !> content by a digest, so that they hold all that a run depends on.
+  !> Read the curves that a case names, unless they have been read before. In the values each file is then named by its absolute
+  !> path, and a digest of its content is added, so that the values contain everything on which a run depends.
   subroutine provide_curves(values, into, error)
     type(case_values_t), intent(inout) :: values
     type(case_t), intent(inout) :: into
@@ -34,12 +36,12 @@ contains
       into%drive%table, error)
     if (allocated(error) .or. .not. allocated(into%measured)) return
     associate (gas => into%measured)
-      if (all(gas%period_deg /= measured_pressure_periods)) return   ! the rules refuse it
+      if (all(gas%period_deg /= measured_pressure_periods)) return   ! refused by the rules
       call provide(values, into%file, 'cylinder_pressure', 'table', crank_angle, pressure, gas%curve, error, gas%period_deg)
     end associate
   end subroutine provide_curves
 
-  !> One curve. With a period it is that of a pressure.
+  !> Read one curve. A curve with a period is a pressure.
   subroutine provide(values, case_file, group, key, x_is, y_is, curve, error, period)
     type(case_values_t), intent(inout) :: values
     character(len=*), intent(in) :: case_file, group, key
@@ -88,8 +90,8 @@ contains
     values%values(place)%text = curve%found
   end subroutine provide
 
-  !> The path of a file that a case names: relative to the case file, whose own folder is the present one where it comes from the
-  !> standard input.
+  !> The path of a file that a case names. It is relative to the folder of the case file, or to the current folder if the case comes
+  !> from standard input.
   pure function path_of(case_file, name) result(path)
     character(len=*), intent(in) :: case_file, name
     character(len=:), allocatable :: path
@@ -98,7 +100,8 @@ contains
     path = case_file(:index(case_file, '/', back=.true.))//name
   end function path_of
 
-  !> A measured pressure over one period, without the point that stands again at its end; else what is wrong, and where.
+  !> Check a measured pressure over one period and remove a last point that repeats the first one. If it is wrong, `message` says
+  !> what is wrong and `line` where.
   subroutine close_period(curve, period, lines, message, line)
     type(measured_curve_t), intent(inout) :: curve
     integer, intent(in) :: period   !! [degrees]
@@ -116,7 +119,7 @@ contains
     curve%y = curve%y(:n - 1)
   end subroutine close_period
 
-  !> What is wrong with a pressure over a period, and at which of its points; an empty message means that nothing is.
+  !> Find a fault in a pressure curve over one period, and the point at which it occurs. The message is empty if there is none.
   pure subroutine period_fault(angle, pressure, period, message, at)
     real(dp), intent(in) :: angle(:), pressure(:)   !! [degrees], increasing; [Pa]
     integer, intent(in) :: period                   !! [degrees]
@@ -159,7 +162,7 @@ contains
     at = n
   end subroutine period_fault
 
-  !> Two angles are the same [degrees].
+  !> Whether two angles are equal within rounding [degrees].
   pure real(dp) function same_angle(period)
     integer, intent(in) :: period
     same_angle = 1e-9_dp*period

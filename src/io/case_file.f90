@@ -1,5 +1,5 @@
-!> Case files: reading one into a case, and writing cases as text. Every error has the exit status of case files and is
-!> one line: file, line or group and key, value as written, what is wanted.
+!> Reads case files into cases, and writes cases as text. All errors have the exit status of case files and are one line: file, line
+!> or group and key, value as written, and what is allowed.
 module case_file
   use gudgeon_errors, only: error_t, fail, status_case_file
   use text_tools, only: lowercase, printable, integer_text, case_name
@@ -15,11 +15,12 @@ module case_file
   private
   public :: read_case, parse_case, read_case_values, complete_case, template
 
-  integer, parameter :: largest_file = 1   !! MB; a case file has a few thousand bytes
+  integer, parameter :: largest_file = 1   !! MB; case files are a few kilobytes long
 
 contains
 
-  !> Read, complete and check a case file. `overrides` are of the form GROUP.KEY=VALUE and come after the file.
+  !> Read a case file, complete it with defaults, and check it. `overrides` have the form GROUP.KEY=VALUE and replace values of the
+  !> file.
   subroutine read_case(path, overrides, this, error)
     character(len=*), intent(in) :: path, overrides(:)
     type(case_t), intent(out) :: this
@@ -30,8 +31,8 @@ contains
     call parse_case(text, path, overrides, this, error)
   end subroutine read_case
 
-  !> The same for a text; `path` names the case and its messages. `resolved` is the case with every default filled in, as text:
-  !> reading it gives the same case, bit for bit.
+  !> Read a case from a text; `path` gives its name and is used in messages. `resolved` is the case with all defaults as text;
+  !> reading that gives the same case, bit for bit.
   subroutine parse_case(text, path, overrides, this, error, resolved)
     character(len=*), intent(in) :: text, path, overrides(:)
     type(case_t), intent(out) :: this
@@ -43,7 +44,7 @@ contains
     if (present(resolved) .and. .not. allocated(error)) resolved = resolved_text(values)
   end subroutine parse_case
 
-  !> The values that a case file and overrides give, not yet checked against each other.
+  !> Read the values of a case file and of the overrides, without checking them against each other.
   subroutine read_case_values(path, overrides, values, error)
     character(len=*), intent(in) :: path, overrides(:)
     type(case_values_t), intent(out) :: values
@@ -69,7 +70,8 @@ contains
     call values%prefer_overrides()
   end subroutine parse_values
 
-  !> A checked case of values; `path` names it. Defaults that depend on the laws chosen are put into the values.
+  !> Complete and check a case from its values; `path` gives its name. Defaults that depend on the selected laws are put into the
+  !> values.
   subroutine complete_case(values, path, this, error)
     type(case_values_t), intent(inout) :: values
     character(len=*), intent(in) :: path
@@ -85,7 +87,7 @@ contains
     call check_rules(this, values, error)
   end subroutine complete_case
 
-  !> A complete, commented case file that reads back.
+  !> A complete case file with comments, which can be read back.
   function template() result(text)
     character(len=:), allocatable :: text
     type(group_definition_t), allocatable :: groups(:)
@@ -94,7 +96,7 @@ contains
     text = template_text('A case of gudgeon with every key there is. Keys marked required have no default.', groups, keys)
   end function template
 
-  !> Groups and keys of the file's text into the values.
+  !> Put the groups and keys of a file's text into the values.
   subroutine take_file(values, text, error)
     type(case_values_t), intent(inout) :: values
     character(len=*), intent(in) :: text
@@ -142,11 +144,11 @@ contains
     end do
   end subroutine take_file
 
-  !> Put the place that a group of the file names in front of its name: crank_pin.joint.
+  !> Put the place of a joint in front of the name of its group: crank_pin.joint.
   subroutine name_place(values, list, number, error)
     type(case_values_t), intent(in) :: values
     type(namelist_t), intent(inout) :: list
-    integer, intent(in) :: number   !! of the group
+    integer, intent(in) :: number   !! number of the group in the file
     type(error_t), allocatable, intent(out) :: error
     character(len=*), parameter :: places = piston_pin_place//', '//crank_pin_place
     character(len=:), allocatable :: wanted, place
@@ -179,15 +181,15 @@ contains
     list%groups(number)%name = place//'.'//list%groups(number)%name
   end subroutine name_place
 
-  !> Whether a group may stand once for each joint.
+  !> Whether a group may appear once for each joint.
   pure logical function has_places(values, name)
     type(case_values_t), intent(in) :: values
     character(len=*), intent(in) :: name
     has_places = find_group(values%groups, crank_pin_place//'.'//name) > 0
   end function has_places
 
-  !> GROUP.KEY=VALUE into the values; a text needs no quotes here. GROUP=none takes out what the file and the overrides before
-  !> this one say of a group.
+  !> Put an override GROUP.KEY=VALUE into the values; texts need no quotes. GROUP=none removes everything that the file and earlier
+  !> overrides have set in that group.
   subroutine take_override(values, override, error)
     type(case_values_t), intent(inout) :: values
     character(len=*), intent(in) :: override

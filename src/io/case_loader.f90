@@ -1,4 +1,4 @@
-!> From the values of a case file to the case: the visitor that sets every parameter, and chooses the laws that the case names.
+!> Builds a case from the values of a case file: a visitor that sets every parameter and selects the laws that the case names.
 module case_loader
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t
@@ -14,12 +14,12 @@ module case_loader
 
   type, extends(parameter_list_t) :: loader_t
     type(case_values_t), pointer :: values => null()
-    logical, allocatable :: only(:)               !! the groups to set, by their places in the table
-    character(len=:), allocatable :: group_name   !! the present group
-    integer :: at = 0                             !! its place in the table
-    character(len=:), allocatable :: law_name     !! that the case names in it
+    logical, allocatable :: only(:)               !! groups to be set, by index in the table
+    character(len=:), allocatable :: group_name   !! group being visited
+    integer :: at = 0                             !! its index in the table
+    character(len=:), allocatable :: law_name     !! law that the case names in this group
     logical :: is_loading_law = .false.
-    type(error_t), allocatable :: error           !! the first one
+    type(error_t), allocatable :: error           !! the first error
   contains
     procedure :: visit => load_parameter
     procedure :: group => load_group
@@ -30,14 +30,14 @@ module case_loader
 
 contains
 
-  !> Set every parameter of a case, or those of some groups. Defaults that depend on the law chosen are put into the values
-  !> too. Errors: parameters of a law that do not fit together; a measured curve that
-  !> cannot be read.
+  !> Set all parameters of a case, or those of some groups. Defaults that depend on the selected law are put into the values too.
+  !> Errors: parameters of a law that contradict each other; a measured curve that cannot be read.
   subroutine load_case(values, into, error, only)
-    type(case_values_t), intent(inout), target :: values   !! within their limits
+    type(case_values_t), intent(inout), target :: values   !! already checked against their limits
     type(case_t), intent(inout) :: into
     type(error_t), allocatable, intent(out) :: error
-    logical, intent(in), optional :: only(:)   !! by group: what a joint's says may change which laws act in the other, so that with
+    logical, intent(in), optional :: only(:)  !! groups to be set. A group of a joint may change the laws of the other joint; if one
+                                              !! such group changes, set all groups of joints.
                                                !! one group of a joint all are set
     type(loader_t) :: loader
     loader%values => values
@@ -55,7 +55,7 @@ contains
     end if
   end subroutine load_case
 
-  !> Set the parameters of one model, which are those of one group.
+  !> Set the parameters of one model, which are the keys of one group.
   subroutine load_model(values, group, model)
     type(case_values_t), intent(inout), target :: values
     character(len=*), intent(in) :: group
@@ -67,8 +67,8 @@ contains
     call model%parameters(loader)
   end subroutine load_model
 
-  !> A group: of a joint's place that of this place, or else, for laws, that of every place. A law of a joint that is ideal is
-  !> not set.
+  !> Visit a group. For a joint, the group with its place is used or else, for laws, the group without a place. Laws of an ideal
+  !> joint are not set.
   subroutine load_group(self, name, says, is_model, place, instead_of)
     class(loader_t), intent(inout) :: self
     character(len=*), intent(in) :: name, says
@@ -101,7 +101,7 @@ contains
     if (allocated(self%chosen)) deallocate (self%chosen)
   end subroutine load_choice
 
-  !> The law, if it is the one that the case names.
+  !> Allocate a law if the case names it.
   subroutine load_law(self, law)
     class(loader_t), intent(inout) :: self
     class(law_t), intent(in) :: law
@@ -121,7 +121,7 @@ contains
     if (key /= '' .and. .not. allocated(self%error)) call self%values%refuse(self%group_name, key, wanted, self%error)
   end subroutine load_law
 
-  !> Place of a key of the present group in the table; 0 where there is none.
+  !> Index of a key of the present group in the table; 0 if there is none.
   pure integer function place_of(self, key)
     class(loader_t), intent(in) :: self
     character(len=*), intent(in) :: key
@@ -133,7 +133,7 @@ contains
     place_of = 0
   end function place_of
 
-  !> A word, a text or a switch that is not given has the default of the law that asks for it, which goes into the values too.
+  !> Set one parameter. A word, text or switch that is not given takes the default of the law, which is put into the values too.
   subroutine load_parameter(self, key, reals, whole, switch, text)
     class(loader_t), intent(inout) :: self
     type(key_t), intent(in) :: key

@@ -1,4 +1,4 @@
-!> One run at a time for the results of a name: two programs that wrote into the same files would mix their rows.
+!> Prevents two runs from writing to the same result files at the same time.
 module case_lock
   use gudgeon_errors, only: error_t, fail, status_output
   use text_tools, only: printable
@@ -9,7 +9,7 @@ module case_lock
   private
   public :: case_lock_t
 
-  !> The lock on BASE.lock, a file that is there while the run is. A run that is killed leaves the file but no lock.
+  !> A lock on the file BASE.lock, which exists while the run does. If a run is killed its file remains, but not its lock.
   type :: case_lock_t
     private
     character(len=:), allocatable :: path
@@ -21,11 +21,11 @@ module case_lock
 
 contains
 
-  !> Take the lock for the results BASE.csv and so on. Errors: another run holds it; the file cannot be made. On a file
-  !> system that has no locks none is taken.
+  !> Take the lock for the results BASE.csv etc. Errors: another run holds the lock; the file cannot be created. On a file system
+  !> without locks no lock is taken.
   subroutine take(self, base, error)
     class(case_lock_t), intent(inout) :: self
-    character(len=*), intent(in) :: base   !! path of the results without their endings
+    character(len=*), intent(in) :: base   !! path of the results without suffix
     type(error_t), allocatable, intent(out) :: error
     integer, parameter :: most_tries = 1000
     integer :: status, ignored, try
@@ -34,7 +34,7 @@ contains
     do try = 1, most_tries
       call open_to_lock(self%path, self%descriptor, status)
       if (status == error_interrupted) cycle
-      if ((status == error_exists .or. status == error_no_entry) .and. try < most_tries) cycle   ! another run is just beginning
+      if ((status == error_exists .or. status == error_no_entry) .and. try < most_tries) cycle   ! another run is just starting
       if (status /= 0) then
         self%descriptor = -1
         call fail_with_file(self%path, status, error)
@@ -49,16 +49,17 @@ contains
         return
       end if
       if (is_file(self%path, self%descriptor) .or. try == most_tries) return
-      call close_file(self%descriptor, ignored)   ! the run that had it has just ended and removed it
+      call close_file(self%descriptor, ignored)   ! the run that held the lock has just ended and removed the file
     end do
   end subroutine take
 
-  !> Give the lock back, if it was taken.
+  !> Release the lock, if it was taken.
   subroutine release(self)
     class(case_lock_t), intent(inout) :: self
     integer :: ignored
     if (self%descriptor < 0) return
-    call remove_file(self%path, ignored)   ! before the lock goes: who waits finds a file without a name
+    call remove_file(self%path, ignored)  ! removed before the lock is released, so that a waiting run finds that the file has no
+                                          ! name any more
     call close_file(self%descriptor, ignored)
     self%descriptor = -1
   end subroutine release

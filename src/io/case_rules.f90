@@ -1,4 +1,4 @@
-!> What must hold between the values of a case: bodies that have inertia, models that fit their joint, a run that ends.
+!> Rules that the values of a case must obey together: valid inertias, models that match their joint, a run that ends.
 module case_rules
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
@@ -15,11 +15,11 @@ module case_rules
   private
   public :: check_rules, case_warning
 
-  real(dp), parameter :: most_samples = 1e9_dp   !! rows that a run may ask for
+  real(dp), parameter :: most_samples = 1e9_dp   !! largest number of rows that a run may ask for
 
 contains
 
-  !> Refuse a case that no scene can be built from; `values` knows what the user wrote.
+  !> Report an error for a case of which no scene can be built; `values` tells which keys the user has set.
   subroutine check_rules(c, values, error)
     type(case_t), intent(in) :: c
     type(case_values_t), intent(in) :: values
@@ -51,7 +51,7 @@ contains
     call check_output(c, values, error)
   end subroutine check_rules
 
-  !> What the user of a correct case should know of it, or an empty text.
+  !> A warning for the user of a valid case, or an empty text.
   pure function case_warning(c) result(text)
     type(case_t), intent(in) :: c
     character(len=:), allocatable :: text
@@ -60,8 +60,8 @@ contains
       '''constant_speed'': the drive supplies the moment that holds the speed (crank_moment); with kind = ''free'' the torque acts'
   end function case_warning
 
-  !> The rod reaches round, and the mass matrix of crank and rod is positive definite at every angle. With
-  !> A = I_c + m_c |com_c|^2 and B = I_r + m_r |com_r|^2 its smallest determinant is A B + m_r R^2 I_r.
+  !> Check that the rod is long enough, and that the mass matrix of crank and rod is positive definite at every crank angle. With A
+  !> = I_c + m_c |com_c|^2 and B = I_r + m_r |com_r|^2 its smallest determinant is A B + m_r R^2 I_r.
   subroutine check_bodies(c, values, error)
     type(case_t), intent(in) :: c
     type(case_values_t), intent(in) :: values
@@ -104,10 +104,10 @@ contains
     end associate
   end subroutine check_bodies
 
-  !> An ideal joint has no room for contact or film; a joint with clearance needs one of them to hold the pin.
+  !> Check that an ideal joint has neither contact nor film, and that a joint with clearance has at least one of them.
   subroutine check_joint(joint, group, place, values, error)
     type(joint_case_t), intent(in) :: joint
-    character(len=*), intent(in) :: group   !! of the joint
+    character(len=*), intent(in) :: group   !! group of the joint
     character(len=*), intent(in) :: place
     type(case_values_t), intent(in) :: values
     type(error_t), allocatable, intent(out) :: error
@@ -147,10 +147,10 @@ contains
       call check_elastic_film(joint, law_group(values, 'lubrication', place), law_group(values, 'contact', place), values, error)
   end subroutine check_joint
 
-  !> The film has its viscosity from one source.
+  !> Check that the viscosity of the film is given by one source.
   subroutine check_oil(joint, group, values, error)
     type(joint_case_t), intent(in) :: joint
-    character(len=*), intent(in) :: group   !! of the film
+    character(len=*), intent(in) :: group   !! group of the film
     type(case_values_t), intent(in) :: values
     type(error_t), allocatable, intent(out) :: error
     character(len=*), parameter :: names(2) = [character(len=19) :: 'viscosity', 'kinematic_viscosity']
@@ -176,7 +176,7 @@ contains
     end if
   end subroutine check_oil
 
-  !> Film and contact that share the load are both there, and share it over a depth.
+  !> Check that a film and a contact that share the load both exist, and share it over a range of penetrations.
   subroutine check_transition(joint, own, values, error)
     type(joint_case_t), intent(in) :: joint
     character(len=*), intent(in) :: own   !! group of the film
@@ -196,7 +196,8 @@ contains
     end if
   end subroutine check_transition
 
-  !> Elastic walls have a stiffness and no loss, the film between them lets itself be driven, and nothing touches.
+  !> Check that elastic walls have a stiffness and no loss, that the law of the film between them gives a velocity for a load, and
+  !> that no contact law acts.
   subroutine check_elastic_film(joint, own, contact, values, error)
     type(joint_case_t), intent(in) :: joint
     character(len=*), intent(in) :: own, contact   !! groups of the film and of the contact
@@ -220,13 +221,13 @@ contains
     end if
   end subroutine check_elastic_film
 
-  !> Rough surfaces touch through a film, and no contact law is beside them.
+  !> Check that asperities are combined with a film and not with a contact law.
   subroutine check_asperities(joint, group, values, error)
     type(joint_case_t), intent(in) :: joint
-    character(len=*), intent(in) :: group   !! of the asperities
+    character(len=*), intent(in) :: group   !! group of the asperities
     type(case_values_t), intent(in) :: values
     type(error_t), allocatable, intent(out) :: error
-    real(dp), parameter :: roughest = 0.125_dp   !! over the clearance
+    real(dp), parameter :: roughest = 0.125_dp   !! largest roughness over clearance
     if (.not. allocated(joint%film)) then
       call values%refuse(group, 'roughness', 'needs the group lubrication: asperities touch through a film', error)
     else if (allocated(joint%contact)) then
@@ -237,10 +238,10 @@ contains
     end if
   end subroutine check_asperities
 
-  !> A contact has its loss from one key, and a bearing that its geometry can have.
+  !> Check that the loss of a contact is given by one key, and that its geometry is possible in its bearing.
   subroutine check_contact(joint, group, contact_group, values, error)
     type(joint_case_t), intent(in) :: joint
-    character(len=*), intent(in) :: group, contact_group   !! of the joint and of its contact
+    character(len=*), intent(in) :: group, contact_group   !! groups of the joint and of its contact
     type(case_values_t), intent(in) :: values
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: key, wanted
@@ -259,8 +260,9 @@ contains
     end associate
   end subroutine check_contact
 
-  !> Friction at touch-down stays within that at rest at the speeds with which an ideal joint slides: crank speed times rod angle
-  !> over crank angle, at most crank over rod, times the pin's radius; at the crank pin the crank's own turn adds to it.
+  !> Check that at the beginning of a contact friction does not exceed static friction at the sliding speeds of an ideal joint.
+  !> These are at most the crank speed times the ratio of crank to rod length times the pin radius; at the crank pin the crank speed
+  !> times the pin radius is added.
   subroutine check_friction(c, joint, place, values, error)
     type(case_t), intent(in) :: c
     type(joint_case_t), intent(in) :: joint
@@ -280,7 +282,7 @@ contains
       short_text(speed)//' m/s: must be > 0', error)
   end subroutine check_friction
 
-  !> Whether the case has a law for the joint of this place alone.
+  !> Whether the case has a law for the joint at this place alone.
   logical function has_own_law(values, place)
     type(case_values_t), intent(in) :: values
     character(len=*), intent(in) :: place
@@ -288,7 +290,7 @@ contains
                       values%groups%name /= place//'.joint')
   end function has_own_law
 
-  !> The group that the law of a joint comes from.
+  !> Name of the group in which the law of a joint is given.
   function law_group(values, name, place) result(group)
     type(case_values_t), intent(in) :: values
     character(len=*), intent(in) :: name, place
@@ -297,7 +299,7 @@ contains
     if (.not. values%is_present(find_group(values%groups, group))) group = name
   end function law_group
 
-  !> The pins start where they can be.
+  !> Check that the initial positions of the pins are admissible.
   subroutine check_start(c, values, error)
     type(case_t), intent(in) :: c
     type(case_values_t), intent(in) :: values
@@ -316,10 +318,10 @@ contains
     end associate
   end subroutine check_start
 
-  !> A pin is in its bearing, or where there is contact pressed into it, but not through.
+  !> Check that a pin starts inside its bearing, or, with a contact law, in its wall but not beyond it.
   subroutine check_pin(joint, prefix, eccentricity, rate, values, error)
     type(joint_case_t), intent(in) :: joint
-    character(len=*), intent(in) :: prefix   !! of its keys
+    character(len=*), intent(in) :: prefix   !! prefix of the keys
     real(dp), intent(in) :: eccentricity(2), rate(2)
     type(case_values_t), intent(in) :: values
     type(error_t), allocatable, intent(out) :: error
@@ -338,7 +340,7 @@ contains
     end associate
   end subroutine check_pin
 
-  !> Pressure fields are of films that have a pressure.
+  !> Check that pressure fields are requested only of films with a pressure.
   subroutine check_film_times(c, values, error)
     type(case_t), intent(in) :: c
     type(case_values_t), intent(in) :: values
@@ -357,7 +359,7 @@ contains
     end if
   end subroutine check_film_times
 
-  !> What to say of a length of the joint that is missing, or given as 0.
+  !> Text for a length of the joint that is missing or given as 0.
   function needed(group, name, values, why) result(wanted)
     character(len=*), intent(in) :: group, name, why
     type(case_values_t), intent(in) :: values
@@ -366,7 +368,7 @@ contains
     if (values%is_given(group, name)) wanted = 'must be > 0'
   end function needed
 
-  !> One gas, of a period that there is.
+  !> Check that there is one gas model at most, with an allowed period.
   subroutine check_gas(c, values, error)
     type(case_t), intent(in) :: c
     type(case_values_t), intent(in) :: values
@@ -380,7 +382,7 @@ contains
     end if
   end subroutine check_gas
 
-  !> A drive that varies does so in the way of its kind; there is one flywheel.
+  !> Check that the keys of a variable drive match its kind, and that there is one flywheel at most.
   subroutine check_drive(c, values, error)
     type(case_t), intent(in) :: c
     type(case_values_t), intent(in) :: values
@@ -405,7 +407,7 @@ contains
     end associate
   end subroutine check_drive
 
-  !> The run has one end, and reaches it.
+  !> Check that the end of the run is given once and is reached.
   subroutine check_run(c, values, error)
     type(case_t), intent(in) :: c
     type(case_values_t), intent(in) :: values
@@ -430,7 +432,7 @@ contains
     end associate
   end subroutine check_run
 
-  !> A run until the motion repeats has a crank that turns, and time to find out.
+  !> Check that in a run until the motion is periodic the crank turns, and that enough revolutions are allowed.
   subroutine check_periods(c, values, error)
     type(case_t), intent(in) :: c
     type(case_values_t), intent(in) :: values
@@ -453,7 +455,7 @@ contains
     end if
   end subroutine check_periods
 
-  !> Rows have a spacing, and there are not too many of them.
+  !> Check that the spacing of the rows is given, and that there are not too many rows.
   subroutine check_output(c, values, error)
     type(case_t), intent(in) :: c
     type(case_values_t), intent(in) :: values

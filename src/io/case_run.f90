@@ -23,19 +23,19 @@ module case_run
   private
   public :: case_run_t, name_file
 
-  integer, parameter :: room_for_summary = 12288   !! [bytes], twice what the longest have
+  integer, parameter :: room_for_summary = 12288   !! [bytes], twice the length of the longest summaries
 
-  !> A run is prepared, begins where `start` says, and goes. Its files are BASE.csv, with contacts BASE.events.csv, BASE.summary.csv
-  !> and BASE.checkpoint. What goes wrong on the way is in `error`.
+  !> A run. Call `prepare` first, then `go`; it begins where `start` says. Its files are BASE.csv, with contacts BASE.events.csv,
+  !> BASE.summary.csv and BASE.checkpoint. Errors are collected in `error`.
   type :: case_run_t
     type(error_t), allocatable :: error
-    character(len=:), allocatable :: line, notice        !! for people: how it went, and what they should know besides
+    character(len=:), allocatable :: line, notice        !! texts for the user: the outcome, and remarks
     type(continuation_t) :: start
-    character(len=:), allocatable :: base                !! path of the results without their endings
-    logical :: certifies = .false.                       !! a run that is done is certified
+    character(len=:), allocatable :: base                !! path of the results without suffix
+    logical :: certifies = .false.                       !! make a certificate if the run is completed
     type(certificate_t), allocatable, private :: certificate
     type(case_t), private :: case
-    logical, private :: is_twin = .false.                !! the run of the ideal twin
+    logical, private :: is_twin = .false.                !! this is the run of the ideal twin
     type(column_list_t), private :: list
     logical, private :: show_progress = .false., quiet = .false.
     type(result_file_t), private :: summary
@@ -55,7 +55,7 @@ module case_run
 
 contains
 
-  !> What is to be run, and where its results go.
+  !> Set what is to be run, and where its results are written.
   subroutine prepare(self, case, case_text, identity, is_twin, list, base, checkpoint_interval, show_progress, quiet)
     class(case_run_t), intent(inout) :: self
     type(case_t), intent(in) :: case
@@ -83,7 +83,7 @@ contains
     end associate
   end subroutine prepare
 
-  !> Take up what there is of the same run. Errors: see `look_for` of continuation_t.
+  !> Look for an earlier, incomplete run of the same case. Errors: see `look_for` of continuation_t.
   subroutine look_for_earlier(self, error)
     class(case_run_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
@@ -93,18 +93,19 @@ contains
     if (self%start%is_done) self%line = self%case%file//': done already; '//self%base//'.csv'
   end subroutine look_for_earlier
 
-  !> Unless it continues or is done, remove what would have other results under this name taken for done or for resumable: first
-  !> of all, so that it never stands beside new ones. This makes no text, and neither does `clear`.
+  !> Unless the run continues or is done, remove the files of earlier results that mark them as complete or resumable. This must
+  !> happen first, so that these files never stand beside new results. No text function is used here or in `clear`, since other
+  !> threads may use one.
   subroutine disown(self, was_there, status)
     class(case_run_t), intent(in) :: self
-    logical, intent(inout) :: was_there   !! turns true where something was removed
-    integer, intent(inout) :: status      !! becomes the number of the first error
+    logical, intent(inout) :: was_there   !! becomes true if something was removed
+    integer, intent(inout) :: status      !! set to the number of the first error
     if (self%start%goes_on) return
     if (.not. self%start%is_done) call remove(self%base//'.summary.csv', was_there, status)
     call remove(self%base//'.checkpoint', was_there, status)
   end subroutine disown
 
-  !> Unless it continues or is done, remove the other results that have these names.
+  !> Unless the run continues or is done, remove the other files of earlier results.
   subroutine clear(self, was_there, status)
     class(case_run_t), intent(in) :: self
     logical, intent(inout) :: was_there
@@ -126,14 +127,14 @@ contains
     if (status == 0) status = failed
   end subroutine remove
 
-  !> Give the films of the scene their tables, while no other run needs the processors. Error in `error`: the user interrupted.
+  !> Compute the film tables of the scene, while no other run needs the processors. Error in `error`: the user interrupted.
   subroutine make_ready(self)
     class(case_run_t), intent(inout) :: self
     call provide_tables(self%case, self%show_progress, self%error)
   end subroutine make_ready
 
-  !> Integrate into the files, and write the summary: down to the disk, in an order that leaves no results that are not whole
-  !> under their names without a summary that says so, whatever happens on the way.
+  !> Integrate, and write the results and the summary to the disk. The order is such that incomplete results never have their final
+  !> names without a summary that says so, whatever happens.
   subroutine go(self)
     class(case_run_t), intent(inout) :: self
     class(trace_sink_t), allocatable :: sink
@@ -164,7 +165,7 @@ contains
     end select
   end subroutine go
 
-  !> Open the summary, with room on the disk, and the traces.
+  !> Open the summary, with space reserved on the disk, and the traces.
   subroutine open_files(self, files)
     class(case_run_t), intent(inout) :: self
     type(trace_files_t), allocatable, intent(out) :: files
@@ -189,8 +190,8 @@ contains
     end associate
   end subroutine open_files
 
-  !> Close the files of a run that has ended. Of a run that is done the trace gets its name before the summary, which says so; of
-  !> any other the summary goes first, and without it the trace keeps its temporary name.
+  !> Close the files of a run that has ended. If the run is done, the trace gets its final name before the summary, which reports it
+  !> as done. Otherwise the summary is written first; if that fails, the trace keeps its temporary name.
   subroutine close_files(self, files)
     class(case_run_t), intent(inout) :: self
     type(trace_files_t), intent(inout) :: files
@@ -210,7 +211,7 @@ contains
     !$omp end critical (texts)
     call self%summary%synchronise()
     call self%summary%conclude(whole_only=.true.)
-    if (self%summary%has_failed()) call files%leave()   ! nothing, if they have their names
+    if (self%summary%has_failed()) call files%leave()   ! no effect on files that have their final names
     call files%conclude()
     call synchronise_folder(self%base, folder_status)
     !$omp critical (texts)
@@ -231,7 +232,7 @@ contains
     if (allocated(error) .and. .not. allocated(self%error)) call move_alloc(error, self%error)
   end subroutine write_certificate
 
-  !> Put the summary into its file, and its line for people into `line` and `notice`.
+  !> Write the summary into its file, and its lines for the user into `line` and `notice`.
   subroutine put_summary(self, files)
     class(case_run_t), intent(inout) :: self
     type(trace_files_t), intent(inout) :: files
@@ -256,7 +257,8 @@ contains
     if (allocated(self%certificate)) call self%summary%put(certificate_summary(self%certificate))
   end subroutine put_summary
 
-  !> The error of the run: one of the output goes before one of the integration. The checkpoint goes where all is said and done.
+  !> Collect the errors of the run: an error of the output takes precedence over one of the integration. The checkpoint is removed
+  !> after everything else is complete.
   subroutine collect_errors(self, files, folder_status)
     class(case_run_t), intent(inout) :: self
     type(trace_files_t), intent(inout) :: files
@@ -276,13 +278,13 @@ contains
     if (allocated(output_error)) call move_alloc(output_error, self%error)
   end subroutine collect_errors
 
-  !> Whether the run has a list of events.
+  !> Whether the run writes a list of events.
   pure logical function has_events(self)
     class(case_run_t), intent(in) :: self
     has_events = self%case%has_contact() .and. .not. self%is_twin
   end function has_events
 
-  !> Add to the message of a run that was stopped how it can continue.
+  !> Add to the message of a run that was stopped how it can be continued.
   subroutine tell_how_to_go_on(files, error)
     type(trace_files_t), intent(in) :: files
     type(error_t), intent(inout) :: error
@@ -294,7 +296,7 @@ contains
     end if
   end subroutine tell_how_to_go_on
 
-  !> Put the case file's name before an error that does not have it.
+  !> Put the name of the case file in front of an error message that does not contain it.
   subroutine name_file(path, error)
     character(len=*), intent(in) :: path
     type(error_t), intent(inout) :: error

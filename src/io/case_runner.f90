@@ -1,4 +1,4 @@
-!> A case from its file to its results: a run of the scene and, where it is asked for, one of its ideal twin.
+!> Runs a case from its file to its results: the scene and, if requested, its ideal twin.
 module case_runner
   use gudgeon_errors, only: error_t, fail, status_command_line, status_output, status_integration
   use case_definition, only: case_t
@@ -23,17 +23,17 @@ module case_runner
   private
   public :: case_job_t, tell_warning
 
-  !> A case is prepared; then its two runs may go in any threads, in any order.
+  !> A case. After `prepare` its two runs may be carried out by any threads, in any order.
   type :: case_job_t
-    type(error_t), allocatable :: error               !! what is wrong with the case, or with the place for its results
+    type(error_t), allocatable :: error               !! error in the case or in the folder of its results
     type(case_run_t) :: run, twin
-    character(len=:), allocatable, private :: path    !! of the case
-    logical :: has_twin = .false.                     !! the twin is to run too
-    logical, private :: has_place = .false.           !! for the results, or an error
-    integer, private :: to_come = 2                   !! runs that have not ended
+    character(len=:), allocatable, private :: path    !! path of the case file
+    logical :: has_twin = .false.                     !! the ideal twin is run too
+    logical, private :: has_place = .false.           !! the folder of the results has been prepared, or an error was reported
+    integer, private :: to_come = 2                   !! number of runs that have not ended
     type(case_lock_t), private :: lock
-    type(result_file_t), private :: resolved          !! the resolved case
-    logical, private :: has_removed = .false.         !! earlier results
+    type(result_file_t), private :: resolved          !! file of the resolved case
+    logical, private :: has_removed = .false.         !! earlier results were removed
   contains
     procedure :: prepare
     procedure :: make_ready
@@ -46,7 +46,7 @@ module case_runner
 
 contains
 
-  !> Read and check a case. An error's message begins with the case file's name; a case that is wrong writes nothing.
+  !> Read and check a case. Messages of errors begin with the name of the case file; no file is written for a case with an error.
   subroutine prepare(self, path, options, program, show_progress)
     class(case_job_t), intent(inout) :: self
     character(len=*), intent(in) :: path
@@ -89,7 +89,7 @@ contains
       options%checkpoint_interval, show_progress .and. options%jobs == 1, options%quiet)
   end subroutine prepare
 
-  !> What takes all processors: the tables of films. After `prepare`, in a run that is to go.
+  !> Compute film tables, which uses all processors. Call it after `prepare` for cases that are to be run.
   subroutine make_ready(self)
     class(case_job_t), intent(inout) :: self
     if (allocated(self%error) .or. allocated(self%run%error)) return
@@ -97,7 +97,7 @@ contains
     if (allocated(self%run%error)) call name_file(self%path, self%run%error)
   end subroutine make_ready
 
-  !> A run must not replace the tables that it reads: motor.nml with motor.csv beside it and its results.
+  !> Check that the results do not replace a table that the case reads, such as motor.csv beside motor.nml.
   subroutine keep_tables(case, base, error)
     type(case_t), intent(in) :: case
     character(len=*), intent(in) :: base
@@ -125,7 +125,7 @@ contains
     end subroutine refuse_table
   end subroutine keep_tables
 
-  !> Tell what in a case is right but has no effect.
+  !> Warn about values of a case that are valid but have no effect.
   subroutine tell_warning(case)
     type(case_t), intent(in) :: case
     character(len=:), allocatable :: warning
@@ -133,12 +133,12 @@ contains
     if (warning /= '') call tell(printable(case%file, 200)//': '//warning)
   end subroutine tell_warning
 
-  !> Let one of the two go. The first to come takes the place for the results of both, the last leaves it.
+  !> Carry out one of the two runs. The first to begin prepares the folder for both, the last one releases it.
   subroutine go(self, is_twin, options, is_last)
     class(case_job_t), intent(inout) :: self
     logical, intent(in) :: is_twin
     type(command_line_t), intent(in) :: options
-    logical, intent(out) :: is_last   !! both have ended
+    logical, intent(out) :: is_last   !! both runs have ended
     logical :: may_go, is_first, is_over
     integer :: left
 
@@ -166,15 +166,15 @@ contains
     if (is_last) call self%lock%release()
   end subroutine go
 
-  !> The error of a run for which an interruption came too early.
+  !> The error of a run that was interrupted before it began.
   subroutine not_begun(path, what, error)
     character(len=*), intent(in) :: path, what
     type(error_t), allocatable, intent(out) :: error
     call fail(error, printable(path, 200)//': '//what//'interrupted before it began', status_integration)
   end subroutine not_begun
 
-  !> Make the folder for the results, lock them, and look for what is there where the runs are to continue; remove what is there of
-  !> other runs, and begin the resolved case.
+  !> Make the folder for the results, lock the results, look for results that can be continued, remove those of other runs, and
+  !> begin the file of the resolved case.
   subroutine take_place(self, options)
     class(case_job_t), intent(inout) :: self
     type(command_line_t), intent(in) :: options
@@ -199,7 +199,7 @@ contains
     call self%resolved%put(self%run%start%checkpoint%case_text)
   end subroutine take_place
 
-  !> Wait until the disk has what `take_place` did. (Others may make texts meanwhile.)
+  !> Wait until the changes of `take_place` are on the disk. (Other threads may use text functions meanwhile.)
   subroutine secure_place(self, is_secure)
     class(case_job_t), intent(inout) :: self
     logical, intent(out) :: is_secure
@@ -213,8 +213,9 @@ contains
     !$omp end critical (texts)
   end subroutine secure_place
 
-  !> Remove what is there of other runs: first all that would have them taken for done or for resumable, so that nothing of the
-  !> kind ever stands beside results of this one. What has the names of a twin but a resolved case of its own is no twin.
+  !> Remove the results of other runs. Files that mark results as complete or resumable are removed first, so that they never stand
+  !> beside results of this run. Files with the names of a twin's results that have a resolved case of their own do not belong to a
+  !> twin and are kept.
   subroutine make_room(self)
     class(case_job_t), intent(inout) :: self
     logical :: may_clear_twin
@@ -230,7 +231,7 @@ contains
                                error_text(status), status_output)
   end subroutine make_room
 
-  !> When both have ended, or after a check: what there is to say. The error is the first of the two.
+  !> After both runs, or after a check: the texts for the user. The error is the first of the two.
   subroutine tell_outcome(self, line, notice, error)
     class(case_job_t), intent(inout) :: self
     character(len=:), allocatable, intent(out) :: line, notice

@@ -1,7 +1,6 @@
-!> The table of everything that a case file can say: groups, keys, kinds, defaults, limits, units. It is collected from the
-!> models, each of which states its parameters beside the components that hold them (`parameters`). A range and a list of words
-!> are texts, shown to the user as they stand there; a key's own default is allowed even outside its range and then means
-!> "not given".
+!> The table of all groups and keys of case files, with their kinds, defaults, limits and units. It is collected from the models,
+!> each of which declares its parameters beside the components that hold them (`parameters`). Ranges and lists of words are texts,
+!> which are shown to the user unchanged. The default of a key is allowed even outside its range, and then means "not given".
 module case_schema
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: parameter_list_t, law_t, key_t, real_kind, integer_kind, logical_kind, word_kind, text_kind
@@ -11,26 +10,27 @@ module case_schema
   public :: key_t, group_definition_t, schema_t, case_schema_of, find_key, find_group, is_listed, is_group_of_cases, shown_group
   public :: real_kind, integer_kind, logical_kind, word_kind, text_kind, shared_keys_differ
 
-  !> A group. One that stands for a model may be absent from a case, and so the model from its scene.
+  !> A group. The group of an optional model may be missing in a case; its model is then absent from the scene.
   type :: group_definition_t
-    character(len=24) :: name = ''        !! with its place in front where it is not the first: crank_pin.contact
-    character(len=12) :: place = ''       !! of the joint that it belongs to
-    logical :: is_law = .false.           !! of a law for every joint that has none of its own
+    character(len=24) :: name = ''        !! with its place as a prefix unless it is the first place: crank_pin.contact
+    character(len=12) :: place = ''       !! place of the joint to which it belongs
+    logical :: is_law = .false.           !! group of a law, valid for every joint that has no such group of its own
     logical :: is_model = .false.
-    character(len=24) :: instead_of = ''  !! group that a case cannot have beside it
+    character(len=24) :: instead_of = ''  !! group that a case cannot have together with this one
     character(len=170) :: description = ''
-    integer :: first = 1, last = 0        !! its keys in the table
+    integer :: first = 1, last = 0        !! range of its keys in the table
   end type group_definition_t
 
-  !> Collects groups and keys. Laws of one group may share a key, which then means the same in all of them.
+  !> A visitor that collects groups and keys. Laws of one group may share a key, which must then have the same meaning in all of
+  !> them.
   type, extends(parameter_list_t) :: schema_t
     private
     type(group_definition_t), allocatable :: groups(:)
     type(key_t), allocatable :: keys(:)
     integer :: n_groups = 0, n_keys = 0
-    integer :: present_choice = 0              !! place of the key that names the law being collected; 0: none
+    integer :: present_choice = 0              !! index of the key that names the law being collected; 0: none
     character(len=:), allocatable :: law_name
-    character(len=:), allocatable :: difference   !! a key whose laws disagree on what it is, for the tests
+    character(len=:), allocatable :: difference   !! a shared key that laws describe differently, for the tests
   contains
     procedure :: begin
     procedure :: take
@@ -51,7 +51,7 @@ contains
     call schema%take(groups, keys)
   end subroutine case_schema_of
 
-  !> Be ready to be a visitor.
+  !> Initialise the visitor.
   subroutine begin(self)
     class(schema_t), intent(inout) :: self
     allocate (self%groups(50), self%keys(200))
@@ -59,7 +59,7 @@ contains
     self%difference = ''
   end subroutine begin
 
-  !> What has been collected.
+  !> Return the collected groups and keys.
   subroutine take(self, groups, keys)
     class(schema_t), intent(in) :: self
     type(group_definition_t), allocatable, intent(out) :: groups(:)
@@ -77,7 +77,7 @@ contains
     is_group_of_cases = find_group(groups, name) > 0
   end function is_group_of_cases
 
-  !> A key that two laws of a group share but describe differently; empty where there is none.
+  !> A key that two laws of a group share but describe differently; empty if there is none.
   function shared_keys_differ() result(key)
     character(len=:), allocatable :: key
     type(schema_t) :: schema
@@ -93,7 +93,7 @@ contains
     call add_laws_of_one_joint(schema)
   end subroutine collect_case
 
-  !> The groups of laws that are for the first joint alone: copies of those that are for every joint.
+  !> Add the groups of laws that are valid for the first joint alone: copies of the groups that are valid for every joint.
   subroutine add_laws_of_one_joint(schema)
     type(schema_t), intent(inout) :: schema
     integer :: i, j, n_groups
@@ -116,7 +116,7 @@ contains
     end do
   end subroutine add_laws_of_one_joint
 
-  !> A group as a message names it: &contact, or &contact of crank_pin.
+  !> The name of a group in messages: &contact, or &contact of crank_pin.
   pure function shown_group(name) result(text)
     character(len=*), intent(in) :: name   !! as in the table
     character(len=:), allocatable :: text
@@ -126,7 +126,7 @@ contains
     if (dot > 0) text = text//' of '//name(:dot - 1)
   end function shown_group
 
-  !> A group; those of the second joint are groups of their own, and may all be left out.
+  !> Collect a group. The groups of the second joint are separate groups, all of them optional.
   subroutine collect_group(self, name, says, is_model, place, instead_of)
     class(schema_t), intent(inout) :: self
     character(len=*), intent(in) :: name, says
@@ -162,7 +162,7 @@ contains
     self%present_choice = self%n_keys
   end subroutine collect_choice
 
-  !> The law's name among the words of its choice, and its keys.
+  !> Add the name of a law to the words of its choice, and collect its keys.
   subroutine collect_law(self, law)
     class(schema_t), intent(inout) :: self
     class(law_t), intent(in) :: law
@@ -173,7 +173,7 @@ contains
     call copy%parameters(self)
   end subroutine collect_law
 
-  !> Take a key, or, where an earlier law of the group has it, the law that has it too.
+  !> Collect a key. If an earlier law of the group has the same key, only the present law is added to it.
   subroutine collect(self, key, reals, whole, switch, text)
     class(schema_t), intent(inout) :: self
     type(key_t), intent(in) :: key
@@ -201,7 +201,7 @@ contains
     end if
     if (self%law_name == '') return
     call add_word(self%keys(place)%laws, self%law_name)
-    if (self%keys(place)%default /= key%default) self%keys(place)%default = ''   ! each law has its own
+    if (self%keys(place)%default /= key%default) self%keys(place)%default = ''   ! the default depends on the law
     if (key%kind /= word_kind) return
     call add_words(self%keys(place)%words, key%words)
   end subroutine collect
@@ -214,15 +214,14 @@ contains
     call move_alloc(larger, keys)
   end subroutine make_room
 
-  !> Whether two laws mean the same by a key. A word may have other values and another default in each, a switch another
-  !> default.
+  !> Whether two laws give a key the same meaning. Its words and its default may differ for words, its default for switches.
   pure logical function same_meaning(a, b)
     type(key_t), intent(in) :: a, b
     same_meaning = a%kind == b%kind .and. a%count == b%count .and. (a%required .eqv. b%required) .and. a%unit == b%unit .and. &
       a%range == b%range .and. (a%default == b%default .or. a%kind == word_kind .or. a%kind == logical_kind)
   end function same_meaning
 
-  !> Add the words of a list to another one.
+  !> Add the words of a list to another list.
   pure subroutine add_words(list, words)
     character(len=:), allocatable, intent(inout) :: list
     character(len=*), intent(in) :: words
@@ -235,7 +234,7 @@ contains
     end do
   end subroutine add_words
 
-  !> Add a word to a list, if it does not stand there.
+  !> Add a word to a list that does not contain it yet.
   pure subroutine add_word(list, word)
     character(len=:), allocatable, intent(inout) :: list
     character(len=*), intent(in) :: word
@@ -246,25 +245,25 @@ contains
     end if
   end subroutine add_word
 
-  !> Whether a word stands in a list with a comma and a blank between its words.
+  !> Whether a word is in a list whose words are separated by a comma and a blank.
   pure logical function is_listed(word, list)
     character(len=*), intent(in) :: word, list
     is_listed = word /= '' .and. scan(word, ' ,') == 0 .and. index(', '//list//',', ', '//word//',') > 0
   end function is_listed
 
-  !> Place of a key in the table; 0 where there is none.
+  !> Index of a key in the table; 0 if there is none.
   pure integer function find_key(keys, group, name) result(place)
     type(key_t), intent(in) :: keys(:)
     character(len=*), intent(in) :: group, name
     character(len=1) :: letter
     letter = name
     do place = size(keys), 1, -1
-      if (keys(place)%name(1:1) /= letter) cycle   ! nearly all of them, in no time
+      if (keys(place)%name(1:1) /= letter) cycle   ! a fast test that excludes nearly all of them
       if (keys(place)%group == group .and. keys(place)%name == name) return
     end do
   end function find_key
 
-  !> Place of a group in the table; 0 where there is none.
+  !> Index of a group in the table; 0 if there is none.
   pure integer function find_group(groups, name) result(place)
     type(group_definition_t), intent(in) :: groups(:)
     character(len=*), intent(in) :: name

@@ -13,7 +13,7 @@ module case_text
 
 contains
 
-  !> A complete file of a schema: every group and key, with unit, range, allowed words and default as comments.
+  !> A complete case file: every group and key, with unit, range, allowed words and default as comments.
   function template_text(first_line, groups, keys) result(text)
     character(len=*), intent(in) :: first_line   !! without the !
     type(group_definition_t), intent(in) :: groups(:)
@@ -23,7 +23,7 @@ contains
     integer :: group, i
     text = '! '//first_line//newline
     do group = 1, size(groups)
-      if (index(groups(group)%name, '.') > 0) cycle   ! the same once more, for another joint
+      if (index(groups(group)%name, '.') > 0) cycle   ! copies of groups for another joint
       out = ''
       text = text//newline//'! '//trim(groups(group)%description)//newline
       if (groups(group)%instead_of /= '') then
@@ -66,7 +66,7 @@ contains
     end associate
   end function template_line
 
-  !> The laws of a list that another one does not have.
+  !> The words of one list of laws that another list does not contain.
   pure function others(all_laws, some) result(list)
     character(len=*), intent(in) :: all_laws, some   !! separated by a comma and a blank
     character(len=:), allocatable :: list
@@ -81,7 +81,7 @@ contains
     list = list(3:)
   end function others
 
-  !> These laws, or `not` and the others where that is the shorter text.
+  !> The list of laws, or `not` and the other laws if that is shorter.
   pure function shorter(laws, the_others) result(text)
     character(len=*), intent(in) :: laws, the_others
     character(len=:), allocatable :: text
@@ -89,7 +89,7 @@ contains
     if (len(the_others) + 4 < len(laws)) text = 'not '//the_others
   end function shorter
 
-  !> A case file with every key that the models of the case have, of every group that is present, reals with 17 significant digits.
+  !> A case file with all keys of the models of the case, in every group that is present. Reals have 17 significant digits.
   function resolved_text(values) result(text)
     type(case_values_t), intent(in) :: values
     character(len=:), allocatable :: text

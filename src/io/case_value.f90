@@ -1,4 +1,4 @@
-!> The value of one key of a case: from what is written for it, and against its default and its range.
+!> The value of one key of a case: conversion from text, comparison with its default and its range.
 module case_value
   use gudgeon_kinds, only: dp
   use text_tools, only: lowercase, printable, is_clean
@@ -12,11 +12,11 @@ module case_value
   integer, parameter :: most_reals = 2   !! longest array of reals in the schema
   integer, parameter :: longest_text = 4000
 
-  !> The value of one key, in the component of its kind.
+  !> The value of one key, in the component of the key's kind.
   type :: value_t
-    logical :: given(most_reals) = .false.   !! in the file or by an override, not by default
-    logical :: is_override = .false.         !! given by an override
-    logical :: replaces = .false.            !! and the file gives another value
+    logical :: given(most_reals) = .false.   !! set in the file or by an override, not by default
+    logical :: is_override = .false.         !! set by an override
+    logical :: replaces = .false.            !! an override that replaces a different value of the file
     real(dp) :: reals(most_reals) = 0
     integer :: whole = 0
     logical :: switch = .false.
@@ -26,7 +26,7 @@ module case_value
 
 contains
 
-  !> As if the key had not been given.
+  !> Set a value to the default of its key, and mark it as not given.
   subroutine set_to_default(key, value)
     type(key_t), intent(in) :: key
     type(value_t), intent(out) :: value
@@ -41,7 +41,7 @@ contains
     end do
   end subroutine set_to_default
 
-  !> One value as written, into the component of its key's kind; `wanted` is allocated where it cannot be.
+  !> Convert a text to a value of the key's kind; if that is not possible, `wanted` says what is allowed.
   subroutine convert(key, token, value, element, wanted)
     type(key_t), intent(in) :: key
     type(token_t), intent(in) :: token
@@ -73,8 +73,8 @@ contains
     end select
   end subroutine convert
 
-  !> Say so where the values for a key that takes `count` look like numbers with a decimal comma: 0,05 for one value, or for two,
-  !> where nobody writes 05 for a number by itself.
+  !> Detect decimal commas: texts such as 0,05 are read as two values. `wanted` is set if a key that takes `count` values has twice
+  !> as many that look like this.
   pure subroutine find_decimal_comma(tokens, count, wanted)
     type(token_t), intent(in) :: tokens(:)
     integer, intent(in) :: count
@@ -94,7 +94,7 @@ contains
       printable(tokens(1)%text//'.'//tokens(2)%text, 40)
   end subroutine find_decimal_comma
 
-  !> Whether a number is in the range of its key.
+  !> Whether the numbers are in the range of the key.
   pure logical function element_is_within(key, value, element) result(within)
     type(key_t), intent(in) :: key
     type(value_t), intent(in) :: value
@@ -125,7 +125,7 @@ contains
     end if
   end function is_default
 
-  !> ` (m)`, or nothing where there is no unit.
+  !> ` (m)`, or an empty text for a key without unit.
   pure function unit_of(key) result(text)
     type(key_t), intent(in) :: key
     character(len=:), allocatable :: text

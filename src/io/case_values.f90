@@ -1,5 +1,5 @@
-!> The values of one case, key by key as the schema lists them: taken from a file or an override, checked against kind,
-!> count, words and range.
+!> The values of one case, key by key in the order of the schema: taken from a file or an override, and checked for kind, count,
+!> words and range.
 module case_values
   use gudgeon_errors, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text, nearest_word
@@ -12,34 +12,34 @@ module case_values
   public :: case_values_t, value_t
 
   type :: case_values_t
-    character(len=:), allocatable :: file          !! the case file as messages name it
+    character(len=:), allocatable :: file          !! name of the case file in messages
     type(group_definition_t), allocatable :: groups(:)
     type(key_t), allocatable :: keys(:)
-    logical, allocatable :: is_present(:)          !! by group
-    type(value_t), allocatable :: values(:)        !! by key
+    logical, allocatable :: is_present(:)          !! for each group
+    type(value_t), allocatable :: values(:)        !! for each key
   contains
     procedure :: set_defaults
-    procedure :: find         !! the place of a key
-    procedure :: assign       !! values as written, to a key
-    procedure :: take_out     !! a group, as if the file did not have it
-    procedure :: prefer_overrides   !! to other keys of their families
+    procedure :: find         !! index of a key
+    procedure :: assign       !! give a key its values as written
+    procedure :: take_out     !! remove a group, as if the file did not contain it
+    procedure :: prefer_overrides   !! to other keys of the same family
     procedure :: prefer
     procedure :: check_family
-    procedure :: is_said      !! a number that is not its default
+    procedure :: is_said      !! a number that differs from its default
     procedure :: check        !! required keys and ranges
     procedure :: check_required
     procedure :: check_absent
-    procedure :: by_law       !! which law wants a key
-    procedure :: is_used      !! the law that the case names has this key
-    procedure :: check_range  !! the range of one key
+    procedure :: by_law       !! text that names the laws that have a key
+    procedure :: is_used      !! whether the selected law has this key
+    procedure :: check_range  !! range of one key
     procedure :: is_in_range
-    procedure :: refuse       !! the error for a value
+    procedure :: refuse       !! error for a value
     procedure :: is_given
   end type case_values_t
 
 contains
 
-  !> Every key of the schema, which is there, at its default, every group absent.
+  !> Set every key of the schema to its default, and every group to absent.
   subroutine set_defaults(self, file)
     class(case_values_t), intent(inout) :: self
     character(len=*), intent(in) :: file
@@ -52,7 +52,8 @@ contains
     end do
   end subroutine set_defaults
 
-  !> Take a group out, with all that has been given for it so far: as if the file did not have it. `at` names what asks for it.
+  !> Remove a group and all values given for it so far, as if the file did not contain it. `at` names the origin of the request in
+  !> messages.
   subroutine take_out(self, name, at, error)
     class(case_values_t), intent(inout) :: self
     character(len=*), intent(in) :: name, at
@@ -69,7 +70,7 @@ contains
     end do
   end subroutine take_out
 
-  !> What overrides say stands instead of what the file says by other keys of the same family.
+  !> Let keys set by overrides replace keys of the same family that the file sets.
   subroutine prefer_overrides(self)
     class(case_values_t), intent(inout) :: self
     integer :: i
@@ -79,8 +80,8 @@ contains
     end do
   end subroutine prefer_overrides
 
-  !> Let the key at `place` stand instead of those of its family that no override gives. One that may stand beside it stays where
-  !> the file gives both.
+  !> Let the key at `place` replace those of its family that no override sets. A key that is allowed beside it is kept if the file
+  !> sets both.
   subroutine prefer(self, place)
     class(case_values_t), intent(inout) :: self
     integer, intent(in) :: place
@@ -92,8 +93,8 @@ contains
     end do
   end subroutine prefer
 
-  !> One key of the family to which this key belongs is given, and only one, or two that may stand together. To give its default,
-  !> 0, is to take it back.
+  !> Check that exactly one key of the family of this key is given, or two that are allowed together. A key set to its default, 0,
+  !> counts as not given.
   subroutine check_family(self, group, name, error)
     class(case_values_t), intent(in) :: self
     character(len=*), intent(in) :: group, name
@@ -131,19 +132,19 @@ contains
     if (text == '0.0') text = '0'
   end function short_default
 
-  !> Whether two keys are of one family, or are the same key.
+  !> Whether two keys belong to one family, or are the same key.
   pure logical function is_relative(key, other)
     type(key_t), intent(in) :: key, other
     is_relative = key%family == other%family .and. key%family /= '' .and. key%group == other%group
   end function is_relative
 
-  !> Whether one of two keys of a family may stand beside the other.
+  !> Whether two keys of a family are allowed together.
   pure logical function may_stand_beside(key, other)
     type(key_t), intent(in) :: key, other
     may_stand_beside = key%beside == other%name .or. other%beside == key%name
   end function may_stand_beside
 
-  !> Whether a number has been given that is not the default of its key.
+  !> Whether a number is given that differs from the default of its key.
   logical function is_said(self, place)
     class(case_values_t), intent(in) :: self
     integer, intent(in) :: place
@@ -151,7 +152,7 @@ contains
     if (is_said) is_said = .not. is_default(self%keys(place), self%values(place), 1)
   end function is_said
 
-  !> The place of a key, or an error that says what is there instead. `at` names file and line.
+  !> The index of a key, or an error that lists what exists instead. `at` names file and line.
   subroutine find(self, group, key, at, place, error)
     class(case_values_t), intent(in) :: self
     character(len=*), intent(in) :: group, key, at
@@ -193,8 +194,8 @@ contains
     text = text//')'
   end function suggestion
 
-  !> Give the key at `place` the values written for it, from element `index` on; 0 means all of them. An override
-  !> replaces what the file says; within a file an element may be given once. `at` names file and line.
+  !> Give the key at `place` its values as written, from element `index` on; 0 means all elements. An override replaces the value of
+  !> the file; within the file an element may be given once. `at` names file and line.
   subroutine assign(self, place, index, tokens, at, is_override, error)
     class(case_values_t), intent(inout) :: self
     integer, intent(in) :: place, index
@@ -242,7 +243,7 @@ contains
     end associate
   end subroutine assign
 
-  !> Required keys are there, and every number is in its range.
+  !> Check that required keys are given, and that all numbers are in their ranges.
   subroutine check(self, error)
     class(case_values_t), intent(in) :: self
     type(error_t), allocatable, intent(out) :: error
@@ -253,14 +254,14 @@ contains
       if (self%is_used(i)) then
         call self%check_required(i, error)
         if (.not. allocated(error)) call self%check_range(i, error)
-      else if (self%keys(i)%only_here) then   ! others may stand there for another law
+      else if (self%keys(i)%only_here) then   ! other keys of the group may belong to other laws
         call self%check_absent(i, error)
       end if
       if (allocated(error)) return
     end do
   end subroutine check
 
-  !> The key at `place` is given, if it is required where its group is present.
+  !> Check that the key at `place` is given if its group is present and requires it.
   subroutine check_required(self, place, error)
     class(case_values_t), intent(in) :: self
     integer, intent(in) :: place
@@ -278,7 +279,7 @@ contains
     end associate
   end subroutine check_required
 
-  !> The key at `place` is not given, which the law that the case names does not have.
+  !> Check that the key at `place` is not given if the selected law does not have it.
   subroutine check_absent(self, place, error)
     class(case_values_t), intent(in) :: self
     integer, intent(in) :: place
@@ -290,7 +291,7 @@ contains
     end associate
   end subroutine check_absent
 
-  !> Whether the model that the case asks for has the key at `place`: keys of other laws of the group may stand there too.
+  !> Whether the selected model has the key at `place`; a group may also contain keys of other laws.
   pure logical function is_used(self, place)
     class(case_values_t), intent(in) :: self
     integer, intent(in) :: place
@@ -300,7 +301,7 @@ contains
     end associate
   end function is_used
 
-  !> Which law wants a key that not all laws of its group have.
+  !> Text that names the laws that have a key which not all laws of its group have.
   pure function by_law(self, key) result(text)
     class(case_values_t), intent(in) :: self
     type(key_t), intent(in) :: key
@@ -312,7 +313,7 @@ contains
     end associate
   end function by_law
 
-  !> The numbers of the key at `place` are in its range, or its default.
+  !> Check that the numbers of the key at `place` are in its range, or equal its default.
   subroutine check_range(self, place, error)
     class(case_values_t), intent(in) :: self
     integer, intent(in) :: place
@@ -329,7 +330,7 @@ contains
     end associate
   end subroutine check_range
 
-  !> Whether all numbers of the key at `place` are in its range; what is no number is.
+  !> Whether all numbers of the key at `place` are in its range; true for a key that is not a number.
   pure logical function is_in_range(self, place)
     class(case_values_t), intent(in) :: self
     integer, intent(in) :: place
@@ -341,7 +342,7 @@ contains
     end do
   end function is_in_range
 
-  !> The error for the value of a key: file, group, key, value as written, what is wanted, unit.
+  !> The error for a value: file, group, key, value as written, allowed values, unit.
   subroutine refuse(self, group, name, wanted, error, element)
     class(case_values_t), intent(in) :: self
     character(len=*), intent(in) :: group, name, wanted
@@ -358,7 +359,7 @@ contains
     call fail(error, text//': '//wanted//unit_of(self%keys(place)), status_case_file)
   end subroutine refuse
 
-  !> Whether a key is given in the file or by an override.
+  !> Whether a key is set in the file or by an override.
   pure logical function is_given(self, group, name) result(given)
     class(case_values_t), intent(in) :: self
     character(len=*), intent(in) :: group, name

@@ -1,11 +1,12 @@
-!> How far a run can be believed: it is run again at a hundredth of its tolerance, and at that with another method, and compared
-!> with both up to where they part.
+!> The certificate of a run: how far its results can be trusted. The case is run again at a hundredth of its tolerance, and once
+!> more at that tolerance with another method; the run is compared with both.
 !>
-!> The error of a row is the difference from the closer run, with a margin for what that errs itself and for what happens between
-!> the rows. A run is certified up to where the error of any coordinate or speed, so far, exceeds 1e-3 of its range, and not beyond
-!> where the run with the other method differs from the closer one by that. (The error itself is not taken from that run, which at
-!> the same tolerance may well be the worst of the three.) Beyond, means over whole revolutions are compared. Figures of the whole
-!> run, largest forces and the like, are compared too, wherever the certified time ends.
+!> The error of a row is its difference from the run with the closer tolerance, times a margin for the error of that run itself and
+!> for errors between rows. A run is certified up to the time at which the error of any coordinate or speed first exceeds 1e-3 of
+!> its range, and not beyond the time at which the run with the other method differs from the closer run by that amount. (The errors
+!> themselves are not taken from the run with the other method, which may be the least accurate of the three at equal tolerance.)
+!> After that time means over whole revolutions are compared. Results of the whole run, such as largest forces, are compared
+!> independently of the certified time.
 module certificate
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
@@ -20,41 +21,42 @@ module certificate
   public :: certificate_t, make_certificate
 
   real(dp), parameter :: limit = 1e-3_dp              !! error of a certified state, over its range
-  real(dp), parameter :: margin = 2.5_dp              !! for the error of the closer run, half as large at worst, and between rows
-  real(dp), parameter :: closer = 1e-2_dp             !! tolerance of the runs to compare with, over that of the run
-  real(dp), parameter :: finest_tolerance = 1e-13_dp  !! that they can have
-  real(dp), parameter :: finest_table = 9e-9_dp       !! tolerance at which the tables of films are finest
-  real(dp), parameter :: loosest_tolerance = 1e-3_dp  !! a looser one counts as this one
+  real(dp), parameter :: margin = 2.5_dp  !! factor for the error of the closer run (at worst half as large) and for errors between
+                                          !! rows
+  real(dp), parameter :: closer = 1e-2_dp             !! tolerance of the comparison runs, relative to that of the run
+  real(dp), parameter :: finest_tolerance = 1e-13_dp  !! smallest tolerance of the comparison runs
+  real(dp), parameter :: finest_table = 9e-9_dp       !! tolerance at which the tables of films have their finest grid
+  real(dp), parameter :: loosest_tolerance = 1e-3_dp  !! tolerances above this one count as this one
   integer, parameter :: rows_per_revolution = 10000, fewest_rows = 2000, most_rows = 60000
 
-  !> Columns that are coordinates or speeds, without their units and without the pin.
+  !> Columns that are coordinates or speeds, without units and without the prefix of the pin.
   character(len=*), parameter :: state_names(8) = [character(len=16) :: 'crank_angle', 'rod_angle', 'piston_position', &
     'crank_speed', 'rod_speed', 'piston_velocity', 'eccentricity_x', 'eccentricity_y']
 
   type :: certificate_t
     logical :: is_made = .false.
-    character(len=:), allocatable :: reason      !! why it is not made
-    real(dp) :: until = 0               !! certified up to there [s]
-    logical :: is_whole = .false.       !! that is the end of the run
-    real(dp) :: digits = 0              !! of the states up to there, median over the time
-    real(dp) :: state_error = 0         !! largest of the states up to there, over the range
-    integer :: impacts = 0              !! of the run up to there
-    integer :: impacts_matched = 0      !! of them, by those of the closer run
-    logical :: has_other_method = .false.        !! the run with the other method came to its end
-    integer :: revolutions_beyond = 0            !! whole ones
-    real(dp) :: statistic(n_statistics) = 0      !! means over them
-    real(dp) :: difference(n_statistics) = 0     !! largest difference of the other runs, over the mean
+    character(len=:), allocatable :: reason      !! reason for which no certificate could be made
+    real(dp) :: until = 0               !! end of the certified part [s]
+    logical :: is_whole = .false.       !! the whole run is certified
+    real(dp) :: digits = 0              !! correct digits of the states in the certified part, median over time
+    real(dp) :: state_error = 0         !! largest error of the states in the certified part, relative to their ranges
+    integer :: impacts = 0              !! number of impacts in the certified part
+    integer :: impacts_matched = 0      !! number of those that the closer run has too
+    logical :: has_other_method = .false.        !! the run with the other method reached the end
+    integer :: revolutions_beyond = 0            !! number of whole revolutions after the certified part
+    real(dp) :: statistic(n_statistics) = 0      !! means over these revolutions
+    real(dp) :: difference(n_statistics) = 0     !! largest difference of the means of the other runs, relative to the mean
     logical :: has_figure(n_figures) = .false.
-    real(dp) :: figure(n_figures) = 0            !! of the whole run
-    real(dp) :: figure_difference(n_figures) = 0 !! largest one of the other runs
+    real(dp) :: figure(n_figures) = 0            !! results of the whole run
+    real(dp) :: figure_difference(n_figures) = 0 !! largest difference of the results of the other runs
     type(column_list_t) :: list
-    real(dp), allocatable :: range(:)             !! of each column over the run
-    real(dp), allocatable :: error(:), rms(:)     !! largest error of each column and its root mean square up to there
+    real(dp), allocatable :: range(:)             !! range of each column over the run
+    real(dp), allocatable :: error(:), rms(:)     !! largest and root-mean-square error of each column in the certified part
   end type certificate_t
 
 contains
 
-  !> Certify a run that is done, or say why not. Error: the user interrupted (status_integration).
+  !> Certify a completed run, or say why it cannot be certified. Error: the user interrupted (status_integration).
   subroutine make_certificate(case, report, certificate, error)
     type(case_t), intent(in) :: case
     type(run_report_t), intent(in) :: report
@@ -92,7 +94,7 @@ contains
     allocate (errors(size(own%values, 2)))
     call find_errors(own, closer_run, other_run, certificate, errors, n)
     call find_end(own, errors, n, certificate)
-    if (certificate%is_whole) certificate%until = report%figures%time   ! less than a row away
+    if (certificate%is_whole) certificate%until = report%figures%time   ! the remainder is shorter than one row
     call find_column_errors(own, closer_run, certificate)
     call match_impacts(own, closer_run, certificate)
     call compare_statistics(own, closer_run, other_run, certificate)
@@ -100,7 +102,7 @@ contains
     certificate%is_made = .true.
   end subroutine make_certificate
 
-  !> The case as the three run it: all columns in rows of their own, and the end of the run.
+  !> The case in the form in which all three runs carry it out: all columns, rows of its own, and the end of the run.
   subroutine prepare(case, report, plain, list, error)
     type(case_t), intent(in) :: case
     type(run_report_t), intent(in) :: report
@@ -132,19 +134,19 @@ contains
     plain%output%interval = max(plain%output%interval, report%figures%time/most_rows)
   end subroutine prepare
 
-  !> Evaluations that the run with the other method may need, given those of the run: four times as many, and some to start with. A
-  !> method that is not fit for the case needs hundreds of times as many.
+  !> Largest number of evaluations allowed for the run with the other method, from that of the run: four times as many, plus a
+  !> constant for short runs. A method that is not suitable for the case would need hundreds of times as many.
   pure integer function enough_for_another_method(evaluations) result(enough)
     integer, intent(in) :: evaluations
     enough = int(min(4*real(evaluations, dp) + 40000, real(huge(enough), dp)))
   end function enough_for_another_method
 
-  !> Error of the states in each row, over their ranges.
+  !> Error of the states in each row, relative to their ranges.
   subroutine find_errors(own, closer_run, other_run, certificate, errors, n)
     type(witness_t), intent(in) :: own, closer_run, other_run
     type(certificate_t), intent(inout) :: certificate
     real(dp), intent(out) :: errors(:)   !! (rows of the run)
-    integer, intent(out) :: n            !! of them that the closer run has too
+    integer, intent(out) :: n            !! number of rows that the closer run has too
     real(dp) :: doubt
     integer :: c, i, n_other
     associate (a => own%values, b => closer_run%values)
@@ -177,7 +179,7 @@ contains
     end do
   end function is_state
 
-  !> Up to where the error of the states, so far, is within the limit, and how many digits they have there.
+  !> Find the time up to which the error of the states is within the limit, and the number of correct digits up to there.
   subroutine find_end(own, errors, n, certificate)
     type(witness_t), intent(in) :: own
     real(dp), intent(in) :: errors(:)
@@ -196,7 +198,7 @@ contains
     certificate%digits = -log10(max(median(errors(:last)), epsilon(1.0_dp)))
   end subroutine find_end
 
-  !> Median, by halving the interval of their logarithms.
+  !> Median, by bisection on the logarithm.
   pure real(dp) function median(values)
     real(dp), intent(in) :: values(:)
     real(dp) :: low, high
@@ -213,7 +215,7 @@ contains
     median = 10**high
   end function median
 
-  !> Errors of every column up to there.
+  !> Errors of every column in the certified part.
   subroutine find_column_errors(own, closer_run, certificate)
     type(witness_t), intent(in) :: own, closer_run
     type(certificate_t), intent(inout) :: certificate
@@ -229,8 +231,8 @@ contains
     certificate%rms = sqrt(certificate%rms)
   end subroutine find_column_errors
 
-  !> Impacts of the run up to there, and those that the closer run has at the same pin, in the same order and at the same time:
-  !> closer than half the way to the next one.
+  !> Count the impacts in the certified part, and those that the closer run has at the same pin, in the same order and at the same
+  !> time: within half the time to the next impact.
   subroutine match_impacts(own, closer_run, certificate)
     type(witness_t), intent(in) :: own, closer_run
     type(certificate_t), intent(inout) :: certificate
@@ -250,7 +252,7 @@ contains
     end associate
   end subroutine match_impacts
 
-  !> Means over the whole revolutions that begin after the certified time, and how far those of the other runs are from them.
+  !> Means over the whole revolutions that begin after the certified part, and their differences between the runs.
   subroutine compare_statistics(own, closer_run, other_run, certificate)
     type(witness_t), intent(in) :: own, closer_run, other_run
     type(certificate_t), intent(inout) :: certificate
@@ -276,7 +278,7 @@ contains
 
   contains
 
-    !> Differences over the run's own means; 0 where both are.
+    !> Differences relative to the run's own means; 0 where both are 0.
     pure function relative(others) result(differences)
       real(dp), intent(in) :: others(n_statistics)
       real(dp) :: differences(n_statistics)
@@ -286,7 +288,7 @@ contains
     end function relative
   end subroutine compare_statistics
 
-  !> How far the figures of the other runs are from those of the run.
+  !> Differences between the results of the runs.
   subroutine compare_figures(case, own, closer_run, other_run, certificate)
     type(case_t), intent(in) :: case
     type(witness_t), intent(in) :: own, closer_run, other_run

@@ -1,4 +1,4 @@
-!> A certificate as text: NAME.certificate.csv, its rows in the summary, and its clause in the run's line.
+!> Text forms of a certificate: NAME.certificate.csv, rows of the summary, and a part of the line for the user.
 module certificate_text
   use gudgeon_kinds, only: dp
   use certificate, only: certificate_t
@@ -14,15 +14,15 @@ module certificate_text
 
 contains
 
-  !> NAME.certificate.csv: of every column its range over the run, and up to the certified time its largest error, the root of its
-  !> mean square, and the largest one over the range.
+  !> NAME.certificate.csv: for each column its range over the run, and for the certified part its largest error, its
+  !> root-mean-square error, and the largest error relative to the range.
   function certificate_table(certificate) result(text)
     type(certificate_t), intent(in) :: certificate
     character(len=:), allocatable :: text
     integer :: i
     text = 'column,range,largest_error,rms_error,relative_error'//newline
     do i = 1, size(certificate%list%id)
-      if (index(column_name(certificate%list, i), 'phase[') > 0) cycle   ! no quantity
+      if (index(column_name(certificate%list, i), 'phase[') > 0) cycle   ! not a quantity with a unit
       text = text//column_name(certificate%list, i)//','//real_text(certificate%range(i))//','//real_text(certificate%error(i))// &
         ','//real_text(certificate%rms(i))//','
       if (certificate%range(i) > 0) text = text//real_text(certificate%error(i)/certificate%range(i))
@@ -30,7 +30,7 @@ contains
     end do
   end function certificate_table
 
-  !> Rows `quantity,value,unit` for the summary.
+  !> Rows `quantity,value,unit` of the summary.
   function certificate_summary(certificate) result(text)
     type(certificate_t), intent(in) :: certificate
     character(len=:), allocatable :: text
@@ -69,7 +69,7 @@ contains
     end subroutine add
   end function certificate_summary
 
-  !> What the run's line says of it.
+  !> The part of the line for the user.
   function certificate_clause(certificate) result(text)
     type(certificate_t), intent(in) :: certificate
     character(len=:), allocatable :: text
@@ -89,7 +89,7 @@ contains
     text = text//' within '//short_text(two_digits(100*maxval(certificate%difference)))//' %'
   end function certificate_clause
 
-  !> A number with two digits.
+  !> A number with two significant digits.
   pure real(dp) function two_digits(number)
     real(dp), intent(in) :: number   !! >= 0
     real(dp) :: unit

@@ -1,4 +1,4 @@
-!> The command line: options, values and case files, from arguments given as an array so that it can be tested.
+!> Reads the command line: options, overrides and case files. The arguments are passed as an array so that it can be tested.
 module command_line
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_command_line
@@ -7,26 +7,26 @@ module command_line
   private
   public :: command_line_t, parse_command_line, program_arguments, help_text
 
-  !> What the user asks for.
+  !> The contents of the command line.
   type :: command_line_t
     integer, private :: override_count = 0, case_count = 0
     character(len=:), allocatable :: out          !! folder for results
-    character(len=:), allocatable :: overrides(:) !! GROUP.KEY=VALUE or GROUP=none, in their order, blanks behind
-    character(len=:), allocatable :: accuracy     !! draft, standard, reference, or empty: as the case says
-    integer :: jobs = 0                           !! threads; 0: as many as there are cores
+    character(len=:), allocatable :: overrides(:) !! GROUP.KEY=VALUE or GROUP=none in the given order, padded with blanks
+    character(len=:), allocatable :: accuracy     !! draft, standard, reference, or empty: as in the case file
+    integer :: jobs = 0                           !! number of threads; 0: number of processor cores
     real(dp) :: checkpoint_interval = 60          !! seconds between checkpoints of a run; 0: none
-    logical :: resume = .false.                   !! continue where runs were stopped
-    logical :: certify = .false.                  !! find out how far runs can be believed
-    character(len=:), allocatable :: reference    !! case, study or results: a page of the manual; empty: none
+    logical :: resume = .false.                   !! continue runs that were stopped
+    logical :: certify = .false.                  !! make certificates of the runs
+    character(len=:), allocatable :: reference    !! page of the manual to print: case, study or results; empty: none
     logical :: check = .false., template = .false., quiet = .false., help = .false., version = .false.
     character(len=:), allocatable :: progress     !! auto, always, never
-    character(len=:), allocatable :: cases(:)     !! paths of case files, or of study files, blanks behind
+    character(len=:), allocatable :: cases(:)     !! paths of case files or study files, padded with blanks
     logical :: sweep = .false.                    !! the files are studies
-    logical :: fresh = .false.                    !! a sweep starts from the beginning
-    integer :: first_row = 1, last_row = 0        !! runs of a sweep; last_row 0: all
+    logical :: fresh = .false.                    !! start a sweep again from the beginning
+    integer :: first_row = 1, last_row = 0        !! range of runs of a sweep; last_row 0: to the end
   end type command_line_t
 
-  !> An option: its names, and whether a value follows.
+  !> An option: its names, and whether it has a value.
   type :: option_t
     character(len=10) :: long = ''
     character(len=1) :: short = ''
@@ -46,7 +46,7 @@ module command_line
 
 contains
 
-  !> Arguments to a command line. Errors are one line with a hint and the exit status of the command line.
+  !> Convert arguments to a command line. Errors are one line with a hint, and have the exit status of the command line.
   subroutine parse_command_line(arguments, line, error)
     character(len=*), intent(in) :: arguments(:)
     type(command_line_t), intent(out) :: line
@@ -102,7 +102,7 @@ contains
     call check_names(line%cases, error)
   end subroutine parse_command_line
 
-  !> `--name`, `--name value` or `--name=value`; `i` moves on to the last argument used.
+  !> `--name`, `--name value` or `--name=value`; `i` is moved to the last argument used.
   subroutine take_long(line, arguments, i, error)
     type(command_line_t), intent(inout) :: line
     character(len=*), intent(in) :: arguments(:)
@@ -134,7 +134,7 @@ contains
     end if
   end subroutine take_long
 
-  !> `-s VALUE`, `-sVALUE`, `-q`, or several without values in one, as `-qh`.
+  !> `-s VALUE`, `-sVALUE`, `-q`, or several options without values together, such as `-qh`.
   subroutine take_short(line, arguments, i, error)
     type(command_line_t), intent(inout) :: line
     character(len=*), intent(in) :: arguments(:)
@@ -163,7 +163,7 @@ contains
     end do
   end subroutine take_short
 
-  !> The value of an option is the next argument.
+  !> Take the next argument as the value of an option.
   subroutine take_next(line, name, shown, arguments, i, error)
     type(command_line_t), intent(inout) :: line
     character(len=*), intent(in) :: name, shown
@@ -178,7 +178,7 @@ contains
     call take(line, name, trim(arguments(i)), error)
   end subroutine take_next
 
-  !> Set what an option stands for.
+  !> Carry out one option.
   subroutine take(line, name, value, error)
     type(command_line_t), intent(inout) :: line
     character(len=*), intent(in) :: name, value
@@ -245,7 +245,7 @@ contains
     if (equals > 1 .and. dot == 0) is_override = lowercase(trim(adjustl(text(equals + 1:)))) == 'none'
   end function is_override
 
-  !> A:B into two whole numbers; `last` is 0 where they are none.
+  !> Read A:B as two whole numbers; `last` is 0 if the text has another form.
   pure subroutine read_rows(value, first, last)
     character(len=*), intent(in) :: value
     integer, intent(out) :: first, last
@@ -260,7 +260,7 @@ contains
     if (first < 1 .or. first > last) last = 0
   end subroutine read_rows
 
-  !> No two cases may write files of the same name: a/x.nml and b/x.nml, or x.nml and x.ideal.nml.
+  !> Check that no two cases would write files of the same name: a/x.nml and b/x.nml, or x.nml and x.ideal.nml.
   subroutine check_names(cases, error)
     character(len=*), intent(in) :: cases(:)
     type(error_t), allocatable, intent(out) :: error
@@ -282,7 +282,7 @@ contains
     end do
   end subroutine check_names
 
-  !> Keep the first `count` of a list.
+  !> Shorten a list to its first `count` elements.
   subroutine shorten(list, count)
     character(len=:), allocatable, intent(inout) :: list(:)
     integer, intent(in) :: count
@@ -293,7 +293,7 @@ contains
     list(:) = kept
   end subroutine shorten
 
-  !> The arguments that this program was started with.
+  !> The arguments of this program.
   function program_arguments() result(arguments)
     character(len=:), allocatable :: arguments(:)
     integer :: i, length, longest
@@ -308,7 +308,7 @@ contains
     end do
   end function program_arguments
 
-  !> What --help prints.
+  !> The text of --help.
   pure function help_text() result(text)
     character(len=:), allocatable :: text
     character(len=*), parameter :: n = achar(10)

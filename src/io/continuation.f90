@@ -1,4 +1,4 @@
-!> What `--resume` finds of an earlier run: its results, if it is done, or its checkpoint.
+!> Looks for an earlier run of the same case for `--resume`: its complete results, or its checkpoint.
 module continuation
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp
@@ -13,12 +13,12 @@ module continuation
   private
   public :: continuation_t
 
-  !> Where a run is to begin: at its beginning, unless one of these holds.
+  !> Where a run begins: at its start, unless one of the first two components is true.
   type :: continuation_t
-    logical :: goes_on = .false.     !! from the checkpoint
-    logical :: is_done = .false.     !! nothing is left to do
+    logical :: goes_on = .false.     !! continue from the checkpoint
+    logical :: is_done = .false.     !! the run is complete already
     real(dp) :: interval = 0         !! between checkpoints [s]; 0: none
-    character(len=identity_length) :: identity = ''   !! of the run that is to begin
+    character(len=identity_length) :: identity = ''   !! identity of the run that is to begin
     type(checkpoint_t) :: checkpoint
   contains
     procedure :: look_for
@@ -26,14 +26,14 @@ module continuation
 
 contains
 
-  !> Look for results of the same run under BASE, else for its checkpoint. Errors: the checkpoint is damaged, or belongs to
+  !> Look for complete results of the same run under BASE, or for its checkpoint. Errors: the checkpoint is damaged, or belongs to
   !> another case or program.
   subroutine look_for(self, base, file, case_text, with_case, with_events, error)
     class(continuation_t), intent(inout) :: self
-    character(len=*), intent(in) :: base, file   !! path of the results without their endings; of the case
+    character(len=*), intent(in) :: base, file   !! path of the results without suffix; path of the case file
     character(len=*), intent(in) :: case_text    !! the resolved case
-    logical, intent(in) :: with_case             !! the resolved case is among the results
-    logical, intent(in) :: with_events           !! a list of events is
+    logical, intent(in) :: with_case             !! the resolved case belongs to the results
+    logical, intent(in) :: with_events           !! a list of events belongs to the results
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: earlier, difference
     logical :: found
@@ -58,8 +58,8 @@ contains
     end if
   end subroutine look_for
 
-  !> Whether the results BASE are all there and those of a run of this identity that is done: its summary says so, and the files
-  !> have the lengths that it tells.
+  !> Whether the results BASE are complete and belong to a completed run of this identity: its summary says so, and the files have
+  !> the lengths given there.
   logical function are_whole(base, identity, with_events) result(answer)
     character(len=*), intent(in) :: base, identity
     logical, intent(in) :: with_events
@@ -73,7 +73,7 @@ contains
     if (answer .and. with_events) answer = has_length(base//'.events.csv', summary_value(table, 'events_bytes'))
   end function are_whole
 
-  !> Whether a file has as many bytes as these digits say.
+  !> Whether a file has the length given by a text of digits.
   logical function has_length(path, digits) result(answer)
     character(len=*), intent(in) :: path, digits
     integer(int64) :: length

@@ -1,5 +1,5 @@
-!> Measured curves from CSV files: a header that names two columns with their units, such as crank_angle[deg],pressure[bar], and a
-!> row of two numbers for each point. Lines that are empty or begin with # are passed over.
+!> Reads measured curves from CSV files: a header that names two columns with their units, such as crank_angle[deg],pressure[bar],
+!> and a row of two numbers for each point. Empty lines and lines that begin with # are ignored.
 module curve_file
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
@@ -11,13 +11,13 @@ module curve_file
 
   integer, parameter :: most_rows = 1000000
 
-  !> A unit, and what a number in it is times in the first unit of its quantity.
+  !> A unit and its value in the first unit of the quantity.
   type :: unit_t
     character(len=8) :: name = ''
     real(dp) :: factor = 1
   end type unit_t
 
-  !> What a column may hold.
+  !> A quantity that a column may contain, with its allowed units.
   type :: quantity_t
     character(len=12) :: name = ''
     type(unit_t) :: units(7)
@@ -35,8 +35,9 @@ module curve_file
 
 contains
 
-  !> The two columns of a text in the first units of their quantities, x increasing, at least two rows. Where it is no such table,
-  !> `message` says what is wanted and `line` where; else the message is empty. `lines` tells where each row stands.
+  !> Read the two columns of a text, converted to the first units of their quantities; x increases, and there are at least two rows.
+  !> If the text is not such a table, `message` says what is required and `line` where; otherwise the message is empty. `lines` are
+  !> the line numbers of the rows.
   subroutine parse_curve(text, x_is, y_is, x, y, lines, message, line)
     character(len=*), intent(in) :: text
     type(quantity_t), intent(in) :: x_is, y_is
@@ -80,7 +81,7 @@ contains
     lines = lines(:n)
   end subroutine parse_curve
 
-  !> The line at `at`, which moves behind it, without blanks around it.
+  !> The line at position `at` without leading and trailing blanks; `at` is moved behind it.
   subroutine next_line(text, at, row)
     character(len=*), intent(in) :: text
     integer, intent(inout) :: at
@@ -96,7 +97,7 @@ contains
     row = trim(adjustl(row))
   end subroutine next_line
 
-  !> Two fields with a comma between them, without blanks and quotes around each.
+  !> Split a row into two fields at the comma, without surrounding blanks and quotes.
   subroutine split(row, fields, message)
     character(len=*), intent(in) :: row
     character(len=len(row)), intent(out) :: fields(2)
@@ -116,7 +117,7 @@ contains
     end do
   end subroutine split
 
-  !> Factors of both columns by the units that the header gives them.
+  !> Conversion factors of both columns from the units in the header.
   subroutine read_header(row, x_is, y_is, factors, message)
     character(len=*), intent(in) :: row
     type(quantity_t), intent(in) :: x_is, y_is
@@ -150,7 +151,7 @@ contains
       ' in one of '//unit_list(quantity)//', as in '//underscored(trim(quantity%name))//'['//trim(quantity%units(1)%name)//']'
   end subroutine read_unit
 
-  !> Blanks as underscores.
+  !> The text with blanks replaced by underscores.
   pure function underscored(name) result(text)
     character(len=*), intent(in) :: name
     character(len=len(name)) :: text
@@ -203,12 +204,12 @@ contains
     if (allocated(wanted)) message = trim(quantity%name)//' = '//printable(field, 40)//': '//wanted
   end subroutine read_number
 
-  !> The first column increases from row to row.
+  !> Check that the first column increases from row to row.
   subroutine compare_rows(x_is, row, before, line, here, message)
     type(quantity_t), intent(in) :: x_is
     character(len=*), intent(in) :: row
     real(dp), intent(in) :: before, here
-    integer, intent(in) :: line   !! of the row before
+    integer, intent(in) :: line   !! line number of the row before
     character(len=:), allocatable, intent(inout) :: message
     if (here > before) return
     message = trim(x_is%name)//' = '//printable(trim(row(:index(row, ',') - 1)), 40)

@@ -1,4 +1,4 @@
-!> What must hold between the values of a case with elastic members.
+!> Rules that the values of a case with elastic members must obey together.
 module elastic_rules
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
@@ -17,7 +17,8 @@ module elastic_rules
 
 contains
 
-  !> An elastic rod has mass between its pins, a shank that fits in it, and a mass matrix that is positive definite at rest.
+  !> Check that an elastic rod has mass between its pins, a shank that fits between them, and a positive definite mass matrix in its
+  !> undeformed state.
   subroutine check_elastic(c, values, error)
     type(case_t), intent(in) :: c
     type(case_values_t), intent(in) :: values
@@ -52,7 +53,7 @@ contains
     end associate
   end subroutine check_elastic
 
-  !> Whether the mass matrix of the chain at rest is positive definite at every angle of the crank.
+  !> Whether the mass matrix of the undeformed chain is positive definite at every crank angle.
   logical function is_definite(c, rigid, rod) result(definite)
     type(case_t), intent(in) :: c
     type(rod_t), intent(in) :: rigid

@@ -1,4 +1,4 @@
-!> NAME.film.csv: the pressure of films over half of the bore at the times that the case asks for.
+!> Writes NAME.film.csv: the pressure of films over half of the bearing at the times that the case asks for.
 module film_file
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t
@@ -13,8 +13,8 @@ module film_file
 
 contains
 
-  !> One row a node of the film: in the bearing's frame the angle from x towards y, and how far from the middle. The other half of
-  !> the bore has the same pressures. Error: the file cannot be written (status_output).
+  !> Write one row for each node of the film: the angle from x towards y in the frame of the bearing, and the axial distance from
+  !> its middle. The pressures in the other half are equal. Error: the file cannot be written (status_output).
   subroutine write_film_file(path, fields, error)
     character(len=*), intent(in) :: path
     type(film_field_t), intent(in) :: fields(:)
@@ -35,7 +35,7 @@ contains
   subroutine append_node(file, field, j, k)
     type(growing_text_t), intent(inout) :: file
     type(film_field_t), intent(in) :: field
-    integer, intent(in) :: j, k   !! its angle and its place
+    integer, intent(in) :: j, k   !! indices of the angle and of the axial position
     call file%append(real_text(field%time)//','//real_text(field%crank_angle)//','//trim(pin_names(field%place))//',')
     call file%append(real_text(field%angle(j) + field%direction)//',')
     call file%append(real_text(field%clearance - field%distance*cos(field%angle(j)))//',')

@@ -1,9 +1,9 @@
-!> The tables of film laws that take long to make: kept in the user's cache folder, or in a file that the case names, from one run
-!> to the next.
+!> Stores the tables of film laws between runs, in the user's cache folder or in a file that the case names, since they take long to
+!> compute.
 !>
-!> A file holds a line that says what it is, the key of the table, the table as an archive, and a checksum of all that. One that is
-!> damaged, or that another version of the program wrote, is made again; one that cannot be written into the cache is done without.
-!> A file that a case names is replaced only if it is such a table, of whatever film.
+!> A file contains a line that identifies its format, the key of the table, the table as an archive, and a checksum of all this. A
+!> damaged file, or one written by another version of the program, is computed again; if it cannot be written into the cache, the
+!> run continues without storing it. A file that a case names is replaced only if it is a table of a film, of any parameters.
 module film_tables
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_integration, status_case_file
@@ -23,7 +23,7 @@ module film_tables
 
   character(len=*), parameter :: newline = achar(10), title = 'gudgeon film table'//newline
 
-  !> Shows how far a table is, and gives it up when the user interrupts.
+  !> Shows the progress of a table, and ends its computation if the user interrupts.
   type, extends(table_watch_t) :: progress_watch_t
     type(progress_t) :: progress
   contains
@@ -32,8 +32,8 @@ module film_tables
 
 contains
 
-  !> Give the films of a case their tables: those that are kept, or new ones. Errors: the user interrupted (status_integration); the
-  !> file that the case names is no table (status_case_file) or cannot be written (status_output).
+  !> Give the films of a case their tables, stored or new ones. Errors: the user interrupted (status_integration); the file that the
+  !> case names is not a table (status_case_file) or cannot be written (status_output).
   subroutine provide_tables(case, shows_progress, error)
     type(case_t), intent(inout) :: case
     logical, intent(in) :: shows_progress
@@ -90,7 +90,7 @@ contains
     self%wants_to_stop = interrupted()
   end subroutine row_done
 
-  !> The path of a file that is named by its way from the folder of a case.
+  !> The path of a file given relative to the folder of a case.
   pure function beside(case_file, name) result(path)
     character(len=*), intent(in) :: case_file, name
     character(len=:), allocatable :: path
@@ -98,7 +98,7 @@ contains
     if (name(1:1) == '/') path = name
   end function beside
 
-  !> Where a table is kept; empty where there is no place.
+  !> Path of a stored table; empty if there is no cache folder.
   function path_for(key) result(path)
     character(len=*), intent(in) :: key
     character(len=:), allocatable :: path
@@ -117,7 +117,7 @@ contains
     if (status /= 0) path = ''
   end function path_for
 
-  !> A variable of the environment; empty where it is not set.
+  !> Value of an environment variable; empty if it is not set.
   subroutine get_variable(name, value)
     character(len=*), intent(in) :: name
     character(len=:), allocatable, intent(out) :: value
@@ -127,7 +127,7 @@ contains
     if (length > 0) call get_environment_variable(name, value)
   end subroutine get_variable
 
-  !> Take a table from its file, if it is there and whole. `is_foreign`: the file is no table at all.
+  !> Read a table from its file, if there is a complete one. `is_foreign`: the file is not a table of a film.
   subroutine load(path, key, film, is_there, is_foreign)
     character(len=*), intent(in) :: path, key
     class(film_law_t), intent(inout) :: film
@@ -154,7 +154,7 @@ contains
     if (is_there) film%table_of = key
   end subroutine load
 
-  !> Keep a table, if that is possible: first under another name.
+  !> Store a table if possible. It is written under a temporary name first.
   subroutine save(path, key, film, error)
     character(len=*), intent(in) :: path, key
     class(film_law_t), intent(inout) :: film

@@ -1,11 +1,11 @@
-!> A text that is put together from many pieces, without a copy of what there is for each of them.
+!> A text that is assembled from many pieces without copying the existing text for each of them.
 module growing_text
   implicit none
   private
   public :: growing_text_t
 
   type :: growing_text_t
-    character(len=:), allocatable :: text   !! its first `used` characters count
+    character(len=:), allocatable :: text   !! only its first `used` characters are valid
     integer :: used = 0
   contains
     procedure :: append
@@ -14,7 +14,7 @@ module growing_text
 
 contains
 
-  !> Add a piece at the end.
+  !> Append a piece.
   pure subroutine append(self, piece)
     class(growing_text_t), intent(inout) :: self
     character(len=*), intent(in) :: piece
@@ -23,7 +23,7 @@ contains
     self%used = self%used + len(piece)
   end subroutine append
 
-  !> Room for so many characters more.
+  !> Allocate memory for `more` additional characters.
   pure subroutine make_room(self, more)
     class(growing_text_t), intent(inout) :: self
     integer, intent(in) :: more

@@ -1,7 +1,7 @@
-!> A checkpoint: what a stopped run needs to continue as if it had never stopped, in one file that is written whole or not at
-!> all.
+!> A checkpoint: everything that a stopped run needs to continue with identical results, in one file that is either complete or not
+!> there.
 !>
-!> The file holds a line that says what it is, an archive and a checksum of all that.
+!> The file contains a line that identifies its format, an archive, and a checksum of both.
 module gudgeon_checkpoint
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp
@@ -22,9 +22,9 @@ module gudgeon_checkpoint
   integer, parameter :: format_version = 2
   character(len=*), parameter :: restart_hint = '; without --resume the run starts from the beginning'
 
-  integer, parameter :: buffer_size = 65536   !! [bytes]; it stays in the cache
+  integer, parameter :: buffer_size = 65536   !! [bytes]; fits into the processor's cache
 
-  !> How far a file has come: its length and a checksum of all bytes up to there.
+  !> The length of a file and a checksum of all its bytes.
   type :: file_mark_t
     integer(int64) :: length = 0
     integer(int64) :: checksum = 0
@@ -36,11 +36,11 @@ module gudgeon_checkpoint
 
   type :: checkpoint_t
     character(len=:), allocatable :: path        !! of the file
-    character(len=identity_length) :: identity = ''   !! of the run
+    character(len=identity_length) :: identity = ''   !! identity of the run
     character(len=:), allocatable :: case_text   !! the resolved case
-    real(dp) :: wall_time = 0                    !! taken by the run so far [s]
-    type(file_mark_t) :: trace, event_list       !! what was in the result files
-    character(len=:), allocatable :: state       !! of the run: the contents of an archive
+    real(dp) :: wall_time = 0                    !! used by the run so far [s]
+    type(file_mark_t) :: trace, event_list       !! length and checksum of the result files
+    character(len=:), allocatable :: state       !! state of the run: the content of an archive
   contains
     procedure :: save => save_checkpoint
     procedure :: load
@@ -50,7 +50,7 @@ module gudgeon_checkpoint
 
 contains
 
-  !> Write the file: first under another name, then by renaming, so that a checkpoint is there at every time.
+  !> Write the file under a temporary name and rename it, so that there is a valid checkpoint at any time.
   subroutine save_checkpoint(self, error)
     class(checkpoint_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
@@ -66,7 +66,7 @@ contains
     if (.not. allocated(error)) call synchronise_folder(self%path, ignored)
   end subroutine save_checkpoint
 
-  !> Read the file of self%path, if there is one. Error: it is damaged, or of another format.
+  !> Read the file self%path, if it exists. Error: it is damaged, or has another format.
   subroutine load(self, found, error)
     class(checkpoint_t), intent(inout) :: self
     logical, intent(out) :: found
@@ -96,7 +96,7 @@ contains
     found = .not. allocated(wrong)
   end subroutine load
 
-  !> Remove the file, if it is there.
+  !> Remove the file, if it exists.
   subroutine remove(self)
     class(checkpoint_t), intent(in) :: self
     integer :: ignored
@@ -121,8 +121,8 @@ contains
     call archive%exchange_text(self%state)
   end subroutine exchange
 
-  !> Move on to `length`, reading the file in between. `is_there` is false where it cannot be read so far; the mark is then
-  !> of no use any more.
+  !> Extend the mark to `length`, reading the file in between. If the file cannot be read that far, `is_there` is false and the mark
+  !> must not be used any more.
   subroutine move_to(self, path, length, is_there)
     class(file_mark_t), intent(inout) :: self
     character(len=*), intent(in) :: path
@@ -147,7 +147,8 @@ contains
     self%checksum = self%sum%value()
   end subroutine move_to
 
-  !> Length and checksum to or from an archive. What is read is a mark to compare with, not one to move on.
+  !> Write length and checksum to an archive, or read them from it. A mark that was read can be compared with others, but not
+  !> extended.
   subroutine exchange_mark(self, archive)
     class(file_mark_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive

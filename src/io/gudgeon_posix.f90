@@ -1,5 +1,5 @@
-!> The few calls of the C library that Fortran has no words for, as thin bindings for Linux. Numbers of errors are
-!> returned, never kept: two threads do not meet here.
+!> Thin bindings for Linux to calls of the C library that Fortran does not offer. Error numbers are returned and not stored, so that
+!> they are safe in several threads.
 module gudgeon_posix
   use, intrinsic :: iso_c_binding, only: c_int, c_long, c_short, c_null_char, c_ptr, &
     c_size_t, c_loc, c_f_pointer, c_associated
@@ -17,13 +17,13 @@ module gudgeon_posix
   public :: error_no_entry, error_interrupted, error_locked, error_exists, error_is_directory, error_no_space, &
     error_broken_pipe, error_not_regular, error_is_link
 
-  !> Error numbers of Linux, and two of this module: a file that is neither a regular one nor a folder, and a symbolic link where
-  !> none is followed.
+  !> Error numbers of Linux, and two of this module: the file is neither a regular file nor a folder, and a symbolic link that must
+  !> not be followed.
   integer, parameter :: error_no_entry = 2, error_interrupted = 4, error_locked = 11, error_exists = 17, &
     error_not_directory = 20, error_is_directory = 21, error_invalid = 22, error_no_space = 28, error_broken_pipe = 32, &
     error_not_regular = -1, error_is_link = -2
 
-  !> Flags of open and statx, as far as they are the same on every processor.
+  !> Flags of open and statx, as far as they are equal on all processors.
   integer(c_int), parameter :: read_only = 0, write_only = 1, read_and_write = 2, o_creat = 64, o_excl = 128, o_append = 1024, &
     o_nonblock = 2048, o_cloexec = 524288
   integer(c_int), parameter :: at_working_folder = -100, at_link_itself = 256, at_empty_path = 4096, basic_status = 2047
@@ -35,22 +35,22 @@ module gudgeon_posix
 
 contains
 
-  !> Open a regular file to be read, never waiting for the other end of a pipe; `status` is 0 or the error number.
+  !> Open a regular file for reading, without waiting for the other end of a pipe; `status` is 0 or the error number.
   subroutine open_for_reading(path, descriptor, status)
     character(len=*), intent(in) :: path
     integer, intent(out) :: descriptor, status
     call open_regular(path, read_only, .true., descriptor, status)
   end subroutine open_for_reading
 
-  !> Open what the program was given as its standard input, also where that is a pipe or a terminal: see `wait_for_input`.
+  !> Open the standard input of the program, which may be a pipe or a terminal: see `wait_for_input`.
   subroutine open_standard_input(descriptor, status)
     integer, intent(out) :: descriptor, status
     descriptor = c_open('/dev/stdin'//c_null_char, ior(read_only, o_cloexec), 0_c_int)
     status = outcome(descriptor)
   end subroutine open_standard_input
 
-  !> Create a file to be written, always a new one: what had its name is removed before. (To follow a link that stands there would
-  !> let who can write into the folder have any file of the user overwritten.) `status` is 0 or the error number.
+  !> Create a new file for writing. An existing file of that name is removed first: following a symbolic link would let anyone who
+  !> can write into the folder overwrite any file of the user. `status` is 0 or the error number.
   subroutine open_for_writing(path, descriptor, status)
     character(len=*), intent(in) :: path
     integer, intent(out) :: descriptor, status
@@ -59,7 +59,7 @@ contains
     if (status == 0 .or. status == error_no_entry) call create_file(path, descriptor, status)
   end subroutine open_for_writing
 
-  !> Create a file that is not there yet. A link is in its way like any other file.
+  !> Create a file that does not exist yet. A symbolic link counts as an existing file.
   subroutine create_file(path, descriptor, status)
     character(len=*), intent(in) :: path
     integer, intent(out) :: descriptor, status
@@ -67,25 +67,25 @@ contains
     status = outcome(descriptor)
   end subroutine create_file
 
-  !> Open a file that is only there to be locked, creating it where it is missing; `status` is 0 or the error number, also that
-  !> of a file that another program has just made or removed: `error_exists` or `error_no_entry`.
+  !> Open a file that is used for locking only, and create it if it does not exist. `status` is 0 or the error number; if another
+  !> program has just created or removed the file it is `error_exists` or `error_no_entry`.
   subroutine open_to_lock(path, descriptor, status)
     character(len=*), intent(in) :: path
     integer, intent(out) :: descriptor, status
     call open_regular(path, read_and_write, .false., descriptor, status)
     if (status == error_no_entry) call create_file(path, descriptor, status)
     if (status /= error_exists) return
-    if (kind_of_file(at_working_folder, path, at_link_itself) == kind_link) status = error_is_link   ! to nowhere
+    if (kind_of_file(at_working_folder, path, at_link_itself) == kind_link) status = error_is_link   ! a link without a target
   end subroutine open_to_lock
 
-  !> Open a file to write behind what it holds; `status` is 0 or the error number.
+  !> Open a file for writing at its end; `status` is 0 or the error number.
   subroutine open_for_appending(path, descriptor, status)
     character(len=*), intent(in) :: path
     integer, intent(out) :: descriptor, status
     call open_regular(path, ior(write_only, o_append), .false., descriptor, status)
   end subroutine open_for_appending
 
-  !> Open a file that is there, but only a regular one, and through a symbolic link only where that may be.
+  !> Open an existing regular file; a symbolic link is followed only if `through_link` is true.
   subroutine open_regular(path, flags, through_link, descriptor, status)
     character(len=*), intent(in) :: path
     integer(c_int), intent(in) :: flags
@@ -110,15 +110,15 @@ contains
     descriptor = -1
   end subroutine open_regular
 
-  !> Lock an open file for this opening of it alone, until it is closed or the program ends in any way. `status` is
-  !> `error_locked` where another opening holds it.
+  !> Lock an open file for this opening of it, until it is closed or the program ends. `status` is `error_locked` if another opening
+  !> holds the lock.
   subroutine lock_file(descriptor, status)
     integer, intent(in) :: descriptor
     integer, intent(out) :: status
     status = outcome(int(c_flock(int(descriptor, c_int), ior(lock_exclusive, lock_without_waiting))))
   end subroutine lock_file
 
-  !> Whether `path` is the name of this open file, and not of a link to it.
+  !> Whether `path` is the name of this open file itself, and not of a link to it.
   logical function is_file(path, descriptor) result(answer)
     character(len=*), intent(in) :: path
     integer, intent(in) :: descriptor
@@ -129,7 +129,7 @@ contains
     answer = all(named%device == opened%device) .and. named%number == opened%number
   end function is_file
 
-  !> Bytes in a file, below 0 where there is none.
+  !> Length of a file in bytes; negative if it does not exist.
   integer(c_long) function file_length(path) result(length)
     character(len=*), intent(in) :: path
     type(file_status_t) :: file
@@ -137,7 +137,7 @@ contains
     if (c_statx(at_working_folder, path//c_null_char, 0_c_int, basic_status, file) == 0) length = file%length
   end function file_length
 
-  !> The kind of a file, found as statx finds it; 0 where it cannot be told.
+  !> The kind of a file, from statx; 0 if it cannot be determined.
   integer function kind_of_file(folder, path, flags) result(kind_bits)
     integer(c_int), intent(in) :: folder, flags
     character(len=*), intent(in) :: path
@@ -146,7 +146,7 @@ contains
     if (c_statx(folder, path//c_null_char, flags, basic_status, file) == 0) kind_bits = iand(int(file%mode), kind_mask)
   end function kind_of_file
 
-  !> One read: `done` bytes of `buffer` are filled, 0 at the end of the file.
+  !> One call of read: `done` bytes of `buffer` are filled, 0 at the end of the file.
   subroutine read_bytes(descriptor, buffer, done, status)
     integer, intent(in) :: descriptor
     character(len=*), intent(out), target :: buffer
@@ -155,7 +155,7 @@ contains
     status = outcome(done)
   end subroutine read_bytes
 
-  !> One read from a place in the file, counted from 0.
+  !> One call of read at an offset in the file, counted from 0.
   subroutine read_at(descriptor, offset, buffer, done, status)
     integer, intent(in) :: descriptor
     integer(c_long), intent(in) :: offset
@@ -165,25 +165,25 @@ contains
     status = outcome(done)
   end subroutine read_at
 
-  !> The path of a file that exists, from the root; the path itself where it has none.
+  !> The absolute path of an existing file; the path itself if it has none.
   function absolute_path(path) result(whole)
     character(len=*), intent(in) :: path
     character(len=:), allocatable :: whole
-    character(len=4097) :: buffer   ! PATH_MAX and the end
+    character(len=4097) :: buffer   ! PATH_MAX and the terminating null
     whole = path
     if (c_associated(c_realpath(path//c_null_char, buffer))) whole = buffer(:index(buffer, c_null_char) - 1)
   end function absolute_path
 
-  !> Wait until what was written to a file is on its disk.
+  !> Wait until everything written to a file is on its disk.
   subroutine synchronise_file(descriptor, status)
     integer, intent(in) :: descriptor
     integer, intent(out) :: status
     status = outcome(int(c_fsync(int(descriptor, c_int))))
   end subroutine synchronise_file
 
-  !> Wait until the names in the folder of `path` are on its disk; where the file system cannot tell, do not wait.
+  !> Wait until the names in the folder of `path` are on its disk. Does not wait if the file system does not support it.
   subroutine synchronise_folder(path, status)
-    character(len=*), intent(in) :: path   !! of a file
+    character(len=*), intent(in) :: path   !! path of a file in the folder
     integer, intent(out) :: status
     integer :: descriptor, ignored
     descriptor = c_open('./'(:merge(0, 2, index(path, '/') > 0))//path(:index(path, '/', back=.true.))//c_null_char, &
@@ -195,8 +195,8 @@ contains
     call close_file(descriptor, ignored)
   end subroutine synchronise_folder
 
-  !> Have the disk keep room for the first `length` bytes of an open file; nothing happens where the file system cannot.
-  !> `status` is `error_no_space` where there is none.
+  !> Reserve disk space for the first `length` bytes of an open file; no effect if the file system does not support it. `status` is
+  !> `error_no_space` if there is not enough space.
   subroutine reserve_file(descriptor, length, status)
     integer, intent(in) :: descriptor
     integer(c_long), intent(in) :: length
@@ -206,7 +206,7 @@ contains
     if (status /= error_no_space) status = 0
   end subroutine reserve_file
 
-  !> One write: `done` bytes of `text` went out, possibly fewer than there are.
+  !> One call of write: `done` bytes of `text` were written, possibly not all of them.
   subroutine write_bytes(descriptor, text, done, status)
     integer, intent(in) :: descriptor
     character(len=*), intent(in), target :: text
@@ -215,7 +215,7 @@ contains
     status = outcome(done)
   end subroutine write_bytes
 
-  !> Cut an open file to `length` bytes. The position for the next write stays where it was.
+  !> Truncate an open file to `length` bytes. The position for the next write does not change.
   subroutine truncate_file(descriptor, length, status)
     integer, intent(in) :: descriptor
     integer(c_long), intent(in) :: length
@@ -229,7 +229,7 @@ contains
     status = outcome(int(c_close(int(descriptor, c_int))))
   end subroutine close_file
 
-  !> Give a file another name, replacing what had it.
+  !> Rename a file, replacing an existing file.
   subroutine rename_file(from, to, status)
     character(len=*), intent(in) :: from, to
     integer, intent(out) :: status
@@ -242,7 +242,7 @@ contains
     status = outcome(int(c_unlink(path//c_null_char)))
   end subroutine remove_file
 
-  !> Make a folder and the folders above it; one that exists already is no error.
+  !> Make a folder and all its parents; an existing folder is not an error.
   subroutine make_directory(path, status)
     character(len=*), intent(in) :: path
     integer, intent(out) :: status
@@ -262,7 +262,7 @@ contains
     answer = c_isatty(int(descriptor, c_int)) == 1
   end function is_terminal
 
-  !> Wait for bytes to read, or the end of them, so many milliseconds at most. `is_there` is true also where reading would fail.
+  !> Wait for data to read, or for their end, at most for the given time in ms. `is_there` is true also if reading would fail.
   subroutine wait_for_input(descriptor, milliseconds, is_there)
     integer, intent(in) :: descriptor, milliseconds
     logical, intent(out) :: is_there
@@ -272,7 +272,7 @@ contains
     is_there = c_poll(file, 1_c_long, int(milliseconds, c_int)) > 0
   end subroutine wait_for_input
 
-  !> What an error number means, in the words of the system.
+  !> The system's text for an error number.
   function error_text(number) result(text)
     integer, intent(in) :: number
     character(len=:), allocatable :: text
@@ -284,8 +284,8 @@ contains
     if (c_strerror_r(int(number, c_int), buffer, len(buffer, c_size_t)) == 0) text = buffer(:index(buffer, c_null_char) - 1)
   end function error_text
 
-  !> Where the program was started without standard input, output or error, nothing takes their places: else the first
-  !> result file would, and what goes to standard output would go into it.
+  !> If the program was started without standard input, output or error, open them on /dev/null. Otherwise the first result file
+  !> would get one of their numbers, and text for standard output would go into it.
   subroutine fill_standard_descriptors()
     integer :: descriptor
     integer(c_int), parameter :: last_standard = 2
@@ -297,13 +297,13 @@ contains
     if (descriptor > last_standard) unused = c_close(int(descriptor, c_int))
   end subroutine fill_standard_descriptors
 
-  !> End the program with an exit status, without a word.
+  !> End the program with an exit status, without output.
   subroutine quit(status)
     integer, intent(in) :: status
     call c_exit(int(status, c_int))
   end subroutine quit
 
-  !> 0 after success, else the error number of the call just made.
+  !> 0 after success, else the error number of the last call.
   integer function outcome(returned) result(status)
     integer, intent(in) :: returned
     integer(c_int), pointer :: number

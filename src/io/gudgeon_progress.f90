@@ -1,5 +1,5 @@
-!> Progress on standard error, one line for each case that rewrites itself. Each line goes out in one call, so that
-!> lines of cases side by side do not mix.
+!> Shows progress on standard error, in one line for each case that is overwritten. Each line is written in one call, so that the
+!> lines of several cases do not mix.
 module gudgeon_progress
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp
@@ -11,16 +11,16 @@ module gudgeon_progress
   public :: progress_t, progress_wanted, tell, rate_text, duration_text
 
   integer, parameter :: standard_error = 2
-  real(dp), parameter :: least_interval = 0.2_dp   !! between two lines [s]
+  real(dp), parameter :: least_interval = 0.2_dp   !! shortest time between two lines [s]
 
   !> The progress of one case.
   type :: progress_t
     private
     logical :: is_on = .false.
     logical :: has_shown = .false.
-    logical :: rewrites = .false.                  !! a terminal: one line, written over
+    logical :: rewrites = .false.                  !! on a terminal: the line is overwritten
     character(len=:), allocatable :: name
-    integer(int64) :: began = 0, shown = 0         !! ticks of the clock
+    integer(int64) :: began = 0, shown = 0         !! clock ticks
   contains
     procedure :: start
     procedure :: update
@@ -32,14 +32,14 @@ module gudgeon_progress
 
 contains
 
-  !> Whether progress is to be shown: `when` is auto (a terminal is there), always or never.
+  !> Whether progress is shown: `when` is auto (on a terminal), always or never.
   logical function progress_wanted(when) result(wanted)
     character(len=*), intent(in) :: when
     wanted = when == 'always'
     if (when == 'auto') wanted = is_terminal(standard_error)
   end function progress_wanted
 
-  !> Begin a case; without `is_on` the other calls do nothing.
+  !> Begin a case; if `is_on` is false, the other procedures have no effect.
   subroutine start(self, name, is_on)
     class(progress_t), intent(inout) :: self
     character(len=*), intent(in) :: name
@@ -52,7 +52,7 @@ contains
     self%shown = self%began
   end subroutine start
 
-  !> `fraction` of the run is done, at the simulated time `time` [s]. Called as often as one likes.
+  !> Report that a `fraction` of the run is done, at the simulated time `time` [s]. May be called as often as desired.
   subroutine update(self, fraction, time)
     class(progress_t), intent(inout) :: self
     real(dp), intent(in) :: fraction, time
@@ -67,7 +67,8 @@ contains
     self%has_shown = .true.
   end subroutine update
 
-  !> `done` of `total` runs have ended, `began` of them before this program did. Called as often as one likes.
+  !> Report that `done` of `total` runs have ended, `began` of them before this program was started. May be called as often as
+  !> desired.
   subroutine update_runs(self, done, total, began)
     class(progress_t), intent(inout) :: self
     integer, intent(in) :: done, total, began
@@ -83,7 +84,7 @@ contains
     self%has_shown = .true.
   end subroutine update_runs
 
-  !> `fraction` of something else than a run is done. Called as often as one likes.
+  !> Report that a `fraction` of work other than a run is done. May be called as often as desired.
   subroutine update_share(self, fraction)
     class(progress_t), intent(inout) :: self
     real(dp), intent(in) :: fraction
@@ -112,7 +113,7 @@ contains
     elapsed = real(now - self%began, dp)/real(rate, dp)
   end subroutine look_at_clock
 
-  !> Clear the line, if there is one.
+  !> Clear the line, if one is shown.
   subroutine finish(self)
     class(progress_t), intent(inout) :: self
     if (self%has_shown .and. self%rewrites) call show(.true., '')
@@ -120,7 +121,7 @@ contains
     self%has_shown = .false.
   end subroutine finish
 
-  !> Say something to the user, and leave no progress in its line.
+  !> Write a message for the user in place of the progress line.
   subroutine tell_above(self, line)
     class(progress_t), intent(inout) :: self
     character(len=*), intent(in) :: line
@@ -128,14 +129,14 @@ contains
     call tell(line)
   end subroutine tell_above
 
-  !> One line on standard error, in one call.
+  !> Write one line to standard error, in one call.
   subroutine tell(line)
     character(len=*), intent(in) :: line
     integer :: done, ignored
     call write_bytes(standard_error, 'gudgeon: '//line//achar(10), done, ignored)
   end subroutine tell
 
-  !> Replace the line on the screen, or add one to a file.
+  !> Replace the line on a terminal, or add a line to a file.
   subroutine show(rewrites, line)
     logical, intent(in) :: rewrites
     character(len=*), intent(in) :: line
@@ -147,7 +148,7 @@ contains
     end if
   end subroutine show
 
-  !> Runs in a time, for people: 640 runs/s, 12 runs/min.
+  !> Number of runs per time for the user: 640 runs/s, 12 runs/min.
   function rate_text(per_second) result(text)
     real(dp), intent(in) :: per_second
     character(len=:), allocatable :: text
@@ -158,7 +159,7 @@ contains
     end if
   end function rate_text
 
-  !> A time span for people: 42 s, 3 min 5 s, 2 h 7 min.
+  !> A time span for the user: 42 s, 3 min 5 s, 2 h 7 min.
   pure function duration_text(seconds) result(text)
     real(dp), intent(in) :: seconds
     character(len=:), allocatable :: text

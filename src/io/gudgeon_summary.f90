@@ -1,4 +1,4 @@
-!> The summary of a run: NAME.summary.csv, and one line for people.
+!> The summary of a run: NAME.summary.csv, and one line for the user.
 module gudgeon_summary
   use, intrinsic :: iso_fortran_env, only: int64, compiler_version, compiler_options
   use gudgeon_kinds, only: dp
@@ -22,14 +22,15 @@ module gudgeon_summary
 
 contains
 
-  !> The rows `quantity,value,unit`. Peaks have as many digits as the trace, so that rounding lifts no row above them.
+  !> The rows `quantity,value,unit`. Peaks have as many digits as the trace, so that rounding does not make a row of the trace
+  !> exceed them.
   function summary_table(case, report, wall_time, identity, trace_length, events_length, is_twin) result(text)
     type(case_t), intent(in) :: case
     type(run_report_t), intent(in) :: report
     real(dp), intent(in) :: wall_time                               !! [s]
-    character(len=*), intent(in) :: identity                        !! of the run
-    integer(int64), intent(in) :: trace_length, events_length       !! of the files [bytes]; 0: there is none
-    logical, intent(in), optional :: is_twin                        !! of the ideal twin, whose bodies are rigid
+    character(len=*), intent(in) :: identity                        !! identity of the run
+    integer(int64), intent(in) :: trace_length, events_length       !! lengths of the files [bytes]; 0: no such file
+    logical, intent(in), optional :: is_twin                        !! true for the ideal twin, whose bodies are rigid
     character(len=:), allocatable :: text
     character(len=5), parameter :: method_names(2) = ['adams', 'radau']
     integer :: order, limit, mode, method, corner
@@ -111,7 +112,7 @@ contains
 
   contains
 
-    !> What a run until the motion repeats has found.
+    !> Rows about the period of the motion, of a run until it is periodic.
     subroutine add_period(periods)
       type(period_watch_t), intent(in) :: periods
       call add('motion', trim(merge('periodic    ', 'not_periodic', periods%period > 0)), '')
@@ -124,7 +125,7 @@ contains
       if (periods%window_after >= 0) call add('window_start', real_text(periods%window_start), 's')
     end subroutine add_period
 
-    !> What a joint with clearance has, its names after a prefix.
+    !> Rows of a joint with clearance, with a prefix.
     subroutine add_joint(prefix, joint, pin)
       character(len=*), intent(in) :: prefix
       type(joint_case_t), intent(in) :: joint
@@ -144,7 +145,7 @@ contains
       if (joint%reports_film .and. allocated(joint%film)) call add_film(prefix, joint, pin)
     end subroutine add_joint
 
-    !> How exact the table of a film is, if it has one.
+    !> Row of the error of a film's table, if it has one.
     subroutine add_table(prefix, joint)
       character(len=*), intent(in) :: prefix
       type(joint_case_t), intent(in) :: joint
@@ -153,7 +154,7 @@ contains
       call add(prefix//'film_table_mean_error', real_text(joint%film%table_mean_error), '1')
     end subroutine add_table
 
-    !> What a corner of the skirt in the bore has.
+    !> Rows of a corner of the skirt in the bore.
     subroutine add_corner(prefix, corner)
       character(len=*), intent(in) :: prefix
       type(corner_figures_t), intent(in) :: corner
@@ -175,7 +176,7 @@ contains
         call add(prefix//'mean_film_side_flow', real_text(pin%film_volume/report%figures%time), 'm3/s')
     end subroutine add_film
 
-    !> What elastic members have. The ideal twin of such a case says that it is rigid.
+    !> Rows of elastic members. The summary of the ideal twin says that they are rigid.
     subroutine add_elastic(largest)
       type(elastic_figures_t), intent(in) :: largest
       logical :: is_rigid
@@ -208,11 +209,11 @@ contains
     end subroutine add
   end function summary_table
 
-  !> The phases of the joints with clearance in a mode, the piston pin's first: its digits to the base of three; before them that of
-  !> a guide with clearance, which counts last.
+  !> Names of the phases of the joints in a mode of the scene, the piston pin first: the digits of the mode in base three. For a
+  !> guide with clearance its phase precedes them; it is the highest digit.
   function phases_of(case, mode) result(text)
     type(case_t), intent(in) :: case
-    integer, intent(in) :: mode   !! from 0 on
+    integer, intent(in) :: mode   !! number >= 0
     character(len=:), allocatable :: text
     character(len=7), parameter :: names(0:2) = ['free   ', 'film   ', 'contact']
     integer :: pins
@@ -229,7 +230,7 @@ contains
     if (case%crank_pin%has_clearance() .and. case%joint%has_clearance()) text = text//'_'//trim(names(pins/size(names)))
   end function phases_of
 
-  !> The value of a quantity in such a table, as it stands there; empty where there is none.
+  !> The value of a quantity in the text of a summary; empty if it is not there.
   function summary_value(table, quantity) result(text)
     character(len=*), intent(in) :: table, quantity
     character(len=:), allocatable :: text
@@ -242,7 +243,7 @@ contains
     text = text(:index(text, ',', back=.true.) - 1)
   end function summary_value
 
-  !> A length of a file.
+  !> Length of a file as a text.
   function bytes_text(length) result(text)
     integer(int64), intent(in) :: length
     character(len=:), allocatable :: text
@@ -251,17 +252,17 @@ contains
     text = trim(digits)
   end function bytes_text
 
-  !> Largest energy residual over the largest energy [-]; 0 where there is no energy.
+  !> Largest energy residual divided by the largest energy [-]; 0 if there is no energy.
   pure real(dp) function relative_residual(report)
     type(run_report_t), intent(in) :: report
     relative_residual = 0
     if (report%figures%max_energy > 0) relative_residual = report%figures%max_energy_residual/report%figures%max_energy
   end function relative_residual
 
-  !> Advice for the user of a program that the compiler has not optimised, or an empty text.
+  !> Advice for the user of a program that was compiled without optimisation, or an empty text.
   pure function build_advice(flags, seconds) result(text)
-    character(len=*), intent(in) :: flags   !! of the compiler, separated by blanks
-    real(dp), intent(in) :: seconds         !! that the cases took
+    character(len=*), intent(in) :: flags   !! compiler options, separated by blanks
+    real(dp), intent(in) :: seconds         !! time taken by the cases [s]
     character(len=:), allocatable :: text
     character(len=*), parameter :: worth_it(3) = [character(len=7) :: ' -O2', ' -O3', ' -Ofast']
     real(dp), parameter :: patience = 2
@@ -274,7 +275,7 @@ contains
     text = 'this is a build for debugging, several times slower than the fast program: scripts/install.sh installs that'
   end function build_advice
 
-  !> What to say of a run that is done with a large energy residual.
+  !> Warning about a completed run with a large energy residual.
   function energy_warning(case, report) result(text)
     type(case_t), intent(in) :: case
     type(run_report_t), intent(in) :: report
@@ -284,13 +285,13 @@ contains
       ' relative tolerances: compare with a run with a tenth of &integrator relative_tolerance'
   end function energy_warning
 
-  !> One line for people.
+  !> The line for the user.
   function summary_line(case, report, wall_time, path, remark) result(text)
     type(case_t), intent(in) :: case
     type(run_report_t), intent(in) :: report
     real(dp), intent(in) :: wall_time
-    character(len=*), intent(in) :: path   !! of the results, without their endings
-    character(len=*), intent(in), optional :: remark   !! how far the run can be believed, or empty
+    character(len=*), intent(in) :: path   !! path of the results without suffix
+    character(len=*), intent(in), optional :: remark   !! text about the certificate, or empty
     character(len=:), allocatable :: text
     associate (s => report%statistics, f => report%figures)
       text = case%name//': '//report%status//'; '
@@ -315,7 +316,7 @@ contains
     end associate
   end function summary_line
 
-  !> What it says of a run until the motion repeats.
+  !> Text about the period of the motion.
   function period_text(periods) result(text)
     type(period_watch_t), intent(in) :: periods
     character(len=:), allocatable :: text
@@ -330,7 +331,7 @@ contains
     if (periods%period > 0) text = text//', recognised after '//integer_text(periods%found_after)
   end function period_text
 
-  !> What it says of a pin.
+  !> Text about one pin.
   function pin_text(joint, pin) result(text)
     type(joint_case_t), intent(in) :: joint
     type(pin_figures_t), intent(in) :: pin

@@ -1,4 +1,4 @@
-!> What must hold between the values of a case with a guide that is not ideal.
+!> Rules that the values of a case with a guide that is not ideal must obey together.
 module guide_rules
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
@@ -16,19 +16,19 @@ module guide_rules
 
 contains
 
-  !> How far from the cylinder's axis the bore leaves the pin's bearing [m].
+  !> Largest distance of the pin's bearing from the cylinder's axis that the bore allows [m].
   pure real(dp) function bore_reach(c)
     type(case_t), intent(in) :: c
     bore_reach = 0
     if (.not. c%has_loose_guide()) return
-    associate (guide => c%guide)   ! tilted until top and bottom of the skirt touch opposite walls
+    associate (guide => c%guide)   ! the piston is tilted until top and bottom of the skirt touch opposite walls
       bore_reach = guide%bore_clearance + abs(guide%piston_com(2))
       if (guide%skirt_top + guide%skirt_bottom > 0) &
         bore_reach = bore_reach + abs(guide%piston_com(1))*2*guide%bore_clearance/(guide%skirt_top + guide%skirt_bottom)
     end associate
   end function bore_reach
 
-  !> A guide has what its kind needs, friction that does not jam the piston, and a piston that starts in its bore.
+  !> Check that a guide has the keys of its kind, that its friction does not jam the piston, and that the piston starts in its bore.
   subroutine check_guide(c, values, error)
     type(case_t), intent(in) :: c
     type(case_values_t), intent(in) :: values
@@ -43,7 +43,7 @@ contains
     if (allocated(c%guide%friction)) call check_friction(c, values, error)
   end subroutine check_guide
 
-  !> Clearance needs the dimensions of the skirt, the piston's inertia and a stiffness.
+  !> Check that the dimensions of the skirt, the piston's inertia and a stiffness are given.
   subroutine check_clearance(values, error)
     type(case_values_t), intent(in) :: values
     type(error_t), allocatable, intent(out) :: error
@@ -62,7 +62,7 @@ contains
     if (values%is_said(find_key(values%keys, 'guide', 'dissipation'))) call values%check_family('guide', 'dissipation', error)
   end subroutine check_clearance
 
-  !> Without clearance the piston is on the cylinder's axis.
+  !> Check that a piston without clearance starts on the cylinder's axis.
   subroutine check_on_axis(c, values, error)
     type(case_t), intent(in) :: c
     type(case_values_t), intent(in) :: values
@@ -80,8 +80,8 @@ contains
       call values%refuse('guide', 'bore_clearance', 'needs kind = ''clearance''; the default is friction', error)
   end subroutine check_on_axis
 
-  !> No surfaces stick on the guide, and where the piston pin is ideal the friction must not jam the piston: the side force that a
-  !> force along the cylinder raises is tan A of it where the crank does not yield, A at most arcsin R/L.
+  !> Check that the friction law has no sticking, which the guide does not support, and that friction does not jam a piston with an
+  !> ideal pin: an axial force causes a side force of at most tan A times its size, where A is at most arcsin R/L.
   subroutine check_friction(c, values, error)
     type(case_t), intent(in) :: c
     type(case_values_t), intent(in) :: values
@@ -104,7 +104,7 @@ contains
       ', the least of rod_length cos A/(crank_length sin q): more would jam the piston', error)
   end subroutine check_friction
 
-  !> The piston starts in its bore, or with corners pressed into the wall, but not through it.
+  !> Check that the piston starts in its bore, or with corners in the wall but not beyond it.
   subroutine check_piston_start(c, values, error)
     type(case_t), intent(in) :: c
     type(case_values_t), intent(in) :: values

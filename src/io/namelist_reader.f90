@@ -1,6 +1,6 @@
-!> The syntax of Fortran namelists, read into groups, keys and values without knowing what they mean. Stricter than a
-!> compiler's reader, which lets mistakes pass: nothing but comments may stand outside a group, every group is closed
-!> by / or &end, every key has its values, and no value is left out between commas.
+!> Reads the syntax of Fortran namelists into groups, keys and values, without knowledge of their meaning. It is stricter than the
+!> reader of a compiler, which accepts some mistakes: only comments may stand outside a group, every group must be closed by / or
+!> &end, every key must have values, and no value may be missing between commas.
 module namelist_reader
   use text_tools, only: printable
   use text_scanner, only: scanner_t, name_here, pass_name, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line, &
@@ -9,15 +9,15 @@ module namelist_reader
   private
   public :: namelist_t, named_group_t, entry_t, token_t, read_namelist, read_values
 
-  !> One value as written, `repeat` times over.
+  !> One value as written, `repeat` times.
   type :: token_t
-    character(len=:), allocatable :: text   !! without quotes, doubled quotes undone
+    character(len=:), allocatable :: text   !! without quotes; doubled quotes inside are single
     logical :: quoted = .false.
     integer :: repeat = 1
-    logical :: follows_comma = .false.   !! without a blank between
+    logical :: follows_comma = .false.   !! follows a comma without a blank
   end type token_t
 
-  !> A group where it begins.
+  !> The beginning of a group.
   type :: named_group_t
     character(len=:), allocatable :: name
     integer :: line = 0
@@ -26,23 +26,23 @@ module namelist_reader
   !> One `key = values` of a group.
   type :: entry_t
     character(len=:), allocatable :: group, key
-    integer :: group_number = 0              !! of all groups of the file
-    integer :: index = 0                     !! n of key(n); 0 without one
+    integer :: group_number = 0              !! index among the groups of the file
+    integer :: index = 0                     !! n of key(n); 0 for a key without index
     integer :: line = 0
     type(token_t), allocatable :: tokens(:)
   end type entry_t
 
-  !> All of a file; names in lower case.
+  !> All groups and entries of a file; names in lower case.
   type :: namelist_t
     type(named_group_t), allocatable :: groups(:)
     type(entry_t), allocatable :: entries(:)
   end type namelist_t
 
-  integer, parameter :: most = 1000  !! groups, keys, values of a key: no sane file has as many
+  integer, parameter :: most = 1000  !! largest number of groups, keys, and values of a key
 
 contains
 
-  !> Read a whole file's text. `message` is allocated on a mistake, found on `line`.
+  !> Read the text of a whole file. On a mistake `message` is allocated, and `line` is its line.
   subroutine read_namelist(text, list, message, line)
     character(len=*), intent(in) :: text
     type(namelist_t), intent(out) :: list
@@ -72,7 +72,7 @@ contains
     if (allocated(scan%message)) call move_alloc(scan%message, message)
   end subroutine read_namelist
 
-  !> Read the values of one key from a text that holds nothing else.
+  !> Read the values of one key from a text that contains nothing else.
   subroutine read_values(text, tokens, message)
     character(len=*), intent(in) :: text
     type(token_t), allocatable, intent(out) :: tokens(:)
@@ -87,7 +87,7 @@ contains
     if (allocated(scan%message)) call move_alloc(scan%message, message)
   end subroutine read_values
 
-  !> From the & of a group to the / or &end that closes it.
+  !> Read a group from its & to the closing / or &end.
   subroutine read_group(scan, groups, n_groups, entries, n_entries)
     type(scanner_t), intent(inout) :: scan
     type(named_group_t), intent(inout) :: groups(most)
@@ -173,7 +173,7 @@ contains
     if (allocated(scan%message)) scan%message = place//': '//scan%message
   end subroutine read_entry
 
-  !> The n of (n), leaving the place behind it; 0 where it is none.
+  !> The n of (n), and move behind it; 0 if there is none.
   subroutine read_index(scan, n)
     type(scanner_t), intent(inout) :: scan
     integer, intent(out) :: n
@@ -188,7 +188,7 @@ contains
     scan%at = scan%at + length
   end subroutine read_index
 
-  !> The values of a key, up to the next key, / or &.
+  !> Read the values of a key, up to the next key, / or &.
   subroutine read_tokens(scan, tokens)
     type(scanner_t), intent(inout) :: scan
     type(token_t), allocatable, intent(out) :: tokens(:)
@@ -225,7 +225,7 @@ contains
     if (n == 0) scan%message = 'a value is missing'
   end subroutine read_tokens
 
-  !> One value: a quoted string or a bare word or number, with its repeat count.
+  !> Read one value: a quoted string, a word or a number, with its repeat count.
   subroutine read_token(scan, token)
     type(scanner_t), intent(inout) :: scan
     type(token_t), intent(inout) :: token
@@ -259,7 +259,7 @@ contains
     call read_string(scan, token)
   end subroutine read_token
 
-  !> A string in single or double quotes; the quote doubled stands for itself. It ends on the line where it began.
+  !> Read a string in single or double quotes; a doubled quote stands for one. It must end on the line on which it begins.
   subroutine read_string(scan, token)
     type(scanner_t), intent(inout) :: scan
     type(token_t), intent(inout) :: token
@@ -290,7 +290,7 @@ contains
     scan%message = 'the string is not closed on its line: '//piece(scan)
   end subroutine read_string
 
-  !> Whether a key, not a value, stands here: a name, perhaps an index in parentheses, and =.
+  !> Whether a key begins here and not a value: a name, possibly with an index in parentheses, followed by =.
   logical function key_is_next(scan) result(found)
     type(scanner_t), intent(inout) :: scan
     integer :: at, line, n

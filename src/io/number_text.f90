@@ -1,4 +1,4 @@
-!> Single numbers as text. Tables of results are made by `number_writer`.
+!> Single numbers as text. For tables of results see `number_writer`.
 module number_text
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use gudgeon_kinds, only: dp
@@ -10,7 +10,7 @@ module number_text
 
 contains
 
-  !> A real for a summary: 10 significant digits or as many as asked for, as 1.234567890E-05.
+  !> A real for a summary: `digits` significant digits (default 10), as 1.234567890E-05.
   pure function real_text(value, digits) result(text)
     real(dp), intent(in) :: value
     integer, intent(in), optional :: digits
@@ -21,14 +21,14 @@ contains
     text = scientific(value, wanted)
   end function real_text
 
-  !> A real that reads back as the same bits: 17 significant digits.
+  !> A real with 17 significant digits, which reads back as the same bits.
   pure function exact_text(value) result(text)
     real(dp), intent(in) :: value
     character(len=:), allocatable :: text
     text = scientific(value, 17)
   end function exact_text
 
-  !> A real for people: 6 significant digits, without the zeros at their end; as 0.0125 or 36000.5 where that is short.
+  !> A real for messages: 6 significant digits without trailing zeros, as 0.0125 or 36000.5 if that is short.
   pure function short_text(value) result(text)
     real(dp), intent(in) :: value
     character(len=:), allocatable :: text
@@ -51,7 +51,7 @@ contains
     end if
   end function short_text
 
-  !> A number with a point, without zeros at its end, or the point.
+  !> A number with a decimal point, without trailing zeros and without a trailing point.
   pure function without_zeros(number) result(text)
     character(len=*), intent(in) :: number
     character(len=:), allocatable :: text
@@ -63,7 +63,7 @@ contains
 
   pure function scientific(value, digits) result(text)
     real(dp), intent(in) :: value
-    integer, intent(in) :: digits   !! significant ones
+    integer, intent(in) :: digits   !! number of significant digits
     character(len=:), allocatable :: text
     character(len=longest_number) :: line
     integer :: used

@@ -1,10 +1,10 @@
-!> Real numbers as decimal text, the digits of a formatted write in a hundredth of its time: for tables of results.
+!> Writes reals as decimal text for tables of results, with the same digits as a formatted write, about a hundred times faster.
 !>
-!> A number of the decade from 10**k to 10**(k + 1) has as its digits the whole part of its product with 10**(digits - 1 - k),
-!> rounded. The product is made of the number's significand, shifted left by as many places as the number's first bit is above
-!> that of 10**k, and a factor that belongs to the decade, as a fixed-point number with `fraction_bits` behind the point. Where
-!> these leave open how the last digit is rounded, as in a tie, a formatted write decides; it also writes numbers below
-!> 10**(-307) and what is not finite.
+!> The digits of a number between 10**k and 10**(k + 1) are the whole part of its product with 10**(digits - 1 - k), rounded. The
+!> product is computed from the number's significand, shifted left by the difference of the binary exponents of the number and of
+!> 10**k, and a factor for the decade, as a fixed-point number with `fraction_bits` fractional bits. If the error of the product
+!> leaves the rounding of the last digit open, as in a tie, a formatted write is used; it is also used for numbers below 10**(-307)
+!> and for values that are not finite.
 module number_writer
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp
@@ -13,15 +13,15 @@ module number_writer
   public :: number_writer_t, append_formatted, longest_number, fewest_digits, most_digits
 
   integer, parameter :: fewest_digits = 6, most_digits = 17   !! significant digits
-  integer, parameter :: longest_number = most_digits + 9      !! characters, as -1.2345678901234567E-100, and blanks behind
-  integer, parameter :: first_decade = -307, last_decade = 309   !! the last that numbers reach, and one beyond
+  integer, parameter :: longest_number = most_digits + 9      !! characters, as -1.2345678901234567E-100, with trailing blanks
+  integer, parameter :: first_decade = -307, last_decade = 309   !! the last decade with numbers, plus one
   integer, parameter :: fraction_bits = 60
   integer, parameter :: wide = selected_int_kind(38)          !! holds the product of two int64
 
-  !> What makes the digits of the numbers of one decade k.
+  !> The constants for numbers of one decade k.
   type :: decade_t
-    integer(int64) :: least          !! the bits of the least number in it
-    integer(int64) :: high, low      !! its factor is high 2**63 + low, cut off
+    integer(int64) :: least          !! bits of the smallest number of the decade
+    integer(int64) :: high, low      !! its factor is high 2**63 + low, truncated
     character(len=8) :: ending       !! E-05,
     integer :: ending_length
   end type decade_t
@@ -31,7 +31,7 @@ module number_writer
     private
     integer :: digits = 0
     integer(int64) :: too_large = 0       !! 10**digits
-    integer(int64) :: to_sixteen = 1      !! 10**(16 - digits), as far as that is whole
+    integer(int64) :: to_sixteen = 1      !! 10**(16 - digits), if that is a whole number
     type(decade_t) :: decades(first_decade:last_decade)
   contains
     procedure :: prepare
@@ -41,13 +41,13 @@ module number_writer
 
 contains
 
-  !> Set the number of significant digits and make the table. Call it first.
+  !> Set the number of significant digits and compute the table. Must be called first.
   pure subroutine prepare(self, digits)
     class(number_writer_t), intent(inout) :: self
     integer, intent(in) :: digits   !! fewest_digits to most_digits
     integer, parameter :: first = first_decade, last = most_digits - 1 - first_decade
     integer(wide), parameter :: one = 1
-    integer(wide) :: powers(first:last)   !! the first 126 bits of 10**k, whose first bit is worth 2**exponents(k)
+    integer(wide) :: powers(first:last)   !! the first 126 bits of 10**k; the first bit has the value 2**exponents(k)
     integer(wide) :: factor
     integer :: exponents(first:last), k
 
@@ -66,10 +66,11 @@ contains
     self%digits = digits
     self%too_large = 10_int64**digits
     self%to_sixteen = 10_int64**max(0, 16 - digits)
-    self%decades(last_decade)%least = huge(0_int64)   ! that no number reaches
+    self%decades(last_decade)%least = huge(0_int64)   ! larger than any number
     do k = first_decade, last_decade - 1
       associate (decade => self%decades(k))
-        decade%least = shiftl(int(exponents(k) + 1022, int64), 52) + int(shiftr(powers(k), 73), int64)   ! a first bit adds 1
+        decade%least = shiftl(int(exponents(k) + 1022, int64), 52) + int(shiftr(powers(k), 73), int64)  ! the first bit adds 1
+                                                                                                        ! the exponent
         if (iand(powers(k), shiftl(one, 73) - 1) > 0) decade%least = decade%least + 1
         factor = shiftr(powers(digits - 1 - k), 125 + 52 - 63 - fraction_bits - exponents(k) - exponents(digits - 1 - k))
         decade%high = int(shiftr(factor, 63), int64)
@@ -79,7 +80,7 @@ contains
     end do
   end subroutine prepare
 
-  !> Halve a power that has reached have one bit more.
+  !> Halve a power that has grown beyond its number of bits.
   pure subroutine normalise(power, exponent)
     integer(wide), intent(inout) :: power
     integer, intent(inout) :: exponent
@@ -88,7 +89,7 @@ contains
     exponent = exponent + 1
   end subroutine normalise
 
-  !> E-05, with a third digit where it takes one, and a comma.
+  !> E-05, with a third digit if necessary, and a comma.
   pure subroutine make_ending(decade, ending, length)
     integer, intent(in) :: decade
     character(len=*), intent(out) :: ending
@@ -102,7 +103,8 @@ contains
     ending(3:) = ending(4:)
   end subroutine make_ending
 
-  !> Append a real to the first `used` characters of a line that has room for `longest_number` more. Zero has no sign.
+  !> Append a real to the first `used` characters of a line that has room for `longest_number` more. Negative zero is written
+  !> without sign.
   pure subroutine append(self, line, used, value)
     class(number_writer_t), intent(in) :: self
     character(len=*), intent(inout) :: line
@@ -116,18 +118,19 @@ contains
     used = used + length - 1
   end subroutine append
 
-  !> Append values, a comma behind each, to the first `used` characters of a text that has room for `longest_number` + 1 more
-  !> for each of them.
+  !> Append values, each followed by a comma, to the first `used` characters of a text that has room for `longest_number` + 1 more
+  !> characters for each of them.
   !>
-  !> What depends on the value is looked up or computed: a branch that goes now one way, now the other costs as much as all the
-  !> rest. The product is too small by less than 2: the making of the powers of ten loses less than 2**(-117) of them, which is less
-  !> than 0.8 of a product below 10**17 2**60, and cutting off less than 1.1.
+  !> Everything that depends on the value is computed or taken from tables without branches, since a mispredicted branch costs as
+  !> much as all the rest. The product is too small by less than 2: the error of the powers of ten is less than 2**(-117) of them,
+  !> which is less than 0.8 for a product below 10**17 2**60, and truncation adds less than 1.1.
   pure subroutine append_list(self, text, used, values)
     class(number_writer_t), intent(in) :: self
     character(len=*), intent(inout) :: text
     integer, intent(inout) :: used
     real(dp), intent(in), contiguous :: values(:)
-    integer(int64), parameter :: hidden_bit = 2_int64**52, half = 2_int64**(fraction_bits - 1), short_by = 3   !! and one more
+    integer(int64), parameter :: hidden_bit = 2_int64**52, half = 2_int64**(fraction_bits - 1), short_by = 3  !! bound of that
+                                                                                                              !! error, plus one
     integer(int64) :: bits, significand, whole
     integer(wide) :: product
     integer :: i, k, binade, at
@@ -174,8 +177,8 @@ contains
     used = at
   end subroutine append_list
 
-  !> Sixteen digits, and a blank, with a point after the first: from the number as a fraction of 53 bits, too large by less than 1.1
-  !> of the last bit. Its whole part is the first digit, and three more after a multiplication by a thousand.
+  !> Write sixteen digits with a point after the first, and a blank, from the number as a fraction of 53 bits that is too large by
+  !> less than 1.1 units of the last bit. Its whole part is the first digit; each multiplication by a thousand gives three more.
   pure subroutine put_sixteen(number, text)
     integer(int64), value :: number
     character(len=18), intent(inout) :: text
@@ -183,7 +186,7 @@ contains
     integer(int64), parameter :: mask = 2_int64**53 - 1
     integer(int64) :: fraction
     integer :: i, j, k
-    character(len=4), parameter :: triples(0:999) = &   !! the numbers 000 to 999, and a blank behind each
+    character(len=4), parameter :: triples(0:999) = &   !! the numbers 000 to 999, each followed by a blank
       [(((achar(48 + i)//achar(48 + j)//achar(48 + k)//' ', k=0, 9), j=0, 9), i=0, 9)]
     fraction = int(shiftr(scale*number, 59), int64) + 1
     text(1:1) = achar(48 + int(shiftr(fraction, 53)))
@@ -194,7 +197,7 @@ contains
     end do
   end subroutine put_sixteen
 
-  !> A real as `append` writes it, by a formatted write. Zero keeps its sign.
+  !> Append a real in the form of `append` with a formatted write. Negative zero keeps its sign.
   pure subroutine append_formatted(line, used, value, digits)
     character(len=*), intent(inout) :: line
     integer, intent(inout) :: used
@@ -202,7 +205,7 @@ contains
     integer, intent(in) :: digits
     character(len=12) :: form
     character(len=longest_number) :: text
-    integer, parameter :: hundreds = longest_number - 2   !! where the three digits of the exponent begin
+    integer, parameter :: hundreds = longest_number - 2   !! position of the three digits of the exponent
     integer :: first
     write (form, '(a,i0,a,i0,a)') '(es', longest_number, '.', digits - 1, 'e3)'
     write (text, form) value

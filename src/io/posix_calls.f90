@@ -1,4 +1,4 @@
-!> Calls of the C library and their structures, as Linux has them; module posix makes them usable.
+!> Interfaces of calls of the C library and their structures on Linux; gudgeon_posix provides procedures that use them.
 module posix_calls
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_short, c_ptr, c_size_t
   implicit none
@@ -8,7 +8,7 @@ module posix_calls
     c_fallocate, c_statx, c_poll, c_close, c_rename, c_unlink, c_mkdir, c_isatty, c_errno_location, c_strerror_r, &
     c_exit
 
-  !> The struct statx of Linux, the same on every processor.
+  !> The struct statx of Linux, which is the same on all processors.
   type, bind(c) :: file_status_t
     integer(c_int) :: mask = 0, block_size = 0
     integer(c_long) :: attributes = 0

@@ -1,4 +1,4 @@
-!> Signals of the system, as thin bindings for Linux: those that end a program wait until they are asked for.
+!> Signals, as thin bindings for Linux: signals that would end the program are held until the program asks for them.
 module posix_signals
   use, intrinsic :: iso_c_binding, only: c_int, c_intptr_t, c_long
   implicit none
@@ -11,7 +11,7 @@ module posix_signals
   integer(c_int), parameter :: signal_block = 0, signal_set_mask = 2
   integer(c_intptr_t), parameter :: ignore_handler = 1, error_handler = -1
 
-  !> Room for a sigset_t of Linux, 128 bytes.
+  !> Memory for a sigset_t of Linux, 128 bytes.
   type, bind(c) :: signal_set_t
     integer(c_long) :: words(16) = 0
   end type signal_set_t
@@ -46,9 +46,9 @@ module posix_signals
 
 contains
 
-  !> From here on SIGINT, SIGTERM and SIGHUP wait to be asked for by `interrupted` instead of ending the program;
-  !> one that the program was started to ignore stays ignored. Call it before any thread is started. `before` takes what was
-  !> held before, for `restore_interrupts`.
+  !> Hold SIGINT, SIGTERM and SIGHUP from now on: instead of ending the program they are reported by `interrupted`. A signal that
+  !> the program was started to ignore remains ignored. Must be called before any thread is started. `before` receives the previous
+  !> mask, for `restore_interrupts`.
   subroutine hold_interrupts(before)
     type(signal_set_t), intent(out), optional :: before
     type(signal_set_t) :: set, old
@@ -65,7 +65,7 @@ contains
     if (present(before)) before = old
   end subroutine hold_interrupts
 
-  !> Let signals through to this thread as before they were held. One that has come in meanwhile ends the program here.
+  !> Restore the signal mask of this thread. A signal that has arrived in the meantime ends the program here.
   subroutine restore_interrupts(before)
     type(signal_set_t), intent(in) :: before
     type(signal_set_t) :: unused
@@ -73,7 +73,7 @@ contains
     status = c_sigmask(signal_set_mask, before, unused)
   end subroutine restore_interrupts
 
-  !> Whether a held signal has come in.
+  !> Whether a held signal has arrived.
   logical function interrupted() result(answer)
     type(signal_set_t) :: pending
     integer :: i
@@ -84,8 +84,8 @@ contains
     end do
   end function interrupted
 
-  !> Writing to a reader that has gone, or past the largest file allowed, then gives an error number instead of ending
-  !> the program.
+  !> Ignore the signals for writing to a closed pipe or beyond the limit of the file size, so that the write returns an error number
+  !> instead of ending the program.
   subroutine ignore_write_signals()
     integer(c_intptr_t) :: unused
     unused = c_signal(signal_pipe, ignore_handler)

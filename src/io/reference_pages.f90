@@ -1,5 +1,5 @@
-!> Reference pages of the manual in Markdown, made of the declarations of the models: the keys of case and study files, the columns
-!> and quantities of results. `gudgeon --reference` prints them.
+!> Reference pages of the manual in Markdown, generated from the declarations of the models: the keys of case and study files, the
+!> columns and quantities of results. `gudgeon --reference` prints them.
 module reference_pages
   use gudgeon_errors, only: error_t
   use gudgeon_parameters, only: key_t, logical_kind
@@ -15,7 +15,7 @@ module reference_pages
 
   character(len=*), parameter :: newline = achar(10)
 
-  !> A kind of scene: what it changes in the template's case, one change a line.
+  !> A kind of scene: changes to the case of the template, one on each line.
   type :: scene_kind_t
     character(len=80) :: title = ''
     character(len=60) :: changes(12) = ''
@@ -23,7 +23,7 @@ module reference_pages
 
 contains
 
-  !> Every group and key of a case file.
+  !> Page of all groups and keys of a case file.
   function case_reference() result(text)
     character(len=:), allocatable :: text
     type(group_definition_t), allocatable :: groups(:)
@@ -32,7 +32,7 @@ contains
     text = keys_reference(groups, keys)
   end function case_reference
 
-  !> A section for each group, a table row for each key.
+  !> A section for each group, with a table row for each key.
   function keys_reference(groups, keys) result(text)
     type(group_definition_t), intent(in) :: groups(:)
     type(key_t), intent(in) :: keys(:)
@@ -40,7 +40,7 @@ contains
     integer :: group, i
     text = ''
     do group = 1, size(groups)
-      if (index(groups(group)%name, '.') > 0) cycle   ! the same for another joint
+      if (index(groups(group)%name, '.') > 0) cycle   ! copies of groups for another joint
       text = text//'## &'//trim(groups(group)%name)//newline//newline//sentence(trim(groups(group)%description))//newline
       if (groups(group)%instead_of /= '') text = text//'Cannot be combined with `&'//trim(groups(group)%instead_of)//'`.'//newline
       if (groups(group)%place /= '' .or. groups(group)%is_law) &
@@ -75,7 +75,7 @@ contains
     row = '| `'//trim(key%name)//'` | '//trim(key%unit)//' | '//trim(key%range)//' | '//default//' | '//escaped(meaning)//' |'
   end function key_row
 
-  !> Every column and quantity that a result file can have.
+  !> Page of all columns and quantities that a result file can have.
   function results_reference() result(text)
     character(len=:), allocatable :: text
     character(len=name_length), allocatable :: seen(:)
@@ -89,7 +89,7 @@ contains
     do i = 1, size(kinds)
       call columns_of(kinds(i), list, error)
       if (allocated(error)) then
-        text = error%message   ! which a test would see
+        text = error%message   ! would be found by a test
         return
       end if
       call add_columns(kinds(i)%title, list, seen, text)
@@ -151,7 +151,8 @@ contains
     kind%changes(:size(changes)) = changes
   end function kind_of
 
-  !> The columns of a scene that no scene before had, as a section. Of the crank pin those that the piston pin has too are left out.
+  !> Append a section with the columns of a scene that no earlier scene had. Columns of the crank pin that the piston pin has too
+  !> are left out.
   subroutine add_columns(title, list, seen, text)
     character(len=*), intent(in) :: title
     type(column_list_t), intent(in) :: list
@@ -177,7 +178,7 @@ contains
       newline//rows//newline
   end subroutine add_columns
 
-  !> Whether a column is that of the piston pin behind `crank_pin_`.
+  !> Whether a column is one of the piston pin with the prefix `crank_pin_`.
   pure logical function is_joint_prefixed(name, names)
     character(len=*), intent(in) :: name, names(:)
     is_joint_prefixed = .false.
@@ -195,7 +196,7 @@ contains
     end do
   end function quantity_table
 
-  !> With a capital letter and a full stop.
+  !> The text with a capital letter and a full stop.
   pure function sentence(text) result(whole)
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: whole
@@ -206,7 +207,7 @@ contains
     if (whole(len(whole):) /= '.') whole = whole//'.'
   end function sentence
 
-  !> Without what Markdown would take for a column of a table, or for HTML.
+  !> The text without characters that Markdown would interpret as a table column or as HTML.
   pure function escaped(text) result(safe)
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: safe

@@ -1,6 +1,6 @@
-!> A result file that never stands half-written under its final name: rows gather in a buffer, go out to NAME.part in
-!> calls that end between rows, and the file gets its final name when it is closed. (A kill -9 in the middle of such a call cuts
-!> the last row of NAME.part.)
+!> A result file that is never incomplete under its final name: rows are collected in a buffer and written to NAME.part in calls
+!> that end between rows; when the file is closed it gets its final name. (A kill -9 during such a call truncates the last row of
+!> NAME.part.)
 module result_file
   use, intrinsic :: iso_c_binding, only: c_long
   use gudgeon_errors, only: error_t, fail, status_output
@@ -12,17 +12,17 @@ module result_file
   private
   public :: result_file_t, write_text, remove_result, fail_with_file
 
-  integer, parameter :: buffer_size = 65536   !! bytes; larger ones take longer, by the first use of their pages
+  integer, parameter :: buffer_size = 65536   !! bytes; larger buffers are slower, due to the first use of their memory pages
 
-  !> One file being written. A failed write ends the writing: rows put after it are dropped, `conclude` keeps what went
-  !> out whole, `close` reports the failure.
+  !> A file that is being written. After a failed write nothing more is written: further rows are discarded, `conclude` keeps the
+  !> rows that were written completely, and `close` reports the failure.
   type :: result_file_t
-    character(len=:), allocatable :: buffer             !! who has asked for room may add whole rows here, and to `used`
-    integer :: used = 0                                 !! bytes waiting in the buffer
+    character(len=:), allocatable :: buffer  !! after a call of `make_room` whole rows may be added here, and their length to `used`
+    integer :: used = 0                                 !! number of bytes in the buffer
     character(len=:), allocatable, private :: path      !! final name
     integer, private :: descriptor = -1
-    integer(c_long), private :: written = 0             !! bytes of whole rows in the file
-    logical, private :: is_reserved = .false.           !! the disk keeps more room for it than it has bytes
+    integer(c_long), private :: written = 0             !! number of bytes of whole rows in the file
+    logical, private :: is_reserved = .false.           !! more disk space has been reserved than the file has bytes
     integer, private :: status = 0                      !! error number of the first write that failed
   contains
     procedure :: open => open_result
@@ -43,7 +43,7 @@ module result_file
 
 contains
 
-  !> Begin the file that is to be called `path`.
+  !> Begin a file with the final name `path`.
   subroutine open_result(self, path, error)
     class(result_file_t), intent(inout) :: self
     character(len=*), intent(in) :: path
@@ -61,7 +61,7 @@ contains
     if (status /= 0) call fail_with_file(self%path, status, error)
   end subroutine open_result
 
-  !> Go on with the file that is to be called `path` from its first `length` bytes. What there is of it has the name `present`.
+  !> Continue a file with the final name `path` after its first `length` bytes. The existing file has the name `present`.
   subroutine reopen(self, path, present, length, error)
     class(result_file_t), intent(inout) :: self
     character(len=*), intent(in) :: path, present
@@ -78,7 +78,7 @@ contains
     if (status /= 0) call fail_with_file(self%path, status, error)
   end subroutine reopen
 
-  !> Add whole rows; `text` ends with an end of line.
+  !> Add whole rows; `text` must end with an end of line.
   subroutine put(self, text)
     class(result_file_t), intent(inout) :: self
     character(len=*), intent(in) :: text
@@ -92,7 +92,7 @@ contains
     end if
   end subroutine put
 
-  !> Room in the buffer for so many bytes, `buffer_size` at most.
+  !> Make room in the buffer for `length` bytes, at most `buffer_size`.
   subroutine make_room(self, length)
     class(result_file_t), intent(inout) :: self
     integer, intent(in) :: length
@@ -100,8 +100,8 @@ contains
     if (.not. allocated(self%buffer)) allocate (character(len=buffer_size) :: self%buffer)
   end subroutine make_room
 
-  !> Have the disk keep room for so many bytes, before any is written: they can be written even when it is full then. Error: it
-  !> is full already.
+  !> Reserve disk space before anything is written, so that the file can be written even if the disk is full later. Error: there is
+  !> not enough space.
   subroutine reserve(self, length, error)
     class(result_file_t), intent(inout) :: self
     integer, intent(in) :: length
@@ -113,22 +113,22 @@ contains
     if (status /= 0) call fail_with_file(self%path, status, error)
   end subroutine reserve
 
-  !> Write out what waits in the buffer.
+  !> Write the content of the buffer.
   subroutine flush_rows(self)
     class(result_file_t), intent(inout) :: self
     if (self%used > 0) call write_rows(self, self%buffer(:self%used))
     self%used = 0
   end subroutine flush_rows
 
-  !> Write out what waits, down to the disk. A failure ends the writing: the system may have thrown away what it could not write.
-  !> `tell_error` says which. This makes no text.
+  !> Write the content of the buffer to the file and to the disk. After a failure nothing more is written, since the system may have
+  !> discarded data; `tell_error` reports it. No text function is used here.
   subroutine synchronise(self)
     class(result_file_t), intent(inout) :: self
     integer :: status
     if (self%descriptor < 0) return
     call self%flush()
     status = 0
-    if (self%is_reserved) call truncate_file(self%descriptor, self%written, status)   ! what is beyond goes back to the disk
+    if (self%is_reserved) call truncate_file(self%descriptor, self%written, status)   ! release the unused reserved space
     self%is_reserved = .false.
     if (self%status == 0) call synchronise_file(self%descriptor, status)
     if (self%status == 0 .and. status /= 0) then
@@ -137,14 +137,14 @@ contains
     end if
   end subroutine synchronise
 
-  !> Bytes of whole rows that are in the file.
+  !> Number of bytes of whole rows in the file.
   pure function length(self)
     class(result_file_t), intent(in) :: self
     integer(c_long) :: length
     length = self%written
   end function length
 
-  !> Whether a write has failed, so that nothing more can be kept; also while another thread writes.
+  !> Whether a write has failed. May be called while another thread writes.
   logical function has_failed(self) result(failed)
     class(result_file_t), intent(in) :: self
     integer :: status
@@ -160,8 +160,9 @@ contains
     if (self%status /= 0) call fail_with_file(self%path, self%status, error)
   end subroutine tell_error
 
-  !> Write out the rest and give the file its final name. After a failed write it holds the whole rows that fitted (there
-  !> is no file if none did, or if it is of no use in part: `whole_only`). `close` reports the failure; this makes no text.
+  !> Write the remaining rows and give the file its final name. After a failed write the file keeps its complete rows; it is removed
+  !> if it has none, or if `whole_only` says that a part of it is useless. `close` reports the failure. No text function is used
+  !> here.
   subroutine conclude(self, whole_only)
     class(result_file_t), intent(inout) :: self
     logical, intent(in), optional :: whole_only
@@ -183,7 +184,7 @@ contains
     end if
   end subroutine conclude
 
-  !> Conclude the file, if that is not done yet; `error` names it and the cause of a failure.
+  !> Conclude the file unless that has been done; `error` contains its name and the cause of a failure.
   subroutine close_result(self, error, whole_only)
     class(result_file_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
@@ -192,7 +193,7 @@ contains
     call self%tell_error(error)
   end subroutine close_result
 
-  !> Leave what is written under the temporary name; a file without any of it is removed.
+  !> Leave the file under its temporary name; an empty file is removed.
   subroutine leave(self)
     class(result_file_t), intent(inout) :: self
     integer :: ignored
@@ -203,7 +204,7 @@ contains
     if (.not. self%written > 0) call remove_file(self%path//'.part', ignored)
   end subroutine leave
 
-  !> Give the file up: nothing of it stays.
+  !> Remove the file.
   subroutine abandon(self)
     class(result_file_t), intent(inout) :: self
     integer :: ignored
@@ -214,7 +215,7 @@ contains
     self%used = 0
   end subroutine abandon
 
-  !> A small file, written whole down to the disk, or not at all.
+  !> Write a small file to the disk, completely or not at all.
   subroutine write_text(path, text, error)
     character(len=*), intent(in) :: path, text
     type(error_t), allocatable, intent(out) :: error
@@ -226,8 +227,8 @@ contains
     call file%close(error, whole_only=.true.)
   end subroutine write_text
 
-  !> Remove a result, finished or not. `status` is 0 also where there was none, or where a folder has its name, else the error
-  !> number; `was_there` turns true where something was removed. This makes no text.
+  !> Remove a result file and its temporary file. `status` is 0, also if there is no such file or if it is a folder; otherwise it is
+  !> the error number. `was_there` becomes true if something was removed. No text function is used here.
   subroutine remove_result(path, was_there, status)
     character(len=*), intent(in) :: path
     logical, intent(inout) :: was_there
@@ -239,7 +240,7 @@ contains
     if (status == error_no_entry .or. status == error_is_directory) status = 0
   end subroutine remove_result
 
-  !> All of `text`, in as many calls as it takes. When one fails the file is cut back to its last whole row.
+  !> Write all of `text`, in as many calls as necessary. After a failure the file is truncated to whole rows.
   subroutine write_rows(self, text)
     class(result_file_t), intent(inout) :: self
     character(len=*), intent(in) :: text
@@ -262,7 +263,7 @@ contains
     if (last < at) call truncate_file(self%descriptor, self%written, status)
   end subroutine write_rows
 
-  !> The error for an error number of the system, met with a result.
+  !> The error for an error number of the system, for a result file.
   subroutine fail_with_file(path, status, error)
     character(len=*), intent(in) :: path
     integer, intent(in) :: status

@@ -1,4 +1,4 @@
-!> A sink that keeps rows and events in memory, and ends when the user interrupts.
+!> A sink that stores rows and events in memory, and ends the run when the user interrupts.
 module row_store
   use gudgeon_kinds, only: dp
   use trace_sink, only: trace_sink_t, trace_event_t
@@ -9,8 +9,8 @@ module row_store
 
   type, extends(trace_sink_t) :: row_store_t
     integer :: rows = 0, events = 0
-    real(dp), allocatable :: values(:, :)           !! (columns, rows and room for more)
-    type(trace_event_t), allocatable :: event(:)    !! and room for more
+    real(dp), allocatable :: values(:, :)           !! (columns, rows), larger than necessary
+    type(trace_event_t), allocatable :: event(:)    !! larger than necessary
   contains
     procedure :: take_row
     procedure :: take_event
@@ -19,10 +19,10 @@ module row_store
 
 contains
 
-  !> Take what a run gave to its sink, which is such a store: without the room for more.
+  !> Take the rows and events from a sink of this type, without the unused memory.
   subroutine take_store(sink, columns, values, event)
     class(trace_sink_t), allocatable, intent(inout) :: sink
-    integer, intent(in) :: columns                               !! of a row
+    integer, intent(in) :: columns                               !! number of columns
     real(dp), allocatable, intent(out) :: values(:, :)           !! (columns, rows)
     type(trace_event_t), allocatable, intent(out) :: event(:)
     allocate (values(columns, 0), event(0))

@@ -1,9 +1,9 @@
-!> Rows of a table being put together, in memory that is kept from one to the next. No text function is used: threads may
-!> work side by side.
+!> Rows of a table in memory that is reused from row to row. No text function is used, so that several threads may work at the same
+!> time.
 !>
-!> Spreadsheet programs run a field that begins with = + - @, a tab or a carriage return as a formula. A text that does gets an
-!> apostrophe in front, and so does one whose apostrophes stand before such a beginning: who reads a field takes one apostrophe
-!> away there. Numbers stay as they are.
+!> Spreadsheet programs execute a field that begins with = + - @, a tab or a carriage return as a formula. A text of this form is
+!> written with an apostrophe in front; so is a text that begins with apostrophes followed by such a character. A reader removes one
+!> apostrophe from such fields. Numbers are not changed.
 module row_text
   use gudgeon_kinds, only: dp
   use value_reader, only: read_real
@@ -14,7 +14,7 @@ module row_text
   public :: row_text_t, begins_formula
 
   type, extends(growing_text_t) :: row_text_t
-    logical, private :: is_open = .false.   !! a row has begun
+    logical, private :: is_open = .false.   !! the row has at least one field
   contains
     procedure :: clear
     procedure :: add_text
@@ -32,7 +32,7 @@ contains
     self%is_open = .false.
   end subroutine clear
 
-  !> Whether a field begins as a formula does, perhaps behind apostrophes.
+  !> Whether a field begins like a formula, possibly after apostrophes.
   pure logical function begins_formula(text)
     character(len=*), intent(in) :: text
     integer :: first
@@ -41,8 +41,8 @@ contains
     if (begins_formula) begins_formula = index('=+-@'//achar(9)//achar(13), text(first:first)) > 0
   end function begins_formula
 
-  !> A field; in quotes where it needs them (RFC 4180), behind an apostrophe where it is a text that begins as a formula does.
-  !> Trailing blanks are left out.
+  !> Append a text field, in quotes if necessary (RFC 4180), with an apostrophe in front if it begins like a formula. Trailing
+  !> blanks are removed.
   pure subroutine add_text(self, text)
     class(row_text_t), intent(inout) :: self
     character(len=*), intent(in) :: text
@@ -75,7 +75,7 @@ contains
     call self%add_text(digits)
   end subroutine add_whole
 
-  !> A number, or an empty field where it is said not to be there.
+  !> Append a number, or an empty field if `is_there` is false.
   pure subroutine add_number(self, numbers, value, is_there)
     class(row_text_t), intent(inout) :: self
     type(number_writer_t), intent(in) :: numbers

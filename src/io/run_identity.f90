@@ -1,4 +1,4 @@
-!> The identity of a run: results, checkpoint and summary belong together, and to a case, where their identities agree.
+!> The identity of a run. Results, checkpoint and summary belong to the same run and case if their identities are equal.
 module run_identity
   use, intrinsic :: iso_c_binding, only: c_long
   use, intrinsic :: iso_fortran_env, only: compiler_version, compiler_options
@@ -14,14 +14,14 @@ module run_identity
   integer, parameter :: identity_length = 16   !! hexadecimal digits
   character(len=*), parameter :: newline = achar(10)
 
-  !> Keys of a case that may change between a run and its continuation: they only say when a run gives up, or where a table lies,
-  !> whose content another key tells.
+  !> Keys of a case that may change between a run and its continuation: limits at which a run gives up, and the path of a table
+  !> whose content is described by another key.
   character(len=*), parameter :: free_keys(5) = [character(len=30) :: 'max_steps', 'max_evaluations', &
     'max_evaluations_per_revolution', 'table', 'torque_table']
 
 contains
 
-  !> A digest of the running program, to the byte, and of how it rounds on this machine.
+  !> A digest of the program file, and of the rounding of its functions on this machine.
   function program_identity() result(identity)
     character(len=identity_length) :: identity
     type(checksum_t) :: sum
@@ -31,10 +31,11 @@ contains
     identity = sum%hexadecimal()
   end function program_identity
 
-  !> A digest of all that the results of a run depend on: the program, and the resolved case without the keys that may change.
+  !> A digest of everything on which the results of a run depend: the program, and the resolved case without the keys that may
+  !> change.
   function identity_of(case_text, program) result(identity)
     character(len=*), intent(in) :: case_text                 !! the resolved case
-    character(len=identity_length), intent(in) :: program     !! its identity
+    character(len=identity_length), intent(in) :: program     !! identity of the program
     character(len=identity_length) :: identity
     type(checksum_t) :: sum
     character(len=:), allocatable :: line
@@ -48,7 +49,7 @@ contains
     identity = sum%hexadecimal()
   end function identity_of
 
-  !> The identity of the run of the ideal twin beside a run.
+  !> The identity of the ideal twin of a run.
   pure function twin_identity(identity) result(twin)
     character(len=identity_length), intent(in) :: identity
     character(len=identity_length) :: twin
@@ -57,8 +58,8 @@ contains
     twin = sum%hexadecimal()
   end function twin_identity
 
-  !> The running program: the first page of its file, which holds the digest that linkers leave of the whole (the build id); of one
-  !> without it, all bytes.
+  !> Add the program to a checksum: the first page of its file, which contains a digest of the whole file (the build id of the
+  !> linker); without a build id, the whole file.
   subroutine add_program(sum)
     type(checksum_t), intent(inout) :: sum
     character(len=*), parameter :: file = '/proc/self/exe', build_id = achar(3)//repeat(achar(0), 3)//'GNU'//achar(0)
@@ -79,8 +80,8 @@ contains
     end if
   end subroutine add_program
 
-  !> Elementary functions at a thousand points: the C library has several of each, takes what the processor can, and they round
-  !> differently, at one point of a thousand or so.
+  !> Add the values of elementary functions at a thousand points: the C library has several versions of them, selects one for the
+  !> processor, and these round differently at about one point in a thousand.
   pure subroutine add_functions(sum)
     type(checksum_t), intent(inout) :: sum
     integer, parameter :: points = 1000
@@ -95,8 +96,8 @@ contains
     end do
   end subroutine add_functions
 
-  !> Where two resolved cases differ, besides the keys that may: group and line of each. `difference` is empty where they do
-  !> not.
+  !> The first difference of two resolved cases, apart from the keys that may change: group and line of each. `difference` is empty
+  !> if there is none.
   subroutine compare_cases(case_text, earlier, difference)
     character(len=*), intent(in) :: case_text, earlier
     character(len=:), allocatable, intent(out) :: difference
@@ -118,7 +119,7 @@ contains
     end do
   end subroutine compare_cases
 
-  !> The next line from position `at` that is not one of a key that may change; `at` moves behind it.
+  !> The next line from position `at` on that does not belong to a key that may change; `at` is moved behind it.
   subroutine next_line(text, at, line)
     character(len=*), intent(in) :: text
     integer, intent(inout) :: at

@@ -1,4 +1,4 @@
-!> A run kept in memory, to be compared with others of the same case: its rows, impacts, revolutions and figures.
+!> A run in memory, for comparison with other runs of the same case: its rows, impacts, revolutions and results.
 module run_witness
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_integration
@@ -22,7 +22,7 @@ module run_witness
   character(len=*), parameter :: statistic_names(n_statistics) = [character(len=23) :: 'mean_pin_force', 'contact_time_fraction', &
     'impacts_per_revolution', 'loss_per_revolution']
 
-  !> Figures of the whole run, by their names in the summary; the last one is the mean over its whole revolutions.
+  !> Results of the whole run, with their names in the summary; the last one is a mean over whole revolutions.
   integer, parameter :: n_figures = 8, loss_figure = 8
   character(len=*), parameter :: figure_names(n_figures) = [character(len=31) :: 'max_pin_force', 'contact_time_fraction', &
     'min_film_thickness', 'crank_pin_max_pin_force', 'crank_pin_contact_time_fraction', 'crank_pin_min_film_thickness', &
@@ -39,8 +39,7 @@ module run_witness
 
 contains
 
-  !> Run a case into memory; `is_done` is false where it does not come to its end, or needs more than `most_evaluations` (0: no
-  !> limit).
+  !> Run a case in memory. `is_done` is false if it does not reach its end, or needs more than `most_evaluations` (0: no limit).
   subroutine run(case, list, most_evaluations, witness, error)
     type(case_t), intent(in) :: case
     type(column_list_t), intent(in) :: list
@@ -58,7 +57,7 @@ contains
     call provide_tables(limited, .false., error)
     if (allocated(error)) return
     allocate (row_store_t :: sink)
-    if (case%has_play()) then   ! without clearance the measures of the joint would change the steps
+    if (case%has_play()) then   ! without clearance the integrals of the joint would change the steps
       allocate (witness%cycles)
       witness%cycles%keeps_cycles = .true.
       call simulate(limited, .false., list, sink, report, failure, cycles=witness%cycles)
@@ -76,10 +75,10 @@ contains
     !$omp end critical (texts)
   end subroutine run
 
-  !> Whether the table of a film of the case would be a finer one at a closer tolerance.
+  !> Whether a tighter tolerance would give a finer table of a film of the case.
   logical function has_coarse_table(case, tolerance)
     type(case_t), intent(in) :: case
-    real(dp), intent(in) :: tolerance   !! the closer one
+    real(dp), intent(in) :: tolerance   !! the tighter one
     has_coarse_table = .false.
     call look_at(case%joint)
     call look_at(case%crank_pin)
@@ -96,14 +95,14 @@ contains
     end subroutine look_at
   end function has_coarse_table
 
-  !> Let no run of this case write into the files that the user names for the tables of films.
+  !> Prevent runs of this case from writing to the files of film tables that the user names.
   subroutine keep_own_tables(case)
     type(case_t), intent(inout) :: case
     if (allocated(case%joint%film)) case%joint%film%table_file = ''
     if (allocated(case%crank_pin%film)) case%crank_pin%film%table_file = ''
   end subroutine keep_own_tables
 
-  !> Figures of a run, in the order of `figure_names`; 0 for those that it does not have.
+  !> Results of a run in the order of `figure_names`; 0 for results that it does not have.
   pure function figures_of(witness) result(values)
     type(witness_t), intent(in) :: witness
     real(dp) :: values(n_figures)
@@ -117,7 +116,7 @@ contains
     if (witness%cycles%statistics%cycles > 0) values(loss_figure) = witness%cycles%statistics%dissipated_energy_mean()
   end function figures_of
 
-  !> The statistics of some revolutions, at both pins.
+  !> Statistics of some revolutions, at both pins.
   pure function means_of(cycles) result(means)
     type(cycle_t), intent(in) :: cycles(:)
     real(dp) :: means(n_statistics), duration

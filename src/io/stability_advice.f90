@@ -1,5 +1,5 @@
-!> What a run should be told that the stability of Adams bounds, not its accuracy: while it goes, as soon as it is plain that it
-!> will take long, or else when it has ended.
+!> Advice for runs whose step size is limited by the stability of the Adams method and not by accuracy: during the run if it would
+!> take long, otherwise at its end.
 module stability_advice
   use gudgeon_kinds, only: dp
   use ode_method, only: step_statistics_t
@@ -11,13 +11,13 @@ module stability_advice
   private
   public :: stability_advice_t, advice
 
-  real(dp), parameter :: first_look = 0.3_dp   !! after so much of the run [s]
-  real(dp), parameter :: patience = 5          !! a run that has less to go is left alone [s]
-  real(dp), parameter :: worth_it = 3          !! a change of the method while the run goes: evaluations it must save
+  real(dp), parameter :: first_look = 0.3_dp   !! running time before the first test [s]
+  real(dp), parameter :: patience = 5          !! no advice if the remaining time is shorter [s]
+  real(dp), parameter :: worth_it = 3  !! smallest ratio of evaluations for which a change of method during the run is recommended
 
-  !> For one run.
+  !> The advice for one run.
   type :: stability_advice_t
-    type(case_t), allocatable :: case   !! without it nothing is said
+    type(case_t), allocatable :: case   !! not allocated: no advice is given
     logical :: was_given = .false.
     logical, private :: has_looked = .false.
   contains
@@ -26,13 +26,13 @@ module stability_advice
 
 contains
 
-  !> A run that is bound by stability has reached `time` of `end_time` [s] in `elapsed` seconds. Once, where there is long to go,
-  !> try what method auto needs up to here, and say so on standard error.
+  !> Report that a run limited by stability has reached `time` of `end_time` [s] after `elapsed` seconds. Once, if the remaining
+  !> time is long, measure what method auto would need up to this time, and print the result on standard error.
   subroutine consider(self, time, end_time, elapsed, statistics, progress)
     class(stability_advice_t), intent(inout) :: self
     real(dp), intent(in) :: time, end_time, elapsed
-    type(step_statistics_t), intent(in) :: statistics   !! of the run so far
-    type(progress_t), intent(inout) :: progress         !! of the run, whose line on a terminal makes room
+    type(step_statistics_t), intent(in) :: statistics   !! for the run so far
+    type(progress_t), intent(inout) :: progress         !! progress line of the run, which is cleared first
     real(dp) :: to_go
     integer :: needed
     if (self%has_looked .or. .not. allocated(self%case) .or. elapsed < first_look) return
@@ -48,7 +48,7 @@ contains
     !$omp end critical (texts)
   end subroutine consider
 
-  !> What the user of a run should know that took `ratio` times the evaluations that auto needs, or an empty text.
+  !> Text for the user of a run that took `ratio` times the evaluations of method auto, or an empty text.
   function advice(ratio) result(text)
     real(dp), intent(in) :: ratio
     character(len=:), allocatable :: text

@@ -1,21 +1,21 @@
-!> What every quantity of NAME.summary.csv and every column of NAME.events.csv means, for the manual. A test holds the summaries of
-!> all shipped cases against this table.
+!> Descriptions of all quantities of NAME.summary.csv and all columns of NAME.events.csv, for the manual. A test compares the
+!> summaries of all shipped cases with this table.
 module summary_quantities
   implicit none
   private
   public :: quantity_t, quantities_of_runs, event_columns
 
-  !> A quantity. In its name N stands for a number and PHASE for the phases of the joints; quantities of the crank pin and of the
-  !> corners of the skirt have these names behind `crank_pin_` and `guide_1_` to `guide_4_`.
+  !> A quantity. In its name N stands for a number and PHASE for the phases of the joints. Quantities of the crank pin have the
+  !> prefix `crank_pin_`, those of the corners of the skirt `guide_1_` to `guide_4_`.
   type :: quantity_t
     character(len=40) :: name = ''
-    character(len=14) :: unit = ''    !! as in the file; 1: a number without unit; empty: a text
+    character(len=14) :: unit = ''    !! unit as in the file; 1: a number without unit; empty: a text
     character(len=170) :: meaning = ''
   end type quantity_t
 
 contains
 
-  !> Quantities of a summary, in the order in which they stand there.
+  !> Quantities of a summary, in their order.
   function quantities_of_runs() result(list)
     type(quantity_t), allocatable :: list(:)
     list = [quantities_of_integration(), quantities_of_motion(), quantities_of_joints(), quantities_of_certificates()]

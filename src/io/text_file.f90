@@ -1,4 +1,4 @@
-!> Files read whole.
+!> Reads whole files.
 module text_file
   use gudgeon_errors, only: error_t, fail, status_case_file, status_integration
   use text_tools, only: printable, integer_text
@@ -13,8 +13,8 @@ module text_file
 
 contains
 
-  !> A text file of the user: all bytes of a regular file, or of the standard input under the name /dev/stdin. One of more than
-  !> `most` MB is not the `kind` of file that it should be.
+  !> Read a text file given by the user: a regular file, or standard input under the name /dev/stdin. A file of more than `most` MB
+  !> is refused as not being of the expected `kind`.
   subroutine read_text_file(path, most, kind, text, error)
     character(len=*), intent(in) :: path, kind
     integer, intent(in) :: most                        !! [MB], up to 2000
@@ -50,10 +50,11 @@ contains
     call read_all(descriptor, .false., huge(0) - buffer_size, bytes, status, never)
   end subroutine read_whole
 
-  !> What a file just opened holds, up to `most` bytes and a bufferful, and close it. Nothing is read where `status` is not 0.
+  !> Read a file that has just been opened, up to a little more than `most` bytes, and close it. Nothing is read if `status` is not
+  !> 0.
   subroutine read_all(descriptor, waits, most, bytes, status, was_interrupted)
     integer, intent(in) :: descriptor, most
-    logical, intent(in) :: waits   !! for a user who may have enough of it
+    logical, intent(in) :: waits   !! the file is a pipe or a terminal, and the user may interrupt
     character(len=:), allocatable, intent(out) :: bytes
     integer, intent(inout) :: status
     logical, intent(out) :: was_interrupted
@@ -76,7 +77,7 @@ contains
     bytes = all%text(:all%used)
   end subroutine read_all
 
-  !> Wait until the standard input has something, or the user has enough.
+  !> Wait until standard input has data, or the user interrupts.
   subroutine await_input(descriptor, was_interrupted)
     integer, intent(in) :: descriptor
     logical, intent(out) :: was_interrupted

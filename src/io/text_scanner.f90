@@ -1,4 +1,4 @@
-!> A place in a text that moves forward over blanks, comments and names of namelist syntax.
+!> A position in a text that moves forward over blanks, comments and names of the namelist syntax.
 module text_scanner
   use text_tools, only: lowercase, printable
   implicit none
@@ -6,7 +6,7 @@ module text_scanner
   public :: scanner_t, name_here, pass_name, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line
   public :: newline, return, digits, shown
 
-  !> A place in the text, and what was found wrong there.
+  !> The position, and the error found there.
   type :: scanner_t
     character(len=:), allocatable :: text
     integer :: at = 1, line = 1
@@ -15,11 +15,11 @@ module text_scanner
 
   character(len=*), parameter :: digits = '0123456789'
   character(len=*), parameter :: tab = achar(9), newline = achar(10), return = achar(13)
-  integer, parameter :: shown = 40   !! longest piece of a file quoted in a message
+  integer, parameter :: shown = 40   !! longest part of a file quoted in a message
 
 contains
 
-  !> The name that begins here, in lower case, leaving the place behind it; empty where there is none.
+  !> The name that begins here, in lower case, and move behind it; empty if there is none.
   function name_here(scan) result(name)
     type(scanner_t), intent(inout) :: scan
     character(len=:), allocatable :: name
@@ -29,7 +29,7 @@ contains
     name = lowercase(scan%text(first:scan%at - 1))
   end function name_here
 
-  !> Pass a name, if one begins here.
+  !> Move behind a name, if one begins here.
   subroutine pass_name(scan)
     type(scanner_t), intent(inout) :: scan
     integer :: first
@@ -46,7 +46,7 @@ contains
     end do
   end subroutine pass_name
 
-  !> Pass blanks, ends of lines (LF, CR LF or CR) and comments.
+  !> Skip blanks, ends of lines (LF, CR LF or CR) and comments.
   subroutine skip_blanks(scan)
     type(scanner_t), intent(inout) :: scan
     integer :: length
@@ -69,7 +69,7 @@ contains
     end do
   end subroutine skip_blanks
 
-  !> Bytes from here to the end of the line.
+  !> Number of bytes to the end of the line.
   pure integer function rest_of_line(scan) result(length)
     type(scanner_t), intent(in) :: scan
     do length = 0, len(scan%text) - scan%at
@@ -80,7 +80,7 @@ contains
     end do
   end function rest_of_line
 
-  !> Bytes from here to the next separator.
+  !> Number of bytes to the next separator.
   pure integer function bare_length(scan) result(length)
     type(scanner_t), intent(in) :: scan
     do length = 0, len(scan%text) - scan%at
@@ -103,7 +103,7 @@ contains
     if (.not. at_end(scan)) same = scan%text(scan%at:scan%at) == character
   end function next_is
 
-  !> What stands here, for a message: the rest of the line, shortened.
+  !> The text at this position for a message: the rest of the line, shortened.
   pure function piece(scan) result(text)
     type(scanner_t), intent(in) :: scan
     character(len=:), allocatable :: text

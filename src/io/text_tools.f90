@@ -1,4 +1,4 @@
-!> Small work on text: case, lists of words, what may be shown to a terminal.
+!> Small procedures for texts: letter case, lists of words, safe output to a terminal.
 module text_tools
   use, intrinsic :: iso_fortran_env, only: int64
   implicit none
@@ -26,7 +26,7 @@ contains
     text = trim(digits)
   end function integer_text
 
-  !> The number that a text says: digits, 18 at most, perhaps behind a sign.
+  !> The number in a text: at most 18 digits, possibly with a sign.
   pure integer(int64) function whole_number(text) result(number)
     character(len=*), intent(in) :: text
     integer :: i
@@ -37,7 +37,7 @@ contains
     if (text(1:1) == '-') number = -number
   end function whole_number
 
-  !> A text between two marks, those inside it doubled.
+  !> A text between two quotation marks; those inside it are doubled.
   pure function quoted(text, mark) result(string)
     character(len=*), intent(in) :: text
     character(len=1), intent(in) :: mark
@@ -54,8 +54,8 @@ contains
     string = string//text(from:)//mark
   end function quoted
 
-  !> The text as one safe line: control characters, characters that cannot be seen or turn the direction of writing, and bytes
-  !> that are not UTF-8 appear as \xHH, and what would be longer than `limit` bytes ends in '...'.
+  !> The text as one safe line: control characters, invisible characters, characters that change the direction of writing, and bytes
+  !> that are not UTF-8 are shown as \xHH; a text longer than `limit` bytes is shortened and ends in '...'.
   pure function printable(text, limit) result(shown)
     character(len=*), intent(in) :: text
     integer, intent(in) :: limit
@@ -81,7 +81,7 @@ contains
     end do
   end function printable
 
-  !> Whether a character of UTF-8 beyond ASCII is a blank, has no width or turns the direction of writing: U+00A0, U+00AD,
+  !> Whether a character of UTF-8 beyond ASCII is a blank, has no width or changes the direction of writing: U+00A0, U+00AD,
   !> U+2000-200F, U+2028-202F, U+205F-206F, U+3000, U+FEFF.
   pure logical function is_invisible(character) result(answer)
     character(len=*), intent(in) :: character
@@ -116,7 +116,7 @@ contains
     end do
   end function is_clean
 
-  !> Bytes of the character of UTF-8 that begins at `i`; 0 where there is none or it is a control character.
+  !> Number of bytes of the UTF-8 character that begins at `i`; 0 if there is none or it is a control character.
   pure function clean_length(text, i) result(bytes)
     character(len=*), intent(in) :: text
     integer, intent(in) :: i
@@ -143,7 +143,7 @@ contains
     end do
   end function clean_length
 
-  !> The word of the list nearest to a misspelt one; empty where none is near.
+  !> The word of a list that is most similar to a misspelt one; empty if none is similar.
   pure function nearest_word(word, list) result(nearest)
     character(len=*), intent(in) :: word, list(:)
     character(len=:), allocatable :: nearest
@@ -159,7 +159,7 @@ contains
     end do
   end function nearest_word
 
-  !> Letters to insert, remove or replace to make one word of the other (Levenshtein); long words count as far.
+  !> Number of letters to insert, remove or replace to turn one word into the other (Levenshtein); large for long words.
   pure function edits(a, b) result(distance)
     character(len=*), intent(in) :: a, b
     integer :: distance, i, j, diagonal, above, row(0:len(b))
@@ -185,7 +185,7 @@ contains
     name = path(index(path, '/', back=.true.) + 1:)
   end function base_name
 
-  !> The NAME of a case: its file's name without folder and without .nml.
+  !> The NAME of a case: the name of its file without folder and .nml.
   pure function case_name(path) result(name)
     character(len=*), intent(in) :: path
     character(len=:), allocatable :: name

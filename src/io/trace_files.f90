@@ -1,7 +1,7 @@
-!> The files of a running case: NAME.csv, row by row, and NAME.events.csv.
+!> Writes the result files of a running case: NAME.csv, row by row, and NAME.events.csv.
 !>
-!> Cases run side by side in threads, and gfortran keeps the length of a deferred-length function result in static
-!> storage: what runs during a case makes its text by subroutines, or inside the critical section `texts`.
+!> Cases run in several threads, and gfortran stores the length of a function result of deferred length in static memory. During a
+!> case texts must therefore be made by subroutines, or inside the critical section `texts`.
 module trace_files
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp
@@ -25,20 +25,20 @@ module trace_files
 
   character(len=*), parameter :: newline = achar(10)
 
-  !> A sink that writes. It asks for the end of the run when the user interrupts it or a file cannot be written.
+  !> A sink that writes files. It asks for the end of the run if the user interrupts or a file cannot be written.
   type, extends(trace_sink_t) :: trace_files_t
     type(trace_table_t) :: trace
     type(result_file_t) :: event_list
     type(progress_t) :: progress
     type(stability_advice_t) :: advice
-    type(checkpoint_t) :: checkpoint    !! of the run: path and case; the rest is filled in when it is written
-    type(error_t), allocatable :: checkpoint_error        !! why the last one could not be written
+    type(checkpoint_t) :: checkpoint    !! path, identity and case; the rest is set when it is written
+    type(error_t), allocatable :: checkpoint_error        !! reason why the last checkpoint could not be written
     real(dp), private :: checkpoint_interval = 0          !! [s]
-    real(dp), private :: earlier_time = 0                 !! wall time of the parts of the run before this one [s]
-    integer(int64), private :: began = 0, saved = 0       !! ticks of the clock
-    character(len=:), allocatable, private :: path        !! of the files, without their endings
+    real(dp), private :: earlier_time = 0                 !! wall time of earlier parts of the run [s]
+    integer(int64), private :: began = 0, saved = 0       !! clock ticks
+    character(len=:), allocatable, private :: path        !! of the files, without suffix
     integer, private :: rows = 0
-    type(row_text_t), private :: event   !! the row of the last one
+    type(row_text_t), private :: event   !! row of the last event
   contains
     procedure :: open
     procedure :: synchronise
@@ -59,7 +59,7 @@ module trace_files
 
 contains
 
-  !> Begin PATH.csv and, with events, PATH.events.csv, of numbers with so many significant digits.
+  !> Begin PATH.csv and, with events, PATH.events.csv; numbers have `digits` significant digits.
   subroutine open(self, path, list, digits, with_events, error)
     class(trace_files_t), intent(inout) :: self
     character(len=*), intent(in) :: path
@@ -87,7 +87,7 @@ contains
       'max_normal_force[N],joint'//newline)
   end subroutine open
 
-  !> Before any row.
+  !> Prepare the table before the first row.
   subroutine prepare(self, path, list, digits)
     class(trace_files_t), intent(inout) :: self
     character(len=*), intent(in) :: path
@@ -99,8 +99,8 @@ contains
     self%saved = self%began
   end subroutine prepare
 
-  !> Go on with the files of a run that was stopped, cut to what they held at its checkpoint. Error: they do not hold that
-  !> any more; nothing has been changed then.
+  !> Continue the files of a stopped run, truncated to their content at its checkpoint. Error: they do not contain that any more;
+  !> nothing has been changed then.
   subroutine reopen(self, path, list, digits, with_events, checkpoint, error)
     class(trace_files_t), intent(inout) :: self
     character(len=*), intent(in) :: path
@@ -122,7 +122,7 @@ contains
       call self%event_list%reopen(path//'.events.csv', event_name, checkpoint%event_list%length, error)
   end subroutine reopen
 
-  !> Under which of its two names the file is found that begins as it was marked.
+  !> Find under which of its two names the file exists that begins with the marked content.
   subroutine find_marked(path, wanted, mark, name, error)
     character(len=*), intent(in) :: path
     type(file_mark_t), intent(in) :: wanted
@@ -142,7 +142,7 @@ contains
     call fail(error, printable(path, 200)//': differs from what the stopped run had written'//restart_hint, status_case_file)
   end subroutine find_marked
 
-  !> From now on write a checkpoint every `interval` seconds (0: never) and where the run stops before its end. Path, identity and
+  !> From now on write a checkpoint every `interval` seconds (0: never), and when the run stops before its end. Path, identity and
   !> case are those of `checkpoint`.
   subroutine keep_checkpoints(self, checkpoint, interval)
     class(trace_files_t), intent(inout) :: self
@@ -155,7 +155,7 @@ contains
     self%keeps_archives = interval > 0
   end subroutine keep_checkpoints
 
-  !> Write a checkpoint of the run with this state. A failure does not stop the run; the earlier checkpoint stays.
+  !> Write a checkpoint with this state of the run. A failure does not stop the run; the previous checkpoint is kept.
   subroutine take_archive(self, archive)
     class(trace_files_t), intent(inout) :: self
     type(archive_t), intent(in) :: archive
@@ -186,7 +186,7 @@ contains
     call system_clock(self%saved)
   end subroutine take_archive
 
-  !> Time since the run began, without the time between its parts [s].
+  !> Time since the beginning of the run, without the time between its parts [s].
   real(dp) function wall_time(self)
     class(trace_files_t), intent(in) :: self
     integer(int64) :: now, rate
@@ -194,7 +194,7 @@ contains
     wall_time = self%earlier_time + real(now - self%began, dp)/real(rate, dp)
   end function wall_time
 
-  !> Write out what waits in both files, down to the disk. This makes no text: any thread may do it at any time.
+  !> Write the buffered rows of both files to the disk. No text function is used here, so that any thread may call it at any time.
   subroutine synchronise(self)
     class(trace_files_t), intent(inout) :: self
     call self%trace%synchronise()
@@ -208,7 +208,7 @@ contains
     if (self%event_list%has_failed()) has_failed = .true.
   end function has_failed
 
-  !> Why one of the files could not be written, if so.
+  !> The reason why one of the files could not be written, if so.
   subroutine tell_error(self, error)
     class(trace_files_t), intent(in) :: self
     type(error_t), allocatable, intent(out) :: error
@@ -216,21 +216,21 @@ contains
     if (.not. allocated(error)) call self%event_list%tell_error(error)
   end subroutine tell_error
 
-  !> Give both files their final names. This makes no text.
+  !> Give both files their final names. No text function is used here.
   subroutine conclude(self)
     class(trace_files_t), intent(inout) :: self
     call self%trace%conclude()
     call self%event_list%conclude()
   end subroutine conclude
 
-  !> Leave both files under their temporary names. This makes no text.
+  !> Leave both files under their temporary names. No text function is used here.
   subroutine leave(self)
     class(trace_files_t), intent(inout) :: self
     call self%trace%leave()
     call self%event_list%leave()
   end subroutine leave
 
-  !> Conclude both files, if that is not done yet. The first error is told.
+  !> Conclude both files unless that has been done. The first error is reported.
   subroutine close(self, error)
     class(trace_files_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
@@ -284,7 +284,7 @@ contains
     call self%advice%consider(time, self%expected_end, self%wall_time(), statistics, self%progress)
   end subroutine take_cost
 
-  !> Whether there is a reason to stop, or to write a checkpoint.
+  !> Check whether the run must stop, or whether a checkpoint is due.
   subroutine look(self)
     class(trace_files_t), intent(inout) :: self
     integer(int64) :: now, rate

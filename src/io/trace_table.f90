@@ -1,4 +1,4 @@
-!> The file NAME.csv of a trace: rows of numbers, the phase as one digit.
+!> Writes NAME.csv, the trace of a run: rows of numbers; the phase is one digit.
 module trace_table
   use gudgeon_kinds, only: dp
   use gudgeon_columns, only: column_list_t, column_name
@@ -10,7 +10,7 @@ module trace_table
 
   type, extends(result_file_t) :: trace_table_t
     type(number_writer_t) :: numbers
-    integer, private :: phase_column = 1   !! one behind the last: there is none
+    integer, private :: phase_column = 1   !! index of the phase's column; the last index plus one if there is none
   contains
     procedure :: prepare
     procedure :: put_row
@@ -18,7 +18,7 @@ module trace_table
 
 contains
 
-  !> Before any row, of so many significant digits.
+  !> Prepare the table before the first row; numbers have `digits` significant digits.
   subroutine prepare(self, list, digits)
     class(trace_table_t), intent(inout) :: self
     type(column_list_t), intent(in) :: list
@@ -31,7 +31,7 @@ contains
     call self%numbers%prepare(digits)
   end subroutine prepare
 
-  !> Add a row, made where it waits to be written.
+  !> Add a row, written directly into the buffer.
   subroutine put_row(self, values)
     class(trace_table_t), intent(inout) :: self
     real(dp), intent(in), contiguous :: values(:)

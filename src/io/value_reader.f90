@@ -1,5 +1,5 @@
-!> One value of a case file, from its text to a number, and whether it lies in a range. A value that cannot be read
-!> gives a message that says what is wanted; nothing here can overflow.
+!> Converts a value of a case file from text to a number, and checks whether it is in a range. If a text cannot be converted, a
+!> message says what is required; no input can cause an overflow.
 module value_reader
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp
@@ -9,11 +9,11 @@ module value_reader
   public :: read_real, read_integer, read_logical, is_within
 
   character(len=*), parameter :: digits = '0123456789'
-  integer, parameter :: largest_exponent = 30   !! reals are 0 or of a size from 1e-30 to 1e30: products stay finite
+  integer, parameter :: largest_exponent = 30   !! reals are 0 or between 1e-30 and 1e30 in magnitude, so that products stay finite
 
 contains
 
-  !> A real as Fortran writes them: 2, .5, 1d-5, 1.5E3.
+  !> Read a real in Fortran notation: 2, .5, 1d-5, 1.5E3.
   pure subroutine read_real(text, value, wanted)
     character(len=*), intent(in) :: text
     real(dp), intent(out) :: value
@@ -41,7 +41,7 @@ contains
     end if
     first = scan(mantissa, '123456789')
     if (first == 0) return
-    exponent = exponent + whole - first + merge(1, 0, first > whole)   ! of the first digit that is not 0
+    exponent = exponent + whole - first + merge(1, 0, first > whole)   ! exponent of the first digit that is not 0
     if (len(text) > 100 .or. exponent >= largest_exponent .or. exponent < -largest_exponent) then
       wanted = out_of_reach()
       return
@@ -91,7 +91,7 @@ contains
     end select
   end subroutine read_logical
 
-  !> Whether a value lies in a range written as `> 0`, or `>= 0 and <= 0.5`.
+  !> Whether a value is in a range written as `> 0`, or `>= 0 and <= 0.5`.
   pure logical function is_within(value, range) result(within)
     real(dp), intent(in) :: value
     character(len=*), intent(in) :: range
@@ -107,7 +107,7 @@ contains
     end if
   end function is_within
 
-  !> Whether a value meets one condition, an operator and a number with a blank between.
+  !> Whether a value meets one condition: an operator and a number, separated by a blank.
   pure logical function meets(value, condition) result(met)
     real(dp), intent(in) :: value
     character(len=*), intent(in) :: condition
@@ -128,7 +128,7 @@ contains
     end select
   end function meets
 
-  !> Digits, perhaps with a sign before them.
+  !> Whether a text consists of digits, possibly with a sign.
   pure logical function is_whole(text) result(whole)
     character(len=*), intent(in) :: text
     integer :: first

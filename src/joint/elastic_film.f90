@@ -177,7 +177,7 @@ contains
     of_rates(2, :) = (of_film(1, 3)*right(2, :) - of_film(2, 3)*right(1, :))/determinant
   end subroutine slopes
 
-  !> Derivatives of the load by d [N/m].
+  !> Derivatives of the load with respect to d [N/m].
   pure function wall_slopes(self, d) result(slopes)
     type(elastic_film_t), intent(in) :: self
     real(dp), intent(in) :: d(2)
