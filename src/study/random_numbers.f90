@@ -11,7 +11,7 @@ module random_numbers
   integer(int64), parameter :: a12 = 1403580, a13 = 810728, a21 = 527612, a23 = 1370589
 
   type :: random_numbers_t
-    integer(int64) :: first(3) = 12345, second(3) = 12345   !! the last three of both recursions
+    integer(int64) :: first(3) = 12345, second(3) = 12345   !! the last three numbers of both recursions
   contains
     procedure :: begin
     procedure :: uniform
@@ -20,7 +20,7 @@ module random_numbers
 
 contains
 
-  !> Begin the sequence of a seed >= 0: its state is filled by Lehmer's generator (48271, 2^31 - 1).
+  !> Begin the sequence for a seed >= 0: the state is filled by Lehmer's generator (48271, 2^31 - 1).
   pure subroutine begin(self, seed)
     class(random_numbers_t), intent(inout) :: self
     integer, intent(in) :: seed
@@ -49,7 +49,7 @@ contains
     u = p1*(1/real(m1 + 1, dp))
   end subroutine uniform
 
-  !> The next whole number of 0 .. n - 1.
+  !> The next whole number from 0 to n - 1.
   subroutine below(self, n, number)
     class(random_numbers_t), intent(inout) :: self
     integer, intent(in) :: n

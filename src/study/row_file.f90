@@ -1,9 +1,9 @@
-!> A results file of a study. While the study continues the rows of each run are added in one piece, in the order in which runs
-!> end; at the end rows stand in the order of the runs. What a killed program or a power cut has left can be resumed.
+!> A results file of a study. While the study runs the rows of each run are appended together, in the order in which runs end; at
+!> the end the rows are sorted by run. A file left by a killed program or a power failure can be continued.
 !>
-!> The first field of a row is the number of its run. Only where each run's rows stand in the file is kept in memory, and the
-!> rows that wait to be written: the code that has several files decides which is on the disk before another. A file that was not
-!> prepared is not wanted: nothing is done with it.
+!> The first field of a row is the number of its run. Only the positions of the rows in the file, and the rows that have not been
+!> written, are kept in memory; the code that uses several files decides in which order they are written to the disk. All procedures
+!> have no effect on a file for which `prepare` was not called.
 module row_file
   use, intrinsic :: iso_fortran_env, only: int64
   use, intrinsic :: iso_c_binding, only: c_long
@@ -23,18 +23,19 @@ module row_file
   type :: row_file_t
     private
     character(len=:), allocatable :: path, header
-    integer, allocatable :: columns(:)             !! the first, and those whose whole numbers are kept
-    integer :: fields = 0                          !! of a row
+    integer, allocatable :: columns(:)             !! the first column, and the columns whose whole numbers are kept
+    integer :: fields = 0                          !! number of fields of a row
     integer :: descriptor = -1
     integer :: status = 0                          !! error number of the first write that failed
-    integer(int64) :: size = 0                     !! of the file with the rows that wait [bytes]
-    integer(int64) :: written = 0                  !! of the file [bytes]
+    integer(int64) :: size = 0                     !! length of the file including the rows not yet written [bytes]
+    integer(int64) :: written = 0                  !! length of the file on the disk [bytes]
     type(growing_text_t) :: waiting
-    integer :: first = 1                           !! run
-    integer(int64), allocatable :: at(:)           !! where the rows of each run begin
-    integer, allocatable :: length(:)              !! their bytes
-    integer, allocatable, public :: rows(:)        !! how many of each run were read back
-    integer, allocatable, public :: numbers(:, :)  !! (columns, runs) in its last row read back; 0 where there is none
+    integer :: first = 1                           !! first run
+    integer(int64), allocatable :: at(:)           !! position of the rows of each run in the file
+    integer, allocatable :: length(:)              !! length of the rows of each run [bytes]
+    integer, allocatable, public :: rows(:)        !! number of rows of each run that were read back
+    integer, allocatable, public :: numbers(:, :)  !! (columns, runs), from the last row of each run that was read back; 0 if there
+                                                   !! is none
   contains
     procedure :: prepare
     procedure :: take_up
@@ -53,8 +54,8 @@ module row_file
 
 contains
 
-  !> The file at `path` of the runs first .. last. `header` is its first row. Of rows read back the whole numbers in these
-  !> columns are kept.
+  !> Prepare the file at `path` for the runs `first` to `last`. `header` is its first row. The whole numbers in `columns` are kept
+  !> of rows that are read back.
   subroutine prepare(self, path, header, first, last, columns)
     class(row_file_t), intent(inout) :: self
     character(len=*), intent(in) :: path, header
@@ -71,14 +72,14 @@ contains
     self%rows(first) = 0
   end subroutine prepare
 
-  !> Whether the rows of a run are there.
+  !> Whether the file has rows of a run.
   pure logical function has(self, run)
     class(row_file_t), intent(in) :: self
     integer, intent(in) :: run
     has = self%length(run) > 0
   end function has
 
-  !> Leave out the rows of a run that were read back.
+  !> Discard the rows of a run that were read back.
   pure subroutine drop(self, run)
     class(row_file_t), intent(inout) :: self
     integer, intent(in) :: run
@@ -87,8 +88,8 @@ contains
     self%rows(run) = 0
   end subroutine drop
 
-  !> Find the rows in the file, if there is one. A row that was not written to its end is passed over. Errors: the file cannot
-  !> be read, or is of another study; an interrupt.
+  !> Read the rows of an existing file. An incomplete row is ignored. Errors: the file cannot be read, or belongs to another study;
+  !> an interruption.
   subroutine take_up(self, error)
     class(row_file_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
@@ -127,7 +128,7 @@ contains
     if (status /= 0) call fail_with_file(self%path, status, error)
   end subroutine take_up
 
-  !> One line, ended, at the end of what has been read. `previous` is the run of the line before.
+  !> Process one complete line at the end of the text read so far. `previous` is the run of the line before.
   subroutine take_line(self, line, previous, error)
     class(row_file_t), intent(inout) :: self
     character(len=*), intent(in) :: line
@@ -141,7 +142,7 @@ contains
     end if
     call read_fields(line, self%columns, numbers, fields)
     associate (run => numbers(0))
-      if (fields /= self%fields .or. run == 0) then   ! what a power cut leaves
+      if (fields /= self%fields .or. run == 0) then   ! left by a power failure
         previous = self%first - 1
         return
       else if (run < self%first .or. run > ubound(self%at, 1)) then
@@ -159,10 +160,10 @@ contains
     end associate
   end subroutine take_line
 
-  !> The whole numbers in some columns of a row, 0 where there is none, and how many fields it has; none where it holds a
-  !> control character, which no row does.
+  !> The whole numbers in some columns of a row, 0 where there is none, and the number of its fields; 0 fields if it contains a
+  !> control character, which no valid row does.
   pure subroutine read_fields(line, columns, numbers, fields)
-    character(len=*), intent(in) :: line   !! ends with an end of line
+    character(len=*), intent(in) :: line   !! with an end of line
     integer, intent(in) :: columns(:)
     integer, intent(out) :: numbers(:), fields
     logical :: is_quoted
@@ -187,8 +188,8 @@ contains
     end do
   end subroutine read_fields
 
-  !> Be ready to add rows: to the file as it is, where it holds the rows that were read back and nothing else, or to one written
-  !> again.
+  !> Prepare for appending rows: to the existing file if it contains exactly the rows that were read back, otherwise to a file
+  !> written again.
   subroutine begin(self, error)
     class(row_file_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
@@ -204,11 +205,11 @@ contains
     if (status /= 0) call fail_with_file(self%path, status, error)
   end subroutine begin
 
-  !> Add all rows of a run to those that wait.
+  !> Add all rows of a run to those not yet written.
   subroutine append(self, run, text)
     class(row_file_t), intent(inout) :: self
     integer, intent(in) :: run
-    character(len=*), intent(in) :: text   !! ends with an end of line
+    character(len=*), intent(in) :: text   !! with an end of line
     if (self%descriptor < 0 .or. len(text) == 0) return
     call self%waiting%append(text)
     self%at(run) = self%size
@@ -216,13 +217,13 @@ contains
     self%size = self%size + len(text)
   end subroutine append
 
-  !> Bytes that wait to be written.
+  !> Number of bytes not yet written.
   pure integer(int64) function bytes_waiting(self)
     class(row_file_t), intent(in) :: self
     bytes_waiting = self%size - self%written
   end function bytes_waiting
 
-  !> Write the rows that wait. An error leaves the file as it was, and is given again at every call.
+  !> Write the rows not yet written. After an error the file has its previous content, and every further call returns the error.
   subroutine write_waiting(self, error)
     class(row_file_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
@@ -253,7 +254,7 @@ contains
     if (self%status /= 0) call fail_with_file(self%path, self%status, error)
   end subroutine synchronise
 
-  !> Close the file; where the study is `complete`, with its rows in order.
+  !> Close the file; if the study is `complete`, sort its rows.
   subroutine finish(self, complete, error)
     class(row_file_t), intent(inout) :: self
     logical, intent(in) :: complete
@@ -269,7 +270,7 @@ contains
     end if
   end subroutine finish
 
-  !> Whether the rows stand in the file in the order of the runs.
+  !> Whether the rows in the file are in the order of the runs.
   pure logical function is_in_order(self)
     class(row_file_t), intent(in) :: self
     integer(int64) :: at
@@ -284,7 +285,7 @@ contains
     is_in_order = .true.
   end function is_in_order
 
-  !> The file again, rows in the order of the runs, under its name when it is whole and on the disk.
+  !> Write the file again with its rows in the order of the runs; it replaces the old file when it is complete and on the disk.
   subroutine rewrite(self, error)
     class(row_file_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error

@@ -30,7 +30,7 @@ module sobol_points
 
 contains
 
-  !> Make the direction numbers of 1 to most_dimensions dimensions.
+  !> Compute the direction numbers for 1 to most_dimensions dimensions.
   pure subroutine prepare(self, dimensions)
     class(sobol_points_t), intent(inout) :: self
     integer, intent(in) :: dimensions
@@ -57,7 +57,7 @@ contains
     end do
   end subroutine prepare
 
-  !> Coordinate of point `index` (0, 1, ...) in a dimension, 0 <= u < 1.
+  !> Coordinate of point `index` (0, 1, ...) in one dimension, 0 <= u < 1.
   pure real(dp) function coordinate(self, index, dimension)
     class(sobol_points_t), intent(in) :: self
     integer, intent(in) :: index, dimension

@@ -1,5 +1,4 @@
-!> The base case of a study with the values of one run put in. Everything is read and checked once; a run costs a few
-!> conversions.
+!> The base case of a study with the values of one run. Everything is read and checked once; a run only converts its own values.
 module study_case
   use gudgeon_errors, only: error_t, fail, status_case_file
   use case_definition, only: case_t
@@ -16,16 +15,16 @@ module study_case
   private
   public :: study_case_t
 
-  !> The values of the base case, changed in place from run to run. Each thread has its own copy.
+  !> The values of the base case, modified for each run. Each thread has its own copy.
   type :: study_case_t
-    type(case_t) :: case                             !! the case of the present run
+    type(case_t) :: case                             !! case of the present run
     type(case_values_t), private :: values
-    integer, allocatable, private :: places(:)       !! of the parameters among the keys
-    logical, allocatable, private :: groups(:)       !! of the table: a parameter belongs to it
-    logical, allocatable :: is_number(:)             !! a parameter is one number, real or whole
-    logical, allocatable :: is_whole(:)              !! it is one whole number
-    logical, private :: varies_words = .false.       !! a parameter is a word: it may name a law, which has keys of its own
-    type(error_t), allocatable, private :: wrong     !! parameters of the present run's laws that do not fit together
+    integer, allocatable, private :: places(:)       !! indices of the parameters in the table of keys
+    logical, allocatable, private :: groups(:)       !! groups that contain a parameter
+    logical, allocatable :: is_number(:)             !! whether each parameter is one number, real or whole
+    logical, allocatable :: is_whole(:)              !! whether each parameter is one whole number
+    logical, private :: varies_words = .false.       !! a parameter is a word, which may name a law with keys of its own
+    type(error_t), allocatable, private :: wrong     !! error in the parameters of the laws of the present run
   contains
     procedure :: prepare
     procedure :: put
@@ -36,8 +35,8 @@ module study_case
 
 contains
 
-  !> Take the values of a base case, which must be correct by itself, and find the keys of the parameters in it. `at` names
-  !> where the keys stand. A key of a model that the base case leaves out brings the model in.
+  !> Take the values of a base case, which must be valid by itself, and find the keys of the parameters. `at` names the place of the
+  !> keys in messages. A key of a model that the base case does not have adds the model.
   subroutine prepare(self, values, path, keys, at, error)
     class(study_case_t), intent(inout) :: self
     type(case_values_t), intent(in) :: values
@@ -51,7 +50,7 @@ contains
     if (allocated(error)) return
     allocate (self%groups(size(values%groups)), source=.false.)
     allocate (self%places(size(keys)), self%is_number(size(keys)), self%is_whole(size(keys)))
-    self%values%values%is_override = .false.   ! to the parameters, all else is the file
+    self%values%values%is_override = .false.   ! the base case takes the place of the file, the parameters that of the overrides
     do i = 1, size(keys)
       key = trim(keys(i))
       dot = index(key, '.', back=.true.)
@@ -69,17 +68,17 @@ contains
         self%values%values(self%places(i))%is_override = .true.
       end associate
     end do
-    do i = 1, size(keys)   ! a parameter takes away what the base case says by other keys of its family
+    do i = 1, size(keys)   ! a parameter replaces the base case's values of other keys of its family
       if (values%keys(self%places(i))%family /= '') call self%values%prefer(self%places(i))
     end do
     call load_case(self%values, self%case, self%wrong, self%groups)
-    do i = 1, size(values%keys)   ! of models that the parameters bring in
+    do i = 1, size(values%keys)   ! keys of models that the parameters add
       if (self%values%is_used(i)) call self%values%check_required(i, error)
       if (allocated(error)) return
     end do
   end subroutine prepare
 
-  !> Put the values of a run in, without any check of ranges. Error: see `convert`.
+  !> Set the values of a run, without checking ranges. Error: see `convert`.
   subroutine put(self, texts, error)
     class(study_case_t), intent(inout) :: self
     character(len=*), intent(in) :: texts(:)
@@ -94,8 +93,8 @@ contains
     !$omp end critical (texts)
   end subroutine put
 
-  !> Make the value of parameter i, which `put` puts into the case. Error: a text that is no value of its key, told without naming
-  !> the key.
+  !> Convert the value of parameter i, which `put` sets in the case. Error: a text that is not a value of its key; the message does
+  !> not name the key.
   subroutine convert(self, i, text, error)
     class(study_case_t), intent(inout) :: self
     integer, intent(in) :: i
@@ -116,7 +115,7 @@ contains
     end associate
   end subroutine convert
 
-  !> A value that is a word, a text, a switch or several numbers.
+  !> Convert a value that is a word, a text, a switch or several numbers.
   subroutine convert_other(self, text, place, error)
     class(study_case_t), intent(inout) :: self
     character(len=*), intent(in) :: text
@@ -139,8 +138,7 @@ contains
     !$omp end critical (texts)
   end subroutine convert_other
 
-  !> Whether the run that was put in last can be: ranges, and what must hold between values. The error is the run's, not the
-  !> study's.
+  !> Check the ranges of the values set last and the rules between them. An error concerns this run, not the study.
   subroutine check(self, error)
     class(study_case_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
@@ -159,7 +157,7 @@ contains
     !$omp end critical (texts)
   end subroutine check
 
-  !> The present case with every default filled in, as the text of a case file.
+  !> The present case with all defaults as the text of a case file.
   function resolved(self) result(text)
     class(study_case_t), intent(in) :: self
     character(len=:), allocatable :: text

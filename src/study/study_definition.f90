@@ -1,4 +1,4 @@
-!> A parameter study as data: a base case, what is varied, and what is wanted of every run.
+!> The data of a parameter study: a base case, the parameters that are varied, and the results that are wanted.
 module study_definition
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t
@@ -7,38 +7,38 @@ module study_definition
   private
   public :: study_t, parameter_t, text_t, study_schema_of
 
-  !> A text of its own length.
+  !> A text with a length of its own.
   type :: text_t
     character(len=:), allocatable :: text
   end type text_t
 
-  !> One key that is varied: over a range, or a list.
+  !> One key that is varied, over a range or a list.
   type, extends(has_parameters_t) :: parameter_t
     character(len=:), allocatable :: key      !! GROUP.KEY
     real(dp) :: from = 0, to = 0
-    integer :: count = 0                      !! points of a range on a grid
-    character(len=:), allocatable :: scale    !! in which the points are even: linear, log
-    character(len=:), allocatable :: values   !! those of a list, with commas
-    type(text_t), allocatable :: list(:)      !! the same; empty: a range
+    integer :: count = 0                      !! number of values of the range in a grid
+    character(len=:), allocatable :: scale    !! spacing of the values: linear, log
+    character(len=:), allocatable :: values   !! list of values, separated by commas
+    type(text_t), allocatable :: list(:)      !! the values of that list; empty: a range
   contains
     procedure :: parameters => parameters_of_parameter
   end type parameter_t
 
   type, extends(has_parameters_t) :: study_t
-    character(len=:), allocatable :: name, file     !! NAME of its results; path as given, for messages
+    character(len=:), allocatable :: name, file     !! NAME of its results; path as given by the user
     character(len=:), allocatable :: title
     character(len=:), allocatable :: case           !! path of the base case
-    character(len=:), allocatable :: table          !! path of the table of runs; empty: a design over parameters
+    character(len=:), allocatable :: table          !! path of a table of runs; empty: a design over parameters
     character(len=:), allocatable :: design
-    integer :: runs = 0, seed = 0                   !! of a sampled design
-    integer :: settle_cycles = 0                    !! revolutions at the start that the statistics leave out
+    integer :: runs = 0, seed = 0                   !! for a sampled design
+    integer :: settle_cycles = 0                    !! number of revolutions at the start that are left out of the statistics
     character(len=:), allocatable :: traces
-    logical :: cycles = .false.                     !! the statistics of every revolution too
+    logical :: cycles = .false.                     !! write the statistics of every revolution too
     real(dp) :: strobe_angle_deg = 0
-    character(len=:), allocatable :: strobe_columns !! empty: no strobe
-    integer :: strobe_cycles = 0                    !! strobes of a run; 0: all
+    character(len=:), allocatable :: strobe_columns !! columns sampled once per revolution; empty: none
+    integer :: strobe_cycles = 0                    !! number of samples in a run; 0: no limit
     type(parameter_t), allocatable :: varied(:)
-    character(len=:), allocatable :: resolved       !! a study file with every default that gives the same study
+    character(len=:), allocatable :: resolved       !! study file with all defaults, which gives the same study
     character(len=:), allocatable :: identity       !! the same without title and paths
   contains
     procedure :: parameters => parameters_of_study

@@ -1,5 +1,5 @@
-!> The runs of a study: for every run the values of its parameters, as texts. What is run is what stands in the text, so a
-!> row of the results can be repeated by hand.
+!> The runs of a study: for each run the values of its parameters as texts. The run uses exactly the values in these texts, so that
+!> every row of the results can be repeated as a single run.
 module study_design
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp
@@ -19,18 +19,18 @@ module study_design
   !> The values of one parameter: a list, or a range.
   type :: axis_t
     type(parameter_t) :: range
-    integer :: levels = 0             !! values on a grid
+    integer :: levels = 0             !! number of values in a grid
   end type axis_t
 
   type :: study_design_t
     integer :: runs = 0
-    integer :: text_length = 1                          !! of the longest value
+    integer :: text_length = 1                          !! length of the longest value
     character(len=:), allocatable :: keys(:)            !! GROUP.KEY of each parameter
-    logical, allocatable :: is_whole(:)                 !! its ranges are of whole numbers; to be set before values are asked for
+    logical, allocatable :: is_whole(:)  !! parameters whose ranges are of whole numbers; must be set before `get_values` is called
     type(study_table_t) :: table
     type(axis_t), allocatable, private :: axes(:)
     logical, private :: has_table = .false., has_sobol = .false.
-    real(dp), allocatable, private :: fraction(:, :)    !! place in the range (parameters, runs), Latin hypercube
+    real(dp), allocatable, private :: fraction(:, :)    !! relative position in the range, (parameters, runs), for a Latin hypercube
     type(sobol_points_t), private :: sobol
     type(number_writer_t), private :: numbers
   contains
@@ -40,7 +40,7 @@ module study_design
 
 contains
 
-  !> The design of a study, with numbers of so many significant digits. Errors: the table, or more runs than can be.
+  !> Make the design of a study; numbers have `digits` significant digits. Errors: in the table, or more runs than allowed.
   subroutine new_design(study, digits, design, error)
     type(study_t), intent(in) :: study
     integer, intent(in) :: digits
@@ -87,8 +87,8 @@ contains
     if (study%design == 'sobol') call begin_sobol(study, design, error)
   end subroutine new_design
 
-  !> Latin hypercube (McKay, Beckman and Conover 1979): each range is cut into as many equal parts as there are runs; every
-  !> part has one run, at a random place in it, and the parts are dealt out by a random permutation for each parameter.
+  !> Latin hypercube (McKay, Beckman and Conover 1979): each range is divided into as many equal parts as there are runs. Every part
+  !> contains one run, at a random position; for each parameter a random permutation assigns the parts to the runs.
   subroutine fill_hypercube(design, seed)
     type(study_design_t), intent(inout) :: design
     integer, intent(in) :: seed
@@ -135,7 +135,7 @@ contains
     end do
   end subroutine begin_sobol
 
-  !> The run of a grid in which parameter i has its last value and all others have their first.
+  !> The run of a grid in which parameter i has its last value and all others have their first value.
   pure integer function outermost(self, i)
     class(study_design_t), intent(in) :: self
     integer, intent(in) :: i
@@ -147,11 +147,11 @@ contains
     outermost = outermost + 1
   end function outermost
 
-  !> The values of run 1 .. runs.
+  !> The values of a run, 1 to `runs`.
   pure subroutine get_values(self, run, values)
     class(study_design_t), intent(in) :: self
     integer, intent(in) :: run
-    character(len=*), intent(out) :: values(:)   !! (parameters), of text_length
+    character(len=*), intent(out) :: values(:)   !! (parameters), of length text_length
     integer :: i, rest, level
     real(dp) :: fraction
     if (self%has_table) then
@@ -183,7 +183,7 @@ contains
     end do
   end subroutine get_values
 
-  !> The number at a fraction of a range.
+  !> The number at a relative position in a range.
   pure subroutine put_number(numbers, p, is_whole, fraction, text)
     type(number_writer_t), intent(in) :: numbers
     type(parameter_t), intent(in) :: p

@@ -1,4 +1,4 @@
-!> Study files: reading one, and what must hold between its values. Errors are as those of case files.
+!> Reads study files and checks their values. Errors have the form of those of case files.
 module study_file
   use gudgeon_errors, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text, case_name, lowercase
@@ -17,7 +17,7 @@ module study_file
 
 contains
 
-  !> A complete, commented study file.
+  !> A complete study file with comments.
   function study_template() result(text)
     character(len=:), allocatable :: text
     type(group_definition_t), allocatable :: groups(:)
@@ -27,7 +27,7 @@ contains
       groups, keys)
   end function study_template
 
-  !> Every group and key of a study file, as a page of the manual in Markdown.
+  !> Page of the manual in Markdown: all groups and keys of a study file.
   function study_reference() result(text)
     character(len=:), allocatable :: text
     type(group_definition_t), allocatable :: groups(:)
@@ -36,7 +36,7 @@ contains
     text = keys_reference(groups, keys)
   end function study_reference
 
-  !> Read and check a study file; paths in it become paths from here.
+  !> Read and check a study file. Paths in it are converted to paths relative to the current folder.
   subroutine read_study(path, study, error)
     character(len=*), intent(in) :: path
     type(study_t), intent(out) :: study
@@ -63,7 +63,7 @@ contains
     call take_parameters(groups(2:), study, error)
   end subroutine read_study
 
-  !> The values of each group of the file: those of &study first, then of each &parameter.
+  !> The values of each group of the file: first those of &study, then those of each &parameter.
   subroutine take_groups(path, list, groups, error)
     character(len=*), intent(in) :: path
     type(namelist_t), intent(in) :: list
@@ -121,7 +121,7 @@ contains
     end do
   end subroutine take_groups
 
-  !> One `key = values` into the values of its group. What stands in a list is kept as it is written, numbers and words alike.
+  !> Put one `key = values` into the values of its group. Values of a list are kept as written, numbers and words alike.
   subroutine take_entry(entry, at, group, error)
     type(entry_t), intent(in) :: entry
     character(len=*), intent(in) :: at
@@ -144,7 +144,7 @@ contains
     at = printable(path, 200)//':'//integer_text(line)//': '
   end function at_line
 
-  !> The values of &study.
+  !> Set the values of &study.
   subroutine take_study(values, study)
     type(case_values_t), intent(inout) :: values
     type(study_t), intent(inout) :: study
@@ -158,7 +158,7 @@ contains
 
   contains
 
-    !> The group as text, with other paths.
+    !> The text of the group with other paths.
     function resolved_with(case, table, title)
       character(len=*), intent(in) :: case, table, title
       character(len=:), allocatable :: resolved_with
@@ -171,7 +171,7 @@ contains
     end function resolved_with
   end subroutine take_study
 
-  !> A path that begins in a folder, unless it begins at the root or is empty.
+  !> A path relative to a folder, unless it is absolute or empty.
   pure function path_from(folder, path) result(whole)
     character(len=*), intent(in) :: folder, path
     character(len=:), allocatable :: whole
@@ -180,7 +180,7 @@ contains
     if (path(1:1) /= '/') whole = folder//path
   end function path_from
 
-  !> What &study asks for can be done with so many parameters.
+  !> Check that the values of &study fit together and fit the number of parameters.
   subroutine check_study(values, study, n_parameters, error)
     type(case_values_t), intent(in) :: values
     type(study_t), intent(in) :: study
@@ -202,7 +202,7 @@ contains
     end if
   end subroutine check_study
 
-  !> The values of every &parameter.
+  !> Set the values of all &parameter groups.
   subroutine take_parameters(groups, study, error)
     type(case_values_t), intent(inout) :: groups(:)
     type(study_t), intent(inout) :: study
@@ -227,7 +227,7 @@ contains
     end do
   end subroutine take_parameters
 
-  !> A parameter has a range or a list.
+  !> Check that a parameter has either a range or a list.
   subroutine check_parameter(values, study, p, error)
     type(case_values_t), intent(in) :: values
     type(study_t), intent(in) :: study
@@ -253,7 +253,7 @@ contains
     end if
   end subroutine check_parameter
 
-  !> The fields of a list with commas, without the blanks around them.
+  !> The fields of a list separated by commas, without surrounding blanks.
   pure subroutine split(list, fields)
     character(len=*), intent(in) :: list
     type(text_t), allocatable, intent(out) :: fields(:)

@@ -1,5 +1,5 @@
-!> What is written of a run of a study: its row among all runs, one for each of its revolutions, one for each strobe. The first row
-!> of each file, which names its columns, is put together by the same procedure as the others: name and value stand in one place.
+!> Rows of the results of a study: one for each run, one for each revolution, one for each strobe. The header of each file is made
+!> by the same procedure as the other rows, so that names and values of columns are defined in one place.
 module study_rows
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
@@ -19,13 +19,13 @@ module study_rows
 
   character(len=*), parameter :: crank_pin_prefix = crank_pin_place//'_'
 
-  !> A row, or several.
+  !> One or more rows.
   type, extends(row_text_t) :: study_row_t
-    logical :: is_header = .false.       !! it has the names of the columns
-    logical :: has_strobes = .false.     !! the study takes strobes
-    logical :: has_crank_pin = .false.   !! and has columns of the crank pin
-    logical :: has_guide = .false.       !! and of the piston in its bore
-    logical :: has_motion = .false.      !! and of the period or of the Lyapunov exponent of the motion
+    logical :: is_header = .false.       !! names of columns are put instead of values
+    logical :: has_strobes = .false.     !! the study has strobes
+    logical :: has_crank_pin = .false.   !! the study has columns of the crank pin
+    logical :: has_guide = .false.       !! the study has columns of the piston in its bore
+    logical :: has_motion = .false.      !! the study has columns of the period or the Lyapunov exponent
     type(number_writer_t) :: numbers
   contains
     procedure :: choose
@@ -35,7 +35,7 @@ module study_rows
 
 contains
 
-  !> Put a number, or its column's name; an empty field where the scene does not have it.
+  !> Append a number, or the name of its column; an empty field if the scene does not have the quantity.
   pure subroutine put_real(self, name, value, is_there)
     class(study_row_t), intent(inout) :: self
     character(len=*), intent(in) :: name
@@ -62,10 +62,10 @@ contains
     end if
   end subroutine put_whole
 
-  !> The columns that rows of a study have beside those of all: see the functions that follow.
+  !> Choose the columns that not all studies have: see the following functions.
   pure subroutine choose(self, keys, base, has_strobes)
     class(study_row_t), intent(inout) :: self
-    character(len=*), intent(in) :: keys(:)   !! of the parameters
+    character(len=*), intent(in) :: keys(:)   !! keys of the parameters
     type(case_t), intent(in) :: base
     logical, intent(in) :: has_strobes
     self%has_strobes = has_strobes
@@ -74,23 +74,23 @@ contains
     self%has_motion = looks_at_motion(keys, base)
   end subroutine choose
 
-  !> Whether runs of a study may have clearance at the crank pin, and so its columns: those of the base case do, or a parameter is
-  !> of that joint.
+  !> Whether runs of a study may have clearance at the crank pin, and therefore its columns: the base case has it, or a parameter
+  !> belongs to that joint.
   pure logical function may_have_crank_pin(keys, base)
-    character(len=*), intent(in) :: keys(:)   !! of the parameters
+    character(len=*), intent(in) :: keys(:)   !! keys of the parameters
     type(case_t), intent(in) :: base
     may_have_crank_pin = base%crank_pin%has_clearance() .or. any(index(keys, crank_pin_place//'.') == 1)
   end function may_have_crank_pin
 
-  !> Whether runs of a study may continue until their motion repeats, or have their Lyapunov exponent measured.
+  !> Whether runs of a study may end when the motion is periodic, or measure its Lyapunov exponent.
   pure logical function looks_at_motion(keys, base)
-    character(len=*), intent(in) :: keys(:)   !! of the parameters
+    character(len=*), intent(in) :: keys(:)   !! keys of the parameters
     type(case_t), intent(in) :: base
     looks_at_motion = base%run%is_until_periodic() .or. base%run%lyapunov_revolutions > 0 .or. &
       any(keys == 'run.until') .or. any(keys == 'run.lyapunov_revolutions')
   end function looks_at_motion
 
-  !> First row of NAME.runs.csv.
+  !> Header of NAME.runs.csv.
   function run_header(keys, base, has_strobes) result(text)
     character(len=*), intent(in) :: keys(:)
     type(case_t), intent(in) :: base
@@ -106,19 +106,19 @@ contains
     text = row%text(:row%used)
   end function run_header
 
-  !> The column of cycles[-] in NAME.runs.csv: empty where a run has failed.
+  !> Index of the column cycles[-] in NAME.runs.csv, which is empty for a failed run.
   pure integer function cycles_column(keys)
     character(len=*), intent(in) :: keys(:)
     cycles_column = size(keys) + 3
   end function cycles_column
 
-  !> The column of strobes[-], where there is one.
+  !> Index of the column strobes[-], if there is one.
   pure integer function strobes_column(keys)
     character(len=*), intent(in) :: keys(:)
     strobes_column = cycles_column(keys) + 14
   end function strobes_column
 
-  !> First row of NAME.cycles.csv.
+  !> Header of NAME.cycles.csv.
   function cycle_header(keys, base) result(text)
     character(len=*), intent(in) :: keys(:)
     type(case_t), intent(in) :: base
@@ -131,7 +131,7 @@ contains
     text = row%text(:row%used)
   end function cycle_header
 
-  !> First row of NAME.strobe.csv.
+  !> Header of NAME.strobe.csv.
   function strobe_header(list) result(text)
     type(column_list_t), intent(in) :: list
     character(len=:), allocatable :: text
@@ -143,13 +143,13 @@ contains
     text = text//achar(10)
   end function strobe_header
 
-  !> The row of a run: what it came to if it began, its statistics if it is done, with at least one revolution. Behind what every
-  !> study has stand how many strobes were taken, where there are any to take, and the crank pin.
+  !> Append the row of a run: its outcome if it began, and its statistics if it is done and has at least one revolution. The columns
+  !> of all studies are followed by the number of strobes, if the study has any, and by those of the crank pin.
   subroutine put_run(row, run, values, outcome, has_begun, watch, report, case)
     class(study_row_t), intent(inout) :: row
     integer, intent(in) :: run
-    character(len=*), intent(in) :: values(:)   !! of the parameters; their keys in a first row
-    character(len=*), intent(in) :: outcome     !! done, or why not
+    character(len=*), intent(in) :: values(:)   !! values of the parameters; their keys in a header
+    character(len=*), intent(in) :: outcome     !! done, or the reason of the failure
     logical, intent(in) :: has_begun
     type(cycle_watch_t), intent(in) :: watch
     type(run_report_t), intent(in) :: report
@@ -160,7 +160,7 @@ contains
 
     is_done = outcome == 'done'
     s = watch%statistics
-    if (.not. is_done) call s%add(cycle_t(duration=1.0_dp))   ! what is divided by is not 0
+    if (.not. is_done) call s%add(cycle_t(duration=1.0_dp))   ! prevents divisions by 0
     call row%clear()
     call row%put('run', run, .true.)
     do i = 1, size(values)
@@ -216,7 +216,7 @@ contains
     end subroutine put_skirt
   end subroutine put_run
 
-  !> A row for each revolution counted.
+  !> Append a row for each revolution counted.
   subroutine put_cycles(rows, run, watch, case)
     class(study_row_t), intent(inout) :: rows
     integer, intent(in) :: run
@@ -229,12 +229,12 @@ contains
     end do
   end subroutine put_cycles
 
-  !> The row of one revolution, `number` from the start of the run.
+  !> Append the row of one revolution; `number` counts from the start of the run.
   subroutine put_cycle(row, run, number, cycle, direction, case)
     class(study_row_t), intent(inout) :: row
     integer, intent(in) :: run, number
     type(cycle_t), intent(in) :: cycle
-    real(dp), intent(in) :: direction   !! in which the crank turns
+    real(dp), intent(in) :: direction   !! sense in which the crank turns: 1 or -1
     type(case_t), intent(in) :: case
     call row%put('run', run, .true.)
     call row%put('cycle', number, .true.)
@@ -272,7 +272,7 @@ contains
     end subroutine put_pin
   end subroutine put_cycle
 
-  !> A row for each strobe.
+  !> Append a row for each strobe.
   subroutine put_strobes(rows, run, watch)
     class(study_row_t), intent(inout) :: rows
     integer, intent(in) :: run

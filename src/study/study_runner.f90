@@ -1,4 +1,4 @@
-!> A study from its file to its results.
+!> Runs a study from its file to its results.
 module study_runner
   use, intrinsic :: iso_fortran_env, only: int64
   use omp_lib, only: omp_get_num_procs
@@ -22,17 +22,17 @@ module study_runner
 
   character(len=*), parameter :: newline = achar(10), checksum_label = '! checksum '
 
-  !> Rows wait in memory so that writing them down to the disk takes little of the time: a fiftieth, as far as the longest
-  !> interval lets it.
+  !> Rows are collected in memory so that writing them to the disk takes a small part of the time: a fiftieth, unless the longest
+  !> interval is exceeded.
   real(dp), parameter :: least_interval = 0.25_dp, most_interval = 5   !! between two writes [s]
-  real(dp), parameter :: intervals = 50                                !! of the time that the last one took
-  integer(int64), parameter :: most_waiting = 16000000                 !! bytes of revolutions and strobes
+  real(dp), parameter :: intervals = 50                                !! ratio of the interval to the duration of the last write
+  integer(int64), parameter :: most_waiting = 16000000                 !! bytes of rows of revolutions and strobes
 
 contains
 
-  !> Read a study, and unless only a check is asked for run it. `line` is the summary for people; an error tells of a wrong
-  !> study, of results that could not be written, or that runs failed. While the study is read or checked signals go through
-  !> as `before`; they are held from the first result on.
+  !> Read a study and run it, or only check it if `options` say so. `line` is the summary for the user. Errors: a wrong study,
+  !> results that could not be written, or failed runs. While the study is read or checked, signals are handled as in `before`; they
+  !> are held from the first result on.
   subroutine run_study_file(path, options, show_progress, before, line, error)
     character(len=*), intent(in) :: path
     type(command_line_t), intent(in) :: options
@@ -66,7 +66,8 @@ contains
     call conclude(sweep, real(ended - began, dp)/real(rate, dp), line, error)
   end subroutine run_study_file
 
-  !> Take up the results of the same study, or start from the beginning. Results of another study of that name are not touched.
+  !> Continue the results of the same study, or start from the beginning. Results of another study with the same name are not
+  !> changed.
   subroutine open_files(options, sweep, error)
     type(command_line_t), intent(in) :: options
     type(sweep_t), intent(inout) :: sweep
@@ -116,8 +117,8 @@ contains
     end associate
   end subroutine prepare_files
 
-  !> Find the runs that are there: whose row is there, and whose revolutions, strobes and trace are those that the row counts.
-  !> What there is of other runs is left out, and they are run again.
+  !> Find the runs that are complete: their row exists, and as many revolutions, strobes and traces as that row says. The rows of
+  !> other runs are discarded, and these runs are repeated.
   subroutine take_up(sweep, error)
     type(sweep_t), intent(inout) :: sweep
     type(error_t), allocatable, intent(out) :: error
@@ -130,7 +131,7 @@ contains
     do run = sweep%first, sweep%last
       fits = sweep%files(file_runs)%has(run)
       if (fits) then
-        cycles = sweep%files(file_runs)%numbers(1, run)   ! none of a run that failed
+        cycles = sweep%files(file_runs)%numbers(1, run)   ! empty for a run that failed
         strobes = sweep%files(file_runs)%numbers(2, run)
         if (sweep%study%cycles) fits = sweep%files(file_cycles)%rows(run) == cycles
         if (sweep%has_strobes) fits = fits .and. sweep%files(file_strobes)%rows(run) == strobes
@@ -150,7 +151,7 @@ contains
     sweep%done = sweep%began
   end subroutine take_up
 
-  !> All runs that have no row yet, by so many threads (0: as many as there are cores).
+  !> Carry out all runs that have no row yet, with `jobs` threads (0: number of processor cores).
   subroutine run_rows(jobs, sweep)
     integer, intent(in) :: jobs
     type(sweep_t), intent(inout) :: sweep
@@ -164,7 +165,7 @@ contains
     !$omp end parallel
   end subroutine run_rows
 
-  !> The share of one thread: whichever run is next, until there is none.
+  !> Work of one thread: carry out the next run until there is none.
   subroutine work(sweep)
     type(sweep_t), intent(inout) :: sweep
     type(study_worker_t), allocatable :: worker
@@ -188,7 +189,7 @@ contains
     end do
   end subroutine work
 
-  !> Add the rows of a run to those that wait, and write them if it is time.
+  !> Add the rows of a run to those not yet written, and write them if it is time.
   subroutine take_results(sweep, worker, run)
     type(sweep_t), intent(inout) :: sweep
     type(study_worker_t), intent(inout) :: worker
@@ -216,8 +217,8 @@ contains
     sweep%is_over = .true.
   end subroutine take_results
 
-  !> Write the rows that wait, a run's own row after its revolutions, strobes and trace are on the disk: where it is, they are,
-  !> also after a power cut. When to do so next follows from the time that the disk takes.
+  !> Write the rows not yet written. The row of a run is written after its revolutions, strobes and trace are on the disk, so that a
+  !> row always implies these, even after a power failure. The next write is scheduled from the duration of this one.
   subroutine write_rows(sweep, error)
     type(sweep_t), intent(inout) :: sweep
     type(error_t), allocatable, intent(inout) :: error
@@ -233,14 +234,14 @@ contains
     sweep%next_write = ended + min(most_interval, max(least_interval, intervals*(ended - began)))
   end subroutine write_rows
 
-  !> Seconds from some instant on.
+  !> Time since an arbitrary instant [s].
   real(dp) function clock()
     integer(int64) :: ticks, rate
     call system_clock(ticks, rate)
     clock = real(ticks, dp)/real(rate, dp)
   end function clock
 
-  !> Close the files, sorted if every run has its row. The first error counts.
+  !> Close the files, sorted if every run has its row. The first error is kept.
   subroutine close_files(sweep)
     type(sweep_t), intent(inout) :: sweep
     type(error_t), allocatable :: error
@@ -260,7 +261,7 @@ contains
     if (allocated(error) .and. .not. allocated(kept)) call move_alloc(error, kept)
   end subroutine keep_first
 
-  !> What there is to say at the end.
+  !> The line for the user and the error at the end of a study.
   subroutine conclude(sweep, wall_time, line, error)
     type(sweep_t), intent(inout) :: sweep
     real(dp), intent(in) :: wall_time   !! [s]

@@ -1,4 +1,4 @@
-!> A study read and checked, and what its threads share while it is under way.
+!> A study that has been read and checked, with the data shared by its threads while it runs.
 module study_sweep
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_case_file, status_integration
@@ -24,33 +24,34 @@ module study_sweep
   private
   public :: sweep_t, read_sweep, check_rows, study_checksum, file_cycles, file_strobes, file_runs
 
-  integer, parameter :: file_cycles = 1, file_strobes = 2, file_runs = 3   !! of a sweep's files, two where they are wanted
-  integer, parameter :: most_checked = 100000   !! runs of a design that a check looks at
+  integer, parameter :: file_cycles = 1, file_strobes = 2, file_runs = 3  !! indices of the files of a sweep; the first two are
+                                                                          !! optional
+  integer, parameter :: most_checked = 100000   !! largest number of runs of a design that a check tests
 
-  !> A study under way, shared by the threads that run it.
+  !> A running study, shared by its threads.
   type :: sweep_t
     type(study_t) :: study
     type(study_design_t) :: design
     type(study_case_t) :: base
     type(column_list_t) :: strobe_list
-    character(len=:), allocatable :: path          !! of the results, without their endings
-    integer :: first = 1, last = 0                 !! runs to run
-    logical :: is_drawn = .false.                  !! the design is a smaller one that stands for that of the study in a check
-    type(row_file_t) :: files(3)                   !! in the order in which their rows go to the disk; see file_...
+    character(len=:), allocatable :: path          !! of the results, without suffix
+    integer :: first = 1, last = 0                 !! range of runs
+    logical :: is_drawn = .false.                  !! in a check, the design is a smaller one that represents that of the study
+    type(row_file_t) :: files(3)                   !! in the order in which they are written to the disk; indices file_...
     type(progress_t) :: progress
     type(case_lock_t) :: lock
     logical :: has_strobes = .false.
-    integer :: began = 0, done = 0, failed = 0     !! rows: there at the start, there now; of them those that failed
-    integer :: incomplete = 0                      !! runs whose row was there, but not all that belongs to it
-    integer :: next = 1                            !! run that no thread has taken yet
-    real(dp) :: next_write = 0                     !! when rows are to be written [s]
-    logical :: is_over = .false.                   !! interrupted, or nothing more can be written
+    integer :: began = 0, done = 0, failed = 0     !! number of rows at the start and now, and number of failed runs
+    integer :: incomplete = 0                      !! number of runs with a row but incomplete other results
+    integer :: next = 1                            !! next run that no thread has taken
+    real(dp) :: next_write = 0                     !! time of the next write [s]
+    logical :: is_over = .false.                   !! interrupted, or writing has failed
     type(error_t), allocatable :: error
   end type sweep_t
 
 contains
 
-  !> Study, base case and design, checked against each other.
+  !> Read study, base case and design, and check them against each other.
   subroutine read_sweep(path, options, sweep, error)
     character(len=*), intent(in) :: path
     type(command_line_t), intent(in) :: options
@@ -106,7 +107,7 @@ contains
     end associate
   end subroutine read_sweep
 
-  !> Every text of a table or list is a value of its key.
+  !> Check that every text of a table or list is a value of its key.
   subroutine check_values(sweep, error)
     type(sweep_t), intent(inout) :: sweep
     type(error_t), allocatable, intent(out) :: error
@@ -134,10 +135,10 @@ contains
     end associate
   end subroutine check_values
 
-  !> Whether the runs can be, as far as their values tell: all of a table and of a design of moderate size. Of a larger design
-  !> runs are drawn, and those of a grid with the outermost value of each parameter are looked at too; a large Latin hypercube is
-  !> not made, a smaller one over the same ranges stands for it. `line` says how many runs there are. The error names the first
-  !> run that would fail, with the status of a sweep in which runs fail.
+  !> Check whether the runs are possible, as far as their values tell: all runs of a table and of a design of moderate size. From a
+  !> larger design runs are drawn at random; for a grid the runs with the last value of each parameter are added; a large Latin
+  !> hypercube is replaced by a smaller one over the same ranges. `line` says how many runs there are. The error names the first run
+  !> that would fail, and has the status of a sweep with failed runs.
   subroutine check_rows(sweep, line, error)
     type(sweep_t), intent(inout) :: sweep
     character(len=:), allocatable, intent(out) :: line
@@ -194,7 +195,7 @@ contains
     end subroutine check_run
   end subroutine check_rows
 
-  !> Tells apart studies whose rows would differ.
+  !> A checksum that differs between studies whose rows would differ.
   function study_checksum(sweep) result(text)
     type(sweep_t), intent(in) :: sweep
     character(len=16) :: text

@@ -1,5 +1,5 @@
-!> A table of runs: CSV after RFC 4180, a header of GROUP.KEY, a row for each run. A table may be large and its fields of any
-!> length: they stay in the text, in which they are found again by their places.
+!> A table of runs: CSV according to RFC 4180, with a header of GROUP.KEY and a row for each run. Since a table may be large and its
+!> fields of any length, fields are stored as positions in the text.
 module study_table
   use gudgeon_errors, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text, lowercase
@@ -15,19 +15,20 @@ module study_table
 
   type :: study_table_t
     integer :: rows = 0
-    integer :: longest = 1                          !! bytes of the longest field
+    integer :: longest = 1                          !! length of the longest field [bytes]
     character(len=:), allocatable :: keys(:)        !! (columns), in lower case
-    integer, allocatable :: lines(:)                !! of the file where each row begins, (0:rows): the header's first
+    integer, allocatable :: lines(:)                !! line of the file on which each row begins, (0:rows); 0 is the header
     character(len=:), allocatable, private :: text
-    integer, allocatable, private :: first(:), last(:)   !! bytes of each field, with its quotes; the header's first
+    integer, allocatable, private :: first(:), last(:)  !! first and last byte of each field, including its quotes, beginning with
+                                                        !! the header
   contains
     procedure :: field
   end type study_table_t
 
 contains
 
-  !> The field of a row (0: the header) in a column, without quotes, blanks before it and an apostrophe that was put before it;
-  !> blanks stand behind it.
+  !> The field in a column of a row (0: the header), without quotes, leading blanks and an apostrophe added by a writer; padded with
+  !> blanks.
   pure function field(self, column, row) result(text)
     class(study_table_t), intent(in) :: self
     integer, intent(in) :: column, row
@@ -41,7 +42,7 @@ contains
       do while (i < len(text))
         used = used + 1
         text(used:used) = text(i:i)
-        i = i + merge(2, 1, text(i:i) == quote)   ! a doubled one stands for itself
+        i = i + merge(2, 1, text(i:i) == quote)   ! a doubled quote stands for one
       end do
       text(used + 1:) = ''
     end if
@@ -59,7 +60,8 @@ contains
     if (.not. allocated(error)) call parse_table(text, path, table, error)
   end subroutine read_table
 
-  !> The table in a text, which is used up; `path` names it in messages. Lines end with CR LF or LF; empty lines are passed over.
+  !> Read the table from a text, which is then deallocated; `path` names it in messages. Lines end with CR LF or LF; empty lines are
+  !> ignored.
   subroutine parse_table(text, path, table, error)
     character(len=:), allocatable, intent(inout) :: text
     character(len=*), intent(in) :: path
@@ -123,7 +125,7 @@ contains
     end if
   end subroutine parse_table
 
-  !> How often a character stands in a text.
+  !> Number of occurrences of a character in a text.
   pure integer function count_of(text, character) result(number)
     character(len=*), intent(in) :: text
     character(len=1), intent(in) :: character
@@ -144,13 +146,13 @@ contains
     end do
   end subroutine skip_empty_lines
 
-  !> One field and the comma or the end of line behind it.
+  !> Find one field and the comma or end of line behind it.
   pure subroutine take_field(text, at, line, first, last, is_last, message)
     character(len=*), intent(in) :: text
     integer, intent(inout) :: at, line
     integer, intent(out) :: first, last
     logical, intent(out) :: is_last
-    character(len=:), allocatable, intent(inout) :: message   !! what is wrong; unchanged where nothing is
+    character(len=:), allocatable, intent(inout) :: message   !! error message; unchanged if there is no error
     integer :: ending, next
     logical :: is_quoted
 
@@ -174,7 +176,7 @@ contains
     next = scan(text(at:), ','//newline)
     ending = merge(at - 1 + next, len(text) + 1, next > 0)
     is_last = text(ending:min(ending, len(text))) /= ','
-    next = ending - 1   ! the last byte before it
+    next = ending - 1   ! the last byte of the field
     if (is_last .and. text(max(next, at):next) == return) next = next - 1
     if (.not. is_quoted) then
       if (index(text(at:next), quote) > 0) message = 'a quote inside a field that does not begin with one'
@@ -186,7 +188,7 @@ contains
     at = ending + 1
   end subroutine take_field
 
-  !> Every column has a name of its own.
+  !> Check that all columns have different names.
   subroutine check_header(path, table, error)
     character(len=*), intent(in) :: path
     type(study_table_t), intent(in) :: table

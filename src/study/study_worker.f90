@@ -1,5 +1,5 @@
-!> What one thread needs to run the runs of a study one after the other. Everything is made once; a run makes nothing but what
-!> the simulation itself does.
+!> The data of one thread that carries out runs of a study one after the other. Everything is allocated once; a run allocates only
+!> what the simulation itself needs.
 module study_worker
   use gudgeon_errors, only: error_t
   use gudgeon_constants, only: degree
@@ -19,7 +19,7 @@ module study_worker
   private
   public :: study_worker_t
 
-  !> Takes nothing, and ends the run when the user interrupts it.
+  !> A sink that ignores the results, and ends the run when the user interrupts.
   type, extends(trace_sink_t) :: patient_sink_t
   contains
     procedure :: take_row
@@ -28,10 +28,10 @@ module study_worker
   end type patient_sink_t
 
   type :: study_worker_t
-    type(study_row_t) :: run_row, cycle_rows, strobe_rows  !! of the last run
-    logical :: is_done = .false.                           !! the last run came to its end
-    logical :: was_interrupted = .false.                   !! it was given up, and has no row
-    type(error_t), allocatable :: output_error             !! its trace could not be written
+    type(study_row_t) :: run_row, cycle_rows, strobe_rows  !! rows of the last run
+    logical :: is_done = .false.                           !! the last run reached its end
+    logical :: was_interrupted = .false.                   !! the last run was abandoned, and has no row
+    type(error_t), allocatable :: output_error             !! reason why its trace could not be written
     type(study_case_t), private :: base
     type(cycle_watch_t), allocatable, private :: watch
     class(trace_sink_t), allocatable, private :: sink
@@ -47,7 +47,7 @@ module study_worker
 
 contains
 
-  !> `strobe_list` has no columns where there is no strobe; traces go into `trace_folder`.
+  !> Prepare a worker. `strobe_list` has no columns if there are no strobes; traces are written into `trace_folder`.
   subroutine prepare(self, study, design, base, strobe_list, trace_folder)
     class(study_worker_t), intent(inout) :: self
     type(study_t), intent(in) :: study
@@ -75,7 +75,7 @@ contains
     allocate (character(len=design%text_length) :: self%values(size(design%keys)))
   end subroutine prepare
 
-  !> Run one run; its rows are left in the worker.
+  !> Carry out one run; its rows are stored in the worker.
   subroutine run(self, design, number)
     class(study_worker_t), intent(inout) :: self
     type(study_design_t), intent(in) :: design
@@ -121,7 +121,7 @@ contains
     end associate
   end subroutine run
 
-  !> Run what has been put in with a trace, NAME/RUN.csv and its events.
+  !> Carry out the run whose values have been set, with a trace NAME/RUN.csv and its events.
   subroutine run_with_trace(self, number, report, error)
     class(study_worker_t), intent(inout) :: self
     integer, intent(in) :: number
@@ -143,7 +143,7 @@ contains
     call simulate(self%base%case, .false., list, sink, report, error, cycles=self%watch)
     select type (sink)
     type is (trace_files_t)
-      call sink%synchronise()   ! before the row that says that the run is done
+      call sink%synchronise()   ! before the row that reports the run as done
       !$omp critical (texts)
       call sink%close(self%output_error)
       !$omp end critical (texts)
@@ -151,7 +151,7 @@ contains
     if (allocated(error)) self%was_interrupted = index(error%message, interrupted_text) == 1
   end subroutine run_with_trace
 
-  !> A message without the file before its group.
+  !> A message without the file name before its group.
   pure function reason_of(message) result(reason)
     character(len=*), intent(in) :: message
     character(len=len(message)) :: reason
