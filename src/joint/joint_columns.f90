@@ -23,8 +23,7 @@ contains
     if (joint%place /= piston_pin) row%place = name_prefix(joint%place)
     call row%put('eccentricity_x[m]', motion%eccentricity(1), 'centre of the pin from the centre of its bearing, along x')
     call row%put('eccentricity_y[m]', motion%eccentricity(2), 'the same along y')
-    if (joint%place /= piston_pin) then  ! the rates of the crank pin follow from crank, rod and piston only if the other pin is
-                                         ! ideal
+    if (joint%place /= piston_pin) then  ! not among the other columns
       call row%put('eccentricity_rate_x[m/s]', motion%eccentricity_rate(1), 'rate of eccentricity_x')
       call row%put('eccentricity_rate_y[m/s]', motion%eccentricity_rate(2), 'rate of eccentricity_y')
     end if

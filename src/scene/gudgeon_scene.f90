@@ -1,4 +1,4 @@
-!> A scene: the chain with the joints and the gas that its case asks for, as a system of differential equations.
+!> A scene: the chain of crank, rod and piston with the joints and the gas of a case, as a system of differential equations.
 module gudgeon_scene
   use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
@@ -20,17 +20,17 @@ module gudgeon_scene
   public :: phase_free, phase_film, phase_contact
   public :: event_none, event_contact_begins, event_contact_ends
 
-  !> Events that a trace tells of.
+  !> Events reported in the trace.
   integer, parameter :: event_none = 0, event_contact_begins = 1, event_contact_ends = 2
 
-  !> An ideal pin, in the terms of a joint with clearance.
+  !> The motion and the loads of an ideal pin, in the form of those of a joint with clearance.
   type(joint_motion_t), parameter :: centred_pin = joint_motion_t([0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp], 0.0_dp, 0.0_dp, &
     [1.0_dp, 0.0_dp], 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, [0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp])
   type(joint_loads_t), parameter :: no_loads = joint_loads_t([0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp], 0.0_dp, 0.0_dp, 0.0_dp, &
     0.0_dp, 0.0_dp, .false.)
 
-  !> Everything that one evaluation of a scene finds: of each of its joints, or of one centred pin without loads where it has none.
-  !> A right-hand side does not set what it does not need.
+  !> The results of one evaluation of a scene. Arrays have one element for each joint with clearance, or, without any, one for a
+  !> centred pin without loads. The right-hand side sets only the components that it needs.
   type :: evaluation_t
     type(motion_t) :: motion
     type(accelerations_t) :: accelerations
@@ -43,38 +43,39 @@ module gudgeon_scene
     real(dp) :: power               !! of all non-conservative forces and the drive [W]
   end type evaluation_t
 
-  !> Whose event an event function of the integrator is.
+  !> The owner of an event function of the integrator.
   type :: event_owner_t
-    integer :: joint = 0            !! 0: the gas's, -1: that of the crank's turns, -2: the guide's
-    integer :: event = 0            !! by the owner's own count
+    integer :: joint = 0            !! 0: the gas, -1: the turns of the crank, -2: the guide
+    integer :: event = 0            !! number of the event within its owner
   end type event_owner_t
 
-  !> A scene as an ode_problem. Of the state it claims the crank angle, unless the crank speed is held; the joints claim their
-  !> eccentricities; quadratures are the work of all non-conservative forces and the drive [J] and, where they are requested,
-  !> the measures of the joints: the integrals of the sizes of the forces on the piston pin and on a loose crank pin [N s] and,
-  !> where the work does not tell it, what the joints take from the bodies [J].
+  !> A scene as an ode_problem. It claims the crank angle in the state vector, unless the crank speed is prescribed; the joints
+  !> claim their eccentricities. Quadratures are the work of all non-conservative forces and the drive [J] and, on request, the
+  !> integrals of the magnitudes of the forces on the piston pin and on a crank pin with clearance [N s] and, if it does not follow
+  !> from the work, the energy that the joints take from the bodies [J].
   type, extends(ode_problem_t) :: scene_t
     type(chain_t) :: chain
-    integer :: n_joints = 0         !! with clearance: 0, 1 or 2
+    integer :: n_joints = 0         !! number of joints with clearance: 0, 1 or 2
     type(clearance_joint_t), allocatable :: joints(:)
-    integer :: joint_of_pin(n_pins) = 0   !! which of them is at each pin; 0: it is ideal
-    type(piston_guide_t), allocatable :: guide   !! not allocated: an ideal one
+    integer :: joint_of_pin(n_pins) = 0   !! index of the joint with clearance at each pin; 0: the pin is ideal
+    type(piston_guide_t), allocatable :: guide   !! not allocated: the guide is ideal
     type(working_gas_t), allocatable :: gas
-    type(crank_turns_t), allocatable :: turns   !! of a free crank, where they end the run
+    type(crank_turns_t), allocatable :: turns   !! turns of a free crank that end the run
     real(dp) :: start_angle = 0     !! crank angle at t = 0 [rad]
-    real(dp) :: start_speed = 0     !! crank speed at t = 0, and always if it is held [rad/s]
-    real(dp) :: span = 1            !! of the simulation [s]
-    type(layout_t) :: layout        !! of the state
-    type(coordinates_t) :: crank    !! where the crank angle stands in it
-    logical :: runs_up = .false.    !! the held speed is run up to start_speed
-    logical :: crank_moves = .true. !! it stands there: its speed is not held
-    integer :: work_at = 0          !! where the work of the forces stands
-    type(slice_t) :: measures       !! quadratures of the joints
-    logical :: measures_loss = .false.   !! the last of them is what the joints take
+    real(dp) :: start_speed = 0     !! crank speed at t = 0; constant if it is prescribed without run-up [rad/s]
+    real(dp) :: span = 1            !! duration of the simulation [s]
+    type(layout_t) :: layout        !! layout of the state vector
+    type(coordinates_t) :: crank    !! indices of the crank angle in the state vector
+    logical :: runs_up = .false.    !! the prescribed speed is run up to start_speed
+    logical :: crank_moves = .true. !! the crank angle is a state: its speed is not prescribed
+    integer :: work_at = 0          !! index of the work of the forces
+    type(slice_t) :: measures       !! indices of the integrals on request
+    logical :: measures_loss = .false.   !! the last of them is the energy taken by the joints
     logical :: has_more_bodies = .false.   !! elastic members or a guide that is not ideal
     logical :: may_stick = .false.  !! a joint has set-valued friction
-    logical :: has_more_rates = .false.   !! of measures, of elastic members, of a guide, or of the law of a joint
-    real(dp) :: entry_time = -huge(1.0_dp)          !! when a joint has begun to touch last [s]
+    logical :: has_more_rates = .false.  !! there are rates of integrals on request, of elastic members, of a guide, or of the law
+                                         !! of a joint
+    real(dp) :: entry_time = -huge(1.0_dp)          !! beginning of the last contact [s]
     type(event_owner_t) :: event_of(max_events)     !! owners of the event functions
   contains
     procedure :: claim
@@ -108,15 +109,15 @@ module gudgeon_scene
   end type scene_t
 
   interface
-    !> Derivatives of the accelerations by positions and rates: in closed form where the piston pin alone has clearance and does not
-    !> stick.
+    !> Derivatives of the accelerations with respect to positions and rates; in closed form if only the piston pin has clearance and
+    !> its surfaces do not stick.
     module subroutine jacobian(self, t, y, a_p, a_v)
       class(scene_t), intent(in) :: self
       real(dp), intent(in) :: t, y(:)
       real(dp), intent(out) :: a_p(:, :), a_v(:, :)
     end subroutine jacobian
 
-    !> Those of the joints one by one, then those of the gas and of the crank's turns.
+    !> Event functions of the joints, one after the other, then of the gas and of the turns of the crank.
     pure module subroutine all_events(self, t, y, g, g_rate)
       class(scene_t), intent(in) :: self
       real(dp), intent(in) :: t, y(self%n)
@@ -131,19 +132,19 @@ module gudgeon_scene
       integer, intent(out) :: action
     end subroutine handle_event
 
-    !> Which event of the trace event `index` of the integrator is, before it is handled.
+    !> The kind of trace event that event `index` of the integrator is, before it is handled.
     pure integer module function reported_event(self, index)
       class(scene_t), intent(in) :: self
       integer, intent(in) :: index
     end function reported_event
 
-    !> Whether event `index` of the integrator is the guide's: that of a corner of the skirt.
+    !> Whether event `index` of the integrator belongs to a corner of the skirt.
     pure logical module function is_of_guide(self, index)
       class(scene_t), intent(in) :: self
       integer, intent(in) :: index
     end function is_of_guide
 
-    !> A step goes no deeper into contact than each joint allows.
+    !> Reject a step whose penetration at its end exceeds the limit of a joint.
     pure module subroutine judge_step(self, t_old, y_old, t, y, verdict, fraction)
       class(scene_t), intent(in) :: self
       real(dp), intent(in) :: t_old, y_old(:), t, y(:)
@@ -156,20 +157,20 @@ module gudgeon_scene
       integer, intent(in) :: index
     end function lands_on_step_end
 
-    !> When the next contact ends.
+    !> Predicted end of a contact.
     pure real(dp) module function rough_time(self, t, y)
       class(scene_t), intent(in) :: self
       real(dp), intent(in) :: t, y(:)
     end function rough_time
 
-    !> Find the discrete state at t = 0 when all else is set. A journal touches where it is beyond the clearance; exactly there it
-    !> does if it continues outwards, or, at rest, is pressed outwards.
+    !> Find the discrete state at t = 0 after everything else has been set. A journal beyond the clearance is in contact. A journal
+    !> exactly at the wall is in contact if it moves outwards or, at rest, is pressed outwards.
     module subroutine prepare_start(self)
       class(scene_t), intent(inout) :: self
     end subroutine prepare_start
 
-    !> Where the piston in its bore, the shapes of the rod and the flywheel are, in a scene with elastic members or a guide.
-    !> `inside` is false where they cannot be.
+    !> Set the position of a piston with clearance in its bore, of the shapes of the rod and of the flywheel, in a scene with
+    !> elastic members or a guide. `inside` is false if they are not admissible.
     pure module subroutine place_more_bodies(self, t, y, now, inside)
       class(scene_t), intent(in) :: self
       real(dp), intent(in) :: t, y(self%n)
@@ -177,14 +178,15 @@ module gudgeon_scene
       logical, intent(out) :: inside
     end subroutine place_more_bodies
 
-    !> Add the loads of the guide to those of joints and gas: friction only as far as the loads of the piston pin are known.
+    !> Add the loads of the guide to those of joints and gas; the friction force only if it follows from the loads of the piston pin
+    !> known so far.
     pure module subroutine load_guide(self, now)
       class(scene_t), intent(in) :: self
       type(evaluation_t), intent(inout) :: now
     end subroutine load_guide
 
-    !> Add the friction of an ideal guide that depends on the accelerations which it changes, when these are known without it and
-    !> without the friction of surfaces that stick. `inside` is false where it would jam the piston.
+    !> Add the friction of an ideal guide that depends on the accelerations, which it changes itself. The accelerations without it
+    !> and without the friction of sticking surfaces must be known. `inside` is false if it would jam the piston.
     pure module subroutine add_guide_friction(self, joints, now, inside)
       class(scene_t), intent(in) :: self
       type(clearance_joint_t), intent(in) :: joints(:)
@@ -192,19 +194,19 @@ module gudgeon_scene
       logical, intent(out) :: inside
     end subroutine add_guide_friction
 
-    !> Add to the power of the joints that of drive, gas, guide and elastic members, in a scene with elastic members or a guide.
+    !> Add the power of drive, gas, guide and elastic members to that of the joints, in a scene with elastic members or a guide.
     pure module subroutine add_power(self, now)
       class(scene_t), intent(in) :: self
       type(evaluation_t), intent(inout) :: now
     end subroutine add_power
 
-    !> Let the elastic members claim their part of the state.
+    !> Claim the states of the elastic members.
     module subroutine claim_elastic(self)
       class(scene_t), intent(inout) :: self
     end subroutine claim_elastic
 
-    !> Frequency with which crank and flywheel of an elastic crankshaft swing against each other about the starting angle [rad/s],
-    !> with ideal joints and a rigid rod.
+    !> Natural frequency of crank and flywheel on an elastic crankshaft at the starting angle [rad/s], with ideal joints and a rigid
+    !> rod.
     pure real(dp) module function twist_frequency(self)
       class(scene_t), intent(in) :: self
     end function twist_frequency
@@ -237,7 +239,7 @@ contains
     if (self%joint_of_pin(crank_pin) > 0) dydt(self%measures%first + 1) = force_size(now%loads%force(:, crank_pin))
   end subroutine derivatives
 
-  !> Rates of what the joints claimed.
+  !> Rates of the states of the joints.
   pure subroutine put_rates(n, joints, now, dydt)
     integer, intent(in) :: n
     type(clearance_joint_t), intent(in) :: joints(n)
@@ -254,7 +256,7 @@ contains
     end do
   end subroutine put_rates
 
-  !> Rates of what the laws of the joints claimed.
+  !> Rates of the states of the laws of the joints.
   pure subroutine put_own_rates(n, joints, now, dydt)
     integer, intent(in) :: n
     type(clearance_joint_t), intent(in) :: joints(n)
@@ -266,8 +268,8 @@ contains
     end do
   end subroutine put_own_rates
 
-  !> Everything at (t, y). `inside` is false where a model is not defined: then there are only the crank angle and how the joints
-  !> move, without their sliding speeds.
+  !> Evaluate all quantities at (t, y). `inside` is false if a model is not defined there; then only the crank angle and the motion
+  !> of the joints are set, without sliding speeds.
   pure subroutine evaluate(self, t, y, evaluation, inside)
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
@@ -290,8 +292,8 @@ contains
     end do
   end subroutine evaluate
 
-  !> Motion, loads, accelerations and power. `inside` is false where a journal cannot be. (The joints are handed on by themselves,
-  !> which spares looking up their bounds and stride.)
+  !> Compute motion, loads, accelerations and power. `inside` is false if an eccentricity is not admissible. (The joints are passed
+  !> as an argument of fixed size, which avoids looking up bounds and strides.)
   pure subroutine find_accelerations(self, n, joints, t, y, now, inside)
     class(scene_t), intent(in) :: self
     integer, intent(in) :: n
@@ -343,7 +345,7 @@ contains
     now%power = now%power - now%loads%axial_force*now%motion%piston_velocity
   end subroutine find_accelerations
 
-  !> The crank.
+  !> Set angle and speed of the crank.
   pure subroutine read_crank(self, t, y, motion)
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
@@ -355,7 +357,7 @@ contains
     end if
   end subroutine read_crank
 
-  !> The crank of a held speed.
+  !> Set angle and speed of a crank with prescribed speed.
   pure subroutine hold_crank(self, t, motion)
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: t
@@ -368,7 +370,7 @@ contains
     end if
   end subroutine hold_crank
 
-  !> The eccentricities of the joints, and what they are for the chain. `inside` is false where a joint does not admit its own.
+  !> Set the eccentricities of the joints, also in the motion of the chain. `inside` is false if one is not admissible.
   pure subroutine place_journals(n, joints, y, now, inside)
     integer, intent(in) :: n
     type(clearance_joint_t), intent(in) :: joints(n)
@@ -397,7 +399,7 @@ contains
     inside = admitted
   end subroutine place_journals
 
-  !> Let everybody claim their part of the state and find it, when all else is set; and number the events.
+  !> Let all parts claim their states and number the events, after everything else has been set.
   subroutine claim(self)
     class(scene_t), intent(inout) :: self
     type(slice_t) :: work
@@ -431,7 +433,7 @@ contains
     call take_layout(self)
   end subroutine claim
 
-  !> What the integrator needs to know of the layout.
+  !> Pass the parts of the layout that the integrator needs to it.
   subroutine take_layout(self)
     class(scene_t), intent(inout) :: self
     self%n = self%layout%n()
@@ -439,9 +441,9 @@ contains
     self%n_quadratures = self%layout%n_quadratures
   end subroutine take_layout
 
-  !> Integrate the measures of the joints too; before the run. They do not change its steps where there is clearance. A scene
-  !> without has one measure, the integral of the force's size, and it has part in the control of the error: nothing else makes
-  !> steps short enough for it.
+  !> Request the integrals of the joints; must be called before the run. In a scene with clearance they do not influence the steps.
+  !> In a scene without clearance the only one, the integral of the force, takes part in the error control, since otherwise the
+  !> steps would be too long for it.
   subroutine measure_joint(self)
     class(scene_t), intent(inout) :: self
     integer :: n
@@ -461,7 +463,7 @@ contains
     call take_layout(self)
   end subroutine measure_joint
 
-  !> Whether the work of all forces tells what the joints take: nothing else but a constant torque does work.
+  !> Whether the energy taken by the joints follows from the work of all forces: no other part does work except a constant torque.
   pure logical function work_tells(self)
     class(scene_t), intent(in) :: self
     work_tells = self%chain%drive%free_crank .and. .not. (self%chain%drive%damping > 0 .or. allocated(self%gas) &
@@ -469,7 +471,7 @@ contains
                                                          .or. allocated(self%guide) .or. allocated(self%chain%elastic))
   end function work_tells
 
-  !> Integrals of the sizes of the forces on the pins so far, in a scene that measures them [N s]; 0 of an ideal crank pin.
+  !> Integrals of the magnitudes of the forces on the pins so far [N s], in a scene that computes them; 0 for an ideal crank pin.
   pure function force_integrals(self, y) result(integrals)
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: y(:)
@@ -479,8 +481,8 @@ contains
     if (self%joint_of_pin(crank_pin) > 0) integrals(crank_pin) = y(self%measures%first + 1)
   end function force_integrals
 
-  !> Energy that the joints have taken from the bodies, in a scene that measures it [J]; where it is not integrated itself, the
-  !> work of the drive's torque less that of all forces.
+  !> Energy that the joints have taken from the bodies so far [J], in a scene that computes it. If it is not integrated itself, it
+  !> is the work of the driving torque minus the work of all forces.
   pure real(dp) function joint_loss(self, t, y)
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: t, y(:)
@@ -510,7 +512,7 @@ contains
     if (allocated(self%guide)) call self%guide%put_start(y)
   end function initial_state
 
-  !> Whether the forces of a film have no bound next to this state.
+  !> Whether the force of a film has no bound near this state.
   pure logical function is_singular(self, y)
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: y(:)
@@ -559,7 +561,7 @@ contains
     energy = self%chain%energy(motion)
   end function energy
 
-  !> Size of the crank speed [rad/s]: the start speed; from rest, one radian in the time simulated.
+  !> Natural size of the crank speed [rad/s]: the starting speed; from rest, one radian in the time simulated.
   pure real(dp) function speed_scale(self, span)
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: span
@@ -567,8 +569,8 @@ contains
     if (.not. speed_scale > 0) speed_scale = 1/span
   end function speed_scale
 
-  !> Size of the energy [J]: the bodies at the speed scale, the weights lifted by a crank length, and rod and piston at the joints'
-  !> own speeds.
+  !> Natural size of the energy [J]: the kinetic energy at the speed scale, the potential energy of a lift by the crank length, and
+  !> the energy of rod and piston at the natural speeds of the joints.
   pure real(dp) function energy_scale(self, span)
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: span
@@ -585,14 +587,14 @@ contains
     end associate
   end function energy_scale
 
-  !> Which of the joints is at a pin; 0: it is ideal.
+  !> Index of the joint with clearance at a pin; 0: the pin is ideal.
   pure integer function joint_at(self, place)
     class(scene_t), intent(in) :: self
     integer, intent(in) :: place
     joint_at = self%joint_of_pin(place)
   end function joint_at
 
-  !> What the joint at a pin is doing; an ideal pin is free.
+  !> Phase of the joint at a pin; an ideal pin counts as free.
   pure integer function phase_at(self, place)
     class(scene_t), intent(in) :: self
     integer, intent(in) :: place
@@ -602,14 +604,14 @@ contains
     if (i > 0) phase_at = self%joints(i)%phase
   end function phase_at
 
-  !> After how many revolutions what drives the motion repeats: that of the gas, or one.
+  !> Period of the excitation [revolutions]: that of the gas, or 1.
   pure integer function forcing_revolutions(self)
     class(scene_t), intent(in) :: self
     forcing_revolutions = 1
     if (allocated(self%gas)) forcing_revolutions = self%gas%revolutions()
   end function forcing_revolutions
 
-  !> The discrete state, to or from an archive.
+  !> Write the discrete state to an archive, or read it from it.
   subroutine exchange(self, archive)
     class(scene_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive

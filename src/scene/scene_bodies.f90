@@ -1,4 +1,5 @@
-!> What a scene has beyond rigid bodies on an ideal guide: elastic members, a guide with friction, a piston with clearance in its bore.
+!> Parts of a scene other than rigid bodies and an ideal guide: elastic members, a guide with friction, a piston with clearance in
+!> its bore.
 submodule (gudgeon_scene) scene_bodies
   use chain_motion, only: crank_pin, piston_pin
   use chain_loads, only: unloaded
@@ -10,7 +11,7 @@ submodule (gudgeon_scene) scene_bodies
 contains
 
   module procedure place_more_bodies
-    if (self%joint_of_pin(crank_pin) == 0) then   ! which not every closed form reads
+    if (self%joint_of_pin(crank_pin) == 0) then   ! not every closed form reads it
       now%motion%crank_pin = 0
       now%motion%crank_pin_rate = 0
     end if
@@ -19,7 +20,7 @@ contains
     if (allocated(self%chain%elastic)) call self%chain%elastic%read_state(t, y, now%motion)
   end procedure place_more_bodies
 
-  !> Where the piston is in its bore. `inside` is false where it cannot be.
+  !> Position of the piston in its bore. `inside` is false if it is not admissible.
   pure subroutine place_in_bore(scene, y, now, inside)
     class(scene_t), intent(in) :: scene
     real(dp), intent(in) :: y(scene%n)
@@ -47,9 +48,9 @@ contains
     end if
   end procedure load_guide
 
-  !> F = mu |N| of an ideal guide, where N = N_0 + N_1 F depends on the accelerations, in which all is linear: N_0 is that without
-  !> F, N_1 is found by a trial, and N = N_0/(1 - mu N_1 sign N_0). While |mu N_1| < 1 that is the one solution, and the other sign
-  !> has none; from there on the piston would jam.
+  !> F = mu |N| of an ideal guide, where N = N_0 + N_1 F depends on the accelerations, and everything is linear in these: N_0 is the
+  !> normal force without F, N_1 follows from a trial force, and N = N_0/(1 - mu N_1 sign N_0). If |mu N_1| < 1 this is the only
+  !> solution; otherwise the piston would jam.
   module procedure add_guide_friction
     type(loads_t) :: unit
     type(accelerations_t) :: change
@@ -70,21 +71,21 @@ contains
     if (inside) call add_friction(self, ratio*abs(normal/(1 - ratio*slope*sign(1.0_dp, normal))), change, moment, now)
   end procedure add_guide_friction
 
-  !> Whether the force between an ideal guide and the piston does not depend on the accelerations: that of a piston pin with
-  !> clearance whose surfaces do not stick.
+  !> Whether the force between an ideal guide and the piston does not depend on the accelerations: if the piston pin has clearance
+  !> and its surfaces do not stick.
   pure logical function normal_is_known(scene)
     class(scene_t), intent(in) :: scene
     normal_is_known = scene%chain%is_loose(piston_pin) .and. .not. scene%may_stick
   end function normal_is_known
 
-  !> N with a friction force beside the present loads [N].
+  !> Normal force N with a friction force in addition to the present loads [N].
   pure real(dp) function normal_with(scene, joints, now, friction, change, moment) result(normal)
     class(scene_t), intent(in) :: scene
     type(clearance_joint_t), intent(in) :: joints(:)
     type(evaluation_t), intent(in) :: now
     real(dp), intent(in) :: friction
-    type(accelerations_t), intent(in) :: change   !! of the accelerations by 1 N
-    real(dp), intent(in) :: moment                !! of the moment on the crank by 1 N [m]
+    type(accelerations_t), intent(in) :: change   !! change of the accelerations by 1 N
+    real(dp), intent(in) :: moment                !! change of the moment on the crank by 1 N [m]
     type(evaluation_t) :: trial
     trial = now
     call add_friction(scene, friction, change, moment, trial)
@@ -93,7 +94,7 @@ contains
     normal = normal_force(scene, trial)
   end function normal_with
 
-  !> Add a friction force of the guide on the piston, along x [N], to the loads and what it changes.
+  !> Add a friction force of the guide on the piston, along x [N], to the loads, and correct everything that depends on it.
   pure subroutine add_friction(scene, friction, change, moment, now)
     class(scene_t), intent(in) :: scene
     real(dp), intent(in) :: friction
@@ -151,7 +152,7 @@ contains
     end associate
   end procedure twist_frequency
 
-  !> N of the piston on an ideal guide, from the force of the pin's joint [N].
+  !> Normal force of the piston on an ideal guide, from the force of the joint of the pin [N].
   pure real(dp) function normal_force(scene, now)
     class(scene_t), intent(in) :: scene
     type(evaluation_t), intent(in) :: now

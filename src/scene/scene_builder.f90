@@ -1,4 +1,4 @@
-!> From a case to the scene that it asks for.
+!> Builds the scene of a case.
 module scene_builder
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi, degree
@@ -15,39 +15,39 @@ module scene_builder
   private
   public :: build_scene, assemble_scene, simulated_time, latest_end, longest_turn, sample_interval, settings_for
 
-  !> A looser tolerance is taken as this one: it would save nothing (1500 extreme scenes take as many evaluations at 8e-4 as at
-  !> 1e-4), and the errors of its steps would add up to more than a result may miss.
+  !> Larger tolerances are replaced by this one: they would save nothing (1500 extreme scenes take as many evaluations at 8e-4 as at
+  !> 1e-4), and the accumulated errors of the steps would exceed the allowed error of results.
   real(dp), parameter :: loosest_tolerance = 1e-3_dp
 
-  real(dp), parameter :: gas_margin = 0.1_dp   !! error of the gas cycle over the run's tolerance
+  real(dp), parameter :: gas_margin = 0.1_dp   !! tolerance of the gas cycle, relative to that of the run
 
-  !> What the crank and the work of the forces gain or lose by the error of a step stays with them, and so with the energy: these
-  !> errors add up over thousands of steps, where those of the pin die out in its film or its contacts. So they are held to
-  !> a smaller share of the tolerance, but not below the rounding. Measured without it: the ideal twin of simulation VI,
-  !> whose steps are the longest, loses 1375 tolerances of its energy in 100 revolutions, all of it in smooth steps of full
-  !> size, 0.2 % where gas events cut them; with it 1.2, for 47 % more of its evaluations. Scenes with clearance, whose steps
-  !> the pin makes short, cost the same.
-  real(dp), parameter :: lasting_share = 0.01_dp   !! of crank speed and work
-  real(dp), parameter :: angle_share = 0.1_dp      !! of the crank angle, whose errors stay too, but weigh less in the energy
+  !> Errors of the crank speed and of the work persist, and with them errors of the energy: they accumulate over thousands of steps,
+  !> whereas errors of the pin decay in its film or its contacts. These components are therefore held to a smaller fraction of the
+  !> tolerance, but not below rounding. Measured without it: the ideal twin of simulation VI, whose steps are the longest, loses
+  !> 1375 tolerances of its energy in 100 revolutions, all of it in smooth steps of full size and 0.2 % in steps cut by gas events;
+  !> with it the loss is 1.2 tolerances, for 47 % more evaluations. In scenes with clearance, where the motion of the pin limits the
+  !> steps, the cost does not change.
+  real(dp), parameter :: lasting_share = 0.01_dp   !! for crank speed and work
+  real(dp), parameter :: angle_share = 0.1_dp      !! for the crank angle, whose errors persist too but influence the energy less
   real(dp), parameter :: finest_tolerance = 1e-13_dp
 
-  !> What grows without bound is held no closer than this share of itself, its rounding.
+  !> Components that grow without bound are held to at least this fraction of their value, which is their rounding error.
   real(dp), parameter :: rounding_share = 1e-14_dp
 
   real(dp), parameter :: first_angle = 0.1_dp   !! largest turn of the crank in the first step [rad]
-  real(dp), parameter :: most_patience = 100   !! with a crank that slows
-  real(dp), parameter :: longest_chatter = 1e-8_dp   !! [s]; a crank that hardly turns has no time scale for its pin
+  real(dp), parameter :: most_patience = 100   !! allows for a crank that slows down
+  real(dp), parameter :: longest_chatter = 1e-8_dp   !! [s]; needed where the crank hardly turns and gives no time scale
 
 contains
 
-  !> Build the scene of a case; with `ideal_joint` its twin of rigid bodies without clearance. The case has been validated by its
-  !> reader. Error: the gas cycle cannot be integrated.
+  !> Build the scene of a case; with `ideal_joint` its ideal twin of rigid bodies without clearance. The reader of the case has
+  !> checked it. Error: the gas cycle cannot be integrated.
   subroutine build_scene(case, ideal_joint, scene, error, without_tables)
     type(case_t), intent(in) :: case
     logical, intent(in) :: ideal_joint
     type(scene_t), allocatable, intent(out) :: scene
     type(error_t), allocatable, intent(out) :: error
-    logical, intent(in), optional :: without_tables   !! films make no tables: the scene is not to be integrated
+    logical, intent(in), optional :: without_tables   !! the films compute no tables: the scene is not to be integrated
     logical :: makes_tables
 
     call assemble_scene(case, ideal_joint, scene)
@@ -78,7 +78,7 @@ contains
     call scene%prepare_start()
   end subroutine build_scene
 
-  !> The piston, with its inertia where it has clearance in its bore.
+  !> The piston, with its moment of inertia if it has clearance in its bore.
   pure type(piston_t) function piston_of(case, scene) result(piston)
     type(case_t), intent(in) :: case
     type(scene_t), intent(in) :: scene
@@ -88,17 +88,16 @@ contains
       case%guide%piston_com)
   end function piston_of
 
-  !> Gravity (x, y) [m/s^2]: from the cylinder to the crank, turned towards -y.
+  !> Gravity (x, y) [m/s^2]: along the axis of the cylinder towards the crank, rotated towards -y.
   pure function gravity_of(case) result(gravity)
     type(case_t), intent(in) :: case
     real(dp) :: gravity(2)
     associate (g => case%mechanism%gravity, angle => case%mechanism%gravity_angle_deg*degree)
-      gravity = [-g*cos(angle), 0 - g*sin(angle)]   ! no negative zero along the cylinder
+      gravity = [-g*cos(angle), 0 - g*sin(angle)]   ! avoids a negative zero
     end associate
   end function gravity_of
 
-  !> The parts of a scene as the case gives them: which joints have clearance and which laws act in them, and the gas. Nothing is
-  !> prepared for a run.
+  !> Assemble the parts of a scene from the case: joints with clearance, their laws, and the gas. Nothing is prepared for a run.
   subroutine assemble_scene(case, ideal_joint, scene)
     type(case_t), intent(in) :: case
     logical, intent(in) :: ideal_joint
@@ -142,7 +141,7 @@ contains
     if (allocated(case%combustion) .or. allocated(case%measured)) allocate (scene%gas)
   end subroutine assemble_scene
 
-  !> A torque that follows from the speed, or a held speed that is run up.
+  !> Set a torque that depends on the speed, or a prescribed speed with a run-up.
   subroutine vary_drive(case, scene)
     type(case_t), intent(in) :: case
     type(scene_t), intent(inout) :: scene
@@ -160,7 +159,7 @@ contains
     end associate
   end subroutine vary_drive
 
-  !> Make the gas ready at the start.
+  !> Prepare the gas for the starting angle.
   subroutine prepare_gas(case, scene, error)
     type(case_t), intent(in) :: case
     type(scene_t), intent(inout) :: scene
@@ -179,7 +178,7 @@ contains
       call scene%gas%start(scene%start_angle, merge(case%drive%ramp_from, scene%start_speed, scene%runs_up))
   end subroutine prepare_gas
 
-  !> Find what the laws need to know of their bearings.
+  !> Prepare the laws of the joints for their bearings.
   subroutine prepare_joints(case, scene)
     type(case_t), intent(in) :: case
     type(scene_t), intent(inout) :: scene
@@ -200,7 +199,7 @@ contains
     end do
   end subroutine prepare_joints
 
-  !> Tables of films that have none yet.
+  !> Compute missing tables of films.
   subroutine make_tables(case, scene)
     type(case_t), intent(in) :: case
     type(scene_t), intent(inout) :: scene
@@ -212,11 +211,11 @@ contains
     end do
   end subroutine make_tables
 
-  !> A joint with its laws, only those that the case asks for.
+  !> Build a joint with the laws that the case names.
   subroutine build_joint(case, wanted, place, joint)
     type(case_t), intent(in) :: case
     type(joint_case_t), intent(in) :: wanted
-    integer, intent(in) :: place   !! pin of the chain
+    integer, intent(in) :: place   !! place of the pin in the chain
     type(clearance_joint_t), intent(out) :: joint
 
     joint%place = place
@@ -239,19 +238,19 @@ contains
     joint%reports_film = wanted%reports_film .and. allocated(wanted%film)
   end subroutine build_joint
 
-  !> Time to simulate [s], as far as the case tells: revolutions take what they do at the starting speed, and so, for the time
-  !> being, do those that are counted by the crank itself.
+  !> Duration of the simulation [s] as far as it follows from the case: revolutions are counted at the starting speed; for turns of
+  !> the crank this is a first estimate.
   pure real(dp) function simulated_time(case)
     type(case_t), intent(in) :: case
     real(dp) :: revolutions
     simulated_time = case%integrator%end_time
-    revolutions = max(case%integrator%revolutions, case%integrator%crank_revolutions)   ! one of them alone is given
+    revolutions = max(case%integrator%revolutions, case%integrator%crank_revolutions)   ! only one of them is given
     if (case%run%is_until_periodic()) revolutions = case%run%most_revolutions
     if (revolutions > 0 .and. abs(case%initial%crank_speed) > 0) simulated_time = revolutions*two_pi/abs(case%initial%crank_speed)
   end function simulated_time
 
-  !> When the run ends at the latest [s]. A free crank that has to make so many revolutions has until end_time for them, or, where
-  !> that is not given, `most_patience` times as long as they take at the starting speed.
+  !> Latest end of the run [s]. If it is to end after a number of turns of a free crank, this is end_time or, if that is not given,
+  !> `most_patience` times the duration of these turns at the starting speed.
   pure real(dp) function latest_end(case)
     type(case_t), intent(in) :: case
     latest_end = simulated_time(case)
@@ -264,8 +263,9 @@ contains
     end if
   end function latest_end
 
-  !> How long a free crank that has to make turns may take for one of them, before it counts as one that has stopped [s]: so long as
-  !> `most_patience` turns at the starting speed. Where end_time is given with crank_revolutions, that alone limits it.
+  !> Longest time for one turn of a free crank that is to make a number of turns [s]; after it the crank counts as having stopped.
+  !> It is the duration of `most_patience` turns at the starting speed. There is no such limit if end_time is given with
+  !> crank_revolutions.
   pure real(dp) function longest_turn(case)
     type(case_t), intent(in) :: case
     longest_turn = huge(longest_turn)
@@ -276,7 +276,7 @@ contains
     longest_turn = most_patience*two_pi/abs(case%initial%crank_speed)
   end function longest_turn
 
-  !> Time from sample to sample [s].
+  !> Time between samples [s].
   pure real(dp) function sample_interval(case)
     type(case_t), intent(in) :: case
     sample_interval = case%output%interval
@@ -284,9 +284,9 @@ contains
       sample_interval = two_pi/(abs(case%initial%crank_speed)*case%output%samples_per_revolution)
   end function sample_interval
 
-  !> Settings of the integrator for a scene of the case. Component i is held to relative_tolerance*|y_i| (unless it grows
-  !> without bound) + a*scale_i, a = absolute_tolerance or, where that is 0, relative_tolerance; crank and work closer. A hundred
-  !> events within 1e-6 of a revolution, 1e-8 s at most, are chatter.
+  !> Settings of the integrator for a scene. The tolerance of component i is relative_tolerance*|y_i| (unless it grows without
+  !> bound) + a*scale_i, where a is absolute_tolerance or, if that is 0, relative_tolerance; it is smaller for crank and work. A
+  !> hundred events within 1e-6 of a revolution, at most 1e-8 s, count as chatter.
   pure function settings_for(case, scene) result(settings)
     type(case_t), intent(in) :: case
     type(scene_t), intent(in) :: scene
@@ -316,7 +316,7 @@ contains
     settings%chatter_time = min(1e-6_dp*two_pi/scene%speed_scale(settings%span), longest_chatter)
   end function settings_for
 
-  !> No step is longer than this [s]; 0: no limit.
+  !> Limit the length of the steps [s]; 0: no limit.
   pure subroutine limit_turn(settings, longest)
     type(ode_settings_t), intent(inout) :: settings
     real(dp), intent(in) :: longest
@@ -328,7 +328,7 @@ contains
     end if
   end subroutine limit_turn
 
-  !> Hold one component to a share of its tolerance, but not below the rounding.
+  !> Reduce the tolerance of one component to a fraction, but not below its rounding error.
   pure subroutine tighten(settings, i, share)
     type(ode_settings_t), intent(inout) :: settings
     integer, intent(in) :: i

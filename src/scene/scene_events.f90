@@ -1,4 +1,4 @@
-!> Events of a scene: each is its owner's, a joint's, the gas's or that of the crank's turns.
+!> The events of a scene. Each event belongs to a joint, to the gas, to the guide or to the turns of the crank.
 submodule (gudgeon_scene) scene_events
   use ode_problem, only: step_admitted, event_continue
   use joint_events, only: n_events, may_stick, contact_changes, sliding_changes, film_held_changes, film_gone_changes, &
@@ -10,11 +10,11 @@ submodule (gudgeon_scene) scene_events
   use crank_turns, only: n_turn_events
   implicit none
 
-  integer, parameter :: of_gas = 0, of_turns = -1, of_guide = -2   !! owners that are no joint
+  integer, parameter :: of_gas = 0, of_turns = -1, of_guide = -2   !! owners other than joints
 
 contains
 
-  !> Number the events.
+  !> Number the event functions.
   subroutine number_events(scene)
     class(scene_t), intent(inout) :: scene
     integer :: i
@@ -30,7 +30,7 @@ contains
 
   contains
 
-    !> Those of one owner.
+    !> Number those of one owner.
     subroutine number(owner, n)
       integer, intent(in) :: owner, n
       integer :: j
@@ -67,7 +67,7 @@ contains
     if (self%guide%is_loose) call corner_events(self%guide, y, g(k + 1:k + n_corners), g_rate(k + 1:k + n_corners))
   end procedure all_events
 
-  !> That of set-valued friction, which depends on the accelerations.
+  !> Event function of set-valued friction, which depends on the accelerations.
   pure subroutine find_sliding_event(scene, t, y, i, g, g_rate)
     class(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
@@ -112,11 +112,11 @@ contains
         end select
       end if
     end associate
-    self%smooth_in_root = .not. t > self%entry_time   ! penetration grows like t, the force like its power 1.5
+    self%smooth_in_root = .not. t > self%entry_time   ! the penetration varies as t, the force as its power 1.5
     self%mode = mode_of(self)
   end procedure handle_event
 
-  !> The discrete state as the choice of a method sees it.
+  !> The discrete state, for the choice of the integration method.
   pure integer function mode_of(scene)
     class(scene_t), intent(in) :: scene
     integer :: i
@@ -128,7 +128,7 @@ contains
     if (any(scene%guide%touches)) mode_of = mode_of + n_phases**size(scene%joints)
   end function mode_of
 
-  !> Set-valued friction of one joint: which way it slides, or that it sticks.
+  !> Choose the state of set-valued friction of one joint: its direction of sliding, or sticking.
   subroutine find_sliding_direction(scene, i, t, y, may_slide)
     class(scene_t), intent(inout) :: scene
     integer, intent(in) :: i
@@ -220,8 +220,8 @@ contains
     end do
   end procedure prepare_start
 
-  !> Which corners of the skirt touch at t = 0: those in the wall, and those exactly at it that continue into it or, at rest, are
-  !> pressed into it.
+  !> Find the corners of the skirt that are in contact at t = 0: corners beyond the wall, and corners exactly at the wall that move
+  !> into it or, at rest, are pressed into it.
   subroutine prepare_corners(scene, y)
     class(scene_t), intent(inout) :: scene
     real(dp), intent(in) :: y(:)
@@ -243,12 +243,12 @@ contains
     end do
   end subroutine prepare_corners
 
-  !> The walls of elastic films start with the deflection that keeps the pin from being accelerated in its bearing, as in an ideal
-  !> joint: a pin on walls without load would bounce on them. But the film keeps a tenth of its thickness.
+  !> Give the walls of elastic films the initial deflection at which the pin has no acceleration in its bearing, as in an ideal
+  !> joint. A pin on walls without load would start to bounce. At least a tenth of the film thickness is kept.
   subroutine load_walls(scene)
     class(scene_t), intent(inout) :: scene
     real(dp), parameter :: trial = 1e-8_dp   !! [m]
-    real(dp), parameter :: closest = 0.9_dp  !! of the film's eccentricity to the clearance
+    real(dp), parameter :: closest = 0.9_dp  !! largest eccentricity of the film over the clearance
     real(dp) :: at_rest(2), by_load(2, 2), load(2), along(2), d(2)
     integer :: i, k
     logical :: inside

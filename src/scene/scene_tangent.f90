@@ -1,4 +1,4 @@
-!> How the accelerations of a scene change with its state, for implicit integration.
+!> Derivatives of the accelerations of a scene with respect to its state, for implicit integration.
 submodule (gudgeon_scene) scene_tangent
   use ode_problem, only: difference_jacobian
   use chain_motion, only: crank_pin
@@ -31,7 +31,7 @@ contains
       return
     end if
     call self%joints(1)%slopes(self%chain%bodies, now%motion, now%relative(1), now%joint(1), force)
-    skip = merge(0, 1, self%chain%drive%free_crank)   ! the held crank angle is no unknown
+    skip = merge(0, 1, self%chain%drive%free_crank)   ! a prescribed crank angle is not an unknown
     m = 3 - skip
     n = self%joints(1)%n_states()
     if (n > 0) call self%joints(1)%state_slopes(self%chain%bodies, now%motion, now%relative(1), now%joint(1), by_states, of_rates)
