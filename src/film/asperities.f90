@@ -1,5 +1,5 @@
-!> Rough surfaces that touch through a film: Greenwood and Tripp's pairs of paraboloids with Gaussian heights, and the mean gap that
-!> they leave to the oil (Patir and Cheng).
+!> Contact of rough surfaces through a film: Greenwood and Tripp's model of paraboloids with Gaussian heights, and the mean gap that
+!> is left for the oil (Patir and Cheng).
 module asperities
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
@@ -10,20 +10,20 @@ module asperities
   private
   public :: asperities_t, pressure_integral
 
-  !> Pressure p = K' E* F52(h/s), h = c - |e| cos theta, K' = (16 sqrt(2) pi/15) (eta beta s)^2 sqrt(s/beta), F52(H) the mean of
-  !> (u - H)^(5/2) over u > H for Gaussian u; its resultant F_a = R_b L Int p cos theta dtheta is a function of |e| alone.
+  !> The pressure is p = K' E* F52(h/s), with h = c - |e| cos theta, K' = (16 sqrt(2) pi/15) (eta beta s)^2 sqrt(s/beta), and F52(H)
+  !> the mean of (u - H)^(5/2) over u > H for a Gaussian u. The resultant F_a = R_b L Int p cos theta dtheta depends on |e| alone.
   type, extends(has_parameters_t) :: asperities_t
-    real(dp) :: roughness = 0              !! s, of both surfaces together (root of the sum of squares) [m]
+    real(dp) :: roughness = 0              !! s, combined roughness of both surfaces (root of the sum of squares) [m]
     real(dp) :: density_product = 0        !! eta beta s [-]
     real(dp) :: sharpness = 0              !! s/beta [-]
-    character(len=:), allocatable :: integral   !! exact, or fit: F52 as 4.4086e-5 (4 - H)^6.804
+    character(len=:), allocatable :: integral   !! exact, or fit: F52 approximated by 4.4086e-5 (4 - H)^6.804
     real(dp) :: youngs_modulus(2) = 0, poissons_ratio(2) = 0   !! of pin and bearing
     real(dp) :: coefficient = 0            !! of boundary friction [-]
-    real(dp) :: transition_speed = 0       !! of its change of sign [m/s]
+    real(dp) :: transition_speed = 0       !! width of its change of sign [m/s]
     type(bearing_t), private :: bearing
     logical, private :: is_fit = .false.
     real(dp), private :: scale = 0         !! K' E* R_b L [N]
-    real(dp), allocatable, private :: c(:) !! coefficients of the spline through the forces, by depth, as `folded`
+    real(dp), allocatable, private :: c(:) !! coefficients of the spline through the forces, by depth, in the form of `folded`
   contains
     procedure :: parameters
     procedure :: prepare
@@ -33,9 +33,9 @@ module asperities
     procedure :: friction_force
   end type asperities_t
 
-  real(dp), parameter :: farthest(2) = [8.0_dp, 4.0_dp]   !! h/s beyond which nothing touches: exact, fit
-  real(dp), parameter :: deepest = -20                    !! of the table
-  integer, parameter :: per_roughness = 8                 !! values of the table
+  real(dp), parameter :: farthest(2) = [8.0_dp, 4.0_dp]   !! h/s above which there is no contact: exact, fit
+  real(dp), parameter :: deepest = -20                    !! smallest h/s of the table
+  integer, parameter :: per_roughness = 8                 !! number of values per roughness in the table
   real(dp), parameter :: fit_power = 6.804_dp
 
 contains
@@ -60,7 +60,7 @@ contains
       '> 0', default='0.01')
   end subroutine parameters
 
-  !> The table of forces of a bearing.
+  !> Compute the table of forces for a bearing.
   subroutine prepare(self, bearing)
     class(asperities_t), intent(inout) :: self
     type(bearing_t), intent(in) :: bearing
@@ -82,7 +82,7 @@ contains
 
   contains
 
-    !> Depth of a value of the table below the farthest touch, over the roughness; the first is a little inside.
+    !> Distance of a value of the table from the limit of contact, over the roughness; the first value lies slightly inside.
     pure real(dp) function depth_at(i)
       integer, intent(in) :: i
       depth_at = (i - 1)/real(per_roughness, dp)
@@ -95,7 +95,8 @@ contains
     farthest_of = merge(farthest(2), farthest(1), self%is_fit)
   end function farthest_of
 
-  !> A force in the form that a spline follows best: the logarithm of the exact one, the root of the fit that begins straight.
+  !> A force in the form that a spline interpolates best: the logarithm for the exact integral, for the fit the root that is linear
+  !> at the limit of contact.
   pure real(dp) function folded(self, force)
     type(asperities_t), intent(in) :: self
     real(dp), intent(in) :: force
@@ -106,7 +107,7 @@ contains
     end if
   end function folded
 
-  !> Force that presses the pin to the middle at the eccentricity |e| [m], as a spline through the forces of the table [N].
+  !> Force that presses the pin towards the centre at the eccentricity |e| [m], from the spline [N].
   pure real(dp) function force(self, distance)
     class(asperities_t), intent(in) :: self
     real(dp), intent(in) :: distance
@@ -128,7 +129,8 @@ contains
     end if
   end function force
 
-  !> The same by the trapezoidal rule round the arc that touches: even in the middle and flat at the end, where it converges fast.
+  !> The same force by the trapezoidal rule over the arc in contact. The integrand is even at its middle and has vanishing
+  !> derivatives at its ends, so that the rule converges fast.
   pure real(dp) function integrated_force(self, distance) result(force)
     class(asperities_t), intent(in) :: self
     real(dp), intent(in) :: distance
@@ -149,7 +151,8 @@ contains
     force = 2*self%scale*force*last/points
   end function integrated_force
 
-  !> F52(H): by a Chebyshev series of its logarithm within 7e-7 from -4 to 8, below by its asymptotic series; or the fit.
+  !> F52(H): the exact integral by a Chebyshev series of its logarithm, within 7e-7 between -4 and 8, and by its asymptotic series
+  !> below -4; or the fit.
   pure real(dp) function pressure_integral(h, is_fit) result(f)
     real(dp), intent(in) :: h   !! H = h/s
     logical, intent(in) :: is_fit
@@ -166,7 +169,7 @@ contains
     else if (h >= 8) then
       f = 0
     else if (h < -4) then
-      x = 1/h**2   ! of the mean of (u - H)^(5/2), u Gaussian
+      x = 1/h**2   ! asymptotic series of the mean of (u - H)^(5/2) for a Gaussian u
       f = (-h)**2.5_dp*(1 + x*(1.875_dp + x*(-0.1171875_dp + x*(-0.0732421875_dp - x*0.144195556640625_dp))))
     else
       x = (h - 2)/6
@@ -180,8 +183,8 @@ contains
     end if
   end function pressure_integral
 
-  !> Mean gap of the surfaces where the smooth ones are h apart, h/2 (1 + erf(h/(sqrt2 s))) + s/sqrt(2 pi) exp(-h^2/(2 s^2)) > 0
-  !> [m], and its slope by h.
+  !> Mean gap of the surfaces if the smooth surfaces are h apart, h/2 (1 + erf(h/(sqrt2 s))) + s/sqrt(2 pi) exp(-h^2/(2 s^2)) > 0
+  !> [m], and its derivative with respect to h.
   pure subroutine mean_gap(self, h, gap, slope)
     class(asperities_t), intent(in) :: self
     real(dp), intent(in) :: h   !! [m]
@@ -192,7 +195,7 @@ contains
     gap = h*slope + self%roughness/sqrt(2*pi)*exp(-0.5_dp*x**2)
   end subroutine mean_gap
 
-  !> Boundary friction against a sliding speed [m/s] under a force of the asperities [N].
+  !> Boundary friction at a sliding speed [m/s] under a normal force of the asperities [N].
   pure real(dp) function friction_force(self, sliding_speed, pressing)
     class(asperities_t), intent(in) :: self
     real(dp), intent(in) :: sliding_speed, pressing

@@ -1,4 +1,4 @@
-!> What every lubricating film answers.
+!> Interface of all lubricating films.
 module film_law
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
@@ -10,39 +10,40 @@ module film_law
   private
   public :: film_law_t, film_motion_t, table_watch_t, difference_derivatives, difference_steps, moved, angles_of_film, field_points
 
-  integer, parameter :: field_points = 128   !! angles of a pressure field
+  integer, parameter :: field_points = 128   !! number of angles of a pressure field
 
-  !> Somebody who waits for a table to be made.
+  !> Receiver of the progress of a table, which can stop its computation.
   type, abstract :: table_watch_t
-    logical :: wants_to_stop = .false.   !! the table is not to be made
+    logical :: wants_to_stop = .false.   !! stop the computation
   contains
     procedure(row_done), deferred :: row_done
   end type table_watch_t
 
-  !> The motion of the pin in its bearing, as far as a film needs it.
+  !> The motion of the pin in its bearing on which film forces depend.
   type :: film_motion_t
     real(dp) :: eccentricity(2)          !! e = pin centre - bearing centre [m], |e| < c
     real(dp) :: eccentricity_rate(2)     !! de/dt [m/s]
-    real(dp) :: pin_speed                !! of both surfaces together, which draws the film along, x towards y [rad/s]
-    real(dp) :: turning_speed = 0        !! angular velocity of the pin's surface against the bearing's [rad/s]
-    real(dp) :: ideal_pin_speed = 0      !! the same of the ideal-joint mechanism at (q, qdot) [rad/s]
+    real(dp) :: pin_speed  !! sum of the angular speeds of both surfaces, which entrains the film, positive from x to y [rad/s]
+    real(dp) :: turning_speed = 0        !! angular speed of the pin relative to the bearing [rad/s]
+    real(dp) :: ideal_pin_speed = 0      !! pin_speed of the mechanism with ideal joints at (q, qdot) [rad/s]
     real(dp) :: ideal_pin_acceleration = 0 !! its rate at constant crank speed [rad/s^2]
     real(dp) :: frequency = 0            !! |qdot|, oscillation frequency of the pin [rad/s]
   end type film_motion_t
 
-  !> A film that carries the pin while it does not touch the bearing.
+  !> A film that carries the pin while it is not in contact with the bearing.
   type, abstract, extends(law_t) :: film_law_t
     real(dp) :: clearance = 1                 !! c, radial [m]
     real(dp) :: per_clearance = 1             !! 1/c [1/m]
-    logical :: needs_ideal_motion = .false.   !! whether the ideal_* fields and the frequency are read
-    logical :: film_moment = .false.          !! its shear acts on the pin
+    logical :: needs_ideal_motion = .false.   !! the law uses the ideal_* components and the frequency
+    logical :: film_moment = .false.          !! the shear of the film acts on the pin
     real(dp) :: viscosity = 0                 !! mu, dynamic [Pa s], > 0
-    real(dp) :: least_film_ratio = 0          !! the film is taken no thinner than this part of the clearance, where it is held [-]
-    logical :: singular_at_wall = .true.      !! the force is infinite at |e| = c: the state may not reach it
-    character(len=:), allocatable :: table_file   !! where the user wants the table, from the case's folder; or empty
-    character(len=100) :: table_of = ''       !! the `table_key` of the table that the law has; empty: it has none
-    real(dp) :: table_error = 0               !! of the force in it, relative: the largest measured when it was made [-]
-    real(dp) :: table_mean_error = 0          !! root of the mean square of the same [-]
+    real(dp) :: least_film_ratio = 0          !! smallest film thickness over clearance of a law that limits it [-]
+    logical :: singular_at_wall = .true.      !! the force has no bound at |e| = c, which the state must not reach
+    character(len=:), allocatable :: table_file  !! file for the table chosen by the user, relative to the folder of the case; or
+                                                 !! empty
+    character(len=100) :: table_of = ''       !! `table_key` of the present table; empty if there is none
+    real(dp) :: table_error = 0               !! largest relative error of the force found when the table was made [-]
+    real(dp) :: table_mean_error = 0          !! root-mean-square of that error [-]
   contains
     procedure(prepare), deferred :: prepare
     procedure(film_force), deferred :: film_force
@@ -65,15 +66,15 @@ module film_law
   end type film_law_t
 
   abstract interface
-    !> `done` of `rows` rows of the table are there. One thread calls at a time.
+    !> `done` of `rows` rows of the table are complete. Only one thread calls at a time.
     subroutine row_done(self, done, rows)
       import :: table_watch_t
       class(table_watch_t), intent(inout) :: self
       integer, intent(in) :: done, rows
     end subroutine row_done
 
-    !> Find what follows from the parameters and the bearing, before the first force is asked for. What the law sums or
-    !> tabulates is to be finer than `tolerance`, the relative tolerance of the run.
+    !> Prepare the law for a bearing, before the first evaluation of the force. Sums and tables of the law are made more accurate
+    !> than `tolerance`, the relative tolerance of the run.
     subroutine prepare(self, bearing, tolerance)
       import :: film_law_t, bearing_t, dp
       class(film_law_t), intent(inout) :: self
@@ -93,7 +94,7 @@ module film_law
 
 contains
 
-  !> The viscosity, which every law has, unless an oil at a temperature gives it.
+  !> Declare the parameter viscosity, which all laws have. It is not required if the viscosity is that of an oil at a temperature.
   subroutine add_viscosity(self, list)
     class(film_law_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
@@ -101,7 +102,7 @@ contains
       default='0.0', example='0.0117')
   end subroutine add_viscosity
 
-  !> The viscosity of an oil, before the law is prepared.
+  !> Set the viscosity of an oil, before the law is prepared.
   subroutine take_oil(self, viscosity, kinematic_viscosity)
     class(film_law_t), intent(inout) :: self
     real(dp), intent(in) :: viscosity             !! [Pa s]
@@ -111,7 +112,7 @@ contains
     self%viscosity = viscosity
   end subroutine take_oil
 
-  !> The parameter that says where a film is held, with any law that can be.
+  !> Declare the parameter that limits the film thickness, for all laws that can do so.
   subroutine add_least_film(self, list)
     class(film_law_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
@@ -120,9 +121,9 @@ contains
       default='0.001')
   end subroutine add_least_film
 
-  !> Moment of the film on the pin about its centre [N m] of the shear u = U y/h + y (y - h) p'/(2 mu) in a film whose pressure
-  !> gives `force`: -2 pi mu omega R^3 L/(c sqrt(1 - eps^2)) - e x F/2. (The gap counts as full, where the film has ruptured too.)
-  !> With it the power that a film of pressure takes is never negative.
+  !> Moment of the film on the pin about the pin's centre [N m] from the shear u = U y/h + y (y - h) p'/(2 mu) of a film whose
+  !> pressure gives `force`: -2 pi mu omega R^3 L/(c sqrt(1 - eps^2)) - e x F/2. (The gap is assumed to be full of oil even where
+  !> the film has ruptured.) With this moment the power dissipated by a film with pressure is never negative.
   pure real(dp) function shear_moment(self, force_scale, motion, force) result(moment)
     class(film_law_t), intent(in) :: self
     real(dp), intent(in) :: force_scale   !! mu L R^3/c^2 [N s]
@@ -135,7 +136,7 @@ contains
     end associate
   end function shear_moment
 
-  !> Derivatives of `shear_moment` by e_x, e_y, e_x', e_y' and the pin speed, with those of the force (rows F_x, F_y).
+  !> Derivatives of `shear_moment` with respect to e_x, e_y, e_x', e_y' and the pin speed, from those of the force (rows F_x, F_y).
   pure function shear_moment_slopes(self, force_scale, motion, force, force_slopes) result(slopes)
     class(film_law_t), intent(in) :: self
     real(dp), intent(in) :: force_scale   !! mu L R^3/c^2 [N s]
@@ -151,8 +152,8 @@ contains
     end associate
   end function shear_moment_slopes
 
-  !> Whether the force is in proportion to v* = e' - (omega/2) z x e, depends on nothing else of the motion and is against it;
-  !> whether the law has a pressure above that at the film's ends, and a flow out of these. The default is none of it.
+  !> Properties of a law: whether the force is proportional to v* = e' - (omega/2) z x e, opposes it and depends on no other motion;
+  !> whether the law gives a pressure relative to that at the ends of the film, and a side flow. All are false by default.
   pure logical function no(self)
     class(film_law_t), intent(in) :: self
     associate (unused => self)
@@ -160,7 +161,7 @@ contains
     no = .false.
   end function no
 
-  !> Moment of the film on the pin [N m] that the law leaves out of `film_force` where `film_moment` is .false.
+  !> Moment of the film on the pin [N m] that `film_force` does not include if `film_moment` is .false.
   pure real(dp) function none(self, motion, force)
     class(film_law_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
@@ -170,8 +171,8 @@ contains
     none = 0
   end function none
 
-  !> Pressure in the middle of the film [Pa], where the law has it in closed form, at the angle theta [rad] from the thinnest place
-  !> (the direction of the eccentricity), x towards y.
+  !> Pressure in the middle plane of the film [Pa], for laws with a closed form, at the angle theta [rad] from the thinnest film
+  !> (the direction of the eccentricity), positive from x to y.
   pure real(dp) function nowhere(self, motion, theta)
     class(film_law_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
@@ -181,7 +182,7 @@ contains
     nowhere = 0
   end function nowhere
 
-  !> Largest pressure [Pa], and the flow out of both ends [m^3/s]. The default is the largest of `pressure`.
+  !> Largest pressure [Pa], and side flow out of both ends [m^3/s]. The default is the largest value of `pressure`.
   pure subroutine peak_without_flow(self, motion, most, flow)
     class(film_law_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
@@ -192,8 +193,8 @@ contains
     most = max(largest_pressure(self, motion, 1.0_dp), largest_pressure(self, motion, sqrt((1 - eps)/(1 + eps))))
   end subroutine peak_without_flow
 
-  !> The pressure over half of the bearing [Pa], (angles, places): at angles [rad] from the direction of the eccentricity and places
-  !> from the middle (0) to the end (1). The default is that of a long film, the same everywhere along it.
+  !> The pressure over half of the bearing [Pa], (angles, places): at angles [rad] from the direction of the eccentricity, and axial
+  !> positions from the middle (0) to the end (1). The default is a long film, whose pressure is constant along the axis.
   pure subroutine long_field(self, motion, angles, places, field)
     class(film_law_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
@@ -207,7 +208,7 @@ contains
     end do
   end subroutine long_field
 
-  !> Angles round a film [rad], dense where it is thin.
+  !> Angles around a film [rad], denser where the film is thin.
   pure function angles_of_film(motion, per_clearance) result(angles)
     type(film_motion_t), intent(in) :: motion
     real(dp), intent(in) :: per_clearance   !! 1/c [1/m]
@@ -218,7 +219,7 @@ contains
     angles = grid%angle
   end function angles_of_film
 
-  !> The largest of `pressure` at angles theta, tan(theta/2) = scale tan(s/2), uniform in s, and round the best of them.
+  !> Largest value of `pressure` over angles theta with tan(theta/2) = scale tan(s/2) and uniform s, refined around the largest.
   pure real(dp) function largest_pressure(self, motion, scale) result(most)
     class(film_law_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
@@ -253,8 +254,8 @@ contains
     end function at_place
   end function largest_pressure
 
-  !> What the law's table is to be of, where it needs one that takes long to make: laws with the same key have the same table.
-  !> Somebody may keep it (`exchange_table`) and put it there, with its key in `table_of`, before it is made.
+  !> Key of the law's table, for laws whose table takes long to compute: laws with equal keys have equal tables. A stored table may
+  !> be set (`exchange_table`), together with its key in `table_of`, before `make_table` is called.
   function no_key(self, bearing, tolerance) result(key)
     class(film_law_t), intent(in) :: self
     type(bearing_t), intent(in) :: bearing
@@ -265,8 +266,8 @@ contains
     key = ''
   end function no_key
 
-  !> Make the table where the law has none, or one of something else: its bearing may have changed since. Without a table the law
-  !> does what it takes at every evaluation. If `watch` wants to stop, there is none.
+  !> Compute the table if the law has none, or one with another key since its bearing has changed. Without a table the law computes
+  !> its force at every evaluation. If `watch` asks to stop, there is no table.
   subroutine no_table(self, bearing, tolerance, watch)
     class(film_law_t), intent(inout) :: self
     type(bearing_t), intent(in) :: bearing
@@ -276,7 +277,7 @@ contains
     end associate
   end subroutine no_table
 
-  !> The table, to or from an archive.
+  !> Write the table to an archive, or read it from it.
   subroutine nothing_to_exchange(self, archive)
     class(film_law_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
@@ -284,9 +285,9 @@ contains
     end associate
   end subroutine nothing_to_exchange
 
-  !> Derivatives of the force and the moment (rows F_x, F_y, moment) by e_x, e_y, e_x', e_y' and the pin speed (columns), for
-  !> implicit integration. The default is central differences; what else the law depends on is left out, since it
-  !> changes with the crank, not with the film.
+  !> Derivatives of the force and the moment (rows F_x, F_y, moment) with respect to e_x, e_y, e_x', e_y' and the pin speed
+  !> (columns), for implicit integration. The default is central differences. Other dependencies are left out, since they change
+  !> with the crank angle and not with the film.
   pure subroutine difference_derivatives(self, motion, derivatives)
     class(film_law_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
@@ -305,10 +306,10 @@ contains
     end do
   end subroutine difference_derivatives
 
-  !> Steps of central differences by e_x, e_y [m], e_x', e_y' [m/s] and the pin speed [rad/s].
+  !> Increments of central differences for e_x, e_y [m], e_x', e_y' [m/s] and the pin speed [rad/s].
   pure function difference_steps(clearance, room, motion) result(step)
     real(dp), intent(in) :: clearance   !! [m]
-    real(dp), intent(in) :: room        !! over which the force changes [m]
+    real(dp), intent(in) :: room        !! length over which the force changes [m]
     type(film_motion_t), intent(in) :: motion
     real(dp) :: step(5)
     real(dp) :: rate
@@ -316,10 +317,10 @@ contains
     step = 1e-5_dp*[room, room, rate*room/clearance, rate*room/clearance, rate/clearance]
   end function difference_steps
 
-  !> A motion that differs in one of e_x, e_y, e_x', e_y' and the pin speed.
+  !> The motion with a change of one of e_x, e_y, e_x', e_y' and the pin speed.
   pure type(film_motion_t) function moved(motion, which, by)
     type(film_motion_t), intent(in) :: motion
-    integer, intent(in) :: which    !! of the five, 1 to 5
+    integer, intent(in) :: which    !! number of the changed quantity, 1 to 5
     real(dp), intent(in) :: by
     moved = motion
     select case (which)

@@ -1,7 +1,8 @@
-!> The inverse of a film's force: with what velocity a film lets the pin go under a load (Booker 1965).
+!> The inverse of a film's force: the velocity of the pin under a given load (mobility method, Booker 1965).
 !>
-!> A quasi-static film knows the velocity v* = e' - (omega/2) z x e alone, and its force grows in proportion to it. So the direction
-!> of v* is that in which the force is against the load, and its size the load over the force of unit velocity.
+!> The force of a quasi-static film depends only on the velocity v* = e' - (omega/2) z x e and is proportional to its magnitude. The
+!> direction of v* is therefore the one in which the film's force is opposite to the load, and its magnitude is the load divided by
+!> the force of a unit velocity.
 module film_mobility
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
@@ -12,9 +13,10 @@ module film_mobility
 
 contains
 
-  !> v* [m/s] at an eccentricity e, |e| < c, under a load on the pin [N]: the film's force is against it. The direction is sought
-  !> along beta, v* = (w cos beta, sin beta) with w = sqrt(1 - eps^2), in which the load turns evenly up to the wall: between 0 and
-  !> pi, by regula falsi as Anderson and Björck have it, to the rounding. It is mirrored where the load has the other sense.
+  !> v* [m/s] at an eccentricity e, |e| < c, such that the film's force balances a load on the pin [N]. The direction is described
+  !> by beta, v* = (w cos beta, sin beta) with w = sqrt(1 - eps^2); the direction of the load then varies evenly with beta up to the
+  !> wall. Beta is found between 0 and pi by regula falsi in the form of Anderson and Björck, up to rounding; for a load in the
+  !> opposite sense the problem is mirrored.
   pure subroutine driven_velocity(film, e, load, velocity)
     class(film_law_t), intent(in) :: film
     real(dp), intent(in) :: e(2)          !! [m]
@@ -23,13 +25,13 @@ contains
     integer, parameter :: most_trials = 60
     real(dp), parameter :: close_enough = 1e-14_dp
     real(dp) :: size_of_load, distance, n(2), t(2), w, target(2), beta, strength
-    real(dp) :: end, f_end, last, f_last, f   ! of the bracket: the end that stays, and the last trial
+    real(dp) :: end, f_end, last, f_last, f   ! of the bracket: the end that is kept, and the last trial
     integer :: i
     velocity = 0
     size_of_load = sqrt(load(1)**2 + load(2)**2)
     if (.not. size_of_load > tiny(1.0_dp)**0.25_dp) return
     distance = sqrt(e(1)**2 + e(2)**2)
-    n = load/size_of_load   ! a centred film is alike in every direction
+    n = load/size_of_load   ! a centred film is the same in all directions
     if (distance > 1e-100_dp*film%clearance) n = e/distance
     t = [-n(2), n(1)]
     w = sqrt(max(1 - (distance*film%per_clearance)**2, 4*epsilon(1.0_dp)))
@@ -59,21 +61,21 @@ contains
 
   contains
 
-    !> How much the value at an end that stays counts from now on.
+    !> Factor by which the value at the end that is kept is reduced.
     pure real(dp) function share(now, before)
       real(dp), intent(in) :: now, before
       share = 0.5_dp
       if (abs(now) < abs(before)) share = 1 - now/before
     end function share
 
-    !> One clearance in a second, near enough.
+    !> A velocity of about one clearance per second.
     pure function unit_velocity(beta) result(v)
       real(dp), intent(in) :: beta
       real(dp) :: v(2)
       v = film%clearance*(w*cos(beta)*n + sin(beta)*t)
     end function unit_velocity
 
-    !> By what angle the load that goes with a direction is beyond the one wanted, and its size.
+    !> Angle between the load for a direction and the given load, and magnitude of the former.
     pure subroutine try(beta, f, strength)
       real(dp), intent(in) :: beta
       real(dp), intent(out) :: f, strength

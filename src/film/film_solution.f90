@@ -1,5 +1,5 @@
-!> The film of finite length at one eccentricity ratio, closer than one grid gives it: from pairs of grids, of which one has half as
-!> many nodes in each direction, by Richardson's extrapolation. The table of `film_map` is made of such solutions.
+!> Solutions of the film of finite length at one eccentricity ratio by Richardson's extrapolation, from pairs of grids of which one
+!> has half as many nodes in each direction. They are used for the table of `film_map`.
 module film_solution
   use gudgeon_kinds, only: dp
   use finite_film, only: film_solver_t, film_answer_t, cavitation_reynolds
@@ -11,7 +11,7 @@ module film_solution
     type(film_solver_t) :: fine, coarse
   end type solver_pair_t
 
-  !> Solves for one eccentricity ratio and any direction of the velocity.
+  !> Solutions for one eccentricity ratio and any direction of the velocity.
   type :: film_solution_t
     private
     integer :: cavitation = 0
@@ -21,17 +21,17 @@ module film_solution
     procedure :: solve
   end type film_solution_t
 
-  integer, parameter :: nodes_along = 10   !! nodes round the film for one along half of it
+  integer, parameter :: nodes_along = 10   !! ratio of the nodes around the film to those along half of it
 
 contains
 
-  !> Prepare for the thickness `gap` = 1 - eps (> 0, <= 1) and the half length L/(2R), with `film_points` nodes round the film, or
+  !> Prepare for the thickness `gap` = 1 - eps (> 0, <= 1) and the half length L/(2R), with `film_points` nodes around the film, or
   !> more where it is thin (`nodes_at`).
   pure subroutine begin(self, film_points, half_length, cavitation, gap)
     class(film_solution_t), intent(inout) :: self
     integer, intent(in) :: film_points   !! divisible by 4
     real(dp), intent(in) :: half_length, gap
-    integer, intent(in) :: cavitation    !! as in `finite_film`
+    integer, intent(in) :: cavitation    !! condition of cavitation, as in `finite_film`
     integer :: grids, nodes, along, i
     real(dp) :: shift
     self%cavitation = cavitation
@@ -47,8 +47,9 @@ contains
     end do
   end subroutine begin
 
-  !> Nodes round the film at a thickness: more where it is thin, since the pressure of a film that is left is small beside the one
-  !> that is cut off, and its edge moves from node to node. The mean of several grids needs fewer of them.
+  !> Number of nodes around the film at a thickness. Thin films need more, since the pressure of a separating film is small compared
+  !> with the part that is cut off, and the edge of the pressure moves from node to node. The mean of several grids needs fewer
+  !> nodes.
   pure integer function nodes_at(film_points, grids, gap)
     integer, intent(in) :: film_points, grids
     real(dp), intent(in) :: gap
@@ -64,17 +65,17 @@ contains
     end if
   end function nodes_at
 
-  !> Grids whose mean is taken. Where the film ruptures at a free edge the force has an error that changes with the place of the
-  !> edge between two nodes, and that Richardson's extrapolation leaves: the mean of grids a quarter of this distance apart is five
-  !> to ten times closer. Coarse films have larger errors than this one.
+  !> Number of grids whose mean is taken. Where the film ruptures at a free edge, the force has an error that changes with the
+  !> position of the edge between two nodes, and that Richardson's extrapolation does not remove. The mean over grids shifted by a
+  !> quarter of the node distance reduces it by a factor of five to ten. On coarse grids other errors dominate.
   pure integer function grids_for(film_points, cavitation)
     integer, intent(in) :: film_points, cavitation
     integer, parameter :: fine_film = 160
     grids_for = merge(4, 1, cavitation == cavitation_reynolds .and. film_points >= fine_film)
   end function grids_for
 
-  !> The film for a velocity in the direction alpha [rad] from n to t: in a pair errors of the second order cancel. `warm`: begin
-  !> with the film of the solution before.
+  !> The film for a velocity in the direction alpha [rad] from n to t; in each pair the errors of second order cancel. `warm`: start
+  !> from the previous solution.
   pure subroutine solve(self, alpha, warm, film)
     class(film_solution_t), intent(inout) :: self
     real(dp), intent(in) :: alpha
@@ -94,7 +95,7 @@ contains
     film%most = film%most/size(self%pairs)
   end subroutine solve
 
-  !> The same for one eccentricity ratio and direction [rad].
+  !> The same for one eccentricity ratio and one direction [rad].
   pure subroutine solved_film(film_points, half_length, cavitation, gap, alpha, film)
     integer, intent(in) :: film_points, cavitation
     real(dp), intent(in) :: half_length, gap, alpha
@@ -104,7 +105,7 @@ contains
     call solution%solve(alpha, .false., film)
   end subroutine solved_film
 
-  !> Its force alone, over mu V L R^3/c^2.
+  !> Its force alone, divided by mu V L R^3/c^2.
   pure subroutine solved_force(film_points, half_length, cavitation, gap, alpha, force)
     integer, intent(in) :: film_points, cavitation
     real(dp), intent(in) :: half_length, gap, alpha

@@ -1,10 +1,10 @@
-!> How a film gives way to the contact: at once where journal and bearing touch, or weighted over a band of depths (chapter 7 of
-!> Reis 2013 asks for it; the weights after Flores et al. 2004).
+!> Transition from film to contact: sudden when journal and bearing touch, or weighted over a range of penetrations (proposed in
+!> chapter 7 of Reis 2013; weights after Flores et al. 2004).
 !>
-!> With the penetration d = |e| - c the forces are (1 - w) F_film + w F_contact, friction included: w = s, or s^2 (3 - 2 s), with
-!> s = d/e0 between 0 and 1. The film of theory is infinite at |e| = c, so beyond |e| = (1 - q) c it is that of this eccentricity,
-!> with the true direction of the eccentricity and its true rate. The depths e0 and q are no properties of the joint: results depend
-!> on them.
+!> With the penetration d = |e| - c the total force is (1 - w) F_film + w F_contact, friction included, where w = s or s^2 (3 - 2
+!> s), and s = d/e0 is limited to 0 to 1. The theoretical film force is infinite at |e| = c; beyond |e| = (1 - q) c the force at
+!> this eccentricity is used, with the actual direction and rate of the eccentricity. The depth e0 and q are not properties of the
+!> joint: results depend on them.
 module film_transition
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t
@@ -15,17 +15,17 @@ module film_transition
   private
   public :: film_transition_t
 
-  !> A transition. What changes at its kinks is a discrete state, so that between two events the forces are smooth, on trial states
-  !> beyond a kink too.
+  !> A transition. The changes at its kinks are discrete states, so that forces are smooth between two events, even for trial states
+  !> beyond a kink.
   type, extends(has_parameters_t) :: film_transition_t
     character(len=:), allocatable :: transition   !! switch or weighted
     character(len=:), allocatable :: shape        !! linear or smooth
-    real(dp) :: depth = 0                         !! e0 [m], > 0 where it is weighted
-    logical :: is_smooth = .false.                !! the shape
-    real(dp) :: film_reach = 0                    !! (1 - q) c, eccentricity beyond which the film is held [m]
-    real(dp) :: contact_reach = 0                 !! c + e0, eccentricity beyond which there is no film [m]
-    logical :: film_is_held = .false.             !! the pin is beyond film_reach
-    logical :: film_is_gone = .false.             !! and beyond contact_reach
+    real(dp) :: depth = 0                         !! e0 [m], > 0 for a weighted transition
+    logical :: is_smooth = .false.                !! the shape is smooth
+    real(dp) :: film_reach = 0                    !! (1 - q) c, eccentricity beyond which the film force is held [m]
+    real(dp) :: contact_reach = 0                 !! c + e0, eccentricity beyond which the film does not act [m]
+    logical :: film_is_held = .false.             !! the eccentricity is beyond film_reach
+    logical :: film_is_gone = .false.             !! the eccentricity is beyond contact_reach
   contains
     procedure :: parameters
     procedure :: is_weighted
@@ -58,7 +58,7 @@ contains
     if (allocated(self%transition)) is_weighted = self%transition == 'weighted'
   end function is_weighted
 
-  !> The kinks in a bearing.
+  !> Find the kinks for a bearing.
   subroutine prepare(self, bearing, least_film_ratio)
     class(film_transition_t), intent(inout) :: self
     type(bearing_t), intent(in) :: bearing
@@ -68,11 +68,11 @@ contains
     self%contact_reach = bearing%clearance + self%depth
   end subroutine prepare
 
-  !> The discrete state at an eccentricity and its rate.
+  !> Set the discrete state from an eccentricity and its rate.
   pure subroutine begin(self, distance, rate)
     class(film_transition_t), intent(inout) :: self
     real(dp), intent(in) :: distance   !! |e| [m]
-    real(dp), intent(in) :: rate       !! its rate [m/s]: at a kink it decides
+    real(dp), intent(in) :: rate       !! its rate [m/s], which decides exactly at a kink
     self%film_is_held = is_beyond(self%film_reach)
     self%film_is_gone = is_beyond(self%contact_reach)
 
@@ -84,8 +84,8 @@ contains
     end function is_beyond
   end subroutine begin
 
-  !> Share w of the contact in a penetration [m], and its slope [1/m]. A linear share continues beyond its ends on trial states; its
-  !> kinks are events. The smooth one is held there: its slope has no kink.
+  !> Share w of the contact at a penetration [m], and its derivative [1/m]. A linear share continues beyond its ends for trial
+  !> states, since its kinks are events. The smooth share is constant beyond its ends, where its derivative has no jump.
   pure subroutine weight(self, penetration, w, slope)
     class(film_transition_t), intent(in) :: self
     real(dp), intent(in) :: penetration
@@ -107,7 +107,7 @@ contains
     if (present(slope)) slope = w_slope
   end subroutine weight
 
-  !> Force of the whole film on the pin [N] and its moment [N m], held where it would grow without bound.
+  !> Force of the full film on the pin [N] and its moment [N m], held where it would grow without bound.
   pure subroutine film_force(self, film, motion, force, moment)
     class(film_transition_t), intent(in) :: self
     class(film_law_t), intent(in) :: film
@@ -116,7 +116,8 @@ contains
     call film%film_force(self%held_motion(motion), force, moment)
   end subroutine film_force
 
-  !> Its derivatives, as a film law gives them: a film that is held turns with the eccentricity and does not grow with it.
+  !> Derivatives of the film force in the form of those of a film law: a held film rotates with the eccentricity and does not depend
+  !> on its magnitude.
   pure subroutine film_derivatives(self, film, motion, derivatives)
     class(film_transition_t), intent(in) :: self
     class(film_law_t), intent(in) :: film
@@ -133,7 +134,7 @@ contains
     end associate
   end subroutine film_derivatives
 
-  !> The motion that the film sees.
+  !> The motion on which the held film depends.
   pure type(film_motion_t) function held_motion(self, motion) result(held)
     class(film_transition_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
@@ -141,7 +142,7 @@ contains
     if (self%film_is_held) held%eccentricity = motion%eccentricity*(self%film_reach/norm2(motion%eccentricity))
   end function held_motion
 
-  !> The discrete state, to or from an archive.
+  !> Write the discrete state to an archive, or read it from it.
   subroutine exchange(self, archive)
     class(film_transition_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive

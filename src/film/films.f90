@@ -1,4 +1,4 @@
-!> The lubricating films that a case can name. A new law takes its `use` line and its line here.
+!> The lubricating films that a case can name. A new law needs a `use` line and a line in `offer_film_laws`.
 module films
   use gudgeon_parameters, only: parameter_list_t
   use pinkus_sternlicht, only: pinkus_sternlicht_t
@@ -12,7 +12,7 @@ module films
 
 contains
 
-  !> Hand every law to a visitor, in the order in which the template names them.
+  !> Declare all laws to a visitor, in the order of the template.
   subroutine offer_film_laws(list)
     class(parameter_list_t), intent(inout) :: list
     call list%law(pinkus_sternlicht_t())

@@ -1,4 +1,4 @@
-!> The pressure of a film of finite length, and what it does: the solver from which the table of the law `finite_bearing` is made.
+!> Solver for the pressure of a film of finite length and its results. The table of the law `finite_bearing` is computed with it.
 module finite_film
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
@@ -8,28 +8,27 @@ module finite_film
   public :: film_answer_t, film_solver_t
   public :: cavitation_none, cavitation_gumbel, cavitation_reynolds
 
-  !> What happens where the pressure would be negative: nothing (Sommerfeld); the negative part is cut off (Gumbel); the film
-  !> ruptures where both pressure and its slope are 0 (Swift and Stieber: P >= 0, r = div(H^3 grad P) + 12 cos(phi - alpha) <= 0, P
-  !> r = 0).
+  !> Treatment of negative pressures: none (Sommerfeld); they are set to 0 (Gumbel); the film ruptures where the pressure and its
+  !> gradient are 0 (Swift and Stieber: P >= 0, r = div(H^3 grad P) + 12 cos(phi - alpha) <= 0, P r = 0).
   integer, parameter :: cavitation_none = 1, cavitation_gumbel = 2, cavitation_reynolds = 3
 
-  !> Force over mu V L R^3/c^2 along n and t, flow out of both ends over V c R^2, and largest pressure over mu V R^2/c^2.
+  !> Force along n and t over mu V L R^3/c^2, side flow out of both ends over V c R^2, and largest pressure over mu V R^2/c^2.
   type :: film_answer_t
     real(dp) :: force(2) = 0, flow = 0, most = 0
   end type film_answer_t
 
-  !> Solves for one eccentricity and any direction of the velocity. Unknowns are the nodes of the grid, first along the film, then
-  !> in the order of the ring's places. The matrix, minus div(H^3 grad), is symmetric with the half bandwidth 2m and has an inverse
-  !> without negative elements.
+  !> A solver for one eccentricity and any direction of the velocity. The unknowns are the pressures at the nodes of the grid, first
+  !> in axial direction, then around the film in the order of the ring. The matrix, minus div(H^3 grad), is symmetric with half
+  !> bandwidth 2m; its inverse has no negative elements.
   type :: film_solver_t
     private
     type(reynolds_grid_t) :: grid
     integer :: n = 0, band = 0
-    integer, allocatable :: node(:)            !! of the ring, by its place
-    real(dp), allocatable :: matrix(:, :)      !! (0:band, n): element (i, l) is that of row l + i, column l
+    integer, allocatable :: node(:)            !! node of the ring at each place of the order
+    real(dp), allocatable :: matrix(:, :)      !! (0:band, n): element (i, l) is row l + i, column l of the matrix
     real(dp), allocatable :: linear(:, :)      !! solutions for the sources cos phi and sin phi
     real(dp), allocatable :: pressure(:)       !! of the last solution
-    logical, allocatable :: active(:)          !! where it was positive: the next one begins there
+    logical, allocatable :: active(:)          !! nodes at which it was positive; the next solution starts from them
   contains
     procedure :: begin
     procedure :: solve
@@ -38,8 +37,8 @@ module finite_film
 
 contains
 
-  !> Prepare for one thickness `gap` = 1 - eps (> 0, <= 1) and half length L/(2R) on n times m nodes, those round the film shifted
-  !> by a part of their distance.
+  !> Prepare for one thickness `gap` = 1 - eps (> 0, <= 1) and the half length L/(2R) on n times m nodes; those around the film are
+  !> shifted by a fraction of their distance.
   pure subroutine begin(self, n, m, gap, half_length, shift)
     class(film_solver_t), intent(inout) :: self
     integer, intent(in) :: n, m
@@ -82,7 +81,7 @@ contains
     self%pressure = 0
   end subroutine begin
 
-  !> A conductance between two unknowns.
+  !> Add a conductance between two unknowns to the matrix.
   pure subroutine connect(a, k, l, conductance)
     real(dp), intent(inout) :: a(0:, :)
     integer, intent(in) :: k, l
@@ -92,7 +91,7 @@ contains
     a(abs(k - l), min(k, l)) = a(abs(k - l), min(k, l)) - conductance
   end subroutine connect
 
-  !> The source 12 cos(phi - alpha), integrated over the cells exactly.
+  !> The source 12 cos(phi - alpha), integrated exactly over the cells.
   pure subroutine put_source(self, cos_alpha, sin_alpha, source)
     class(film_solver_t), intent(in) :: self
     real(dp), intent(in) :: cos_alpha, sin_alpha
@@ -106,7 +105,7 @@ contains
     end do
   end subroutine put_source
 
-  !> The film for a velocity in the direction alpha from n to t. `warm`: begin with the film of the solution before.
+  !> Solve for a velocity in the direction alpha from n to t. `warm`: start from the previous solution.
   pure subroutine solve(self, alpha, cavitation, warm, answer)
     class(film_solver_t), intent(inout) :: self
     real(dp), intent(in) :: alpha   !! [rad]
@@ -123,8 +122,9 @@ contains
     call sum_up(self, cavitation, alpha, answer)
   end subroutine solve
 
-  !> The film with free edges as a linear complementarity problem, by the primal-dual active set: P = 0 outside of it, the equation
-  !> holds inside; a node stays inside while P > 0 and comes in where its cell would gain.
+  !> Solve the film with free edges, a linear complementarity problem, by the primal-dual active set method: P = 0 outside the
+  !> active set, the equation holds inside. A node remains in the set while P > 0, and enters it where its residual requires a
+  !> positive pressure.
   pure subroutine find_film(self, source)
     class(film_solver_t), intent(inout) :: self
     real(dp), intent(in) :: source(:)
@@ -149,7 +149,7 @@ contains
     self%pressure = max(self%pressure, 0.0_dp)
   end subroutine find_film
 
-  !> The matrix for the unknowns inside alone: rows and columns outside are those of the unit matrix.
+  !> The matrix for the active unknowns: rows and columns of the others are those of the unit matrix.
   pure subroutine restrict(n, band, matrix, active, part)
     integer, intent(in) :: n, band
     real(dp), intent(in) :: matrix(0:band, n)
@@ -167,7 +167,7 @@ contains
     end do
   end subroutine restrict
 
-  !> Cholesky's factor of a band matrix, in its place.
+  !> Cholesky factorisation of a band matrix, in place.
   pure subroutine decompose(n, band, a)
     integer, intent(in) :: n, band
     real(dp), intent(inout) :: a(0:band, n)
@@ -188,7 +188,7 @@ contains
     end do
   end subroutine decompose
 
-  !> Solve with such a factor.
+  !> Solve a system with such a factor.
   pure subroutine substitute(n, band, a, x)
     integer, intent(in) :: n, band
     real(dp), intent(in) :: a(0:band, n)
@@ -221,7 +221,7 @@ contains
     end do
   end subroutine multiply
 
-  !> Force, flow and largest pressure of the last solution.
+  !> Force, side flow and largest pressure of the last solution.
   pure subroutine sum_up(self, cavitation, alpha, answer)
     class(film_solver_t), intent(in) :: self
     integer, intent(in) :: cavitation
@@ -244,7 +244,7 @@ contains
         answer%most = max(answer%most, peak_of(g%angle, line))
       end do
       answer%force = answer%force/g%half_length
-      do i = 1, g%n   ! `line` is the last one before the end
+      do i = 1, g%n   ! `line` is the last one before the end of the film
         out = g%along(g%m)*g%height_cubed(i)*line(i) &
           + 12*(cos(alpha)*g%sine(i) + sin(alpha)*g%cosine(i))*g%width(g%m + 1)
         if (cavitation == cavitation_none .or. line(i) > 0) answer%flow = answer%flow + out/6
@@ -252,7 +252,7 @@ contains
     end associate
   end subroutine sum_up
 
-  !> Largest value of a pressure round the film: of the parabola through the largest node and its neighbours.
+  !> Largest value of a pressure around the film: the maximum of the parabola through the largest node and its neighbours.
   pure real(dp) function peak_of(angle, pressure) result(peak)
     real(dp), intent(in) :: angle(:), pressure(:)
     real(dp) :: left, right, rise, fall, slope, bend
@@ -270,7 +270,7 @@ contains
     peak = peak + slope**2/(4*bend)
   end function peak_of
 
-  !> Integrals of the positive part of a pressure, linear between the nodes of the ring, times cos phi and sin phi.
+  !> Integrals of the positive part of a pressure that is linear between the nodes of the ring, times cos phi and sin phi.
   pure function positive_force(angle, pressure) result(force)
     real(dp), intent(in) :: angle(:), pressure(:)
     real(dp) :: force(2), left, right, from, to
@@ -306,8 +306,8 @@ contains
     sums = [cos(middle)*even - sin(middle)*odd, sin(middle)*even + cos(middle)*odd]
   end function linear_integrals
 
-  !> Pressure of the last solution at the nodes, over mu V R^2/c^2: (i, j) as in the grid, with the nodes' angles [rad] and places
-  !> along the film over R.
+  !> Pressure of the last solution at the nodes over mu V R^2/c^2, (i, j) as in the grid, with the angles [rad] and axial positions
+  !> over R of the nodes.
   pure subroutine pressure_at(self, angle, zeta, pressure)
     class(film_solver_t), intent(in) :: self
     real(dp), allocatable, intent(out) :: angle(:), zeta(:), pressure(:, :)

@@ -1,8 +1,8 @@
-!> The remainders of the oscillating film (see oscillating_response) as power series in Q.
+!> Power series in Q of the remainders of the oscillating film (see oscillating_response).
 !>
-!> B = 3 + sum b_k z^k and z/B = sum c_k z^k in z = u^2 = i Q eta^2, from 2 z B' = z + 3 B - B^2 and, for C = z/B,
-!> 2 z C' = z - C - C^2. So the remainders are series in i Q, whose coefficients are means of powers of eta = 1 - eps cos th:
-!> M_m = <eta^m> and eps H_m = <eta^m cos th>, polynomials in eps^2 (Legendre's and, by parts, Gegenbauer's):
+!> B = 3 + sum b_k z^k and C = z/B = sum c_k z^k, with z = u^2 = i Q eta^2, follow from 2 z B' = z + 3 B - B^2 and 2 z C' = z - C -
+!> C^2. The remainders are therefore series in i Q, whose coefficients are means of powers of eta = 1 - eps cos th: M_m = <eta^m>
+!> and eps H_m = <eta^m cos th>, polynomials in eps^2 (Legendre's and, by integration by parts, Gegenbauer's):
 !>
 !>     (2k + 3) b_k = [k = 1] - sum b_j b_k-j,   (2k + 1) c_k = [k = 1] - sum c_j c_k-j,   j from 1 to k - 1
 !>     (m + 1) M_m+1 = (2m + 1) M_m - m (1 - eps^2) M_m-1,                      M_0 = M_1 = 1
@@ -13,21 +13,21 @@ module inertia_series
   private
   public :: inertia_series_t, remainder_t, new_inertia_series
 
-  integer, parameter :: most_pairs = 8                 !! of terms after the first
+  integer, parameter :: most_pairs = 8                 !! largest number of pairs of terms after the first
   integer, parameter :: most_terms = 1 + 2*most_pairs
 
-  !> What the closed means leave over.
+  !> The parts of the means that have no closed form.
   type :: remainder_t
-    complex(dp) :: n1, c2   !! of <B/eta^2>: less 3 <1/eta^2>; the same with cos th, over eps
-    complex(dp) :: n2, c3   !! of <(B + u^2)/eta^3>: less 3 <1/eta^3> and 6/5 i Q <1/eta>; the same with cos th, over eps
-    complex(dp) :: m1, mc   !! of <(1 + B + u^2/B)/eta>: less 4 <1/eta>; the same with cos th, over eps
+    complex(dp) :: n1, c2   !! of <B/eta^2>, without 3 <1/eta^2>; the same with cos th, over eps
+    complex(dp) :: n2, c3   !! of <(B + u^2)/eta^3>, without 3 <1/eta^3> and 6/5 i Q <1/eta>; the same with cos th, over eps
+    complex(dp) :: m1, mc   !! of <(1 + B + u^2/B)/eta>, without 4 <1/eta>; the same with cos th, over eps
   end type remainder_t
 
   type :: inertia_series_t
-    real(dp) :: limit = -1                !! serves up to this Q
-    real(dp) :: limits(most_pairs) = -1   !! up to which so many pairs of terms are enough
+    real(dp) :: limit = -1                !! largest Q for which the series is used
+    real(dp) :: limits(most_pairs) = -1   !! largest Q for each number of pairs of terms
     real(dp) :: b(most_terms) = 0         !! b_k, with the sign of the real or imaginary part of i^k
-    real(dp) :: a(most_terms) = 0         !! the same of b_k + c_k
+    real(dp) :: a(most_terms) = 0         !! b_k + c_k, with the same sign
     real(dp) :: up(2, 2*most_terms) = 0, down(2, 2*most_terms) = 0   !! X_m+1 = up_m X_m - down_m gap X_m-1 of (M, H)
   contains
     procedure, non_overridable :: remainders
@@ -35,8 +35,8 @@ module inertia_series
 
 contains
 
-  !> `accuracy` is the relative error allowed, between 0 and 1. The first neglected term is largest at eps = 1, where
-  !> M_m = (2m)!/(2^m m!^2); measured, a twelfth of it is what the response errs by, at worst. Terms fall by 4 Q/pi^2 each.
+  !> Prepare a series with the relative error `accuracy`, between 0 and 1. The first neglected term is largest at eps = 1, where M_m
+  !> = (2m)!/(2^m m!^2); measured, the error of the response is at most a twelfth of it. Successive terms decrease by 4 Q/pi^2.
   pure subroutine new_inertia_series(series, accuracy)
     type(inertia_series_t), intent(out) :: series
     real(dp), intent(in) :: accuracy
@@ -55,7 +55,7 @@ contains
     end do
     mean = 2.5_dp   ! M_3 at eps = 1
     do j = 1, most_pairs
-      k = 2*j + 2   ! the first neglected term, with M_2k-1
+      k = 2*j + 2   ! first neglected term, with M_2k-1
       do m = 4*j, 4*j + 3
         mean = mean*(2*m - 1)/m
       end do
@@ -68,13 +68,13 @@ contains
     end do
   end subroutine new_inertia_series
 
-  !> Limit: Q at most `limit`.
+  !> Evaluate the series; Q must be at most `limit`.
   pure subroutine remainders(self, gap, q, rest)
     class(inertia_series_t), intent(in) :: self
     real(dp), value, intent(in) :: gap   !! 1 - eps^2
     real(dp), value, intent(in) :: q     !! Q
     type(remainder_t), intent(out) :: rest
-    real(dp), dimension(2, 2) :: n1, n2, m1     !! (plain, with cos th) of (real part, imaginary part)
+    real(dp), dimension(2, 2) :: n1, n2, m1     !! (without, with cos th) of (real part, imaginary part)
     real(dp) :: even(2), odd(2), power
     integer :: j, k, m, part
 

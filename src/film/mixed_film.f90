@@ -1,5 +1,4 @@
-!> Mixed lubrication: a film between rough surfaces, and the asperities that touch through it. Both act together, so that nothing
-!> happens at |e| = c.
+!> Mixed lubrication: a film between rough surfaces in parallel with the contact of their asperities. There is no event at |e| = c.
 module mixed_film
   use gudgeon_kinds, only: dp
   use film_law, only: film_law_t, film_motion_t, difference_steps, moved
@@ -10,14 +9,15 @@ module mixed_film
 
 contains
 
-  !> The film acts in the mean gap of the surfaces. Beside it the asperities press the pin to the middle and rub.
+  !> Forces of the film, which acts in the mean gap of the surfaces, and of the asperities, which press the pin towards the centre
+  !> and cause friction.
   pure subroutine mixed_forces(film, rough, pin_radius, motion, film_force, film_moment, pressing, friction)
     class(film_law_t), intent(in) :: film
     type(asperities_t), intent(in) :: rough
     real(dp), intent(in) :: pin_radius                 !! [m]
     type(film_motion_t), intent(in) :: motion
     real(dp), intent(out) :: film_force(2), film_moment   !! of the film on the pin [N], [N m]
-    real(dp), intent(out) :: pressing, friction           !! of the asperities: to the middle, along t [N]
+    real(dp), intent(out) :: pressing, friction           !! of the asperities: towards the centre, and along t [N]
     type(film_motion_t) :: seen
     real(dp) :: distance, tangential, journal_speed, bearing_speed
     call see_gap(film, rough, motion, seen, distance, tangential)
@@ -28,7 +28,7 @@ contains
     call film%film_force(seen, film_force, film_moment)
   end subroutine mixed_forces
 
-  !> The motion that the film of rough surfaces sees.
+  !> The motion on which the film between rough surfaces depends.
   pure type(film_motion_t) function motion_in_gap(film, rough, motion) result(seen)
     class(film_law_t), intent(in) :: film
     type(asperities_t), intent(in) :: rough
@@ -37,15 +37,15 @@ contains
     call see_gap(film, rough, motion, seen, distance, tangential)
   end function motion_in_gap
 
-  !> It is that in the mean gap h_T of the surfaces: at the eccentricity ratio 1 - h_T/c, which grows towards 1 as the smooth
-  !> surfaces would touch and pass, with its true turning.
+  !> The motion in the mean gap h_T of the surfaces: its eccentricity ratio is 1 - h_T/c, which approaches 1 while the smooth
+  !> surfaces would touch and penetrate; its rotation is the actual one.
   pure subroutine see_gap(film, rough, motion, seen, distance, tangential)
     class(film_law_t), intent(in) :: film
     type(asperities_t), intent(in) :: rough
     type(film_motion_t), intent(in) :: motion
     type(film_motion_t), intent(out) :: seen
     real(dp), intent(out) :: distance      !! |e| [m]
-    real(dp), intent(out) :: tangential    !! e' across the eccentricity [m/s]
+    real(dp), intent(out) :: tangential    !! component of e' perpendicular to the eccentricity [m/s]
     real(dp) :: n(2), gap, slope, ratio, radial
     seen = motion
     associate (e => motion%eccentricity, v => motion%eccentricity_rate)
@@ -62,8 +62,8 @@ contains
     end associate
   end subroutine see_gap
 
-  !> Derivatives of the whole force and moment on the pin (rows F_x, F_y, moment) by e_x, e_y, e_x', e_y' and the pin's speed
-  !> (columns), by central differences.
+  !> Derivatives of the total force and moment on the pin (rows F_x, F_y, moment) with respect to e_x, e_y, e_x', e_y' and the pin
+  !> speed (columns), by central differences.
   pure subroutine mixed_derivatives(film, rough, pin_radius, motion, derivatives)
     class(film_law_t), intent(in) :: film
     type(asperities_t), intent(in) :: rough

@@ -1,8 +1,8 @@
-!> The viscosity of an oil at the temperature of the film, from two that its data sheet gives.
+!> The viscosity of an oil at the temperature of the film, from the viscosities at two temperatures in its data sheet.
 !>
-!> walther (ASTM D341): lg lg Z = A - B lg T, Z = nu + 0.7 + exp(-1.47 - 1.84 nu - 0.51 nu^2), nu in mm^2/s, T in K, for 0.21 mm^2/s
-!> and more. vogel: nu = a exp(b/(T - T0)), T0 = 178.15 K (-95 degrees C) unless given (Cameron 1966). The density follows the
-!> temperature as that of lubricating oils (ASTM D1250, table 54D): rho = rho_15 exp(-k (1 + 0.8 k)), k = 0.6278 (T - 288.15)/rho_15
+!> walther (ASTM D341): lg lg Z = A - B lg T, Z = nu + 0.7 + exp(-1.47 - 1.84 nu - 0.51 nu^2), with nu in mm^2/s and T in K, for nu
+!> >= 0.21 mm^2/s. vogel: nu = a exp(b/(T - T0)), T0 = 178.15 K (-95 degrees C) by default (Cameron 1966). The density varies with
+!> the temperature as for lubricating oils (ASTM D1250, table 54D): rho = rho_15 exp(-k (1 + 0.8 k)), k = 0.6278 (T - 288.15)/rho_15
 !> in kg/m^3.
 module oil_viscosity
   use gudgeon_kinds, only: dp
@@ -51,15 +51,15 @@ contains
       default='178.15')
   end subroutine parameters
 
-  !> Whether the viscosity follows from that of the oil.
+  !> Whether the viscosity is computed from an oil and a temperature.
   pure logical function is_known(self)
     class(oil_t), intent(in) :: self
     is_known = .false.
     if (allocated(self%law)) is_known = self%law /= 'given'
   end function is_known
 
-  !> What does not fit between the parameters of an oil: the key of the wrong one and what is wanted of it. An empty key means that
-  !> all is well.
+  !> Find a contradiction between the parameters of an oil: the key of the wrong parameter, and what is required of it. An empty key
+  !> means that there is none.
   pure subroutine conflict(self, key, wanted)
     class(oil_t), intent(in) :: self
     character(len=:), allocatable, intent(out) :: key, wanted
@@ -94,7 +94,7 @@ contains
     end if
   end subroutine conflict
 
-  !> nu at the film's temperature [m^2/s].
+  !> nu at the temperature of the film [m^2/s].
   pure real(dp) function kinematic_viscosity(self) result(nu)
     class(oil_t), intent(in) :: self
     real(dp) :: x(2), logs(2), b
@@ -110,13 +110,13 @@ contains
     end if
   end function kinematic_viscosity
 
-  !> Z of a viscosity in mm^2/s.
+  !> Z for a viscosity in mm^2/s.
   pure real(dp) function z_of(nu)
     real(dp), intent(in) :: nu
     z_of = nu + 0.7_dp + exp(-1.47_dp - 1.84_dp*nu - 0.51_dp*nu**2)
   end function z_of
 
-  !> The viscosity in mm^2/s that has this Z > 1, by Newton's method: Z rises with it everywhere.
+  !> The viscosity in mm^2/s for a value of Z > 1, by Newton's method; Z is a monotonic function of it.
   pure real(dp) function viscosity_of(z) result(nu)
     real(dp), intent(in) :: z
     real(dp) :: rest
@@ -128,16 +128,16 @@ contains
     end do
   end function viscosity_of
 
-  !> Density at the film's temperature [kg/m^3].
+  !> Density at the temperature of the film [kg/m^3].
   pure real(dp) function density_at(self)
     class(oil_t), intent(in) :: self
-    real(dp), parameter :: expansion = 0.6278_dp   !! by the density [kg/(m^3 K)]
+    real(dp), parameter :: expansion = 0.6278_dp   !! coefficient times the density [kg/(m^3 K)]
     real(dp) :: k
     k = expansion/self%density*(self%temperature - density_temperature)
     density_at = self%density*exp(-k*(1 + 0.8_dp*k))
   end function density_at
 
-  !> mu = rho nu at the film's temperature [Pa s].
+  !> mu = rho nu at the temperature of the film [Pa s].
   pure real(dp) function dynamic_viscosity(self)
     class(oil_t), intent(in) :: self
     dynamic_viscosity = self%density_at()*self%kinematic_viscosity()

@@ -1,8 +1,8 @@
-!> The oscillating film (5.1-5.9, after Gandara 2006 and Bannwart et al. 2010): a long bearing, full film, wedge and fluid
-!> inertia, no squeeze. The pin's surface moves with the real part of a phasor U that turns at the crank's frequency w.
-!> It carries no load along the line of centres: only forces along the tangent, and the shear's moment. Without squeeze it does not
-!> resist the motion of the pin's centre: where that runs along the film faster than half the surface of the pin, the film gives
-!> energy to the bodies instead of taking it.
+!> The oscillating film (5.1-5.9, after Gandara 2006 and Bannwart et al. 2010): a long bearing with a full film, wedge effect and
+!> fluid inertia, without squeeze effect. The speed of the pin's surface is the real part of a phasor U that rotates with the crank
+!> frequency w. The film carries no load along the line of centres: it has only a tangential force, and the moment of the shear.
+!> Without squeeze it does not resist motions of the pin's centre: where the centre moves along the film faster than half of the
+!> pin's surface, the film supplies energy to the bodies instead of dissipating it.
 module oscillating_film
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi, two_pi
@@ -15,21 +15,22 @@ module oscillating_film
   private
   public :: oscillating_film_t
 
-  !> Error allowed to means over the film, over the run's relative tolerance, and at most.
+  !> Allowed error of means over the film, relative to the tolerance of the run, and its largest value.
   real(dp), parameter :: mean_margin = 1e-4_dp
   real(dp), parameter :: coarsest_mean = 1e-8_dp
 
   type, extends(film_law_t) :: oscillating_film_t
     character(len=:), allocatable :: variant   !! bearing_frame or as_printed
-    integer :: quadrature_points = 0      !! round the film; 0: what the tolerance asks for
+    integer :: quadrature_points = 0      !! number of points around the film; 0: chosen from the tolerance
     type(oscillating_response_t) :: response
     real(dp) :: pin_radius = 0            !! R [m]
     real(dp) :: kinematic_viscosity = 0   !! nu [m^2/s]
-    real(dp) :: inertia_scale = 0         !! c^2/(4 nu), Q over the frequency [s]
-    real(dp) :: largest_ratio = 1         !! eccentricity ratio beyond which the film does not change: the film of real surfaces is
+    real(dp) :: inertia_scale = 0         !! c^2/(4 nu), the ratio of Q to the frequency [s]
+    real(dp) :: largest_ratio = 1  !! eccentricity ratio beyond which the film does not change: the film between real surfaces is at
+                                   !! least as thick as their roughness, while the theoretical force grows without bound
                                           !! no thinner than their roughness, where that of the theory pulls without bound
     real(dp) :: force_scale = 0           !! mu w_b R/c [Pa s]
-    real(dp) :: arm_length = 0            !! L of (5.4), the rod's length [m], where its acceleration term is wanted; or 0
+    real(dp) :: arm_length = 0            !! L of (5.4), the rod length [m], if the acceleration term is included; otherwise 0
   contains
     procedure, nopass :: name
     procedure :: parameters
@@ -70,8 +71,8 @@ contains
     self%kinematic_viscosity = kinematic_viscosity
   end subroutine take_oil
 
-  !> The scales, and the response of the film, whose means are finer than the run by `mean_margin`. The variant `as_printed` has
-  !> the acceleration terms of (5.4), with the rod's length as their L.
+  !> Set the scales, and prepare the response of the film with means more accurate than the tolerance of the run by `mean_margin`.
+  !> The variant `as_printed` has the acceleration terms of (5.4), with the rod length as L.
   subroutine prepare(self, bearing, tolerance)
     class(oscillating_film_t), intent(inout) :: self
     type(bearing_t), intent(in) :: bearing
@@ -93,20 +94,20 @@ contains
       self%quadrature_points, as_printed)
   end subroutine prepare
 
-  !> Surface speed of the pin as a phasor [m/s]: Re U = R omega, Re(i w U) = R omegadot, of the ideal joint. Without
-  !> oscillation it is R omega.
+  !> Surface speed of the pin as a phasor [m/s]: Re U = R omega and Re(i w U) = R omegadot of the mechanism with ideal joints.
+  !> Without oscillation it is R omega.
   pure complex(dp) function surface_speed(self, motion) result(speed)
     class(oscillating_film_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
-    real(dp), parameter :: slowest = 1e-300_dp   !! frequency that has a reciprocal
+    real(dp), parameter :: slowest = 1e-300_dp   !! smallest frequency with a finite reciprocal
     real(dp) :: lag
     lag = 0
-    ! the reciprocal need not wait for the acceleration
+    ! the reciprocal is computed independently of the acceleration
     if (motion%frequency > slowest) lag = motion%ideal_pin_acceleration*(1/motion%frequency)
     speed = cmplx(self%pin_radius*motion%ideal_pin_speed, -self%pin_radius*lag, dp)
   end function surface_speed
 
-  !> The film's response to unit surface speed.
+  !> Response of the film to a unit surface speed.
   pure function phasors(self, motion)
     class(oscillating_film_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
@@ -117,8 +118,8 @@ contains
       self%inertia_scale*motion%frequency)
   end function phasors
 
-  !> f_t = mu w_b R/c Re{U [Int t* cos th - (R/c) Int P* sin th]}, f_r = 0, moment mu w_b R^2/c Re{U Int t*}. Neither the
-  !> velocity of the pin's centre nor its actual rotation enters. With an arm, the first acceleration term of (5.4), a
+  !> f_t = mu w_b R/c Re{U [Int t* cos th - (R/c) Int P* sin th]}, f_r = 0, moment mu w_b R^2/c Re{U Int t*}. The velocity of the
+  !> pin's centre and its actual rotation have no influence. If `arm_length` is not 0, the first acceleration term of (5.4), a
   !> pressure -rho w L U cos th, adds f_r = pi w_b R rho w L Re U.
   pure subroutine film_force(self, motion, force, moment)
     class(oscillating_film_t), intent(in) :: self
@@ -143,13 +144,13 @@ contains
     across = scale*aimag(speed)
     lever = self%pin_radius*self%per_clearance
     tangential = along*(real(response%shear) - lever*real(response%pressure)) &
-      - across*(aimag(response%shear) - lever*aimag(response%pressure))   ! over eps
+      - across*(aimag(response%shear) - lever*aimag(response%pressure))   ! divided by eps
     moment = self%pin_radius*(along*real(response%moment) - across*aimag(response%moment))
     force(1) = -tangential*e(2)
     force(2) = tangential*e(1)
     if (self%arm_length > 0) then
       radial = pi*self%force_scale*self%clearance/self%kinematic_viscosity*motion%frequency*self%arm_length*real(speed)
-      n(1) = 1   ! the centre has no direction: x is taken
+      n(1) = 1   ! a centred pin has no direction; x is used
       n(2) = 0
       if (square > 0) n = e*(1/sqrt(square))
       force(1) = force(1) + radial*n(1)
@@ -157,8 +158,8 @@ contains
     end if
   end subroutine film_force
 
-  !> dP/dth [Pa] as a phasor, at the angle theta [rad] from the thinnest place (the direction of the eccentricity), x
-  !> towards y. Its real part is the gradient now.
+  !> dP/dth [Pa] as a phasor, at the angle theta [rad] from the thinnest film (the direction of the eccentricity), positive from x
+  !> to y. Its real part is the present gradient.
   pure complex(dp) function pressure_gradient(self, motion, theta) result(gradient)
     class(oscillating_film_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
@@ -187,8 +188,8 @@ contains
       *(eta*inertia - response%flow*(inertia + cmplx(0.0_dp, v, dp)))/eta**3
   end function driving_gradient
 
-  !> Velocity along the film [m/s] as a phasor (5.1), at theta as above and at the height y/h over the pin's surface, 0 at
-  !> the pin, 1 at the bearing: with h the gap there, lambda = sqrt(i w/nu), C(z) = sinh(z)/z,
+  !> Velocity along the film [m/s] as a phasor (5.1), at theta as above and at the relative height y/h above the pin's surface (0 at
+  !> the pin, 1 at the bearing). With the local gap h, lambda = sqrt(i w/nu) and C(z) = sinh(z)/z, it is
   !> V = U (1 - y/h) C(lambda(h-y))/C(lambda h) - P' y(h-y)/(2 mu R) C(lambda y/2) C(lambda(h-y)/2)/cosh(lambda h/2).
   !> Limit: |lambda h| < 700.
   pure function velocity(self, motion, theta, height)
@@ -206,7 +207,7 @@ contains
       *sinhc(wave*height/2)*sinhc(wave*(1 - height)/2)/cosh(wave/2)
   end function velocity
 
-  !> Thickness of the film [m], with the eccentricity held as in the response.
+  !> Thickness of the film [m], with the eccentricity limited as in the response.
   pure function gap(self, motion, theta)
     class(oscillating_film_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion

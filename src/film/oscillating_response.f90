@@ -1,20 +1,20 @@
-!> The oscillating film (5.1-5.9) without dimensions: what pressure and wall shear a pin surface oscillating with unit
-!> speed meets, as complex numbers.
+!> The oscillating film (5.1-5.9) in dimensionless form: complex pressure and wall shear for a pin whose surface oscillates with
+!> unit speed.
 !>
-!> Across the film, i w V = -(dP/dth)/(rho R) + nu V'', V = U at the pin and 0 at the bearing, and the same flow passes
-!> every section. With h = c eta, eta = 1 - eps cos th, Q = c^2 w/(4 nu), u^2 = i Q eta^2, t = tanh(u)/u and
-!> B = u^2 t/(1 - t), the solution is, without the cancellation of the printed h lambda - 2T,
+!> The flow obeys i w V = -(dP/dth)/(rho R) + nu V'', with V = U at the pin and 0 at the bearing, and is equal in every cross
+!> section. With h = c eta, eta = 1 - eps cos th, Q = c^2 w/(4 nu), u^2 = i Q eta^2, t = tanh(u)/u and B = u^2 t/(1 - t), the
+!> solution in a form without the cancellation of the printed h lambda - 2T is
 !>
 !>     P*' = 2 [eta B - K (B + u^2)]/eta^3,   K = <B/eta^2>/<(B + u^2)/eta^3>,   P* = P c^2/(mu U R)
 !>     t*  = -[1 + B + u^2/B]/eta + K B/eta^2,   t* = mu dV/dy c/(mu U) at the pin
 !>
-!> with <> the mean over th, which makes P periodic. Corrections to the print: (5.1) lacks i under its roots, (5.4) a
-!> factor R, (5.5) has nu for i and c/2 for h/2.
+!> where <> is the mean over th; the choice of K makes P periodic. Corrections to the print: (5.1) lacks i under its roots, (5.4) a
+!> factor R, (5.5) has nu instead of i and c/2 instead of h/2.
 !>
-!> B = 3 + u^2/5 - u^4/175 + ... is even in eta and smooth near the wall. The powers of 1/eta that it leaves have closed
-!> means. Those of the smooth remainder are a power series in Q (inertia_series); beyond the Q that it serves they are summed
-!> over points, whose number does not depend on the eccentricity. P*' and t* are even in th: pressure and shear have no
-!> resultant along the line of centres, and half the circle is enough.
+!> B = 3 + u^2/5 - u^4/175 + ... is even in eta and smooth near the wall. After separating powers of 1/eta, which have means in
+!> closed form, the smooth remainder is expanded into a power series in Q (inertia_series); for larger Q it is summed over points,
+!> whose number does not depend on the eccentricity. P*' and t* are even in th: pressure and shear have no resultant along the line
+!> of centres, and half of the circle is sufficient.
 module oscillating_response
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi, two_pi
@@ -23,25 +23,25 @@ module oscillating_response
   private
   public :: oscillating_response_t, film_phasors_t, new_oscillating_response, inertia_function, max_eccentricity_ratio
 
-  !> The response grows like (1-eps)^-1/2. From this eccentricity ratio on, and beyond the wall, it is held, so that it
-  !> stays finite up to the contact.
+  !> The response grows as (1-eps)^-1/2. Beyond this eccentricity ratio, and beyond the wall, it is constant, so that it is finite
+  !> until the contact begins.
   real(dp), parameter :: max_eccentricity_ratio = 1 - 1e-6_dp
 
-  !> Points on half the circle of the rules.
+  !> Numbers of points of the rules on half of the circle.
   integer, parameter :: rule_points(*) = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 256, 512, 1024]
 
-  !> Series of (B - 3)/u^2 in u^2, and up to which |u^2| it serves.
+  !> Series of (B - 3)/u^2 in u^2, and the largest |u^2| for which it is used.
   real(dp), parameter :: b(0:8) = [1/5.0_dp, -1/175.0_dp, 2/7875.0_dp, -37/3031875.0_dp, 118/197071875.0_dp, &
     -5506/186232921875.0_dp, 3308/2261399765625.0_dp, -8386459/115794974998828125.0_dp, 56067454/15632321624841796875.0_dp]
   real(dp), parameter :: series_limit = 0.5_dp
 
-  !> One choice of points.
+  !> One rule of summation.
   type :: rule_t
-    real(dp) :: limit = huge(1.0_dp)      !! serves up to this Q
+    real(dp) :: limit = huge(1.0_dp)      !! largest Q for which the rule is used
     real(dp), allocatable :: cosines(:)   !! of the points, th = pi (j - 1/2)/n
   end type rule_t
 
-  !> The response in one position.
+  !> The response at one position.
   type :: film_phasors_t
     complex(dp) :: pressure   !! Int P* sin th dth
     complex(dp) :: shear      !! Int t* cos th dth
@@ -50,9 +50,9 @@ module oscillating_response
   end type film_phasors_t
 
   type :: oscillating_response_t
-    logical :: as_printed = .false.       !! with the second acceleration term of (5.4), which takes 4iQ from P*'
+    logical :: as_printed = .false.       !! with the second acceleration term of (5.4), which subtracts 4iQ from P*'
     type(inertia_series_t) :: series      !! for small Q
-    type(rule_t), allocatable :: rule(:)  !! beyond; coarsest first
+    type(rule_t), allocatable :: rule(:)  !! for larger Q; the rule with the fewest points first
   contains
     procedure, non_overridable :: phasors
     procedure, non_overridable :: respond
@@ -60,8 +60,8 @@ module oscillating_response
 
 contains
 
-  !> `accuracy` is the relative error allowed to series and sums, between 0 and 1; `points` > 0 asks for sums over that
-  !> many points on the whole circle instead.
+  !> Prepare the response. `accuracy` is the allowed relative error of series and sums, between 0 and 1; if `points` > 0, sums over
+  !> that number of points on the whole circle are used instead.
   pure subroutine new_oscillating_response(response, accuracy, points, as_printed)
     type(oscillating_response_t), intent(out) :: response
     real(dp), intent(in) :: accuracy
@@ -86,10 +86,10 @@ contains
     cosines = [(cos(pi*(2*j - 1)/(2*n)), j=1, n)]
   end function midpoint_cosines
 
-  !> Largest Q at which the midpoint rule with n points on half the circle reaches the accuracy. Its error stays
-  !> below 10 r^(-2n), where r + 1/r is the sum of the distances of the integrand's nearest pole from the ends of the range of eta,
-  !> over half that range. The worst range is that of eps = 1, from 0 to 2; the nearest pole is where B = 0, u^2 = -pi^2,
-  !> eta = d sqrt(i) with d = pi/sqrt(Q). Hence r + 1/r = d + |2 - d sqrt(i)|, which is solved for d.
+  !> Largest Q at which the midpoint rule with n points on half of the circle reaches the accuracy. Its error is less than 10
+  !> r^(-2n), where r + 1/r is the sum of the distances of the integrand's nearest pole from the ends of the range of eta, divided
+  !> by half of that range. The worst range is 0 to 2, at eps = 1; the nearest pole is at B = 0, u^2 = -pi^2, or eta = d sqrt(i)
+  !> with d = pi/sqrt(Q). Hence r + 1/r = d + |2 - d sqrt(i)|, which is solved for d.
   pure real(dp) function served_inertia(n, accuracy) result(q)
     integer, intent(in) :: n
     real(dp), intent(in) :: accuracy
@@ -113,9 +113,9 @@ contains
     phasors%moment = two_pi*phasors%moment
   end function phasors
 
-  !> The same, but pressure and shear over 2 pi eps and the moment over 2 pi: without the root eps. The closed means of 1/eta,
-  !> 1/eta^2, 1/eta^3 and their products with cos th are multiplied out with the remainders, so that nothing cancels as
-  !> eps -> 1.
+  !> The same response with pressure and shear divided by 2 pi eps and the moment by 2 pi, so that the square root eps is not
+  !> needed. The closed means of 1/eta, 1/eta^2, 1/eta^3 and of their products with cos th are multiplied out with the remainders,
+  !> so that nothing cancels as eps -> 1.
   pure subroutine respond(self, square, gap, q, phasors)
     class(oscillating_response_t), intent(in) :: self
     real(dp), value, intent(in) :: square, gap   !! eps^2 and 1 - eps^2, both >= 0, gap not 0
@@ -137,8 +137,8 @@ contains
     first = (1 + b(0))*q   ! of n2 and c3 times <1/eta> = 1/s and <cos th/eta> = eps/(s (1 + s))
     driven = rest%n1
     if (self%as_printed) driven = driven - cmplx(0.0_dp, 2*q, dp)
-    ! real times complex part by part: the compiler would multiply by the zero imaginary part, too; s^5 as s times gap^2, which
-    ! does not wait for the root
+    ! real times complex by parts, since the compiler would also multiply by the imaginary part 0; s^5 is s times gap^2, which does
+    ! not depend on the square root
     scale = reciprocal(cmplx(3 + 1.5_dp*square + s*(gap2*real(rest%n2)), first*gap2 + s*(gap2*aimag(rest%n2)), dp))
     part = cmplx(3 + s*(gap*real(driven)), s*(gap*aimag(driven)), dp)*scale
     pressure = scale*(cmplx(3*gap*(real(rest%n2) - real(rest%c3)) - 4.5_dp*per_s, &
@@ -152,8 +152,8 @@ contains
     phasors%moment = cmplx(real(moment) - (real(rest%m1) + 4*per_s), aimag(moment) - aimag(rest%m1), dp)
   end subroutine respond
 
-  !> The remainders by the coarsest rule that serves. At eps = 0, where those with cos th over eps are not told by sums, they
-  !> are left out: nothing depends on them there.
+  !> The remainders by the rule with the fewest points that is sufficient. At eps = 0 those with cos th over eps cannot be computed
+  !> by sums and are left out, since nothing depends on them there.
   pure subroutine sum_remainders(self, eps, q, rest)
     type(oscillating_response_t), intent(in) :: self
     real(dp), intent(in) :: eps
@@ -193,7 +193,7 @@ contains
     rest%c3 = cmplx(0.0_dp, q, dp)*iq*rest%c3*per_eps
   end subroutine sum_remainders
 
-  !> (B - 3 - u^2/5)/u^4 for u^2 = i v, v >= 0: by its series, or from T = tanh(u) for real and imaginary part of u equal.
+  !> (B - 3 - u^2/5)/u^4 for u^2 = i v, v >= 0: by its series, or from T = tanh(u), where real and imaginary part of u are equal.
   pure complex(dp) function second_remainder(v) result(remainder)
     real(dp), intent(in) :: v
     complex(dp) :: u, tangent

@@ -1,12 +1,13 @@
-!> Reynolds' equation of a film of finite length as finite volumes on one grid: half of the film, which is the same on both sides of
-!> its middle.
+!> Finite volumes for Reynolds' equation of a film of finite length, on one grid over half of the film, which is symmetric about its
+!> middle plane.
 !>
-!> With the pressure P = p c^2/(mu V R^2), the angle phi from the thinnest place, zeta = z/R and H = 1 - eps cos phi,
+!> With the pressure P = p c^2/(mu V R^2), the angle phi from the thinnest film, zeta = z/R and H = 1 - eps cos phi,
 !>
 !>     d/dphi(H^3 dP/dphi) + d/dzeta(H^3 dP/dzeta) = -12 cos(phi - alpha),   P = 0 at zeta = L/(2R)
 !>
-!> (V, alpha: size and direction of the velocity e' - (omega/2) z x e over c, from the direction of e.) Its nodes lie uniformly in a
-!> variable in which every length of the film from sqrt((1 - eps)/(1 + eps)) to 1 is resolved, and densely at the end.
+!> (V, alpha: magnitude and direction of the velocity e' - (omega/2) z x e over c, measured from the direction of e.) The nodes are
+!> uniform in a variable that resolves all length scales of the film from sqrt((1 - eps)/(1 + eps)) to 1, and dense at the end of
+!> the bearing.
 module reynolds_grid
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
@@ -14,28 +15,28 @@ module reynolds_grid
   private
   public :: reynolds_grid_t, new_reynolds_grid
 
-  !> Nodes i = 1 .. n round the film, j = 1 .. m from its middle (j = 1) to the last one before the end, where P = 0.
+  !> Nodes i = 1 .. n around the film, j = 1 .. m from its middle plane (j = 1) to the last ones before the end, where P = 0.
   type :: reynolds_grid_t
     integer :: n = 0, m = 0
     real(dp) :: half_length = 0             !! lambda = L/(2R)
     real(dp), allocatable :: angle(:)       !! phi of the nodes (n) [rad]
     real(dp), allocatable :: sine(:), cosine(:)   !! integrals of cos phi and of sin phi over the cells (n)
     real(dp), allocatable :: height_cubed(:)      !! integral of H^3 over the cells (n)
-    real(dp), allocatable :: around(:)      !! conductance from node i to i + 1 round the film, by width of the cell (n)
-    real(dp), allocatable :: along(:)       !! conductance from node j to j + 1 along the film, by integral of H^3 (m)
-    real(dp), allocatable :: zeta(:)        !! of the nodes along the film (m), 0 in its middle
-    real(dp), allocatable :: width(:)       !! of the cells along the film (m + 1), the last one at the end half
+    real(dp), allocatable :: around(:)      !! conductance from node i to i + 1 around the film, per axial width of the cell (n)
+    real(dp), allocatable :: along(:)       !! conductance from node j to j + 1 in axial direction, per integral of H^3 (m)
+    real(dp), allocatable :: zeta(:)        !! axial positions of the nodes (m), 0 in the middle plane
+    real(dp), allocatable :: width(:)       !! axial widths of the cells (m + 1); the last one, at the end, is a half cell
   contains
     procedure :: place
   end type reynolds_grid_t
 
   integer, parameter :: n_scales = 5
-  real(dp), parameter :: share(n_scales) = [0.3_dp, 0.4_dp/3, 0.4_dp/3, 0.4_dp/3, 0.3_dp]   !! of the nodes, by scale
+  real(dp), parameter :: share(n_scales) = [0.3_dp, 0.4_dp/3, 0.4_dp/3, 0.4_dp/3, 0.3_dp]   !! fraction of the nodes for each scale
 
 contains
 
-  !> The grid of n (even, >= 8) times m (>= 2) nodes for a film of the thickness `gap` = 1 - eps (0 to 1, over c) where it is
-  !> thinnest. Its nodes round the film are a part `shift` (0 to 1) of their distance further on than those of an unshifted one.
+  !> The grid of n (even, >= 8) times m (>= 2) nodes for a film with the smallest thickness `gap` = 1 - eps (over c, 0 to 1). Its
+  !> nodes around the film are shifted by the fraction `shift` (0 to 1) of their distance.
   pure function new_reynolds_grid(n, m, gap, half_length, shift) result(grid)
     integer, intent(in) :: n, m
     real(dp), intent(in) :: gap, half_length, shift
@@ -81,13 +82,13 @@ contains
     grid%width(2:) = grid%width(2:) - grid%width(:m)
   end function new_reynolds_grid
 
-  !> H at the angle phi, without a cancellation where the film is thin.
+  !> H at the angle phi, in a form without cancellation where the film is thin.
   pure real(dp) function height(gap, phi)
     real(dp), intent(in) :: gap, phi
     height = gap + 2*(1 - gap)*sin(0.5_dp*phi)**2
   end function height
 
-  !> Mean of H^3 over a cell, by the rule of Gauss and Legendre with four points.
+  !> Mean of H^3 over a cell, by the Gauss-Legendre rule with four points.
   pure real(dp) function mean_cube(gap, middle, half)
     real(dp), intent(in) :: gap, middle, half
     real(dp), parameter :: at(2) = [0.33998104358485626_dp, 0.86113631159405258_dp]
@@ -99,7 +100,7 @@ contains
     end do
   end function mean_cube
 
-  !> `angle_at` from -pi to 3 pi.
+  !> `angle_at` for an argument from -pi to 3 pi.
   pure real(dp) function angle_beyond(scales, s) result(phi)
     real(dp), intent(in) :: scales(n_scales), s
     if (s > pi) then
@@ -109,7 +110,8 @@ contains
     end if
   end function angle_beyond
 
-  !> The angle phi at s, -pi to pi: s = sum of shares of psi, tan(psi/2) = tan(phi/2)/scale. By Newton's method, kept by bisection.
+  !> The angle phi at s, between -pi and pi: s is the sum of share times psi, where tan(psi/2) = tan(phi/2)/scale. Newton's method,
+  !> safeguarded by bisection.
   pure real(dp) function angle_at(scales, s) result(phi)
     real(dp), intent(in) :: scales(n_scales), s
     real(dp) :: lower, upper, excess, slope, next
@@ -129,7 +131,8 @@ contains
     end do
   end function angle_at
 
-  !> Where a node of the ring stands among the unknowns: first to last and last to first are neighbours but one.
+  !> Place of a node of the ring in the order of the unknowns, which runs from both ends, so that neighbours on the ring are at most
+  !> two places apart.
   pure integer function place(self, i)
     class(reynolds_grid_t), intent(in) :: self
     integer, intent(in) :: i

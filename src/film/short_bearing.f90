@@ -1,4 +1,4 @@
-!> Ocvirk's film of a short bearing, of whose pressure only the positive part acts, in closed form.
+!> Ocvirk's film of a short bearing in closed form; only the positive part of the pressure acts.
 module short_bearing
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
@@ -29,7 +29,7 @@ contains
     serves = variant == 'short'
   end function serves
 
-  !> The positive part of its pressure alone acts, whatever the cavitation is called.
+  !> Report a condition of cavitation: the short bearing always uses the positive part of the pressure.
   pure subroutine conflict(self, key, wanted)
     class(short_bearing_t), intent(in) :: self
     character(len=:), allocatable, intent(out) :: key, wanted
@@ -40,10 +40,10 @@ contains
   end subroutine conflict
 
   !> P = 6 cos(phi - alpha) (lambda^2 - zeta^2)/H^3 where cos(phi - alpha) > 0, from phi = alpha - pi/2 to alpha + pi/2. The force
-  !> is made of the integrals of cos^2 phi, cos phi sin phi and sin^2 phi over H^3 (Booker 1965). The second one is 2 eps sin^3
-  !> alpha/(1 - eps^2 sin^2 alpha)^2. The others are sums of parts beyond an angle (`parts_beyond`): of the film that is left, on
-  !> both sides of its thickest place; or the rest of the whole circle, (1 + 2 eps^2) pi/w^5 and pi/w^3, w = sqrt(1 - eps^2). So
-  !> nothing cancels next to the wall, where these integrals grow as w^-5 and those of a film that is left do not.
+  !> consists of the integrals of cos^2 phi, cos phi sin phi and sin^2 phi over H^3 (Booker 1965). The second is 2 eps sin^3
+  !> alpha/(1 - eps^2 sin^2 alpha)^2. The others are sums of integrals beyond an angle (`parts_beyond`): for a separating film on
+  !> both sides of its thickest place; otherwise what remains of the full circle, (1 + 2 eps^2) pi/w^5 and pi/w^3, with w = sqrt(1 -
+  !> eps^2). Nothing cancels near the wall, where the integrals of approach grow as w^-5 and those of separation stay bounded.
   pure subroutine reduced_force(self, eps_squared, b, t, radial, tangential)
     class(short_bearing_t), intent(in) :: self
     real(dp), intent(in) :: eps_squared, b, t
@@ -69,9 +69,9 @@ contains
     if (t < 0) tangential = -tangential
   end subroutine reduced_force
 
-  !> The largest of 6 lambda^2 cos(phi - alpha)/H^3, and 4 lambda, over V. At the peak d ln P/dphi = 0, that is
-  !> (1 - eps cos phi) sin(phi - alpha) + 3 eps sin phi cos(phi - alpha) = 0; between the end of the positive arc on the thick
-  !> film's side of the thinnest place and that place, or alpha, there is one.
+  !> The largest value of 6 lambda^2 cos(phi - alpha)/H^3, and 4 lambda, over V. At the maximum d ln P/dphi = 0, or (1 - eps cos
+  !> phi) sin(phi - alpha) + 3 eps sin phi cos(phi - alpha) = 0, which has a solution between the end of the positive arc on the
+  !> thick side of the thinnest film and that place, or alpha.
   pure subroutine reduced_peak_and_flow(self, eps_squared, b, t, most, flow)
     class(short_bearing_t), intent(in) :: self
     real(dp), intent(in) :: eps_squared, b, t
@@ -87,7 +87,7 @@ contains
     alpha = atan2(abs(t), b)
     lower = max(alpha - 0.5_dp*pi, 0.0_dp)
     upper = alpha
-    do i = 1, 200   ! halved until nothing is left between
+    do i = 1, 200   ! bisection until the interval cannot be divided
       phi = 0.5_dp*(lower + upper)
       if (.not. (phi > lower .and. phi < upper)) exit
       if ((gap + 2*eps*sin(0.5_dp*phi)**2)*sin(phi - alpha) + 3*eps*sin(phi)*cos(phi - alpha) < 0) then
@@ -99,7 +99,7 @@ contains
     most = speed*6*self%half_length**2*cos(phi - alpha)/(gap + 2*eps*sin(0.5_dp*phi)**2)**3
   end subroutine reduced_peak_and_flow
 
-  !> The pressure p = 6 mu v*.r (L^2/4 - z^2)/h^3, its positive part.
+  !> The positive part of the pressure p = 6 mu v*.r (L^2/4 - z^2)/h^3.
   pure subroutine pressure_field(self, motion, angles, places, field)
     class(short_bearing_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
@@ -123,9 +123,9 @@ contains
     end associate
   end subroutine pressure_field
 
-  !> w^5 and w^3 times the integrals of cos^2 phi/H^3 and sin^2 phi/H^3 from an angle phi to pi. With Sommerfeld's angle as seen
-  !> from the thickest place, tan(delta/2) = kappa cot(phi/2) = y/x, they are those of (2 sin^2(delta/2) - gap)^2 and sin^2(delta)
-  !> from 0 to delta; below one radian as power series, since their closed forms cancel there.
+  !> The integrals of cos^2 phi/H^3 and sin^2 phi/H^3 from an angle phi to pi, times w^5 and w^3. With Sommerfeld's angle measured
+  !> from the thickest film, tan(delta/2) = kappa cot(phi/2) = y/x, they are those of (2 sin^2(delta/2) - gap)^2 and sin^2(delta)
+  !> from 0 to delta; below one radian power series are used, since the closed forms cancel there.
   pure function parts_beyond(y, x, gap) result(parts)
     real(dp), intent(in) :: y, x   !! >= 0, not both 0
     real(dp), intent(in) :: gap    !! 1 - eps
@@ -140,7 +140,7 @@ contains
       square = delta - sine
       fourth = 1.5_dp*delta - 2*sine + 0.5_dp*both
       parts(2) = 0.5_dp*(delta - both)
-    else   ! delta^(2k + 1)/(2k + 1)! times -1, 2^(2k - 1) - 2 and -2^(2k - 1), with changing signs
+    else   ! delta^(2k + 1)/(2k + 1)! times -1, 2^(2k - 1) - 2 and -2^(2k - 1), with alternating signs
       term = -delta**3/6
       power = 2
       square = -term
@@ -154,6 +154,6 @@ contains
         parts(2) = parts(2) - power*term
       end do
     end if
-    parts(1) = fourth - 2*gap*square + gap**2*delta   ! 4 sin^4, 2 sin^2 and 1
+    parts(1) = fourth - 2*gap*square + gap**2*delta   ! of 4 sin^4, 2 sin^2 and 1
   end function parts_beyond
 end module short_bearing
