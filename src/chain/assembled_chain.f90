@@ -1,6 +1,6 @@
-!> Accelerations of any chain by the general assembly: the same as the closed forms of its pieces, and the way for chains that have
-!> none. What a body adds to the state (modes of an elastic rod, the flywheel's angle, a piston that moves across its bore) is
-!> one more coordinate and one more column of the maps below.
+!> Accelerations of any chain by a general assembly of its bodies. The results equal those of the closed forms; it is used for
+!> chains that have none. Additional coordinates (modes of an elastic rod, the flywheel angle, a piston that moves across its bore)
+!> are additional columns of the velocity maps below.
 module assembled_chain
   use gudgeon_kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, n_pins
@@ -14,18 +14,18 @@ module assembled_chain
   private
   public :: accelerate_assembled
 
-  !> Where each coordinate of the chain stands among all, 0: it is none. The crank angle is the first.
+  !> Index of each coordinate of the chain among all, 0 if it does not exist. The crank angle is the first.
   type :: coordinates_t
     integer :: n = 1
-    integer :: pin(n_pins) = 0   !! the first of the two of a pin with clearance
-    integer :: piston = 0        !! the offset of a piston with clearance in its bore; its tilt follows
-    integer :: shape = 0         !! the first shape of an elastic rod
+    integer :: pin(n_pins) = 0   !! first of the two coordinates of a pin with clearance
+    integer :: piston = 0        !! offset of a piston with clearance in its bore; its tilt is the next one
+    integer :: shape = 0         !! first shape of an elastic rod
   end type coordinates_t
 
 contains
 
-  !> Accelerations, and the moment on the crank (see `accelerate_crank_rod`). Loads of ideal pins are not read: they do no work.
-  !> With an `elastic_rod` it takes the rigid one's place. `solvable` is false where the mass matrix is not positive definite.
+  !> Accelerations, and the moment on the crank (see `accelerate_crank_rod`). Loads of ideal pins are not used, since they do no
+  !> work. An `elastic_rod` replaces the rigid one. `solvable` is false if the mass matrix is not positive definite.
   pure subroutine accelerate_assembled(bodies, drive, is_loose, loads, motion, accelerations, crank_moment, elastic_rod, solvable)
     type(bodies_t), intent(in) :: bodies
     type(drive_t), intent(in) :: drive
@@ -96,7 +96,7 @@ contains
     if (present(elastic_rod)) accelerations%shape(:elastic_rod%n) = z(at%shape:at%shape + elastic_rod%n - 1)
   end subroutine accelerate_assembled
 
-  !> The crank: q'.
+  !> The crank; its velocity is q'.
   pure subroutine make_crank(bodies, drive, loads, motion, at, body)
     type(bodies_t), intent(in) :: bodies
     type(drive_t), intent(in) :: drive
@@ -116,7 +116,7 @@ contains
     end associate
   end subroutine make_crank
 
-  !> The rod: (B_x', B_y', A') of its big end and its angle, B = R (cos q, sin q) - c.
+  !> The rod; its velocities are (B_x', B_y', A') of its big end and its angle, B = R (cos q, sin q) - c.
   pure subroutine make_rod(bodies, loads, motion, at, body)
     type(bodies_t), intent(in) :: bodies
     type(loads_t), intent(in) :: loads
@@ -132,7 +132,7 @@ contains
                sa => motion%sin_rod, ca => motion%cos_rod)
       call body%begin(3, at%n)
       call move_big_end(bodies, motion, at, body)
-      ! A by L sin A = R sin q - o_y
+      ! A follows from L sin A = R sin q - o_y
       per_arm = 1/(rod%length*ca)
       body%map(3, 1) = r*cq*per_arm
       body%bias(3) = (rod%length*sa*a_rate**2 - r*sq*q_rate**2)*per_arm
@@ -155,7 +155,7 @@ contains
     end associate
   end subroutine make_rod
 
-  !> B_x' and B_y' of a rod's big end.
+  !> The rows of B_x' and B_y' of a rod's big end.
   pure subroutine move_big_end(bodies, motion, at, body)
     type(bodies_t), intent(in) :: bodies
     type(motion_t), intent(in) :: motion
@@ -170,11 +170,11 @@ contains
     body%map(2, at%pin(crank_pin) + 1) = -1
   end subroutine move_big_end
 
-  !> What a piston with clearance in its bore adds to A: o_y'' has y'' - p_x b'' + p_y b'^2.
+  !> Terms of A due to a piston with clearance in its bore: o_y'' contains y'' - p_x b'' + p_y b'^2.
   pure subroutine move_by_bore(motion, at, per_arm, body)
     type(motion_t), intent(in) :: motion
     type(coordinates_t), intent(in) :: at
-    real(dp), intent(in) :: per_arm   !! 1/(rod's length . cos A) [1/m]
+    real(dp), intent(in) :: per_arm   !! 1/(rod length . cos A) [1/m]
     type(body_t), intent(inout) :: body
     if (at%piston == 0) return
     body%map(3, at%piston) = -per_arm
@@ -182,7 +182,7 @@ contains
     body%bias(3) = body%bias(3) - per_arm*motion%tilting%com(2)*motion%tilting%tilt_rate**2
   end subroutine move_by_bore
 
-  !> An elastic rod: (B_x', B_y', A') of its big end and its chord, and its shapes.
+  !> An elastic rod; its velocities are (B_x', B_y', A') of its big end and its chord, and the rates of its shapes.
   pure subroutine make_elastic_rod(elastic_rod, bodies, loads, motion, at, body)
     type(elastic_rod_t), intent(in) :: elastic_rod
     type(bodies_t), intent(in) :: bodies
@@ -197,7 +197,7 @@ contains
     call put_own_equations(elastic_rod, bodies, loads, motion, body)
   end subroutine make_elastic_rod
 
-  !> What an elastic rod's change of length does to a piston on its guide.
+  !> Terms of a piston in its guide due to the change of length of an elastic rod.
   pure subroutine stretch_to_piston(elastic_rod, motion, at, piston)
     type(elastic_rod_t), intent(in) :: elastic_rod
     type(motion_t), intent(in) :: motion
@@ -210,7 +210,8 @@ contains
     piston%bias(1) = piston%bias(1) + motion%cos_rod*bias - 2*motion%chord_rate*motion%sin_rod*motion%rod_speed
   end subroutine stretch_to_piston
 
-  !> The piston on its guide: x', x = B_x + L cos A - e_x. With clearance in its bore: (x', y', b') of its centre of mass.
+  !> The piston. In an ideal guide its velocity is x', where x = B_x + L cos A - e_x; with clearance in its bore its velocities are
+  !> (x', y', b') of its centre of mass.
   pure subroutine make_piston(bodies, loads, motion, at, rod, body, rod_length)
     type(bodies_t), intent(in) :: bodies
     type(loads_t), intent(in) :: loads
@@ -218,7 +219,7 @@ contains
     type(coordinates_t), intent(in) :: at
     type(body_t), intent(in) :: rod
     type(body_t), intent(out) :: body
-    real(dp), intent(in) :: rod_length   !! from pin to pin [m]
+    real(dp), intent(in) :: rod_length   !! between its pins [m]
     real(dp) :: across, along
     along = rod_length*motion%cos_rod
     across = rod_length*motion%sin_rod

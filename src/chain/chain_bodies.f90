@@ -1,7 +1,7 @@
-!> The bodies of the chain crank - rod - piston and what drives it: constants, energy (Reis 2013, 3.1-3.66).
+!> The bodies of the chain of crank, rod and piston, and the drive: constants, energy (Reis 2013, 3.1-3.66).
 !>
-!> x is vertical, up, along the cylinder axis; y is horizontal; angles are positive from x towards y. q is the crank angle from +x.
-!> A is the rod angle, measured the other way: the rod turns with -dA/dt.
+!> x is vertical, upwards, along the cylinder axis; y is horizontal; angles are positive from x towards y. q is the crank angle from
+!> +x. The rod angle A is measured in the opposite sense: the angular speed of the rod is -dA/dt.
 module chain_bodies
   use gudgeon_kinds, only: dp
   use chain_motion, only: motion_t
@@ -9,41 +9,41 @@ module chain_bodies
   private
   public :: bodies_t, crank_t, rod_t, piston_t, drive_t, undriven, new_bodies, weightless
 
-  !> The crank. Its frame begins at the crank bearing, the first axis towards the crank pin.
+  !> The crank. The origin of its frame is the crank bearing; the first axis points to the crank pin.
   type :: crank_t
     real(dp) :: length = 0    !! R [m]
     real(dp) :: mass = 0      !! [kg]
     real(dp) :: inertia = 0   !! about its centre of mass [kg m^2]
-    real(dp) :: com(2) = 0    !! its centre of mass (U_c, V_c) [m]
+    real(dp) :: com(2) = 0    !! position of its centre of mass (U_c, V_c) [m]
   end type crank_t
 
-  !> The connecting rod. Its frame begins at its big end, the first axis towards the piston pin.
+  !> The connecting rod. The origin of its frame is its big end; the first axis points to the piston pin.
   type :: rod_t
     real(dp) :: length = 0    !! L [m], > R
     real(dp) :: mass = 0      !! [kg]
     real(dp) :: inertia = 0   !! about its centre of mass [kg m^2]
-    real(dp) :: com(2) = 0    !! its centre of mass (U_r, V_r) [m]
+    real(dp) :: com(2) = 0    !! position of its centre of mass (U_r, V_r) [m]
   end type rod_t
 
-  !> The piston. Its frame begins at the centre of the pin's bearing, the first axis away from the crank.
+  !> The piston. The origin of its frame is the centre of the pin's bearing; the first axis points away from the crank.
   type :: piston_t
     real(dp) :: mass = 0          !! [kg], > 0
-    logical :: is_loose = .false. !! it has clearance in its bore; the rest counts only then
+    logical :: is_loose = .false. !! it has clearance in its bore; the following components are used only then
     real(dp) :: inertia = 0       !! about its centre of mass [kg m^2], > 0
-    real(dp) :: com(2) = 0        !! its centre of mass (U_p, V_p) [m]
+    real(dp) :: com(2) = 0        !! position of its centre of mass (U_p, V_p) [m]
   end type piston_t
 
-  !> How the crank is driven. (Without defaults: one is made in every right-hand side.)
+  !> The drive of the crank. (No default values, since one is made in every evaluation.)
   type :: drive_t
-    logical :: free_crank            !! the crank moves under its loads; else its speed is held
-    real(dp) :: torque               !! tau on a free crank [N m]
-    real(dp) :: damping              !! D, moment per crank speed [N m s/rad]
-    real(dp) :: acceleration         !! of a held crank [rad/s^2]
+    logical :: free_crank            !! the crank moves under its loads; otherwise its speed is prescribed
+    real(dp) :: torque               !! torque tau on a free crank [N m]
+    real(dp) :: damping              !! D, damping moment per crank speed [N m s/rad]
+    real(dp) :: acceleration         !! of a crank with prescribed speed [rad/s^2]
   end type drive_t
 
-  type(drive_t), parameter :: undriven = drive_t(.true., 0.0_dp, 0.0_dp, 0.0_dp)   !! a crank that turns by itself
+  type(drive_t), parameter :: undriven = drive_t(.true., 0.0_dp, 0.0_dp, 0.0_dp)   !! a free crank without torque
 
-  !> The bodies, and what follows from their constants: made by `new_bodies`.
+  !> The bodies with derived constants; made by `new_bodies`.
   type :: bodies_t
     type(crank_t) :: crank
     type(rod_t) :: rod
@@ -51,14 +51,14 @@ module chain_bodies
     real(dp) :: gravity(2) = 0          !! (x, y) [m/s^2]
     real(dp) :: per_rod_length = 0      !! 1/L [1/m]
     real(dp) :: per_piston_mass = 0     !! [1/kg]
-    real(dp) :: crank_inertia = 0       !! of the crank about its bearing [kg m^2]
+    real(dp) :: crank_inertia = 0       !! moment of inertia of the crank about its bearing [kg m^2]
     real(dp) :: crank_term = 0          !! m11, the same with the rod's mass at the crank pin [kg m^2]
-    real(dp) :: rod_term = 0            !! m22, of the rod about its big end [kg m^2]
+    real(dp) :: rod_term = 0            !! m22, moment of inertia of the rod about its big end [kg m^2]
     real(dp) :: inertia_product = 0     !! m11 m22 [kg^2 m^4]
     real(dp) :: static_moment(2) = 0    !! m_rod R (U_r, V_r) [kg m^2]
-    real(dp) :: crank_weight(2) = 0     !! gravity's moment on q is (1) sin q + (2) cos q [N m], the rod's mass at the crank pin
-    real(dp) :: crank_own_weight(2) = 0 !! the same of the crank alone
-    real(dp) :: rod_weight(2) = 0       !! gravity's moment on A about the big end: (1) sin A - (2) cos A [N m]
+    real(dp) :: crank_weight(2) = 0     !! moment of gravity on q: (1) sin q + (2) cos q [N m], with the rod's mass at the crank pin
+    real(dp) :: crank_own_weight(2) = 0 !! the same for the crank alone
+    real(dp) :: rod_weight(2) = 0       !! moment of gravity on A about the big end: (1) sin A - (2) cos A [N m]
   contains
     procedure :: coupling
     procedure :: kinetic_energy
@@ -68,7 +68,7 @@ module chain_bodies
 
 contains
 
-  !> The bodies with what follows from their constants. Limits: rod%length > 0, piston%mass > 0.
+  !> The bodies with derived constants. Limits: rod%length > 0, piston%mass > 0.
   pure type(bodies_t) function new_bodies(crank, rod, piston, gravity) result(b)
     type(crank_t), intent(in) :: crank
     type(rod_t), intent(in) :: rod
@@ -94,7 +94,7 @@ contains
 
   contains
 
-    !> Factors of sin q and cos q in the moment of gravity on a crank of this first moment [kg m].
+    !> Factors of sin q and cos q in the moment of gravity on a crank with the given first moment of mass [kg m].
     pure function weight_on_crank(first_moment) result(weight)
       real(dp), intent(in) :: first_moment(2)
       real(dp) :: weight(2)
@@ -119,14 +119,14 @@ contains
     type(motion_t), intent(in) :: motion
     real(dp), intent(out) :: m12, slope
     real(dp) :: along, across
-    ! by the sines and cosines of q first, which are known before those of A
+    ! multiplied out with the sines and cosines of q, which are known before those of A
     along = self%static_moment(1)*motion%cos_crank + self%static_moment(2)*motion%sin_crank
     across = self%static_moment(1)*motion%sin_crank - self%static_moment(2)*motion%cos_crank
     m12 = across*motion%sin_rod - along*motion%cos_rod
     slope = across*motion%cos_rod + along*motion%sin_rod
   end subroutine coupling
 
-  !> Kinetic energy of the three bodies [J]. The motion of the piston must be known (`follow_piston`).
+  !> Kinetic energy of the three bodies [J]. The motion of the piston must be known (see `follow_piston`).
   pure real(dp) function kinetic_energy(self, motion)
     class(bodies_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
@@ -136,7 +136,7 @@ contains
       + self%piston%mass*motion%piston_velocity**2) + m12*motion%crank_speed*motion%rod_speed
     slip = -motion%crank_pin_rate
     if (abs(slip(1)) + abs(slip(2)) <= 0) return
-    ! a big end that does not move with the crank pin
+    ! the big end does not move with the crank pin
     turned = [-self%rod%com(1)*motion%sin_rod + self%rod%com(2)*motion%cos_rod, &
       -self%rod%com(1)*motion%cos_rod - self%rod%com(2)*motion%sin_rod]
     kinetic_energy = kinetic_energy + self%rod%mass*dot_product(slip, 0.5_dp*slip &

@@ -1,17 +1,17 @@
-!> Where the bodies of the chain are and how they move, from the crank and the eccentricities of its pins (Reis 2013, 3.1-3.30 and
+!> Positions and speeds of the bodies of the chain, from the crank angle and the eccentricities of the pins (Reis 2013, 3.1-3.30 and
 !> 3.70-3.72).
 !>
-!> The coordinates are the crank angle q and, where a pin has clearance, its eccentricity: c at the crank pin, e at the piston pin,
-!> each the centre of the journal (crank pin, piston pin) less that of the bearing around it. An ideal pin has none. With
-!> o = c + e all else follows in closed form:
+!> The coordinates are the crank angle q and, for each pin with clearance, its eccentricity: c at the crank pin, e at the piston
+!> pin. It is the vector from the centre of the bearing to the centre of the journal (crank pin or piston pin). An ideal pin has no
+!> coordinate. With o = c + e everything else follows in closed form:
 !>
 !>     sin A = (R sin q - o_y)/L,    A' = (R cos q q' - o_y')/(L cos A)
 !>     x = R cos q + L cos A - o_x,  x' = -R sin q q' - L sin A A' - o_x'
 !>
-!> In (q, A, x) an eccentricity is a difference of numbers 10^4 times larger; here it is known to full precision.
+!> In the coordinates (q, A, x) an eccentricity is the difference of numbers that are 10^4 times larger; here it has full precision.
 !>
-!> A piston with clearance in its bore has two coordinates more: y of its centre of mass and the angle b of its tilt. With
-!> p = Rot(b) (U_p, V_p), the centre of mass from the pin's bearing, that bearing is at y - p_y across, and o = c + e + (0, y -
+!> A piston with clearance in its bore has two more coordinates: y of its centre of mass and its tilt b. With p = Rot(b) (U_p, V_p),
+!> the position of the centre of mass relative to the pin's bearing, that bearing has the offset y - p_y, and o = c + e + (0, y -
 !> p_y).
 module chain_motion
   use gudgeon_kinds, only: dp
@@ -26,15 +26,16 @@ module chain_motion
   integer, parameter :: n_pins = 2
   character(len=*), parameter :: pin_names(n_pins) = [character(len=10) :: 'crank_pin', 'piston_pin']   !! in cases and results
 
-  integer, parameter :: most_shapes = 16   !! in which an elastic rod bends and stretches
+  integer, parameter :: most_shapes = 16   !! largest number of bending and axial shapes of an elastic rod
 
-  !> How a piston with clearance in its bore is placed there. What follows from the two coordinates is found by `loose_piston`.
+  !> Position and motion of a piston with clearance in its bore. All components follow from the two coordinates (see
+  !> `loose_piston`).
   type :: tilting_t
     real(dp) :: offset              !! y of its centre of mass [m]
     real(dp) :: offset_rate         !! [m/s]
-    real(dp) :: tilt                !! b, from x to y [rad]
+    real(dp) :: tilt                !! b, positive from x to y [rad]
     real(dp) :: tilt_rate           !! [rad/s]
-    real(dp) :: com(2)              !! p, centre of mass from the pin's bearing, along x and y [m]
+    real(dp) :: com(2)              !! p, from the pin's bearing to the centre of mass, along x and y [m]
     real(dp) :: across              !! y of the pin's bearing [m]
     real(dp) :: across_rate         !! [m/s]
     real(dp) :: com_velocity        !! of the centre of mass along x [m/s]
@@ -46,22 +47,22 @@ module chain_motion
     real(dp) :: sin_crank, cos_crank
     real(dp) :: sin_rod, cos_rod    !! of A; cos A > 0
     real(dp) :: crank_speed         !! dq/dt [rad/s]
-    real(dp) :: held_acceleration   !! d2q/dt2 of a held crank whose speed is run up; not set otherwise [rad/s^2]
+    real(dp) :: held_acceleration   !! d2q/dt2 of a crank with prescribed speed during its run-up; not set otherwise [rad/s^2]
     real(dp) :: rod_speed           !! dA/dt [rad/s]
-    real(dp) :: piston_position     !! x of the bearing centre [m]
+    real(dp) :: piston_position     !! x of the centre of the pin's bearing [m]
     real(dp) :: piston_velocity     !! [m/s]
-    real(dp) :: crank_pin(2)        !! c, eccentricity at the crank pin [m], 0 where it is ideal
+    real(dp) :: crank_pin(2)        !! c, eccentricity at the crank pin [m]; 0 if it is ideal
     real(dp) :: crank_pin_rate(2)   !! [m/s]
-    real(dp) :: offset(2)           !! o = c + e, and across what the bore leaves free [m]
+    real(dp) :: offset(2)           !! o = c + e, plus the offset of the pin's bearing in the bore [m]
     real(dp) :: offset_rate(2)      !! [m/s]
-    type(tilting_t) :: tilting      !! of a piston with clearance in its bore
-    real(dp) :: rod_end_speed(n_pins)       !! turning speed of the rod at its ends, from x to y [rad/s]
-    ! of elastic members alone
-    real(dp) :: chord                       !! from pin to pin of an elastic rod, whose angle is A [m]
+    type(tilting_t) :: tilting      !! for a piston with clearance in its bore
+    real(dp) :: rod_end_speed(n_pins)       !! angular speed of the rod at its ends, positive from x to y [rad/s]
+    ! the following components are for elastic members only
+    real(dp) :: chord                       !! distance between the pins of an elastic rod; the chord has the angle A [m]
     real(dp) :: chord_rate                  !! [m/s]
-    real(dp) :: shape(most_shapes)          !! how far an elastic rod is bent and stretched: amplitude of each of its shapes [m]
+    real(dp) :: shape(most_shapes)          !! amplitude of each shape of an elastic rod [m]
     real(dp) :: shape_rate(most_shapes)     !! [m/s]
-    real(dp) :: flywheel_angle              !! at the other end of an elastic crankshaft [rad]
+    real(dp) :: flywheel_angle              !! angle of the other end of an elastic crankshaft [rad]
     real(dp) :: flywheel_speed              !! [rad/s]
   end type motion_t
 
@@ -70,16 +71,16 @@ module chain_motion
     real(dp) :: crank               !! d2q/dt2 [rad/s^2]
     real(dp) :: rod                 !! d2A/dt2 [rad/s^2]
     real(dp) :: piston              !! [m/s^2]
-    real(dp) :: pin(2, n_pins)      !! (:, pin): of its eccentricity [m/s^2]; 0 of an ideal pin
+    real(dp) :: pin(2, n_pins)      !! (:, pin): of its eccentricity [m/s^2]; 0 for an ideal pin
     real(dp) :: offset, tilt        !! of a piston with clearance in its bore [m/s^2], [rad/s^2]
-    real(dp) :: rod_end(n_pins)     !! of the rod's turning at its ends, from x to y [rad/s^2]; where surfaces may stick
+    real(dp) :: rod_end(n_pins)  !! of the rod's rotation at its ends, positive from x to y [rad/s^2]; needed if surfaces may stick
     real(dp) :: shape(most_shapes)  !! of the shapes of an elastic rod [m/s^2]
-    real(dp) :: flywheel            !! at the other end of an elastic crankshaft [rad/s^2]
+    real(dp) :: flywheel            !! of the other end of an elastic crankshaft [rad/s^2]
   end type accelerations_t
 
 contains
 
-  !> What stands in front of the names of a pin's quantities: nothing for the piston pin's.
+  !> Prefix of the names of a pin's quantities: empty for the piston pin.
   pure function name_prefix(pin) result(prefix)
     integer, intent(in) :: pin
     character(len=:), allocatable :: prefix
@@ -87,7 +88,7 @@ contains
     if (pin /= piston_pin) prefix = trim(pin_names(pin))//'_'
   end function name_prefix
 
-  !> The crank of a motion: its angle [rad] with sine and cosine, and its speed [rad/s].
+  !> Set the crank of a motion: its angle [rad] with sine and cosine, and its speed [rad/s].
   pure subroutine turn_crank(motion, crank_angle, crank_speed)
     type(motion_t), intent(inout) :: motion
     real(dp), value, intent(in) :: crank_angle, crank_speed
@@ -97,8 +98,7 @@ contains
     motion%crank_speed = crank_speed
   end subroutine turn_crank
 
-  !> The rod of a motion whose crank and offset are known. `reachable` is false where the piston pin cannot be,
-  !> |R sin q - o_y| >= L.
+  !> Set the rod of a motion whose crank and offset are known. `reachable` is false if there is no rod angle, |R sin q - o_y| >= L.
   pure subroutine follow_rod(crank_length, per_rod_length, motion, reachable)
     real(dp), intent(in) :: crank_length, per_rod_length   !! R [m], 1/L [1/m]
     type(motion_t), intent(inout) :: motion
@@ -109,13 +109,13 @@ contains
     reachable = gap > 0
     if (.not. reachable) return
     motion%cos_rod = sqrt(gap)
-    ! over cos A = cos A/gap: the division need not wait for the root
+    ! over cos A = cos A/gap: this division is independent of the square root
     motion%rod_speed = (crank_length*motion%cos_crank*motion%crank_speed - motion%offset_rate(2))*per_rod_length/gap &
       *motion%cos_rod
     motion%rod_end_speed = -motion%rod_speed
   end subroutine follow_rod
 
-  !> The piston of a motion whose crank and rod are known.
+  !> Set the piston of a motion whose crank and rod are known.
   pure subroutine follow_piston(crank_length, rod_length, motion)
     real(dp), intent(in) :: crank_length, rod_length       !! R, L [m]
     type(motion_t), intent(inout) :: motion

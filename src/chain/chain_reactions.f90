@@ -1,4 +1,4 @@
-!> Reactions in the joints and on the frame from the accelerations (Reis 2013, 3.83, parentheses restored).
+!> Reactions in the joints and on the frame, from the accelerations (Reis 2013, 3.83, with parentheses restored).
 module chain_reactions
   use gudgeon_kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin
@@ -9,19 +9,19 @@ module chain_reactions
   private
   public :: reactions_t, reactions_of, elastic_reactions
 
-  !> Forces [N] found from the bodies' accelerations alone, so F5 = -F_x and F6 = -F_y of the joint's law are a check, and with
-  !> clearance at the crank pin F3 = -J_x and F4 = -J_y too.
+  !> Forces [N] that follow from the accelerations of the bodies alone. F5 = -F_x and F6 = -F_y of the joint's law are therefore a
+  !> check; with clearance at the crank pin so are F3 = -J_x and F4 = -J_y.
   type :: reactions_t
-    real(dp) :: crank_bearing(2) = 0  !! F1, F2: of the frame on the crank
-    real(dp) :: crankpin(2) = 0       !! F3, F4: of the crank on the rod
-    real(dp) :: pin(2) = 0            !! F5, F6: of the rod on the piston
-    real(dp) :: guide = 0             !! F7: of the piston on the guide
-    real(dp) :: frame(2) = 0          !! R_x, R_y: resultant on the frame
+    real(dp) :: crank_bearing(2) = 0  !! F1, F2: force of the frame on the crank
+    real(dp) :: crankpin(2) = 0       !! F3, F4: force of the crank on the rod
+    real(dp) :: pin(2) = 0            !! F5, F6: force of the rod on the piston
+    real(dp) :: guide = 0             !! F7: force of the piston on the guide
+    real(dp) :: frame(2) = 0          !! R_x, R_y: resultant force on the frame
   end type reactions_t
 
 contains
 
-  !> The moments of the pins' joints are given, those on the rod at an ideal pin 0.
+  !> The reactions of a chain with a rigid rod. The moments of the pins' joints are given; those on the rod at an ideal pin are 0.
   pure type(reactions_t) function reactions_of(bodies, loads, motion, accelerations) result(reactions)
     type(bodies_t), intent(in) :: bodies
     type(loads_t), intent(in) :: loads
@@ -47,19 +47,20 @@ contains
     reactions = reactions_t([f1, f2], [f3, f4], [f5, f6], f7, [f1 - loads%axial_force, f2 - f7])
   end function reactions_of
 
-  !> With an elastic rod, from what its motion asks of its ends (`elastic_end_forces`).
+  !> The reactions of a chain with an elastic rod, from the forces and moments that its motion requires at its ends
+  !> (`elastic_end_forces`).
   pure type(reactions_t) function elastic_reactions(bodies, loads, motion, accelerations, on_ends, turning) result(reactions)
     type(bodies_t), intent(in) :: bodies
     type(loads_t), intent(in) :: loads
     type(motion_t), intent(in) :: motion
     type(accelerations_t), intent(in) :: accelerations
-    real(dp), intent(in) :: on_ends(2)   !! sum of the forces there [N]
-    real(dp), intent(in) :: turning      !! of them and the moments there about the big end, against A [N m]
+    real(dp), intent(in) :: on_ends(2)   !! sum of the forces at its ends [N]
+    real(dp), intent(in) :: turning      !! their moment about the big end, including moments at the ends, positive against A [N m]
     real(dp) :: crank(2), rod(2), piston(2), moments, across
     piston = piston_force(bodies, motion, accelerations)
     call centre_forces(bodies, motion, accelerations, crank, rod)
     moments = loads%moment(piston_pin) + bearing_moment(motion%crank_pin, loads%force(:, crank_pin), loads%moment(crank_pin))
-    across = (turning - moments)/motion%chord   ! of the piston pin's force
+    across = (turning - moments)/motion%chord   ! component of the piston pin's force
     reactions%pin(1) = loads%axial_force + piston(1)
     reactions%pin(2) = -(across + motion%sin_rod*reactions%pin(1))/motion%cos_rod
     reactions%crankpin = on_ends + reactions%pin
@@ -68,7 +69,7 @@ contains
     reactions%frame = reactions%crank_bearing - [loads%axial_force, reactions%guide]
   end function elastic_reactions
 
-  !> Mass times acceleration less weight (x, y) of the piston [N].
+  !> Mass times acceleration minus weight (x, y) of the piston [N].
   pure function piston_force(bodies, motion, accelerations) result(force)
     type(bodies_t), intent(in) :: bodies
     type(motion_t), intent(in) :: motion
@@ -79,7 +80,7 @@ contains
     force = bodies%piston%mass*(force - bodies%gravity)
   end function piston_force
 
-  !> Mass times acceleration less weight (x, y) of crank and rod [N].
+  !> Mass times acceleration minus weight (x, y) of crank and rod [N].
   pure subroutine centre_forces(bodies, motion, accelerations, crank, rod)
     type(bodies_t), intent(in) :: bodies
     type(motion_t), intent(in) :: motion

@@ -1,5 +1,5 @@
-!> Crank with rod on the one side, the piston on the other: the piston pin has clearance, the crank pin is ideal (Reis 2013,
-!> 3.67-3.69, corrected: the printed third term has wrong signs and multiplies angles instead of speeds).
+!> Closed form for a chain with clearance at the piston pin and an ideal crank pin: crank with rod on one side, piston on the other
+!> (Reis 2013, 3.67-3.69, corrected: the printed third term has wrong signs, and multiplies angles instead of speeds).
 !>
 !>     m11 q'' + m12 A'' = Q_q - c A'^2
 !>     m12 q'' + m22 A'' = Q_A - c q'^2
@@ -17,8 +17,8 @@ module crank_rod
 
 contains
 
-  !> Accelerations, and the moment on the crank [N m]: the drive's torque if the crank is free, the moment that holds its speed
-  !> if not.
+  !> Accelerations, and the moment on the crank [N m]: the torque of the drive if the crank is free, otherwise the moment required
+  !> for the prescribed speed.
   pure subroutine accelerate_crank_rod(bodies, drive, loads, motion, accelerations, crank_moment)
     type(bodies_t), intent(in) :: bodies
     type(drive_t), intent(in) :: drive
@@ -58,7 +58,7 @@ contains
     end associate
   end subroutine accelerate_crank_rod
 
-  !> What a load of the piston pin and of the gas adds to the accelerations and to the moment on the crank.
+  !> Changes of the accelerations and of the moment on the crank due to a load of the piston pin and of the gas.
   pure subroutine respond_crank_rod(bodies, drive, loads, motion, accelerations, crank_moment)
     type(bodies_t), intent(in) :: bodies
     type(drive_t), intent(in) :: drive

@@ -1,5 +1,5 @@
-!> How the equations of motion of crank with rod and piston change with their state: the tangent of `follow_rod` and of
-!> `accelerate_crank_rod`, one direction at a time, for implicit integration.
+!> Derivatives of the equations of motion of crank with rod and piston with respect to the state, for implicit integration: the
+!> tangent of `follow_rod` and of `accelerate_crank_rod`, one direction at a time.
 module crank_rod_tangent
   use gudgeon_kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, piston_pin
@@ -9,7 +9,7 @@ module crank_rod_tangent
   private
   public :: motion_change_t, load_change_t, motion_change, acceleration_change
 
-  !> A small change of the motion, per unit of a change of the state.
+  !> A small change of the motion, per unit change of the state.
   type :: motion_change_t
     real(dp) :: crank_angle = 0, rod_angle = 0
     real(dp) :: crank_speed = 0, rod_speed = 0
@@ -18,13 +18,13 @@ module crank_rod_tangent
   !> A small change of the loads.
   type :: load_change_t
     real(dp) :: force(2) = 0    !! on the piston pin
-    real(dp) :: moment = 0      !! on it
+    real(dp) :: moment = 0      !! on the piston pin
     real(dp) :: axial_force = 0   !! on the piston along -x
   end type load_change_t
 
 contains
 
-  !> Change of the motion with changes of q, q', e_y, e_y' (e_x and e_x' move the piston only).
+  !> Change of the motion for changes of q, q', e_y, e_y' (e_x and e_x' change the piston's motion only).
   pure type(motion_change_t) function motion_change(bodies, motion, crank_angle, crank_speed, e_y, e_y_rate) result(change)
     type(bodies_t), intent(in) :: bodies
     type(motion_t), intent(in) :: motion
@@ -38,7 +38,7 @@ contains
     end associate
   end function motion_change
 
-  !> Changes of q'', e_x'', e_y'' with a change of the motion and of the loads.
+  !> Changes of q'', e_x'', e_y'' for a change of the motion and of the loads.
   pure function acceleration_change(bodies, drive, loads, motion, accelerations, change, load_change) result(a)
     type(bodies_t), intent(in) :: bodies
     type(drive_t), intent(in) :: drive

@@ -1,4 +1,4 @@
-!> The columns of elastic members: those of the shapes that a rod has, and of the twist of a crankshaft.
+!> The columns of elastic members: shapes of the rod and twist of the crankshaft.
 module elastic_columns
   use gudgeon_kinds, only: dp
   use trace_row, only: trace_row_t
@@ -11,7 +11,8 @@ module elastic_columns
 
 contains
 
-  !> A trace has rates and accelerations of the rod's shapes, and the flywheel's acceleration, only on request.
+  !> Put the columns of elastic members into a row. Rates and accelerations of the rod's shapes, and the flywheel's acceleration,
+  !> are written only on request.
   pure subroutine put_elastic_columns(elastic, motion, accelerations, row)
     type(elastic_members_t), intent(in) :: elastic
     type(motion_t), intent(in) :: motion
@@ -44,10 +45,10 @@ contains
     call row%put_on_request('flywheel_acceleration[rad/s2]', accelerations%flywheel, 'angular acceleration of the flywheel')
   end subroutine put_elastic_columns
 
-  !> What the column of a shape is called.
+  !> The name of a shape's column.
   pure function shape_name(rod, i) result(name)
     type(elastic_rod_t), intent(in) :: rod
-    integer, intent(in) :: i   !! those across come first
+    integer, intent(in) :: i   !! index of the shape; bending shapes come first
     character(len=:), allocatable :: name
     if (i <= rod%n_bending) then
       name = 'rod_mode_'//achar(iachar('0') + i)

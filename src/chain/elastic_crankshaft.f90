@@ -1,8 +1,9 @@
-!> A crankshaft that is elastic in torsion: a flywheel at its free end, where the drive turns it, the crank at the other.
+!> A crankshaft with torsional elasticity: one end is the crank, the other a flywheel, on which the drive acts.
 !>
 !>     J_f q_f'' = tau - D q_f' - M_s,    M_s = k_t (q_f - q) + c_t (q_f' - q')
 !>
-!> M_s turns the crank in place of the drive. Where the speed is held, it is the flywheel's, and the crank swings about it.
+!> The moment M_s acts on the crank in place of the drive. If the speed is prescribed, it is that of the flywheel, and the crank
+!> oscillates about it.
 module elastic_crankshaft
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t
@@ -47,7 +48,7 @@ contains
       + self%damping*(motion%flywheel_speed - motion%crank_speed)
   end function moment
 
-  !> What turns the crank: the shaft alone.
+  !> The drive of the crank by the shaft.
   pure type(drive_t) function drive_of_crank(self, motion) result(drive)
     class(elastic_crankshaft_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
@@ -55,7 +56,7 @@ contains
     drive%torque = self%moment(motion)
   end function drive_of_crank
 
-  !> Acceleration of the flywheel [rad/s^2] and the drive's moment on it [N m].
+  !> Acceleration of the flywheel [rad/s^2] and moment of the drive on it [N m].
   pure subroutine accelerate_flywheel(self, drive, motion, acceleration, drive_moment)
     class(elastic_crankshaft_t), intent(in) :: self
     type(drive_t), intent(in) :: drive
@@ -72,29 +73,29 @@ contains
     end if
   end subroutine accelerate_flywheel
 
-  !> Energy of the twist [J].
+  !> Elastic energy of the twist [J].
   pure real(dp) function strain_energy(self, motion)
     class(elastic_crankshaft_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
     strain_energy = 0.5_dp*self%stiffness*(motion%flywheel_angle - motion%crank_angle)**2
   end function strain_energy
 
-  !> Energy of the twist and of the flywheel [J].
+  !> Elastic energy of the twist and kinetic energy of the flywheel [J].
   pure real(dp) function energy(self, motion)
     class(elastic_crankshaft_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
     energy = self%strain_energy(motion) + 0.5_dp*self%flywheel_inertia*motion%flywheel_speed**2
   end function energy
 
-  !> Power of its damping on crank and flywheel [W], <= 0.
+  !> Power of the damping on crank and flywheel [W], <= 0.
   pure real(dp) function damping_power(self, motion)
     class(elastic_crankshaft_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
     damping_power = -self%damping*(motion%flywheel_speed - motion%crank_speed)**2
   end function damping_power
 
-  !> Frequency with which crank and flywheel swing against each other [rad/s], the crank and what moves with it having this moment
-  !> of inertia; `is_held`: with a flywheel whose speed is held.
+  !> Natural frequency of crank and flywheel on the shaft [rad/s]. `crank_inertia` includes everything that moves with the crank;
+  !> `is_held`: the speed of the flywheel is prescribed.
   pure real(dp) function natural_frequency(self, crank_inertia, is_held)
     class(elastic_crankshaft_t), intent(in) :: self
     real(dp), intent(in) :: crank_inertia   !! [kg m^2]

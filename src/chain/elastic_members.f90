@@ -1,4 +1,4 @@
-!> The elastic members of a chain: their part of the state, of its equations and of its energy.
+!> The elastic members of a chain: their states, their contributions to the equations of motion, and their energy.
 module elastic_members
   use gudgeon_kinds, only: dp
   use state_layout, only: layout_t, coordinates_t
@@ -10,14 +10,14 @@ module elastic_members
   private
   public :: elastic_members_t
 
-  !> A member that a case does not ask for is not allocated, and rigid.
+  !> A member that is not in the case is not allocated; it is rigid.
   type :: elastic_members_t
     type(elastic_rod_t), allocatable :: rod
     type(elastic_crankshaft_t), allocatable :: crankshaft
-    type(coordinates_t) :: shapes(most_shapes)  !! where each shape of the rod stands in the state
-    type(coordinates_t) :: flywheel             !! where its angle stands, unless its speed is held
-    logical :: holds_flywheel = .false.         !! at constant speed
-    real(dp) :: start_angle = 0                 !! of the flywheel [rad]
+    type(coordinates_t) :: shapes(most_shapes)  !! index of each shape of the rod in the state
+    type(coordinates_t) :: flywheel             !! index of the flywheel's angle, unless its speed is prescribed
+    logical :: holds_flywheel = .false.         !! the speed of the flywheel is prescribed
+    real(dp) :: start_angle = 0                 !! initial angle of the flywheel [rad]
     real(dp) :: start_speed = 0                 !! [rad/s]
   contains
     procedure :: claim
@@ -33,21 +33,22 @@ module elastic_members
 
 contains
 
-  !> Shapes of the rod.
+  !> Number of shapes of the rod.
   pure integer function n_shapes(self)
     class(elastic_members_t), intent(in) :: self
     n_shapes = 0
     if (allocated(self%rod)) n_shapes = self%rod%n
   end function n_shapes
 
-  !> Claim the shapes and the flywheel. Each shape is measured by what the largest of the forces of inertia and gravity would bend
-  !> or stretch it at rest, or a small part of the joints' own speeds would, its rate by what this is at its natural frequency.
+  !> Claim the shapes and the flywheel in the state vector. The scale of a shape is its static deflection under the largest of the
+  !> forces of inertia and gravity, or a small part of what the joints' own speeds would cause; the scale of its rate follows with
+  !> its natural frequency.
   subroutine claim(self, layout, bodies, crank_speed, own_speed)
     class(elastic_members_t), intent(inout) :: self
     type(layout_t), intent(inout) :: layout
     type(bodies_t), intent(in) :: bodies
-    real(dp), intent(in) :: crank_speed   !! natural size of it [rad/s]
-    real(dp), intent(in) :: own_speed     !! of the pins in their bearings [m/s]
+    real(dp), intent(in) :: crank_speed   !! natural size of the crank speed [rad/s]
+    real(dp), intent(in) :: own_speed     !! natural speed of the pins in their bearings [m/s]
     real(dp) :: force, scale, frequency
     integer :: i
     if (allocated(self%rod)) then
@@ -72,7 +73,8 @@ contains
     if (self%flywheel%n > 0) call layout%settle(self%flywheel)
   end subroutine settle
 
-  !> At t = 0 the rod is straight and as long as it is made, the shaft is not twisted, and nothing of it moves.
+  !> Put the initial state into the state vector: the rod is straight and has its nominal length, the shaft is not twisted, and
+  !> their rates are 0.
   pure subroutine put_start(self, y)
     class(elastic_members_t), intent(in) :: self
     real(dp), intent(inout) :: y(:)
@@ -115,7 +117,7 @@ contains
     dydt(self%flywheel%rate) = accelerations%flywheel
   end subroutine put_rates
 
-  !> Speed of what the drive turns: the flywheel of an elastic crankshaft or the crank [rad/s].
+  !> Angular speed of the part on which the drive acts: the flywheel of an elastic crankshaft, or the crank [rad/s].
   pure real(dp) function driven_speed(self, motion)
     class(elastic_members_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
@@ -123,7 +125,7 @@ contains
     if (allocated(self%crankshaft)) driven_speed = motion%flywheel_speed
   end function driven_speed
 
-  !> Power of the dampings on the bodies [W], <= 0.
+  !> Power of the damping on the bodies [W], <= 0.
   pure real(dp) function damping_power(self, motion)
     class(elastic_members_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
@@ -132,11 +134,11 @@ contains
     if (allocated(self%crankshaft)) damping_power = damping_power + self%crankshaft%damping_power(motion)
   end function damping_power
 
-  !> Power of the drive and of the dampings on the bodies [W]. The drive turns the flywheel or, without one, the crank.
+  !> Power of the drive and of the damping on the bodies [W]. The drive acts on the flywheel or, without one, on the crank.
   pure real(dp) function power(self, motion, moment, damping)
     class(elastic_members_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
-    real(dp), intent(in) :: moment, damping   !! of the drive [N m], [N m s/rad]
+    real(dp), intent(in) :: moment, damping   !! torque and damping of the drive [N m], [N m s/rad]
     real(dp) :: speed
     speed = self%driven_speed(motion)
     power = (moment - damping*speed)*speed + self%damping_power(motion)

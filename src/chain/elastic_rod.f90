@@ -1,21 +1,23 @@
-!> A connecting rod that bends and stretches: what it is made of, its shapes and their constants, and how it moves its pin.
+!> An elastic connecting rod: its material, its shapes and their constants, and the motion of its pin.
 !>
-!> The rod is described from its chord, the line from the big end's centre to the piston pin's, with xi along it from 0 to L:
+!> The deformation is described relative to the chord, the line from the centre of the big end to the piston pin, with the
+!> coordinate xi from 0 to L along it:
 !>
 !>     w(xi, t) = sum_k eta_k(t) phi_k(xi),    phi_k = sin(k pi xi/L)                                       across the chord
 !>     u(xi, t) = sum_j a_j(t) psi_j(xi),      psi_1 = xi/L,  psi_j = sin((j - 1) pi xi/L), j >= 2          along it
 !>
-!> A point of the rod is at xi + u - sigma along the chord and at w across it. sigma = 1/2 int (dw/dxi)^2 is how much bending draws
-!> it back: this stiffens a rod that is pulled, by its own mass too, and softens one that is pressed, until it buckles. The chord is
+!> A point of the rod is at xi + u - sigma along the chord and at w perpendicular to it. sigma = 1/2 int (dw/dxi)^2 is the
+!> shortening due to bending: it stiffens a rod in tension, also under the inertia of its own mass, and softens a rod in compression
+!> until it buckles. The length of the chord is
 !>
 !>     l = L + a_1 - sum_k b_k eta_k^2,    b_k = (k pi)^2/(4 L)
 !>
-!> Across, a rod on two pins bends in sines. Along, the shapes are those of Craig and Bampton (1968): the stretch under a force at
-!> its ends, and the free vibrations between fixed ends. Energies are kept to the second order of the amplitudes, the place of the
-!> pin and the work of the forces on it are as written.
+!> The bending shapes are those of a beam on two pins. The axial shapes are those of Craig and Bampton (1968): the extension under a
+!> force at the ends, and the free vibrations between fixed ends. Energies are of second order in the amplitudes; the position of
+!> the pin and the work of the forces on it are exact in the terms above.
 !>
-!> Mass and inertia are those of the mechanism's rod. What bends and stretches is a uniform shank of mass m_b, with lumps on the two
-!> pins that give the rod its mass and its centre of mass along the chord.
+!> Mass and moment of inertia are those of the rod in &mechanism. The elastic part is a uniform shank of mass m_b; point masses at
+!> the two pins give the rod its total mass and its centre of mass along the chord.
 module elastic_rod
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
@@ -27,32 +29,32 @@ module elastic_rod
   private
   public :: elastic_rod_t, most_of_a_kind, largest_shank
 
-  integer, parameter :: most_of_a_kind = most_shapes/2   !! shapes across, and as many along
+  integer, parameter :: most_of_a_kind = most_shapes/2   !! largest number of bending shapes, and of axial shapes
 
   type, extends(has_parameters_t) :: elastic_rod_t
     real(dp) :: youngs_modulus = 0        !! E [Pa]
     real(dp) :: section_area = 0          !! [m^2]
     real(dp) :: section_inertia = 0       !! second moment of area [m^4]
-    integer :: n_bending = 0              !! shapes across the chord
-    integer :: n_axial = 0                !! shapes along it; 0: the rod does not stretch
-    real(dp) :: shank_mass = 0            !! m_b [kg]; 0: the largest, by `prepare`
-    real(dp) :: damping_ratio = 0         !! of each shape across
-    real(dp) :: axial_damping_ratio = 0   !! and along
-    ! what follows from these and from the rigid rod
+    integer :: n_bending = 0              !! number of bending shapes
+    integer :: n_axial = 0                !! number of axial shapes; 0: the rod does not stretch
+    real(dp) :: shank_mass = 0            !! m_b [kg]; 0: the largest possible value, set by `prepare`
+    real(dp) :: damping_ratio = 0         !! damping ratio of each bending shape
+    real(dp) :: axial_damping_ratio = 0   !! damping ratio of each axial shape
+    ! quantities derived from these and from the rigid rod
     real(dp) :: length = 0                !! L [m]
-    real(dp) :: end_mass = 0              !! m_2, on the piston pin [kg]
-    integer :: n = 0                      !! shapes: those across come first
+    real(dp) :: end_mass = 0              !! m_2, point mass on the piston pin [kg]
+    integer :: n = 0                      !! number of shapes; bending shapes come first
     real(dp) :: shortening(most_of_a_kind) = 0       !! b_k [1/m]
     real(dp) :: slope(most_of_a_kind, 2) = 0         !! dphi_k/dxi at the crank pin and at the piston pin [1/m]
     real(dp) :: bending_mass = 0                     !! M = int phi_k^2 dm [kg]
     real(dp) :: s(most_of_a_kind) = 0                !! S_k = int phi_k dm [kg]
     real(dp) :: t(most_of_a_kind) = 0                !! T_k = int xi phi_k dm [kg m]
     real(dp) :: p(most_of_a_kind, most_of_a_kind) = 0   !! P_ij = int phi_i' phi_j' (mass beyond xi) dxi [kg/m]
-    real(dp) :: q(most_of_a_kind, most_of_a_kind) = 0   !! Q_ij, the same with its first moment [kg]
+    real(dp) :: q(most_of_a_kind, most_of_a_kind) = 0   !! Q_ij, the same with the first moment of the mass beyond xi [kg]
     real(dp) :: z0(most_of_a_kind) = 0               !! int psi_j dm [kg]
     real(dp) :: z1(most_of_a_kind) = 0               !! int xi psi_j dm [kg m]
     real(dp) :: axial_mass(most_of_a_kind, most_of_a_kind) = 0      !! int psi_i psi_j dm [kg]
-    real(dp) :: axial_inverse(most_of_a_kind, most_of_a_kind) = 0   !! of this matrix [1/kg]
+    real(dp) :: axial_inverse(most_of_a_kind, most_of_a_kind) = 0   !! inverse of this matrix [1/kg]
     real(dp) :: coupling(most_of_a_kind, most_of_a_kind) = 0        !! Z_jk = int psi_j phi_k dm [kg]
     real(dp) :: stiffness(most_shapes) = 0           !! of each shape [N/m]
     real(dp) :: damping(most_shapes) = 0             !! [N s/m]
@@ -92,13 +94,13 @@ contains
       'damping ratio of each axial shape', range='>= 0 and < 1', default='0.01')
   end subroutine parameters
 
-  !> Mass of the largest uniform shank that leaves no negative lump on either pin [kg].
+  !> Mass of the largest uniform shank with which no point mass is negative [kg].
   pure real(dp) function largest_shank(rod)
     type(rod_t), intent(in) :: rod
     largest_shank = min(rod%mass, 2*rod%mass*rod%com(1)/rod%length, 2*rod%mass*(1 - rod%com(1)/rod%length))
   end function largest_shank
 
-  !> Find what follows from the keys and the rigid rod. Limits: 0 < U < L, mass > 0, 0 < shank_mass <= `largest_shank`.
+  !> Compute the derived quantities from the keys and the rigid rod. Limits: 0 < U < L, mass > 0, 0 < shank_mass <= `largest_shank`.
   pure subroutine prepare(self, rod)
     class(elastic_rod_t), intent(inout) :: self
     type(rod_t), intent(in) :: rod
@@ -128,7 +130,7 @@ contains
     call find_axial(self)
   end subroutine prepare
 
-  !> P and Q: int cos(i pi x) cos(j pi x) against 1, x and x^2 on [0, 1].
+  !> P and Q: integrals of cos(i pi x) cos(j pi x) times 1, x and x^2 over [0, 1].
   pure subroutine find_foreshortening(rod)
     class(elastic_rod_t), intent(inout) :: rod
     real(dp) :: product, first, second, factor
@@ -145,21 +147,21 @@ contains
     end do
   end subroutine find_foreshortening
 
-  !> int x cos(m pi x) on [0, 1].
+  !> Integral of x cos(m pi x) over [0, 1].
   pure real(dp) function moment_1(m)
     integer, intent(in) :: m
     moment_1 = 0.5_dp
     if (m /= 0) moment_1 = ((-1)**m - 1)/(m*pi)**2
   end function moment_1
 
-  !> int x^2 cos(m pi x) on [0, 1].
+  !> Integral of x^2 cos(m pi x) over [0, 1].
   pure real(dp) function moment_2(m)
     integer, intent(in) :: m
     moment_2 = 1.0_dp/3
     if (m /= 0) moment_2 = 2*(-1)**m/(m*pi)**2
   end function moment_2
 
-  !> The constants of the shapes along the chord.
+  !> Constants of the axial shapes.
   pure subroutine find_axial(rod)
     class(elastic_rod_t), intent(inout) :: rod
     real(dp) :: factor(most_of_a_kind, most_of_a_kind)
@@ -186,7 +188,7 @@ contains
       end do
     end associate
     factor = rod%axial_mass
-    call factorise_cholesky(rod%n_axial, factor, definite)   ! the shapes are independent: it always is
+    call factorise_cholesky(rod%n_axial, factor, definite)   ! always definite, since the shapes are linearly independent
     if (.not. definite) return
     rod%axial_inverse = 0
     do j = 1, rod%n_axial
@@ -195,7 +197,7 @@ contains
     end do
   end subroutine find_axial
 
-  !> The chord and its rate from the shapes.
+  !> Length and rate of the chord from the shapes.
   pure subroutine find_chord(self, motion)
     class(elastic_rod_t), intent(in) :: self
     type(motion_t), intent(inout) :: motion
@@ -208,8 +210,8 @@ contains
     end associate
   end subroutine find_chord
 
-  !> The rod of a motion whose crank, offset and shapes are known: sin A = (R sin q - o_y)/l. `reachable` is false where the piston
-  !> pin cannot be.
+  !> Set the rod of a motion whose crank, offset and shapes are known: sin A = (R sin q - o_y)/l. `reachable` is false if there is
+  !> no rod angle.
   pure subroutine follow(self, crank_length, motion, reachable)
     class(elastic_rod_t), intent(in) :: self
     real(dp), intent(in) :: crank_length   !! R [m]
@@ -229,7 +231,7 @@ contains
     end associate
   end subroutine follow
 
-  !> The piston of a motion whose crank and rod are known.
+  !> Set the piston of a motion whose crank and rod are known.
   pure subroutine follow_piston(self, crank_length, motion)
     class(elastic_rod_t), intent(in) :: self
     real(dp), intent(in) :: crank_length   !! R [m]
@@ -241,7 +243,7 @@ contains
       - motion%chord*motion%sin_rod*motion%rod_speed - motion%offset_rate(1)
   end subroutine follow_piston
 
-  !> Natural frequency of one shape by itself [rad/s]: across, of the shank on two pins, (k pi/L)^2 sqrt(E I L/m_b).
+  !> Natural frequency of one shape without the others [rad/s]; for bending of the shank on two pins (k pi/L)^2 sqrt(E I L/m_b).
   pure real(dp) function natural_frequency(self, shape)
     class(elastic_rod_t), intent(in) :: self
     integer, intent(in) :: shape
@@ -251,21 +253,21 @@ contains
     natural_frequency = sqrt(self%stiffness(shape)/mass)
   end function natural_frequency
 
-  !> Lowest frequency of bending on two pins that do not move [rad/s]; 0: it does not bend.
+  !> Lowest natural frequency of bending between two fixed pins [rad/s]; 0: the rod does not bend.
   pure real(dp) function bending_frequency(self)
     class(elastic_rod_t), intent(in) :: self
     bending_frequency = 0
     if (self%n_bending > 0) bending_frequency = self%natural_frequency(1)
   end function bending_frequency
 
-  !> Lowest frequency of stretching with a mass on the piston pin and the crank pin at rest [rad/s], by power iteration; 0: it does
-  !> not stretch.
+  !> Lowest natural frequency of axial vibration with a mass on the piston pin and a fixed crank pin [rad/s], by power iteration; 0:
+  !> the rod does not stretch.
   pure real(dp) function axial_frequency(self, mass)
     class(elastic_rod_t), intent(in) :: self
     real(dp), intent(in) :: mass   !! [kg]
     real(dp) :: inertia(self%n_axial, self%n_axial), shape(self%n_axial), largest
     integer :: i
-    integer, parameter :: iterations = 100   !! each divides what is left of the others by (second/first frequency)^2 > 3
+    integer, parameter :: iterations = 100   !! each reduces the part of the other modes by (second/first frequency)^2 > 3
     axial_frequency = 0
     if (self%n_axial == 0) return
     inertia = self%axial_mass(:self%n_axial, :self%n_axial)
@@ -280,7 +282,7 @@ contains
     axial_frequency = 1/sqrt(largest)
   end function axial_frequency
 
-  !> Deflection across the chord half way between the pins [m], towards +y in a rod that points along +x.
+  !> Deflection perpendicular to the chord half way between the pins [m], positive towards +y in a rod that points along +x.
   pure real(dp) function mid_deflection(self, motion)
     class(elastic_rod_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
@@ -291,14 +293,14 @@ contains
     end do
   end function mid_deflection
 
-  !> Energy of bending and stretching [J].
+  !> Elastic energy of bending and extension [J].
   pure real(dp) function strain_energy(self, motion)
     class(elastic_rod_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
     strain_energy = 0.5_dp*sum(self%stiffness(:self%n)*motion%shape(:self%n)**2)
   end function strain_energy
 
-  !> Power of its damping on the rod [W], <= 0.
+  !> Power of the damping on the rod [W], <= 0.
   pure real(dp) function damping_power(self, motion)
     class(elastic_rod_t), intent(in) :: self
     type(motion_t), intent(in) :: motion

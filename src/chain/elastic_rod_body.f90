@@ -1,7 +1,8 @@
-!> The elastic rod as a body of the chain: its mass matrix, what its own motion asks for, its energy, and the forces at its ends.
+!> The elastic rod as a body of the chain: its mass matrix, the inertial loads of its motion, its energy, and the forces at its
+!> ends.
 !>
-!> Its own velocities are (B_x', B_y', A', eta', a'): of the big end's centre B, of the chord's angle and of the shapes. With
-!> e1 = (cos A, -sin A) along the chord and e2 = (sin A, cos A), so that e1' = -A' e2 and e2' = A' e1,
+!> Its velocities are (B_x', B_y', A', eta', a'): of the centre B of the big end, of the chord's angle and of the shapes. With e1 =
+!> (cos A, -sin A) along the chord and e2 = (sin A, cos A), so that e1' = -A' e2 and e2' = A' e1,
 !>
 !>     du = Z0.a - eta.P eta/2,   dv = S.eta,   first moment of mass about B:   g = (m U + du) e1 + (m V + dv) e2
 !>     J  = eta.M eta - eta.Q eta + 2 Z1.a + a.Ma a,    H = -T.eta' - a.Z eta' + a'.Z eta
@@ -20,15 +21,15 @@ module elastic_rod_body
   public :: rod_terms_t, find_terms, find_loads, put_own_equations, put_elastic_map, put_chord
   public :: elastic_rod_energy, elastic_end_forces
 
-  !> What mass matrix, loads and energy have in common, in the rod's axes e1, e2.
+  !> Terms that mass matrix, loads and energy have in common, in the rod's axes e1, e2.
   type :: rod_terms_t
     real(dp) :: e1(2), e2(2)
     real(dp) :: moment(2)                      !! g [kg m]
     real(dp) :: moment_rate(2)                 !! (du', dv') [kg m/s]
     real(dp) :: inertia                        !! m22 + J [kg m^2]
     real(dp) :: inertia_rate                   !! J' [kg m^2/s]
-    real(dp) :: bending(most_of_a_kind, 3)     !! of eta' with B' . e1, B' . e2 and A'
-    real(dp) :: axial(most_of_a_kind, 3)       !! of a' with the same
+    real(dp) :: bending(most_of_a_kind, 3)     !! coupling of eta' with B' . e1, B' . e2 and A'
+    real(dp) :: axial(most_of_a_kind, 3)       !! coupling of a' with the same velocities
   end type rod_terms_t
 
 contains
@@ -73,7 +74,7 @@ contains
     end associate
   end subroutine find_terms
 
-  !> What acts on the rod, and what its own motion asks for: on (B . e1, B . e2, A), and on each shape.
+  !> Loads on the rod and inertial loads of its motion: on (B . e1, B . e2, A), and on each shape.
   pure subroutine find_loads(rod, bodies, loads, motion, terms, on_rod, on_shape)
     type(elastic_rod_t), intent(in) :: rod
     type(bodies_t), intent(in) :: bodies
@@ -125,13 +126,13 @@ contains
     end function in_rod_axes
   end subroutine find_loads
 
-  !> Mass matrix and loads of a body, in the rod's own velocities.
+  !> Mass matrix and loads of a body, in the rod's velocities.
   pure subroutine put_own_equations(rod, bodies, loads, motion, body)
     type(elastic_rod_t), intent(in) :: rod
     type(bodies_t), intent(in) :: bodies
     type(loads_t), intent(in) :: loads
     type(motion_t), intent(in) :: motion
-    type(body_t), intent(inout) :: body   !! begun, of 3 + n velocities
+    type(body_t), intent(inout) :: body   !! prepared by `begin`, with 3 + n velocities
     type(rod_terms_t) :: terms
     real(dp) :: on_rod(3), with(2)
     integer :: k, j
@@ -171,14 +172,14 @@ contains
     mass(i, 1:2) = with
   end subroutine couple
 
-  !> How the chain's coordinates move the rod: the chord's angle by l sin A = R sin q - o_y, and the shapes themselves.
+  !> Velocity map from the chain's coordinates to the rod: the chord's angle from l sin A = R sin q - o_y, and the shapes.
   pure subroutine put_elastic_map(rod, crank_length, motion, pin_at, shape_at, body)
     type(elastic_rod_t), intent(in) :: rod
     real(dp), intent(in) :: crank_length       !! R [m]
     type(motion_t), intent(in) :: motion
-    integer, intent(in) :: pin_at(n_pins)      !! where the eccentricity of a loose pin stands among the coordinates; 0: nowhere
-    integer, intent(in) :: shape_at            !! where the shapes stand
-    type(body_t), intent(inout) :: body        !! begun, with the rows of B_x' and B_y'
+    integer, intent(in) :: pin_at(n_pins)      !! index of the eccentricity of a pin with clearance among the coordinates; 0: none
+    integer, intent(in) :: shape_at            !! index of the first shape
+    type(body_t), intent(inout) :: body        !! prepared by `begin`, with the rows of B_x' and B_y'
     real(dp) :: per_arm, chord_map(size(body%map, 2)), chord_bias
     integer :: k, pin
     associate (sa => motion%sin_rod, ca => motion%cos_rod)
@@ -198,12 +199,12 @@ contains
     end associate
   end subroutine put_elastic_map
 
-  !> How the shapes move the chord: l' by their rates, and l'' where their accelerations vanish.
+  !> Map from the rates of the shapes to l', and l'' for vanishing accelerations of the shapes.
   pure subroutine put_chord(rod, motion, shape_at, map, bias)
     type(elastic_rod_t), intent(in) :: rod
     type(motion_t), intent(in) :: motion
     integer, intent(in) :: shape_at
-    real(dp), intent(inout) :: map(:)   !! by the rates of the chain's coordinates
+    real(dp), intent(inout) :: map(:)   !! map from the rates of the chain's coordinates
     real(dp), intent(out) :: bias
     associate (n => rod%n_bending)
       map(shape_at:shape_at + n - 1) = -2*rod%shortening(:n)*motion%shape(:n)
@@ -212,7 +213,7 @@ contains
     end associate
   end subroutine put_chord
 
-  !> Kinetic energy, energy in gravity (0 at the crank axis) and strain energy of the rod [J].
+  !> Kinetic energy, potential energy (0 at the crank axis) and elastic energy of the rod [J].
   pure real(dp) function elastic_rod_energy(rod, bodies, motion) result(energy)
     type(elastic_rod_t), intent(in) :: rod
     type(bodies_t), intent(in) :: bodies
@@ -236,8 +237,8 @@ contains
     end associate
   end function elastic_rod_energy
 
-  !> What its accelerations ask for at its ends: the sum of the forces there, and what they and the moments there turn the rod by
-  !> about its big end (against A).
+  !> Forces and moments required at the ends of the rod by its accelerations: the sum of the forces, and their moment about the big
+  !> end, including moments at the ends (positive against A).
   pure subroutine elastic_end_forces(rod, bodies, motion, accelerations, force, turning)
     type(elastic_rod_t), intent(in) :: rod
     type(bodies_t), intent(in) :: bodies

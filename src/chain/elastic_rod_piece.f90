@@ -1,6 +1,6 @@
-!> Crank and elastic rod on the one side, the piston on the other: the piston pin has clearance, the crank pin may. The shapes of
-!> the rod are eliminated first: their own mass matrix is constant, and with the motion of the rod's axes they are coupled by few
-!> terms. What is left has the order of a rigid rod's equations.
+!> Chain with an elastic rod and clearance at the piston pin: crank and rod on one side, piston on the other; the crank pin may have
+!> clearance. The shapes of the rod are eliminated first: their own mass matrix is constant, and few terms couple them with the
+!> motion of the rod's axes. The remaining equations have the order of those of a rigid rod.
 module elastic_rod_piece
   use gudgeon_kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin
@@ -16,8 +16,8 @@ module elastic_rod_piece
 
 contains
 
-  !> Accelerations, and the moment on the crank (see `accelerate_crank_rod`). `solvable` is false where the mass matrix is not
-  !> positive definite: the rod is bent or stretched beyond what its equations are for.
+  !> Accelerations, and the moment on the crank (see `accelerate_crank_rod`). `solvable` is false if the mass matrix is not positive
+  !> definite: the deformation of the rod is beyond the range of its equations.
   pure subroutine accelerate_elastic_rod(rod, bodies, drive, crank_pin_is_loose, loads, motion, accelerations, crank_moment, &
                                          solvable)
     type(elastic_rod_t), intent(in) :: rod
@@ -66,7 +66,7 @@ contains
       - [accelerations%piston, 0.0_dp]
   end subroutine accelerate_elastic_rod
 
-  !> Take the shapes out of the equations of (B . e1, B . e2, A).
+  !> Eliminate the shapes from the equations of (B . e1, B . e2, A).
   pure subroutine eliminate_shapes(rod, terms, on_shape, mass, force)
     type(elastic_rod_t), intent(in) :: rod
     type(rod_terms_t), intent(in) :: terms
@@ -83,7 +83,7 @@ contains
         force = force - terms%bending(k, :)*(on_shape(k)*per_mass)
       end do
       if (na == 0) return
-      do i = 1, 3, 2   ! across the chord the shapes along it have no part
+      do i = 1, 3, 2   ! the axial shapes do not contribute perpendicular to the chord
         do j = 1, na
           freed(j) = dot_product(rod%axial_inverse(:na, j), terms%axial(:na, i))
         end do
@@ -116,7 +116,7 @@ contains
     end associate
   end subroutine find_shapes
 
-  !> The crank carries the big end: q'' and the rod's A'' together.
+  !> Solve for q'' and the rod's A'' together if the crank carries the big end.
   pure subroutine turn_with_crank(bodies, drive, motion, terms, mass, force, acceleration, own, crank_moment, solvable)
     type(bodies_t), intent(in) :: bodies
     type(drive_t), intent(in) :: drive
@@ -153,7 +153,7 @@ contains
     end associate
   end subroutine turn_with_crank
 
-  !> Acceleration (x, y) of the piston pin's centre [m/s^2].
+  !> Acceleration (x, y) of the centre of the piston pin [m/s^2].
   pure function pin_acceleration(rod, motion, terms, own, shape) result(a)
     type(elastic_rod_t), intent(in) :: rod
     type(motion_t), intent(in) :: motion

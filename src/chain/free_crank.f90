@@ -1,4 +1,4 @@
-!> The crank by itself, where the crank pin has clearance.
+!> The crank alone, for a crank pin with clearance.
 module free_crank
   use gudgeon_kinds, only: dp
   use chain_motion, only: motion_t, crank_pin
@@ -10,8 +10,8 @@ module free_crank
 
 contains
 
-  !> (I_crank + m_crank |U_c|^2) q'' = -J_x R sin q + J_y R cos q + M_j + tau - D q' + gravity, with the force J and the moment M_j
-  !> on the crank pin; and the moment on the crank (see `accelerate_crank_rod`).
+  !> Acceleration from (I_crank + m_crank |U_c|^2) q'' = -J_x R sin q + J_y R cos q + M_j + tau - D q' + gravity, where J and M_j
+  !> are force and moment on the crank pin, and the moment on the crank (see `accelerate_crank_rod`).
   pure subroutine accelerate_crank(bodies, drive, motion, loads, acceleration, crank_moment)
     type(bodies_t), intent(in) :: bodies
     type(drive_t), intent(in) :: drive
@@ -32,7 +32,7 @@ contains
     end if
   end subroutine accelerate_crank
 
-  !> Acceleration (x, y) of the crank pin's centre [m/s^2].
+  !> Acceleration (x, y) of the centre of the crank pin [m/s^2].
   pure function crank_pin_acceleration(bodies, motion, acceleration) result(a)
     type(bodies_t), intent(in) :: bodies
     type(motion_t), intent(in) :: motion

@@ -1,11 +1,11 @@
-!> Crank, rod and piston each by itself: both pins have clearance. No two accelerations are coupled.
+!> Closed form for a chain with clearance at both pins: crank, rod and piston are separate, and no accelerations are coupled.
 !>
 !>     m_rod G'' = F - J + m_rod g
 !>     I_rod A'' = F . d(S - G)/dA - J . d(B - G)/dA - M_pin - M_b
 !>     m_piston x'' = -F_gas - F_x + m_piston g_x
 !>
-!> G is the rod's centre of mass, B the centre of its big end, S that of the piston pin; J is the force on the crank pin, whose
-!> opposite acts at B, F that on the piston pin, at S.
+!> G is the rod's centre of mass, B the centre of its big end, S that of the piston pin. J is the force on the crank pin; the
+!> opposite force acts at B. F is the force on the piston pin, at S.
 module free_rod
   use gudgeon_kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin
@@ -31,7 +31,7 @@ contains
     call accelerate_crank(bodies, drive, motion, loads, accelerations%crank, crank_moment)
     associate (rod => bodies%rod, sin_a => motion%sin_rod, cos_a => motion%cos_rod, &
                j => loads%force(:, crank_pin), f => loads%force(:, piston_pin))
-      ! from the centre of mass: B - G and S - G. A turns (X, Y) into (Y, -X) by the angle
+      ! B - G and S - G; the derivative of (X, Y) with respect to A is (Y, -X)
       big(1) = -rod%com(1)*cos_a - rod%com(2)*sin_a
       big(2) = rod%com(1)*sin_a - rod%com(2)*cos_a
       small(1) = rod%length*cos_a + big(1)

@@ -1,13 +1,13 @@
-!> Equations of motion of a chain from its bodies one by one.
+!> Equations of motion of a chain, assembled from its bodies.
 !>
-!> Each body has velocities v of its own, few and simple (of a point and a turning speed, and of modes where it is elastic), with
-!> its own mass matrix M. They follow from the rates z' of the chain's coordinates by a velocity map J, and so do its accelerations:
+!> Each body has a small number of velocities v of its own (of a point, an angular speed, and of modes if it is elastic) with a mass
+!> matrix M. They follow from the rates z' of the chain's coordinates by a velocity map J, and accelerations correspondingly:
 !>
 !>     v = J z',    v' = J z'' + b
 !>
-!> By virtual work every body adds J^T M J to the mass matrix of the chain and J^T (Q - M b) to its forces, Q being what acts on the
-!> body and what its own motion asks for (centripetal terms). The mass matrix is symmetric and positive definite: no constraints
-!> are left, since the coordinates are independent.
+!> By virtual work every body adds J^T M J to the mass matrix of the chain and J^T (Q - M b) to its forces, where Q are the loads on
+!> the body and the inertial loads of its motion (centripetal terms). The mass matrix is symmetric and positive definite; there are
+!> no constraints, since the coordinates are independent.
 module gudgeon_assembly
   use gudgeon_kinds, only: dp
   use small_cholesky, only: factorise_cholesky, solve_cholesky
@@ -18,18 +18,18 @@ module gudgeon_assembly
   integer, parameter :: most_coordinates = 24   !! of a chain
   integer, parameter :: most_velocities = 20    !! of a body
 
-  !> One body, as the chain moves it. `begin` sets as many numbers to 0 as it has.
+  !> One body with its velocity map. `begin` sets all used elements to 0.
   type :: body_t
-    integer :: n = 0                                          !! velocities
-    real(dp) :: map(most_velocities, most_coordinates)        !! J: velocities by the rates of the coordinates
-    real(dp) :: bias(most_velocities)                         !! b: accelerations where those of the coordinates vanish
+    integer :: n = 0                                          !! number of velocities
+    real(dp) :: map(most_velocities, most_coordinates)        !! J: from rates of the coordinates to velocities
+    real(dp) :: bias(most_velocities)                         !! b: accelerations for vanishing accelerations of the coordinates
     real(dp) :: mass(most_velocities, most_velocities)        !! M
     real(dp) :: load(most_velocities)                         !! Q
   contains
     procedure :: begin => begin_body
   end type body_t
 
-  !> mass z'' = force, for n coordinates.
+  !> The equations mass z'' = force for n coordinates.
   type :: equations_t
     integer :: n = 0
     real(dp) :: mass(most_coordinates, most_coordinates)
@@ -44,7 +44,7 @@ contains
 
   pure subroutine begin_body(self, n, n_coordinates)
     class(body_t), intent(inout) :: self
-    integer, intent(in) :: n               !! velocities
+    integer, intent(in) :: n               !! number of velocities
     integer, intent(in) :: n_coordinates   !! of the chain
     self%n = n
     self%map(:n, :n_coordinates) = 0
@@ -53,10 +53,10 @@ contains
     self%load(:n) = 0
   end subroutine begin_body
 
-  !> No bodies yet.
+  !> Begin without bodies.
   pure subroutine begin(self, n)
     class(equations_t), intent(inout) :: self
-    integer, intent(in) :: n   !! coordinates
+    integer, intent(in) :: n   !! number of coordinates
     self%n = n
     self%mass(:n, :n) = 0
     self%force(:n) = 0
@@ -76,15 +76,16 @@ contains
     end associate
   end subroutine add
 
-  !> The accelerations z'' of the coordinates, the first of them held at `held` if `holds_first`: then `holding` is the force that
-  !> this takes, else 0. `definite` is false where the mass matrix is not positive definite: there is no answer then.
+  !> Solve for the accelerations z'' of the coordinates. If `holds_first`, the first of them is prescribed as `held`, and `holding`
+  !> is the force required for it, else 0. `definite` is false if the mass matrix is not positive definite; there is no solution
+  !> then.
   pure subroutine solve(self, holds_first, accelerations, holding, definite, held)
     class(equations_t), intent(in) :: self
     logical, intent(in) :: holds_first
     real(dp), intent(out) :: accelerations(:)   !! (n)
     real(dp), intent(out) :: holding
     logical, intent(out) :: definite
-    real(dp), intent(in), optional :: held   !! [its unit/s^2]; 0 where it is not given
+    real(dp), intent(in), optional :: held   !! [unit of the coordinate/s^2]; 0 if it is absent
     real(dp) :: matrix(self%n, self%n), a(self%n)
     integer :: first
     first = merge(2, 1, holds_first)

@@ -1,5 +1,5 @@
-!> The chain crank - rod - piston. Where the forces of its loose pins are known from the state, it falls into pieces that each have
-!> a closed form on one page.
+!> The chain of crank, rod and piston. Since the forces of pins with clearance follow from the state, the chain separates at these
+!> pins into parts with accelerations in closed form.
 module gudgeon_chain
   use gudgeon_kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, n_pins, follow_rod, follow_piston
@@ -24,7 +24,7 @@ module gudgeon_chain
   type :: chain_t
     type(bodies_t) :: bodies
     type(drive_t) :: drive = undriven
-    type(varying_drive_t), allocatable :: varying   !! not allocated: the drive does not vary
+    type(varying_drive_t), allocatable :: varying   !! not allocated: the drive is constant
     logical :: is_loose(n_pins) = .false.   !! pins with clearance
     type(elastic_members_t), allocatable :: elastic   !! not allocated: all bodies are rigid
   contains
@@ -42,9 +42,9 @@ module gudgeon_chain
 
 contains
 
-  !> Accelerations under gravity, the drive and the loads of gas and loose pins; the loads of ideal pins that the piece finds with
-  !> them; and the moment of the drive on what it turns, the crank or the flywheel of an elastic crankshaft [N m]: its torque where
-  !> this moves freely, the moment that holds its speed where not. `solvable` is false where the mass matrix of an elastic rod is
+  !> Accelerations under gravity, the drive, and the loads of the gas and of pins with clearance. Also the loads of ideal pins that
+  !> follow with them, and the moment of the drive [N m] on the crank or on the flywheel of an elastic crankshaft: its torque if
+  !> that rotates freely, or the moment required for a prescribed speed. `solvable` is false if the mass matrix of an elastic rod is
   !> not positive definite.
   pure subroutine accelerate(self, motion, loads, accelerations, crank_moment, solvable)
     class(chain_t), intent(in) :: self
@@ -71,7 +71,7 @@ contains
     if (is_special) call accelerate_flywheel(self, motion, accelerations, crank_moment)
   end subroutine accelerate
 
-  !> What turns the crank now: the drive or, of an elastic crankshaft, the shaft.
+  !> The present drive of the crank: the drive or, with an elastic crankshaft, the shaft.
   pure type(drive_t) function drive_of_crank(chain, motion) result(drive)
     type(chain_t), intent(in) :: chain
     type(motion_t), intent(in) :: motion
@@ -82,7 +82,7 @@ contains
     end if
   end function drive_of_crank
 
-  !> The drive now, where it varies with the speed or the time.
+  !> The present drive, which may depend on the speed or the time.
   pure type(drive_t) function present_drive(chain, motion) result(drive)
     type(chain_t), intent(in) :: chain
     type(motion_t), intent(in) :: motion
@@ -90,7 +90,7 @@ contains
     if (allocated(chain%varying)) drive = chain%varying%at(chain%drive, driven_speed(chain, motion), motion)
   end function present_drive
 
-  !> Speed of what the drive turns, the crank or the flywheel of an elastic crankshaft [rad/s].
+  !> Angular speed of the part on which the drive acts: the crank, or the flywheel of an elastic crankshaft [rad/s].
   pure real(dp) function driven_speed(chain, motion)
     type(chain_t), intent(in) :: chain
     type(motion_t), intent(in) :: motion
@@ -98,7 +98,7 @@ contains
     if (allocated(chain%elastic)) driven_speed = chain%elastic%driven_speed(motion)
   end function driven_speed
 
-  !> The flywheel of an elastic crankshaft, and the moment of the drive on it [N m].
+  !> Acceleration of the flywheel of an elastic crankshaft, and the moment of the drive on it [N m].
   pure subroutine accelerate_flywheel(chain, motion, accelerations, drive_moment)
     type(chain_t), intent(in) :: chain
     type(motion_t), intent(in) :: motion
@@ -156,7 +156,7 @@ contains
     end associate
   end subroutine accelerate_with_elastic_rod
 
-  !> Accelerations of the turning of an elastic rod's ends.
+  !> Angular accelerations of the ends of an elastic rod.
   pure subroutine turn_rod_ends(rod, accelerations)
     type(elastic_rod_t), intent(in) :: rod
     type(accelerations_t), intent(inout) :: accelerations
@@ -178,8 +178,8 @@ contains
     if (allocated(self%elastic)) has_crankshaft = allocated(self%elastic%crankshaft)
   end function has_crankshaft
 
-  !> The rod of a motion whose crank and offset are known, and the shapes of an elastic one. `reachable` is false where it cannot
-  !> be.
+  !> Set the rod of a motion whose crank and offset are known, and the shapes of an elastic rod. `reachable` is false if there is no
+  !> rod angle.
   pure subroutine move_rod(self, motion, reachable)
     class(chain_t), intent(in) :: self
     type(motion_t), intent(inout) :: motion
@@ -193,7 +193,7 @@ contains
     call follow_rod(self%bodies%crank%length, self%bodies%per_rod_length, motion, reachable)
   end subroutine move_rod
 
-  !> The piston of a motion whose crank and rod are known.
+  !> Set the piston of a motion whose crank and rod are known.
   pure subroutine move_piston(self, motion)
     class(chain_t), intent(in) :: self
     type(motion_t), intent(inout) :: motion
@@ -206,9 +206,9 @@ contains
     call follow_piston(self%bodies%crank%length, self%bodies%rod%length, motion)
   end subroutine move_piston
 
-  !> What a load of loose pins or of the gas adds to the accelerations and to the moment on the crank, in which all loads are
-  !> linear: the bodies at rest, nothing else acting. By the general assembly, but for scenes without joints or with one at the
-  !> piston pin.
+  !> Changes of the accelerations and of the moment on the crank due to a load of pins with clearance or of the gas, on which they
+  !> depend linearly. They are computed for bodies at rest without other loads, by the general assembly unless the chain has only
+  !> ideal pins or clearance only at the piston pin.
   pure subroutine response(self, motion, loads, accelerations, crank_moment)
     class(chain_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
@@ -245,7 +245,7 @@ contains
     drive%free_crank = chain%drive%free_crank .or. chain%has_crankshaft()
   end function free_drive
 
-  !> The same of an elastic rod, as it is bent and stretched but without its stiffness.
+  !> The same for an elastic rod, in its deformed state but without its stiffness.
   pure subroutine respond_elastic_rod(chain, at_rest, loads, accelerations, crank_moment)
     type(chain_t), intent(in) :: chain
     type(motion_t), intent(in) :: at_rest
@@ -286,7 +286,7 @@ contains
     accelerations%shape(:n) = accelerations%shape(:n) + factor*change%shape(:n)
   end subroutine add_response
 
-  !> The loads of ideal pins, from the bodies' accelerations.
+  !> Set the loads of ideal pins, from the accelerations of the bodies.
   pure subroutine complete_loads(self, motion, accelerations, loads)
     class(chain_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
@@ -296,7 +296,7 @@ contains
     integer :: pin
     do pin = 1, n_pins
       if (.not. self%is_loose(pin)) loads%moment(pin) = 0
-      if (.not. self%is_loose(pin)) loads%force(:, pin) = 0   ! it has no part in the rest
+      if (.not. self%is_loose(pin)) loads%force(:, pin) = 0   ! it does not enter the other loads
     end do
     found = self%reactions(motion, accelerations, loads)
     if (.not. self%is_loose(crank_pin)) loads%force(:, crank_pin) = -found%crankpin

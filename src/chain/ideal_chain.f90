@@ -1,4 +1,4 @@
-!> The chain with two ideal pins, crank with rod and piston: one degree of freedom.
+!> Closed form for a chain with two ideal pins, which has one degree of freedom.
 module ideal_chain
   use gudgeon_kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, turn_crank, follow_rod, follow_piston
@@ -24,7 +24,7 @@ contains
     call follow_piston(bodies%crank%length, bodies%rod%length, motion)
   end function ideal_motion
 
-  !> A' [rad/s] of a rod with ideal pins, and its A'' [rad/s^2] at constant crank speed, where the crank is that of `motion`.
+  !> A' [rad/s] of a rod with ideal pins, and its A'' [rad/s^2] at constant crank speed, for the crank of `motion`.
   pure subroutine ideal_rod(bodies, motion, speed, acceleration)
     type(bodies_t), intent(in) :: bodies
     type(motion_t), intent(in) :: motion
@@ -38,8 +38,8 @@ contains
     acceleration = bodies%rod%length*sine*per_arm*((ratio - 1)*(ratio + 1))*motion%crank_speed**2
   end subroutine ideal_rod
 
-  !> Accelerations from the one equation in q that remains (virtual work of the three bodies: the pins do none), the force of the
-  !> piston pin's joint from the piston equation and (3.80), and the moment on the crank (see `accelerate_crank_rod`).
+  !> Accelerations from the single equation for q (virtual work of the three bodies; ideal pins do none), the force of the piston
+  !> pin's joint from the piston equation and (3.80), and the moment on the crank (see `accelerate_crank_rod`).
   pure subroutine accelerate_ideal_chain(bodies, drive, motion, loads, accelerations, crank_moment)
     type(bodies_t), intent(in) :: bodies
     type(drive_t), intent(in) :: drive
@@ -79,7 +79,7 @@ contains
     end associate
   end subroutine accelerate_ideal_chain
 
-  !> What an axial force on the piston adds to the accelerations and to the moment on the crank.
+  !> Changes of the accelerations and of the moment on the crank due to an axial force on the piston.
   pure subroutine respond_ideal_chain(bodies, drive, loads, motion, accelerations, crank_moment)
     type(bodies_t), intent(in) :: bodies
     type(drive_t), intent(in) :: drive
@@ -102,8 +102,8 @@ contains
     accelerations%pin = 0
   end subroutine respond_ideal_chain
 
-  !> k = dA/dq = R cos q/(L cos A), p = dx/dq and the inertia of all on q. With them A'' = k q'' + k' q'^2, x'' = p q'' + p' q'^2,
-  !> and k' = tan A (k^2 - 1).
+  !> k = dA/dq = R cos q/(L cos A), p = dx/dq, and the generalised inertia for q. With them A'' = k q'' + k' q'^2, x'' = p q'' + p'
+  !> q'^2, and k' = tan A (k^2 - 1).
   pure subroutine find_ratios(bodies, motion, m12, per_arm, ratio, rate, inertia)
     type(bodies_t), intent(in) :: bodies
     type(motion_t), intent(in) :: motion

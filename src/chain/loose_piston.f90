@@ -1,13 +1,13 @@
-!> A piston with clearance in its bore: where it is, how it is accelerated, its energy.
+!> A piston with clearance in its bore: position, acceleration, energy.
 !>
-!> Its coordinates are y of its centre of mass and the tilt b, from x to y. What its bore does to it is known from them: a force
-!> along x that is part of `axial_force`, `bore_force` along y and `bore_moment` about the centre of mass. The gas acts along x on
-!> the piston's axis, which goes through the centre of mass.
+!> Its coordinates are y of its centre of mass and its tilt b, positive from x to y. The loads of the bore follow from them: a force
+!> along x, which is part of `axial_force`, `bore_force` along y, and `bore_moment` about the centre of mass. The gas force acts
+!> along x on the piston's axis, through the centre of mass.
 !>
 !>     m x_c'' = -F_axial - F_x + m g_x,    m y_c'' = F_bore - F_y + m g_y
 !>     I b'' = M_bearing + p_x F_y - p_y F_x + M_bore
 !>
-!> F is the force on the piston pin, whose opposite acts at the pin's bearing, at -p from the centre of mass c.
+!> F is the force on the piston pin; the opposite force acts at the pin's bearing, at -p from the centre of mass c.
 module loose_piston
   use gudgeon_kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, piston_pin
@@ -19,7 +19,7 @@ module loose_piston
 
 contains
 
-  !> The pin's bearing, from the coordinates of the piston and their rates; it adds to the offset of the chain.
+  !> Position of the pin's bearing, from the coordinates of the piston and their rates; it is added to the offset of the chain.
   pure subroutine place_piston(piston, motion)
     type(piston_t), intent(in) :: piston
     type(motion_t), intent(inout) :: motion
@@ -35,13 +35,13 @@ contains
     end associate
   end subroutine place_piston
 
-  !> The velocity of the centre of mass along x, where that of the pin's bearing is known.
+  !> Velocity of the centre of mass along x, from that of the pin's bearing.
   pure subroutine move_centre(motion)
     type(motion_t), intent(inout) :: motion
     motion%tilting%com_velocity = motion%piston_velocity - motion%tilting%com(2)*motion%tilting%tilt_rate
   end subroutine move_centre
 
-  !> Of the centre of mass (x, y) [m/s^2].
+  !> Acceleration of the centre of mass (x, y) [m/s^2].
   pure function centre_acceleration(motion, accelerations) result(a)
     type(motion_t), intent(in) :: motion
     type(accelerations_t), intent(in) :: accelerations
@@ -52,7 +52,7 @@ contains
     end associate
   end function centre_acceleration
 
-  !> e of the piston pin [m].
+  !> Eccentricity e of the piston pin [m].
   pure function pin_eccentricity(motion) result(e)
     type(motion_t), intent(in) :: motion
     real(dp) :: e(2)
@@ -60,12 +60,13 @@ contains
     e(2) = e(2) - motion%tilting%across
   end function pin_eccentricity
 
-  !> Put the piston by itself, where its pin has clearance and so the force on it is known, in the place of one on an ideal guide.
+  !> Accelerations of a separate piston, whose pin has clearance so that the force on it is known. They replace those of a piston in
+  !> an ideal guide.
   pure subroutine free_piston(bodies, motion, loads, accelerations)
     type(bodies_t), intent(in) :: bodies
     type(motion_t), intent(in) :: motion
     type(loads_t), intent(in) :: loads
-    type(accelerations_t), intent(inout) :: accelerations   !! in: of a piston on an ideal guide
+    type(accelerations_t), intent(inout) :: accelerations   !! in: of a piston in an ideal guide
     real(dp) :: centre(2), bearing(2)
     associate (at => motion%tilting, f => loads%force(:, piston_pin), piston => bodies%piston)
       centre = bodies%gravity + [-(loads%axial_force + f(1)), loads%bore_force - f(2)]*bodies%per_piston_mass
@@ -79,18 +80,18 @@ contains
     end associate
   end subroutine free_piston
 
-  !> Kinetic energy of the piston beside that of all its mass moving along x with the pin's bearing [J].
+  !> Kinetic energy of the piston in addition to that of its mass moving along x with the pin's bearing [J].
   pure real(dp) function kinetic_energy_beside(piston, motion) result(energy)
     type(piston_t), intent(in) :: piston
     type(motion_t), intent(in) :: motion
     real(dp) :: turn
     associate (at => motion%tilting)
-      turn = at%com(2)*at%tilt_rate   ! x' of the bearing less that of the centre of mass
+      turn = at%com(2)*at%tilt_rate   ! x' of the bearing minus that of the centre of mass
       energy = 0.5_dp*(piston%mass*(at%offset_rate**2 + turn*(turn - 2*motion%piston_velocity)) + piston%inertia*at%tilt_rate**2)
     end associate
   end function kinetic_energy_beside
 
-  !> The centre of mass (x, y) from the point at the height of the pin's bearing on the cylinder's axis [m].
+  !> Vector from the point on the cylinder's axis at the height of the pin's bearing to the centre of mass (x, y) [m].
   pure function height_beside(motion) result(way)
     type(motion_t), intent(in) :: motion
     real(dp) :: way(2)

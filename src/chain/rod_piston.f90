@@ -1,8 +1,7 @@
-!> The crank on the one side, rod with piston on the other: the crank pin has clearance, the piston pin is ideal.
+!> Closed form for a chain with clearance at the crank pin and an ideal piston pin: crank on one side, rod with piston on the other.
 !>
-!> The rod's centre of mass is h along x and k along y from the piston pin, h = (U - L) cos A + V sin A and
-!> k = -(U - L) sin A + V cos A, with dh/dA = k and dk/dA = -h. B is the force on the rod's big end, which is the opposite of that
-!> on the crank pin, M_b the moment on it.
+!> The rod's centre of mass is at (h, k) from the piston pin, h = (U - L) cos A + V sin A and k = -(U - L) sin A + V cos A, with
+!> dh/dA = k and dk/dA = -h. B is the force on the rod's big end, opposite to that on the crank pin; M_b is the moment on it.
 !>
 !>     (I_crank + m_crank |U_c|^2) q'' = -J_x R sin q + J_y R cos q + M_j + tau - D q' + gravity,    J = -B
 !>     (m_rod + m_piston) x'' + m_rod k A'' = m_rod h A'^2 + B_x - F_gas + (m_rod + m_piston) g_x
@@ -19,7 +18,7 @@ module rod_piston
 
 contains
 
-  !> Accelerations, the force of the piston pin's joint from the rod's balance, and the moment on the crank (see
+  !> Accelerations, the force of the piston pin's joint from the balance of the rod, and the moment on the crank (see
   !> `accelerate_crank_rod`).
   pure subroutine accelerate_rod_piston(bodies, drive, motion, loads, accelerations, crank_moment)
     type(bodies_t), intent(in) :: bodies

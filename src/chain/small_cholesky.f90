@@ -1,4 +1,4 @@
-!> Small symmetric positive definite systems by Cholesky's method, without pivoting.
+!> Cholesky factorisation of small symmetric positive definite matrices, without pivoting.
 module small_cholesky
   use gudgeon_kinds, only: dp
   implicit none
@@ -7,8 +7,8 @@ module small_cholesky
 
 contains
 
-  !> The lower triangle L of matrix = L L^T, in its place; the upper triangle is neither read nor changed. `definite` is false where
-  !> the matrix is not positive definite: it is then not to be used.
+  !> Compute the lower triangle L of matrix = L L^T, in place; the upper triangle is neither read nor changed. `definite` is false
+  !> if the matrix is not positive definite; the factor must not be used then.
   pure subroutine factorise_cholesky(n, matrix, definite)
     integer, intent(in) :: n
     real(dp), intent(inout) :: matrix(:, :)   !! at least (n, n)
@@ -27,7 +27,7 @@ contains
     end do
   end subroutine factorise_cholesky
 
-  !> x of L L^T x = b, in the place of b.
+  !> Solve L L^T x = b; x replaces b.
   pure subroutine solve_cholesky(n, factor, b)
     integer, intent(in) :: n
     real(dp), intent(in) :: factor(:, :)

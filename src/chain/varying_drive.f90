@@ -1,7 +1,7 @@
-!> A drive that varies: a torque that follows from the speed, or a held speed that is run up.
+!> A drive that varies: a torque that depends on the speed, or a prescribed speed with a run-up.
 !>
-!> The held speed goes from one value to another within a time T by w = w_0 + (w_1 - w_0) s^3 (10 - 15 s + 6 s^2), s = t/T, so that
-!> its acceleration begins and ends at 0 without a jump in its own rate.
+!> The prescribed speed changes within the time T according to w = w_0 + (w_1 - w_0) s^3 (10 - 15 s + 6 s^2), s = t/T, so that its
+!> acceleration and the rate of its acceleration are 0 at both ends.
 module varying_drive
   use gudgeon_kinds, only: dp
   use monotone_cubic, only: monotone_cubic_t
@@ -12,8 +12,8 @@ module varying_drive
   public :: varying_drive_t
 
   type :: varying_drive_t
-    type(monotone_cubic_t), allocatable :: torque   !! [N m] over the speed [rad/s], beside the drive's own
-    real(dp) :: ramp_time = 0                       !! T [s]; 0: the speed is not run up
+    type(monotone_cubic_t), allocatable :: torque   !! [N m] over the speed [rad/s], in addition to the torque of the drive
+    real(dp) :: ramp_time = 0                       !! T [s]; 0: there is no run-up
     real(dp) :: first_speed = 0, last_speed = 0     !! w_0, w_1 [rad/s]
   contains
     procedure :: at
@@ -25,7 +25,7 @@ module varying_drive
 
 contains
 
-  !> The drive at a speed of what it turns [rad/s], where a held crank has the acceleration of `motion`.
+  !> The drive at a speed of the driven part [rad/s]; a crank with prescribed speed has the acceleration of `motion`.
   pure type(drive_t) function at(self, drive, speed, motion)
     class(varying_drive_t), intent(in) :: self
     type(drive_t), intent(in) :: drive
@@ -36,7 +36,7 @@ contains
     if (self%ramp_time > 0) at%acceleration = motion%held_acceleration
   end function at
 
-  !> Angle that a held crank has turned by the time t [rad].
+  !> Angle by which a crank with prescribed speed has turned at time t [rad].
   pure real(dp) function turned(self, t)
     class(varying_drive_t), intent(in) :: self
     real(dp), intent(in) :: t   !! [s]
@@ -46,7 +46,7 @@ contains
       *s**4*(2.5_dp - s*(3 - s)) + self%last_speed*max(t - self%ramp_time, 0.0_dp)
   end function turned
 
-  !> Speed of a held crank [rad/s].
+  !> Prescribed speed of the crank [rad/s].
   pure real(dp) function speed(self, t)
     class(varying_drive_t), intent(in) :: self
     real(dp), intent(in) :: t
@@ -55,7 +55,7 @@ contains
     speed = self%first_speed + (self%last_speed - self%first_speed)*s**3*(10 - s*(15 - 6*s))
   end function speed
 
-  !> Acceleration of a held crank [rad/s^2].
+  !> Acceleration of the prescribed speed [rad/s^2].
   pure real(dp) function acceleration(self, t)
     class(varying_drive_t), intent(in) :: self
     real(dp), intent(in) :: t
@@ -64,7 +64,7 @@ contains
     acceleration = (self%last_speed - self%first_speed)/self%ramp_time*30*(s*(1 - s))**2
   end function acceleration
 
-  !> Derivative of the torque by the speed [N m s/rad].
+  !> Derivative of the torque with respect to the speed [N m s/rad].
   pure real(dp) function torque_slope(self, speed)
     class(varying_drive_t), intent(in) :: self
     real(dp), intent(in) :: speed
