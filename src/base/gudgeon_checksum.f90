@@ -1,16 +1,16 @@
-!> A checksum that tells texts apart: CRC-64 with the polynomial of ECMA-182, reflected (CRC-64/XZ).
+!> A checksum of texts: CRC-64 with the reflected polynomial of ECMA-182 (CRC-64/XZ).
 module gudgeon_checksum
   use, intrinsic :: iso_fortran_env, only: int64
   implicit none
   private
   public :: checksum_t, mark_of, mark_length
 
-  integer, parameter :: mark_length = 8   !! bytes of a checksum behind what it is of
+  integer, parameter :: mark_length = 8   !! number of bytes of a checksum behind its text
 
   integer(int64), parameter :: polynomial = ior(shiftl(int(z'C96C5795', int64), 32), int(z'D7870F42', int64))
   integer(int64), parameter :: byte = 255
 
-  !> What a byte does to the sum: its bits leave at the right, one a line.
+  !> Change of the checksum by a byte: its bits are shifted out at the right, one in each iteration.
   integer(int64), parameter :: digits(0:15) = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15]
   integer(int64), parameter :: byte_values(0:255) = reshape(spread(digits, 2, 16) + 16*spread(digits, 1, 16), [256])
   integer(int64), parameter :: bit_1(0:255) = ieor(shiftr(byte_values, 1), iand(-iand(byte_values, 1_int64), polynomial))
@@ -22,7 +22,7 @@ module gudgeon_checksum
   integer(int64), parameter :: bit_7(0:255) = ieor(shiftr(bit_6, 1), iand(-iand(bit_6, 1_int64), polynomial))
   integer(int64), parameter :: last(0:255) = ieor(shiftr(bit_7, 1), iand(-iand(bit_7, 1_int64), polynomial))
 
-  !> The checksum of the texts added so far, as if they were one.
+  !> The checksum of the texts added so far, as one text.
   type :: checksum_t
     integer(int64), private :: sum = 0
   contains
@@ -51,14 +51,14 @@ contains
     value = self%sum
   end function value
 
-  !> 16 hexadecimal digits.
+  !> The checksum as 16 hexadecimal digits.
   pure function hexadecimal(self) result(text)
     class(checksum_t), intent(in) :: self
     character(len=16) :: text
     write (text, '(z16.16)') self%sum
   end function hexadecimal
 
-  !> The checksum of some bytes as bytes.
+  !> The checksum of some bytes, as bytes.
   pure function mark_of(bytes) result(mark)
     character(len=*), intent(in) :: bytes
     character(len=mark_length) :: mark

@@ -13,7 +13,7 @@ module gudgeon_errors
   integer, parameter :: status_integration = 4   !! the integration could not continue
   integer, parameter :: status_output = 5        !! a result could not be written
 
-  !> What went wrong, as one line without the program's name, and the exit status it leads to.
+  !> An error: a message of one line without the program's name, and the resulting exit status.
   type :: error_t
     character(len=:), allocatable :: message
     integer :: status = status_internal

@@ -1,8 +1,8 @@
-!> A function through given points by cubics that neither overshoot the points nor swing between them (Steffen 1990, A simple
+!> Interpolation of given points by cubics that neither overshoot the points nor oscillate between them (Steffen 1990, A simple
 !> method for monotonic interpolation in one dimension, Astronomy and Astrophysics 239, 443-450).
 !>
-!> Value and first derivative are continuous; the second derivative jumps at the points. Between two points the function is
-!> monotone, so that it is nowhere larger than the largest value given.
+!> Value and first derivative are continuous; the second derivative is discontinuous at the points. Between two points the function
+!> is monotone, so that its largest value is that of a point.
 module monotone_cubic
   use gudgeon_kinds, only: dp
   implicit none
@@ -10,11 +10,12 @@ module monotone_cubic
   public :: monotone_cubic_t, new_monotone_cubic, new_periodic_cubic
 
   type :: monotone_cubic_t
-    real(dp) :: period = 0                             !! 0: not periodic, and constant beyond the points
-    real(dp), private :: first = 0, last = 0           !! where the points begin and end
+    real(dp) :: period = 0                             !! 0: not periodic, and constant outside the range of the points
+    real(dp), private :: first = 0, last = 0           !! first and last point
     real(dp), allocatable, private :: point(:)         !! (0:n), increasing
-    real(dp), allocatable, private :: coefficient(:, :) !! of x - point(i) between points i and i + 1, (0:3, 0:n - 1)
-    integer, allocatable, private :: place(:)          !! (0:n): interval in which the k-th of n equal parts begins
+    real(dp), allocatable, private :: coefficient(:, :)  !! coefficients of powers of x - point(i) between points i and i + 1, (0:3,
+                                                         !! 0:n - 1)
+    integer, allocatable, private :: place(:)          !! (0:n): interval that contains the beginning of the k-th of n equal parts
     real(dp), private :: per_part = 0
   contains
     procedure :: value
@@ -25,7 +26,7 @@ module monotone_cubic
 
 contains
 
-  !> Through (x, y), at least two points, x increasing; constant before the first and beyond the last.
+  !> The curve through (x, y), at least two points, x increasing; constant before the first and after the last point.
   pure type(monotone_cubic_t) function new_monotone_cubic(x, y) result(curve)
     real(dp), intent(in) :: x(0:), y(0:)
     real(dp) :: slope(0:ubound(x, 1)), secant(ubound(x, 1)), width(ubound(x, 1))
@@ -45,13 +46,13 @@ contains
     call take_points(curve, x, y, slope)
   end function new_monotone_cubic
 
-  !> Through (x, y), at least two points within less than a period, x increasing; y(x + period) = y(x).
+  !> The periodic curve through (x, y), at least two points within less than a period, x increasing; y(x + period) = y(x).
   pure type(monotone_cubic_t) function new_periodic_cubic(x, y, period) result(curve)
     real(dp), intent(in) :: x(0:), y(0:)
     real(dp), intent(in) :: period
     real(dp) :: slope(0:size(x)), secant(0:size(x)), width(0:size(x))
     integer :: i, n
-    n = size(x)   ! the first point stands again at the end
+    n = size(x)   ! the first point is repeated at the end
     width(1:n) = [x(1:n - 1), x(0) + period] - x(0:n - 1)
     secant(1:n) = ([y(1:n - 1), y(0)] - y(0:n - 1))/width(1:n)
     width(0) = width(n)
@@ -64,7 +65,7 @@ contains
     curve%period = period
   end function new_periodic_cubic
 
-  !> Slope at a point between two intervals of these widths and secants.
+  !> Slope at a point between two intervals with these widths and secants.
   pure real(dp) function inner_slope(width, next_width, secant, next_secant) result(slope)
     real(dp), intent(in) :: width, next_width, secant, next_secant
     real(dp) :: parabola
@@ -74,7 +75,7 @@ contains
     slope = sign(min(abs(secant), abs(next_secant), 0.5_dp*abs(parabola))*2, secant)
   end function inner_slope
 
-  !> Slope at an end, from the interval there and the next one.
+  !> Slope at an end point, from its interval and the next one.
   pure real(dp) function end_slope(width, next_width, secant, next_secant) result(slope)
     real(dp), intent(in) :: width, next_width, secant, next_secant
     real(dp) :: share
@@ -110,14 +111,14 @@ contains
     end do
   end subroutine take_points
 
-  !> Which of the n equal parts x is in.
+  !> Number of the equal part that contains x.
   pure integer function part_of(curve, x)
     type(monotone_cubic_t), intent(in) :: curve
     real(dp), intent(in) :: x
     part_of = min(max(int((x - curve%first)*curve%per_part), 0), ubound(curve%place, 1))
   end function part_of
 
-  !> The interval of x, and how far x is in it.
+  !> The interval of x, and the distance of x from its beginning.
   pure subroutine find(self, x, i, along)
     class(monotone_cubic_t), intent(in) :: self
     real(dp), intent(in) :: x
@@ -153,7 +154,7 @@ contains
     end associate
   end function value
 
-  !> Derivative of `value` by x.
+  !> Derivative of `value` with respect to x.
   pure real(dp) function slope(self, x)
     class(monotone_cubic_t), intent(in) :: self
     real(dp), intent(in) :: x

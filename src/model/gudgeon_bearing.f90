@@ -1,4 +1,4 @@
-!> The journal bearing of a joint with clearance, as far as contact, friction and film laws need it.
+!> The geometry of the journal bearing of a joint with clearance, for contact, friction and film laws.
 module gudgeon_bearing
   use gudgeon_kinds, only: dp
   implicit none
@@ -7,9 +7,9 @@ module gudgeon_bearing
 
   type :: bearing_t
     real(dp) :: radius = 0       !! of the bore, R_b [m]
-    real(dp) :: length = 0       !! width of the bearing [m]; 0 where the case gives none
+    real(dp) :: length = 0       !! axial length of the bearing [m]; 0 if it is not given
     real(dp) :: clearance = 0    !! radial, c = R_b - R_j [m]
-    real(dp) :: rod_length = 0   !! of the rod that carries the pin [m]
+    real(dp) :: rod_length = 0   !! length of the rod that carries the pin [m]
   contains
     procedure :: pin_radius
   end type bearing_t

@@ -1,8 +1,8 @@
-!> How a model states its parameters: once, beside the components that hold them.
+!> The declaration of a model's parameters, in one place beside the components that hold them.
 !>
-!> A type with parameters has one procedure that hands each of them, with its key, unit, limits, default and meaning, to a
-!> visitor. One visitor collects them for the reader, the template and the messages; another one sets them from the values of
-!> a case. A law is chosen from those that its family registers, by the words that the laws give as their names.
+!> A type with parameters has one procedure that passes each of them, with its key, unit, limits, default and meaning, to a visitor.
+!> One visitor collects them for the reader, the template and the messages; another one sets them from the values of a case. A law
+!> is selected from those that its family registers, by the names of the laws.
 module gudgeon_parameters
   use gudgeon_kinds, only: dp
   implicit none
@@ -12,34 +12,34 @@ module gudgeon_parameters
 
   integer, parameter :: real_kind = 1, integer_kind = 2, logical_kind = 3, word_kind = 4, text_kind = 5
 
-  !> What is known of a parameter. Ranges and words are texts, shown to the user as they stand here; a default is allowed even
-  !> outside its range and then means "not given".
+  !> The properties of a parameter. Ranges and words are texts, which are shown to the user unchanged. A default is allowed even
+  !> outside its range, and then means "not given".
   type :: key_t
-    character(len=24) :: group = ''          !! of the case file, with its place in front: crank_pin.contact
+    character(len=24) :: group = ''          !! group of the case file, with its place as a prefix: crank_pin.contact
     character(len=32) :: name = ''
     integer :: kind = real_kind
-    integer :: count = 1                     !! values
-    logical :: required = .false.            !! wherever its group is present, or one of its laws is chosen
-    character(len=24) :: default = ''        !! value where it is not given; without quotes; for all of an array
-    character(len=24) :: example = ''        !! value in the template, where the default would not do
+    integer :: count = 1                     !! number of values
+    logical :: required = .false.            !! must be given if its group is present, or if a law that has it is selected
+    character(len=24) :: default = ''        !! value if it is not given, without quotes; for all elements of an array
+    character(len=24) :: example = ''        !! value in the template, if the default is not suitable there
     character(len=12) :: unit = ''
     character(len=24) :: range = ''          !! '> 0', '>= 0 and <= 1'
     character(len=:), allocatable :: words   !! allowed words, separated by a comma and a blank
-    character(len=:), allocatable :: choice  !! the key that names the laws which have this one; not allocated: all have
+    character(len=:), allocatable :: choice  !! key that names the laws with this parameter; not allocated: all laws have it
     character(len=:), allocatable :: laws    !! those laws, separated by a comma and a blank
     character(len=170) :: description = ''
-    character(len=12) :: family = ''         !! of the keys of its group that say one thing in different ways: one may be given
-    character(len=32) :: beside = ''         !! the one of them that may stand beside this one, as a bound
-    logical :: only_here = .false.           !! must not be given where a law is chosen that does not have it
+    character(len=12) :: family = ''         !! keys of the group with the same family are alternatives, of which one may be given
+    character(len=32) :: beside = ''         !! key of the family that may be given together with this one, as a bound
+    logical :: only_here = .false.           !! must not be given if the selected law does not have it
   end type key_t
 
-  !> A visitor of parameters. A model calls `add`, `word` and `text`; a visitor has to answer `visit`, and whatever else it
-  !> wants to know of.
+  !> A visitor of parameters. A model calls `add`, `word` and `text`; a visitor must implement `visit`, and may implement the other
+  !> procedures.
   type, abstract :: parameter_list_t
-    class(law_t), allocatable :: chosen   !! the law of the present group that the case names, with its parameters set
+    class(law_t), allocatable :: chosen   !! law of the present group that the case names, with its parameters set
     logical :: sets = .false.             !! this visitor sets the parameters of the present group, and `chosen`
     logical :: is_present = .false.       !! while it sets them: the case has the present group
-    logical :: passes = .false.           !! this visitor has no use for the parameters of the present group
+    logical :: passes = .false.           !! this visitor ignores the parameters of the present group
     character(len=32), private :: amount = ''   !! see `make_optional`; empty: laws are not optional
   contains
     procedure(visit_parameter), deferred :: visit
@@ -58,7 +58,7 @@ module gudgeon_parameters
     procedure(parameters_of), deferred :: parameters
   end type has_parameters_t
 
-  !> A law: one of a family of which a case names one.
+  !> A law: a member of a family of which a case names one.
   type, abstract, extends(has_parameters_t) :: law_t
   contains
     procedure(name_of), deferred, nopass :: name
@@ -67,19 +67,19 @@ module gudgeon_parameters
   end type law_t
 
   abstract interface
-    !> Hand every parameter to the visitor.
+    !> Declare all parameters to the visitor.
     subroutine parameters_of(self, list)
       import :: has_parameters_t, parameter_list_t
       class(has_parameters_t), intent(inout) :: self
       class(parameter_list_t), intent(inout) :: list
     end subroutine parameters_of
 
-    !> The word by which a case names the law.
+    !> The name of the law in a case.
     pure function name_of() result(name)
       character(len=:), allocatable :: name
     end function name_of
 
-    !> A parameter, and the component that holds it: that of its kind is present.
+    !> Visit a parameter; of the optional arguments the component of its kind is present.
     subroutine visit_parameter(self, key, reals, whole, switch, text)
       import :: parameter_list_t, key_t, dp
       class(parameter_list_t), intent(inout) :: self
@@ -93,14 +93,14 @@ module gudgeon_parameters
 
 contains
 
-  !> What follows belongs to this group. A model's group may be left out of a case, and the model is then absent from its scene.
-  !> A group with a place may stand in a case once for each place.
+  !> The following parameters belong to this group. The group of an optional model may be missing in a case; its model is then
+  !> absent from the scene. A group with a place may appear once for each place.
   subroutine pass_group(self, name, says, is_model, place, instead_of)
     class(parameter_list_t), intent(inout) :: self
     character(len=*), intent(in) :: name, says
     logical, intent(in) :: is_model
     character(len=*), intent(in), optional :: place
-    character(len=*), intent(in), optional :: instead_of   !! group that a case cannot have beside it
+    character(len=*), intent(in), optional :: instead_of   !! group that a case cannot have together with this one
     associate (unused => self, unused_name => name, unused_text => says, unused_switch => is_model, &
                unused_place => present(place), unused_group => present(instead_of))
     end associate
@@ -114,7 +114,7 @@ contains
     end associate
   end subroutine pass_choice
 
-  !> A law that the last choice offers, with its parameters at any values.
+  !> A law that can be selected by the last choice, with arbitrary values of its parameters.
   subroutine pass_law(self, law)
     class(parameter_list_t), intent(inout) :: self
     class(law_t), intent(in) :: law
@@ -122,15 +122,15 @@ contains
     end associate
   end subroutine pass_law
 
-  !> A number. Without a default it is required.
+  !> Declare a real. It is required if it has no default.
   subroutine add_real(self, key, value, says, unit, range, default, example, family, beside, only_here)
     class(parameter_list_t), intent(inout) :: self
-    character(len=*), intent(in) :: key, says                               !! its meaning in a few words
+    character(len=*), intent(in) :: key, says                               !! key and short description
     real(dp), intent(inout) :: value
     character(len=*), intent(in), optional :: unit, range, default, example
-    character(len=*), intent(in), optional :: family   !! of keys of which one alone may be given
-    character(len=*), intent(in), optional :: beside   !! but this key
-    logical, intent(in), optional :: only_here         !! not where a law is chosen that does not have it
+    character(len=*), intent(in), optional :: family   !! alternative keys of which only one may be given
+    character(len=*), intent(in), optional :: beside   !! exception to that
+    logical, intent(in), optional :: only_here         !! must not be given if the selected law does not have it
     type(key_t) :: new
     real(dp) :: values(1)
     if (self%passes) return
@@ -148,7 +148,7 @@ contains
     value = values(1)
   end subroutine add_real
 
-  !> Two numbers; a default is that of both, and so is an example without a comma.
+  !> Declare two reals; a default is that of both, and so is an example without a comma.
   subroutine add_pair(self, key, value, says, unit, range, default, example)
     class(parameter_list_t), intent(inout) :: self
     character(len=*), intent(in) :: key, says
@@ -161,7 +161,7 @@ contains
     call self%visit(new, reals=value)
   end subroutine add_pair
 
-  !> A whole number.
+  !> Declare an integer.
   subroutine add_integer(self, key, value, says, range, default, example)
     class(parameter_list_t), intent(inout) :: self
     character(len=*), intent(in) :: key, says
@@ -171,7 +171,7 @@ contains
     call self%visit(described(key, integer_kind, says, range=range, default=default, example=example), whole=value)
   end subroutine add_integer
 
-  !> A switch, .true. or .false. Where laws of one group have other defaults for it, the first of them has an example.
+  !> Declare a switch, .true. or .false. If laws of one group have different defaults for it, the first one must have an example.
   subroutine add_logical(self, key, value, says, default, example)
     class(parameter_list_t), intent(inout) :: self
     character(len=*), intent(in) :: key, says, default
@@ -181,7 +181,7 @@ contains
     call self%visit(described(key, logical_kind, says, default=default, example=example), switch=value)
   end subroutine add_logical
 
-  !> One of several words, separated by a comma and a blank.
+  !> Declare a choice of words, separated by a comma and a blank.
   subroutine word(self, key, value, words, default, says, example)
     class(parameter_list_t), intent(inout) :: self
     character(len=*), intent(in) :: key, words, default, says
@@ -194,7 +194,7 @@ contains
     call self%visit(new, text=value)
   end subroutine word
 
-  !> Any text; with `many`, several texts are joined by commas. Without a default it is required.
+  !> Declare a text; with `many`, several texts are joined by commas. It is required if it has no default.
   subroutine text(self, key, value, says, default, many, example)
     class(parameter_list_t), intent(inout) :: self
     character(len=*), intent(in) :: key, says
@@ -208,8 +208,8 @@ contains
     call self%visit(new, text=value)
   end subroutine text
 
-  !> The laws that follow are optional: a case that gives nothing of theirs has 0 of this key, the amount of what they do, and their
-  !> examples for whatever else they require. An empty key ends that.
+  !> The following laws are optional: if a case gives none of their parameters, the key `amount`, which scales their effect, is 0,
+  !> and other required parameters take the values of their examples. An empty key ends this.
   subroutine make_optional(self, amount)
     class(parameter_list_t), intent(inout) :: self
     character(len=*), intent(in) :: amount
@@ -230,8 +230,8 @@ contains
     if (present(example)) key%example = example
   end function described
 
-  !> Whether this type is the law of its name in a variant; an empty text means the law's own default. Two types may share a
-  !> name and split its variants. The default is a law without variants.
+  !> Whether this type implements a variant of the law of its name; an empty text is the default variant. Two types may share a name
+  !> and implement different variants. The default is a law without variants.
   pure logical function serves_every_variant(self, variant)
     class(law_t), intent(in) :: self
     character(len=*), intent(in) :: variant
@@ -240,8 +240,8 @@ contains
     serves_every_variant = .true.
   end function serves_every_variant
 
-  !> What does not fit between the parameters: the key of the wrong one and what is wanted of it. An empty key means that all is
-  !> well. The default has nothing that could be wrong.
+  !> Find a contradiction between the parameters: the key of the wrong one, and what is required of it. An empty key means that
+  !> there is none, which is the default.
   pure subroutine no_conflict(self, key, wanted)
     class(law_t), intent(in) :: self
     character(len=:), allocatable, intent(out) :: key, wanted

@@ -1,5 +1,5 @@
-!> A measured curve that a case names by its file: two columns of numbers. A model declares it as a parameter; the code that reads
-!> cases fills in the numbers.
+!> A measured curve, given in a case by the name of a file with two columns of numbers. A model declares it as a parameter; the code
+!> that reads cases sets the numbers.
 module measured_curve
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: parameter_list_t
@@ -9,9 +9,9 @@ module measured_curve
 
   type :: measured_curve_t
     character(len=:), allocatable :: file       !! path as the case gives it, relative to the case file
-    character(len=:), allocatable :: digest     !! of the file's bytes, that the case asks for; empty: any
-    character(len=:), allocatable :: path       !! of the file that the numbers are from, absolute; not allocated: none yet
-    character(len=:), allocatable :: found      !! the digest of that file
+    character(len=:), allocatable :: digest     !! digest of the file's bytes required by the case; empty: any
+    character(len=:), allocatable :: path       !! absolute path of the file that was read; not allocated: none yet
+    character(len=:), allocatable :: found      !! digest of that file
     real(dp), allocatable :: x(:), y(:)         !! the columns, x increasing
   contains
     procedure :: parameters
@@ -20,7 +20,7 @@ module measured_curve
 
 contains
 
-  !> The keys NAME and NAME_digest. Without a default the file is required; an empty name is none.
+  !> Declare the keys NAME and NAME_digest. The file is required if there is no default; an empty name means no file.
   subroutine parameters(self, list, name, says, default, example)
     class(measured_curve_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list

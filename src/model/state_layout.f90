@@ -1,25 +1,25 @@
-!> Where each owner's numbers stand in the state y = (positions | their rates | first-order states | quadratures), and how large
-!> they naturally are.
+!> The layout of the state y = (positions | their rates | first-order states | quadratures): the indices of each owner's components,
+!> and their natural sizes.
 !>
-!> When a scene is built, every owner (crank, joint, law, rod) claims the numbers that it needs, with their natural size. When
-!> all have claimed, each settles what it has claimed, since only then is known where rates, states and quadratures begin.
-!> Quadratures come last, so more of them may be claimed and settled later.
+!> When a scene is built, every owner (crank, joint, law, rod) claims the components that it needs, with their natural sizes. After
+!> all claims each owner settles its own, since only then the indices of rates, states and quadratures are known. Quadratures are
+!> last, so that more of them may be claimed and settled later.
 module state_layout
   use gudgeon_kinds, only: dp
   implicit none
   private
   public :: layout_t, coordinates_t, slice_t
 
-  !> Positions of one owner, neighbours in the state, and their rates, which are neighbours too.
+  !> Positions of one owner, which are adjacent in the state, and their rates, which are adjacent too.
   type :: coordinates_t
-    integer :: n = 0          !! how many
-    integer :: position = 0   !! where the first of them stands in y
-    integer :: rate = 0       !! where the rate of the first stands; 0: not settled
+    integer :: n = 0          !! number of positions
+    integer :: position = 0   !! index of the first position in y
+    integer :: rate = 0       !! index of the first rate in y; 0: not settled
   end type coordinates_t
 
-  !> First-order states or quadratures of one owner, neighbours in the state.
+  !> First-order states or quadratures of one owner, adjacent in the state.
   type :: slice_t
-    integer :: first = 1, last = 0   !! in y; empty unless claimed and settled
+    integer :: first = 1, last = 0   !! indices in y; empty unless claimed and settled
     integer, private :: section = 0, before = 0
   end type slice_t
 
@@ -48,13 +48,13 @@ module state_layout
 
 contains
 
-  !> Positions and their rates, `n` of each. Where a position `grows` without bound (a crank angle), a tolerance relative to itself
-  !> means nothing.
+  !> Claim `n` positions and their rates. If a position `grows` without bound (a crank angle), its tolerance is not relative to its
+  !> value.
   subroutine claim_positions(self, n, scale, rate_scale, at, grows)
     class(layout_t), intent(inout) :: self
     integer, intent(in) :: n
     real(dp), intent(in) :: scale        !! natural size of each position
-    real(dp), intent(in) :: rate_scale   !! and of each rate
+    real(dp), intent(in) :: rate_scale   !! natural size of each rate
     type(coordinates_t), intent(out) :: at
     logical, intent(in) :: grows
     at%n = n
@@ -64,7 +64,7 @@ contains
     self%n_positions = self%n_positions + n
   end subroutine claim_positions
 
-  !> First-order states, `n` of them of one natural size.
+  !> Claim `n` first-order states with one natural size.
   subroutine claim_states(self, n, scale, at)
     class(layout_t), intent(inout) :: self
     integer, intent(in) :: n
@@ -77,8 +77,7 @@ contains
     self%n_states = self%n_states + n
   end subroutine claim_states
 
-  !> Quadratures, `n` of them of one natural size: integrals on which nothing depends. Size 0: they take no part in the control
-  !> of the error.
+  !> Claim `n` quadratures, integrals on which nothing depends, with one natural size. Size 0 excludes them from the error control.
   subroutine claim_quadratures(self, n, scale, at)
     class(layout_t), intent(inout) :: self
     integer, intent(in) :: n
@@ -91,14 +90,14 @@ contains
     self%n_quadratures = self%n_quadratures + n
   end subroutine claim_quadratures
 
-  !> Find out where claimed positions have their rates.
+  !> Find the indices of the rates of claimed positions.
   pure subroutine settle_coordinates(self, at)
     class(layout_t), intent(in) :: self
     type(coordinates_t), intent(inout) :: at
     at%rate = at%position + self%n_positions
   end subroutine settle_coordinates
 
-  !> Find out where claimed states or quadratures stand.
+  !> Find the indices of claimed states or quadratures.
   pure subroutine settle_slice(self, at)
     class(layout_t), intent(in) :: self
     type(slice_t), intent(inout) :: at
@@ -115,7 +114,7 @@ contains
     n = 2*self%n_positions + self%n_states + self%n_quadratures
   end function n
 
-  !> Natural sizes of the components of the state, against which a tolerance is meant, and which of them grow without bound.
+  !> Natural sizes of the components of the state, to which absolute tolerances refer, and which of them grow without bound.
   pure subroutine natural_scales(self, scales, growing)
     class(layout_t), intent(in) :: self
     real(dp), intent(out) :: scales(:)    !! (n)
@@ -131,7 +130,7 @@ contains
     end do
   end subroutine natural_scales
 
-  !> More of one kind.
+  !> Append components to one part of the state.
   pure subroutine append(section, n, scale, grows)
     type(section_t), intent(inout) :: section
     integer, intent(in) :: n

@@ -1,7 +1,7 @@
-!> A row of a trace: who has a quantity gives its column, name, value and meaning, in one call.
+!> A row of a trace. Each owner of a quantity passes name, value and meaning of its column in one call.
 !>
-!> The same calls serve two passes. Before a run they collect the names and meanings of the columns that a scene has; in every row
-!> they give the values. Values that take work are computed only where the trace has a column that needs them (`wants`).
+!> The same calls are used in two passes. Before a run they collect names and meanings of the columns of a scene; for every row they
+!> pass the values. Values that are expensive are computed only if the trace has a column for them (`wants`).
 module trace_row
   use gudgeon_kinds, only: dp
   implicit none
@@ -14,21 +14,21 @@ module trace_row
 
   !> The columns of one trace.
   type :: column_list_t
-    character(len=name_length), allocatable :: names(:)   !! of all that the scene has, with their units
+    character(len=name_length), allocatable :: names(:)   !! of all columns of the scene, with units
     character(len=meaning_length), allocatable :: meanings(:)
     logical, allocatable :: on_request(:)                 !! columns that are not standard
-    integer, allocatable :: id(:)                         !! those of the trace, as positions among the names
+    integer, allocatable :: id(:)                         !! columns of the trace, as indices into the names
   end type column_list_t
 
   type :: trace_row_t
-    integer :: n = 0                            !! columns so far
-    logical :: is_naming = .false.              !! this pass collects names
-    character(len=12) :: place = ''             !! in front of the names that follow, with an underscore behind
-    logical :: wanted(most_columns)             !! columns whose values the trace has
-    real(dp) :: values(most_columns)            !! of the columns so far (without an initial value, which every row would pay for)
-    character(len=name_length), allocatable :: names(:)   !! in the pass that collects them
-    character(len=meaning_length), allocatable :: meanings(:)   !! in that pass
-    logical, allocatable :: on_request(:)       !! in that pass: columns that are not standard
+    integer :: n = 0                            !! number of columns so far
+    logical :: is_naming = .false.              !! names are being collected
+    character(len=12) :: place = ''             !! prefix of the following names, separated by an underscore
+    logical :: wanted(most_columns)             !! columns whose values are in the trace
+    real(dp) :: values(most_columns)            !! values of the columns so far (not initialised, to save time)
+    character(len=name_length), allocatable :: names(:)   !! while names are collected
+    character(len=meaning_length), allocatable :: meanings(:)   !! while names are collected
+    logical, allocatable :: on_request(:)       !! while names are collected: columns that are not standard
   contains
     procedure, non_overridable :: put
     procedure, non_overridable :: put_on_request
@@ -40,7 +40,7 @@ module trace_row
 
 contains
 
-  !> Begin the pass that collects names.
+  !> Begin to collect names.
   subroutine collect_names(self)
     class(trace_row_t), intent(inout) :: self
     self%n = 0
@@ -62,12 +62,12 @@ contains
     end do
   end subroutine choose
 
-  !> The next column.
+  !> Put the next column.
   pure subroutine put(self, name, value, says)
     class(trace_row_t), intent(inout) :: self
     character(len=*), intent(in) :: name    !! with its unit: normal_force[N]
     real(dp), intent(in) :: value
-    character(len=*), intent(in) :: says    !! its meaning and sign, as the manual gives them
+    character(len=*), intent(in) :: says    !! meaning and sign, for the manual
     self%n = self%n + 1
     if (self%is_naming) then
       self%names(self%n) = trim(self%place)//name
@@ -77,7 +77,7 @@ contains
     end if
   end subroutine put
 
-  !> The next column, which a trace has only if the case names it.
+  !> Put the next column, which a trace has only if the case names it.
   pure subroutine put_on_request(self, name, value, says)
     class(trace_row_t), intent(inout) :: self
     character(len=*), intent(in) :: name, says
@@ -86,14 +86,14 @@ contains
     if (self%is_naming) self%on_request(self%n) = .true.
   end subroutine put_on_request
 
-  !> Pass over the next `count` columns, none of which is in the trace. Not while names are collected.
+  !> Skip the next `count` columns, none of which is in the trace. Must not be called while names are collected.
   pure subroutine skip(self, count)
     class(trace_row_t), intent(inout) :: self
     integer, intent(in) :: count
     self%n = self%n + count
   end subroutine skip
 
-  !> Whether one of the next `count` columns is in the trace. While names are collected none is.
+  !> Whether one of the next `count` columns is in the trace; false while names are collected.
   pure logical function wants(self, count)
     class(trace_row_t), intent(in) :: self
     integer, intent(in) :: count

@@ -1,9 +1,9 @@
-!> Adams where the problem is not stiff, Radau where it is, chosen while integrating.
+!> Chooses between Adams for non-stiff and Radau for stiff parts of the problem during the integration.
 !>
-!> Every phase of the problem (its `mode`) begins with the method that it ended with the last time, at first with Adams. A
-!> phase in which Adams is bound by its stability for a number of steps continues with Radau from the same point. What Radau then
-!> costs in this mode is held against what Adams would need, which is proportional to the rate of the fastest mode; where it comes
-!> to a loss, the phase goes back and asks for more patience the next time.
+!> Every phase of the problem (its `mode`) begins with the method with which the last phase of this mode ended, at first with Adams.
+!> If Adams is limited by stability for a number of steps, Radau continues from the same point. The evaluations that Radau then uses
+!> in this mode are compared with those that Adams would need, which are proportional to the rate of the fastest mode. If Radau uses
+!> more, Adams continues, and the number of steps required for the next change is increased.
 module auto_method
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t
@@ -15,21 +15,22 @@ module auto_method
   private
   public :: auto_t
 
-  integer, parameter :: first_patience = 40    !! steps bound by stability, more than not, before Radau takes over
-  real(dp), parameter :: adams_price = 1.3_dp  !! of Adams where it is bound, in evaluations per 1/rate of the fastest mode
-  real(dp), parameter :: step_overhead = 5     !! of a Radau step, Jacobian and algebra, in evaluations
-  real(dp), parameter :: most_loss = 80       !! by Radau in a mode, in evaluations, before Adams is back
+  integer, parameter :: first_patience = 40    !! excess of steps limited by stability over other steps after which Radau takes over
+  real(dp), parameter :: adams_price = 1.3_dp  !! evaluations of Adams limited by stability, per 1/rate of the fastest mode
+  real(dp), parameter :: step_overhead = 5     !! cost of Jacobian and linear algebra of a Radau step, in evaluations
+  real(dp), parameter :: most_loss = 80  !! largest number of additional evaluations by Radau in a mode before Adams takes over
+                                         !! again
 
   type, extends(ode_method_t) :: auto_t
     private
     type(adams_t) :: adams
     type(radau_t) :: radau
-    logical :: stiff = .false.            !! Radau is at work
-    logical, allocatable :: stiff_in(:)   !! the mode ended with Radau, (0:highest mode)
-    integer :: mode = 0                   !! of the present phase
-    integer :: bound = 0                  !! steps of Adams bound by stability, more than not
-    integer, allocatable :: patience(:)   !! in each mode, as what follows
-    real(dp), allocatable :: loss(:)      !! evaluations that Radau has taken more than Adams would have
+    logical :: stiff = .false.            !! Radau is in use
+    logical, allocatable :: stiff_in(:)   !! the last phase of this mode ended with Radau, (0:highest mode)
+    integer :: mode = 0                   !! mode of the present phase
+    integer :: bound = 0                  !! excess of Adams steps limited by stability over other steps
+    integer, allocatable :: patience(:)   !! number of such steps required, for each mode
+    real(dp), allocatable :: loss(:)      !! evaluations by Radau minus those that Adams would have needed, for each mode
   contains
     procedure :: start
     procedure :: step
@@ -62,7 +63,7 @@ contains
     call begin_with(self, problem, self%stiff_in(self%mode), t, y, first, status)
   end subroutine start
 
-  !> Nothing is known of any mode.
+  !> Discard what is known about the modes.
   pure subroutine forget_modes(self, highest)
     class(auto_t), intent(inout) :: self
     integer, intent(in) :: highest
@@ -73,7 +74,7 @@ contains
     allocate (self%time_with(2, 0:highest), source=0.0_dp)
   end subroutine forget_modes
 
-  !> Both methods and the account that is kept of them.
+  !> Write both methods and the data for the choice to an archive, or read them from it.
   subroutine exchange(self, problem, archive)
     class(auto_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
@@ -93,7 +94,7 @@ contains
     call archive%exchange(self%time_with)
   end subroutine exchange
 
-  !> Start a method at (t, y); the statistics go with it.
+  !> Start a method at (t, y), continuing the statistics.
   subroutine begin_with(self, problem, stiff, t, y, first, status)
     class(auto_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
@@ -155,7 +156,7 @@ contains
     end if
   end subroutine step
 
-  !> Go on with the other method from where we are.
+  !> Continue with the other method from the present point.
   subroutine change_over(self, problem, stiff, status)
     class(auto_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
@@ -172,21 +173,21 @@ contains
     end if
   end subroutine change_over
 
-  !> A change-over, which is no restart that the problem asked for.
+  !> Count a change of method, which is not a restart requested by the problem.
   pure subroutine count_change(statistics)
     type(step_statistics_t), intent(inout) :: statistics
     statistics%restarts = statistics%restarts - 1
     statistics%switches = statistics%switches + 1
   end subroutine count_change
 
-  !> The last step of the method at work is ours.
+  !> Take the last step of the method in use as the step of this method.
   subroutine take_over(self, method)
     class(auto_t), intent(inout) :: self
     class(ode_method_t), intent(in) :: method
     self%t = method%t
     self%t_old = method%t_old
     self%order = method%order
-    self%y(:) = method%y   ! of the same size: no look at bounds
+    self%y(:) = method%y   ! same size, so that no reallocation is checked
     self%y_old(:) = method%y_old
     self%statistics%accepted = method%statistics%accepted
     self%statistics%evaluations = method%statistics%evaluations
@@ -215,7 +216,7 @@ contains
     end if
   end subroutine land_on
 
-  !> The time of the last step goes to the method that took it, in the mode in which it was taken.
+  !> Add the time of the last step to the total of the method and the mode with which it was made.
   subroutine count_time(self, t_to)
     class(auto_t), intent(inout) :: self
     real(dp), intent(in) :: t_to
@@ -229,7 +230,7 @@ contains
     end if
   end subroutine count_time
 
-  !> The counts of both methods together.
+  !> Sum of the statistics of both methods.
   pure type(step_statistics_t) function totals(self) result(statistics)
     class(auto_t), intent(in) :: self
     if (self%stiff) then

@@ -1,7 +1,7 @@
-!> The state of a run as a string of bytes, so that it can be put away and resumed bit for bit.
+!> The state of a run as a string of bytes, from which a run can be continued with identical results.
 !>
-!> Every type with a state has one procedure `exchange` that names its components once; the archive either takes them or
-!> gives them back, so that both directions cannot disagree.
+!> Every type with a state has one procedure `exchange` that lists its components once. The archive either stores or returns them,
+!> so that writing and reading cannot differ.
 module gudgeon_archive
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp
@@ -9,16 +9,16 @@ module gudgeon_archive
   private
   public :: archive_t
 
-  integer, parameter :: head = 5   !! bytes before the values of an entry: their kind, one byte, and their number
+  integer, parameter :: head = 5   !! length of an entry's header: its kind (one byte) and the number of its values
 
-  !> Values in the order in which they came. Reading what is not there, or is of another kind or number, sets `failed`
-  !> and leaves the component as it was.
+  !> Values in the order in which they were written. Reading an entry that does not exist, or has another kind or number of values,
+  !> sets `failed` and does not change the component.
   type :: archive_t
     private
     logical, public :: is_reading = .false.
     logical, public :: failed = .false.
     character(len=:), allocatable :: bytes
-    integer :: at = 0                        !! bytes written or read
+    integer :: at = 0                        !! number of bytes written or read
   contains
     procedure :: begin_writing
     procedure :: begin_reading
@@ -33,7 +33,7 @@ module gudgeon_archive
 
 contains
 
-  !> Empty, to be filled.
+  !> Begin an empty archive for writing.
   subroutine begin_writing(self)
     class(archive_t), intent(inout) :: self
     self%is_reading = .false.
@@ -42,7 +42,7 @@ contains
     if (.not. allocated(self%bytes)) allocate (character(len=4096) :: self%bytes)
   end subroutine begin_writing
 
-  !> Filled with the contents of another, to be read from its beginning.
+  !> Begin reading an archive with the given contents.
   subroutine begin_reading(self, bytes)
     class(archive_t), intent(inout) :: self
     character(len=*), intent(in) :: bytes
@@ -65,7 +65,7 @@ contains
     is_at_end = self%at == len(self%bytes)
   end function is_at_end
 
-  !> One entry: `block` is written, or read.
+  !> Write or read one entry.
   subroutine exchange_block(self, kind, number, block)
     class(archive_t), intent(inout) :: self
     character(len=1), intent(in) :: kind
@@ -167,7 +167,7 @@ contains
     value = values(1)
   end subroutine exchange_logical
 
-  !> A text of any length, its length before it.
+  !> A text of any length, preceded by its length.
   subroutine exchange_text(self, text)
     class(archive_t), intent(inout) :: self
     character(len=:), allocatable, intent(inout) :: text

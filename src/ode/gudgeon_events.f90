@@ -1,10 +1,10 @@
-!> Finding events inside a step: the first passage of an event function from negative to not negative.
+!> Detection of events inside a step: the first passage of an event function from negative to non-negative values.
 !>
-!> All functions are followed with their rate. A cubic through values and rates at both ends of the step, with a margin for
-!> its own curvature, tells the steps in which nothing is to be expected; the rest is sampled on the interpolant, so that a
-!> function that passes zero and comes back within one step is found in general. So it is, for any function, in the first step
-!> after a restart until it has become negative. A function whose event has been taken, that is on its way to become negative (as
-!> the penetration of a contact that has ended) and turns before it is, has its event again where it turns.
+!> All functions are evaluated together with their rates. A cubic through values and rates at both ends of the step, with a margin
+!> for its curvature, excludes steps in which no event is possible; otherwise the interpolant is sampled, so that a function that
+!> passes zero and returns within one step is usually found. The same is done for all functions in the first step after a restart,
+!> until they have become negative. If a function whose event has been taken is becoming negative (such as the penetration after the
+!> end of a contact) and turns before it is negative, its event occurs again where it turns.
 module gudgeon_events
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t, max_events
@@ -20,17 +20,17 @@ module gudgeon_events
     real(dp) :: t = 0, g = 0, rate = 0
   end type sample_t
 
-  !> The event functions at the end of what has been searched.
+  !> The event functions at the end of the interval searched so far.
   type :: event_watch_t
     private
-    integer :: n = 0                      !! functions
-    logical :: low(max_events) = .false.  !! it has been negative since the last restart: a passage counts
-    logical :: leaving(max_events) = .false.       !! its event has been taken, it is not negative yet, but becomes so
-    logical :: on_step_end(max_events) = .false.   !! its passage is taken at the end of the step
-    integer :: just_taken = 0             !! the event that led to the last restart
+    integer :: n = 0                      !! number of functions
+    logical :: low(max_events) = .false.  !! negative at some time since the last restart: a passage is an event
+    logical :: leaving(max_events) = .false.       !! its event has been taken, and it is becoming negative
+    logical :: on_step_end(max_events) = .false.   !! its event is taken at the end of the step
+    integer :: just_taken = 0             !! event that caused the last restart
     logical :: fresh = .true.             !! no step since the restart
-    real(dp) :: t = 0                     !! end of what has been searched
-    real(dp) :: g(max_events) = 0, rate(max_events) = 0   !! the functions there
+    real(dp) :: t = 0                     !! end of the interval searched so far
+    real(dp) :: g(max_events) = 0, rate(max_events) = 0   !! values and rates at that time
     real(dp), allocatable :: y(:)         !! work
   contains
     procedure :: begin
@@ -40,8 +40,8 @@ module gudgeon_events
 
 contains
 
-  !> Start watching at (t, y), after a start or restart of the method. Event `just_taken` (0: none) is not taken again
-  !> before its function has been negative; any other that is past zero already and continues is taken at once.
+  !> Begin at (t, y), after a start or restart of the method. Event `just_taken` (0: none) is not taken again before its function
+  !> has been negative; any other function that is positive and increasing gives an event at once.
   subroutine begin(self, problem, t, y, just_taken)
     class(event_watch_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
@@ -58,7 +58,7 @@ contains
     self%leaving(:self%n) = self%leaving(:self%n) .and. .not. self%low(:self%n)
   end subroutine begin
 
-  !> What the problem tells of its functions from now to the next restart.
+  !> Ask the problem for properties of its functions that are constant until the next restart.
   subroutine prepare(self, problem)
     class(event_watch_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
@@ -69,7 +69,7 @@ contains
     end do
   end subroutine prepare
 
-  !> Values and rates of the functions at (t, y), the end of what has been searched.
+  !> Evaluate the functions and their rates at (t, y), the end of the interval searched so far.
   subroutine look(self, problem, t, y)
     class(event_watch_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
@@ -78,7 +78,7 @@ contains
     call problem%events(t, y, self%g, self%rate)
   end subroutine look
 
-  !> To or from an archive, for a problem that has been in it before.
+  !> Write the state to an archive, or read it from it; the problem must have been read before.
   subroutine exchange(self, problem, archive)
     class(event_watch_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
@@ -97,8 +97,8 @@ contains
     call archive%exchange(self%rate)
   end subroutine exchange
 
-  !> Search the last step of the method up to t_last. `index` is the first event, 0 if there is none; t_event is when it
-  !> happened, on the not negative side, or where the search ended.
+  !> Search the last step of the method up to t_last. `index` is the first event, or 0. t_event is its time, at a non-negative value
+  !> of the function, or the end of the search.
   subroutine search(self, method, problem, t_last, index, t_event)
     class(event_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
@@ -140,7 +140,7 @@ contains
     end do
   end subroutine search
 
-  !> In the first step after a restart: a function that was past zero already, and going on.
+  !> In the first step after a restart: an event of a function that was positive at its beginning and is increasing.
   pure subroutine take_passed(self, index, t_event)
     class(event_watch_t), intent(inout) :: self
     integer, intent(inout) :: index
@@ -157,7 +157,7 @@ contains
     self%fresh = .false.
   end subroutine take_passed
 
-  !> Search one function, which may reach zero, from `before` to `here`, the end of the step or less.
+  !> Search one function that may reach zero, from `before` to `here`, which is at most the end of the step.
   subroutine search_one(self, method, problem, index, before, here, found, t_found)
     class(event_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
@@ -188,10 +188,10 @@ contains
     end do
   end subroutine search_one
 
-  !> Whether a function that is negative at both ends cannot reach zero between them: its cubic, in Bernstein form and
-  !> with its deviation from the straight line counted twice, stays negative.
+  !> Whether a function that is negative at both ends cannot reach zero between them: the cubic in Bernstein form, with twice its
+  !> deviation from the straight line, is negative.
   pure logical function stays_negative(width, left, left_rate, right, right_rate)
-    real(dp), intent(in) :: width                            !! of the time between them
+    real(dp), intent(in) :: width                            !! time between them
     real(dp), intent(in) :: left, left_rate, right, right_rate
     real(dp) :: inner_left, inner_right, bend
     real(dp), parameter :: third = 1/3.0_dp
@@ -203,7 +203,7 @@ contains
     stays_negative = max(inner_left, inner_right) + bend < 0
   end function stays_negative
 
-  !> Search between two samples. `low` tells whether the function has been negative before, and is updated.
+  !> Search between two samples. `low` says whether the function has been negative before, and is updated.
   subroutine search_piece(self, method, problem, index, left, right, low, found, t_found)
     class(event_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
@@ -219,7 +219,7 @@ contains
     t_found = right%t
     start = left
     if (.not. low .and. right%g >= 0 .and. left%rate < 0 .and. right%rate > 0) then
-      start = extremum(self, method, problem, index, left, right)   ! it may dip below zero in between
+      start = extremum(self, method, problem, index, left, right)   ! it may become negative in between
       low = start%g < 0
       if (.not. low .and. self%leaving(index)) then
         found = .true.
@@ -240,7 +240,7 @@ contains
     low = low .or. right%g < 0
   end subroutine search_piece
 
-  !> The first instant, to the resolution of the time, at which the function is not negative.
+  !> The first instant, within the resolution of the time, at which the function is non-negative.
   real(dp) function passage(self, method, problem, index, left, right)
     class(event_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method

@@ -11,7 +11,7 @@ module gudgeon_methods
 
 contains
 
-  !> The method of a name. Error: an unknown name.
+  !> Create the integration method of a given name. Error: an unknown name.
   subroutine new_method(name, method, error)
     character(len=*), intent(in) :: name
     class(ode_method_t), allocatable, intent(out) :: method

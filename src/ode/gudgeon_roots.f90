@@ -5,18 +5,18 @@ module gudgeon_roots
   private
   public :: bracket_t, next_abscissa, narrow
 
-  !> A sign change from negative (at a) to not negative (at b), narrowed by the ITP method (Oliveira & Takahashi
-  !> 2020): never more evaluations than bisection and one, superlinear where the function is smooth. a < b or a > b.
+  !> A sign change from negative (at a) to non-negative (at b), reduced by the ITP method (Oliveira & Takahashi 2020): at most one
+  !> evaluation more than bisection, and superlinear for smooth functions. a < b or a > b.
   type :: bracket_t
-    real(dp) :: a, b         !! ends
-    real(dp) :: fa, fb       !! values there: fa < 0 <= fb
-    integer :: steps = 0     !! evaluations so far
-    real(dp) :: width = 0    !! |b - a| at the beginning
+    real(dp) :: a, b         !! ends of the bracket
+    real(dp) :: fa, fb       !! values at the ends: fa < 0 <= fb
+    integer :: steps = 0     !! number of evaluations so far
+    real(dp) :: width = 0    !! initial |b - a|
   end type bracket_t
 
 contains
 
-  !> Where to evaluate next. Equal to an end where the bracket cannot be divided any more.
+  !> Where to evaluate next; equal to an end if the bracket cannot be divided further.
   pure real(dp) function next_abscissa(bracket) result(x)
     type(bracket_t), intent(in) :: bracket
     real(dp) :: middle, secant, truncated, sigma, radius, resolution
@@ -41,7 +41,7 @@ contains
     end associate
   end function next_abscissa
 
-  !> Replace the end of the bracket whose sign the value at x has.
+  !> Replace the end of the bracket at which the sign is that of the value at x.
   pure subroutine narrow(bracket, x, value)
     type(bracket_t), intent(inout) :: bracket
     real(dp), intent(in) :: x, value

@@ -1,5 +1,5 @@
-!> Integration from one time to another through events: step, search the step for events, show it to the observer,
-!> take the event, restart.
+!> Integrates from one time to another with events: take a step, search it for events, report it to the observer, handle the event,
+!> restart.
 module gudgeon_solver
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t, event_stop, max_events
@@ -12,23 +12,23 @@ module gudgeon_solver
   public :: integration_done, integration_stopped, step_limit_reached, integration_interrupted, chattering, &
     evaluation_limit_reached, unreadable_archive
 
-  !> How an integration ended, besides the failures of a step (status codes of `ode_method`).
+  !> Outcomes of an integration, in addition to failures of a step (status codes of `ode_method`).
   integer, parameter :: integration_done = 0          !! the end time was reached
-  integer, parameter :: integration_stopped = -1      !! an event asked for the end
+  integer, parameter :: integration_stopped = -1      !! an event ended the run
   integer, parameter :: step_limit_reached = 11       !! more steps than allowed
-  integer, parameter :: integration_interrupted = 12  !! the observer asked for the end
-  integer, parameter :: chattering = 13               !! event after event without progress in time
+  integer, parameter :: integration_interrupted = 12  !! the observer ended the run
+  integer, parameter :: chattering = 13               !! many events without progress in time
   integer, parameter :: evaluation_limit_reached = 14 !! more evaluations of the right-hand side than the settings allow
 
-  integer, parameter :: unreadable_archive = 15       !! the archive to continue from does not fit the problem and the method
+  integer, parameter :: unreadable_archive = 15       !! the archive does not match the problem and the method
 
-  integer, parameter :: most_events_in_place = 100    !! events within the chatter time: chatter
+  integer, parameter :: most_events_in_place = 100    !! number of events within the chatter time that count as chatter
 
-  !> Somebody who looks at accepted steps and at events. While `step_taken` runs, the method interpolates.
+  !> An observer of accepted steps and events. During `step_taken` it may call the interpolant of the method.
   type, abstract :: observer_t
     logical :: wants_to_stop = .false.
-    logical :: wants_archive = .false.    !! the state is to be handed over now
-    logical :: keeps_archives = .false.   !! and whenever the integration ends so that it could continue
+    logical :: wants_archive = .false.    !! the state is requested now
+    logical :: keeps_archives = .false.   !! the state is also requested when the integration ends but could be continued
   contains
     procedure :: take_archive => ignore_archive
     procedure :: exchange => exchange_nothing
@@ -36,17 +36,17 @@ module gudgeon_solver
     procedure(event_taken), deferred :: event_taken
   end type observer_t
 
-  !> Where an integration is, besides problem, method and observer.
+  !> The state of an integration, besides problem, method and observer.
   type :: position_t
     real(dp) :: t = 0
-    real(dp), allocatable :: y(:)      !! at t; only an event sets it
-    integer :: event = 0               !! at t, 0: none
+    real(dp), allocatable :: y(:)      !! state at t; set only by events
+    integer :: event = 0               !! event at t, 0: none
     type(event_watch_t) :: watch
-    real(dp) :: t_place = 0            !! where the last events in one place began
-    integer :: in_place = 0            !! their number
+    real(dp) :: t_place = 0            !! time of the first of several events without progress in time
+    integer :: in_place = 0            !! number of these events
   end type position_t
 
-  !> Looks at nothing.
+  !> An observer that ignores everything.
   type, extends(observer_t) :: silent_observer_t
   contains
     procedure :: step_taken => ignore_step
@@ -54,7 +54,7 @@ module gudgeon_solver
   end type silent_observer_t
 
   abstract interface
-    !> The solution is final from method%t_old to t_to (method%t, or less where an event or the end cuts the step).
+    !> Report that the solution is final from method%t_old to t_to (method%t, or less if an event or the end cuts the step).
     subroutine step_taken(self, method, problem, t_to)
       import :: observer_t, ode_method_t, ode_problem_t, dp
       class(observer_t), intent(inout) :: self
@@ -63,7 +63,7 @@ module gudgeon_solver
       real(dp), intent(in) :: t_to
     end subroutine step_taken
 
-    !> Event `index` happened at (t, y); the problem's discrete state is still that before it.
+    !> Report event `index` at (t, y), before the discrete state of the problem is changed.
     subroutine event_taken(self, problem, index, t, y)
       import :: observer_t, ode_problem_t, dp
       class(observer_t), intent(inout) :: self
@@ -75,8 +75,8 @@ module gudgeon_solver
 
 contains
 
-  !> Integrate from (t, y) to t_end, or from where `archive` was filled: with the same settings, problem and observer it then
-  !> continues as if it had never stopped. At return (t, y) is where it ended. max_steps = 0: no limit.
+  !> Integrate from (t, y) to t_end, or continue from an `archive`; with the same settings, problem and observer the results are
+  !> then identical to those without interruption. On return (t, y) is the end of the integration. max_steps = 0: no limit.
   subroutine integrate(problem, method, t, y, t_end, max_steps, observer, status, archive)
     class(ode_problem_t), intent(inout) :: problem
     class(ode_method_t), intent(inout) :: method
@@ -129,7 +129,7 @@ contains
     y = at%y
   end subroutine integrate
 
-  !> The first event in an accepted step, what the observer makes of both, the restart after the event.
+  !> Find the first event in an accepted step, report step and event to the observer, handle the event and restart.
   subroutine take_event(problem, method, observer, t_end, at, status)
     class(ode_problem_t), intent(inout) :: problem
     class(ode_method_t), intent(inout) :: method
@@ -164,13 +164,13 @@ contains
     call at%watch%begin(problem, at%t, at%y, at%event)
   end subroutine take_event
 
-  !> Whether an event lies so near the end that no step fits between.
+  !> Whether an event is so close to the end that no step fits between them.
   pure logical function is_at_end(t, t_end)
     real(dp), intent(in) :: t, t_end
     is_at_end = .not. t_end - t > 8*epsilon(t)*abs(t_end)
   end function is_at_end
 
-  !> Whether there is a reason to end between two steps.
+  !> Check the conditions to end the integration between two steps.
   subroutine look_around(method, max_steps, observer, status)
     class(ode_method_t), intent(in) :: method
     integer, intent(in) :: max_steps
@@ -183,7 +183,7 @@ contains
         .and. status == step_done) status = evaluation_limit_reached
   end subroutine look_around
 
-  !> Hand the state over, where the observer asks for it or the integration ends here though it could continue.
+  !> Hand over the state, if the observer asks for it, or if the integration ends here although it could be continued.
   subroutine hand_over(problem, method, observer, at, status)
     class(ode_problem_t), intent(inout) :: problem
     class(ode_method_t), intent(inout) :: method
@@ -204,7 +204,7 @@ contains
     observer%wants_archive = .false.
   end subroutine hand_over
 
-  !> The whole state between two steps, to or from an archive.
+  !> Write the whole state between two steps to an archive, or read it from it.
   subroutine exchange_all(problem, method, observer, at, archive)
     class(ode_problem_t), intent(inout) :: problem
     class(ode_method_t), intent(inout) :: method
@@ -223,9 +223,9 @@ contains
     if (archive%is_reading .and. .not. archive%is_at_end()) archive%failed = .true.
   end subroutine exchange_all
 
-  !> Land on an event inside the last step. Where the landing is more accurate than the interpolant on which the event was
-  !> found, the instant is corrected by Newton's method. Where this cannot be done, since the function hardly changes, and the event
-  !> has not happened in the landing, the interpolant is taken, in which it has.
+  !> Move to an event inside the last step. If the method can compute the state there more accurately than its interpolant, on which
+  !> the event was found, the instant is corrected by Newton's method. If the correction fails because the function hardly changes,
+  !> and the event has not happened in the corrected state, the state of the interpolant is used.
   subroutine land(problem, method, event, t, y)
     class(ode_problem_t), intent(in) :: problem
     class(ode_method_t), intent(inout) :: method
@@ -266,7 +266,7 @@ contains
     end associate
   end subroutine ignore_archive
 
-  !> An observer that remembers nothing.
+  !> Archive of an observer without state.
   subroutine exchange_nothing(self, archive)
     class(observer_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive

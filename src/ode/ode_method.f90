@@ -1,4 +1,4 @@
-!> What every integration method offers, its settings, its statistics and its status codes.
+!> Interface of all integration methods, with their settings, statistics and status codes.
 module ode_method
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t
@@ -15,74 +15,74 @@ module ode_method
   !> The methods between which `auto` chooses.
   integer, parameter :: with_adams = 1, with_radau = 2
 
-  !> What kept a step from being longer.
+  !> Reasons why a step was not longer.
   integer, parameter :: limit_error = 1       !! the error estimate
-  integer, parameter :: limit_stability = 2   !! the method's stability: the fastest mode has died out, but not its rate
-  integer, parameter :: limit_max_step = 3    !! the settings
-  integer, parameter :: limit_start = 4       !! order and step were still being raised after a start
-  integer, parameter :: limit_refusal = 5     !! the problem refused a longer one (penetration, domain)
+  integer, parameter :: limit_stability = 2   !! stability of the method: the fastest mode has decayed but still limits the step
+  integer, parameter :: limit_max_step = 3    !! largest step of the settings
+  integer, parameter :: limit_start = 4       !! order and step size were rising after a start
+  integer, parameter :: limit_refusal = 5     !! the problem refused a longer step (penetration, domain)
   integer, parameter :: n_limits = 5
   character(len=9), parameter :: limit_names(n_limits) = [character(len=9) :: 'error', 'stability', 'max_step', 'start', &
     'refusal']
 
   !> Status of a step.
   integer, parameter :: step_done = 0            !! a step was accepted
-  integer, parameter :: step_too_small = 1       !! the step fell to the rounding of the time
-  integer, parameter :: tolerance_too_small = 2  !! the tolerance is below the rounding of the state
-  integer, parameter :: start_outside = 3        !! the starting state is outside the model
-  integer, parameter :: left_domain = 4          !! the state goes out of the model, however short the step
+  integer, parameter :: step_too_small = 1       !! the step size reached the rounding error of the time
+  integer, parameter :: tolerance_too_small = 2  !! the tolerance is below the rounding error of the state
+  integer, parameter :: start_outside = 3        !! the initial state is outside the model
+  integer, parameter :: left_domain = 4          !! the state leaves the model even with the shortest step
 
-  !> What a user asks of a method. The error of a step in component i is measured against
-  !> relative(i)*|y(i)| + absolute(i); a component with both zero does not take part in the error control.
+  !> Settings of a method. The error of a step in component i is compared with relative(i)*|y(i)| + absolute(i); a component for
+  !> which both are zero is excluded from the error control.
   type :: ode_settings_t
-    real(dp) :: tolerance = 0             !! the relative tolerance that the others come from; 0: the largest of `relative`
+    real(dp) :: tolerance = 0             !! relative tolerance from which the others are derived; 0: the largest of `relative`
     real(dp), allocatable :: relative(:)  !! relative tolerance of each component, (n)
-    real(dp), allocatable :: absolute(:)  !! absolute tolerance of each component, in its own unit, (n)
+    real(dp), allocatable :: absolute(:)  !! absolute tolerance of each component, in its unit, (n)
     real(dp) :: max_step = huge(1.0_dp)   !! longest step
-    real(dp) :: first_step = huge(1.0_dp) !! longest first step: a part of the problem's own time scale, where that is known
-    real(dp) :: span = 1                  !! length of the whole integration: the scale of the shortest step
-    real(dp) :: stop_time = huge(1.0_dp)  !! where the integration ends: a one-step method lands there
+    real(dp) :: first_step = huge(1.0_dp) !! longest first step, if the problem has a known time scale
+    real(dp) :: span = 1                  !! duration of the whole integration, which sets the shortest step
+    real(dp) :: stop_time = huge(1.0_dp)  !! end of the integration, which a one-step method reaches with a step
     integer :: max_order = highest_order  !! highest order, 1..highest_order
     integer :: max_evaluations = 0        !! of the right-hand side in an integration; 0: no limit
-    real(dp) :: fixed_step = 0            !! > 0: every step has this size and no error is controlled, for tests of order
-    real(dp) :: chatter_time = 0          !! a hundred events in less than this are chatter; 0: 1e-9 of the span
+    real(dp) :: fixed_step = 0            !! > 0: constant step size without error control, for tests of the order
+    real(dp) :: chatter_time = 0          !! a hundred events in less than this time count as chatter; 0: 1e-9 of the span
   end type ode_settings_t
 
-  !> Counts of what a method has done since the beginning of an integration. Only `rejected_*` and
-  !> `evaluations` count work that left nothing behind. Times are counted by `count_time`, and sum to the time integrated.
+  !> Statistics since the beginning of an integration. Only `rejected_*` and `evaluations` include rejected work. Times are counted
+  !> by `count_time` and add up to the time integrated.
   type :: step_statistics_t
     integer :: accepted = 0
     integer :: rejected_error = 0        !! estimated error above the tolerance
-    integer :: rejected_penetration = 0  !! contact entered too deep
-    integer :: rejected_domain = 0       !! a trial state outside the model
+    integer :: rejected_penetration = 0  !! contact entered too deeply
+    integer :: rejected_domain = 0       !! trial state outside the model
     integer :: rejected_convergence = 0  !! Newton's method did not converge (implicit methods)
     integer :: jacobians = 0             !! Jacobians evaluated (implicit methods)
     integer :: stage_count(3) = 0        !! accepted steps of the Radau formulas of 3, 5 and 7 stages
-    integer :: evaluations = 0           !! calls of the right-hand side
-    integer :: restarts = 0              !! starts after the first one
+    integer :: evaluations = 0           !! evaluations of the right-hand side
+    integer :: restarts = 0              !! number of starts after the first one
     real(dp) :: smallest_step = huge(1.0_dp)    !! shortest accepted step
-    integer :: order_count(highest_order) = 0   !! accepted steps taken at each order
-    integer :: limited_by(n_limits) = 0         !! accepted steps by what limited them
-    real(dp) :: time_limited_by(n_limits) = 0   !! time that went by in them
-    integer :: switches = 0                     !! changes between Adams and Radau
-    real(dp) :: stiffness = 0     !! integral of rho dt, rho the estimated rate of the fastest mode; 0: not estimated
+    integer :: order_count(highest_order) = 0   !! accepted steps of each order
+    integer :: limited_by(n_limits) = 0         !! accepted steps for each reason of their limit
+    real(dp) :: time_limited_by(n_limits) = 0   !! duration of these steps
+    integer :: switches = 0                     !! number of changes between Adams and Radau
+    real(dp) :: stiffness = 0     !! integral of rho dt, where rho is the estimated rate of the fastest mode; 0: not estimated
   contains
     procedure :: exchange => exchange_statistics
   end type step_statistics_t
 
-  !> A method that advances a problem step by step and knows the solution anywhere inside its last step.
+  !> A method that advances a problem step by step and provides the solution anywhere inside its last step.
   type, abstract :: ode_method_t
     type(ode_settings_t) :: settings
     type(step_statistics_t) :: statistics
-    real(dp), allocatable :: time_with(:, :)   !! method auto: time that went by with each method in each mode, (2, 0:highest mode)
+    real(dp), allocatable :: time_with(:, :)   !! method auto: time with each method in each mode, (2, 0:highest mode)
     real(dp) :: t_old = 0                 !! beginning of the last accepted step
     real(dp) :: t = 0                     !! its end
     integer :: order = 0                  !! order of the last accepted step
-    real(dp) :: rough_time = huge(1.0_dp) !! where f is expected to lose its smoothness, see `rough_time` of the problem
+    real(dp) :: rough_time = huge(1.0_dp) !! expected time at which f loses its smoothness, see `rough_time` of the problem
     real(dp), allocatable :: y_old(:)     !! state at t_old, (n)
     real(dp), allocatable :: y(:)         !! state at t, (n)
-    integer :: limit_done = 0             !! what kept the last accepted step from being longer, 0: the method does not tell
-    real(dp) :: stiffness_done = 0        !! its share of the integral of rho dt
+    integer :: limit_done = 0             !! reason why the last accepted step was not longer, 0: unknown
+    real(dp) :: stiffness_done = 0        !! contribution of the last step to the integral of rho dt
   contains
     procedure :: nominal_tolerance
     procedure :: totals
@@ -96,8 +96,8 @@ module ode_method
   end type ode_method_t
 
   abstract interface
-    !> Begin at (t, y), forgetting the past: after any jump of the right-hand side or of the state. `first` tells
-    !> the start of an integration (which resets the statistics) from a restart (which counts).
+    !> Begin at (t, y) without history, after any discontinuity of the right-hand side or of the state. `first` is true at the start
+    !> of an integration, which resets the statistics, and false at a restart, which is counted.
     subroutine start(self, problem, t, y, first, status)
       import :: ode_method_t, ode_problem_t, dp
       class(ode_method_t), intent(inout) :: self
@@ -107,7 +107,7 @@ module ode_method
       integer, intent(out) :: status
     end subroutine start
 
-    !> Advance by one accepted step, however many tries it takes.
+    !> Advance by one accepted step, with as many trials as necessary.
     subroutine step(self, problem, status)
       import :: ode_method_t, ode_problem_t
       class(ode_method_t), intent(inout) :: self
@@ -115,8 +115,8 @@ module ode_method
       integer, intent(out) :: status
     end subroutine step
 
-    !> State at a time t_old <= t <= self%t, without evaluating the right-hand side; valid until the next step.
-    !> `self` is only changed by what the first call after a step prepares for the others.
+    !> State at a time t_old <= t <= self%t, without evaluating the right-hand side; valid until the next step. `self` is changed
+    !> only by preparations of the first call after a step.
     pure subroutine interpolate(self, t, y)
       import :: ode_method_t, dp
       class(ode_method_t), intent(inout) :: self
@@ -124,8 +124,8 @@ module ode_method
       real(dp), intent(out) :: y(:)
     end subroutine interpolate
 
-    !> Everything that the method remembers between two steps, to or from an archive; not the settings. A method that
-    !> reads needs no start before.
+    !> Write everything that the method needs between two steps, except the settings, to an archive, or read it from it. Reading
+    !> does not require a start.
     subroutine exchange(self, problem, archive)
       import :: ode_method_t, ode_problem_t, archive_t
       class(ode_method_t), intent(inout) :: self
@@ -136,15 +136,15 @@ module ode_method
 
 contains
 
-  !> The tolerance that a user has in mind.
+  !> The relative tolerance chosen by the user.
   pure real(dp) function nominal_tolerance(self)
     class(ode_method_t), intent(in) :: self
     nominal_tolerance = self%settings%tolerance
     if (.not. nominal_tolerance > 0) nominal_tolerance = maxval(self%settings%relative)
   end function nominal_tolerance
 
-  !> The state at a time inside the last step where the integration is to be restarted. A method whose steps are more accurate
-  !> than its interpolant repeats the step up to there; the default interpolates.
+  !> State at a time inside the last step at which the integration is to be restarted. Methods with steps more accurate than their
+  !> interpolant repeat the step up to that time; the default interpolates.
   subroutine land_on(self, problem, t, y)
     class(ode_method_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
@@ -155,7 +155,7 @@ contains
     call self%interpolate(t, y)
   end subroutine land_on
 
-  !> The part of `exchange` that all methods have.
+  !> The part of `exchange` that all methods have in common.
   subroutine exchange_solution(self, problem, archive)
     class(ode_method_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
@@ -170,7 +170,7 @@ contains
     call self%statistics%exchange(archive)
   end subroutine exchange_solution
 
-  !> The counts to or from an archive.
+  !> Write the statistics to an archive, or read them from it.
   subroutine exchange_statistics(self, archive)
     class(step_statistics_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
@@ -191,8 +191,8 @@ contains
     call archive%exchange(self%stiffness)
   end subroutine exchange_statistics
 
-  !> Count the time of the last accepted step, once, when it is known how far it stands: up to t_to, which is self%t or where
-  !> an event or the end of the integration cuts the step.
+  !> Count the duration of the last accepted step, once it is known which part of it is final: up to t_to, which is self%t or the
+  !> time at which an event or the end of the integration cuts the step.
   subroutine count_time(self, t_to)
     class(ode_method_t), intent(inout) :: self
     real(dp), intent(in) :: t_to   !! t_old <= t_to <= t
@@ -206,7 +206,7 @@ contains
     end associate
   end subroutine count_time
 
-  !> The counts of the whole integration so far.
+  !> Statistics of the whole integration so far.
   pure type(step_statistics_t) function totals(self) result(statistics)
     class(ode_method_t), intent(in) :: self
     statistics = self%statistics

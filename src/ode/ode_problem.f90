@@ -1,8 +1,8 @@
-!> What an integrator needs to know of a system of ordinary differential equations with events.
+!> Interface between an integrator and a system of ordinary differential equations with events.
 !>
-!> The system is y' = f(t, y) with a discrete state that changes only in `handle_event`, so that between two events
-!> f is smooth. Everything that an integrator may call on trial states (`derivatives`, `events`, `judge_step`) is pure:
-!> a rejected step leaves no trace in the problem.
+!> The system is y' = f(t, y) with a discrete state that changes only in `handle_event`; between events f is smooth. All procedures
+!> that an integrator may call with trial states (`derivatives`, `events`, `judge_step`) are pure: a rejected step does not change
+!> the problem.
 module ode_problem
   use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
@@ -12,28 +12,28 @@ module ode_problem
   public :: step_admitted, step_too_deep, step_outside
   public :: event_continue, event_stop, max_events
 
-  integer, parameter :: max_events = 16   !! most event functions that a problem may have at one time
+  integer, parameter :: max_events = 16   !! largest number of event functions
 
   !> Verdicts of `judge_step`.
-  integer, parameter :: step_admitted = 0   !! the step stands
-  integer, parameter :: step_too_deep = 1   !! the step goes deeper into contact than allowed: shorten it
-  integer, parameter :: step_outside = 2    !! the state left the model's domain: shorten it
+  integer, parameter :: step_admitted = 0   !! the step is accepted
+  integer, parameter :: step_too_deep = 1   !! the penetration is larger than allowed: shorten the step
+  integer, parameter :: step_outside = 2    !! the state is outside the model: shorten the step
 
-  !> What is to be done after an event.
+  !> Actions after an event.
   integer, parameter :: event_continue = 0  !! restart the method at the event
   integer, parameter :: event_stop = 1      !! end the integration at the event
 
-  !> A system of ordinary differential equations. y = (positions | their rates, in the same order | first-order states |
-  !> quadratures). A problem that tells no positions has first-order states only.
+  !> A system of ordinary differential equations with the state y = (positions | their rates, in the same order | first-order states
+  !> | quadratures). A problem without positions has first-order states only.
   type, abstract :: ode_problem_t
     integer :: n = 0             !! number of equations
-    integer :: n_positions = 0   !! their derivatives are the rates, which is not looked up in f
-    integer :: n_quadratures = 0 !! nothing depends on them
-    integer :: mode = 0          !! the present discrete state as far as the choice of a method cares, 0..highest_mode
-    integer :: highest_mode = 0  !! set before the integration
+    integer :: n_positions = 0   !! number of positions; their derivatives are taken from the rates and not from f
+    integer :: n_quadratures = 0 !! number of quadratures; nothing depends on them
+    integer :: mode = 0          !! present discrete state for the choice of a method, 0..highest_mode
+    integer :: highest_mode = 0  !! must be set before the integration
     integer :: n_events = 0   !! number of event functions in the present discrete state
-    logical :: refuses_steps = .true.   !! `judge_step` may do so: else it is not asked
-    logical :: smooth_in_root = .false. !! from the last (re)start on f is smooth in sqrt(t - t_start), not in t
+    logical :: refuses_steps = .true.   !! `judge_step` may refuse steps; otherwise it is not called
+    logical :: smooth_in_root = .false. !! since the last (re)start f is smooth in sqrt(t - t_start), not in t
   contains
     procedure, non_overridable :: n_states
     procedure(derivatives), deferred :: derivatives
@@ -48,8 +48,8 @@ module ode_problem
   end type ode_problem_t
 
   abstract interface
-    !> Right-hand side f(t, y). `inside` is false where the model is not defined at y; dydt is then not to be used. Its arrays
-    !> have explicit shapes: their strides need not be handed on and looked at in every call.
+    !> Right-hand side f(t, y). `inside` is false if the model is not defined at y; dydt must not be used then. The arrays have
+    !> explicit shapes, which avoids passing and checking strides in every call.
     pure subroutine derivatives(self, t, y, dydt, inside)
       import :: ode_problem_t, dp
       class(ode_problem_t), intent(in) :: self
@@ -68,9 +68,9 @@ contains
     n_states = self%n - 2*self%n_positions - self%n_quadratures
   end function n_states
 
-  !> Derivatives of the rates of what Newton's method solves for: with m positions and k rates and first-order states,
-  !> dydt(m+1:m+k) by the positions, a_p (k, m), and by rates and states, a_v (k, k). The default is one-sided differences, and
-  !> 0 where f is not defined at the state or beside it.
+  !> Derivatives for Newton's method: with m positions and k rates and first-order states, those of dydt(m+1:m+k) with respect to
+  !> the positions, a_p (k, m), and to rates and states, a_v (k, k). The default is one-sided differences; elements are 0 where f is
+  !> not defined at the state or next to it.
   subroutine difference_jacobian(self, t, y, a_p, a_v)
     class(ode_problem_t), intent(in) :: self
     real(dp), intent(in) :: t, y(:)
@@ -105,8 +105,8 @@ contains
     end do
   end subroutine difference_jacobian
 
-  !> The discrete state that every problem has, to or from an archive. A problem with more of it overrides `exchange`, and
-  !> calls this from there.
+  !> Write the discrete state that every problem has to an archive, or read it from it. A problem with other discrete states
+  !> overrides `exchange` and calls this procedure.
   subroutine exchange_mode(self, archive)
     class(ode_problem_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
@@ -115,8 +115,8 @@ contains
     call archive%exchange(self%smooth_in_root)
   end subroutine exchange_mode
 
-  !> Event functions and their rates along the motion, each signed so that the event is a passage from
-  !> negative to positive. g and g_rate have n_events elements. The default is for problems without events.
+  !> Event functions and their rates along the motion, with signs such that an event is a passage from negative to positive. g and
+  !> g_rate have n_events elements. The default is for problems without events.
   pure subroutine no_events(self, t, y, g, g_rate)
     class(ode_problem_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
@@ -127,8 +127,8 @@ contains
     g_rate = 0
   end subroutine no_events
 
-  !> Whether a step that meets the error tolerance may stand. Where it may not, `fraction` (0 < fraction < 1) of the
-  !> step is proposed for the next try. The default admits every step.
+  !> Judge a step that meets the error tolerance. If it is refused, `fraction` (0 < fraction < 1) of the step is proposed for the
+  !> next trial. The default accepts every step.
   pure subroutine admit_every_step(self, t_old, y_old, t, y, verdict, fraction)
     class(ode_problem_t), intent(in) :: self
     real(dp), intent(in) :: t_old, y_old(:), t, y(:)
@@ -140,7 +140,7 @@ contains
     fraction = 1
   end subroutine admit_every_step
 
-  !> Take note of event `index` at (t, y): the discrete state, and y itself, may change. The default stops.
+  !> Handle event `index` at (t, y); the discrete state and y may be changed. The default ends the integration.
   subroutine stop_at_event(self, index, t, y, action)
     class(ode_problem_t), intent(inout) :: self
     integer, intent(in) :: index
@@ -152,7 +152,7 @@ contains
     action = event_stop
   end subroutine stop_at_event
 
-  !> Whether event `index` is taken at the end of the step that passes it instead of at its root: the default is no.
+  !> Whether event `index` is taken at the end of the step in which it occurs, instead of at its root. The default is no.
   pure logical function never_on_step_end(self, index)
     class(ode_problem_t), intent(in) :: self
     integer, intent(in) :: index
@@ -161,8 +161,8 @@ contains
     never_on_step_end = .false.
   end function never_on_step_end
 
-  !> When an event is to be expected, by the tangent of its function at (t, y), that f does not approach smoothly but like a
-  !> broken power of the distance: steps are shortened on the way there. The default is never: the largest number.
+  !> Predicted time, from the tangent at (t, y), of an event at which f varies as a non-integer power of the remaining time: steps
+  !> are shortened before it. The default is never: the largest number.
   pure real(dp) function never_rough(self, t, y)
     class(ode_problem_t), intent(in) :: self
     real(dp), intent(in) :: t, y(:)

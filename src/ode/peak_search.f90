@@ -1,4 +1,4 @@
-!> The largest value of a smooth quantity between two instants, by as few values as it takes.
+!> Searches the largest value of a smooth quantity between two instants, with few evaluations.
 module peak_search
   use gudgeon_kinds, only: dp
   implicit none
@@ -6,25 +6,25 @@ module peak_search
   public :: sample_t, peak_search_t, may_peak
 
   integer, parameter :: most_values = 40
-  real(dp), parameter :: resolution = 1e-8_dp   !! of the time, part of the piece searched
-  real(dp), parameter :: worthwhile = 1e-12_dp  !! a gain of less than this part of the value ends a search
+  real(dp), parameter :: resolution = 1e-8_dp   !! of the time, relative to the interval
+  real(dp), parameter :: worthwhile = 1e-12_dp  !! a search ends if the expected gain is less than this fraction of the value
 
   !> A quantity at one instant.
   type :: sample_t
-    real(dp) :: t = 0, value = 0, slope = 0   !! slope: by the time
+    real(dp) :: t = 0, value = 0, slope = 0   !! slope: derivative with respect to time
   end type sample_t
 
-  !> A search for a peak. The caller evaluates the quantity where `next_time` says and hands the value to `take`, until the search
-  !> is done. The first instant is the peak of the cubic through values and slopes at both ends; then come peaks of parabolas
-  !> through the three best points, with the golden section where they fail (Brent 1973, ch. 5).
+  !> A search for a maximum. The caller evaluates the quantity at the time given by `next_time` and passes the value to `take`,
+  !> until the search is done. The first time is the maximum of the cubic through values and slopes at both ends; then follow maxima
+  !> of parabolas through the three best points, or golden sections where these fail (Brent 1973, ch. 5).
   type :: peak_search_t
-    real(dp) :: value(3) = 0              !! the three best so far, the largest first
-    real(dp), private :: t(3) = 0         !! their instants
-    type(sample_t), private :: left, right   !! the peak is between
-    real(dp), private :: width = 0        !! of the piece at the beginning
-    real(dp), private :: last = 0, last_but_one = 0   !! ways from one instant to the next
+    real(dp) :: value(3) = 0              !! the three largest values so far, the largest first
+    real(dp), private :: t(3) = 0         !! their times
+    type(sample_t), private :: left, right   !! bracket of the maximum
+    real(dp), private :: width = 0        !! initial width of the interval
+    real(dp), private :: last = 0, last_but_one = 0   !! distances between successive times
     integer, private :: values = 0
-    logical, private :: has_top = .false. !! the best is inside, and no end is above it
+    logical, private :: has_top = .false. !! the largest value is inside the interval and not below its ends
   contains
     procedure :: begin
     procedure :: next_time
@@ -33,13 +33,13 @@ module peak_search
 
 contains
 
-  !> Whether the quantity may come above `known` between two instants where its values and slopes are given, and, unless it rises at
-  !> the first and falls at the second, above its values there too. It stays below the cubic through them in Bernstein form, with
-  !> its deviation from the straight line counted twice.
+  !> Whether the quantity may exceed `known` between two instants with given values and slopes and, unless it rises at the first and
+  !> falls at the second, also exceed the values there. The bound is the cubic through the data in Bernstein form, with twice its
+  !> deviation from the straight line.
   pure logical function may_peak(t_left, left, left_slope, t_right, right, right_slope, known)
     real(dp), intent(in) :: t_left, left, left_slope, t_right, right, right_slope, known
     real(dp), parameter :: third = 1/3.0_dp
-    real(dp) :: rise_left, rise_right, line, most   ! in a third of the time
+    real(dp) :: rise_left, rise_right, line, most   ! per third of the interval
     rise_left = third*(t_right - t_left)*left_slope
     rise_right = third*(t_right - t_left)*right_slope
     line = third*(right - left)
@@ -48,7 +48,7 @@ contains
     if (may_peak .and. .not. (left_slope > 0 .and. right_slope < 0)) may_peak = most > max(left, right)
   end function may_peak
 
-  !> Search between two samples with slopes.
+  !> Begin a search between two samples with slopes.
   subroutine begin(self, left, right)
     class(peak_search_t), intent(out) :: self
     type(sample_t), intent(in) :: left, right
@@ -66,7 +66,7 @@ contains
     self%last_but_one = self%width
   end subroutine begin
 
-  !> When to evaluate the quantity next.
+  !> The time at which the quantity is to be evaluated next.
   pure subroutine next_time(self, t, is_done)
     class(peak_search_t), intent(inout) :: self
     real(dp), intent(out) :: t
@@ -98,7 +98,7 @@ contains
     end associate
   end subroutine next_time
 
-  !> No value inside has been above both ends: towards the higher one, if the quantity rises from there.
+  !> If no value inside exceeds both ends: move towards the higher end, if the quantity rises from there.
   pure subroutine step_from_end(self, t, is_done)
     class(peak_search_t), intent(in) :: self
     real(dp), intent(inout) :: t
@@ -117,7 +117,7 @@ contains
     end associate
   end subroutine step_from_end
 
-  !> The parabola through the three best points, if it has a peak: how far that is from the best one, and how much higher.
+  !> Maximum of the parabola through the three best points, if it has one: its distance from the best point and its gain.
   pure subroutine find_parabola(self, has_peak, way, gain)
     class(peak_search_t), intent(in) :: self
     logical, intent(out) :: has_peak
@@ -138,7 +138,7 @@ contains
     gain = 0.5_dp*slope*way
   end subroutine find_parabola
 
-  !> The value of the quantity at t, between the ends.
+  !> Pass the value of the quantity at t, between the ends.
   pure subroutine take(self, t, value)
     class(peak_search_t), intent(inout) :: self
     real(dp), intent(in) :: t, value
@@ -152,7 +152,7 @@ contains
     else if (self%has_top .and. value >= self%value(2)) then
       rank = 2
     end if
-    ! the lower of this point and the best bounds the peak on its side; at first the best is an end and continues being one
+    ! the lower of this point and the best one bounds the maximum on its side; initially the best point is an end, and remains one
     bound = sample_t(t, value, 0.0_dp)
     is_left = t < self%t(1)
     if (rank == 1) then
@@ -172,7 +172,8 @@ contains
     self%has_top = self%has_top .or. rank == 1
   end subroutine take
 
-  !> Where between 0 and 1 the cubic through two samples has its peak, which rises at the left one and falls at the right one.
+  !> Position between 0 and 1 of the maximum of the cubic through two samples, which rises at the left one and falls at the right
+  !> one.
   pure real(dp) function cubic_peak(left, right) result(share)
     type(sample_t), intent(in) :: left, right
     real(dp), parameter :: margin = 1e-3_dp
@@ -181,7 +182,7 @@ contains
     rise = left%slope*width
     fall = right%slope*width
     slopes = 3*(right%value - left%value)
-    middle = slopes - rise - fall   ! the rate along the cubic is rise (1 - s)^2 + 2 middle s (1 - s) + fall s^2
+    middle = slopes - rise - fall   ! the slope of the cubic is rise (1 - s)^2 + 2 middle s (1 - s) + fall s^2
     share = rise/(rise - middle + sqrt(max(middle**2 - rise*fall, 0.0_dp)))
     share = min(max(share, margin), 1 - margin)
   end function cubic_peak

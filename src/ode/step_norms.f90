@@ -1,5 +1,5 @@
-!> Weighted norms over the n components of a state. Their squares, wherever a comparison is all that is asked: a root takes as long
-!> as a dozen products.
+!> Weighted norms over the n components of a state, as squares where only comparisons are needed, since a square root takes as long
+!> as a dozen multiplications.
 module step_norms
   use gudgeon_kinds, only: dp
   implicit none
@@ -8,7 +8,7 @@ module step_norms
 
 contains
 
-  !> The norm in which errors are measured: 1 is the tolerance.
+  !> The norm of errors: 1 is the tolerance.
   pure real(dp) function norm(n, values, inverse_weight)
     integer, intent(in) :: n
     real(dp), dimension(n), intent(in) :: values, inverse_weight

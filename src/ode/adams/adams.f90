@@ -2,21 +2,22 @@
 !> Adams-Bashforth predictor of order k, Adams-Moulton corrector of order k+1 (local extrapolation), variable step and
 !> order 1-12 in modified divided differences. phi, psi, alpha, beta, sigma and g keep their names.
 !>
-!> Differences from the published code, each deliberate:
-!> - the first step is chosen from the size of y'' by one more evaluation, not from |f| alone;
-!> - after a start where the problem says that f is smooth in sqrt(t - t_start) (a contact that begins: the force goes
-!>   with the power 1.5 of the penetration) the method steps in x = sqrt(t - t_start), y' = 2 x f: order and step rise
-!>   as from a smooth start;
-!> - while order and step rise from a start, a step grows by what its error at the present order allows, up to 64 times,
-!>   not only twice: the published doubling takes 20 steps from the first step of order 1 to the step of the flight;
-!> - later a step may also grow by a quarter, not only double; the order may rise at varying step too (not while
-!>   stability limits the step: there the higher order only narrows the limit).
-!>   Measured together (scripts/compare_adams.sh, evaluations at 1e-6 ... 1e-12): dry contact -23 ... -36 %, film scenes
-!>   -12 ... -18 %, the standard battery +13 % at 1e-3, -22 % at 1e-12;
+!> Deliberate differences from the published code:
+!> - the first step is chosen from the size of y'', by one more evaluation, not from |f| alone;
+!> - after a start where the problem says that f is smooth in sqrt(t - t_start) (at the beginning of a contact the force varies as
+!>   the power 1.5 of the penetration) the independent variable is x = sqrt(t - t_start), with dy/dx = 2 x f: order and step size
+!>   then rise as from a smooth start;
+!> - while order and step size rise after a start, a step may grow as far as its error at the present order allows, up to 64 times,
+!>   instead of only twice: the published doubling needs 20 steps from the first step of order 1 to the step size of free flight;
+!> - later a step may also grow by a quarter instead of only by doubling; the order may rise at varying step size too, except while
+!>   stability limits the step, where the higher order only reduces the limit. Measured together (scripts/compare_adams.sh,
+!>   evaluations at 1e-6 ... 1e-12): dry contact -23 ... -36 %, film scenes -12 ... -18 %, the standard battery +13 % at 1e-3, -22 %
+!>   at 1e-12;
 !> - steps are shortened where the problem says that f is about to lose its smoothness;
-!> - trial states outside the model and steps that a problem refuses are rejected like errors;
-!> - the interpolant also matches y at the beginning of the step, so it is continuous with its derivative;
+!> - trial states outside the model, and steps that the problem refuses, are rejected like errors;
+!> - the interpolant also matches y at the beginning of the step, so that it and its derivative are continuous;
 !> - y is summed with compensation at every tolerance.
+!>
 !> The error of a step is its weighted Euclidean norm, as in the published code.
 module adams
   use gudgeon_kinds, only: dp
@@ -29,18 +30,18 @@ module adams
   private
   public :: adams_t
 
-  !> Reasons to try a step again.
+  !> Reasons to repeat a step.
   integer, parameter :: try_accepted = 0, try_error = 1, try_outside = 2, try_too_deep = 3
 
-  !> Squares of the estimated errors of the present try at the neighbouring orders, relative to the tolerance.
+  !> Squares of the estimated errors of the present trial at neighbouring orders, relative to the tolerance.
   type :: error_estimates_t
-    real(dp) :: step = 0       !! of the step as taken (order k with local extrapolation)
+    real(dp) :: step = 0       !! of the step itself (order k with local extrapolation)
     real(dp) :: same = 0       !! at order k
     real(dp) :: lower = 0      !! at order k-1
     real(dp) :: lowest = 0     !! at order k-2
-    integer :: order = 1       !! order proposed by them: k or k-1
+    integer :: order = 1       !! order that these errors suggest: k or k-1
     real(dp) :: correction = 0 !! square of the norm of the correction of y
-    real(dp) :: change = 0     !! square of the norm of the change of f by it
+    real(dp) :: change = 0     !! square of the norm of the resulting change of f
   end type error_estimates_t
 
   !> The state of the method between two steps.
@@ -49,30 +50,30 @@ module adams
     logical, public :: goes_on = .false.   !! the next start continues inside a phase, after another method
     type(adams_coefficients_t) :: coefficients
     real(dp) :: moulton(highest_order + 1) = 0    !! |gamma*_i|
-    integer :: n = 0                    !! equations
-    integer :: blocks = 0               !! of `lanes` components, n and zeros; arrays of (blocks*lanes) are said to be wide
+    integer :: n = 0                    !! number of equations
+    integer :: blocks = 0  !! number of blocks of `lanes` components, padded with zeros; arrays of (blocks*lanes) are called wide
     integer :: k = 1                    !! order of the next step
     integer :: k_old = 0                !! order of the last accepted step, 0 at a start
     logical :: closed = .false.         !! `closing` belongs to the last accepted step
-    logical :: rooted = .false.         !! the clock is x = sqrt(t - t_origin), else the time itself
-    real(dp) :: t_origin = 0            !! where a rooted clock began
-    real(dp) :: x = 0                   !! the clock at the end of the last accepted step
+    logical :: rooted = .false.         !! the independent variable is x = sqrt(t - t_origin), otherwise the time
+    real(dp) :: t_origin = 0            !! time at which such a variable begins
+    real(dp) :: x = 0                   !! independent variable at the end of the last accepted step
     real(dp) :: x_old = 0               !! at its beginning
-    real(dp) :: h = 0                   !! size of the next step, by the clock
+    real(dp) :: h = 0                   !! size of the next step in the independent variable
     real(dp) :: h_old = 0               !! size of the last accepted step
-    integer :: limit = limit_start      !! what made the next step no longer
+    integer :: limit = limit_start      !! reason why the next step is not longer
     logical :: bound = .false.          !! stability limited the last accepted step, in a wide sense
-    logical :: higher_known = .false.   !! phi_k+2 tells the error at order k+1
-    real(dp) :: rounding_square = 0     !! square of the weighted norm of the rounding of y
-    logical :: opening = .true.         !! order and step are still being raised from the start
+    logical :: higher_known = .false.   !! phi_k+2 gives the error at order k+1
+    real(dp) :: rounding_square = 0     !! square of the weighted norm of the rounding error of y
+    logical :: opening = .true.         !! order and step size are still rising after the start
     real(dp), allocatable :: phi(:, :)  !! modified divided differences, (wide, highest_order+2)
-    real(dp), allocatable :: owed(:)    !! what the first columns of phi lack, wide
+    real(dp), allocatable :: owed(:)    !! difference not yet added to the first columns of phi, wide
     real(dp), allocatable :: closing(:) !! coefficient of the last polynomial of the interpolant, wide
-    real(dp), allocatable :: slope(:)   !! work, wide
-    real(dp), allocatable :: f(:)       !! rate of y by the clock, 0 at the start of a rooted one
+    real(dp), allocatable :: slope(:)   !! work array, wide
+    real(dp), allocatable :: f(:)       !! derivative of y with respect to the independent variable, 0 at the start of x
     real(dp), allocatable :: predicted(:), f_predicted(:), f_new(:), y_new(:)
-    real(dp), allocatable :: inverse_weight(:)       !! 1/(relative |y| + absolute), 0: not controlled
-    real(dp), allocatable :: carry(:), carry_new(:)  !! what the rounding of y and of what follows it left out
+    real(dp), allocatable :: inverse_weight(:)       !! 1/(relative |y| + absolute), 0: no error control
+    real(dp), allocatable :: carry(:), carry_new(:)  !! rounding errors of y, for the compensated summation
   contains
     procedure :: prepare
     procedure :: start
@@ -91,8 +92,8 @@ module adams
       integer, intent(out) :: status
     end subroutine start
 
-    !> Begin at (x(m), y) with the right-hand sides f(:, 1..m) known at m <= 12 instants x(1) < x(2) < ... x(m): the first
-    !> step is of order m and size `h`.
+    !> Begin at (x(m), y) with known right-hand sides f(:, 1..m) at m <= 12 instants x(1) < x(2) < ... x(m). The first step is of
+    !> order m and size `h`.
     module subroutine start_with_history(self, problem, x, f, y, h, status)
       class(adams_t), intent(inout) :: self
       class(ode_problem_t), intent(in) :: problem
@@ -100,81 +101,81 @@ module adams
       integer, intent(out) :: status
     end subroutine start_with_history
 
-    !> Allocate everything, once for a whole integration.
+    !> Allocate all arrays, once for a whole integration.
     module subroutine prepare(self, problem)
       class(adams_t), intent(inout) :: self
       class(ode_problem_t), intent(in) :: problem
     end subroutine prepare
 
-    !> All components but those that `prepare` sets and those in which a step works.
+    !> Write all components except those set by `prepare` and the work arrays of a step to an archive, or read them from it.
     module subroutine exchange(self, problem, archive)
       class(adams_t), intent(inout) :: self
       class(ode_problem_t), intent(in) :: problem
       type(archive_t), intent(inout) :: archive
     end subroutine exchange
 
-    !> Weights of the error norm at the present state, and the rounding of the state in it.
+    !> Weights of the error norm for the present state, and the norm of its rounding error.
     pure module subroutine weigh(self)
       class(adams_t), intent(inout) :: self
     end subroutine weigh
 
-    !> How far the clock goes while the time goes by dt from the end of the last accepted step.
+    !> Change of the independent variable while the time changes by dt from the end of the last accepted step.
     pure real(dp) module function clock_step(self, dt)
       class(adams_t), intent(in) :: self
       real(dp), intent(in) :: dt
     end function clock_step
 
-    !> Put phi and psi back to the beginning of the step and shorten it. On the third failure in a row by error, or because the
-    !> state leaves the model, the order falls to one: beside a step cut that short the points before it are far away, so
-    !> that formulas of neighbouring orders are all next to the trapezoidal rule and their difference tells no error (a film
-    !> that collapses: steps 10^4 tolerances off were accepted).
+    !> Restore phi and psi to the beginning of the step and shorten it. After three failures in a row by error, or because the state
+    !> leaves the model, the order is reduced to one: earlier points are then far away compared with the step, formulas of
+    !> neighbouring orders are nearly equal to the trapezoidal rule, and their difference is no error estimate (in a collapsing
+    !> film, steps with errors of 10^4 tolerances were accepted).
     pure module subroutine retreat(self, errors, outcome, fraction, failures)
       class(adams_t), intent(inout) :: self
       type(error_estimates_t), intent(in) :: errors
       integer, intent(in) :: outcome
       real(dp), intent(in) :: fraction
-      integer, intent(inout) :: failures    !! such failures so far in this step
+      integer, intent(inout) :: failures    !! number of such failures in this step
     end subroutine retreat
 
-    !> Errors at orders k, k-1, k-2 and whether the order should fall (Shampine & Gordon, ch. 6).
+    !> Errors at orders k, k-1, k-2, and whether the order should be reduced (Shampine & Gordon, ch. 6).
     pure module subroutine estimate_errors(self, squares, errors)
       class(adams_t), intent(in) :: self
       real(dp), intent(in) :: squares(3)   !! from `correct`
       type(error_estimates_t), intent(out) :: errors
     end subroutine estimate_errors
 
-    !> Shorten a step that ends near the instant at which f loses its smoothness. The error estimates of high orders miss
-    !> what a branch point ahead does to them: measured on dry contact, whose force ends with the power 1.5 of the time left, a
-    !> share of a sixth halves the rejections and costs 9 % less at equal error.
+    !> Shorten a step that ends near the instant at which f loses its smoothness. Error estimates of high order do not detect a
+    !> branch point ahead. Measured for dry contact, whose force ends with the power 1.5 of the remaining time: limiting a step to a
+    !> sixth of that time halves the rejections and costs 9 % less at equal error.
     pure module subroutine respect_rough_time(self)
       class(adams_t), intent(inout) :: self
     end subroutine respect_rough_time
 
-    !> Count what limited the step. It was stability where h rho, rho the rate of the fastest mode, is near the limit of the
-    !> order though the mode itself is not being followed any more. rho is |f_new - f_predicted|/|y_new - y_predicted| (what
-    !> Hairer & Wanner 1996, IV.2, use), 0 where the correction is within the rounding. A wider sense of it, `bound`, keeps the
-    !> order from rising: measured on the films, at 1e-6 it saves 40 % of the evaluations. On the films the integral of rho dt so
-    !> estimated agrees with that of the eigenvalues (1.04e4, 2.14e5, 2.49e6) within 1 %.
+    !> Count what limited the step. It was stability if h rho is near the limit of the order although the fastest mode, with the
+    !> rate rho, has decayed. rho is |f_new - f_predicted|/|y_new - y_predicted| (as in Hairer & Wanner 1996, IV.2), or 0 if the
+    !> correction is within rounding. `bound`, with a wider criterion, prevents the order from rising; in the films at 1e-6 this
+    !> saves 40 % of the evaluations. The integral of rho dt estimated in this way agrees for the films with that of the eigenvalues
+    !> (1.04e4, 2.14e5, 2.49e6) within 1 %.
     pure module subroutine count_limit(self, errors)
       class(adams_t), intent(inout) :: self
       type(error_estimates_t), intent(in) :: errors
     end subroutine count_limit
 
-    !> The order and size of the next step (Shampine & Gordon, ch. 7): order raised while opening; else where the
-    !> errors fall with the order; the step doubled, raised by a quarter, kept, or cut to what the tolerance allows.
+    !> Order and size of the next step (Shampine & Gordon, ch. 7): the order is raised while the method is starting, later if the
+    !> errors decrease with the order; the step is doubled, raised by a quarter, kept, or reduced to what the tolerance allows.
     pure module subroutine choose_order_and_step(self, errors)
       class(adams_t), intent(inout) :: self
       type(error_estimates_t), intent(in) :: errors
     end subroutine choose_order_and_step
 
-    !> The time at clock x.
+    !> The time for a value of the independent variable.
     pure real(dp) module function time_at(self, x)
       class(adams_t), intent(in) :: self
       real(dp), intent(in) :: x
     end function time_at
 
-    !> The polynomial of degree k+2 whose derivative takes the values f_n+1, f_n, ... f_n+1-k and that passes through
-    !> y_n+1 and y_n: with its derivative it continues that of the step before (compare Watts & Shampine 1986).
+    !> The polynomial of degree k+2 whose derivative has the values f_n+1, f_n, ... f_n+1-k and which passes through y_n+1 and y_n.
+    !> It and its derivative continue those of the step before (compare Watts & Shampine 1986).
     pure module subroutine interpolate(self, t, y)
       class(adams_t), intent(inout) :: self
       real(dp), intent(in) :: t
@@ -218,15 +219,15 @@ contains
     status = step_done
   end subroutine step
 
-  !> The shortest step that the clock can still resolve. (A rooted clock is finer than the time, which may stand still in
-  !> the first steps.)
+  !> The shortest step that the independent variable resolves. (x = sqrt(t - t_origin) has a finer resolution than the time, which
+  !> may not change in the first steps.)
   pure real(dp) function shortest_step(self)
     class(adams_t), intent(in) :: self
     shortest_step = 4*epsilon(1.0_dp)*max(abs(self%t), 1e-9_dp*self%settings%span)
     if (self%rooted) shortest_step = 4*epsilon(1.0_dp)*max(self%x, 1e-9_dp*sqrt(self%settings%span))
   end function shortest_step
 
-  !> Predict y at the end of the step; phi becomes the differences that the prediction extrapolates.
+  !> Predict y at the end of the step; phi is replaced by the differences used for the prediction.
   pure subroutine predict(self)
     class(adams_t), intent(inout) :: self
     associate (c => self%coefficients)
@@ -235,14 +236,14 @@ contains
     end associate
   end subroutine predict
 
-  !> Evaluate, correct, estimate the error, let the problem judge, evaluate again.
+  !> Evaluate, correct, estimate the error, ask the problem for its verdict, evaluate again.
   subroutine attempt(self, problem, x_new, t_new, errors, outcome, fraction)
     class(adams_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
     real(dp), intent(in) :: x_new, t_new
     type(error_estimates_t), intent(out) :: errors
     integer, intent(out) :: outcome
-    real(dp), intent(out) :: fraction   !! part of the step to try next, where the problem refused it
+    real(dp), intent(out) :: fraction   !! fraction of the step to be tried next, if the problem refused it
     real(dp) :: squares(3), time_rate
     integer :: k, verdict
     logical :: inside
@@ -276,7 +277,7 @@ contains
     outcome = try_accepted
   end subroutine attempt
 
-  !> The step stands: update the differences with the second evaluation.
+  !> Accept the step: update the differences with the second evaluation.
   pure subroutine accept(self, errors, x_new, t_new)
     class(adams_t), intent(inout) :: self
     type(error_estimates_t), intent(in) :: errors
@@ -302,7 +303,7 @@ contains
     end associate
   end subroutine accept
 
-  !> Put the solution at the end of the step in the place of that at its beginning, and note what the differences are owed.
+  !> Replace the solution at the beginning of the step by that at its end, and store the difference not yet added to phi.
   pure subroutine keep(n, y_new, carry_new, f_new, f_extrapolated, y, y_old, carry, f, owed)
     integer, intent(in) :: n
     real(dp), dimension(n), intent(in) :: y_new, carry_new, f_new, f_extrapolated
@@ -319,7 +320,8 @@ contains
     end do
   end subroutine keep
 
-  !> Make f, the rate by the time, that by the clock; `square` is that of the norm of its difference from the one `before`.
+  !> Convert f from the derivative with respect to time to that with respect to the independent variable; `square` is the square of
+  !> the norm of its change from `before`.
   pure subroutine take_by_clock(n, time_rate, before, inverse_weight, f, square)
     integer, intent(in) :: n
     real(dp), intent(in) :: time_rate, before(n), inverse_weight(n)

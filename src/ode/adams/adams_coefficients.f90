@@ -7,11 +7,11 @@ module adams_coefficients
   private
   public :: adams_coefficients_t, moulton_constants, interpolation_weights, stability_limit
 
-  !> Longest stable h |lambda| of the method at each order, for a real negative lambda and a constant step.
+  !> Largest stable h |lambda| of the method at each order, for a negative real lambda and constant step size.
   real(dp), parameter :: stability_limit(highest_order) = [2.00_dp, 2.40_dp, 1.93_dp, 1.41_dp, 1.04_dp, 0.77_dp, 0.58_dp, &
     0.44_dp, 0.34_dp, 0.26_dp, 0.21_dp, 0.17_dp]
 
-  !> i, and 1/(i (i+1)), the i-fold integral of the first basis polynomial, by (i-1)!.
+  !> i, and 1/(i (i+1)), the i-fold integral of the first basis polynomial divided by (i-1)!.
   real(dp), parameter :: ordinal(highest_order) = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]
   real(dp), parameter :: first_column(highest_order) = 1/(ordinal*(ordinal + 1))
 
@@ -21,11 +21,11 @@ module adams_coefficients
     real(dp) :: alpha(highest_order) = 0      !! alpha_i = h/psi_i
     real(dp) :: beta(highest_order) = 0       !! beta_i = product over j < i of psi_j(n+1)/psi_j(n)
     real(dp) :: sigma(highest_order + 1) = 0  !! sigma_i = (i-1)! product over j < i of alpha_j
-    real(dp) :: g(highest_order + 1) = 0      !! g_i = integral of the i-th Newton basis polynomial over the step, by h
-    real(dp) :: v(highest_order) = 0          !! column of the recurrence for g, kept from step to step
-    real(dp) :: beta_next = 1, sigma_next = 1 !! beta_k+1 and sigma_k+2, where the difference of order k is known
-    real(dp) :: psi_before = 0                !! psi_k before the step, for `take_back`
-    integer :: ns = 0                         !! steps taken with the present step size, this one included
+    real(dp) :: g(highest_order + 1) = 0      !! g_i = integral of the i-th Newton basis polynomial over the step, divided by h
+    real(dp) :: v(highest_order) = 0          !! column of the recurrence for g, kept between steps
+    real(dp) :: beta_next = 1, sigma_next = 1 !! beta_k+1 and sigma_k+2, if the difference of order k is known
+    real(dp) :: psi_before = 0                !! psi_k before the step, used by `take_back`
+    integer :: ns = 0                         !! number of steps with the present step size, including this one
   contains
     procedure :: reset
     procedure :: update
@@ -35,8 +35,8 @@ module adams_coefficients
 
 contains
 
-  !> Constants |gamma*_i| of the fixed-step Adams-Moulton formulas, i = 1..highest_order+1 (1/2, 1/12, 1/24,
-  !> 19/720, ...), from their recurrence: the sum over j of gamma*_(i-j)/(j+1) is zero, with gamma*_0 = 1.
+  !> Constants |gamma*_i| of the Adams-Moulton formulas for constant step size, i = 1..highest_order+1 (1/2, 1/12, 1/24, 19/720,
+  !> ...), from their recurrence: the sum over j of gamma*_(i-j)/(j+1) is zero, with gamma*_0 = 1.
   pure function moulton_constants() result(constants)
     real(dp) :: constants(highest_order + 1)
     real(dp) :: gamma(0:highest_order + 1)
@@ -51,7 +51,7 @@ contains
     constants = abs(gamma(1:))
   end function moulton_constants
 
-  !> Forget the past: the next step is the first one.
+  !> Discard the history: the next step is the first one.
   pure subroutine reset(self)
     class(adams_coefficients_t), intent(inout) :: self
     self%ns = 0
@@ -60,8 +60,8 @@ contains
     self%sigma(1) = 1
   end subroutine reset
 
-  !> Coefficients for a step of size h at order k after one of size h_old at order k_old. What does not change
-  !> while the step size is constant is not computed again.
+  !> Coefficients for a step of size h at order k after one of size h_old at order k_old. Coefficients that do not change at
+  !> constant step size are not computed again.
   pure subroutine update(self, h, h_old, k, k_old)
     class(adams_coefficients_t), intent(inout) :: self
     real(dp), intent(in) :: h, h_old
@@ -81,7 +81,7 @@ contains
     self%alpha(ns) = 1.0_dp/ns
     reach = h*ns
     self%sigma(ns + 1) = 1
-    do i = ns + 1, k   ! of h/psi_i and psi_i-1(n+1)/psi_i-1(n), in one division: its length is what counts
+    do i = ns + 1, k   ! h/psi_i and psi_i-1(n+1)/psi_i-1(n) with one division, whose latency determines the time
       previous = self%psi(i - 1)
       self%psi(i - 1) = reach
       next = previous + h
@@ -109,7 +109,7 @@ contains
 
     ns = self%ns
     if (ns == 1) then
-      self%v = first_column   ! of which k are needed, but a copy of fixed length is quicker
+      self%v = first_column   ! only k elements are needed, but a copy of fixed length is faster
       w = first_column
     else
       if (k > k_old) then   ! the order was raised: extend the column
@@ -137,7 +137,7 @@ contains
     end do
   end subroutine update_g
 
-  !> Undo the change of psi by a step of size h at order k that was rejected.
+  !> Undo the change of psi by a rejected step of size h at order k.
   pure subroutine take_back(self, h, k)
     class(adams_coefficients_t), intent(inout) :: self
     real(dp), intent(in) :: h
@@ -150,7 +150,7 @@ contains
     self%ns = 0
   end subroutine take_back
 
-  !> To or from an archive.
+  !> Write the coefficients to an archive, or read them from it.
   subroutine exchange(self, archive)
     class(adams_coefficients_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
@@ -165,14 +165,14 @@ contains
     call archive%exchange(self%ns)
   end subroutine exchange
 
-  !> Weights of the Newton basis integrated from t_n+1 to t_n+1 + s (-h <= s <= 0) and divided by s: with them
-  !> y(t_n+1 + s) = y_n+1 + s sum_i weights(i) phi_i, i = 1..k+2. The last basis polynomial vanishes at all k+1
-  !> points t_n+1..t_n+1-k, so its coefficient is free to match y at t_n.
+  !> Newton basis polynomials integrated from t_n+1 to t_n+1 + s (-h <= s <= 0) and divided by s. With them y(t_n+1 + s) = y_n+1 + s
+  !> sum_i weights(i) phi_i, i = 1..k+2. The last basis polynomial vanishes at all k+1 points t_n+1..t_n+1-k, so that its
+  !> coefficient can be chosen to match y at t_n.
   pure subroutine interpolation_weights(self, k, s, weights)
     class(adams_coefficients_t), intent(in) :: self
     integer, intent(in) :: k
     real(dp), intent(in) :: s
-    real(dp), intent(out) :: weights(:)   !! (k+2) at least
+    real(dp), intent(out) :: weights(:)   !! at least k+2 elements
     real(dp) :: w(highest_order + 2), gamma, eta, scale, term
     integer :: i, j, last
 

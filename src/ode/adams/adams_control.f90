@@ -1,4 +1,4 @@
-!> What the Adams method makes of its errors: their estimates, the order and the size of the next step, what limited the last.
+!> Error control of the Adams method: error estimates, order and size of the next step, limits of the last step.
 submodule (adams) adams_control
   use ode_method, only: limit_error, limit_stability, limit_max_step, limit_refusal
   use adams_coefficients, only: stability_limit
@@ -6,7 +6,7 @@ submodule (adams) adams_control
   use step_norms, only: square_of_sum
   implicit none
 
-  !> What the square of the error is multiplied by, at each order, when the step is doubled or raised by a quarter.
+  !> Factor of the squared error at each order if the step is doubled or raised by a quarter.
   integer, parameter :: powers(highest_order) = 2*[2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13]
   real(dp), parameter :: doubled(highest_order) = 2.0_dp**powers, raised(highest_order) = 1.25_dp**powers
 
@@ -20,7 +20,7 @@ contains
     self%rounding_square = epsilon(1.0_dp)**2*square
   end procedure weigh
 
-  !> 1/(relative |y| + absolute), 0 where that is zero, and the square of the norm of y in these weights.
+  !> 1/(relative |y| + absolute), 0 where the denominator is zero, and the square of the norm of y with these weights.
   pure subroutine weigh_components(n, relative, absolute, y, inverse_weight, square)
     integer, intent(in) :: n
     real(dp), intent(in) :: relative(n), absolute(n), y(n)
@@ -42,7 +42,7 @@ contains
     if (self%rooted) clock_step = dt/(sqrt(self%x**2 + dt) + self%x)
   end procedure clock_step
 
-  !> How far the time goes in the next step.
+  !> Duration of the next step.
   pure real(dp) function time_step(self)
     class(adams_t), intent(in) :: self
     time_step = merge(self%h*(2*self%x + self%h), self%h, self%rooted)
@@ -92,17 +92,17 @@ contains
   end procedure estimate_errors
 
   module procedure respect_rough_time
-    real(dp), parameter :: share = 1/6.0_dp   !! of the way there, in one step
+    real(dp), parameter :: share = 1/6.0_dp   !! largest fraction of the remaining time in one step
     real(dp) :: way
     if (.not. self%rough_time < huge(1.0_dp) .or. self%settings%fixed_step > 0) return
-    if (time_step(self) <= share**2*(self%rough_time - self%t)) return   ! far from there, without a root
+    if (time_step(self) <= share**2*(self%rough_time - self%t)) return   ! far from that instant; decided without a square root
     way = clock_step(self, self%rough_time - self%t)
     if (self%h > share*way .and. self%h < 2*way) self%h = max(share*way, 0.5_dp*self%h)
   end procedure respect_rough_time
 
   module procedure count_limit
     real(dp), parameter :: noise = 100
-    real(dp) :: reach, near, slow, path   ! all squares
+    real(dp) :: reach, near, slow, path   ! all squared
     integer :: limit
     reach = 0
     if (errors%correction > max(noise**2*self%rounding_square, tiny(reach))) &
@@ -112,7 +112,7 @@ contains
     limit = self%limit
     self%bound = .false.
     if (near > 0.3_dp**2) then
-      slow = 0   ! where the solution moves by no more than five tolerances
+      slow = 0   ! norm below which the solution counts as not moving: five tolerances
       path = square_of_sum(self%n, self%y_new, -1.0_dp, self%y, self%inverse_weight)
       if (path >= 5**2) slow = self%h**2 &
         *square_of_sum(self%n, self%f_new, -1.0_dp, self%f, self%inverse_weight)/(path*reach)
@@ -124,7 +124,7 @@ contains
   end procedure count_limit
 
   module procedure choose_order_and_step
-    real(dp) :: error, higher   ! squares
+    real(dp) :: error, higher   ! squared
     real(dp) :: factor
     integer :: k
 
@@ -172,7 +172,7 @@ contains
     call grow(self, factor)
   end procedure choose_order_and_step
 
-  !> Multiply the step size, within what the settings allow.
+  !> Multiply the step size, within the limits of the settings.
   pure subroutine grow(self, factor)
     class(adams_t), intent(inout) :: self
     real(dp), intent(in) :: factor

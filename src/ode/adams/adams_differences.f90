@@ -1,26 +1,25 @@
-!> The table of modified divided differences of the Adams method: phi_i, i = 1..k+2 (Shampine & Gordon 1975, ch. 5). Work
-!> on plain arrays, which the compiler knows to be apart.
+!> The table of modified divided differences of the Adams method: phi_i, i = 1..k+2 (Shampine & Gordon 1975, ch. 5). The procedures
+!> have plain arrays as arguments, which the compiler knows not to overlap.
 !>
-!> The table holds the components in blocks of `lanes`, the last one filled up with zeros, so that the sums of a block stay in
-!> registers while its columns pass. All loops are kept scalar: vectors would be loaded from what the right-hand side or a loop
-!> before has just stored number by number, which stalls processors.
+!> The table stores the components in blocks of `lanes`, the last one padded with zeros, so that the sums of a block stay in
+!> registers while its columns are processed. Loops are not vectorised: vector loads of numbers that the right-hand side or an
+!> earlier loop has just stored one by one stall the processor.
 !>
-!> A step of order k that stands adds its highest difference, f at its end less the f extrapolated there, to the columns 1..k+2
-!> of the table (of which column k+1 was zero, and column k+2 the negative of the old difference of its order). That is put
-!> off to the next pass over the table: until then the columns lack what is `owed`.
+!> An accepted step of order k adds its highest difference, f at its end minus the extrapolated f, to columns 1..k+2 of the table
+!> (column k+1 was zero, and column k+2 the negative of the old difference of its order). This is postponed to the next pass over
+!> the table; until then the columns lack the difference `owed`.
 module adams_differences
   use gudgeon_kinds, only: dp
   implicit none
   private
   public :: lanes, extrapolate, restore_differences, correct, add_weighted, differences_of
 
-  integer, parameter :: lanes = 2   !! components in a block: scenes have from three to eight
+  integer, parameter :: lanes = 2   !! number of components in a block; scenes have three to eight components
 
 contains
 
-  !> Predict y at the end of a step of size h and order k; phi becomes the differences that the prediction extrapolates, in
-  !> which nothing is missing. `carry` is what the rounding of y left out, `carry_predicted` what it leaves out of the prediction,
-  !> `slope` the mean slope of y over the step.
+  !> Predict y at the end of a step of size h and order k; phi is replaced by the differences used for the prediction, with `owed`
+  !> added. `carry` is the rounding error of y, `carry_predicted` that of the prediction, `slope` the mean slope of y over the step.
   pure subroutine extrapolate(n, blocks, k, h, g, beta, beta_next, y, carry, owed, phi, slope, predicted, carry_predicted)
     integer, intent(in) :: n, blocks, k
     real(dp), intent(in) :: h, g(k), beta(k), beta_next, y(n), carry(n)
@@ -37,7 +36,7 @@ contains
     end do
   end subroutine extrapolate
 
-  !> The table of `extrapolate`, and the mean slope of y in the step.
+  !> Update the table for `extrapolate`, and compute the mean slope of y over the step.
   pure subroutine extrapolate_table(blocks, k, g, beta, beta_next, owed, phi, slope)
     integer, intent(in) :: blocks, k
     real(dp), intent(in) :: g(k), beta(k), beta_next
@@ -53,7 +52,7 @@ contains
       phi(:, b, k + 1) = 0
       sum = 0
       next = 0
-      do j = k, 1, -1   ! where the step size has not changed beta_j is 1
+      do j = k, 1, -1   ! beta_j is 1 if the step size has not changed
         column = beta(j)*(phi(:, b, j) + missing)
         sum = sum + g(j)*column
         next = next + column
@@ -63,10 +62,10 @@ contains
     end do
   end subroutine extrapolate_table
 
-  !> Correct to order k+1 with f at the prediction, which becomes its rate by the clock (`time_rate` is that of the time): `factor`
-  !> is h g_k+1, columns are the first of the table and those that the errors at orders k-1 and k-2 need. `carry` becomes what
-  !> the rounding leaves out of y_new. `squares` are those of the weighted norms of the correction of f and of its sums with
-  !> the other two columns.
+  !> Correct to order k+1 with f at the prediction, which is converted to the derivative with respect to the independent variable
+  !> (factor `time_rate`). `factor` is h g_k+1; `first`, `lower` and `lowest` are the first column of the table and those for the
+  !> errors at orders k-1 and k-2. `carry` becomes the rounding error of y_new. `squares` are those of the weighted norms of the
+  !> correction of f and of its sums with the other two columns.
   pure subroutine correct(n, factor, time_rate, f_predicted, first, lower, lowest, inverse_weight, predicted, y_new, carry, squares)
     integer, intent(in) :: n
     real(dp), intent(in) :: factor, time_rate
@@ -94,14 +93,14 @@ contains
     squares = [same_square, lower_square, lowest_square]
   end subroutine correct
 
-  !> Undo `extrapolate` after a step that was rejected.
+  !> Undo `extrapolate` after a rejected step.
   pure subroutine restore_differences(width, k, beta, beta_next, phi)
     integer, intent(in) :: width, k
     real(dp), intent(in) :: beta(k), beta_next
     real(dp), intent(inout) :: phi(width, k + 2)
     real(dp) :: factor
     integer :: i
-    do i = 1, k   ! one division a column
+    do i = 1, k   ! one division for each column
       factor = 1/beta(i)
       phi(:, i) = factor*(phi(:, i) - phi(:, i + 1))
     end do
@@ -125,7 +124,7 @@ contains
     end do
   end subroutine add_weighted
 
-  !> Modified divided differences of values f(:, 1..m) at x(1) < ... < x(m), latest first, and psi_i = x(m) - x(m-i).
+  !> Modified divided differences of values f(:, 1..m) at x(1) < ... < x(m), the latest first, and psi_i = x(m) - x(m-i).
   pure subroutine differences_of(x, f, phi, psi)
     real(dp), intent(in) :: x(:), f(:, :)
     real(dp), intent(out) :: phi(:, :), psi(:)

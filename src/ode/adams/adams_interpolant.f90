@@ -28,7 +28,7 @@ contains
     y = self%y + s*self%slope(:self%n)
   end procedure interpolate
 
-  !> The coefficient of the last polynomial of the interpolant, which makes it pass through y at the beginning of the step.
+  !> Compute the coefficient of the last polynomial of the interpolant, so that it passes through y at the beginning of the step.
   pure subroutine close_polynomial(self)
     class(adams_t), intent(inout) :: self
     real(dp) :: weights(highest_order + 2)

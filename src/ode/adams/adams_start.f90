@@ -1,4 +1,4 @@
-!> How the Adams method begins: memory, the first step of order 1, or a history that is given.
+!> Start of the Adams method: allocation, the first step of order 1, or a given history.
 submodule (adams) adams_start
   use ode_method, only: start_outside, step_statistics_t
   use adams_coefficients, only: moulton_constants
@@ -98,8 +98,8 @@ contains
     call archive%exchange(self%closing)
   end procedure exchange
 
-  !> The first step: a step of order 1 whose error, h^2 |y''|/2, is a quarter of the tolerance. y'' is taken from one
-  !> Euler step short enough to stay near (Hairer, Norsett & Wanner 1993, II.4), but not shorter than the time resolves.
+  !> Choose the first step so that the error of order 1, h^2 |y''|/2, is a quarter of the tolerance. y'' is estimated by an Euler
+  !> step that is short, but not shorter than the time resolves (Hairer, Norsett & Wanner 1993, II.4).
   subroutine choose_first_step(self, problem)
     class(adams_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
@@ -125,7 +125,7 @@ contains
       h = 0.1_dp*h
     end do
     curvature = 0
-    if (inside .and. self%rooted) then   ! by the clock, y'' is 2 f at the start
+    if (inside .and. self%rooted) then   ! with respect to x, y'' is 2 f at the start
       curvature = 2*norm(self%n, self%f_predicted, self%inverse_weight)
     else if (inside) then
       self%f_predicted = self%f_predicted - self%f_new

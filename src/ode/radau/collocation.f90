@@ -1,12 +1,12 @@
 !> One step of a Radau IIA formula: the collocation stages, Newton's method for them, the filtered error estimate, and the
 !> polynomial through the stages of the last step.
 !>
-!> The system has the structure p' = v, v' = a(t, p, v), w' = P(t, p, v): positions p are eliminated from Newton's
-!> equations, and quadratures w take no part in them. v are the rates of the positions and, behind them, first-order states. The
-!> unknowns are the stage increments of v; in the basis that diagonalises A^-1 each real eigenvalue g needs
-!> (g/h - a_v - (h/g) a_p) and each complex pair one such complex matrix, all of the size of v (Hairer & Wanner 1996, IV.8).
+!> The system has the structure p' = v, v' = a(t, p, v), w' = P(t, p, v). Positions p are eliminated from Newton's equations, and
+!> quadratures w do not enter them. v are the rates of the positions followed by the first-order states. The unknowns are the stage
+!> increments of v. In the basis that diagonalises A^-1 each real eigenvalue g requires the matrix (g/h - a_v - (h/g) a_p), and each
+!> complex pair one such complex matrix, all of the size of v (Hairer & Wanner 1996, IV.8).
 !>
-!> Where a trial state leaves the model, Newton's step is halved until it stays inside.
+!> If a trial state leaves the model, Newton's step is halved until it is inside.
 module collocation
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t
@@ -18,45 +18,46 @@ module collocation
   public :: collocation_t, most_iterations, n_formulas
   public :: newton_converged, newton_diverged, newton_outside
 
-  !> How Newton's method ended.
+  !> Outcomes of Newton's method.
   integer, parameter :: newton_converged = 0   !! the stages are known
-  integer, parameter :: newton_diverged = 1    !! it did not contract, or a matrix is singular
+  integer, parameter :: newton_diverged = 1    !! no contraction, or a singular matrix
   integer, parameter :: newton_outside = 2     !! a trial state is outside the model
 
-  integer, parameter :: most_pairs = 3         !! of complex eigenvalues
-  integer, parameter :: n_formulas = 3         !! of 3, 5 and 7 stages
-  integer, parameter :: most_iterations = 10   !! of Newton's method in a step
-  integer, parameter :: most_halvings = 8      !! of one Newton step that leaves the model
-  real(dp), parameter :: least_contraction = 1e-3_dp   !! where one iteration was enough to tell none
-  real(dp), parameter :: least_trust = 0.03_dp   !! in the contraction of the last step: a contact that begins may contract far less
+  integer, parameter :: most_pairs = 3         !! largest number of pairs of complex eigenvalues
+  integer, parameter :: n_formulas = 3         !! formulas of 3, 5 and 7 stages
+  integer, parameter :: most_iterations = 10   !! largest number of iterations in a step
+  integer, parameter :: most_halvings = 8      !! largest number of halvings of a Newton step that leaves the model
+  real(dp), parameter :: least_contraction = 1e-3_dp   !! assumed after a single iteration, which gives no estimate
+  real(dp), parameter :: least_trust = 0.03_dp  !! least value assumed from the last step, since the contraction may be much weaker
+                                                !! at the beginning of a contact
 
   type :: collocation_t
     type(radau_formula_t) :: formula(n_formulas)
-    real(dp) :: per_node(0:most_stages, n_formulas) = 0   !! of the Lagrange polynomials over its nodes
-    integer :: level = 1                   !! formula in use
-    integer :: n = 0                       !! equations
-    integer :: m = 0                       !! positions: y(1:m)
-    integer :: k = 0                       !! rates and first-order states: y(m+1:m+k); the first m are the positions' rates
+    real(dp) :: per_node(0:most_stages, n_formulas) = 0   !! reciprocal denominators of the Lagrange polynomials of its nodes
+    integer :: level = 1                   !! index of the formula in use
+    integer :: n = 0                       !! number of equations
+    integer :: m = 0                       !! number of positions: y(1:m)
+    integer :: k = 0  !! number of rates and first-order states: y(m+1:m+k); the first m are the rates of the positions
     real(dp) :: t = 0                      !! beginning of the step
     real(dp) :: h = 0                      !! its size
-    real(dp) :: goal = 0                   !! how small the rest of Newton's iteration must be, in the weights
+    real(dp) :: goal = 0                   !! required remainder of Newton's iteration, in the norm of the weights
     real(dp), allocatable :: base(:)       !! y at the beginning of the step, (n)
-    real(dp), allocatable :: inverse_weight(:)   !! of the error norm, (n)
-    integer :: evaluations = 0             !! of the right-hand side, to be collected by the owner
-    real(dp) :: contraction = 0            !! of Newton's method in the last try
-    real(dp) :: trust = 1                  !! contraction/(1 - contraction): what is left of a Newton step
-    integer :: iterations = 0              !! in the last try
-    integer :: stages_done = 0             !! stages of the last accepted step, 0 after a start
+    real(dp), allocatable :: inverse_weight(:)   !! weights of the error norm, (n)
+    integer :: evaluations = 0             !! evaluations of the right-hand side, to be collected by the owner
+    real(dp) :: contraction = 0            !! contraction of Newton's method in the last trial
+    real(dp) :: trust = 1                  !! contraction/(1 - contraction): estimated remainder relative to a Newton step
+    integer :: iterations = 0              !! number of iterations in the last trial
+    integer :: stages_done = 0             !! number of stages of the last accepted step, 0 after a start
     real(dp) :: h_done = 0                 !! its size
-    real(dp), allocatable :: z(:, :)       !! increments of y at its stages, (n, most_stages)
-    real(dp), allocatable :: z_new(:, :)   !! the same of the try
+    real(dp), allocatable :: z(:, :)       !! increments of y at the stages of the last accepted step, (n, most_stages)
+    real(dp), allocatable :: z_new(:, :)   !! the same for the present trial
     real(dp), allocatable :: a_p(:, :), a_v(:, :)   !! Jacobian, (k, m) and (k, k)
     real(dp), allocatable, private :: w(:, :), dw(:, :), rates(:, :)   !! (k, most_stages)
     real(dp), allocatable, private :: f_stage(:, :) !! right-hand side at the stages, (n, most_stages)
     real(dp), allocatable, private :: y_stage(:, :) !! (n, most_stages)
-    real(dp), allocatable, private :: step_weight(:) !! of a Newton step, with what it moves the positions, (k)
+    real(dp), allocatable, private :: step_weight(:) !! weights of a Newton step, including its effect on the positions, (k)
     real(dp), allocatable, private :: e1(:, :)      !! real matrix, (k, k)
-    real(dp), allocatable, private :: e2(:, :, :)   !! complex matrices, real and imaginary parts in turn, (k, k, 2 pairs)
+    real(dp), allocatable, private :: e2(:, :, :)   !! complex matrices, real and imaginary parts alternating, (k, k, 2 pairs)
     integer, allocatable, private :: pivot1(:), pivot2(:, :)
   contains
     procedure :: prepare
@@ -78,28 +79,29 @@ module collocation
       real(dp), intent(out) :: change(:)   !! (n)
     end subroutine polynomial
 
-    !> The matrices of Newton's equations for the present step size.
+    !> Compute and factorise the matrices of Newton's equations for the present step size.
     pure module subroutine decompose_matrices(self, singular)
       class(collocation_t), intent(inout) :: self
       logical, intent(out) :: singular
     end subroutine decompose_matrices
 
-    !> Increments of the rates at the stages, from the last step's polynomial continued.
+    !> Initial guess of the rate increments at the stages, by extrapolation of the last step's polynomial.
     pure module subroutine guess_stages(self)
       class(collocation_t), intent(inout) :: self
     end subroutine guess_stages
 
-    !> Simplified Newton iteration for the stage increments. The contraction that it shows is trusted for the first
-    !> iteration of the next step too.
+    !> Simplified Newton iteration for the stage increments. Its contraction is also assumed for the first iteration of the next
+    !> step.
     module subroutine iterate(self, problem, outcome)
       class(collocation_t), intent(inout) :: self
       class(ode_problem_t), intent(in) :: problem
       integer, intent(out) :: outcome
     end subroutine iterate
 
-    !> The increments of quadratures come from rates before the last Newton step, which moves the rest of its iteration only. Where
-    !> their rate at the end of the step, now known in `f_end`, shows that this moves them by more than a share of the inner
-    !> tolerance (a film so thin that its force doubles within the tolerance of the eccentricity), they are found once more.
+    !> The increments of quadratures are computed from rates before the last Newton step, which changes only the remainder of the
+    !> iteration. If the rate at the end of the step, now known in `f_end`, shows that this changes them by more than a fraction of
+    !> the inner tolerance (in a film so thin that its force doubles within the tolerance of the eccentricity), they are computed
+    !> again.
     module subroutine settle_quadratures(self, problem, f_end)
       class(collocation_t), intent(inout) :: self
       class(ode_problem_t), intent(in) :: problem
@@ -116,7 +118,7 @@ module collocation
 
 contains
 
-  !> Allocate everything, once for a whole integration.
+  !> Allocate all arrays, once for a whole integration.
   subroutine prepare(self, problem)
     class(collocation_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
@@ -139,11 +141,11 @@ contains
       self%a_p(k, m), self%a_v(k, k), self%e1(k, k), self%e2(k, k, 2*most_pairs), self%pivot1(k), &
       self%pivot2(k, most_pairs), self%inverse_weight(n))
     self%z = 0
-    self%w = 0    ! the columns beyond the stages in use take part in halvings
+    self%w = 0    ! columns beyond the stages in use are included in halvings
     self%dw = 0
   end subroutine prepare
 
-  !> What is remembered between two steps, to or from an archive, after `prepare`.
+  !> Write the data kept between two steps to an archive, or read them from it, after `prepare`.
   subroutine exchange(self, archive)
     class(collocation_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
@@ -164,14 +166,14 @@ contains
     call archive%exchange(self%a_v)
   end subroutine exchange
 
-  !> Stages of the formula in use.
+  !> Number of stages of the formula in use.
   pure integer function stages(self)
     class(collocation_t), intent(in) :: self
     stages = self%formula(self%level)%stages
   end function stages
 
-  !> Solve for the stages of the step of size h from (t, base), with the Jacobian in a_p and a_v: from the last step's
-  !> polynomial continued where `extrapolates`, else from no change at all.
+  !> Solve for the stages of the step of size h from (t, base), with the Jacobian in a_p and a_v. The initial guess is the
+  !> extrapolated polynomial of the last step if `extrapolates`, otherwise no change.
   subroutine solve_stages(self, problem, extrapolates, outcome)
     class(collocation_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
@@ -185,13 +187,13 @@ contains
     if (extrapolates .and. self%stages_done > 0) then
       call guess_stages(self)
       call iterate(self, problem, outcome)
-      if (outcome /= newton_outside) return   ! else the guess may be what is outside
+      if (outcome /= newton_outside) return   ! otherwise the initial guess may be outside
     end if
     self%w = 0
     call iterate(self, problem, outcome)
   end subroutine solve_stages
 
-  !> The try stands: its stages are those of the last step.
+  !> Accept the trial: its stages become those of the last step.
   pure subroutine keep(self)
     class(collocation_t), intent(inout) :: self
     integer :: s
@@ -201,14 +203,14 @@ contains
     self%h_done = self%h
   end subroutine keep
 
-  !> An upper bound of the rate of the fastest mode of the last Jacobian: the row-sum norm of a_v and the root of that of a_p, in
-  !> the weights of the error of the rates.
+  !> An upper bound of the rate of the fastest mode of the last Jacobian: the row-sum norm of a_v and the square root of that of
+  !> a_p, with the weights of the rates.
   pure real(dp) function fastest_rate(self)
     class(collocation_t), intent(in) :: self
     real(dp) :: most_v, most_p, size_of(self%m + self%k)
     integer :: i
     size_of = 1/max(self%inverse_weight(:self%m + self%k), tiny(most_v))
-    size_of(:self%m) = size_of(self%m + 1:2*self%m)   ! positions are measured as rates, since a_p is the square of one
+    size_of(:self%m) = size_of(self%m + 1:2*self%m)   ! positions are scaled as rates, since a_p has the dimension of a rate squared
     most_v = 0
     most_p = 0
     do i = 1, self%k
@@ -220,7 +222,7 @@ contains
     fastest_rate = max(most_v, sqrt(most_p))
   end function fastest_rate
 
-  !> One over the product of the distances of each node 0, c_1, ..., c_s from the others.
+  !> Reciprocal product of the distances of each node 0, c_1, ..., c_s from the others.
   pure function inverse_node_products(formula) result(per_node)
     type(radau_formula_t), intent(in) :: formula
     real(dp) :: per_node(0:most_stages), node(0:most_stages)
@@ -235,7 +237,7 @@ contains
     end do
   end function inverse_node_products
 
-  !> (I - h/gamma J)^-1 (h/gamma f_0 + sum e_i z_i): the difference to an embedded formula of order s, filtered.
+  !> (I - h/gamma J)^-1 (h/gamma f_0 + sum e_i z_i): the filtered difference from an embedded formula of order s.
   pure subroutine filtered_error(self, f_0, error)
     class(collocation_t), intent(in) :: self
     real(dp), intent(in) :: f_0(:)

@@ -3,8 +3,7 @@ submodule (collocation) collocation_newton
   use small_lu, only: decompose
   implicit none
 
-  !> A Newton step so large, in tolerances, leads nowhere: what lies there is not evaluated, since forces and their squares may be
-  !> beyond all numbers.
+  !> Newton steps larger than this, in tolerances, are not made: forces and their squares may overflow there.
   real(dp), parameter :: farthest = 1e30_dp
 contains
 
@@ -87,7 +86,7 @@ contains
       call evaluate_stages(self, problem, inside)
       do halvings = 1, most_halvings
         if (inside) exit
-        self%dw = 0.5_dp*self%dw   ! half of the step just made is taken back
+        self%dw = 0.5_dp*self%dw   ! take back half of the last step
         self%w = self%w - self%dw
         last_change = 0
         last_ratio = 0
@@ -100,8 +99,8 @@ contains
     outcome = newton_diverged
   end procedure iterate
 
-  !> One Newton step: self%dw, added to self%w, and its size relative to the inner tolerance, with what it moves the positions. The
-  !> right-hand sides at the stages are those of self%w. A step beyond all measure is not made.
+  !> One Newton step: self%dw is added to self%w; `change` is its size relative to the inner tolerance, including its effect on the
+  !> positions. The right-hand sides at the stages belong to self%w. A step that is too large is not made.
   subroutine newton_step(self, change)
     class(collocation_t), intent(inout) :: self
     real(dp), intent(out) :: change
@@ -121,8 +120,8 @@ contains
     call add_step(k, s, self%step_weight, self%dw, self%w, change)
   end subroutine newton_step
 
-  !> From the right-hand sides take what they are of w: the real eigenvalue times the first column, the complex ones times pairs of
-  !> columns, as (alpha - i beta) (w + i w').
+  !> Subtract the terms with w from the right-hand sides: the real eigenvalue times the first column, the complex ones times pairs
+  !> of columns, as (alpha - i beta) (w + i w').
   pure subroutine subtract_shifted(k, s, gamma, alpha, beta, factor, w, dw)
     integer, intent(in) :: k, s
     real(dp), intent(in) :: gamma, alpha(*), beta(*), factor, w(k, s)
@@ -142,7 +141,7 @@ contains
     end do
   end subroutine subtract_shifted
 
-  !> Add a Newton step to w and find its size. A step beyond all measure is not made.
+  !> Add a Newton step to w and compute its size. A step that is too large is not made.
   pure subroutine add_step(k, s, weight, dw, w, change)
     integer, intent(in) :: k, s
     real(dp), intent(in) :: weight(k), dw(k, s)
@@ -163,8 +162,7 @@ contains
     w = w + dw
   end subroutine add_step
 
-  !> Increments of all components at the stages: rates from w, positions by collocation, quadratures from the last
-  !> evaluation.
+  !> Increments of all components at the stages: rates from w, positions by collocation, quadratures from the last evaluation.
   subroutine expand_stages(self, with_quadratures)
     class(collocation_t), intent(inout) :: self
     logical, intent(in) :: with_quadratures
@@ -182,7 +180,7 @@ contains
     end associate
   end subroutine expand_stages
 
-  !> What the rates at the beginning move the positions.
+  !> Add the effect of the initial rates on the positions.
   pure subroutine add_drift(n, m, s, h, c, base, z)
     integer, intent(in) :: n, m, s
     real(dp), intent(in) :: h, c(s), base(n)
@@ -233,7 +231,7 @@ contains
     end select
   end procedure combine
 
-  !> The common numbers of stages, without loops over them.
+  !> The three usual numbers of stages, without loops over the stages.
   pure subroutine combine_3(rows, factor, m, x, first_x, y, first_y)
     integer, intent(in) :: rows, first_x, first_y
     real(dp), intent(in) :: factor, m(3, 3), x(first_x, *)
@@ -262,8 +260,8 @@ contains
     end do
   end subroutine combine_5
 
-  !> Right-hand sides at the stages of self%w. The states of all stages are there before the first evaluation: so evaluations do not
-  !> wait for each other.
+  !> Right-hand sides at the stages of self%w. The states of all stages are computed before the first evaluation, so that
+  !> evaluations do not depend on each other.
   subroutine evaluate_stages(self, problem, inside)
     class(collocation_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem

@@ -33,8 +33,8 @@ contains
     call combine(k, s, 1.0_dp, self%formula(self%level)%t_inverse, self%rates, k, self%w, k)
   end procedure guess_stages
 
-  !> Lagrange polynomials at x over the nodes 0, c_1, ..., c_s of a formula: products of the distances before and after
-  !> each node, over those at the node itself, which `prepare` has found.
+  !> Lagrange polynomials at x over the nodes 0, c_1, ..., c_s of a formula: products of the distances before and after each node,
+  !> divided by those at the node itself, computed by `prepare`.
   pure subroutine lagrange(self, stages, x, weights)
     class(collocation_t), intent(in) :: self
     integer, intent(in) :: stages

@@ -1,7 +1,7 @@
 !> Radau IIA collocation of 3, 5 and 7 stages (orders 5, 9, 13) for stiff phases (Hairer & Wanner 1996, IV.8; variable
 !> order: Hairer & Wanner 1999).
 !>
-!> Each step is solved by `collocation`. Where that does not converge, or leaves the model, the step is halved.
+!> Each step is solved by `collocation`. If that does not converge, or leaves the model, the step is halved.
 module radau
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t, step_admitted, step_too_deep
@@ -12,29 +12,29 @@ module radau
   private
   public :: radau_t
 
-  !> Reasons to try a step again, besides those of Newton's method.
+  !> Reasons to repeat a step, besides those of Newton's method.
   integer, parameter :: try_accepted = newton_converged, try_outside = newton_outside
   integer, parameter :: try_error = 11, try_too_deep = 12
 
-  real(dp), parameter :: tight_tolerance = 5e-9_dp   !! from here on 7 stages
+  real(dp), parameter :: tight_tolerance = 5e-9_dp   !! at smaller tolerances the formula of 7 stages is used
   real(dp), parameter :: safety = 0.9_dp
-  real(dp), parameter :: largest_growth = 8, largest_cut = 5   !! of the step size, as factors
-  integer, parameter :: cautious_steps = 8           !! after a step without convergence, and
-  real(dp), parameter :: cautious_growth = 1.3_dp    !! how fast the steps may then grow
-  real(dp), parameter :: keep_jacobian_below = 1e-3_dp   !! contraction of Newton's method
+  real(dp), parameter :: largest_growth = 8, largest_cut = 5   !! factors of the step size
+  integer, parameter :: cautious_steps = 8           !! number of steps after one without convergence in which
+  real(dp), parameter :: cautious_growth = 1.3_dp    !! the step size may grow only by this factor
+  real(dp), parameter :: keep_jacobian_below = 1e-3_dp   !! contraction of Newton's method below which the Jacobian is kept
 
   type, extends(ode_method_t) :: radau_t
     private
     type(collocation_t) :: stages
-    integer :: highest = n_formulas        !! highest formula allowed
-    integer :: weighted = 1                !! components that take part in the error control
+    integer :: highest = n_formulas        !! index of the highest formula allowed
+    integer :: weighted = 1                !! number of components in the error control
     real(dp) :: h = 0                      !! size of the next step
     real(dp) :: h_last = 0                 !! size of the last accepted step
-    real(dp) :: error_done = 0             !! its error
-    integer :: since_change = 0            !! steps since the formula was changed
-    logical :: fresh_jacobian = .false.    !! the Jacobian was found for this try or the one before it
-    logical :: failed = .false.            !! the last try was rejected
-    integer :: cautious = 0                !! steps for which the step size grows slowly, after one without convergence
+    real(dp) :: error_done = 0             !! error of that step
+    integer :: since_change = 0            !! number of steps since the formula was changed
+    logical :: fresh_jacobian = .false.    !! the Jacobian was computed for this trial or the one before it
+    logical :: failed = .false.            !! the last trial was rejected
+    integer :: cautious = 0                !! number of steps in which the step size still grows slowly
     logical :: first = .true.              !! no step since the start
     real(dp), allocatable :: f(:)                 !! right-hand side at (t, y), (n)
     real(dp), allocatable :: y_try(:), y_new(:), f_new(:), error(:)
@@ -57,34 +57,35 @@ module radau
       integer, intent(out) :: status
     end subroutine start
 
-    !> Allocate everything, once for a whole integration.
+    !> Allocate all arrays, once for a whole integration.
     module subroutine prepare(self, problem)
       class(radau_t), intent(inout) :: self
       class(ode_problem_t), intent(in) :: problem
     end subroutine prepare
 
-    !> All components but those that `prepare` sets and those in which a step works.
+    !> Write all components except those set by `prepare` and the work arrays of a step to an archive, or read them from it.
     module subroutine exchange(self, problem, archive)
       class(radau_t), intent(inout) :: self
       class(ode_problem_t), intent(in) :: problem
       type(archive_t), intent(inout) :: archive
     end subroutine exchange
 
-    !> The formula to start with: the looser the tolerance the lower.
+    !> The first formula: fewer stages for larger tolerances.
     pure integer module function first_level(self)
       class(radau_t), intent(in) :: self
     end function first_level
 
-    !> The tolerance to work with: none looser than `loosest`, since the errors of the stages then throw Newton's method from
-    !> one side of a film's bend to the other, and a looser tolerance costs more (simulation V: 14,000 to 240,000
-    !> evaluations at 1e-2, 8,500 at 1e-3).
+    !> The tolerance used: at most `loosest`. With larger ones the errors of the stages make Newton's method alternate between both
+    !> sides of a kink of a film's force, and the cost increases (simulation V: 14,000 to 240,000 evaluations at 1e-2, 8,500 at
+    !> 1e-3).
     pure real(dp) module function working_tolerance(self)
       class(radau_t), intent(in) :: self
     end function working_tolerance
 
-    !> The error estimate of s stages is of order s, the formula of order 2s-1: what a tolerance asks of the
-    !> estimate is 0.1 tolerance^((s+1)/2s) (Hairer & Wanner). In a stiff film the order is not reached, which shows at tight
-    !> tolerances: there the exponent is 3/4 at least, which keeps the error of the smooth simulations near the tolerance.
+    !> The tolerance of the error estimate. For s stages the estimate is of order s and the formula of order 2s-1; the tolerance of
+    !> the estimate is therefore 0.1 tolerance^((s+1)/2s) (Hairer & Wanner). In a stiff film this order is not reached, which
+    !> matters at tight tolerances: there the exponent is at least 3/4, which keeps the error of the smooth simulations near the
+    !> tolerance.
     pure real(dp) module function inner_tolerance(tolerance, stages)
       real(dp), intent(in) :: tolerance
       integer, intent(in) :: stages
@@ -94,40 +95,40 @@ module radau
       class(radau_t), intent(inout) :: self
     end subroutine weigh
 
-    !> Root mean square over the components that take part in the error control.
+    !> Root mean square over the components in the error control.
     pure real(dp) module function scaled_norm(self, x)
       class(radau_t), intent(in) :: self
       real(dp), intent(in) :: x(:)
     end function scaled_norm
 
-    !> How small the rest of Newton's iteration must be, relative to the inner tolerance: twice what Hairer & Wanner ask, which
-    !> saves films 2 to 6 % of their evaluations at equal error.
+    !> Required remainder of Newton's iteration, relative to the inner tolerance: twice that of Hairer & Wanner, which saves 2 to 6
+    !> % of the evaluations in films at equal error.
     pure real(dp) module function newton_goal(self)
       class(radau_t), intent(in) :: self
     end function newton_goal
 
-    !> (I - h/gamma J)^-1 (h/gamma f_0 + sum e_i z_i), the difference to an embedded formula of order s, filtered. After
-    !> a start or a rejection it is filtered once more where it is too large.
+    !> (I - h/gamma J)^-1 (h/gamma f_0 + sum e_i z_i), the filtered difference from an embedded formula of order s. After a start or
+    !> a rejection it is filtered once more if it is too large.
     module subroutine estimate_error(self, problem, error)
       class(radau_t), intent(inout) :: self
       class(ode_problem_t), intent(in) :: problem
       real(dp), intent(out) :: error
     end subroutine estimate_error
 
-    !> Shorten the step after a try that failed.
+    !> Shorten the step after a failed trial.
     pure module subroutine retreat(self, outcome, error, fraction)
       class(radau_t), intent(inout) :: self
       integer, intent(in) :: outcome
       real(dp), intent(in) :: error, fraction
     end subroutine retreat
 
-    !> The next step size: from the error, and from its change since the last step (Gustafsson).
+    !> The next step size, from the error and its change since the last step (Gustafsson).
     pure module subroutine choose_step(self, error)
       class(radau_t), intent(inout) :: self
       real(dp), intent(in) :: error
     end subroutine choose_step
 
-    !> More stages where Newton's method contracts fast, fewer where it hardly does.
+    !> More stages if Newton's method contracts fast, fewer if it hardly does.
     pure module subroutine choose_formula(self)
       class(radau_t), intent(inout) :: self
     end subroutine choose_formula
@@ -170,7 +171,7 @@ contains
     status = step_done
   end subroutine step
 
-  !> Let the last step, or the last two, end where the integration does.
+  !> Adjust the step size so that the last step, or the last two, end at the end of the integration.
   pure subroutine meet_stop_time(self)
     class(radau_t), intent(inout) :: self
     real(dp) :: left
@@ -183,7 +184,7 @@ contains
     end if
   end subroutine meet_stop_time
 
-  !> Jacobian, decompositions, Newton's method, error estimate, the problem's verdict, f at the end.
+  !> Jacobian, factorisations, Newton's method, error estimate, verdict of the problem, f at the end of the step.
   subroutine attempt(self, problem, error, outcome, fraction)
     class(radau_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
@@ -225,15 +226,15 @@ contains
     self%y_new = self%y + self%stages%z_new(:, self%stages%stages())
   end subroutine attempt
 
-  !> The Jacobian of a try is that at three quarters of it, on the last step's polynomial continued: the stiffness of a film changes
-  !> within a step, and with the Jacobian of a point among the stages Newton's method contracts faster than with that of the
-  !> beginning. Measured on seven film scenes: 25 to 30 % fewer evaluations and Jacobians at equal error of 1e-4 to 1e-8; at half of
-  !> the step, or at its end, 17 to 20 %. After a start, and where f is not defined on the way (all derivatives are 0), it is that
-  !> of the beginning.
+  !> The Jacobian of a trial is evaluated at three quarters of the step, on the extrapolated polynomial of the last step: the
+  !> stiffness of a film changes within a step, and with a Jacobian among the stages Newton's method contracts faster than with that
+  !> of the beginning. Measured on seven film scenes: 25 to 30 % fewer evaluations and Jacobians at equal errors of 1e-4 to 1e-8; 17
+  !> to 20 % at half of the step or at its end. After a start, and if f is not defined at that point (all derivatives are 0), the
+  !> Jacobian at the beginning is used.
   subroutine find_jacobian(self, problem)
     class(radau_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
-    real(dp), parameter :: place = 0.75_dp   !! of the step
+    real(dp), parameter :: place = 0.75_dp   !! fraction of the step
     self%fresh_jacobian = .true.
     if (self%stages%stages_done > 0) then
       call self%stages%polynomial(1 + place*self%h/self%stages%h_done, self%y_try)
@@ -246,9 +247,9 @@ contains
     self%statistics%jacobians = self%statistics%jacobians + 1
   end subroutine find_jacobian
 
-  !> Newton's method diverged: the force may be far stiffer where it went than where its Jacobian is from (a film that the pin
-  !> leaves hardly resists, one that it approaches does). Once more with the Jacobian from there, with which the
-  !> iteration contracts on both sides.
+  !> If Newton's method diverged, the force may be far stiffer at its last iterate than at the point of the Jacobian (a film hardly
+  !> resists a separating pin, but an approaching one). Try again with the Jacobian at that iterate, with which the iteration
+  !> contracts on both sides.
   subroutine try_other_jacobian(self, problem, outcome)
     class(radau_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
@@ -266,7 +267,7 @@ contains
     call self%stages%solve_stages(problem, .true., outcome)
   end subroutine try_other_jacobian
 
-  !> Set out for a step of size h from (t, y).
+  !> Prepare a step of size h from (t, y).
   pure subroutine set_out(self, t, y, h)
     class(radau_t), intent(inout) :: self
     real(dp), intent(in) :: t, y(:), h
@@ -276,7 +277,7 @@ contains
     self%stages%goal = newton_goal(self)
   end subroutine set_out
 
-  !> Enter the evaluations of the stages into the statistics.
+  !> Add the evaluations of the stages to the statistics.
   pure subroutine collect(self)
     class(radau_t), intent(inout) :: self
     self%statistics%evaluations = self%statistics%evaluations + self%stages%evaluations
@@ -303,7 +304,7 @@ contains
     end associate
   end subroutine accept
 
-  !> Repeat the last step with the size that ends at t. Where that fails the interpolant serves.
+  !> Repeat the last step with the size that ends at t. If that fails, the interpolant is used.
   subroutine land_on(self, problem, t, y)
     class(radau_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem

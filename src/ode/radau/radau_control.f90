@@ -1,4 +1,4 @@
-!> What Radau makes of its errors: weights, the estimate, the size and the formula of the next step.
+!> Error control of Radau: weights, error estimate, size and formula of the next step.
 submodule (radau) radau_control
   use collocation, only: most_iterations
   implicit none
@@ -28,7 +28,7 @@ contains
   end procedure newton_goal
 
   module procedure estimate_error
-    real(dp), parameter :: farthest = 1e30_dp   !! of states that are worth an evaluation, in tolerances
+    real(dp), parameter :: farthest = 1e30_dp   !! largest state for which the right-hand side is evaluated, in tolerances
     logical :: inside
 
     call self%stages%filtered_error(self%f, self%error)
@@ -70,7 +70,7 @@ contains
     call weigh(self)
   end procedure retreat
 
-  !> Factor of the step size that the error asks for: less room where Newton's method needed many iterations.
+  !> Factor of the step size from the error, reduced if Newton's method needed many iterations.
   pure real(dp) function step_factor(self, error)
     class(radau_t), intent(in) :: self
     real(dp), intent(in) :: error

@@ -1,4 +1,4 @@
-!> How Radau begins: memory, the first formula and step.
+!> Start of Radau: allocation, first formula and first step.
 submodule (radau) radau_start
   use ode_method, only: start_outside, step_statistics_t
   implicit none
@@ -79,7 +79,7 @@ contains
     inner_tolerance = 0.1_dp*tolerance**exponent_of
   end procedure inner_tolerance
 
-  !> First step from the sizes of y, y' and y'' (Hairer, Norsett & Wanner 1993, II.4).
+  !> First step from the norms of y, y' and y'' (Hairer, Norsett & Wanner 1993, II.4).
   subroutine choose_first_step(self, problem)
     class(radau_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
@@ -89,7 +89,7 @@ contains
 
     order = self%stages%stages()
     longest = min(self%settings%max_step, self%settings%first_step, self%settings%span)
-    size_y = min(scaled_norm(self, self%y), 1/inner_tolerance(working_tolerance(self), order))   ! of what does not grow
+    size_y = min(scaled_norm(self, self%y), 1/inner_tolerance(working_tolerance(self), order))  ! without unbounded components
     slope = scaled_norm(self, self%f(:size(self%y)))
     h = 1e-6_dp*longest
     if (slope > 0 .and. size_y > 0) h = min(0.01_dp*size_y/slope, longest)

@@ -1,15 +1,15 @@
 !> LU decomposition with partial pivoting of the small dense matrices of an implicit step, real and complex.
 !>
-!> Complex numbers are pairs of reals here: a library division for each of them, and products that are looked at for what is not
-!> a number, cost more than the arithmetic. Substitution of order 3, that of one loose joint, is written out.
+!> Complex numbers are stored as pairs of reals: library divisions, and products that check for NaN, would cost more than the
+!> arithmetic. Substitution of order 3, for one joint with clearance, is written without loops.
 module small_lu
   use gudgeon_kinds, only: dp
   implicit none
   private
   public :: decompose, solve
 
-  !> Replace a matrix (n, n) by its factors, with the reciprocals of the pivots; `pivot` (n) keeps the row exchanges. `singular`
-  !> where a pivot is 0 or not a number.
+  !> Replace a matrix (n, n) by its factors, with reciprocal pivots; `pivot` (n) stores the row exchanges. `singular` is true if a
+  !> pivot is 0 or not a number.
   interface decompose
     module procedure decompose_real, decompose_complex
   end interface decompose
@@ -37,7 +37,7 @@ contains
       pivot(j) = p
       if (.not. abs(a(p, j)) > 0) return
       if (p /= j) then
-        do l = j, n   ! the factors to the left stay in the order in which they are substituted
+        do l = j, n   ! the factors to the left stay in the order of the substitution
           swap = a(j, l)
           a(j, l) = a(p, l)
           a(p, l) = swap
@@ -122,7 +122,7 @@ contains
     singular = .false.
   end subroutine decompose_complex
 
-  !> 1/(x + i y) in its place; measured by its size first, since squares may be beyond all numbers.
+  !> 1/(x + i y), in place; scaled first, since the squares may overflow.
   pure subroutine invert(x, y)
     real(dp), intent(inout) :: x, y
     real(dp) :: per_size, per_square
@@ -164,7 +164,7 @@ contains
     end do
   end subroutine solve_complex
 
-  !> Three complex unknowns.
+  !> Substitution for three complex unknowns.
   pure subroutine solve_three(a, b, pivot, x, y)
     real(dp), intent(in) :: a(3, 3), b(3, 3)
     integer, intent(in) :: pivot(3)
