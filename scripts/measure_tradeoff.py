@@ -6,10 +6,11 @@
     scripts/measure_tradeoff.py --presets                     what --accuracy draft, standard, reference give in every case
     scripts/measure_tradeoff.py --films cases/sim_I.nml       every film in this scene: cost and answers, to data/measured/films.md
 
-Runs a case over tolerance x method x max_order x contact entry with the release build, side by side on the cores there
-are, and compares each run with a reference at the tightest setting, whose own error it estimates from the next
-tightest tolerance and the other method. Goes on where it was interrupted: rows in the table are not run again, unless
-the case or the program has changed. Wall times are measured while the other cores work; evaluations are exact.
+Runs a case for all combinations of tolerance, method, max_order and contact entry with the release build, in parallel on
+all processor cores, and compares each run with a reference at the tightest setting, whose own error is estimated from
+the next tightest tolerance and the other method. An interrupted measurement is continued by the same command: rows of
+the table are not measured again unless the case or the program has changed. Wall times are measured while other cores
+are busy; numbers of evaluations are exact.
 """
 
 import argparse
@@ -95,10 +96,10 @@ def arguments() -> argparse.Namespace:
         "--repeat", type=int, default=5, metavar="N", help="wall time is the median of N runs (default: 5)"
     )
     parser.add_argument(
-        "--jobs", type=int, default=os.cpu_count() or 1, metavar="N", help="side by side (default: the cores)"
+        "--jobs", type=int, default=os.cpu_count() or 1, metavar="N", help="number of runs in parallel (default: number of processor cores)"
     )
     parser.add_argument(
-        "--timeout", type=float, default=120.0, metavar="S", help="give a run up after this (default: 120)"
+        "--timeout", type=float, default=120.0, metavar="S", help="stop a run after this time (default: 120)"
     )
     language.add_option(parser)
     options = parser.parse_args()
@@ -284,7 +285,10 @@ def main() -> int:
         if options.presets:
             print("| case | length | reference known to | draft | standard | reference |", "|---|---|---|---|---|---|", sep="\n")
             for case in options.cases:
-                print(preset_row(Study(case, "", program, options)), flush=True)
+                try:
+                    print(preset_row(Study(case, "", program, options)), flush=True)
+                except MissingResult as problem:
+                    print(f"| `{case.stem}` | no reference | {problem} | | | |", flush=True)
             return 0
         for case, variant in product(options.cases, options.variants):
             study = Study(case, variant, program, options)
@@ -298,7 +302,7 @@ def main() -> int:
         print(f"measure_tradeoff.py: {problem}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
-        print("\nmeasure_tradeoff.py: interrupted; the same command goes on from here", file=sys.stderr)
+        print("\nmeasure_tradeoff.py: interrupted; the same command continues", file=sys.stderr)
         return 130
     return 0
 

@@ -4,7 +4,7 @@
     scripts/record.py NAME TITLE COMMAND [ARGUMENT ...]
     scripts/record.py costs "What a model costs" scripts/measure_costs
 
-Standard error of the command goes to the terminal. If it fails the file stays as it was.
+The lines are also shown on standard error as they come. If the command fails, an existing file is not changed.
 """
 import shlex
 import subprocess
@@ -18,11 +18,16 @@ def main() -> int:
         print(__doc__, file=sys.stderr)
         return 2
     name, title, *command = sys.argv[1:]
-    done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
-    if done.returncode != 0 or not done.stdout.strip():
-        print(f"record: {shlex.join(command)}: exit status {done.returncode}, nothing written", file=sys.stderr)
+    lines = []
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        for line in process.stdout:
+            lines.append(line)
+            print(line, end="", file=sys.stderr, flush=True)
+    text = "".join(lines)
+    if process.returncode != 0 or not text.strip():
+        print(f"record: {shlex.join(command)}: exit status {process.returncode}, nothing written", file=sys.stderr)
         return 1
-    print(write_table(name, title, shlex.join(command), done.stdout))
+    print(write_table(name, title, shlex.join(command), text))
     return 0
 
 

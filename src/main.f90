@@ -1,4 +1,4 @@
-!> gudgeon: the slider-crank mechanism with clearance in its piston-pin joint. Reads the command line and runs the cases.
+!> gudgeon: simulation of the slider-crank mechanism with clearance in its joints. Reads the command line and runs the cases.
 program gudgeon
   use, intrinsic :: iso_fortran_env, only: int64, compiler_options
   use gudgeon_kinds, only: dp
@@ -55,7 +55,7 @@ program gudgeon
 
 contains
 
-  !> Run every case and the ideal twins that they ask for, several side by side; the highest exit status wins.
+  !> Run all cases and their ideal twins, several at the same time; the largest exit status is returned.
   subroutine run_all(options, status)
     type(command_line_t), intent(in) :: options
     integer, intent(out) :: status
@@ -94,7 +94,7 @@ contains
     if (advice /= '' .and. .not. options%quiet) call tell(advice)
   end subroutine run_all
 
-  !> Run every study, one after the other; the highest exit status wins.
+  !> Run all studies, one after the other; the largest exit status is returned.
   subroutine run_studies(options, status)
     type(command_line_t), intent(in) :: options
     integer, intent(out) :: status
@@ -120,7 +120,7 @@ contains
     end do
   end subroutine run_studies
 
-  !> Say how a case went, or that it is correct; `status` rises to that of an error.
+  !> Print the outcome of a case, or that it is valid; `status` is raised to that of an error.
   subroutine say_outcome(case, options, status)
     type(case_job_t), intent(inout) :: case
     type(command_line_t), intent(in) :: options
@@ -139,7 +139,7 @@ contains
     !$omp end critical (messages)
   end subroutine say_outcome
 
-  !> One line on standard output. Where it cannot be written `status` rises, unless the reader has gone: he has seen enough.
+  !> Print one line on standard output. If that fails, `status` is raised, unless the reader has closed the pipe.
   subroutine say(line, status)
     character(len=*), intent(in) :: line
     integer, intent(inout) :: status

@@ -1,4 +1,5 @@
-!> The IMPACT force of Adams and MotionSolve: a damper beside the elastic force, which comes in over a depth.
+!> The IMPACT force of Adams and MotionSolve: a damper in parallel with the elastic force, whose coefficient rises with the
+!> penetration.
 module adams_impact
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: parameter_list_t
@@ -8,8 +9,8 @@ module adams_impact
   private
   public :: adams_impact_t
 
-  !> F = max(0, f(delta) + c s^2 (3 - 2s) delta_dot), s = min(1, delta/d). What an impact gives back depends on its speed and on the
-  !> masses.
+  !> F = max(0, f(delta) + c s^2 (3 - 2s) delta_dot), s = min(1, delta/d). The effective restitution depends on the impact speed and
+  !> on the masses.
   type, extends(contact_law_t) :: adams_impact_t
     real(dp) :: full_damping = 0        !! c [N s/m], >= 0
     real(dp) :: full_damping_depth = 1  !! d [m], > 0

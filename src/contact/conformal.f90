@@ -1,4 +1,4 @@
-!> Contact of a pin in a bore of nearly its own radius, frictionless and in plane strain, over any angle.
+!> Frictionless contact of a pin in a bore of nearly equal radius, in plane strain, for contact angles of any size.
 module conformal
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
@@ -11,14 +11,15 @@ module conformal
   private
   public :: conformal_t
 
-  !> D = g(x) + W x with D = delta/c and x = f/(pi E* L c); g(x) = x [P(y) - ln y], y = x/(1 + x), where the polynomial P fits
-  !> the exact solution for an elastic disk in a hole of an elastic plate within 4.5e-5, up to a contact half-angle of 83.5 degrees.
-  !> W is what lies outside the contact: where the pin is held, and how thick the housing is. W = ln 4 - 1 joins Johnson's law at
-  !> small loads; a ring that is held at 2, 3, 5 or 10 times the bore's radius has -0.32, 0.26, 0.74, 1.19.
+  !> D = g(x) + W x, with D = delta/c, x = f/(pi E* L c), and g(x) = x [P(y) - ln y], y = x/(1 + x). The polynomial P fits the exact
+  !> solution for an elastic disk in a hole of an elastic plate within 4.5e-5, up to a contact half-angle of 83.5 degrees. W
+  !> describes the deformation away from the contact, which depends on the support of the pin and on the thickness of the housing. W
+  !> = ln 4 - 1 gives Johnson's law at small loads; a ring supported at 2, 3, 5 or 10 times the radius of the bore has -0.32, 0.26,
+  !> 0.74, 1.19.
   !>
-  !> Limits: a clearance small beside the radius, materials that are alike; no friction in the pressure.
+  !> Limits: the clearance must be small compared with the radius, the materials similar; friction does not influence the pressure.
   type, extends(contact_geometry_t) :: conformal_t
-    real(dp) :: compliance = 0   !! W [-], >= -0.5: D grows with x there
+    real(dp) :: compliance = 0   !! W [-], >= -0.5, so that D increases with x
     real(dp) :: clearance = 1    !! c [m]
     real(dp) :: modulus = 0      !! pi E* L [N/m]
     real(dp) :: area = 1         !! L Rb [m^2]
@@ -32,11 +33,11 @@ module conformal
     procedure :: put_columns
   end type conformal_t
 
-  !> P, from the constant on.
+  !> Coefficients of P, beginning with the constant.
   real(dp), parameter :: fit(0:6) = [2.26404928e-5_dp, 1.74709353_dp, -1.52090276_dp, 1.79797044_dp, -1.78288296_dp, &
     1.09851009_dp, -0.295968247_dp]
 
-  real(dp), parameter :: widest = 0.892534_dp   !! b of the last angle of the fit, tan(83.5 degrees/2)
+  real(dp), parameter :: widest = 0.892534_dp   !! b at the largest angle of the fit, tan(83.5 degrees/2)
 
 contains
 
@@ -69,7 +70,7 @@ contains
     force = self%modulus*self%clearance*load(penetration/self%clearance, self%compliance)
   end function elastic_force
 
-  !> The stiffness is pi E* L/(g' + W).
+  !> Stiffness pi E* L/(g' + W).
   pure function slope(self, penetration, force)
     class(conformal_t), intent(in) :: self
     real(dp), intent(in) :: penetration, force
@@ -79,7 +80,7 @@ contains
     slope = force/(x*d_slope*self%clearance)
   end function slope
 
-  !> The x of a D: Newton's method between bounds. D(x) bends downwards where x is small, so that from below it comes from below.
+  !> x for a value of D, by Newton's method with bounds. D(x) is concave for small x, so that iterates from below remain below.
   pure real(dp) function load(d, compliance) result(x)
     real(dp), intent(in) :: d            !! [-], > 0
     real(dp), intent(in) :: compliance   !! W
@@ -121,7 +122,7 @@ contains
     d_slope = p + (y*p_slope - 1)/(1 + x)
   end subroutine depth
 
-  !> Where the fit ends [m].
+  !> Penetration at the end of the fit [m].
   pure real(dp) function deepest(self)
     class(conformal_t), intent(in) :: self
     real(dp) :: d, d_slope
@@ -135,7 +136,7 @@ contains
     x = 2*b**2*(b**2 + 1)/(2 - log(b**2 + 1) - 2*b**4)
   end function load_of_arc
 
-  !> b = tan(a/2) of a load, by bisection. It is at most sqrt(x).
+  !> b = tan(a/2) for a load, by bisection; at most sqrt(x).
   pure real(dp) function arc_of_load(x) result(b)
     real(dp), intent(in) :: x
     real(dp) :: low, high
@@ -152,7 +153,7 @@ contains
     end do
   end function arc_of_load
 
-  !> The half-angle of the arc that touches, which follows from the penetration, and the pressure in its middle under the pressing
+  !> Columns: the half-angle of the contact, which follows from the penetration, and the pressure in its middle from the normal
   !> force: p0 = F/(L Rb) {2b/[pi sqrt(b^2 + 1)] + arsinh(b)/[pi b^2 (b^2 + 1)]} (Persson 1964).
   pure subroutine put_columns(self, penetration, normal_force, row)
     class(conformal_t), intent(in) :: self

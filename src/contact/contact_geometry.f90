@@ -1,4 +1,4 @@
-!> What every contact geometry answers: the elastic force between pin and bearing, a function of the penetration alone.
+!> Interface of all contact geometries: the elastic force between pin and bearing as a function of the penetration.
 module contact_geometry
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: law_t, parameter_list_t
@@ -9,12 +9,12 @@ module contact_geometry
   private
   public :: contact_geometry_t
 
-  !> The elastic part of a contact, with the materials that every geometry has.
+  !> The elastic part of a contact, with the materials, which all geometries have.
   type, abstract, extends(law_t) :: contact_geometry_t
     real(dp) :: youngs_modulus(2) = 0   !! of pin and bearing [Pa]
     real(dp) :: poissons_ratio(2) = 0   !! of pin and bearing [-]
     real(dp) :: density(2) = 0          !! of pin and bearing [kg/m^3]
-    real(dp) :: three_halves = 0        !! K [N/m^1.5] where the force is K delta^1.5, found by `prepare`; 0: it is not
+    real(dp) :: three_halves = 0        !! K [N/m^1.5] if the force is K delta^1.5, set by `prepare`; otherwise 0
   contains
     procedure(prepare), deferred :: prepare
     procedure(elastic_force), deferred :: elastic_force
@@ -29,14 +29,14 @@ module contact_geometry
   end type contact_geometry_t
 
   abstract interface
-    !> Find what follows from the parameters and the bearing, before the first force is asked for.
+    !> Prepare the geometry for a bearing, before the first evaluation of the force.
     subroutine prepare(self, bearing)
       import :: contact_geometry_t, bearing_t
       class(contact_geometry_t), intent(inout) :: self
       type(bearing_t), intent(in) :: bearing
     end subroutine prepare
 
-    !> The elastic force [N], > 0.
+    !> Elastic force [N], > 0.
     pure function elastic_force(self, penetration) result(force)
       import :: contact_geometry_t, dp
       class(contact_geometry_t), intent(in) :: self
@@ -44,8 +44,8 @@ module contact_geometry
       real(dp) :: force
     end function elastic_force
 
-    !> Derivative by the penetration [N/m] of a force that is in proportion to the elastic one and has this value. For
-    !> the elastic force itself it is the stiffness of the contact.
+    !> Derivative with respect to the penetration [N/m] of a force that is proportional to the elastic force and has the given
+    !> value. For the elastic force itself this is the stiffness of the contact.
     pure function slope(self, penetration, force)
       import :: contact_geometry_t, dp
       class(contact_geometry_t), intent(in) :: self
@@ -57,7 +57,7 @@ module contact_geometry
 
 contains
 
-  !> The materials, for the `parameters` of a geometry.
+  !> Declare the material parameters, for `parameters` of a geometry.
   subroutine material_parameters(self, list)
     class(contact_geometry_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
@@ -68,8 +68,8 @@ contains
       'densities of pin and bearing; only for the limit of validity of the contact law', 'kg/m^3', '> 0', default='7850.0')
   end subroutine material_parameters
 
-  !> The energy that the contact holds at a penetration [J]: the integral of the elastic force, by Gauss's formula with 16 points
-  !> in the square root of the penetration, in which the force is smooth. Geometries that have a closed form give that.
+  !> Elastic energy of the contact at a penetration [J]: the integral of the elastic force by Gauss's formula with 16 points over
+  !> the square root of the penetration, in which the force is smooth. Geometries with a closed form override this.
   pure real(dp) function integral_of_force(self, penetration) result(energy)
     class(contact_geometry_t), intent(in) :: self
     real(dp), intent(in) :: penetration   !! [m], > 0
@@ -93,7 +93,7 @@ contains
     end function share
   end function integral_of_force
 
-  !> The greatest penetration for which the geometry is meant [m]. The default is one without such a limit.
+  !> Largest penetration for which the geometry is valid [m]. The default is no limit.
   pure real(dp) function any_depth(self)
     class(contact_geometry_t), intent(in) :: self
     associate (unused => self)
@@ -101,12 +101,13 @@ contains
     any_depth = huge(any_depth)
   end function any_depth
 
-  !> Whether the force is in proportion to the length of the bearing. By default it is.
+  !> Whether the force is proportional to the length of the bearing. The default is yes.
   pure logical function needs_it()
     needs_it = .true.
   end function needs_it
 
-  !> What of the bearing does not fit: the key of the wrong value and what is wanted of it. An empty key means that all is well.
+  !> Find a property of the bearing for which the geometry is not valid: the key of the wrong value, and what is required of it. An
+  !> empty key means that there is none.
   pure subroutine fits_every_bearing(self, bearing, key, wanted)
     class(contact_geometry_t), intent(in) :: self
     type(bearing_t), intent(in) :: bearing
@@ -117,17 +118,17 @@ contains
     wanted = ''
   end subroutine fits_every_bearing
 
-  !> What a trace can tell of this geometry alone. The default is nothing.
+  !> Put columns that only this geometry has into a row. The default is none.
   pure subroutine no_columns(self, penetration, normal_force, row)
     class(contact_geometry_t), intent(in) :: self
-    real(dp), intent(in) :: penetration    !! [m]; 0 while apart
-    real(dp), intent(in) :: normal_force   !! with what the law's damping gives [N]
+    real(dp), intent(in) :: penetration    !! [m]; 0 without contact
+    real(dp), intent(in) :: normal_force   !! including the damping of the law
     type(trace_row_t), intent(inout) :: row
     associate (unused => self, depth => penetration, force => normal_force, nothing => row)
     end associate
   end subroutine no_columns
 
-  !> The fastest impact for which elastic contact of these materials is meant (remark after 4.7) [m/s].
+  !> The largest impact speed for which elastic contact of these materials is valid (remark after 4.7) [m/s].
   pure real(dp) function fastest_impact(self)
     class(contact_geometry_t), intent(in) :: self
     fastest_impact = valid_impact_speed(self%youngs_modulus, self%density)

@@ -1,4 +1,4 @@
-!> The normal force of a contact: an elastic force, which the geometry gives, and what the law takes away by damping.
+!> The normal force of a contact: the elastic force of the geometry, and the damping of the law.
 module contact_law
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: law_t
@@ -8,19 +8,19 @@ module contact_law
   private
   public :: contact_law_t, ratio_limit
 
-  !> Upper bound of delta_dot/delta_dot_minus. In a free impact the ratio is 1 at most; it exceeds 1 only where a load
-  !> drives the pin on, and would grow without bound as the impact becomes a grazing one.
+  !> Upper limit of delta_dot/delta_dot_minus. In a free impact the ratio is at most 1. It exceeds 1 only if a load accelerates the
+  !> pin into the wall, and would be unbounded for impact speeds near 0.
   real(dp), parameter :: ratio_limit = 100
 
-  !> A compliant normal contact between pin and bearing, F = f(delta) [1 + chi delta_dot/delta_dot_minus]: the geometry has f, a
-  !> law sets chi when it is prepared. A law with damping of another form sets `has_own_damping` and overrides `damped_force` and
-  !> its slopes.
+  !> A compliant normal contact between pin and bearing, F = f(delta) [1 + chi delta_dot/delta_dot_minus]: f is given by the
+  !> geometry; a law sets chi in `prepare`. A law with another form of damping sets `has_own_damping` and overrides `damped_force`
+  !> and its derivatives.
   type, abstract, extends(law_t) :: contact_law_t
     class(contact_geometry_t), allocatable :: geometry
     real(dp) :: damping = 0                    !! chi [-], >= 0
-    real(dp) :: least_impact_speed = 1e-5_dp   !! slower impacts are damped as one of this speed [m/s], > 0
+    real(dp) :: least_impact_speed = 1e-5_dp   !! slower impacts are damped as if they had this speed [m/s], > 0
     logical :: has_own_damping = .false.
-    real(dp), private :: three_halves = 0      !! K [N/m^1.5] where f is K delta^1.5 and damped by chi; 0: it is not
+    real(dp), private :: three_halves = 0      !! K [N/m^1.5] if f is K delta^1.5 and is damped by chi; otherwise 0
   contains
     procedure :: prepare
     procedure, non_overridable :: prepare_geometry
@@ -32,14 +32,15 @@ module contact_law
 
 contains
 
-  !> Find what follows from the parameters and the bearing, before the first force is asked for.
+  !> Prepare the law for a bearing, before the first evaluation of the force.
   subroutine prepare(self, bearing)
     class(contact_law_t), intent(inout) :: self
     type(bearing_t), intent(in) :: bearing
     call self%prepare_geometry(bearing)
   end subroutine prepare
 
-  !> The contact of most cases is found without a call of its geometry: this is asked in every right-hand side.
+  !> Prepare the geometry. For the most common one its constant is stored, so that the force is computed without a call of the
+  !> geometry in every right-hand side.
   subroutine prepare_geometry(self, bearing)
     class(contact_law_t), intent(inout) :: self
     type(bearing_t), intent(in) :: bearing
@@ -48,20 +49,20 @@ contains
     if (.not. self%has_own_damping) self%three_halves = self%geometry%three_halves
   end subroutine prepare_geometry
 
-  !> The pressing force [N] between pin and bearing.
+  !> The normal force [N] between pin and bearing, positive in compression.
   !>
-  !> (4.7), bounded on both sides: the force never pulls (it is 0 where the bracket is negative), and the ratio of the
-  !> rates counts as `ratio_limit` where it is above. An impact slower than `least_impact_speed` counts as that fast in the
-  !> ratio: without that the law becomes a switch as the impact speed vanishes, stiffer than any time scale of the contact.
-  !> Such an impact loses less: the free impact of speed v comes back as from chi v/least_impact_speed, ever more
-  !> elastic, as metals do. A pin that starts pressed into its bearing has the impact speed 0 and the
-  !> damping of this speed, and comes to rest where the elastic force carries its load. The force beyond the elastic one has
-  !> the sign of the rate: the law dissipates in every case. It is continuous in both arguments.
+  !> (4.7) with two limits: the force is never negative (it is 0 where the bracket is negative), and the ratio of the rates is at
+  !> most `ratio_limit`. In this ratio an impact slower than `least_impact_speed` has that speed. Without this limit the damping
+  !> would become a discontinuous switch as the impact speed vanishes, and the equations stiffer than any time scale of the contact.
+  !> Such an impact loses less energy: a free impact of speed v has the restitution for chi v/least_impact_speed, and becomes more
+  !> elastic as v decreases, as for metals. A pin that is in its bearing at t = 0 has the impact speed 0 and the damping of this
+  !> least speed, and comes to rest where the elastic force balances its load. The difference from the elastic force has the sign of
+  !> the rate, so that the law always dissipates energy. The force is continuous in both arguments.
   pure function normal_force(self, penetration, penetration_rate, impact_speed) result(force)
     class(contact_law_t), intent(in) :: self
-    real(dp), value, intent(in) :: penetration       !! |e| - c [m]; the force is 0 where it is not positive
-    real(dp), value, intent(in) :: penetration_rate  !! its rate [m/s], positive while the pin goes deeper
-    real(dp), value, intent(in) :: impact_speed      !! penetration_rate at the instant contact began [m/s], >= 0
+    real(dp), value, intent(in) :: penetration       !! |e| - c [m]; the force is 0 if it is not positive
+    real(dp), value, intent(in) :: penetration_rate  !! its rate [m/s], positive while the penetration increases
+    real(dp), value, intent(in) :: impact_speed      !! penetration_rate at the beginning of the contact [m/s], >= 0
     real(dp) :: force
     if (self%three_halves > 0) then
       force = 0
@@ -71,7 +72,7 @@ contains
     end if
   end function normal_force
 
-  !> The pressing force of any geometry and any damping.
+  !> The normal force for any geometry and any damping.
   pure function any_normal_force(self, penetration, penetration_rate, impact_speed) result(force)
     class(contact_law_t), intent(in) :: self
     real(dp), value, intent(in) :: penetration, penetration_rate, impact_speed
@@ -86,7 +87,7 @@ contains
     end if
   end function any_normal_force
 
-  !> 1 + chi delta_dot/delta_dot_minus, within its bounds.
+  !> 1 + chi delta_dot/delta_dot_minus, within its limits.
   pure real(dp) function bracket(self, penetration_rate, impact_speed)
     class(contact_law_t), intent(in) :: self
     real(dp), value, intent(in) :: penetration_rate, impact_speed
@@ -95,8 +96,8 @@ contains
       max(impact_speed, self%least_impact_speed), ratio_limit))
   end function bracket
 
-  !> Derivatives of the force by the penetration [N/m] and by its rate [N s/m], for implicit integration. The arguments are
-  !> those of `normal_force`; where the force is 0 both are 0.
+  !> Derivatives of the force with respect to the penetration [N/m] and its rate [N s/m], for implicit integration; arguments as for
+  !> `normal_force`. Both are 0 where the force is 0.
   pure subroutine normal_force_slopes(self, penetration, penetration_rate, impact_speed, stiffness, damping)
     class(contact_law_t), intent(in) :: self
     real(dp), intent(in) :: penetration, penetration_rate, impact_speed
@@ -117,7 +118,7 @@ contains
     end associate
   end subroutine normal_force_slopes
 
-  !> The pressing force [N], never negative, of a law with damping of its own. The default has none.
+  !> The normal force [N] of a law with another form of damping; never negative. The default has no damping.
   pure function damped_force(self, elastic_force, penetration, penetration_rate) result(force)
     class(contact_law_t), intent(in) :: self
     real(dp), value, intent(in) :: elastic_force      !! [N], > 0
@@ -129,7 +130,7 @@ contains
     force = elastic_force
   end function damped_force
 
-  !> Derivatives of `damped_force`, where it is positive, by the penetration [N/m] and by its rate [N s/m].
+  !> Derivatives of `damped_force`, where it is positive, with respect to the penetration [N/m] and its rate [N s/m].
   pure subroutine damped_force_slopes(self, penetration, penetration_rate, stiffness, damping)
     class(contact_law_t), intent(in) :: self
     real(dp), intent(in) :: penetration, penetration_rate

@@ -1,4 +1,4 @@
-!> The contact laws and geometries that a case can name. A new one takes its `use` line and its line here.
+!> The contact laws and geometries that a case can name. A new one needs a `use` line and a line in one of the procedures below.
 module contact_laws
   use gudgeon_parameters, only: parameter_list_t
   use hertz, only: hertz_t
@@ -17,7 +17,7 @@ module contact_laws
 
 contains
 
-  !> Hand every law to a visitor, in the order in which the template names them.
+  !> Declare all laws to a visitor, in the order of the template.
   subroutine offer_contact_laws(list)
     class(parameter_list_t), intent(inout) :: list
     call list%law(lankarani_nikravesh_t())
@@ -32,7 +32,7 @@ contains
     call list%law(adams_impact_t())
   end subroutine offer_contact_laws
 
-  !> The same for geometries.
+  !> Declare all geometries to a visitor, in the order of the template.
   subroutine offer_contact_geometries(list)
     class(parameter_list_t), intent(inout) :: list
     call list%law(hertz_sphere_t())

@@ -1,4 +1,4 @@
-!> Contact that gives back what the coefficient of restitution says.
+!> A contact law whose restitution in a free impact equals the coefficient of restitution.
 module exact_restitution
   use gudgeon_kinds, only: dp
   use restitution_law, only: restitution_law_t, one_percent
@@ -6,7 +6,7 @@ module exact_restitution
   private
   public :: exact_restitution_t
 
-  !> chi is the root of chi (1 + e) = ln[(1 + chi)/(1 - chi e)]: a free impact gives back e itself (Zhang and Sharf 2009).
+  !> chi is the root of chi (1 + e) = ln[(1 + chi)/(1 - chi e)]; the restitution of a free impact is then e (Zhang and Sharf 2009).
   type, extends(restitution_law_t) :: exact_restitution_t
   contains
     procedure, nopass :: name
@@ -21,8 +21,8 @@ contains
     name = 'exact'
   end function name
 
-  !> With d = chi e and y = -ln(1 - d) the equation is d (1 + 1/e) - ln(1 + d/e) - y = 0: by bisection. Where e is next to 1 the
-  !> terms cancel, and two terms of the series of chi say it closer.
+  !> With d = chi e and y = -ln(1 - d) the equation is d (1 + 1/e) - ln(1 + d/e) - y = 0, which is solved by bisection. For e near
+  !> 1, where its terms cancel, two terms of the series of chi are more accurate.
   pure real(dp) function damping_for(restitution) result(damping)
     real(dp), intent(in) :: restitution
     real(dp) :: low, high, y, d
@@ -46,7 +46,7 @@ contains
     end associate
   end function damping_for
 
-  !> 1 - exp(-y), close where y is small too (Kahan).
+  !> 1 - exp(-y), accurate also for small y (Kahan).
   pure real(dp) function one_minus_exp(y)
     real(dp), intent(in) :: y
     associate (u => exp(-y))
@@ -55,7 +55,7 @@ contains
     end associate
   end function one_minus_exp
 
-  !> ln(1 + x), close where x is small too (Kahan).
+  !> ln(1 + x), accurate also for small x (Kahan).
   pure real(dp) function log_of_one_plus(x)
     real(dp), intent(in) :: x
     associate (u => 1 + x)

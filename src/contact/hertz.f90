@@ -1,4 +1,4 @@
-!> Contact without loss (4.1).
+!> Contact without damping (4.1).
 module hertz
   use gudgeon_parameters, only: parameter_list_t
   use contact_law, only: contact_law_t
@@ -6,7 +6,7 @@ module hertz
   private
   public :: hertz_t
 
-  !> The elastic force alone: neither speed matters.
+  !> The elastic force alone, independent of all speeds.
   type, extends(contact_law_t) :: hertz_t
   contains
     procedure, nopass :: name

@@ -1,4 +1,4 @@
-!> Hertz's contact of two spheres (4.1), a pin in a bearing that have no length.
+!> Hertz's contact of two spheres (4.1), for a pin in a bearing; their lengths are not used.
 module hertz_sphere
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: parameter_list_t
@@ -13,7 +13,7 @@ module hertz_sphere
   type, extends(contact_geometry_t) :: hertz_sphere_t
     real(dp) :: stiffness = 0         !! K [N/m^n], > 0
     real(dp) :: exponent = 1.5_dp     !! n [-], >= 1
-    real(dp) :: given_stiffness = 0   !! of the case [N/m^n]; 0: Hertz's, from the materials and the bearing
+    real(dp) :: given_stiffness = 0   !! stiffness given in the case [N/m^n]; 0: Hertz's, from the materials and the bearing
   contains
     procedure, nopass :: name
     procedure :: parameters
@@ -41,7 +41,7 @@ contains
       only_here=.true.)
   end subroutine parameters
 
-  !> The stiffness that the case gives, or else Hertz's (4.2).
+  !> The stiffness given in the case, or Hertz's (4.2).
   subroutine prepare(self, bearing)
     class(hertz_sphere_t), intent(inout) :: self
     type(bearing_t), intent(in) :: bearing
@@ -76,7 +76,7 @@ contains
     elastic_energy = self%elastic_force(penetration)*penetration/(self%exponent + 1)
   end function elastic_energy
 
-  !> Spheres have no length.
+  !> The force does not depend on the length of the bearing.
   pure logical function needs_length()
     needs_length = .false.
   end function needs_length

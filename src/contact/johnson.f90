@@ -1,4 +1,5 @@
-!> Johnson's contact of a cylinder in a cylindrical bore (Contact Mechanics, 1985): both are half-spaces near the contact.
+!> Johnson's contact of a cylinder in a cylindrical bore (Contact Mechanics, 1985), in which both are treated as half-spaces near
+!> the contact.
 module johnson
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
@@ -10,12 +11,13 @@ module johnson
   private
   public :: johnson_t
 
-  !> D = x [ln(4/x) - 1] with D = delta/c and x = f/(pi E* L c). There is no x for D > 4/e^2 = 0.541, and the stiffness grows
-  !> without bound on the way there, so the force continues in a straight line from D = 0.3 on, which is beyond its validity.
+  !> D = x [ln(4/x) - 1], with D = delta/c and x = f/(pi E* L c). There is no solution for D > 4/e^2 = 0.541, and the stiffness
+  !> grows without bound as D approaches this value; therefore the force continues linearly from D = 0.3, beyond the validity of the
+  !> law.
   type, extends(contact_geometry_t) :: johnson_t
     real(dp) :: clearance = 1    !! c [m]
     real(dp) :: modulus = 0      !! pi E* L [N/m]
-    real(dp) :: last_v = 2       !! v, below, at the last penetration of the law
+    real(dp) :: last_v = 2       !! v (see below) at the largest penetration of the law
   contains
     procedure, nopass :: name
     procedure :: parameters
@@ -26,7 +28,7 @@ module johnson
     procedure :: deepest
   end type johnson_t
 
-  real(dp), parameter :: last = 0.3_dp   !! D up to which the law is taken
+  real(dp), parameter :: last = 0.3_dp   !! largest D for which the law is used
 
 contains
 
@@ -49,8 +51,8 @@ contains
     self%last_v = log_term(last)
   end subroutine prepare
 
-  !> v = ln(4/x) - 1 = D/x, > 1: the root of v - ln v = -ln(e D/4), which is -W of Lambert's lower branch at -(e/4) D. Newton's
-  !> method from a start that is good to a few percent.
+  !> v = ln(4/x) - 1 = D/x, > 1: the root of v - ln v = -ln(e D/4), which is -W(-(e/4) D) with the lower branch of Lambert's
+  !> function. Newton's method from an initial guess within a few percent.
   pure real(dp) function log_term(d) result(v)
     real(dp), intent(in) :: d   !! D [-], > 0 and <= 0.3
     real(dp) :: m, correction
@@ -75,7 +77,7 @@ contains
     end if
   end function elastic_force
 
-  !> The stiffness is pi E* L/(v - 1).
+  !> Stiffness pi E* L/(v - 1).
   pure function slope(self, penetration, force)
     class(johnson_t), intent(in) :: self
     real(dp), intent(in) :: penetration, force
@@ -88,7 +90,7 @@ contains
     end if
   end function slope
 
-  !> pi E* L c^2 [x^2 (v - 1)/2 + x^2/4].
+  !> Elastic energy pi E* L c^2 [x^2 (v - 1)/2 + x^2/4].
   pure real(dp) function elastic_energy(self, penetration) result(energy)
     class(johnson_t), intent(in) :: self
     real(dp), intent(in) :: penetration
@@ -100,7 +102,7 @@ contains
       + self%elastic_force(penetration))/2
   end function elastic_energy
 
-  !> Where the straight line begins [m].
+  !> Penetration at which the linear part begins [m].
   pure real(dp) function deepest(self)
     class(johnson_t), intent(in) :: self
     deepest = last*self%clearance

@@ -41,7 +41,7 @@ contains
     call self%material_parameters(list)
   end subroutine parameters
 
-  !> The clearances of the fit.
+  !> Report a clearance outside the range of the fit.
   pure subroutine bearing_conflict(self, bearing, key, wanted)
     class(pereira_t), intent(in) :: self
     type(bearing_t), intent(in) :: bearing
@@ -62,7 +62,7 @@ contains
         factor = 0.0151_dp*c + 1.151_dp
       end if
       self%exponent = factor*c**(-0.005_dp)
-      ! E* in N/mm^2, L in mm, and delta^n from mm to m
+      ! E* in N/mm^2, L in mm, and delta^n converted from mm to m
       self%stiffness = (0.965_dp*c + 0.0965_dp)/c*(bearing%length*per_metre) &
         *(contact_modulus(self%youngs_modulus, self%poissons_ratio)/per_metre**2)*per_metre**self%exponent
     end associate

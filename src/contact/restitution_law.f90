@@ -1,8 +1,8 @@
-!> Contact with a loss that is set by a coefficient of restitution.
+!> Contact laws whose damping is set by a coefficient of restitution.
 !>
-!> A free impact under F = f(delta) [1 + chi delta_dot/delta_dot_minus] gives back a share e* of its speed that depends on chi
-!> alone, whatever the mass and the geometry: chi (1 + e*) = ln[(1 + chi)/(1 - chi e*)]. The laws differ in the chi that they take
-!> for the coefficient e of the case, and so in how far e* is from e.
+!> In a free impact under F = f(delta) [1 + chi delta_dot/delta_dot_minus] the ratio e* of the speeds after and before depends on
+!> chi alone, for any mass and geometry: chi (1 + e*) = ln[(1 + chi)/(1 - chi e*)]. The laws differ in their chi for the coefficient
+!> e of the case, and therefore in the difference between e* and e.
 module restitution_law
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: parameter_list_t
@@ -13,8 +13,8 @@ module restitution_law
   public :: restitution_law_t, one_percent
 
   type, abstract, extends(contact_law_t) :: restitution_law_t
-    real(dp) :: restitution = 1   !! e of the case [-], 0 to 1
-    real(dp) :: dissipation = 0   !! of the case, in place of chi/delta_dot_minus [s/m]; 0: from the restitution
+    real(dp) :: restitution = 1   !! e, given in the case [-], 0 to 1
+    real(dp) :: dissipation = 0   !! given in the case, instead of chi/delta_dot_minus [s/m]; 0: from the restitution
   contains
     procedure :: parameters
     procedure :: conflict
@@ -57,7 +57,7 @@ contains
     call self%prepare_geometry(bearing)
   end subroutine prepare
 
-  !> A chi that grows as 1/e wants an e that is not next to 0.
+  !> Report a restitution near 0 for a law whose chi grows as 1/e.
   pure subroutine conflict(self, key, wanted)
     class(restitution_law_t), intent(in) :: self
     character(len=:), allocatable, intent(out) :: key, wanted
@@ -72,12 +72,12 @@ contains
     zero = 0
   end function zero
 
-  !> Least coefficient of restitution of laws whose chi grows as 1/e: a hundredth is nearly a wall of e already.
+  !> Smallest coefficient of restitution for laws whose chi grows as 1/e; at 0.01 the force already rises almost as at a rigid wall.
   pure real(dp) function one_percent()
     one_percent = 0.01_dp
   end function one_percent
 
-  !> f (1 + a delta_dot), a the dissipation: the impact speed does not matter.
+  !> f (1 + a delta_dot), where a is the dissipation; independent of the impact speed.
   pure function damped_force(self, elastic_force, penetration, penetration_rate) result(force)
     class(restitution_law_t), intent(in) :: self
     real(dp), value, intent(in) :: elastic_force, penetration, penetration_rate

@@ -1,5 +1,5 @@
-!> The contact laws that set the loss by a coefficient of restitution and one formula, chi(e). Behind each stands what a free
-!> impact really gives back for e = 0.9, 0.5 and 0.1.
+!> The contact laws whose damping follows from a coefficient of restitution by one formula, chi(e). The three numbers after each
+!> formula are the actual restitution of a free impact for e = 0.9, 0.5 and 0.1.
 module restitution_laws
   use gudgeon_kinds, only: dp
   use restitution_law, only: restitution_law_t, one_percent
@@ -51,8 +51,8 @@ module restitution_laws
     procedure, nopass :: least_restitution => one_percent
   end type flores_t
 
-  !> Carvalho and Martins 2019: chi = (3/2)(1 - e)(11 - e)/(1 + 9e) for e > 1/3, below as Gonthier, with whom it agrees at 1/3.
-  !> 0.900, 0.500, 0.101.
+  !> Carvalho and Martins 2019: chi = (3/2)(1 - e)(11 - e)/(1 + 9e) for e > 1/3, otherwise as Gonthier; both agree at 1/3. 0.900,
+  !> 0.500, 0.101.
   type, extends(restitution_law_t) :: carvalho_martins_t
   contains
     procedure, nopass :: name => name_of_carvalho_martins

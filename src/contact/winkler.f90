@@ -1,4 +1,4 @@
-!> A bedding of springs around the bore, each by itself: the contact of a bearing with a thin, soft liner.
+!> A foundation of independent springs around the bore: the contact of a bearing with a thin, soft liner.
 module winkler
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: parameter_list_t
@@ -8,11 +8,11 @@ module winkler
   private
   public :: winkler_t
 
-  !> A rigid pin goes (c + delta) cos(theta) - c deep into the bedding at the angle theta, up to the half-angle a with
-  !> cos a = c/(c + delta): f = k Rb L [(c + delta)(a + sin a cos a) - 2 c sin a], which is k Rb L c [(1 + D) a - sin a] with
-  !> D = delta/c. Of a thin liner that is bonded to a stiff back: k = E (1 - nu)/[(1 + nu)(1 - 2 nu) t].
+  !> At the angle theta a rigid pin compresses the foundation by (c + delta) cos(theta) - c, up to the half-angle a with cos a =
+  !> c/(c + delta): f = k Rb L [(c + delta)(a + sin a cos a) - 2 c sin a], which is k Rb L c [(1 + D) a - sin a] with D = delta/c.
+  !> For a thin liner bonded to a stiff back k = E (1 - nu)/[(1 + nu)(1 - 2 nu) t].
   type, extends(contact_geometry_t) :: winkler_t
-    real(dp) :: given_modulus = 0   !! k of the case [Pa/m]; 0: from the liner
+    real(dp) :: given_modulus = 0   !! k, given in the case [Pa/m]; 0: computed from the liner
     real(dp) :: liner_modulus = 0, liner_poissons_ratio = 0, liner_thickness = 0   !! E [Pa], nu [-], t [m]
     real(dp) :: clearance = 1       !! c [m]
     real(dp) :: bedding = 0         !! k Rb L [N/m^2]
@@ -46,7 +46,7 @@ contains
     call list%add('liner_thickness', self%liner_thickness, 'thickness of the liner', 'm', '> 0', default='0.0')
   end subroutine parameters
 
-  !> The bedding is given, or the liner.
+  !> Report that neither the stiffness of the foundation nor the liner is given, or both.
   pure subroutine conflict(self, key, wanted)
     class(winkler_t), intent(in) :: self
     character(len=:), allocatable, intent(out) :: key, wanted
@@ -89,7 +89,7 @@ contains
     end associate
   end function tangent
 
-  !> k Rb L c [D a + (a - sin a)]; a small difference a - sin a as its series.
+  !> k Rb L c [D a + (a - sin a)]; for small a the difference a - sin a is computed from its series.
   pure function elastic_force(self, penetration) result(force)
     class(winkler_t), intent(in) :: self
     real(dp), value, intent(in) :: penetration
@@ -108,7 +108,7 @@ contains
     force = self%bedding*(penetration*a + self%clearance*difference)
   end function elastic_force
 
-  !> The stiffness is k Rb L (a + sin a cos a).
+  !> Stiffness k Rb L (a + sin a cos a).
   pure function slope(self, penetration, force)
     class(winkler_t), intent(in) :: self
     real(dp), intent(in) :: penetration, force
@@ -117,8 +117,8 @@ contains
     slope = force/self%elastic_force(penetration)*self%bedding*(atan(t) + t/(1 + t**2))
   end function slope
 
-  !> k Rb L [(c + delta)^2 (a + sin a cos a)/2 - 2 (c + delta) c sin a + c^2 a], with t = tan a: k Rb L c^2 [(3 + t^2) a - 3 t]/2;
-  !> where t is small its series 2/15 t^5 - 4/35 t^7 + ...
+  !> Elastic energy k Rb L [(c + delta)^2 (a + sin a cos a)/2 - 2 (c + delta) c sin a + c^2 a], with t = tan a: k Rb L c^2 [(3 +
+  !> t^2) a - 3 t]/2; for small t the series 2/15 t^5 - 4/35 t^7 + ...
   pure real(dp) function elastic_energy(self, penetration) result(energy)
     class(winkler_t), intent(in) :: self
     real(dp), intent(in) :: penetration

@@ -1,4 +1,4 @@
-!> Coulomb friction eased in over small sliding speeds, after Ambrosio (4.9, 4.10).
+!> Coulomb friction with a linear ramp at small sliding speeds, after Ambrosio (4.9, 4.10).
 module ambrosio
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: parameter_list_t
@@ -7,10 +7,11 @@ module ambrosio
   private
   public :: ambrosio_t
 
-  !> F_T = -c_f c_d F_N sign(v_T), c_d rising from 0 at |v_T| = v0 to 1 at v1. Without a ramp, v0 = v1 = 0, it is Coulomb's law.
+  !> F_T = -c_f c_d F_N sign(v_T), where c_d rises from 0 at |v_T| = v0 to 1 at v1. Without a ramp, v0 = v1 = 0, it is Coulomb's
+  !> law.
   type, extends(friction_law_t) :: ambrosio_t
-    real(dp) :: v0 = 0            !! no friction up to this sliding speed [m/s], >= 0
-    real(dp) :: v1 = 0            !! full friction from this sliding speed on [m/s], >= v0
+    real(dp) :: v0 = 0            !! largest sliding speed without friction [m/s], >= 0
+    real(dp) :: v1 = 0            !! smallest sliding speed with full friction [m/s], >= v0
   contains
     procedure, nopass :: name
     procedure :: parameters
@@ -48,8 +49,8 @@ contains
     self%set_valued = .not. self%v1 > 0
   end subroutine prepare
 
-  !> (4.9) with (4.10). Continuous for v0 < v1; v0 = v1 > 0 is a jump of c_f at v1. `direction` is asked only without a ramp, as
-  !> by Coulomb's law.
+  !> (4.9) with (4.10). Continuous for v0 < v1; for v0 = v1 > 0 it has a jump of c_f at v1. `direction` is used only without a ramp,
+  !> as in Coulomb's law.
   pure function friction_ratio(self, sliding_speed, direction) result(ratio)
     class(ambrosio_t), intent(in) :: self
     real(dp), value, intent(in) :: sliding_speed

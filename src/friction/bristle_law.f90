@@ -1,12 +1,12 @@
-!> Friction laws with a memory: the surfaces meet in bristles, whose mean deflection z is a state.
+!> Friction laws with memory: the surfaces interact through bristles, whose mean deflection z is a state.
 !>
-!> The deflection lives in contact only: it is 0 when a contact begins, and stays 0 while the surfaces are apart. Forces are taken
-!> over the normal force (the parameters of Canudas de Wit et al. divided by it), so that |z| <= c_s/s_0 whatever the load, and the
-!> friction vanishes with the load. The price: the energy of the bristles, F_N s_0 z^2/2, follows the load, so where the load swings
-!> while they are bent, friction may give energy, up to this much in each swing.
-!> Measured in cases/friction/lugre over a revolution, as a share of what friction takes: 1e-4 at 5000 rpm, 3e-3 at 500 rpm, 1e-2
-!> at 50 rpm; 1e-5 with five times the stiffness. Bristles that unbend as the load grows (z' less z F_N'/F_N while that is positive)
-!> give none, but friction then takes 3, 14 and 9 % less: they are not offered.
+!> The deflection is 0 at the beginning of a contact and while there is no contact. Forces are divided by the normal force (and so
+!> are the parameters of Canudas de Wit et al.), so that |z| <= c_s/s_0 for any load, and the friction vanishes with the load. As a
+!> consequence the energy of the bristles, F_N s_0 z^2/2, depends on the load, and friction may supply energy, up to this amount
+!> each time that the load varies while they are deflected. Measured in cases/friction/lugre over a revolution, relative to the
+!> energy that friction dissipates: 1e-4 at 5000 rpm, 3e-3 at 500 rpm, 1e-2 at 50 rpm; 1e-5 with five times the stiffness. A law in
+!> which bristles relax as the load grows (z' minus z F_N'/F_N while that is positive) supplies none, but then friction dissipates
+!> 3, 14 and 9 % less; it is not offered.
 module bristle_law
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: parameter_list_t
@@ -16,12 +16,12 @@ module bristle_law
   private
   public :: bristle_law_t
 
-  !> F_T/F_N = -(s_0 z + s_1(v) z' + s_2 v), s_1(v) = s_1 exp(-(v/v_d)^2), v = v_T. How z follows v is each law's own.
+  !> F_T/F_N = -(s_0 z + s_1(v) z' + s_2 v), with s_1(v) = s_1 exp(-(v/v_d)^2) and v = v_T. Each law defines z'.
   type, abstract, extends(static_friction_t) :: bristle_law_t
-    real(dp) :: stribeck_speed = 1        !! v_s, over which c_s falls to c_f [m/s], > 0
+    real(dp) :: stribeck_speed = 1        !! v_s, the speed scale of the decrease from c_s to c_f [m/s], > 0
     real(dp) :: bristle_stiffness = 0     !! s_0 [1/m], > 0
     real(dp) :: bristle_damping = 0       !! s_1 [s/m], >= 0
-    real(dp) :: damping_speed = 0         !! v_d, beyond which the damping falls [m/s]; 0: it is constant
+    real(dp) :: damping_speed = 0         !! v_d, the speed scale of the decrease of the damping [m/s]; 0: it is constant
   contains
     procedure :: conflict
     procedure :: touch_down_limit
@@ -47,7 +47,7 @@ module bristle_law
       real(dp), intent(in) :: v, z
     end function bristle_rate
 
-    !> Its derivatives by v [-] and z [1/s].
+    !> Its derivatives with respect to v [-] and z [1/s].
     pure subroutine rate_slopes(self, v, z, by_speed, by_deflection)
       import :: bristle_law_t, dp
       class(bristle_law_t), intent(in) :: self
@@ -58,7 +58,7 @@ module bristle_law
 
 contains
 
-  !> The parameters that every law with bristles has.
+  !> Declare the parameters of all laws with bristles.
   subroutine add_common(self, list)
     class(bristle_law_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
@@ -68,7 +68,7 @@ contains
       '1/m', '> 0', example='2.0e4')
   end subroutine add_common
 
-  !> Those of friction at rest, and of what depends on the speed.
+  !> Declare the parameters of static friction and of its dependence on the speed.
   subroutine add_sliding(self, list)
     class(bristle_law_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
@@ -85,7 +85,7 @@ contains
   pure subroutine conflict(self, key, wanted)
     class(bristle_law_t), intent(in) :: self
     character(len=:), allocatable, intent(out) :: key, wanted
-    real(dp), parameter :: largest = 0.42888194248035344_dp   !! of x exp(-x^2)
+    real(dp), parameter :: largest = 0.42888194248035344_dp   !! maximum of x exp(-x^2)
     real(dp) :: static
     static = self%holding_coefficient()
     call self%static_conflict(key, wanted)
@@ -100,7 +100,8 @@ contains
     end if
   end subroutine conflict
 
-  !> At touch-down z is 0 and F_T/F_N = -(s_1 + s_2) v: with a constant s_1 the first part is above c_s at high speeds.
+  !> Largest sliding speed [m/s] at which friction at the beginning of a contact does not exceed static friction. There z is 0 and
+  !> F_T/F_N = -(s_1 + s_2) v, whose first part exceeds c_s at high speeds if s_1 is constant.
   pure real(dp) function touch_down_limit(self)
     class(bristle_law_t), intent(in) :: self
     touch_down_limit = huge(touch_down_limit)
@@ -114,13 +115,13 @@ contains
     call self%find_static_part()
   end subroutine prepare
 
-  !> The deflection at break-away [m].
+  !> Deflection at the beginning of sliding [m].
   pure real(dp) function state_scale(self)
     class(bristle_law_t), intent(in) :: self
     state_scale = (self%coefficient + self%static_part)/self%bristle_stiffness
   end function state_scale
 
-  !> g(v) = c_f + (c_s - c_f) exp(-(v/v_s)^2) [-], and its derivative [s/m]: the friction of bristles that have come to rest.
+  !> g(v) = c_f + (c_s - c_f) exp(-(v/v_s)^2) [-] and its derivative [s/m]: the friction of steady sliding without the viscous part.
   pure subroutine steady_sliding(self, v, g, slope)
     class(bristle_law_t), intent(in) :: self
     real(dp), intent(in) :: v
@@ -146,7 +147,7 @@ contains
     if (self%damping_speed > 0) slope = -2*v/self%damping_speed**2*damping
   end subroutine damping_at
 
-  !> That of steady sliding, after some micrometres of sliding one way.
+  !> Friction of steady sliding, which is reached after sliding some micrometres in one direction.
   pure function friction_ratio(self, sliding_speed, direction) result(ratio)
     class(bristle_law_t), intent(in) :: self
     real(dp), value, intent(in) :: sliding_speed

@@ -1,4 +1,4 @@
-!> Friction with a static peak, smooth to every order (Brown & McPhee 2016, J. Comput. Nonlinear Dynam. 11, 054502).
+!> Friction with a static peak and derivatives of all orders (Brown & McPhee 2016, J. Comput. Nonlinear Dynam. 11, 054502).
 module brown_mcphee
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: parameter_list_t
@@ -7,10 +7,10 @@ module brown_mcphee
   private
   public :: brown_mcphee_t
 
-  !> F_T = -F_N [c_f tanh(4 u) + (c_s - c_f) u/(u^2/4 + 3/4)^2 + s_2 v_T], u = v_T/v_t. The largest friction, some 0.9995 c_s
-  !> without the viscous part, is at u = 1.00 to 1.02. At rest there is none: a load at rest creeps.
+  !> F_T = -F_N [c_f tanh(4 u) + (c_s - c_f) u/(u^2/4 + 3/4)^2 + s_2 v_T], u = v_T/v_t. Without the viscous part the largest
+  !> friction, about 0.9995 c_s, occurs at u = 1.00 to 1.02. At zero speed there is no friction: a loaded surface creeps.
   type, extends(static_friction_t) :: brown_mcphee_t
-    real(dp) :: transition_speed = 0     !! v_t, where the friction is largest [m/s], > 0
+    real(dp) :: transition_speed = 0     !! v_t, sliding speed of the largest friction [m/s], > 0
   contains
     procedure, nopass :: name
     procedure :: parameters
@@ -35,7 +35,7 @@ contains
     call self%add_viscous(list)
   end subroutine parameters
 
-  !> Beyond u = 1 the static part is found from 1/u, which does not overflow.
+  !> For u > 1 the static part is computed from 1/u, which does not overflow.
   pure function friction_ratio(self, sliding_speed, direction) result(ratio)
     class(brown_mcphee_t), intent(in) :: self
     real(dp), value, intent(in) :: sliding_speed

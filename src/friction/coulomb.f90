@@ -7,7 +7,7 @@ module coulomb
   private
   public :: coulomb_t
 
-  !> F_T = -c_f F_N sign(v_T), set-valued at v_T = 0: surfaces that stick hold up to |F_T| = c_s F_N.
+  !> F_T = -c_f F_N sign(v_T), set-valued at v_T = 0: surfaces stick while |F_T| <= c_s F_N.
   type, extends(static_friction_t) :: coulomb_t
   contains
     procedure, nopass :: name
@@ -36,8 +36,8 @@ contains
     self%set_valued = .true.
   end subroutine prepare
 
-  !> (4.8). The sign is that of `direction`, which the scene holds fixed between its reversals of sliding: the sliding
-  !> speed itself is not asked, so that the force is smooth within a step.
+  !> (4.8). The sign is that of `direction`, which the scene changes only at reversals of sliding; the sliding speed is not used, so
+  !> that the force is smooth within a step.
   pure function friction_ratio(self, sliding_speed, direction) result(ratio)
     class(coulomb_t), intent(in) :: self
     real(dp), value, intent(in) :: sliding_speed

@@ -1,4 +1,4 @@
-!> Dahl's friction (1968): bristles without damping and without friction at rest above that of sliding.
+!> Dahl's friction (1968): bristles without damping, and static friction equal to sliding friction.
 module dahl
   use gudgeon_parameters, only: parameter_list_t
   use lugre, only: lugre_t
@@ -6,8 +6,8 @@ module dahl
   private
   public :: dahl_t
 
-  !> z' = v - s_0 |v| z/c_f, F_T/F_N = -s_0 z: LuGre's law with c_s = c_f, s_1 = s_2 = 0. From rest, sliding one way over x,
-  !> z = (c_f/s_0) (1 - exp(-s_0 x/c_f)).
+  !> z' = v - s_0 |v| z/c_f, F_T/F_N = -s_0 z: the LuGre law with c_s = c_f and s_1 = s_2 = 0. For sliding over a distance x in one
+  !> direction, from z = 0, z = (c_f/s_0) (1 - exp(-s_0 x/c_f)).
   type, extends(lugre_t) :: dahl_t
   contains
     procedure, nopass :: name

@@ -1,5 +1,5 @@
-!> Elasto-plastic friction (Dupont, Hayward, Armstrong & Altpeter 2002, IEEE Trans. Autom. Control 47, 787): bristles that give way
-!> only from a break-away deflection on, so that surfaces which stick do not drift.
+!> Elasto-plastic friction (Dupont, Hayward, Armstrong & Altpeter 2002, IEEE Trans. Autom. Control 47, 787): bristles that slip only
+!> above a break-away deflection, so that sticking surfaces do not drift.
 module elasto_plastic
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
@@ -9,8 +9,8 @@ module elasto_plastic
   private
   public :: elasto_plastic_t
 
-  !> z' = v [1 - a(z, v) z sign(v)/z_ss], z_ss = g(v)/s_0. The share a that gives way is 0 up to |z| = z_ba = k c_f/s_0, and where
-  !> the bristles unbend (v z <= 0), 1 from |z| = z_ss on, and half a period of a sine between.
+  !> z' = v [1 - a(z, v) z sign(v)/z_ss], z_ss = g(v)/s_0. The plastic share a is 0 for |z| <= z_ba = k c_f/s_0 and while the
+  !> deflection decreases (v z <= 0), 1 for |z| >= z_ss, and half a period of a sine in between.
   type, extends(bristle_law_t) :: elasto_plastic_t
     real(dp) :: breakaway_ratio = 0.7_dp   !! k [-], 0 to less than 1
   contains
@@ -65,13 +65,14 @@ contains
     end associate
   end subroutine rate_slopes
 
-  !> z_ba [m].
+  !> Break-away deflection z_ba [m].
   pure real(dp) function elastic_limit(self)
     class(elasto_plastic_t), intent(in) :: self
     elastic_limit = self%breakaway_ratio*self%coefficient/self%bristle_stiffness
   end function elastic_limit
 
-  !> a of |z|, z_ss and z_ba, with its derivatives by the first two [1/m]. Continuous, as its derivatives are.
+  !> Plastic share a as a function of |z|, z_ss and z_ba, with its derivatives with respect to the first two [1/m]. It and its
+  !> derivatives are continuous.
   pure subroutine find_share(size, steady, limit, share, by_size, by_steady)
     real(dp), intent(in) :: size, steady, limit   !! [m]
     real(dp), intent(out) :: share

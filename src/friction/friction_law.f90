@@ -1,4 +1,4 @@
-!> What every dry friction law answers.
+!> Interface of all dry friction laws.
 module friction_law
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: law_t, parameter_list_t
@@ -7,14 +7,15 @@ module friction_law
   private
   public :: friction_law_t, most_friction_states
 
-  integer, parameter :: most_friction_states = 1   !! of a law
+  integer, parameter :: most_friction_states = 1   !! largest number of states of a law
 
-  !> Dry friction between pin and bearing surfaces. A law may have first-order states of its own, which live in contact
-  !> only: they are 0 when a contact begins. Such a law answers `state_friction`; its `friction_ratio` is that of steady sliding.
+  !> Dry friction between the surfaces of pin and bearing. A law may have first-order states of its own, which are used in contact
+  !> only and are 0 at its beginning. Such a law implements `state_friction`; its `friction_ratio` is that of steady sliding.
   type, abstract, extends(law_t) :: friction_law_t
-    real(dp) :: coefficient = 0       !! c_f of sliding [-], >= 0
-    logical :: set_valued = .false.   !! the law jumps at zero sliding speed: the scene must resolve sticking
-    integer :: n_states = 0           !! of its own, 0 to most_friction_states; set by `prepare`
+    real(dp) :: coefficient = 0       !! coefficient of sliding friction c_f [-], >= 0
+    logical :: set_valued = .false.  !! the law is discontinuous at zero sliding speed: the scene must determine whether the
+                                     !! surfaces stick
+    integer :: n_states = 0           !! number of states, 0 to most_friction_states; set by `prepare`
   contains
     procedure :: prepare => nothing_to_prepare
     procedure(friction_ratio), deferred :: friction_ratio
@@ -29,27 +30,27 @@ module friction_law
   end type friction_law_t
 
   abstract interface
-    !> Friction force on the pin over the normal force [-], signed along the tangent t = (-n_y, n_x).
+    !> Friction force on the pin divided by the normal force [-], positive along the tangent t = (-n_y, n_x).
     pure function friction_ratio(self, sliding_speed, direction) result(ratio)
       import :: friction_law_t, dp
       class(friction_law_t), intent(in) :: self
-      real(dp), value, intent(in) :: sliding_speed   !! material sliding speed of the pin surface along t [m/s]
-      integer, value, intent(in) :: direction        !! sign of sliding of the current motion: -1 or +1 (for set-valued laws)
+      real(dp), value, intent(in) :: sliding_speed   !! velocity of the pin's surface relative to the bearing's along t [m/s]
+      integer, value, intent(in) :: direction        !! present direction of sliding: -1 or +1 (for set-valued laws)
       real(dp) :: ratio
     end function friction_ratio
   end interface
 
 contains
 
-  !> Find what follows from the parameters, before the first force is asked for. The default has nothing to find.
+  !> Prepare the law before the first evaluation of the force. The default does nothing.
   subroutine nothing_to_prepare(self)
     class(friction_law_t), intent(inout) :: self
     associate (unused_self => self)
     end associate
   end subroutine nothing_to_prepare
 
-  !> Derivative of the ratio by the sliding speed [s/m], for implicit integration. The default is that of a law that does not
-  !> depend on the size of the speed: 0.
+  !> Derivative of the ratio with respect to the sliding speed [s/m], for implicit integration. The default, 0, is for laws that do
+  !> not depend on the magnitude of the speed.
   pure function friction_ratio_slope(self, sliding_speed) result(slope)
     class(friction_law_t), intent(in) :: self
     real(dp), intent(in) :: sliding_speed
@@ -59,13 +60,14 @@ contains
     slope = 0
   end function friction_ratio_slope
 
-  !> Largest friction over normal force [-] that a set-valued law has for surfaces that stick. The default is that of sliding.
+  !> Largest ratio of friction to normal force [-] of a set-valued law while the surfaces stick. The default is that of sliding.
   pure real(dp) function holding_ratio(self)
     class(friction_law_t), intent(in) :: self
     holding_ratio = abs(self%friction_ratio(0.0_dp, 1))
   end function holding_ratio
 
-  !> Sliding speed [m/s] up to which friction at touch-down is not above that at rest. The default is a law that never is.
+  !> Largest sliding speed [m/s] at which friction at the beginning of a contact does not exceed static friction. The default is no
+  !> limit.
   pure real(dp) function no_limit(self)
     class(friction_law_t), intent(in) :: self
     associate (unused_self => self)
@@ -73,7 +75,7 @@ contains
     no_limit = huge(no_limit)
   end function no_limit
 
-  !> Natural size of the states, for the error of steps. The default is for laws without states.
+  !> Natural size of the states, for the error control. The default is for laws without states.
   pure real(dp) function unit_scale(self)
     class(friction_law_t), intent(in) :: self
     associate (unused_self => self)
@@ -81,7 +83,8 @@ contains
     unit_scale = 1
   end function unit_scale
 
-  !> Friction force over normal force [-], as `friction_ratio`, of a law with states, and their rates. The default has none.
+  !> Friction force divided by the normal force [-], with the sign of `friction_ratio`, for a law with states, and the rates of the
+  !> states. The default is for laws without states.
   pure subroutine steady_friction(self, sliding_speed, states, ratio, rates)
     class(friction_law_t), intent(in) :: self
     real(dp), intent(in) :: sliding_speed            !! [m/s]
@@ -92,8 +95,8 @@ contains
     rates = states
   end subroutine steady_friction
 
-  !> Derivatives of the ratio (row 1) and of the rates (rows behind) by the sliding speed (column 1) and the states (columns
-  !> behind), for implicit integration.
+  !> Derivatives of the ratio (row 1) and of the rates (following rows) with respect to the sliding speed (column 1) and the states
+  !> (following columns), for implicit integration.
   pure subroutine steady_slopes(self, sliding_speed, states, slopes)
     class(friction_law_t), intent(in) :: self
     real(dp), intent(in) :: sliding_speed
@@ -105,16 +108,16 @@ contains
     slopes(1, 1) = self%friction_ratio_slope(sliding_speed)
   end subroutine steady_slopes
 
-  !> The columns of a law's states.
+  !> Put the columns of the states into a row.
   pure subroutine no_columns(self, states, row)
     class(friction_law_t), intent(in) :: self
-    real(dp), intent(in) :: states(:)           !! (most_friction_states); 0 while the surfaces are apart
+    real(dp), intent(in) :: states(:)           !! (most_friction_states); 0 without contact
     type(trace_row_t), intent(inout) :: row
     associate (unused_self => self, unused_states => states, unused_row => row)
     end associate
   end subroutine no_columns
 
-  !> The key of the coefficient of sliding.
+  !> Declare the coefficient of sliding friction.
   subroutine add_coefficient(self, list)
     class(friction_law_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list

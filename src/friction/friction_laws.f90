@@ -1,4 +1,4 @@
-!> The friction laws that a case can name. A new law takes its `use` line and its line here.
+!> The friction laws that a case can name. A new law needs a `use` line and a line in `offer_friction_laws`.
 module friction_laws
   use gudgeon_parameters, only: parameter_list_t
   use ambrosio, only: ambrosio_t
@@ -15,7 +15,7 @@ module friction_laws
 
 contains
 
-  !> Hand every law to a visitor, in the order in which the template names them.
+  !> Declare all laws to a visitor, in the order of the template.
   subroutine offer_friction_laws(list)
     class(parameter_list_t), intent(inout) :: list
     call list%law(ambrosio_t())
@@ -28,7 +28,7 @@ contains
     call list%law(elasto_plastic_t())
   end subroutine offer_friction_laws
 
-  !> The same of those whose friction follows from the sliding speed alone: without states, and none that surfaces stick by.
+  !> Declare the laws in which friction depends on the sliding speed alone: without states and without sticking.
   subroutine offer_speed_laws(list)
     class(parameter_list_t), intent(inout) :: list
     call list%law(ambrosio_t())

@@ -7,8 +7,8 @@ module lugre
   private
   public :: lugre_t
 
-  !> z' = v - s_0 |v| z/g(v), with g the friction of steady sliding. Under a load that trembles below the static friction the
-  !> surfaces drift; those of `elasto_plastic` do not.
+  !> z' = v - s_0 |v| z/g(v), where g is the friction of steady sliding. Under an oscillating load below static friction the
+  !> surfaces drift; with `elasto_plastic` they do not.
   type, extends(bristle_law_t) :: lugre_t
   contains
     procedure, nopass :: name
@@ -49,7 +49,7 @@ contains
     by_speed = 1 - self%bristle_stiffness*z/g*(sign_of(v) - abs(v)*g_slope/g)
   end subroutine rate_slopes
 
-  !> -1, 0 or 1.
+  !> Sign of a number: -1, 0 or 1.
   pure real(dp) function sign_of(v)
     real(dp), intent(in) :: v
     sign_of = 0

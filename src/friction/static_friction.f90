@@ -1,4 +1,4 @@
-!> What friction laws have in common that hold more at rest than in sliding.
+!> Common part of the friction laws in which static friction exceeds sliding friction.
 module static_friction
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: parameter_list_t
@@ -7,12 +7,12 @@ module static_friction
   private
   public :: static_friction_t
 
-  !> A law with a coefficient of friction at rest, c_s, beside that of sliding, c_f, and perhaps a part that grows with the sliding
-  !> speed.
+  !> A law with a coefficient of static friction c_s in addition to that of sliding friction c_f, and an optional part proportional
+  !> to the sliding speed.
   type, abstract, extends(friction_law_t) :: static_friction_t
-    real(dp) :: static_coefficient = 0    !! c_s [-], >= c_f; 0: as c_f
-    real(dp) :: viscous_coefficient = 0   !! s_2, friction over normal force by the sliding speed [s/m], >= 0
-    real(dp) :: static_part = 0           !! c_s - c_f [-], once prepared
+    real(dp) :: static_coefficient = 0    !! c_s [-], >= c_f; 0: equal to c_f
+    real(dp) :: viscous_coefficient = 0   !! s_2, ratio of friction to normal force, divided by the sliding speed [s/m], >= 0
+    real(dp) :: static_part = 0           !! c_s - c_f [-], set by `find_static_part`
   contains
     procedure :: conflict => static_conflict
     procedure :: prepare => find_static_part
@@ -26,14 +26,14 @@ module static_friction
 
 contains
 
-  !> Coefficient of friction at rest as it is meant: a case that gives none, 0, means that of sliding.
+  !> Effective coefficient of static friction: if the case gives none, 0, it is that of sliding.
   pure real(dp) function holding_coefficient(self)
     class(static_friction_t), intent(in) :: self
     holding_coefficient = self%coefficient
     if (self%static_coefficient > 0) holding_coefficient = self%static_coefficient
   end function holding_coefficient
 
-  !> Friction at rest that is smaller than that of sliding.
+  !> Report static friction that is smaller than sliding friction.
   pure subroutine static_conflict(self, key, wanted)
     class(static_friction_t), intent(in) :: self
     character(len=:), allocatable, intent(out) :: key, wanted
@@ -42,13 +42,13 @@ contains
     if (self%holding_coefficient() < self%coefficient) key = 'static_coefficient'
   end subroutine static_conflict
 
-  !> What friction at rest has more than in sliding.
+  !> Compute the difference between static and sliding friction.
   subroutine find_static_part(self)
     class(static_friction_t), intent(inout) :: self
     self%static_part = self%holding_coefficient() - self%coefficient
   end subroutine find_static_part
 
-  !> The key of the coefficient at rest.
+  !> Declare the coefficient of static friction.
   subroutine add_static(self, list)
     class(static_friction_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
@@ -57,7 +57,7 @@ contains
       default='0.0')
   end subroutine add_static
 
-  !> The key of the part that grows with the sliding speed.
+  !> Declare the viscous coefficient.
   subroutine add_viscous(self, list)
     class(static_friction_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
@@ -65,7 +65,7 @@ contains
       's/m', '>= 0', default='0.0')
   end subroutine add_viscous
 
-  !> The key of the speed over which friction falls from that at rest to that of sliding.
+  !> Declare the speed scale of the decrease from static to sliding friction.
   subroutine add_stribeck_speed(stribeck_speed, list)
     real(dp), intent(inout) :: stribeck_speed   !! [m/s]
     class(parameter_list_t), intent(inout) :: list

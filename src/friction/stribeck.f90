@@ -1,4 +1,5 @@
-!> Friction that falls from a static to a sliding value with the sliding speed (Stribeck), eased in over small speeds.
+!> Friction that decreases from a static to a sliding value with the sliding speed (Stribeck), with a smooth transition through zero
+!> speed.
 module stribeck
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: parameter_list_t
@@ -7,11 +8,12 @@ module stribeck
   private
   public :: stribeck_t
 
-  !> F_T = -F_N {[c_f + (c_s - c_f) exp(-(|v_T|/v_s)^p)] tanh(v_T/v_t) + s_2 v_T}. At rest there is none: a load at rest creeps.
+  !> F_T = -F_N {[c_f + (c_s - c_f) exp(-(|v_T|/v_s)^p)] tanh(v_T/v_t) + s_2 v_T}. At zero speed there is no friction: a loaded
+  !> surface creeps.
   type, extends(static_friction_t) :: stribeck_t
-    real(dp) :: stribeck_speed = 0       !! v_s, over which the static part falls [m/s], > 0
+    real(dp) :: stribeck_speed = 0       !! v_s, speed scale of the decrease of the static part [m/s], > 0
     real(dp) :: stribeck_exponent = 2    !! p [-], 0.1 to 10
-    real(dp) :: transition_speed = 0     !! v_t, over which the friction is eased in [m/s], > 0
+    real(dp) :: transition_speed = 0     !! v_t, speed scale of the transition through zero [m/s], > 0
   contains
     procedure, nopass :: name
     procedure :: parameters

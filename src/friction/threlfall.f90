@@ -1,4 +1,4 @@
-!> Coulomb friction eased in exponentially over small sliding speeds, after Threlfall.
+!> Coulomb friction with an exponential transition at small sliding speeds, after Threlfall.
 module threlfall
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: parameter_list_t
@@ -7,9 +7,9 @@ module threlfall
   private
   public :: threlfall_t
 
-  !> F_T = -c_f F_N sign(v_T) (1 - exp(-3 |v_T|/v1)) up to |v_T| = v1, from there on what it is at v1: 95 % of c_f F_N.
+  !> F_T = -c_f F_N sign(v_T) (1 - exp(-3 |v_T|/v1)) for |v_T| <= v1; above v1 it is constant, 95 % of c_f F_N.
   type, extends(friction_law_t) :: threlfall_t
-    real(dp) :: v1 = 0            !! the friction grows up to this sliding speed [m/s], > 0
+    real(dp) :: v1 = 0            !! sliding speed up to which the friction grows [m/s], > 0
   contains
     procedure, nopass :: name
     procedure :: parameters
@@ -40,7 +40,7 @@ contains
     if (.not. self%v1 > 0) key = 'v1'
   end subroutine conflict
 
-  !> Continuous, with a kink at v1.
+  !> Ratio of friction to normal force: continuous, with a kink at v1.
   pure function friction_ratio(self, sliding_speed, direction) result(ratio)
     class(threlfall_t), intent(in) :: self
     real(dp), value, intent(in) :: sliding_speed

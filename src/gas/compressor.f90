@@ -1,5 +1,5 @@
-!> A piston compressor: suction and discharge at given pressures through valves that open and close by themselves, polytropic
-!> compression, and expansion of what the dead space keeps.
+!> A piston compressor: suction and discharge at given pressures through self-acting valves, polytropic compression, and
+!> re-expansion of the gas in the dead space.
 module compressor
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t

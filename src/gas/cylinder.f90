@@ -1,4 +1,4 @@
-!> The cylinder volume over the crank angle (Reis 2013, A.10-A.11, the second corrected).
+!> The cylinder volume as a function of the crank angle (Reis 2013, A.10-A.11, the second corrected).
 module cylinder
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
@@ -6,7 +6,7 @@ module cylinder
   private
   public :: cylinder_t, new_cylinder
 
-  !> With the ideal joint's kinematics: the volume depends on the crank angle alone.
+  !> A cylinder with the kinematics of the mechanism with ideal joints: the volume depends on the crank angle alone.
   type :: cylinder_t
     real(dp) :: area = 0          !! pi b^2/4 [m^2]
     real(dp) :: displacement = 0  !! V_d = 2 R pi b^2/4 [m^3]
@@ -39,8 +39,7 @@ contains
     volume = self%volume_at(sin(q), cos(q))
   end function volume
 
-  !> V where sine and cosine of q are known; with r = L/R, 1 - cos q and r - sqrt(r^2 - sin^2 q) are written without
-  !> cancellation.
+  !> V for known sine and cosine of q; with r = L/R, 1 - cos q and r - sqrt(r^2 - sin^2 q) are written without cancellation.
   pure real(dp) function volume_at(self, s, c)
     class(cylinder_t), intent(in) :: self
     real(dp), intent(in) :: s, c   !! sin q, cos q

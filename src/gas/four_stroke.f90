@@ -1,4 +1,4 @@
-!> The four-stroke cycle: closed from 180 to 540 degrees, 720 degrees long.
+!> The four-stroke cycle: 720 degrees long, with the cylinder closed from 180 to 540 degrees.
 module four_stroke
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi

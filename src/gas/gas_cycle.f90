@@ -1,11 +1,10 @@
-!> The gas pressure of an engine's cycle over the crank angle (Reis 2013, appendix A): Wiebe heat release in the closed
-!> part of the cycle, intake pressure in the open part.
+!> The gas pressure of an engine as a function of the crank angle (Reis 2013, appendix A): Wiebe heat release while the cylinder is
+!> closed, intake pressure while it is open.
 !>
-!> 360 degrees is the firing dead centre. Of a four-stroke cycle q = 0 is the gas-exchange dead centre, and the cylinder is closed
+!> Firing dead centre is at 360 degrees. In a four-stroke cycle q = 0 is the gas-exchange dead centre, and the cylinder is closed
 !> from 180 to 540 degrees; a two-stroke cycle repeats after 360 degrees. A cycle has four smooth parts: compression, combustion,
-!> expansion, open. The pressure depends on the crank angle
-!> alone, so it is integrated once, when the scene is built, and then interpolated: as a state it would cost a
-!> power function and a stiffer error control in every evaluation.
+!> expansion, open. The pressure depends on the crank angle alone. It is therefore integrated once, when the scene is built, and
+!> then interpolated; as a state it would require a power function and stricter error control in every evaluation.
 module gas_cycle
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
@@ -25,12 +24,12 @@ module gas_cycle
   integer, parameter :: part_compression = 1, part_combustion = 2, part_expansion = 3, part_open = 4
   integer, parameter :: fewest_intervals = 16, most_intervals = 16384
 
-  !> Wiebe's heat release: x_b = 1 - exp(-a z^n), z = (q - start)/duration on [0, 1]; the rest e^-a is not burnt.
+  !> Wiebe's heat release: x_b = 1 - exp(-a z^n), z = (q - start)/duration in [0, 1]; the remainder e^-a is not released.
   type :: heat_release_t
     real(dp) :: heat = 0         !! Q_in [J per cycle]
     real(dp) :: efficiency = 5   !! a [-]
     real(dp) :: form = 3         !! n [-]
-    real(dp) :: start = 0        !! [rad], while the cylinder is closed
+    real(dp) :: start = 0        !! crank angle, while the cylinder is closed [rad]
     real(dp) :: duration = 0     !! [rad]
   end type heat_release_t
 
@@ -43,7 +42,7 @@ module gas_cycle
     real(dp) :: intake_pressure = 101325          !! [Pa]
     real(dp) :: bound(0:n_parts) = 0              !! crank angles between the parts, in the cycle that begins at 0 [rad]
     integer :: grading = 1                        !! z = xi^grading in the combustion table
-    type(hermite_table_t) :: table(3)             !! pressure of the closed parts over xi
+    type(hermite_table_t) :: table(3)             !! pressure of the closed parts as a function of xi
     real(dp) :: table_error = 0                   !! largest relative error found between the points of the tables
   contains
     procedure :: pressure
@@ -51,14 +50,14 @@ module gas_cycle
     procedure :: part_at
   end type gas_cycle_t
 
-  !> (A.9) over xi, for one part: y = pressure.
+  !> Equation (A.9) as a function of xi, for one part; y is the pressure.
   type, extends(ode_problem_t) :: combustion_problem_t
     type(gas_cycle_t) :: gas
   contains
     procedure :: derivatives => pressure_derivative
   end type combustion_problem_t
 
-  !> Keeps the solution at equidistant points.
+  !> Observer that stores the solution at equidistant points.
   type, extends(silent_observer_t) :: point_keeper_t
     real(dp), allocatable :: value(:)   !! (0:n)
     integer :: next = 0
@@ -68,9 +67,9 @@ module gas_cycle
 
 contains
 
-  !> Integrate the cycle. Its relative error is at most `tolerance`, or rounding. Error: the integration fails.
+  !> Integrate the cycle with a relative error of at most `tolerance`, or rounding. Error: the integration fails.
   subroutine new_gas_cycle(gas, tolerance, error)
-    class(gas_cycle_t), intent(inout) :: gas   !! cylinder, release, pressures and heat_capacity_ratio given
+    class(gas_cycle_t), intent(inout) :: gas   !! with cylinder, release, pressures and heat_capacity_ratio set
     real(dp), intent(in) :: tolerance
     type(error_t), allocatable, intent(out) :: error
     real(dp) :: goal, p
@@ -90,8 +89,8 @@ contains
     end do
   end subroutine new_gas_cycle
 
-  !> The table of one closed part that begins at pressure p; at return p is that at its end. The number of intervals is
-  !> doubled until the table agrees with the solution half way between its points.
+  !> Compute the table of one closed part that begins at pressure p; on return p is the pressure at its end. The number of intervals
+  !> is doubled until the table agrees with the solution half way between its points.
   subroutine tabulate(gas, part, goal, p, error)
     type(gas_cycle_t), intent(inout) :: gas
     integer, intent(in) :: part
@@ -123,7 +122,7 @@ contains
     p = values(2*n)
   end subroutine tabulate
 
-  !> The pressure of one part at i/n, i = 0..n: in closed form without heat, else by the Adams method.
+  !> The pressure of one part at i/n, i = 0..n: in closed form without heat release, otherwise by the Adams method.
   subroutine solve_part(gas, part, goal, p, n, values, error)
     type(gas_cycle_t), intent(in) :: gas
     integer, intent(in) :: part, n
@@ -162,7 +161,7 @@ contains
     values = keeper%value
   end subroutine solve_part
 
-  !> Crank angle at xi of a part [rad].
+  !> Crank angle for xi in a part [rad].
   pure real(dp) function angle_in(gas, part, xi)
     type(gas_cycle_t), intent(in) :: gas
     integer, intent(in) :: part
@@ -199,7 +198,7 @@ contains
     end associate
   end subroutine pressure_slopes
 
-  !> dQ/dxi and d2Q/dxi2 of Wiebe's release with z = xi^g (A.2, the exponent corrected).
+  !> dQ/dxi and d2Q/dxi2 of Wiebe's release with z = xi^g (A.2, with corrected exponent).
   pure subroutine heat_slopes(release, g, xi, first, second)
     type(heat_release_t), intent(in) :: release
     real(dp), intent(in) :: g, xi
@@ -211,7 +210,7 @@ contains
     second = rest*((m - 1)*power(xi, m - 2) - release%efficiency*m*power(xi, 2*m - 2))
   end subroutine heat_slopes
 
-  !> x^m with 0^0 = 1 and, where it has a factor that vanishes anyway, 0 for a negative power of 0.
+  !> x^m with 0^0 = 1, and with 0 for a negative power of 0, which occurs only with a vanishing factor.
   pure real(dp) function power(x, m)
     real(dp), intent(in) :: x, m
     if (x > 0) then
@@ -248,8 +247,8 @@ contains
     end do
   end subroutine step_taken
 
-  !> The part of the cycle at crank angle q, and the angle at which its cycle began, a multiple of its period: the
-  !> smallest part whose end is beyond q, or where the crank turns `backwards` the one that it is about to enter.
+  !> The part of the cycle at crank angle q, and the angle at which its cycle began, a multiple of the period. At a bound between
+  !> parts it is the part after the bound or, if the crank turns `backwards`, the part before it; empty parts are skipped.
   pure subroutine part_at(self, q, backwards, part, cycle_start)
     class(gas_cycle_t), intent(in) :: self
     real(dp), intent(in) :: q
@@ -269,8 +268,8 @@ contains
     end do
   end subroutine part_at
 
-  !> Cylinder pressure [Pa] at the crank angle q [rad] in a part of the cycle that began at cycle_start [rad]. A little
-  !> beyond its bounds a part is continued smoothly, for trial states.
+  !> Cylinder pressure [Pa] at the crank angle q [rad] in a part of the cycle that began at cycle_start [rad]. Near its bounds a
+  !> part is continued smoothly for trial states.
   pure real(dp) function pressure(self, q, part, cycle_start)
     class(gas_cycle_t), intent(in) :: self
     real(dp), intent(in) :: q
@@ -284,8 +283,8 @@ contains
     pressure = self%table(part)%value(xi)
   end function pressure
 
-  !> Derivative of the pressure by the crank angle [Pa/rad], for implicit integration; 0 where the combustion table is graded,
-  !> which only slows Newton's method.
+  !> Derivative of the pressure with respect to the crank angle [Pa/rad], for implicit integration. It is 0 where the combustion
+  !> table is graded, which only slows down Newton's method.
   pure real(dp) function pressure_slope(self, q, part, cycle_start)
     class(gas_cycle_t), intent(in) :: self
     real(dp), intent(in) :: q

@@ -1,4 +1,4 @@
-!> What a case says of the gas in the cylinder: one of the cycles that it can name, or a measured pressure.
+!> Parameters of the gas in the cylinder: one of the cycles that a case can name, or a measured pressure.
 module gas_law
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t
@@ -10,7 +10,7 @@ module gas_law
 
   type, abstract, extends(law_t) :: gas_law_t
     real(dp) :: bore = 0                        !! cylinder diameter [m]
-    real(dp) :: crankcase_pressure = 101325     !! under the piston [Pa]
+    real(dp) :: crankcase_pressure = 101325     !! below the piston [Pa]
   contains
     procedure :: revolutions => one_revolution
     procedure :: add_bore
@@ -19,12 +19,12 @@ module gas_law
   end type gas_law_t
 
   abstract interface
-    !> Make the gas of a running engine. Error: the cycle cannot be integrated.
+    !> Prepare the gas of a running machine. Error: the cycle cannot be integrated.
     subroutine prepare(self, crank_length, rod_length, tolerance, gas, error)
       import :: gas_law_t, working_gas_t, error_t, dp
       class(gas_law_t), intent(in) :: self
       real(dp), intent(in) :: crank_length, rod_length   !! [m]
-      real(dp), intent(in) :: tolerance                  !! relative error that the pressure may have
+      real(dp), intent(in) :: tolerance                  !! allowed relative error of the pressure
       type(working_gas_t), intent(out) :: gas
       type(error_t), allocatable, intent(out) :: error
     end subroutine prepare
@@ -32,7 +32,7 @@ module gas_law
 
 contains
 
-  !> After how many revolutions the pressure repeats.
+  !> Period of the pressure [revolutions].
   pure integer function one_revolution(self) result(revolutions)
     class(gas_law_t), intent(in) :: self
     associate (unused => self)

@@ -1,14 +1,14 @@
-!> A function of [0, 1] as quintic polynomials between equidistant points, from values and two derivatives there.
+!> A function on [0, 1] as quintic polynomials between equidistant points, from values and two derivatives at the points.
 module hermite_table
   use gudgeon_kinds, only: dp
   implicit none
   private
   public :: hermite_table_t, new_hermite_table
 
-  !> Twice continuously differentiable; beyond its ends it continues the last polynomial, over
-  !> its whole length again, so that a trial step beyond a part sees nothing that is not smooth.
+  !> Twice continuously differentiable. Beyond its ends the last polynomial continues over the same length again, so that a trial
+  !> step beyond a part is smooth.
   type :: hermite_table_t
-    integer :: n = 0                          !! intervals
+    integer :: n = 0                          !! number of intervals
     real(dp), allocatable :: coefficient(:, :) !! of (x - x_i) n, (0:5, n)
   contains
     procedure :: value
@@ -17,7 +17,7 @@ module hermite_table
 
 contains
 
-  !> From values, first and second derivatives at i/n, i = 0..n: arrays of size n+1.
+  !> The table from values, first and second derivatives at i/n, i = 0..n: arrays of size n+1.
   pure type(hermite_table_t) function new_hermite_table(f, slope, curvature) result(table)
     real(dp), intent(in) :: f(0:), slope(0:), curvature(0:)
     real(dp) :: h, d, left(2), right(2)
@@ -50,7 +50,7 @@ contains
     end associate
   end function value
 
-  !> Derivative of `value` by x.
+  !> Derivative of `value` with respect to x.
   pure real(dp) function slope(self, x)
     class(hermite_table_t), intent(in) :: self
     real(dp), intent(in) :: x

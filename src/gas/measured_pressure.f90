@@ -1,4 +1,4 @@
-!> What a case says of a cylinder whose pressure has been measured over the crank angle.
+!> Parameters of a cylinder whose pressure has been measured as a function of the crank angle.
 module measured_pressure
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: degree
@@ -13,13 +13,13 @@ module measured_pressure
   private
   public :: measured_pressure_t, measured_pressure_periods
 
-  integer, parameter :: measured_pressure_periods(2) = [360, 720]   !! that there can be [degrees]
+  integer, parameter :: measured_pressure_periods(2) = [360, 720]   !! allowed periods [degrees]
 
   type, extends(gas_law_t) :: measured_pressure_t
     type(measured_curve_t) :: curve          !! crank angle [degrees], pressure [Pa], within one period
     integer :: period_deg = 720
-    real(dp) :: offset_deg = 0               !! crank angle where the table says 0 [degrees]
-    real(dp) :: compression_ratio = 0        !! largest over smallest volume; 0: not known
+    real(dp) :: offset_deg = 0               !! crank angle for angle 0 of the table [degrees]
+    real(dp) :: compression_ratio = 0        !! ratio of largest to smallest volume; 0: unknown
   contains
     procedure, nopass :: name
     procedure :: parameters

@@ -1,5 +1,5 @@
-!> The two-stroke cycle with ports that the piston controls: closed from `port_opens_deg` before the firing dead centre to as much
-!> after it, open in between, 360 degrees long.
+!> The two-stroke cycle with ports controlled by the piston: 360 degrees long, with the cylinder closed from `port_opens_deg` before
+!> the firing dead centre to the same angle after it.
 module two_stroke
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi, degree

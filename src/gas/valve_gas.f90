@@ -1,9 +1,9 @@
-!> Gas in a cylinder whose valves open and close by themselves, as in a piston compressor.
+!> Gas in a cylinder with self-acting valves, as in a piston compressor.
 !>
-!> While both are closed the mass in the cylinder stays, and p V^n does. The discharge valve opens where the pressure
-!> reaches that of the discharge and lets out what the piston displaces, at that pressure; it closes where the piston begins to draw
-!> back. So does the suction valve at the suction pressure, where the piston begins to come in. What the valves do follows from the
-!> motion of the piston, whichever way the crank turns. At each opening and closing the slope of the pressure jumps.
+!> While both valves are closed the mass in the cylinder and p V^n are constant. The discharge valve opens when the pressure reaches
+!> the discharge pressure; the displaced gas then leaves at this pressure, until the valve closes when the piston reverses. The
+!> suction valve behaves correspondingly at the suction pressure. The state of the valves follows from the motion of the piston, for
+!> either sense of rotation. At each opening and closing the derivative of the pressure is discontinuous.
 module valve_gas
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi, two_pi
@@ -15,10 +15,11 @@ module valve_gas
 
   integer, parameter :: n_valve_events = 2
 
-  !> What the valves do.
+  !> States of the valves.
   integer, parameter :: both_closed = 1, discharge_open = 2, suction_open = 3
 
-  !> A valve opens beyond its pressure by this share of the volume, so that one that has just closed does not open at once.
+  !> A valve opens at a volume beyond that of its pressure by this fraction, so that a valve that has just closed does not open at
+  !> once.
   real(dp), parameter :: opening_margin = 1e-11_dp
 
   type :: valve_gas_t
@@ -26,10 +27,10 @@ module valve_gas
     real(dp) :: suction_pressure = 0, discharge_pressure = 0   !! [Pa]
     real(dp) :: exponent = 1          !! n [-]
     integer :: state = both_closed
-    real(dp) :: held_pressure = 0, held_volume = 0             !! of the gas when both valves closed last [Pa], [m^3]
-    real(dp) :: discharge_volume = 0, suction_volume = 0       !! at which a valve opens [m^3]
-    real(dp) :: sense = 1             !! of the crank since a valve opened
-    real(dp) :: dead_centre = 0       !! at which that valve closes [rad]
+    real(dp) :: held_pressure = 0, held_volume = 0             !! pressure [Pa] and volume [m^3] when the last valve closed
+    real(dp) :: discharge_volume = 0, suction_volume = 0       !! volumes at which the valves open [m^3]
+    real(dp) :: sense = 1             !! sense of rotation since a valve opened: 1 or -1
+    real(dp) :: dead_centre = 0       !! crank angle at which that valve closes [rad]
   contains
     procedure :: find_state
     procedure :: pressure
@@ -43,10 +44,10 @@ module valve_gas
 
 contains
 
-  !> The state at a start: that of a machine that has long been running. One at rest is filled at the suction pressure.
+  !> Initial state: that of a machine that has been running for a long time. At rest the cylinder is filled at suction pressure.
   subroutine find_state(self, q, crank_speed)
     class(valve_gas_t), intent(inout) :: self
-    real(dp), intent(in) :: q, crank_speed   !! crank angle [rad], its rate [rad/s]
+    real(dp), intent(in) :: q, crank_speed   !! crank angle [rad] and crank speed [rad/s]
     real(dp) :: volume, largest, least, most
     volume = self%cylinder%volume(q)
     if (.not. abs(crank_speed) > 0) then
@@ -55,7 +56,7 @@ contains
     end if
     largest = self%cylinder%dead_volume + self%cylinder%displacement
     least = self%cylinder%dead_volume
-    most = min(self%discharge_pressure, self%suction_pressure*(largest/least)**self%exponent)   ! at the inner dead centre
+    most = min(self%discharge_pressure, self%suction_pressure*(largest/least)**self%exponent)   ! pressure at the inner dead centre
     if (self%cylinder%volume_slope(q)*crank_speed < 0 .or. volume >= largest) then
       call self%close_valves(self%suction_pressure, largest)
       if (volume <= self%discharge_volume) call self%open_valve(discharge_open, q, crank_speed)
@@ -88,9 +89,9 @@ contains
       -self%exponent*self%pressure(q)*self%cylinder%volume_slope(q)/self%cylinder%volume(q)
   end function pressure_slope
 
-  !> Event functions: the discharge valve or the suction valve opens; or, while one is open, it closes, at the dead centre or
-  !> because the crank turns back. The rate of the last one would take an evaluation; without it the search for events samples steps
-  !> in which the speed changes fourfold.
+  !> Event functions: the discharge valve or the suction valve opens; or the open valve closes, at the dead centre or because the
+  !> crank turns back. The rate of the last one would need an evaluation and is not given; the search for events therefore samples
+  !> steps in which the speed changes fourfold.
   pure subroutine events(self, q, crank_speed, g, g_rate)
     class(valve_gas_t), intent(in) :: self
     real(dp), intent(in) :: q, crank_speed
@@ -107,7 +108,7 @@ contains
     end if
   end subroutine events
 
-  !> A valve opens or closes.
+  !> Handle the opening or closing of a valve.
   subroutine pass(self, event, q, crank_speed)
     class(valve_gas_t), intent(inout) :: self
     integer, intent(in) :: event
@@ -119,7 +120,7 @@ contains
     end if
   end subroutine pass
 
-  !> Both valves are closed on gas of this pressure [Pa] and volume [m^3].
+  !> Set both valves to closed, with gas of this pressure [Pa] and volume [m^3].
   subroutine close_valves(self, pressure, volume)
     class(valve_gas_t), intent(inout) :: self
     real(dp), intent(in) :: pressure, volume
@@ -130,7 +131,7 @@ contains
     self%suction_volume = volume*(pressure/self%suction_pressure)**(1/self%exponent)*(1 + opening_margin)
   end subroutine close_valves
 
-  !> A valve is open, up to the next dead centre where the volume is least (discharge) or largest (suction).
+  !> Open a valve until the next dead centre at which the volume is smallest (discharge) or largest (suction).
   subroutine open_valve(self, state, q, crank_speed)
     class(valve_gas_t), intent(inout) :: self
     integer, intent(in) :: state
@@ -142,7 +143,7 @@ contains
     self%dead_centre = first + self%sense*two_pi*ceiling(self%sense*(q - first)/two_pi)
   end subroutine open_valve
 
-  !> The discrete state, to or from an archive.
+  !> Write the discrete state to an archive, or read it from it.
   subroutine exchange(self, archive)
     class(valve_gas_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive

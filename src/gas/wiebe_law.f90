@@ -1,4 +1,4 @@
-!> What a case says of an engine with Wiebe's heat release, of whatever cycle.
+!> Parameters of an engine with Wiebe's heat release, for all cycles.
 module wiebe_law
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: degree, two_pi
@@ -13,12 +13,12 @@ module wiebe_law
   public :: wiebe_law_t
 
   type, abstract, extends(gas_law_t) :: wiebe_law_t
-    real(dp) :: compression_ratio = 0             !! largest over smallest volume [-]
+    real(dp) :: compression_ratio = 0             !! ratio of largest to smallest volume [-]
     real(dp) :: heat_capacity_ratio = 1.4_dp      !! gamma [-]
     real(dp) :: heat = 0                          !! Q_in [J per cycle]
     real(dp) :: efficiency = 5, form = 3          !! a and n of the Wiebe function [-]
-    real(dp) :: start_deg = 0, duration_deg = 0   !! of combustion [degrees]
-    real(dp) :: intake_pressure = 101325          !! in the open cylinder [Pa]
+    real(dp) :: start_deg = 0, duration_deg = 0   !! combustion: start and duration [degrees]
+    real(dp) :: intake_pressure = 101325          !! pressure while the cylinder is open [Pa]
   contains
     procedure :: wiebe_parameters
     procedure :: prepare
@@ -29,7 +29,7 @@ module wiebe_law
   end type wiebe_law_t
 
   abstract interface
-    !> An angle of the cycle [rad]: where the cylinder closes, where it opens, after which the cycle repeats.
+    !> An angle of the cycle [rad]: at which the cylinder closes, at which it opens, after which the cycle repeats.
     pure real(dp) function angle_of(self)
       import :: wiebe_law_t, dp
       class(wiebe_law_t), intent(in) :: self
@@ -58,7 +58,7 @@ contains
     call self%add_crankcase_pressure(list)
   end subroutine wiebe_parameters
 
-  !> Integrate the cycle that the parameters ask for; see `new_gas_cycle`.
+  !> Integrate the cycle with these parameters; see `new_gas_cycle`.
   subroutine prepare(self, crank_length, rod_length, tolerance, gas, error)
     class(wiebe_law_t), intent(in) :: self
     real(dp), intent(in) :: crank_length, rod_length   !! [m]

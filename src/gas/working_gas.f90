@@ -1,5 +1,5 @@
-!> The gas in the cylinder of a running machine: an engine's cycle and the part of it that acts, a compressor's gas and what its
-!> valves do, or a measured pressure.
+!> The gas in the cylinder of a running machine: the cycle of an engine and its present part, the gas of a compressor and the state
+!> of its valves, or a measured pressure.
 module working_gas
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: degree, two_pi
@@ -13,13 +13,13 @@ module working_gas
   private
   public :: working_gas_t
 
-  !> Of a cycle, passages of the crank from one part to the next: forwards, backwards.
+  !> Events of a cycle: the crank passes from one part to the next, forwards or backwards.
   integer, parameter :: n_cycle_events = 2
 
-  !> One of the last three is allocated.
+  !> Exactly one of the last three components is allocated.
   type :: working_gas_t
-    integer :: n_events = 0          !! event functions
-    integer :: part = 0              !! of the cycle
+    integer :: n_events = 0          !! number of event functions
+    integer :: part = 0              !! present part of the cycle
     real(dp) :: cycle_start = 0      !! crank angle at which the present cycle began [rad]
     type(cylinder_t) :: cylinder
     real(dp) :: crankcase_pressure = 0   !! [Pa]
@@ -64,8 +64,8 @@ contains
     self%n_events = n_valve_events
   end subroutine take_valves
 
-  !> A measured pressure. At its points the second derivative of the pressure jumps: no event, since the control of the error
-  !> sees it, and lowers the order of the method there.
+  !> Set a measured pressure. Its second derivative is discontinuous at its points. There are no events for this: the error control
+  !> detects it and reduces the order of the method.
   subroutine take_curve(self, cylinder, crankcase_pressure, curve)
     class(working_gas_t), intent(inout) :: self
     type(cylinder_t), intent(in) :: cylinder
@@ -76,7 +76,7 @@ contains
     self%crankcase_pressure = crankcase_pressure
   end subroutine take_curve
 
-  !> Find the discrete state at a start: of a cycle, the part that the crank is in, or about to enter.
+  !> Find the initial discrete state: for a cycle, the part that contains the crank angle or is about to be entered.
   subroutine start(self, crank_angle, crank_speed)
     class(working_gas_t), intent(inout) :: self
     real(dp), intent(in) :: crank_angle, crank_speed   !! [rad], [rad/s]
@@ -87,15 +87,16 @@ contains
     end if
   end subroutine start
 
-  !> Most that the crank may turn in a step, so that none steps over a peak [rad]; 0: no limit. A cycle needs none, being cut at
-  !> events into smooth parts; a measured pressure is looked at as often as it has points, within a quarter and five degrees.
+  !> Largest crank angle in a step, so that no step passes over a peak [rad]; 0: no limit. A cycle needs no limit, since events
+  !> divide it into smooth parts. For a measured pressure it is the smallest distance of its points, but at least 0.25 and at most 5
+  !> degrees.
   pure real(dp) function longest_turn(self)
     class(working_gas_t), intent(in) :: self
     longest_turn = 0
     if (allocated(self%curve)) longest_turn = min(max(self%curve%finest(), 0.25_dp*degree), 5*degree)
   end function longest_turn
 
-  !> After how many revolutions the pressure repeats.
+  !> Period of the pressure [revolutions].
   pure integer function revolutions(self)
     class(working_gas_t), intent(in) :: self
     revolutions = 1
@@ -123,7 +124,7 @@ contains
     force = (pressure - self%crankcase_pressure)*self%cylinder%area
   end function force
 
-  !> Pressure [Pa] and its force, and the volume at a crank angle of this sine and cosine.
+  !> Put pressure [Pa], force and volume at a crank angle with this sine and cosine into a row.
   pure subroutine put_columns(self, sin_crank, cos_crank, pressure, row)
     class(working_gas_t), intent(in) :: self
     real(dp), intent(in) :: sin_crank, cos_crank, pressure
@@ -137,7 +138,7 @@ contains
       'force of the gas on the piston along -x: pressure difference to the crankcase times bore area')
   end subroutine put_columns
 
-  !> Derivative of the force by the crank angle [N/rad].
+  !> Derivative of the force with respect to the crank angle [N/rad].
   pure real(dp) function force_slope(self, crank_angle)
     class(working_gas_t), intent(in) :: self
     real(dp), intent(in) :: crank_angle
@@ -151,7 +152,7 @@ contains
     force_slope = self%cylinder%area*force_slope
   end function force_slope
 
-  !> Event functions: of a cycle the bounds of the present part, of valves see there.
+  !> Event functions: for a cycle the bounds of the present part, for valves see valve_gas.
   pure subroutine events(self, crank_angle, crank_speed, g, g_rate)
     class(working_gas_t), intent(in) :: self
     real(dp), intent(in) :: crank_angle, crank_speed
@@ -166,7 +167,7 @@ contains
     end if
   end subroutine events
 
-  !> An event happened: the crank enters the next part of the cycle, or a valve opens or closes.
+  !> Handle an event: the crank enters the next part of the cycle, or a valve opens or closes.
   subroutine pass(self, event, crank_angle, crank_speed)
     class(working_gas_t), intent(inout) :: self
     integer, intent(in) :: event
@@ -194,7 +195,7 @@ contains
     end do
   end subroutine pass_bound
 
-  !> The discrete state, to or from an archive.
+  !> Write the discrete state to an archive, or read it from it.
   subroutine exchange(self, archive)
     class(working_gas_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
