@@ -14,6 +14,7 @@ module certificate
   use case_definition, only: case_t
   use gudgeon_columns, only: column_list_t, choose_columns
   use gudgeon_simulation, only: run_report_t
+  use trace_sink, only: trace_event_t
   use run_witness, only: witness_t, run, has_coarse_table, keep_own_tables, figures_of, means_of, n_statistics, n_figures, &
     loss_figure
   implicit none
@@ -231,26 +232,48 @@ contains
     certificate%rms = sqrt(certificate%rms)
   end subroutine find_column_errors
 
-  !> Count the impacts in the certified part, and those that the closer run has at the same pin, in the same order and at the same
-  !> time: within half the time to the next impact.
+  !> Count the impacts in the certified part, and those that the closer run has at the same pin and at the same time: within half
+  !> the time to the impacts before and after at that pin.
   subroutine match_impacts(own, closer_run, certificate)
     type(witness_t), intent(in) :: own, closer_run
     type(certificate_t), intent(inout) :: certificate
-    real(dp) :: gap
-    integer :: i
-    associate (a => own%impact, b => closer_run%impact)
-      do i = 1, size(a)
-        if (a(i)%time > certificate%until) exit
-        certificate%impacts = i
-        if (i > size(b)) cycle
-        gap = certificate%until
-        if (i > 1) gap = a(i)%time - a(i - 1)%time
-        if (i < size(a)) gap = min(gap, a(i + 1)%time - a(i)%time)
-        if (a(i)%pin == b(i)%pin .and. abs(a(i)%time - b(i)%time) < 0.5_dp*gap) &
-          certificate%impacts_matched = certificate%impacts_matched + 1
-      end do
-    end associate
+    integer :: pin, i
+    certificate%impacts = count([(own%impact(i)%time <= certificate%until, i=1, size(own%impact))])
+    do pin = 1, maxval([(own%impact(i)%pin, i=1, size(own%impact))])
+      certificate%impacts_matched = certificate%impacts_matched + matched(times_at(own%impact, pin), &
+        times_at(closer_run%impact, pin), certificate%until)
+    end do
   end subroutine match_impacts
+
+  !> Times of the impacts at one pin.
+  pure function times_at(impact, pin) result(times)
+    type(trace_event_t), intent(in) :: impact(:)
+    integer, intent(in) :: pin
+    real(dp), allocatable :: times(:)
+    integer :: i
+    times = pack([(impact(i)%time, i=1, size(impact))], [(impact(i)%pin == pin, i=1, size(impact))])
+  end function times_at
+
+  !> Number of times up to `until` that agree with one of the other run's times. Both lists are in rising order.
+  pure integer function matched(times, others, until)
+    real(dp), intent(in) :: times(:), others(:), until
+    real(dp) :: gap
+    integer :: i, nearest
+    matched = 0
+    if (size(others) == 0) return
+    nearest = 1
+    do i = 1, size(times)
+      if (times(i) > until) exit
+      gap = until
+      if (i > 1) gap = times(i) - times(max(i - 1, 1))
+      if (i < size(times)) gap = min(gap, times(min(i + 1, size(times))) - times(i))
+      do while (nearest < size(others))
+        if (abs(others(nearest + 1) - times(i)) >= abs(others(nearest) - times(i))) exit
+        nearest = nearest + 1
+      end do
+      if (abs(others(nearest) - times(i)) < 0.5_dp*gap) matched = matched + 1
+    end do
+  end function matched
 
   !> Means over the whole revolutions that begin after the certified part, and their differences between the runs.
   subroutine compare_statistics(own, closer_run, other_run, certificate)

@@ -8,7 +8,12 @@
 !> at equal crank angles excludes differences along the motion itself, which would keep the exponent of a periodic motion of a free
 !> crank at 0.
 !>
-!> Both runs are integrated with the tolerance 1e-11; differences are 1e-7 of the natural sizes of the state. If a difference
+!> In the first revolutions, which are not counted, the difference turns to the direction of largest growth. Where two directions of
+!> a settled motion shrink at similar rates it turns very slowly. Therefore a third scene then follows a second direction, kept
+!> orthogonal to the first. The change of both over one period is a 2 x 2 matrix; the measurement continues with its eigenvector of
+!> the larger eigenvalue.
+!>
+!> All scenes are integrated with the tolerance 1e-11; differences are 1e-7 of the natural sizes of the state. If a difference
 !> shrinks by more than a factor of about 1e3 in a quarter of a revolution, it is lost in the errors of the integration: exponents
 !> below -30 are upper bounds.
 module lyapunov
@@ -24,15 +29,14 @@ module lyapunov
   use gudgeon_scene, only: scene_t
   use scene_builder, only: settings_for
   use crank_passage, only: find_passage
-  use clearance_joint, only: most_joints
+  use state_differences, only: differences_t, new_differences, most_directions, first_size
   use trace_sink, only: trace_sink_t
   implicit none
   private
   public :: exponent_t, measure_exponent
 
   integer, parameter :: per_revolution = 4             !! measurements in one revolution
-  real(dp), parameter :: tolerance = 1e-11_dp          !! relative, of both runs
-  real(dp), parameter :: first_size = 1e-7_dp          !! initial size of the difference, relative to the natural sizes
+  real(dp), parameter :: tolerance = 1e-11_dp          !! relative, of all scenes
   real(dp), parameter :: smallest_growth = 1e-12_dp    !! smallest growth factor that is resolved
   real(dp), parameter :: patience = 100  !! longest time for one revolution, relative to its time at the crank speed at which it
                                          !! begins
@@ -45,7 +49,7 @@ module lyapunov
     integer :: revolutions = 0    !! number of revolutions of which it is the mean
   end type exponent_t
 
-  !> One of the two scenes.
+  !> One of the scenes.
   type, extends(observer_t) :: companion_t
     type(scene_t), allocatable :: scene
     class(ode_method_t), allocatable :: method
@@ -72,34 +76,33 @@ contains
     integer, intent(in) :: period              !! of the motion [revolutions]; 0: it is not periodic
     class(trace_sink_t), intent(inout) :: sink
     type(exponent_t), intent(out) :: exponent
-    type(companion_t) :: one, other
-    real(dp), allocatable :: difference(:), scale(:)
-    integer, allocatable :: at(:)
-    real(dp) :: growth, sum_of, sum_of_squares, angle
-    integer :: revolutions, block, blocks, skipped, i, k
+    type(companion_t) :: one, other(most_directions)
+    type(differences_t) :: differences
+    real(dp) :: factors(most_directions, most_directions), growth, sum_of, sum_of_squares
+    integer :: revolutions, block, blocks, skipped, i, k, d
+    logical :: is_there
 
     block = max(1, period)
     blocks = (case%run%lyapunov_revolutions - 1)/block + 1
     revolutions = block*blocks
+    skipped = block*((max(2, min(20, revolutions/5)) - 1)/block + 1)
+    differences = new_differences(scene)
     call prepare(case, scene, t, y, one)
-    call prepare(case, scene, t, y, other)
-    call choose_components(scene, at, scale)
-    difference = first_direction(size(at))*scale
-    skipped = max(2, min(20, revolutions/5))
+    do d = 1, size(differences%state, 2)
+      call prepare(case, scene, t, y, other(d))
+    end do
     sum_of = 0
     sum_of_squares = 0
     growth = 0
     do i = 1 - skipped, revolutions
+      if (i == 1 - block) call differences%begin_period()
       do k = 1, per_revolution
-        call put_beside(one, other, at, difference*(first_size/size_of(difference, scale)))
-        angle = one%scene%crank_angle(one%t, one%y) + one%direction*two_pi/per_revolution
-        call one%run_to(angle)
-        if (one%is_there) call other%run_to(angle)
-        if (.not. (one%is_there .and. other%is_there)) return
-        difference = other%y(at) - one%y(at)
-        growth = growth + log(max(size_of(difference, scale)/first_size, smallest_growth))
-        if (.not. size_of(difference, scale) > 0) difference = first_direction(size(at))*scale
+        call follow(one, other, differences, is_there)
+        if (.not. is_there) return
+        call differences%straighten(factors)
+        growth = growth + log(max(factors(1, 1), smallest_growth))
       end do
+      if (i == 0) call differences%choose_one()
       call sink%take_progress(t)
       if (sink%wants_to_stop) return
       if (i >= 1 .and. mod(i, block) == 0) then
@@ -113,6 +116,26 @@ contains
     exponent%mean = sum_of/revolutions
     if (blocks > 1) exponent%error = sqrt(max(0.0_dp, sum_of_squares/blocks - (sum_of/blocks)**2)/(blocks - 1))/block
   end subroutine measure_exponent
+
+  !> Let all scenes run for a quarter of a revolution and measure the differences at its end; `is_there`: all have reached it.
+  subroutine follow(one, other, differences, is_there)
+    type(companion_t), intent(inout) :: one, other(:)
+    type(differences_t), intent(inout) :: differences
+    logical, intent(out) :: is_there
+    real(dp) :: angle
+    integer :: d
+    do d = 1, size(differences%state, 2)
+      call put_beside(one, other(d), differences%at, first_size*differences%state(:, d), first_size*differences%impact_speed(:, d))
+    end do
+    angle = one%scene%crank_angle(one%t, one%y) + one%direction*two_pi/per_revolution
+    call one%run_to(angle)
+    is_there = one%is_there
+    do d = 1, size(differences%state, 2)
+      if (is_there) call other(d)%run_to(angle)
+      is_there = is_there .and. other(d)%is_there
+      if (is_there) call differences%take(d, one%scene, one%y, other(d)%scene, other(d)%y)
+    end do
+  end subroutine follow
 
   !> Prepare a scene that continues the run from its end.
   subroutine prepare(case, scene, t, y, companion)
@@ -136,49 +159,14 @@ contains
     companion%direction = sign(1.0_dp, companion%scene%crank_speed(t, y))
   end subroutine prepare
 
-  !> The components of the state that are compared, all except the crank angle and the quadratures, and their natural sizes.
-  subroutine choose_components(scene, at, scale)
-    type(scene_t), intent(in) :: scene
-    integer, allocatable, intent(out) :: at(:)
-    real(dp), allocatable, intent(out) :: scale(:)
-    real(dp) :: scales(scene%n)
-    logical :: growing(scene%n)
-    integer :: i, n
-    n = scene%n - scene%n_quadratures
-    call scene%layout%natural_scales(scales, growing)
-    at = pack([(i, i=1, n)], [(i /= scene%crank%position, i=1, n)])
-    scale = scales(at)
-  end subroutine choose_components
-
-  !> An initial direction that is not a special direction of the system: fractional parts of multiples of the golden ratio.
-  pure function first_direction(n) result(direction)
-    integer, intent(in) :: n
-    real(dp) :: direction(n)
-    integer :: i
-    direction = [(modulo(i*0.6180339887498949_dp, 1.0_dp) - 0.45_dp, i=1, n)]
-  end function first_direction
-
-  !> Size of a difference relative to the natural sizes.
-  pure real(dp) function size_of(difference, scale)
-    real(dp), intent(in) :: difference(:), scale(:)
-    size_of = norm2(difference/scale)
-  end function size_of
-
-  !> Set the state of the second scene to that of the first plus a scaled difference; its discrete state is copied too. If both are
-  !> in contact, the difference of their impact speeds is scaled by the same factor.
-  subroutine put_beside(one, other, at, difference)
+  !> Set the state of another scene to that of the first plus a difference; its discrete state is copied, and the impact speeds of
+  !> its contacts differ as given.
+  subroutine put_beside(one, other, at, difference, impact_speed)
     type(companion_t), intent(inout) :: one, other
     integer, intent(in) :: at(:)
-    real(dp), intent(in) :: difference(:)
-    real(dp) :: impact_speed(most_joints), factor
-    integer :: phase(most_joints), i
+    real(dp), intent(in) :: difference(:), impact_speed(:)   !! of the state, of the speeds [m/s]
+    integer :: i
     character(len=:), allocatable :: bytes
-    do i = 1, one%scene%n_joints
-      impact_speed(i) = other%scene%joints(i)%impact_speed - one%scene%joints(i)%impact_speed
-      phase(i) = other%scene%joints(i)%phase
-    end do
-    factor = 0
-    if (maxval(abs(other%y(at) - one%y(at))) > 0) factor = maxval(abs(difference))/maxval(abs(other%y(at) - one%y(at)))
     call one%there%begin_writing()
     call one%scene%exchange(one%there)
     call one%there%contents(bytes)
@@ -188,8 +176,7 @@ contains
     other%y = one%y
     other%y(at) = one%y(at) + difference
     do i = 1, one%scene%n_joints
-      if (phase(i) == one%scene%joints(i)%phase .and. factor > 0) other%scene%joints(i)%impact_speed = &
-        max(0.0_dp, one%scene%joints(i)%impact_speed + factor*impact_speed(i))
+      other%scene%joints(i)%impact_speed = max(0.0_dp, one%scene%joints(i)%impact_speed + impact_speed(i))
     end do
   end subroutine put_beside
 
