@@ -170,8 +170,8 @@ contains
   end subroutine exponent_is_the_decay
 
   !> Films that settle: of a held crank after its run-up, of a compressor, and of a free crank under a measured pressure of two
-  !> revolutions. Neighbouring motions converge at the rate at which the states one period apart do. In the compressor two directions
-  !> of the film shrink by the factors 0.83 and 0.77 in a revolution.
+  !> revolutions. Neighbouring motions converge at the rate at which the states one period apart do. In the compressor two
+  !> directions of the film shrink by the factors 0.83 and 0.77 in a revolution.
   subroutine exponents_of_machines(check)
     class(checks_t), intent(inout) :: check
     character(len=long), parameter :: short_one(2) = [character(len=long) :: auto, 'run.lyapunov_revolutions=10']
