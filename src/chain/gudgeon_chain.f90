@@ -29,6 +29,7 @@ module gudgeon_chain
     type(elastic_members_t), allocatable :: elastic   !! not allocated: all bodies are rigid
   contains
     procedure, non_overridable :: accelerate
+    procedure, non_overridable :: accelerate_rigid
     procedure, non_overridable :: has_elastic_rod
     procedure :: has_crankshaft
     procedure, non_overridable :: move_rod
@@ -109,7 +110,7 @@ contains
   end subroutine accelerate_flywheel
 
   pure subroutine accelerate_rigid(chain, drive, motion, loads, accelerations, crank_moment)
-    type(chain_t), intent(in) :: chain
+    class(chain_t), intent(in) :: chain
     type(drive_t), intent(in) :: drive
     type(motion_t), intent(in) :: motion
     type(loads_t), intent(inout) :: loads

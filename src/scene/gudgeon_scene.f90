@@ -4,9 +4,11 @@ module gudgeon_scene
   use gudgeon_archive, only: archive_t
   use ode_problem, only: ode_problem_t, max_events
   use state_layout, only: layout_t, coordinates_t, slice_t
-  use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, n_pins, turn_crank
+  use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, n_pins, turn_crank, follow_rod, follow_piston
   use chain_loads, only: loads_t, force_size
   use gudgeon_chain, only: chain_t
+  use crank_rod, only: accelerate_crank_rod
+  use ideal_chain, only: accelerate_ideal_chain
   use joint_motion, only: joint_motion_t
   use clearance_joint, only: clearance_joint_t, joint_loads_t, most_joints, n_phases, phase_free, phase_film, phase_contact
   use joint_events, only: penetration_and_rate
@@ -71,7 +73,7 @@ module gudgeon_scene
     integer :: work_at = 0          !! index of the work of the forces
     type(slice_t) :: measures       !! indices of the integrals on request
     logical :: measures_loss = .false.   !! the last of them is the energy taken by the joints
-    logical :: has_more_bodies = .false.   !! elastic members or a guide that is not ideal
+    logical :: is_plain = .true.    !! rigid bodies, an ideal guide and a drive that does not vary
     logical :: may_stick = .false.  !! a joint has set-valued friction
     logical :: has_more_rates = .false.  !! there are rates of integrals on request, of elastic members, of a guide, or of the law
                                          !! of a joint
@@ -79,6 +81,9 @@ module gudgeon_scene
     type(event_owner_t) :: event_of(max_events)     !! owners of the event functions
   contains
     procedure :: claim
+    procedure, non_overridable :: read_crank
+    procedure, non_overridable :: place_journals
+    procedure, non_overridable :: find_loads
     procedure :: derivatives
     procedure :: evaluate
     procedure :: jacobian
@@ -169,36 +174,14 @@ module gudgeon_scene
       class(scene_t), intent(inout) :: self
     end subroutine prepare_start
 
-    !> Set the position of a piston with clearance in its bore, of the shapes of the rod and of the flywheel, in a scene with
-    !> elastic members or a guide. `inside` is false if they are not admissible.
-    pure module subroutine place_more_bodies(self, t, y, now, inside)
+    !> `find_accelerations` of a scene that is not plain: with elastic members, a guide that is not ideal or a drive that varies.
+    pure module subroutine find_general_accelerations(self, joints, t, y, now, inside)
       class(scene_t), intent(in) :: self
+      type(clearance_joint_t), intent(in) :: joints(:)
       real(dp), intent(in) :: t, y(self%n)
       type(evaluation_t), intent(inout) :: now
       logical, intent(out) :: inside
-    end subroutine place_more_bodies
-
-    !> Add the loads of the guide to those of joints and gas; the friction force only if it follows from the loads of the piston pin
-    !> known so far.
-    pure module subroutine load_guide(self, now)
-      class(scene_t), intent(in) :: self
-      type(evaluation_t), intent(inout) :: now
-    end subroutine load_guide
-
-    !> Add the friction of an ideal guide that depends on the accelerations, which it changes itself. The accelerations without it
-    !> and without the friction of sticking surfaces must be known. `inside` is false if it would jam the piston.
-    pure module subroutine add_guide_friction(self, joints, now, inside)
-      class(scene_t), intent(in) :: self
-      type(clearance_joint_t), intent(in) :: joints(:)
-      type(evaluation_t), intent(inout) :: now
-      logical, intent(out) :: inside
-    end subroutine add_guide_friction
-
-    !> Add the power of drive, gas, guide and elastic members to that of the joints, in a scene with elastic members or a guide.
-    pure module subroutine add_power(self, now)
-      class(scene_t), intent(in) :: self
-      type(evaluation_t), intent(inout) :: now
-    end subroutine add_power
+    end subroutine find_general_accelerations
 
     !> Claim the states of the elastic members.
     module subroutine claim_elastic(self)
@@ -301,48 +284,35 @@ contains
     real(dp), intent(in) :: t, y(self%n)
     type(evaluation_t), intent(inout) :: now
     logical, intent(out) :: inside
-    logical :: has_more, solvable
-    integer :: i
 
-    call read_crank(self, t, y, now%motion)
-    call place_journals(n, joints, y, now, inside)
+    if (.not. self%is_plain) then
+      call find_general_accelerations(self, joints, t, y, now, inside)
+      return
+    end if
+    call self%read_crank(t, y, now%motion)
+    call self%place_journals(n, joints, y, now, inside)
     if (.not. inside) return
-    has_more = self%has_more_bodies
-    if (has_more) then
-      call place_more_bodies(self, t, y, now, inside)
+    associate (bodies => self%chain%bodies, drive => self%chain%drive, motion => now%motion)
+      call follow_rod(bodies%crank%length, bodies%per_rod_length, motion, inside)
       if (.not. inside) return
-    end if
-    call self%chain%move_rod(now%motion, inside)
-    if (.not. inside) return
-    now%power = 0
-    do i = 1, n
-      call joints(i)%loads(self%chain%bodies, now%motion, y, now%relative(i), now%joint(i), now%loads)
-      now%power = now%power + now%joint(i)%power
-    end do
-    now%loads%axial_force = 0
-    if (allocated(self%gas)) then
-      now%cylinder_pressure = self%gas%pressure(now%motion%crank_angle)
-      now%loads%axial_force = self%gas%force(now%cylinder_pressure)
-    end if
-    if (has_more) call load_guide(self, now)
-    call self%chain%accelerate(now%motion, now%loads, now%accelerations, now%crank_moment, solvable)
-    if (has_more .and. solvable) call add_guide_friction(self, joints, now, solvable)
-    if (.not. solvable) then
-      inside = .false.
-      return
-    end if
-    if (self%may_stick) call hold_surfaces(self%chain, joints, now%motion, now%relative, now%joint, now%loads, now%accelerations, &
-      now%crank_moment, now%power)
-    if (has_more) then
-      call add_power(self, now)
-      return
-    end if
-    associate (crank_speed => now%motion%crank_speed)
-      now%power = (now%crank_moment - self%chain%drive%damping*crank_speed)*crank_speed + now%power
+      call self%find_loads(n, joints, y, now)
+      if (n == 0) then
+        call accelerate_ideal_chain(bodies, drive, motion, now%loads, now%accelerations, now%crank_moment)
+      else if (self%joint_of_pin(crank_pin) == 0) then
+        call accelerate_crank_rod(bodies, drive, now%loads, motion, now%accelerations, now%crank_moment)
+      else
+        call self%chain%accelerate_rigid(drive, motion, now%loads, now%accelerations, now%crank_moment)
+      end if
+      if (self%may_stick) then
+        now%accelerations%rod_end = -now%accelerations%rod
+        call hold_surfaces(self%chain, joints, motion, now%relative, now%joint, now%loads, now%accelerations, now%crank_moment, &
+          now%power)
+      end if
+      now%power = (now%crank_moment - drive%damping*motion%crank_speed)*motion%crank_speed + now%power
+      if (.not. allocated(self%gas)) return
+      call follow_piston(bodies%crank%length, bodies%rod%length, motion)
+      now%power = now%power - now%loads%axial_force*motion%piston_velocity
     end associate
-    if (.not. allocated(self%gas)) return
-    call self%chain%move_piston(now%motion)
-    now%power = now%power - now%loads%axial_force*now%motion%piston_velocity
   end subroutine find_accelerations
 
   !> Set angle and speed of the crank.
@@ -371,10 +341,11 @@ contains
   end subroutine hold_crank
 
   !> Set the eccentricities of the joints, also in the motion of the chain. `inside` is false if one is not admissible.
-  pure subroutine place_journals(n, joints, y, now, inside)
+  pure subroutine place_journals(self, n, joints, y, now, inside)
+    class(scene_t), intent(in) :: self
     integer, intent(in) :: n
     type(clearance_joint_t), intent(in) :: joints(n)
-    real(dp), intent(in) :: y(*)
+    real(dp), intent(in) :: y(self%n)
     type(evaluation_t), intent(inout) :: now
     logical, intent(out) :: inside
     real(dp) :: offset(2), offset_rate(2)
@@ -398,6 +369,25 @@ contains
     now%motion%offset_rate = offset_rate
     inside = admitted
   end subroutine place_journals
+
+  !> The loads of joints and gas, and the power of the joints.
+  pure subroutine find_loads(self, n, joints, y, now)
+    class(scene_t), intent(in) :: self
+    integer, intent(in) :: n
+    type(clearance_joint_t), intent(in) :: joints(n)
+    real(dp), intent(in) :: y(self%n)
+    type(evaluation_t), intent(inout) :: now
+    integer :: i
+    now%power = 0
+    do i = 1, n
+      call joints(i)%loads(self%chain%bodies, now%motion, y, now%relative(i), now%joint(i), now%loads)
+      now%power = now%power + now%joint(i)%power
+    end do
+    now%loads%axial_force = 0
+    if (.not. allocated(self%gas)) return
+    now%cylinder_pressure = self%gas%pressure(now%motion%crank_angle)
+    now%loads%axial_force = self%gas%force(now%cylinder_pressure)
+  end subroutine find_loads
 
   !> Let all parts claim their states and number the events, after everything else has been set.
   subroutine claim(self)
@@ -426,8 +416,8 @@ contains
       call self%joints(i)%settle(self%layout)
     end do
     if (allocated(self%guide)) call self%guide%settle(self%layout)
-    self%has_more_bodies = allocated(self%chain%elastic) .or. allocated(self%guide)
-    self%has_more_rates = any(self%joints%has_own_rates) .or. self%has_more_bodies
+    self%is_plain = .not. (allocated(self%chain%elastic) .or. allocated(self%guide) .or. allocated(self%chain%varying))
+    self%has_more_rates = any(self%joints%has_own_rates) .or. allocated(self%chain%elastic) .or. allocated(self%guide)
     call self%layout%settle(work)
     self%work_at = work%first
     call take_layout(self)

@@ -10,7 +10,33 @@ submodule (gudgeon_scene) scene_bodies
 
 contains
 
-  module procedure place_more_bodies
+  module procedure find_general_accelerations
+    logical :: solvable
+    call self%read_crank(t, y, now%motion)
+    call self%place_journals(self%n_joints, joints, y, now, inside)
+    if (.not. inside) return
+    call place_more_bodies(self, t, y, now, inside)
+    if (.not. inside) return
+    call self%chain%move_rod(now%motion, inside)
+    if (.not. inside) return
+    call self%find_loads(self%n_joints, joints, y, now)
+    call load_guide(self, now)
+    call self%chain%accelerate(now%motion, now%loads, now%accelerations, now%crank_moment, solvable)
+    if (solvable) call add_guide_friction(self, joints, now, solvable)
+    inside = solvable
+    if (.not. inside) return
+    if (self%may_stick) call hold_surfaces(self%chain, joints, now%motion, now%relative, now%joint, now%loads, now%accelerations, &
+      now%crank_moment, now%power)
+    call add_power(self, now)
+  end procedure find_general_accelerations
+
+  !> Set the position of a piston with clearance in its bore, of the shapes of the rod and of the flywheel. `inside` is false if they
+  !> are not admissible.
+  pure subroutine place_more_bodies(self, t, y, now, inside)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(self%n)
+    type(evaluation_t), intent(inout) :: now
+    logical, intent(out) :: inside
     if (self%joint_of_pin(crank_pin) == 0) then   ! not every closed form reads it
       now%motion%crank_pin = 0
       now%motion%crank_pin_rate = 0
@@ -18,7 +44,7 @@ contains
     inside = .true.
     if (allocated(self%guide)) call place_in_bore(self, y, now, inside)
     if (allocated(self%chain%elastic)) call self%chain%elastic%read_state(t, y, now%motion)
-  end procedure place_more_bodies
+  end subroutine place_more_bodies
 
   !> Position of the piston in its bore. `inside` is false if it is not admissible.
   pure subroutine place_in_bore(scene, y, now, inside)
@@ -33,7 +59,11 @@ contains
     if (inside) call place_piston(scene%chain%bodies%piston, now%motion)
   end subroutine place_in_bore
 
-  module procedure load_guide
+  !> Add the loads of the guide to those of joints and gas; the friction force only if it follows from the loads of the piston pin
+  !> known so far.
+  pure subroutine load_guide(self, now)
+    class(scene_t), intent(in) :: self
+    type(evaluation_t), intent(inout) :: now
     real(dp) :: ratio, rest
     if (.not. allocated(self%guide)) return
     call self%chain%move_piston(now%motion)
@@ -46,12 +76,19 @@ contains
       now%guide%friction_force = rest
       now%loads%axial_force = now%loads%axial_force - rest
     end if
-  end procedure load_guide
+  end subroutine load_guide
 
-  !> F = mu |N| of an ideal guide, where N = N_0 + N_1 F depends on the accelerations, and everything is linear in these: N_0 is the
+  !> Add the friction of an ideal guide that depends on the accelerations, which it changes itself. The accelerations without it
+  !> and without the friction of sticking surfaces must be known. `inside` is false if it would jam the piston.
+  !>
+  !> F = mu |N|, where N = N_0 + N_1 F depends on the accelerations, and everything is linear in these: N_0 is the
   !> normal force without F, N_1 follows from a trial force, and N = N_0/(1 - mu N_1 sign N_0). If |mu N_1| < 1 this is the only
   !> solution; otherwise the piston would jam.
-  module procedure add_guide_friction
+  pure subroutine add_guide_friction(self, joints, now, inside)
+    class(scene_t), intent(in) :: self
+    type(clearance_joint_t), intent(in) :: joints(:)
+    type(evaluation_t), intent(inout) :: now
+    logical, intent(out) :: inside
     type(loads_t) :: unit
     type(accelerations_t) :: change
     real(dp) :: ratio, rest, normal, probe, slope, moment
@@ -69,7 +106,7 @@ contains
     slope = (normal_with(self, joints, now, probe, change, moment) - normal)/probe
     inside = abs(ratio*slope) < 1
     if (inside) call add_friction(self, ratio*abs(normal/(1 - ratio*slope*sign(1.0_dp, normal))), change, moment, now)
-  end procedure add_guide_friction
+  end subroutine add_guide_friction
 
   !> Whether the force between an ideal guide and the piston does not depend on the accelerations: if the piston pin has clearance
   !> and its surfaces do not stick.
@@ -108,7 +145,10 @@ contains
     if (.not. scene%chain%is_loose(piston_pin)) call scene%chain%complete_loads(now%motion, now%accelerations, now%loads)
   end subroutine add_friction
 
-  module procedure add_power
+  !> Add the power of drive, gas, guide and elastic members to that of the joints.
+  pure subroutine add_power(self, now)
+    class(scene_t), intent(in) :: self
+    type(evaluation_t), intent(inout) :: now
     associate (chain => self%chain, motion => now%motion, loads => now%loads)
       if (allocated(chain%elastic)) then
         now%power = now%power + chain%elastic%power(motion, now%crank_moment, chain%drive%damping)
@@ -128,7 +168,7 @@ contains
         now%power = now%power - loads%axial_force*motion%piston_velocity
       end if
     end associate
-  end procedure add_power
+  end subroutine add_power
 
   module procedure claim_elastic
     real(dp) :: own_speed
