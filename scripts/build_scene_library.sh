@@ -4,7 +4,7 @@
 cd "$(dirname "$0")/.." || exit 1
 . scripts/setup.sh || exit 1
 folder=build/scene_library
-flags="-O3 -flto=auto -fno-ipa-modref -fno-tree-vectorize -fPIC"
+flags="-O3 -flto=auto -fno-ipa-modref -fno-tree-vectorize --param max-inline-insns-auto=150 -fPIC"
 mkdir -p "$folder" || exit 1
 ln -sfn ../../src "$folder/src"
 cat >"$folder/fpm.toml" <<'TOML'
