@@ -14,7 +14,7 @@ from pathlib import Path
 
 from gudgeon_plots.environment import TOP, use_virtual_environment
 
-use_virtual_environment(studies=True)
+use_virtual_environment(more=("f90nml",))
 
 import f90nml  # noqa: E402
 import numpy as np  # noqa: E402

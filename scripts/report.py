@@ -3,11 +3,12 @@
 
     scripts/report.py sim_V_oscillating             -> results/sim_V_oscillating.html
     scripts/report.py cases/flores/dry_0500um.nml -o dry.html
+    scripts/report.py engine                        results/engine.csv in the current folder
     scripts/report.py sim_IV --cycles crank_speed guide_force
 
-The page is one file that needs no network. The pressure round the pin in a film of finite length is there where the run has
-written it (&output film_times = 'from:to:count').
-Runs the case with the release build if its result is missing.
+The page is one file that needs no network. It shows the pressure round the pin in a film of finite length if the run has
+written it (&output film_times = 'from:to:count'). Traces are looked for in results/ of the current folder, then in results/
+of the checkout. A shipped case, or a case file, whose result is missing is run with the release build.
 """
 
 import argparse
@@ -24,11 +25,18 @@ from gudgeon_plots.report_page import page  # noqa: E402
 from gudgeon_plots.results import MissingResult, Results  # noqa: E402
 
 
+def folder_of(given: Path, name: str) -> Path:
+    """Folder of the trace: that of a trace that is given, results/ of the current folder if the trace is there, else of the checkout."""
+    if given.suffix == ".csv":
+        return given.parent
+    return Path("results") if (Path("results") / f"{name}.csv").exists() else TOP / "results"
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("case", metavar="CASE", help="a case's name, its file or its trace")
     parser.add_argument(
-        "--results", type=Path, metavar="DIR", help="where traces are (default: results, or the trace's)"
+        "--results", type=Path, metavar="DIR", help="folder of the traces (default: results, or that of the trace)"
     )
     parser.add_argument("-o", "--out", type=Path, metavar="FILE", help="the page (default: CASE.html beside the trace)")
     parser.add_argument("--cycles", nargs="+", metavar="COLUMN", help="columns whose cycles and orders are shown, also of a run that has not settled")
@@ -37,7 +45,7 @@ def main() -> int:
     options = parser.parse_args()
     given = Path(options.case)
     name = given.name.removesuffix(".nml").removesuffix(".csv")
-    directory = options.results or (given.parent if given.suffix == ".csv" else TOP / "results")
+    directory = options.results or folder_of(given, name)
     case = given if given.suffix == ".nml" and given.exists() else None
     results = Results(directory, run_missing=not options.no_run, case=case)
     try:

@@ -3,9 +3,9 @@
 #
 #   . scripts/setup.sh         from the top of the checkout: also puts fpm on the PATH of the calling shell
 #   scripts/setup.sh           the same for scripts and for later shells
-#   scripts/setup.sh --python  also what scripts/plot.py and scripts/report.py need, in .venv
+#   scripts/setup.sh --python  also the Python packages of all scripts that draw (plot.py, report.py, plot_study.py, ...), in .venv
 #   scripts/setup.sh --browser the same, and Chromium (Debian packages) for tests/test_report.py
-#   scripts/setup.sh --studies also what scripts/sensitivity.py, scripts/run_studies.sh and scripts/cluster need
+#   scripts/setup.sh --studies also the packages of scripts/sensitivity.py, scripts/run_studies.sh and scripts/cluster
 #   scripts/setup.sh --manual  also FORD, which scripts/manual.sh needs
 #
 # Needs root or sudo only to install Debian packages. An fpm that is installed here lives in .venv, with a link in
@@ -47,8 +47,8 @@ gudgeon_python() {   # the packages of these lists; pip looks only at what is mi
   gudgeon_venv && gudgeon_pip "$@"
 }
 
-# fpm 0.12 goes on linking the objects of source files that were moved or removed, and says nothing: where the list of sources is
-# another one than at the last set-up, programs are built anew.
+# fpm 0.12 still links the objects of source files that were moved or removed, without a message. If the list of sources has
+# changed since the last set-up, all programs are built again.
 gudgeon_sources() {
   gudgeon_list=$(find src tests scripts -name '*.f90' | sort)
   [ "$gudgeon_list" = "$(cat build/sources 2>/dev/null)" ] && return 0

@@ -972,7 +972,7 @@ class Reading(unittest.TestCase):
         with tempfile.TemporaryDirectory() as work:
             with self.assertRaisesRegex(MissingResult, "run: scripts/run_cases.sh .*cases/sim_I.nml"):
                 Results(Path(work), run_missing=False).make(["sim_I", "sim_I.ideal"])
-            with self.assertRaisesRegex(MissingResult, "no such case: nonsense"):
+            with self.assertRaisesRegex(MissingResult, "nor a shipped case: nonsense"):
                 Results(Path(work)).make(["nonsense"])
 
 

@@ -403,7 +403,7 @@ class AnyStudy(InDirectory):
             self.assertIsInstance(axes.collections[0].norm, matplotlib.colors.LogNorm)
             self.assertEqual(len(axes.lines[0].get_xdata()), 1)  # the cross of the run that failed
         bars = {axes.get_xlabel() for axes in drawing.axes} - {"radial clearance [µm]"}
-        self.assertEqual(bars, {"least film thickness [µm]", "largest pin force [kN]"})
+        self.assertEqual(bars, {"smallest film thickness [µm]", "largest pin force [kN]"})
 
     def test_colours_say_what_lies_beyond_them(self) -> None:
         values = np.concatenate([np.linspace(1, 2, 400), [50.0]])

@@ -11,8 +11,8 @@ STUDIES = ("SALib", "f90nml")
 
 
 def use_virtual_environment(studies: bool = False, more: tuple[str, ...] = ()) -> None:
-    """Go on in .venv's Python if this one lacks the packages, with `studies` also those of parameter studies, and `more`; leave with
-    what to do if neither has them."""
+    """Continue with .venv's Python if this one lacks the packages, with `studies` also those of parameter studies, and `more`. If
+    neither has them, exit with a message that says which command installs them."""
     wanted = PACKAGES + (STUDIES if studies else ()) + more
     missing = [name for name in wanted if importlib.util.find_spec(name) is None]
     if not missing:

@@ -26,8 +26,8 @@ KEYS = {
 
 #: Columns of results whose own name would not say what they are.
 COLUMNS = {
-    "min_film_thickness": "least film thickness",
-    "min_film_thickness_mean": "least film thickness of a revolution, mean",
+    "min_film_thickness": "smallest film thickness",
+    "min_film_thickness_mean": "smallest film thickness of a revolution, mean",
     "contact_time_fraction": "time in contact",
     "max_penetration": "largest penetration",
     "max_pin_force": "largest pin force",

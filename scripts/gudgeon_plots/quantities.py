@@ -88,7 +88,7 @@ def touches(run: Run) -> bool:
 
 
 def least_film(run: Run) -> str:
-    """The run's least film thickness or deepest penetration, of all steps where the summary tells it."""
+    """The run's smallest film thickness or largest penetration, of all steps where the summary tells it."""
     least = 1e6 * float(run.summary.get("min_film_thickness", (run["film_thickness"].min(), ""))[0])
     return f"smallest film thickness {least:.3g} µm" if least >= 0 else f"deepest penetration {-least:.3g} µm"
 

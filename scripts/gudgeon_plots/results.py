@@ -200,7 +200,9 @@ class Results:
         if not wanted:
             return
         if unknown := wanted - self.files.keys():
-            raise MissingResult(f"no such case: {' '.join(sorted(unknown))}")
+            raise MissingResult(
+                f"neither a trace in {self.directory} nor a shipped case: {' '.join(sorted(unknown))} (give the trace or the case file)"
+            )
         paths = [os.path.relpath(self.files[name], TOP) for name in sorted(wanted)]
         settings = [word for setting in self.settings(wanted) for word in ("--set", setting)]
         command = ["scripts/run_cases.sh", "-o", str(self.directory.resolve()), *settings, *paths]

@@ -156,7 +156,7 @@ def describe_maps(studies: dict[str, Runs]) -> list[str]:
         lines.append(
             f"{name}: {runs.done.sum()} of {len(runs.table)} runs done; in contact {100 * share.min():.3g} to"
             f" {100 * share.max():.3g} % of the time (median {100 * share.median():.3g} %);"
-            f" least film {film.min():.3g} to {film.max():.3g} µm, {least} of the runs"
+            f" smallest film thickness {film.min():.3g} to {film.max():.3g} µm, {least} of the runs"
         )
     return lines
 

@@ -49,9 +49,9 @@ mpl.rcParams.update(SETTINGS)
 
 
 def mark_decades(axis: Axis) -> None:
-    """Numbers as 0.1, 1, 10 on a logarithmic axis, with 2 and 5 where it covers less than three decades."""
+    """Numbers as 0.1, 1, 10 on a logarithmic axis, with 2 and 5 on less than three decades, and 1, 2, 3, 4, 6, 8 on less than one."""
     low, high = sorted(axis.get_view_interval())
-    short = high < 1e3 * low
-    axis.set_major_locator(LogLocator(10, subs=(1.0, 2.0, 5.0) if short else (1.0,)))
+    subs = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0) if high < 10 * low else (1.0, 2.0, 5.0) if high < 1e3 * low else (1.0,)
+    axis.set_major_locator(LogLocator(10, subs=subs))
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(FuncFormatter(lambda value, _: ""))

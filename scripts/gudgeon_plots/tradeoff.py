@@ -271,7 +271,7 @@ def recommendation(table: pd.DataFrame, reference: Reference, digits: Sequence[i
                 f"for {count} digits use {settings_of(best)}: {best['seconds']:.2g} s,"
                 f" {best['evaluations']:.0f} evaluations"
                 f" (state {best['state_error']:.0e}, impact times {best['impact_time_error']:.0e} s,"
-                f" peak force {best['peak_force_error']:.0e}, least film {best['least_film_error']:.0e})"
+                f" peak force {best['peak_force_error']:.0e}, smallest film thickness {best['least_film_error']:.0e})"
             )
     return lines
 

@@ -153,8 +153,8 @@ contains
     end do
   end function arc_of_load
 
-  !> Columns: the half-angle of the contact, which follows from the penetration, and the pressure in its middle from the normal
-  !> force: p0 = F/(L Rb) {2b/[pi sqrt(b^2 + 1)] + arsinh(b)/[pi b^2 (b^2 + 1)]} (Persson 1964).
+  !> Put the half-angle of the contact into a row, which follows from the penetration, and the pressure in its middle, which follows
+  !> from the normal force, p0 = F/(L Rb) {2b/[pi sqrt(b^2 + 1)] + arsinh(b)/[pi b^2 (b^2 + 1)]} (Persson 1964).
   pure subroutine put_columns(self, penetration, normal_force, row)
     class(conformal_t), intent(in) :: self
     real(dp), intent(in) :: penetration, normal_force
