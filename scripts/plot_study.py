@@ -4,8 +4,9 @@
     scripts/plot_study.py                        the shipped studies, as scripts/run_studies.sh leaves them
     scripts/plot_study.py --picture map          one of map, bifurcation, restitution, contact_laws
     scripts/plot_study.py results/x.runs.csv     any study: curves, maps or points of --columns
+    scripts/plot_study.py --numbers              only print the numbers of the shipped studies, in Markdown
 
-Prints the numbers of the pictures and where they are. Failed runs are left blank, and counted on standard error.
+Prints the numbers of the pictures and the paths of the files. Failed runs are left blank, and counted on standard error.
 """
 
 import argparse
@@ -43,6 +44,7 @@ def arguments() -> argparse.Namespace:
         "--results", type=Path, default=TOP / "results" / "studies", metavar="DIR", help="(default: results/studies)"
     )
     parser.add_argument("--out", type=Path, metavar="DIR", help="pictures (default: beside the results)")
+    parser.add_argument("--numbers", action="store_true", help="only print the numbers of the shipped studies, in Markdown")
     language.add_option(parser)
     parser.add_argument("--format", action="append", choices=("png", "svg", "pdf"), help="repeatable (default: png)")
     return parser.parse_args()
@@ -124,6 +126,9 @@ def main() -> int:
                 print(*figures.save(drawing, options.out or path.parent, stem, formats))
         for name in options.picture or ([] if options.runs else PICTURES):
             drawing, lines = PICTURES[name](options.results)
+            if options.numbers:
+                print(*(f"- {line}".replace("\n  ", "\n    - ") for line in lines), sep="\n")
+                continue
             print(*lines, sep="\n")
             print(*figures.save(drawing, options.out or options.results, name, formats))
     except (MissingResult, OSError) as problem:

@@ -1,10 +1,11 @@
 #!/bin/sh
-# Runs the shipped studies with the release build, draws them and prints what they say: when a film carries the pin, what
-# the mechanism settles to, what restitution and contact laws change, which parameters the films depend on.
+# Runs the shipped studies with the fast program, draws them and prints their results: when a film carries the pin, to which motion
+# the mechanism settles, what restitution and contact laws change, on which parameters the films depend.
 #
-#   scripts/run_studies.sh [-o DIR] [-j N] [--fresh]     threads; forget what was run before
+#   scripts/run_studies.sh [-o DIR] [-j N] [--fresh]     number of threads; discard earlier runs
 #
-# Results, tables and pictures are in DIR (default: results/studies). Goes on where it was interrupted.
+# Results, tables and pictures are in DIR (default: results/studies); the numbers are written to data/measured/studies.md and
+# data/measured/sensitivity.md. An interrupted run is continued by the same command.
 cd "$(dirname "$0")/.." || exit 1
 scripts/setup.sh --studies || exit 1
 
@@ -25,7 +26,7 @@ program=$(scripts/build.sh) || exit 1
 status=0
 for study in map_I map_IV map_I_oscillating map_IV_oscillating bifurcation_clearance bifurcation_speed restitution contact_laws; do
   more=
-  case $study in bifurcation_*) more='-s run.lyapunov_revolutions=20' ;; esac   # which colours the picture
+  case $study in bifurcation_*) more='-s run.lyapunov_revolutions=20' ;; esac   # for the colours of the picture
   # shellcheck disable=SC2086  # options are words
   "$program" sweep -o "$out" $options $more "cases/studies/$study.nml" || status=$?
 done
@@ -42,4 +43,10 @@ sensitivity sensitivity_I log:min_film_thickness contact_time_fraction
 sensitivity sensitivity_IV log:min_film_thickness contact_time_fraction
 sensitivity sensitivity_I_oscillating min_film_thickness contact_time_fraction
 sensitivity sensitivity_IV_oscillating min_film_thickness contact_time_fraction
+if [ "$status" = 0 ]; then
+  scripts/record.py studies "Parameter studies" scripts/plot_study.py --results "$out" --numbers || status=1
+  scripts/record.py sensitivity "Sensitivity of films and contacts" scripts/sensitivity.py --table --out "$out/sensitivity" \
+    cases/studies/sensitivity_I.nml cases/studies/sensitivity_IV.nml cases/studies/sensitivity_I_oscillating.nml \
+    cases/studies/sensitivity_IV_oscillating.nml || status=1
+fi
 exit $status

@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
-"""Says which parameters of a study its results depend on: samples their ranges, sweeps, analyses with SALib.
+"""Measures on which parameters of a study its results depend: samples their ranges, runs the study, analyses it with SALib.
 
     scripts/sensitivity.py cases/studies/sensitivity_I.nml        both methods; table and picture in results/sensitivity
     scripts/sensitivity.py STUDY.nml --method morris --morris 20 --outputs log:min_film_thickness impacts
+    scripts/sensitivity.py --table cases/studies/sensitivity_*.nml  only print the total Sobol indices found before, as one table
 
 The study's &parameter groups give the ranges (from, to, scale); its design is replaced by those of Morris (elementary
-effects along trajectories) and Sobol (shares of the variance, by Saltelli's scheme). Every sample has its seed. Runs
-that failed are counted and named, and the trajectory or base point that holds one is left out whole. Goes on where it
-was interrupted. Confidence intervals are of 95 %; --convergence prints the indices of a quarter and a half of the sample
-too.
+effects along trajectories) and Sobol (shares of the variance, by Saltelli's scheme). Samples are reproducible (--seed).
+Runs that failed are counted and listed; the trajectory or base point that contains one is left out. An interrupted
+analysis is continued by the same command. Confidence intervals are of 95 %; --convergence also prints the indices from a
+quarter and a half of the sample.
 """
 
 import argparse
@@ -51,12 +52,13 @@ def arguments() -> argparse.Namespace:
         metavar="DIR",
         help="(default: results/sensitivity)",
     )
-    parser.add_argument("-j", "--jobs", type=int, metavar="N", help="threads (default: the cores)")
+    parser.add_argument("-j", "--jobs", type=int, metavar="N", help="threads (default: number of processor cores)")
     parser.add_argument("-s", "--set", action="append", default=[], metavar="GROUP.KEY=VALUE", help="of the base case")
     parser.add_argument("--program", type=Path, help="gudgeon (default: the release build, brought up to date)")
-    parser.add_argument("--fresh", action="store_true", help="forget the runs of an earlier call")
+    parser.add_argument("--fresh", action="store_true", help="discard the runs of an earlier call")
     language.add_option(parser)
-    parser.add_argument("--convergence", action="store_true", help="indices of parts of the sample too")
+    parser.add_argument("--convergence", action="store_true", help="also print the indices of parts of the sample")
+    parser.add_argument("--table", action="store_true", help="only print the indices that are in --out, as a Markdown table")
     options = parser.parse_args()
     if options.sobol < 2 or options.sobol & (options.sobol - 1):
         parser.error(f"--sobol {options.sobol}: must be a power of 2")
@@ -119,9 +121,31 @@ def report(path: Path, program: Path, options: argparse.Namespace) -> None:
     print(target, *paths)
 
 
+def print_table(studies: list[Path], folder: Path) -> None:
+    """Total Sobol indices of all studies with their 95 % intervals: a row for each parameter, a column for each study and result."""
+    columns = {}
+    for path in studies:
+        indices = pd.read_csv(folder / f"{path.stem}.indices.csv")
+        total = indices[(indices["method"] == "sobol") & (indices["index"] == "ST")]
+        for output, rows in total.groupby("output", sort=False):
+            given = study.read_study(path)
+            columns[f"{given.name.removeprefix('sensitivity_')}: {output}"] = {
+                row.parameter: f"{row.value:.2f} ± {row.confidence:.2f}" for row in rows.itertuples()
+            }
+    table = pd.DataFrame(columns).fillna("not varied")
+    print("Total Sobol indices with 95 % intervals.\n")
+    print("| parameter |", " | ".join(table.columns), "|")
+    print("|---" * (len(table.columns) + 1) + "|")
+    for parameter, row in table.iterrows():
+        print(f"| `{parameter}` |", " | ".join(row), "|")
+
+
 def main() -> int:
     options = arguments()
     try:
+        if options.table:
+            print_table(options.studies, options.out)
+            return 0
         program = (options.program or release_program()).absolute()
         for path in options.studies:
             report(path, program, options)

@@ -513,6 +513,25 @@ class Sweeps(InDirectory):
             self.assertEqual(one, merged, kind)
             self.assertGreater(one.count(b"\n"), 9)
 
+    def test_table_of_indices(self) -> None:
+        head = "method,output,parameter,index,value,confidence,points,points_left_out"
+        rows = ["sobol,y,joint.clearance,ST,0.333,0.0714,8,0", "sobol,y,joint.clearance,S1,0.1,0.2,8,0"]
+        shipped = TOP / "cases" / "studies"
+        (self.work / "sensitivity_I.indices.csv").write_text("\n".join([head, *rows]) + "\n")
+        rows = ["sobol,z,joint.clearance,ST,0.5,0.1,8,0", "sobol,z,mechanism.gravity,ST,0.21,0.14,8,0"]
+        (self.work / "sensitivity_IV.indices.csv").write_text("\n".join([head, *rows]) + "\n")
+        outcome = self.run_program(
+            *(sys.executable, TOP / "scripts" / "sensitivity.py", "--table", "--out", self.work),
+            *(shipped / "sensitivity_I.nml", shipped / "sensitivity_IV.nml"),
+        )
+        self.assertEqual(outcome.returncode, 0, outcome.stderr)
+        for line in (
+            "| parameter | I: y | IV: z |",
+            "| `joint.clearance` | 0.33 ± 0.07 | 0.50 ± 0.10 |",
+            "| `mechanism.gravity` | not varied | 0.21 ± 0.14 |",
+        ):
+            self.assertIn(line, outcome.stdout)
+
     def test_sensitivity_of_a_small_study(self) -> None:
         outcome = self.run_program(
             *(sys.executable, TOP / "scripts" / "sensitivity.py", self.study, "--program", self.program),

@@ -28,7 +28,7 @@ contains
     character(len=*), intent(in), optional :: default, example
     call list%text(name, self%file, says, default, example=example)
     call list%text(name//'_digest', self%digest, &
-      'of that file, as resolved cases give it: another content is refused; '''': any', '')
+      'digest of that file, written by resolved cases; a file with other content is refused; '''': any file', '')
   end subroutine parameters
 
   !> Whether the case names a file.

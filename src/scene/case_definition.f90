@@ -207,7 +207,7 @@ contains
     call list%group('mechanism', &
       'Crank, rod and piston. A centre of mass is given along and across its body, from the end nearer to the crank axis', .false.)
     call case%mechanism%parameters(list)
-    call list%group('drive', 'What drives the crank', .false.)
+    call list%group('drive', 'Drive of the crank', .false.)
     call case%drive%parameters(list)
     call list%group('initial', &
       'Initial state. Velocities are those of the mechanism with ideal joints, plus the rates given here', .false.)
