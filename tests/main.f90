@@ -37,6 +37,7 @@ program gudgeon_tests
   use test_events, only: run_test_events
   use test_findings, only: run_test_findings
   use test_finite_bearing, only: run_test_finite_bearing
+  use test_film_derivatives, only: run_test_film_derivatives
   use test_film_moment, only: run_test_film_moment
   use test_half_film_guess, only: run_test_half_film_guess
   use test_film_figures, only: run_test_film_figures
@@ -111,6 +112,7 @@ program gudgeon_tests
   call run('events', run_test_events)
   call run('findings', run_test_findings)
   call run('finite_bearing', run_test_finite_bearing)
+  call run('film_derivatives', run_test_film_derivatives)
   call run('film_moment', run_test_film_moment)
   call run('half_film_guess', run_test_half_film_guess)
   call run('film_figures', run_test_film_figures)

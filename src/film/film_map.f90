@@ -19,7 +19,8 @@ module film_map
   use film_law, only: table_watch_t
   use finite_film, only: film_answer_t, cavitation_none
   use film_solution, only: film_solution_t
-  use uniform_spline, only: spline_weights, through_values, through_mirrored, before, after
+  use film_coordinates, only: find_scales, scale_slopes, chi_of, chi_slopes, tau_of, gap_at, direction_at
+  use uniform_spline, only: spline_weights, spline_slopes, through_values, through_mirrored, before, after
   implicit none
   private
   public :: film_map_t
@@ -37,9 +38,18 @@ module film_map
   contains
     procedure :: build
     procedure :: force
+    procedure :: force_slopes
     procedure :: peak_and_flow
     procedure :: exchange
   end type film_map_t
+
+  !> A place in the table.
+  type :: place_t
+    integer :: row = 0             !! the first of six
+    integer :: column = 0          !! the one before the first of six
+    real(dp) :: in_row = 0         !! part of the interval between rows, of which the third of six is the first, 0 to 1
+    real(dp) :: in_column = 0      !! the same of columns
+  end type place_t
 
   real(dp), parameter :: last_gap = 1e-4_dp     !! 1 - eps of the last row; beyond it G is held
   integer, parameter :: sample_rows = 16, sample_directions = 12   !! of the points at which its error is measured
@@ -99,11 +109,6 @@ contains
     end associate
   end subroutine make_room
 
-  pure real(dp) function tau_of(gap)
-    real(dp), intent(in) :: gap   !! 1 - eps
-    tau_of = 0.5_dp*pi - 2*asin(sqrt(0.5_dp*gap))
-  end function tau_of
-
   !> G_r, G_t, G_p and G_q at one tau, for every chi.
   subroutine solve_row(self, tau, g)
     class(film_map_t), intent(in) :: self
@@ -140,12 +145,6 @@ contains
       g([1, self%points], 2) = 0
     end if
   end subroutine solve_row
-
-  !> 1 - eps at a tau.
-  pure real(dp) function gap_at(tau)
-    real(dp), intent(in) :: tau
-    gap_at = 2*sin(0.5_dp*(0.5_dp*pi - tau))**2
-  end function gap_at
 
   !> A point of the sample at which the table is compared with solutions. It lies where the table's size has no part in it: tau and
   !> chi are spread by the golden section, so that no number of values has them as nodes.
@@ -194,56 +193,13 @@ contains
     self%mean_error = sqrt(sum(errors**2)/size(errors))
   end subroutine find_errors
 
-  !> Scales of the radial and of the tangential force for the velocity (B, A), A >= 0, not both 0; w2 = 1 - eps^2.
-  pure subroutine find_scales(b, a, w2, s_r, s_t)
-    real(dp), intent(in) :: b, a, w2
-    real(dp), intent(out) :: s_r, s_t
-    real(dp) :: m, u, q
-    m = sqrt(b**2 + w2*a**2)
-    if (b >= 0) then
-      u = 0.5_dp*(1 + b/m)
-    else
-      u = 0.5_dp*w2*a**2/(m*(m - b))
-    end if
-    q = (u + w2)/w2
-    s_t = m*q
-    s_r = s_t*sqrt(q)
-  end subroutine find_scales
-
-  !> chi of the velocity (B, A), A >= 0, in [0, pi].
-  pure real(dp) function chi_of(b, a, w)
-    real(dp), intent(in) :: b, a, w
-    chi_of = 0.5_dp*atan2(a*b*(1 + w), b**2 - w*a**2)
-    if (b < 0 .and. chi_of <= 0) chi_of = chi_of + pi
-  end function chi_of
-
-  !> The direction alpha that has a chi, by bisection.
-  pure real(dp) function direction_at(chi, w) result(alpha)
-    real(dp), intent(in) :: chi, w
-    real(dp) :: lower, upper
-    integer :: i
-    lower = 0
-    upper = pi
-    do i = 1, 60
-      alpha = 0.5_dp*(lower + upper)
-      if (chi_of(cos(alpha), sin(alpha), w) < chi) then
-        lower = alpha
-      else
-        upper = alpha
-      end if
-    end do
-    if (chi <= 0) alpha = 0
-    if (chi >= pi) alpha = pi
-  end function direction_at
-
   !> V Phi_r and V Phi_t [1/s] for a velocity (B, T) [1/s] at eps^2 (< 1).
   pure subroutine force(self, eps_squared, b, t, radial, tangential)
     class(film_map_t), intent(in) :: self
     real(dp), intent(in) :: eps_squared, b, t
     real(dp), intent(out) :: radial, tangential
-    real(dp) :: w2, w, a, s_r, s_t, x, y, by_tau(6), by_chi(6), g_r, g_t, line_r, line_t
-    integer :: i, j, k, l
-
+    real(dp) :: w2, w, a, s_r, s_t, g(2)
+    type(place_t) :: place
     radial = 0
     tangential = 0
     a = abs(t)
@@ -256,53 +212,104 @@ contains
     else
       call find_scales(b, a, w2, s_r, s_t)
     end if
-    x = min(atan2(sqrt(eps_squared), w)*self%per_tau, real(self%points - 1, dp))
-    y = chi_of(b, a, w)*self%per_chi
-    i = min(int(x), self%points - 2)
-    j = min(int(y), self%points - 2)
-    by_tau = spline_weights(x - i)
-    by_chi = spline_weights(y - j)
-    g_r = 0
-    g_t = 0
-    do k = 1, 6
-      line_r = 0
-      line_t = 0
-      do l = 1, 6
-        line_r = line_r + by_chi(l)*self%c(1, j + l - before, i + k - before)
-        line_t = line_t + by_chi(l)*self%c(2, j + l - before, i + k - before)
-      end do
-      g_r = g_r + by_tau(k)*line_r
-      g_t = g_t + by_tau(k)*line_t
-    end do
-    radial = s_r*g_r
-    tangential = s_t*g_t
+    call find_place(self, sqrt(eps_squared), w, b, a, place)
+    call weigh(self%c(1, 1 - before, place%row), self%points, place%column, spline_weights(place%in_column), &
+      spline_weights(place%in_row), g)
+    radial = s_r*g(1)
+    tangential = s_t*g(2)
     if (t < 0) tangential = -tangential
   end subroutine force
+
+  !> The same with derivatives by eps, B and T (elements 1 to 3), 0 < eps < 1, B and T not both 0.
+  pure subroutine force_slopes(self, eps, b, t, radial, tangential)
+    class(film_map_t), intent(in) :: self
+    real(dp), intent(in) :: eps, b, t
+    real(dp), intent(out) :: radial(0:3), tangential(0:3)
+    real(dp) :: w2, w, a, s_r(0:3), s_t(0:3), g(2), by_chi(2), by_tau(2), weights(6, 2), of_chi(3), change(2)
+    type(place_t) :: place
+    integer :: i
+    a = abs(t)
+    w2 = (1 - eps)*(1 + eps)
+    w = sqrt(w2)
+    if (self%cavitation == cavitation_none) then
+      s_r = [b, 3*b*eps/w2, 1.0_dp, 0.0_dp]/(w2*w)
+      s_t = [a, a*eps/w2, 0.0_dp, 1.0_dp]/w
+    else
+      call find_scales(b, a, w2, s_r(0), s_t(0))
+      call scale_slopes(eps, b, a, w2, s_r(0), s_t(0), s_r(1:), s_t(1:))
+    end if
+    call find_place(self, eps, w, b, a, place)
+    weights(:, 1) = spline_weights(place%in_column)
+    weights(:, 2) = spline_weights(place%in_row)
+    associate (n => self%points, j => place%column, i => place%row)
+      call weigh(self%c(1, 1 - before, i), n, j, weights(:, 1), weights(:, 2), g)
+      call weigh(self%c(1, 1 - before, i), n, j, spline_slopes(place%in_column), weights(:, 2), by_chi)
+      call weigh(self%c(1, 1 - before, i), n, j, weights(:, 1), spline_slopes(place%in_row), by_tau)
+    end associate
+    of_chi = chi_slopes(eps, b, a, w)*self%per_chi
+    radial(0) = s_r(0)*g(1)
+    tangential(0) = s_t(0)*g(2)
+    do i = 1, 3
+      change = by_chi*of_chi(i)
+      if (i == 1 .and. place%in_row < 1) change = change + by_tau*self%per_tau/w   ! beyond the last row G is held
+      radial(i) = s_r(i)*g(1) + s_r(0)*change(1)
+      tangential(i) = s_t(i)*g(2) + s_t(0)*change(2)
+    end do
+    if (t < 0) then
+      radial(3) = -radial(3)
+      tangential(:2) = -tangential(:2)
+    end if
+  end subroutine force_slopes
 
   !> Largest pressure over mu R^2/c^2 and flow out of both ends over c R^2 [1/s], as `force`.
   pure subroutine peak_and_flow(self, eps_squared, b, t, most, flow)
     class(film_map_t), intent(in) :: self
     real(dp), intent(in) :: eps_squared, b, t
     real(dp), intent(out) :: most, flow
-    real(dp) :: w, s_r, s_t, x, y, by_tau(6), line(2, 6), g(2)
-    integer :: i, j, k
+    real(dp) :: w, s_r, s_t, g(2)
+    type(place_t) :: place
     most = 0
     flow = 0
     if (.not. (abs(t) > 0 .or. abs(b) > 0)) return
     w = sqrt(1 - eps_squared)
     call find_scales(b, abs(t), w**2, s_r, s_t)
-    x = min(atan2(sqrt(eps_squared), w)*self%per_tau, real(self%points - 1, dp))
-    y = chi_of(b, abs(t), w)*self%per_chi
-    i = min(int(x), self%points - 2)
-    j = min(int(y), self%points - 2)
-    by_tau = spline_weights(x - i)
-    do k = 1, 6
-      line(:, k) = matmul(self%more(:, j + k - before, i + 1 - before:i + 6 - before), by_tau)
-    end do
-    g = matmul(line, spline_weights(y - j))
+    call find_place(self, sqrt(eps_squared), w, b, abs(t), place)
+    call weigh(self%more(1, 1 - before, place%row), self%points, place%column, spline_weights(place%in_column), &
+      spline_weights(place%in_row), g)
     most = g(1)*s_r**2/s_t
     flow = g(2)*sqrt(b**2 + t**2)
   end subroutine peak_and_flow
+
+  !> Where the coordinates of (eps, B, A) lie in the table.
+  pure subroutine find_place(self, eps, w, b, a, place)
+    type(film_map_t), intent(in) :: self
+    real(dp), intent(in) :: eps, w, b, a
+    type(place_t), intent(out) :: place
+    real(dp) :: x, y
+    integer :: i, j
+    x = min(atan2(eps, w)*self%per_tau, real(self%points - 1, dp))
+    y = chi_of(b, a, w)*self%per_chi
+    i = min(int(x), self%points - 2)
+    j = min(int(y), self%points - 2)
+    place = place_t(i + 1 - before, j, x - i, y - j)
+  end subroutine find_place
+
+  !> Sums over the six rows from the first of `c` on, and over six columns of them.
+  pure subroutine weigh(c, points, column, by_chi, by_tau, g)
+    integer, intent(in) :: points, column   !! the columns begin behind this one
+    real(dp), intent(in) :: c(2, points + before + after, 6), by_chi(6), by_tau(6)
+    real(dp), intent(out) :: g(2)
+    real(dp) :: line(2)
+    integer :: k, l
+    g = 0
+    do k = 1, 6
+      line = 0
+      do l = 1, 6
+        line = line + by_chi(l)*c(:, column + l, k)
+      end do
+      g = g + by_tau(k)*line
+    end do
+  end subroutine weigh
 
   !> The table, to or from an archive.
   subroutine exchange(self, archive)

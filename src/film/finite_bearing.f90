@@ -8,7 +8,8 @@ module finite_bearing
   use gudgeon_parameters, only: parameter_list_t
   use gudgeon_bearing, only: bearing_t
   use gudgeon_archive, only: archive_t
-  use film_law, only: film_law_t, film_motion_t, table_watch_t, field_points
+  use film_law, only: film_law_t, film_motion_t, table_watch_t, difference_derivatives, field_points
+  use film_direction, only: derivatives_in_components, least_ratio_of_derivatives
   use finite_film, only: film_answer_t, film_solver_t, cavitation_none, cavitation_gumbel, cavitation_reynolds
   use film_map, only: film_map_t
   use film_solution, only: solved_force, solved_film
@@ -34,6 +35,7 @@ module finite_bearing
     procedure :: parameters
     procedure :: prepare
     procedure :: film_force
+    procedure :: force_derivatives
     procedure :: reduced_force
     procedure :: drag_moment
     procedure :: gives_pressure
@@ -203,6 +205,28 @@ contains
     moment = 0
     if (self%film_moment) moment = self%shear_moment(self%force_scale, motion, force)
   end subroutine film_force
+
+  !> Derivatives of `film_force`, for implicit integration: those of the table, turned to x and y. Without a table, next to the wall
+  !> and close to the centre, where the directions turn fast, differences serve.
+  pure subroutine force_derivatives(self, motion, derivatives)
+    class(finite_bearing_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(out) :: derivatives(3, 5)
+    real(dp) :: n(2), square, eps, b, t, radial(0:3), tangential(0:3)
+    call reduce(self, motion, n, square, b, t)
+    eps = sqrt(square)
+    if (self%map%points == 0 .or. eps < least_ratio_of_derivatives .or. 1 - eps < least_gap &
+      .or. .not. (abs(b) > 0 .or. abs(t) > 0)) then
+      call difference_derivatives(self, motion, derivatives)
+      return
+    end if
+    call self%map%force_slopes(eps, b, t, radial, tangential)
+    radial = self%force_scale*radial
+    tangential = self%force_scale*tangential
+    derivatives = derivatives_in_components(motion, self%clearance, n, eps, b, radial, tangential)
+    if (self%film_moment) derivatives(3, :) = self%shear_moment_slopes(self%force_scale, motion, &
+      [radial(0)*n(1) - tangential(0)*n(2), radial(0)*n(2) + tangential(0)*n(1)], derivatives)
+  end subroutine force_derivatives
 
   !> The direction n of the eccentricity, the square of its ratio (< 1), and v*/c along n and across [1/s].
   pure subroutine reduce(self, motion, n, square, b, t)

@@ -5,6 +5,7 @@ module pinkus_sternlicht
   use gudgeon_parameters, only: parameter_list_t
   use gudgeon_bearing, only: bearing_t
   use film_law, only: film_law_t, film_motion_t, difference_derivatives
+  use film_direction, only: derivatives_in_components, least_ratio_of_derivatives
   implicit none
   private
   public :: pinkus_sternlicht_t, reduced_motion_t, max_eccentricity_ratio
@@ -155,41 +156,26 @@ contains
   end subroutine film_force
 
   !> Derivatives of `film_force`, for implicit integration (see `difference_derivatives`): of the polar forms by (eps,
-  !> eps_dot, eps W), turned back to x and y. Close to the centre, where the directions turn fast, differences serve.
+  !> eps_dot, eps W), eps W = -2 T, turned back to x and y. Close to the centre, where the directions turn fast, differences serve.
   pure subroutine force_derivatives(self, motion, derivatives)
     class(pinkus_sternlicht_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
     real(dp), intent(out) :: derivatives(3, 5)
-    real(dp), parameter :: smallest_ratio = 1e-4_dp
     type(reduced_motion_t) :: state
-    real(dp) :: radial(0:3), tangential(0:3), tangential_rate, changes(3, 5), normal_turn(5)
+    real(dp) :: radial(0:3), tangential(0:3)
     logical :: moves
-    integer :: i
 
     state = self%reduced(motion)
     call polar_forces(self, state, radial, tangential, moves)
-    if (state%ratio < smallest_ratio .or. .not. moves) then
+    if (state%ratio < least_ratio_of_derivatives .or. .not. moves) then
       call difference_derivatives(self, motion, derivatives)
       return
     end if
-    associate (n => state%normal, v => motion%eccentricity_rate, c => self%clearance)
-      tangential_rate = (n(1)*v(2) - n(2)*v(1))/c
-      ! changes of eps, eps_dot and eps W, and the angle by which n turns, with e_x, e_y, e_x', e_y', pin speed
-      normal_turn = [-n(2), n(1), 0.0_dp, 0.0_dp, 0.0_dp]/(state%ratio*c)
-      changes(1, :) = [n(1), n(2), 0.0_dp, 0.0_dp, 0.0_dp]/c
-      changes(2, :) = normal_turn*tangential_rate + [0.0_dp, 0.0_dp, n(1), n(2), 0.0_dp]/c
-      changes(3, :) = changes(1, :)*motion%pin_speed + 2*normal_turn*state%ratio_rate &
-        + [0.0_dp, 0.0_dp, 2*n(2)/c, -2*n(1)/c, state%ratio]
-      do i = 1, 5
-        associate (f_r => dot_product(radial(1:), changes(:, i)) - tangential(0)*normal_turn(i), &
-                   f_t => dot_product(tangential(1:), changes(:, i)) + radial(0)*normal_turn(i))
-          derivatives(:, i) = [f_r*n(1) - f_t*n(2), f_r*n(2) + f_t*n(1), 0.0_dp]
-        end associate
-      end do
-    end associate
-    if (.not. self%film_moment) return
+    radial(3) = -2*radial(3)
+    tangential(3) = -2*tangential(3)
     associate (n => state%normal)
-      derivatives(3, :) = self%shear_moment_slopes(self%force_scale, motion, &
+      derivatives = derivatives_in_components(motion, self%clearance, n, state%ratio, state%ratio_rate, radial, tangential)
+      if (self%film_moment) derivatives(3, :) = self%shear_moment_slopes(self%force_scale, motion, &
         [radial(0)*n(1) - tangential(0)*n(2), radial(0)*n(2) + tangential(0)*n(1)], derivatives)
     end associate
   end subroutine force_derivatives

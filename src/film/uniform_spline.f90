@@ -4,7 +4,7 @@ module uniform_spline
   use small_lu, only: decompose, solve
   implicit none
   private
-  public :: spline_weights, through_values, through_mirrored, before, after
+  public :: spline_weights, spline_slopes, through_values, through_mirrored, before, after
 
   !> Coefficients before the first value and after the last one.
   integer, parameter :: before = 2, after = 2
@@ -25,6 +25,21 @@ contains
     w(3) = (66 + a*(-60 + a*(30 - 10*u)))/120
     w(4) = (66 + b*(-60 + b*(30 - 10*v)))/120
   end function spline_weights
+
+  !> Their derivatives by u.
+  pure function spline_slopes(u) result(w)
+    real(dp), intent(in) :: u
+    real(dp) :: w(6), v, a, b
+    v = 1 - u
+    a = u*u
+    b = v*v
+    w(1) = -b*b/24
+    w(6) = a*a/24
+    w(2) = (-10 + u*(8 + u*(12 + u*(-16 + 5*u))))/24
+    w(5) = (10 - v*(8 + v*(12 + v*(-16 + 5*v))))/24
+    w(3) = u*(-12 + a*(12 - 5*u))/12
+    w(4) = v*(12 - b*(12 - 5*v))/12
+  end function spline_slopes
 
   !> Coefficients (1-before : n+after) of the splines through values (n, any number), n >= 8. At both ends the fifth derivative is
   !> continuous too at the next two values (not a knot).
