@@ -99,7 +99,7 @@ def arguments() -> argparse.Namespace:
         "--jobs", type=int, default=os.cpu_count() or 1, metavar="N", help="number of runs in parallel (default: number of processor cores)"
     )
     parser.add_argument(
-        "--timeout", type=float, default=120.0, metavar="S", help="stop a run after this time (default: 120)"
+        "--timeout", type=float, metavar="S", help="stop a run after this time (default: 120; with --films 7200)"
     )
     language.add_option(parser)
     options = parser.parse_args()
@@ -108,6 +108,8 @@ def arguments() -> argparse.Namespace:
         options.cases = [case for case in options.cases if "&mechanism" in case.read_text(encoding="utf-8")]
     if not options.cases:
         parser.error("no CASE.nml")
+    if options.timeout is None:
+        options.timeout = 7200.0 if options.films else 120.0
     return options
 
 

@@ -59,7 +59,7 @@ def command(program: Path, case: Path, out: str, values: tuple[str, ...]) -> lis
 
 
 def run(program: Path, case: Path, out: str, values: tuple[str, ...], timeout: float) -> dict[str, float | str]:
-    """The numbers in the summary of a run; `stopped` says why it did not come to an end."""
+    """One run: the numbers in the summary of a run; `stopped` says why it did not come to an end."""
     try:
         done = subprocess.run(command(program, case, out, values), capture_output=True, text=True, check=False, timeout=timeout)
     except subprocess.TimeoutExpired:
