@@ -24,7 +24,8 @@ LEAST_GAP = 1e-4   # over the clearance: where the table of a film ends
 OSCILLATING = 2e-5  # of a force: of the oscillating film's means
 ASPERITIES = 1e-5  # of a force: of the series of F52 and of the spline through the forces
 CLEAR = 0.01       # of a force: what the velocity of its film, taken from the rows, may leave open
-MOVING = 2e-4      # and what it is off by between rows of one step
+MOVING = 2e-4, 2000  # of a force, and in tolerances: what it is off by in rows between two steps, where the places of the film are
+                     # as accurate as in the steps, but not their differences
 LEAST_BEND = 5e-9  # [m] bristles that give way sooner do so within a step: rows between the steps cannot tell how
 BENT = 1000       # tolerances of the static friction: what bristles may be bent beyond it in rows between the steps
 
@@ -340,7 +341,8 @@ class RowChecks:
         if blur > CLEAR * load:
             return
         miss = math.hypot(n[0] * force[0] + n[1] * force[1] - thicker * want[0], n[0] * force[1] - n[1] * force[0] - thicker * want[1])
-        self.take("film law", miss, (MOVING + law.margin) * load + 3 * blur + row.law_noise, row.get["time"])
+        between = max(MOVING[0], MOVING[1] * self.run.number("integrator.relative_tolerance"))
+        self.take("film law", miss, (between + law.margin) * load + 3 * blur + row.law_noise, row.get["time"])
 
     def check_gas(self, row: Row, i: int, t: float) -> None:
         get, gas = row.get, self.gas
