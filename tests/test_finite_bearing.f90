@@ -10,7 +10,9 @@ module test_finite_bearing
   use finite_film, only: cavitation_none, cavitation_gumbel, cavitation_reynolds
   use film_map, only: film_map_t
   use film_solution, only: solved_force
+  use finite_bearing, only: finite_bearing_t
   use short_bearing, only: short_bearing_t
+  use gudgeon_bearing, only: bearing_t
   use laws, only: film_law_of
   implicit none
   private
@@ -37,6 +39,7 @@ contains
     call symmetries_and_extremes(check)
     call power_is_lost(check)
     call refuses(check)
+    call points_by_tolerance(check)
   end subroutine run_test_finite_bearing
 
   !> Phi of five bearings, with each cavitation, up to the eccentricity ratio 0.9 as a draft solves it.
@@ -452,6 +455,36 @@ contains
     call film_law_of("law='finite_bearing' viscosity=0.01 variant='short' cavitation='none'", 1e-6_dp, law, error)
     call check%that(allocated(error), 'a short bearing without cavitation')
   end subroutine refuses
+
+  !> Numbers of table values and of nodes round the film, with which the key of a table ends: for a draft, at the standard and at the
+  !> reference level, and as given.
+  subroutine points_by_tolerance(check)
+    class(checks_t), intent(inout) :: check
+    call one('', 1e-4_dp, ' 33 64')
+    call one('', 1e-6_dp, ' 65 128')
+    call one('', 1e-10_dp, ' 65 192')
+    call one(" cavitation='gumbel'", 1e-10_dp, ' 97 192')
+    call one(" cavitation='none'", 1e-6_dp, ' 65 128')
+    call one(" cavitation='none' table_points=40", 1e-10_dp, ' 40 192')
+    call one(' film_points=48', 1e-10_dp, ' 65 48')
+
+  contains
+
+    subroutine one(keys, tolerance, wanted)
+      character(len=*), intent(in) :: keys, wanted
+      real(dp), intent(in) :: tolerance
+      type(finite_bearing_t) :: law
+      character(len=:), allocatable :: key
+      law%variant = 'table'
+      law%cavitation = 'reynolds'
+      if (index(keys, 'gumbel') > 0) law%cavitation = 'gumbel'
+      if (index(keys, 'none') > 0) law%cavitation = 'none'
+      if (index(keys, 'table_points') > 0) law%table_points = 40
+      if (index(keys, 'film_points') > 0) law%film_points = 48
+      key = law%table_key(bearing_t(0.01_dp, 0.015_dp, c, 0.0_dp), tolerance)
+      call check%that(index(key, wanted) == len(key) - len(wanted) + 1, 'points of a table'//keys)
+    end subroutine one
+  end subroutine points_by_tolerance
 
   !> A film in the bearing of `laws`, with a small table.
   subroutine new_film(check, variant, law)

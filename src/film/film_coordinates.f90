@@ -1,5 +1,5 @@
-!> The coordinates and scales in which the force of a film of finite length is tabulated (`film_map`): with w = sqrt(1 - eps^2) and
-!> the velocity (B, T) along n and t
+!> Coordinates and scales for the table of the force of a film of finite length (`film_map`): with w = sqrt(1 - eps^2) and the
+!> velocity (B, T) along n and t
 !>
 !>     M = sqrt(B^2 + w^2 T^2), u = (1 + B/M)/2, q = (u + w^2)/w^2,  S_t = M q,  S_r = M q^(3/2)
 !>     tau = atan2(eps, w),  chi = atan2(|T| B (1 + w), B^2 - w T^2)/2 in [0, pi]
@@ -12,7 +12,7 @@ module film_coordinates
 
 contains
 
-  !> Scales S_r and S_t for the velocity (B, A), A = |T|, not both 0; w2 = w^2. S_t is M + P, P = M u/w^2.
+  !> Scales S_r and S_t for a velocity (B, A), A = |T|, not both 0; w2 = w^2. S_t is computed as M + P with P = M u/w^2.
   pure subroutine find_scales(b, a, w2, s_r, s_t)
     real(dp), intent(in) :: b, a, w2
     real(dp), intent(out) :: s_r, s_t
@@ -26,10 +26,10 @@ contains
     s_r = s_t*sqrt(s_t/m)
   end subroutine find_scales
 
-  !> Derivatives of these scales by eps, B and A: of P they are -P^2/M by w^2, P/M by B and A/(2 M) by A.
+  !> Derivatives of these scales with respect to eps, B and A. Those of P are -P^2/M with respect to w^2, P/M to B and A/(2 M) to A.
   pure subroutine scale_slopes(eps, b, a, w2, s_r, s_t, of_s_r, of_s_t)
     real(dp), intent(in) :: eps, b, a, w2
-    real(dp), intent(in) :: s_r, s_t   !! as `find_scales` has them
+    real(dp), intent(in) :: s_r, s_t   !! the results of `find_scales`
     real(dp), intent(out) :: of_s_r(3), of_s_t(3)
     real(dp) :: m, p, of_m(3)
     m = sqrt(b**2 + w2*a**2)
@@ -40,14 +40,14 @@ contains
     of_s_r = s_r*(1.5_dp*of_s_t/s_t - 0.5_dp*of_m/m)
   end subroutine scale_slopes
 
-  !> chi of the velocity (B, A), A >= 0, in [0, pi].
+  !> chi of a velocity (B, A), A >= 0, in [0, pi].
   pure real(dp) function chi_of(b, a, w)
     real(dp), intent(in) :: b, a, w
     chi_of = 0.5_dp*atan2(a*b*(1 + w), b**2 - w*a**2)
     if (b < 0 .and. chi_of <= 0) chi_of = chi_of + pi
   end function chi_of
 
-  !> Its derivatives by eps, B and A.
+  !> Derivatives of chi with respect to eps, B and A, not both B and A 0.
   pure function chi_slopes(eps, b, a, w) result(slopes)
     real(dp), intent(in) :: eps, b, a, w
     real(dp) :: slopes(3)
@@ -57,18 +57,19 @@ contains
     slopes = [-0.5_dp*a*b*eps/(w*m2), -a*turn, b*turn]
   end function chi_slopes
 
+  !> tau of an eccentricity ratio.
   pure real(dp) function tau_of(gap)
     real(dp), intent(in) :: gap   !! 1 - eps
     tau_of = 0.5_dp*pi - 2*asin(sqrt(0.5_dp*gap))
   end function tau_of
 
-  !> 1 - eps at a tau.
+  !> 1 - eps of a tau.
   pure real(dp) function gap_at(tau)
     real(dp), intent(in) :: tau
     gap_at = 2*sin(0.5_dp*(0.5_dp*pi - tau))**2
   end function gap_at
 
-  !> The direction alpha of (B, A) that has a chi, by bisection.
+  !> The direction alpha of the velocity (B, A) = (cos alpha, sin alpha) that belongs to a chi, by bisection.
   pure real(dp) function direction_at(chi, w) result(alpha)
     real(dp), intent(in) :: chi, w
     real(dp) :: lower, upper

@@ -1,4 +1,4 @@
-!> Forces along and across the eccentricity, and their derivatives by its components.
+!> Derivatives of forces that are given along the eccentricity and perpendicular to it, with respect to components in x and y.
 module film_direction
   use gudgeon_kinds, only: dp
   use film_law, only: film_motion_t
@@ -6,25 +6,25 @@ module film_direction
   private
   public :: derivatives_in_components, least_ratio_of_derivatives
 
-  !> eps below which n turns too fast with the eccentricity: central differences of the force in x and y are better.
+  !> Smallest eps: below it n changes too rapidly with the eccentricity, and central differences of the force in x and y are better.
   real(dp), parameter :: least_ratio_of_derivatives = 1e-4_dp
 
 contains
 
-  !> Derivatives of a force on the pin by e_x, e_y, e_x', e_y' and the pin speed (columns; rows F_x, F_y, and 0 for the moment),
-  !> from its components along n = e/|e| and across and their derivatives by eps = |e|/c, B = v*.n/c and T = v*.t/c (elements 1 to
-  !> 3), v* = e' - (omega/2) z x e.
+  !> Derivatives of a force on the pin with respect to e_x, e_y, e_x', e_y' and the pin speed (columns; rows F_x, F_y, and 0 for the
+  !> moment), from its components along n = e/|e| and t perpendicular to it (element 0) and their derivatives with respect to eps =
+  !> |e|/c, B = v*.n/c and T = v*.t/c (elements 1 to 3), with v* = e' - (omega/2) z x e.
   pure function derivatives_in_components(motion, clearance, n, eps, b, radial, tangential) result(derivatives)
     type(film_motion_t), intent(in) :: motion
     real(dp), intent(in) :: clearance                      !! c [m]
-    real(dp), intent(in) :: n(2), eps, b                   !! of the motion [-, -, 1/s]; eps > 0
-    real(dp), intent(in) :: radial(0:3), tangential(0:3)   !! [N]; by eps [N], by B and T [N s]
+    real(dp), intent(in) :: n(2), eps, b                   !! for this motion [-, -, 1/s]; eps > 0
+    real(dp), intent(in) :: radial(0:3), tangential(0:3)   !! [N]; with respect to eps [N], to B and T [N s]
     real(dp) :: derivatives(3, 5)
     real(dp) :: tangential_rate, changes(3, 5), turn(5)
     integer :: i
     associate (v => motion%eccentricity_rate, c => clearance)
       tangential_rate = (n(1)*v(2) - n(2)*v(1))/c
-      turn = [-n(2), n(1), 0.0_dp, 0.0_dp, 0.0_dp]/(eps*c)   ! the angle by which n turns
+      turn = [-n(2), n(1), 0.0_dp, 0.0_dp, 0.0_dp]/(eps*c)   ! of the direction of n
       changes(1, :) = [n(1), n(2), 0.0_dp, 0.0_dp, 0.0_dp]/c
       changes(2, :) = turn*tangential_rate + [0.0_dp, 0.0_dp, n(1), n(2), 0.0_dp]/c
       changes(3, :) = -0.5_dp*changes(1, :)*motion%pin_speed - turn*b + [0.0_dp, 0.0_dp, -n(2)/c, n(1)/c, -0.5_dp*eps]

@@ -1,17 +1,18 @@
-!> The force of a film of finite length as a table: exact but for its interpolation, since with one pressure at the ends and in the
-!> ruptured film the force is V times a function of the eccentricity ratio eps and of the direction alpha of the velocity V alone.
+!> Table of the force of a film of finite length. Only its interpolation is approximate: since the pressure at the ends and in the
+!> ruptured film is the same, the force is V times a function of the eccentricity ratio eps and of the direction of the velocity V.
 !>
-!> The velocity is v* = e' - (omega/2) z x e, over the clearance (B, T) along n = e/|e| and t [1/s]; the force along n and t is
-!> mu L R^3/c^2 (V Phi_r, V Phi_t). Next to the wall the forces of approach grow as w^-3, w = sqrt(1 - eps^2), those of rotation
-!> as w^-2 and w^-1, those of withdrawal not at all, and the change from one to the other narrows as w. The scales and coordinates
+!> The velocity is v* = e' - (omega/2) z x e; divided by the clearance it has the components (B, T) along n = e/|e| and t [1/s]. The
+!> force along n and t is mu L R^3/c^2 (V Phi_r, V Phi_t). Near the wall the forces grow as w^-3 if the pin approaches, w = sqrt(1 -
+!> eps^2), as w^-2 and w^-1 if it rotates, and stay bounded if it withdraws; the transition between approach and withdrawal becomes
+!> as narrow as w. With the scales and coordinates
 !>
 !>     M = sqrt(B^2 + w^2 T^2), u = (1 + B/M)/2, q = (u + w^2)/w^2,  V Phi_r = M q^(3/2) G_r,  V Phi_t = sign(T) M q G_t
 !>     tau = atan2(eps, w),  chi = atan2(|T| B (1 + w), B^2 - w T^2)/2 in [0, pi]
 !>
-!> leave two smooth and bounded functions G of tau and chi, even and odd about chi = 0 and pi, which are splines of the fifth
-!> degree here. They depend on L/(2R) and on the cavitation. So do two more, even both: the largest pressure over mu R^2/c^2 is
-!> M q^2 G_p, the flow out of both ends over c R^2 is V G_q. A film without cavitation pulls as much as it pushes: its force is
-!> linear in B and T, V Phi_r = B w^-3 G_r and V Phi_t = T w^-1 G_t, with G of tau alone.
+!> G_r and G_t are smooth and bounded functions of tau and chi, G_r even and G_t odd about chi = 0 and pi. They are interpolated by
+!> splines of the fifth degree and depend on L/(2R) and on the cavitation condition only, as do two more functions, both even: the
+!> largest pressure over mu R^2/c^2 is M q^2 G_p, and the side flow out of both ends over c R^2 is V G_q. The force of a film
+!> without cavitation is linear in B and T, V Phi_r = B w^-3 G_r and V Phi_t = T w^-1 G_t, with G_r and G_t functions of tau alone.
 module film_map
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
@@ -27,14 +28,14 @@ module film_map
 
   type :: film_map_t
     real(dp) :: half_length = 0            !! L/(2R) of the table
-    integer :: cavitation = 0              !! as in `finite_film`
-    integer :: film_points = 0             !! nodes round the film where it was solved; Richardson's extrapolation from half as many
-    integer :: points = 0                  !! values of the table in each direction; 0: there is none
-    real(dp) :: largest_error = 0          !! of the force in the table, relative, against solutions between its values
-    real(dp) :: mean_error = 0             !! root of the mean square of the same
+    integer :: cavitation = 0              !! the cavitation condition, one of the constants of `finite_film`
+    integer :: film_points = 0             !! number of grid nodes round the film; Richardson's extrapolation uses half as many too
+    integer :: points = 0                  !! number of values in each direction; 0: the table is empty
+    real(dp) :: largest_error = 0          !! largest relative error of the force, against solutions between the values of the table
+    real(dp) :: mean_error = 0             !! root-mean-square of that error
     real(dp), private :: per_tau = 0, per_chi = 0   !! intervals per radian
-    real(dp), allocatable, private :: c(:, :, :)    !! coefficients: of G_r and G_t, by chi, by tau
-    real(dp), allocatable, private :: more(:, :, :) !! the same of G_p and G_q
+    real(dp), allocatable, private :: c(:, :, :)    !! spline coefficients of G_r and G_t: (function, chi, tau)
+    real(dp), allocatable, private :: more(:, :, :) !! spline coefficients of G_p and G_q
   contains
     procedure :: build
     procedure :: force
@@ -43,21 +44,21 @@ module film_map
     procedure :: exchange
   end type film_map_t
 
-  !> A place in the table.
+  !> A position in the table, between the third and the fourth of six rows, and of six columns, of coefficients.
   type :: place_t
-    integer :: row = 0             !! the first of six
-    integer :: column = 0          !! the one before the first of six
-    real(dp) :: in_row = 0         !! part of the interval between rows, of which the third of six is the first, 0 to 1
-    real(dp) :: in_column = 0      !! the same of columns
+    integer :: row = 0             !! first of the six rows
+    integer :: column = 0          !! column before the first of the six columns
+    real(dp) :: in_row = 0         !! distance from the third row, in intervals
+    real(dp) :: in_column = 0      !! distance from the third column, in intervals
   end type place_t
 
-  real(dp), parameter :: last_gap = 1e-4_dp     !! 1 - eps of the last row; beyond it G is held
-  integer, parameter :: sample_rows = 16, sample_directions = 12   !! of the points at which its error is measured
+  real(dp), parameter :: last_gap = 1e-4_dp     !! 1 - eps of the last row; beyond it the functions G keep their values
+  integer, parameter :: sample_rows = 16, sample_directions = 12   !! numbers of points at which the error is measured
 
 contains
 
-  !> Find the table, and how far it is from solutions between its values. Rows are solved in parallel. If it is interrupted there is
-  !> none.
+  !> Compute the table, and its error against solutions between its values. Rows are computed in parallel. If `watch` stops the
+  !> computation, the table stays empty.
   subroutine build(self, half_length, cavitation, points, film_points, watch)
     class(film_map_t), intent(inout) :: self
     real(dp), intent(in) :: half_length
@@ -109,7 +110,7 @@ contains
     end associate
   end subroutine make_room
 
-  !> G_r, G_t, G_p and G_q at one tau, for every chi.
+  !> G_r, G_t, G_p and G_q of one row (tau), for all chi.
   subroutine solve_row(self, tau, g)
     class(film_map_t), intent(in) :: self
     real(dp), intent(in) :: tau
@@ -125,7 +126,7 @@ contains
     if (gap >= 1) call solution%solve(0.0_dp, .false., film)
     do j = 1, self%points
       alpha = direction_at((j - 1)/self%per_chi, w)
-      if (gap >= 1) then   ! a centred film: alike in every direction
+      if (gap >= 1) then   ! concentric pin: the force is the same in all directions
         g(j, :2) = film%force(1)*[cos(alpha), sin(alpha)]
       else
         call solution%solve(alpha, j > 1, film)
@@ -146,10 +147,10 @@ contains
     end if
   end subroutine solve_row
 
-  !> A point of the sample at which the table is compared with solutions. It lies where the table's size has no part in it: tau and
-  !> chi are spread by the golden section, so that no number of values has them as nodes.
+  !> Position of a sample point, at which the table is compared with a solution. It does not depend on the size of the table: tau
+  !> and chi are distributed by the golden section, so that they are nodes of no table.
   pure subroutine place_sample(i, j, gap, alpha)
-    integer, intent(in) :: i, j   !! the row of one eccentricity ratio, the direction in it
+    integer, intent(in) :: i, j   !! number of the row (of one eccentricity ratio), and of the direction
     real(dp), intent(out) :: gap  !! 1 - eps
     real(dp), intent(out) :: alpha
     real(dp), parameter :: golden = 0.61803398874989485_dp
@@ -159,7 +160,7 @@ contains
     alpha = direction_at(pi*(j - 1 + modulo(golden*golden*i, 1.0_dp))/sample_directions, cos(tau))
   end subroutine place_sample
 
-  !> The force along n and t in the directions of a row of the sample.
+  !> The forces along n and t for all directions of a row of the sample, from the solver.
   subroutine solve_sample(self, i, force)
     class(film_map_t), intent(in) :: self
     integer, intent(in) :: i
@@ -176,10 +177,10 @@ contains
     end do
   end subroutine solve_sample
 
-  !> The errors of the table against the forces of the sample.
+  !> Find the errors of the table against the forces of the sample.
   subroutine find_errors(self, solved)
     class(film_map_t), intent(inout) :: self
-    real(dp), intent(in) :: solved(:, :, :)   !! forces, by direction, by row
+    real(dp), intent(in) :: solved(:, :, :)   !! (component of the force, direction, row)
     real(dp) :: gap, alpha, force(2), errors(sample_directions, sample_rows)
     integer :: i, j
     do i = 1, sample_rows
@@ -193,7 +194,7 @@ contains
     self%mean_error = sqrt(sum(errors**2)/size(errors))
   end subroutine find_errors
 
-  !> V Phi_r and V Phi_t [1/s] for a velocity (B, T) [1/s] at eps^2 (< 1).
+  !> V Phi_r and V Phi_t [1/s] for a velocity (B, T) [1/s] and a given eps^2 (< 1).
   pure subroutine force(self, eps_squared, b, t, radial, tangential)
     class(film_map_t), intent(in) :: self
     real(dp), intent(in) :: eps_squared, b, t
@@ -220,7 +221,8 @@ contains
     if (t < 0) tangential = -tangential
   end subroutine force
 
-  !> The same with derivatives by eps, B and T (elements 1 to 3), 0 < eps < 1, B and T not both 0.
+  !> V Phi_r and V Phi_t [1/s] (element 0) and their derivatives with respect to eps, B and T (elements 1 to 3), for 0 < eps < 1 and
+  !> B and T not both 0.
   pure subroutine force_slopes(self, eps, b, t, radial, tangential)
     class(film_map_t), intent(in) :: self
     real(dp), intent(in) :: eps, b, t
@@ -251,7 +253,7 @@ contains
     tangential(0) = s_t(0)*g(2)
     do i = 1, 3
       change = by_chi*of_chi(i)
-      if (i == 1 .and. place%in_row < 1) change = change + by_tau*self%per_tau/w   ! beyond the last row G is held
+      if (i == 1 .and. place%in_row < 1) change = change + by_tau*self%per_tau/w   ! beyond the last row G is constant
       radial(i) = s_r(i)*g(1) + s_r(0)*change(1)
       tangential(i) = s_t(i)*g(2) + s_t(0)*change(2)
     end do
@@ -261,7 +263,7 @@ contains
     end if
   end subroutine force_slopes
 
-  !> Largest pressure over mu R^2/c^2 and flow out of both ends over c R^2 [1/s], as `force`.
+  !> Largest pressure over mu R^2/c^2 and side flow out of both ends over c R^2 [1/s], with the arguments of `force`.
   pure subroutine peak_and_flow(self, eps_squared, b, t, most, flow)
     class(film_map_t), intent(in) :: self
     real(dp), intent(in) :: eps_squared, b, t
@@ -280,7 +282,7 @@ contains
     flow = g(2)*sqrt(b**2 + t**2)
   end subroutine peak_and_flow
 
-  !> Where the coordinates of (eps, B, A) lie in the table.
+  !> Position in the table of the coordinates that belong to (eps, B, A), A = |T|.
   pure subroutine find_place(self, eps, w, b, a, place)
     type(film_map_t), intent(in) :: self
     real(dp), intent(in) :: eps, w, b, a
@@ -294,9 +296,9 @@ contains
     place = place_t(i + 1 - before, j, x - i, y - j)
   end subroutine find_place
 
-  !> Sums over the six rows from the first of `c` on, and over six columns of them.
+  !> Interpolate: sums of coefficients times their weights, over the first six rows of `c` and six columns.
   pure subroutine weigh(c, points, column, by_chi, by_tau, g)
-    integer, intent(in) :: points, column   !! the columns begin behind this one
+    integer, intent(in) :: points, column   !! column before the first one
     real(dp), intent(in) :: c(2, points + before + after, 6), by_chi(6), by_tau(6)
     real(dp), intent(out) :: g(2)
     real(dp) :: line(2)
@@ -311,7 +313,7 @@ contains
     end do
   end subroutine weigh
 
-  !> The table, to or from an archive.
+  !> Write the table to an archive, or read it.
   subroutine exchange(self, archive)
     class(film_map_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive

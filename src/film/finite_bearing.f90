@@ -1,8 +1,8 @@
-!> The film of a bearing of finite length: Reynolds' equation, quasi-static, with its own pressure solved for (`finite_film`), as a
-!> table (`film_map`) or at every evaluation.
+!> The film of a bearing of finite length: the quasi-static Reynolds equation, whose pressure is computed numerically
+!> (`finite_film`), once for a table (`film_map`) or at every evaluation.
 !>
-!> Wedge and squeeze are one velocity, v* = e' - (omega/2) z x e (Booker 1965), and the force is mu L R^3/c^2 |v*|/c times a
-!> function of eps = |e|/c and of the direction of v*.
+!> Wedge and squeeze motion act together as one velocity, v* = e' - (omega/2) z x e (Booker 1965). The force is mu L R^3/c^2 |v*|/c
+!> times a function of eps = |e|/c and of the direction of v*.
 module finite_bearing
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: parameter_list_t
@@ -17,17 +17,17 @@ module finite_bearing
   private
   public :: finite_bearing_t
 
-  real(dp), parameter :: least_gap = 1e-6_dp   !! 1 - eps below which the equation is not solved: the force is held there
+  real(dp), parameter :: least_gap = 1e-6_dp   !! smallest 1 - eps for which the equation is solved
 
   type, extends(film_law_t) :: finite_bearing_t
     character(len=:), allocatable :: variant, cavitation
-    integer :: table_points = 0      !! values of the table in each direction; 0: from the tolerance
-    integer :: film_points = 0       !! nodes round the film where it is solved; 0: from the tolerance
-    type(film_map_t) :: map          !! of the variant `table`; without points the film is solved at every evaluation
+    integer :: table_points = 0      !! number of table values in each direction; 0: chosen from the tolerance
+    integer :: film_points = 0       !! number of grid nodes round the film; 0: chosen from the tolerance
+    type(film_map_t) :: map          !! table of the variant `table`; if it is empty, the equation is solved at every evaluation
     real(dp) :: half_length = 0      !! L/(2R)
     real(dp) :: force_scale = 0      !! mu L R^3/c^2 [N s]
     real(dp) :: pin_radius = 0       !! R [m]
-    integer :: condition = 0         !! the cavitation, as finite_film counts it
+    integer :: condition = 0         !! the cavitation condition, one of the constants of finite_film
   contains
     procedure, nopass :: name
     procedure :: serves
@@ -56,7 +56,7 @@ contains
     name = 'finite_bearing'
   end function name
 
-  !> All variants but the short bearing, which is short_bearing_t.
+  !> True for all variants except the short bearing, which is short_bearing_t.
   pure logical function serves(self, variant)
     class(finite_bearing_t), intent(in) :: self
     character(len=*), intent(in) :: variant
@@ -77,7 +77,8 @@ contains
       'the oil shear acts on the pin with a moment; default .true. for finite_bearing, else .false.', &
       '.true.')
     call list%add('table_points', self%table_points, &
-      'points of the table in each direction; 0: 33 for tolerances above 3e-5, else 65', '>= 17 and <= 513', '0')
+      'points of the table in each direction; 0: 33 for tolerances above 3e-5, else 65; below 1e-8 97 with gumbel or none', &
+      '>= 17 and <= 513', '0')
     call list%add('film_points', self%film_points, &
       'grid points round the film, a multiple of 4; 0: by the tolerance 64 (above 3e-5), 128, 192 (below 1e-8)', &
       '>= 32 and <= 1024', '0')
@@ -86,7 +87,7 @@ contains
     call self%add_least_film(list)
   end subroutine parameters
 
-  !> A number of nodes that cannot be halved twice.
+  !> Reports a number of nodes that cannot be divided by four.
   pure subroutine conflict(self, key, wanted)
     class(finite_bearing_t), intent(in) :: self
     character(len=:), allocatable, intent(out) :: key, wanted
@@ -96,7 +97,7 @@ contains
     wanted = 'must be divisible by 4'
   end subroutine conflict
 
-  !> Scales, and the number of nodes.
+  !> Set the scales and the number of nodes.
   subroutine prepare(self, bearing, tolerance)
     class(finite_bearing_t), intent(inout) :: self
     type(bearing_t), intent(in) :: bearing
@@ -129,23 +130,28 @@ contains
     if (tolerance < 1e-8_dp) film_points_for = 192
   end function film_points_for
 
-  pure integer function table_points_for(tolerance)
+  !> Number of table values in each direction. With Reynolds' condition more than 65 would mainly interpolate the error of the solver,
+  !> at more than twice the cost.
+  pure integer function table_points_for(tolerance, cavitation)
     real(dp), intent(in) :: tolerance
-    table_points_for = merge(33, 65, tolerance > 3e-5_dp)
+    character(len=*), intent(in) :: cavitation
+    table_points_for = 65
+    if (tolerance > 3e-5_dp) table_points_for = 33
+    if (tolerance < 1e-8_dp .and. cavitation /= 'reynolds') table_points_for = 97
   end function table_points_for
 
-  !> The numbers of points as the case gives them, or from the tolerance.
+  !> The numbers of points given in the case, or chosen from the tolerance.
   pure subroutine choose_points(self, tolerance, table_points, film_points)
     class(finite_bearing_t), intent(in) :: self
     real(dp), intent(in) :: tolerance
     integer, intent(out) :: table_points, film_points
     table_points = self%table_points
-    if (table_points == 0) table_points = table_points_for(tolerance)
+    if (table_points == 0) table_points = table_points_for(tolerance, self%cavitation)
     film_points = self%film_points
     if (film_points == 0) film_points = film_points_for(tolerance)
   end subroutine choose_points
 
-  !> What a table is of: two laws with the same key have the same table.
+  !> Identifies the contents of a table: laws with the same key have the same table. Empty if the variant needs none.
   function table_key(self, bearing, tolerance) result(key)
     class(finite_bearing_t), intent(in) :: self
     type(bearing_t), intent(in) :: bearing
@@ -178,6 +184,7 @@ contains
     if (self%map%points > 0) self%table_of = key
   end subroutine make_table
 
+  !> Make the errors of the table known as those of the law.
   subroutine tell_errors(self)
     class(finite_bearing_t), intent(inout) :: self
     self%table_error = self%map%largest_error
@@ -191,7 +198,7 @@ contains
     call tell_errors(self)
   end subroutine exchange_table
 
-  !> Force and, of the shear, moment.
+  !> Force of the pressure, and moment of the shear if it acts on the pin.
   pure subroutine film_force(self, motion, force, moment)
     class(finite_bearing_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
@@ -206,8 +213,8 @@ contains
     if (self%film_moment) moment = self%shear_moment(self%force_scale, motion, force)
   end subroutine film_force
 
-  !> Derivatives of `film_force`, for implicit integration: those of the table, turned to x and y. Without a table, next to the wall
-  !> and close to the centre, where the directions turn fast, differences serve.
+  !> Derivatives of `film_force`, for implicit integration: those of the table, transformed to x and y. Central differences are used
+  !> without a table, next to the wall, at rest, and close to the centre, where the direction of the eccentricity changes rapidly.
   pure subroutine force_derivatives(self, motion, derivatives)
     class(finite_bearing_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
@@ -228,12 +235,13 @@ contains
       [radial(0)*n(1) - tangential(0)*n(2), radial(0)*n(2) + tangential(0)*n(1)], derivatives)
   end subroutine force_derivatives
 
-  !> The direction n of the eccentricity, the square of its ratio (< 1), and v*/c along n and across [1/s].
+  !> The direction n of the eccentricity, the square of the eccentricity ratio (< 1), and the components of v*/c along n and
+  !> perpendicular to it [1/s].
   pure subroutine reduce(self, motion, n, square, b, t)
     class(finite_bearing_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
     real(dp), intent(out) :: n(2), square, b, t
-    real(dp), parameter :: centred = 1e-200_dp          !! below this square of eps n is the direction of x
+    real(dp), parameter :: centred = 1e-200_dp          !! eps^2 below which n is set to the direction of x
     real(dp), parameter :: largest_square = 1 - 2*epsilon(1.0_dp)
     real(dp) :: e(2), v(2)
     e = motion%eccentricity*self%per_clearance
@@ -247,7 +255,7 @@ contains
     t = n(1)*v(2) - n(2)*v(1)
   end subroutine reduce
 
-  !> Force over mu L R^3/c^2 along n and t [1/s] for the velocity (B, T) = v*/c [1/s] at eps^2.
+  !> Force over mu L R^3/c^2 along n and t [1/s] for the velocity (B, T) = v*/c [1/s] and a given eps^2.
   pure subroutine reduced_force(self, eps_squared, b, t, radial, tangential)
     class(finite_bearing_t), intent(in) :: self
     real(dp), intent(in) :: eps_squared, b, t
@@ -267,7 +275,7 @@ contains
     tangential = v*force(2)
   end subroutine reduced_force
 
-  !> That of the shear.
+  !> Moment of the shear of the film on the pin [N m].
   pure real(dp) function drag_moment(self, motion, force)
     class(finite_bearing_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
@@ -282,7 +290,7 @@ contains
     gives_pressure = .true.
   end function gives_pressure
 
-  !> Largest pressure [Pa], and the flow out of both ends [m^3/s].
+  !> Largest pressure [Pa], and side flow out of both ends [m^3/s].
   pure subroutine peak_and_flow(self, motion, most, flow)
     class(finite_bearing_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
@@ -294,7 +302,7 @@ contains
     flow = self%clearance*self%pin_radius**2*flow
   end subroutine peak_and_flow
 
-  !> The same over mu R^2/c^2 and over c R^2 [1/s], as `reduced_force`.
+  !> Largest pressure over mu R^2/c^2 and side flow over c R^2 [1/s], with the arguments of `reduced_force`.
   pure subroutine reduced_peak_and_flow(self, eps_squared, b, t, most, flow)
     class(finite_bearing_t), intent(in) :: self
     real(dp), intent(in) :: eps_squared, b, t
@@ -314,7 +322,7 @@ contains
     flow = v*film%flow
   end subroutine reduced_peak_and_flow
 
-  !> The pressure, solved for whatever the variant.
+  !> The pressure over half of the bearing [Pa], computed from the Reynolds equation for both variants.
   pure subroutine pressure_field(self, motion, angles, places, field)
     class(finite_bearing_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
@@ -334,7 +342,7 @@ contains
     field(:, :along) = scale*inside
   end subroutine pressure_field
 
-  !> 1 - eps, where the equation is solved.
+  !> 1 - eps, limited to the range in which the equation is solved.
   pure real(dp) function gap_of(eps_squared)
     real(dp), intent(in) :: eps_squared
     gap_of = max((1 - eps_squared)/(1 + sqrt(eps_squared)), least_gap)

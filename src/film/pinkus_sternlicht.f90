@@ -1,4 +1,4 @@
-!> The Pinkus-Sternlicht film (5.10-5.37): a long bearing, of whose pressure only the positive part acts.
+!> The Pinkus-Sternlicht film (5.10-5.37): a long bearing in which only the positive pressures act.
 module pinkus_sternlicht
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
@@ -10,13 +10,13 @@ module pinkus_sternlicht
   private
   public :: pinkus_sternlicht_t, reduced_motion_t, max_eccentricity_ratio
 
-  !> Largest eccentricity ratio that is evaluated. The force is infinite at 1, which a run never reaches; a state at or
-  !> beyond it is answered with the force here, so that it is finite.
+  !> Largest eccentricity ratio that is evaluated. The force has no bound at 1, which a run never reaches. For a state at or beyond
+  !> 1 the force of this ratio is used, which is finite.
   real(dp), parameter :: max_eccentricity_ratio = 1 - epsilon(1.0_dp)
 
-  !> A motion in the terms of the film equations.
+  !> A motion in the variables of the film equations.
   type :: reduced_motion_t
-    real(dp) :: normal(2)    !! n, unit vector along the eccentricity; any where the pin is centred
+    real(dp) :: normal(2)    !! n, unit vector along the eccentricity; arbitrary if the pin is concentric
     real(dp) :: ratio        !! eps = |e|/c, at most `max_eccentricity_ratio`
     real(dp) :: ratio_rate   !! eps_dot [1/s]
     real(dp) :: wedge        !! eps W = eps (omega - 2 gamma_dot) [rad/s]
@@ -24,7 +24,7 @@ module pinkus_sternlicht
 
   !> The closed form of the force (5.34-5.37).
   type, extends(film_law_t) :: pinkus_sternlicht_t
-    character(len=:), allocatable :: variant   !! closed_form, as_printed or (half_film_t) half_film
+    character(len=:), allocatable :: variant   !! closed_form, as_printed, or half_film for half_film_t
     real(dp) :: pressure_scale = 0   !! mu R^2/c^2 [Pa s], R of the pin
     real(dp) :: force_scale = 0      !! mu w R^3/c^2 [N s]
     real(dp) :: withdrawal_sign = 1  !! factor of the radial force for eps_dot < 0: 1 corrected, -1 as printed
@@ -49,7 +49,7 @@ contains
     name = 'pinkus_sternlicht'
   end function name
 
-  !> All variants but the half film, which is half_film_t.
+  !> True for all variants except the half film, which is half_film_t.
   pure logical function serves(self, variant)
     class(pinkus_sternlicht_t), intent(in) :: self
     character(len=*), intent(in) :: variant
@@ -70,14 +70,14 @@ contains
     call self%add_least_film(list)
   end subroutine parameters
 
-  !> But with the misprint, by which the film pushes a pin that leaves the wall.
+  !> True for all variants except `as_printed`, whose misprint makes the film push a pin that moves away from the wall.
   pure logical function is_quasi_static(self)
     class(pinkus_sternlicht_t), intent(in) :: self
     is_quasi_static = .true.
     if (allocated(self%variant)) is_quasi_static = self%variant /= 'as_printed'
   end function is_quasi_static
 
-  !> The scales of pressure and force, and the sign of (5.36), misprinted where the variant is `as_printed`.
+  !> Set the scales of pressure and force, and the sign of (5.36), which is misprinted in the variant `as_printed`.
   subroutine prepare(self, bearing, tolerance)
     class(pinkus_sternlicht_t), intent(inout) :: self
     type(bearing_t), intent(in) :: bearing
@@ -94,7 +94,7 @@ contains
     end if
   end subroutine prepare
 
-  !> The motion in polar terms. At the centre, where there is no direction, e.g. x is taken.
+  !> The motion in polar coordinates. If the pin is concentric, the direction of the eccentricity is set to that of x.
   pure type(reduced_motion_t) function reduced(self, motion) result(state)
     class(pinkus_sternlicht_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
@@ -124,10 +124,10 @@ contains
     end associate
   end subroutine reduce
 
-  !> (5.34-5.37), (5.36) with its sign corrected unless `as_printed`. With S = sqrt((1-eps^2)((eps W)^2 + 4 eps_dot^2)),
-  !> |eps_dot| k eps = S/2 and both quotients of k are (S + 6 eps max(eps_dot, 0))/(S + 3 eps |eps_dot|), so that nothing
-  !> is singular at eps = 0 or eps_dot = 0. The theory has pressure only; the moment is that of `shear_moment`, where it is asked
-  !> for.
+  !> Force (5.34-5.37), (5.36) with its sign corrected unless the variant is `as_printed`. With S = sqrt((1-eps^2)((eps W)^2 + 4
+  !> eps_dot^2)), |eps_dot| k eps = S/2 and both quotients of k are (S + 6 eps max(eps_dot, 0))/(S + 3 eps |eps_dot|), so that no
+  !> term is singular at eps = 0 or eps_dot = 0. The theory gives the pressure only; the moment is that of `shear_moment`, if
+  !> `film_moment` is set.
   pure subroutine film_force(self, motion, force, moment)
     class(pinkus_sternlicht_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
@@ -155,8 +155,9 @@ contains
     if (self%film_moment) moment = self%shear_moment(self%force_scale, motion, force)
   end subroutine film_force
 
-  !> Derivatives of `film_force`, for implicit integration (see `difference_derivatives`): of the polar forms by (eps,
-  !> eps_dot, eps W), eps W = -2 T, turned back to x and y. Close to the centre, where the directions turn fast, differences serve.
+  !> Derivatives of `film_force`, for implicit integration (see `difference_derivatives`): those of the polar components with
+  !> respect to (eps, eps_dot, eps W), eps W = -2 T, transformed to x and y. Central differences are used close to the centre, where
+  !> the direction of the eccentricity changes rapidly.
   pure subroutine force_derivatives(self, motion, derivatives)
     class(pinkus_sternlicht_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
@@ -180,8 +181,8 @@ contains
     end associate
   end subroutine force_derivatives
 
-  !> Radial and tangential force with their derivatives by eps, eps_dot and eps W (elements 1 to 3). Where nothing
-  !> `moves` there are none.
+  !> Radial and tangential force (element 0) and their derivatives with respect to eps, eps_dot and eps W (elements 1 to 3). At rest
+  !> `moves` is .false. and there are no derivatives.
   pure subroutine polar_forces(self, state, radial, tangential, moves)
     class(pinkus_sternlicht_t), intent(in) :: self
     type(reduced_motion_t), intent(in) :: state
@@ -217,7 +218,7 @@ contains
     end associate
   end subroutine polar_forces
 
-  !> That of the shear.
+  !> Moment of the shear of the film on the pin [N m].
   pure real(dp) function drag_moment(self, motion, force)
     class(pinkus_sternlicht_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
@@ -232,8 +233,8 @@ contains
     gives_pressure = .true.
   end function gives_pressure
 
-  !> Pressure of the film [Pa] (5.20), 0 where it would be negative, at the angle theta [rad] from the thinnest place
-  !> (the direction of the eccentricity), x towards y:
+  !> Pressure of the film [Pa] (5.20), 0 where it would be negative, at the angle theta [rad] from the thinnest film (the direction
+  !> of the eccentricity), positive from x to y:
   !> p = 6 mu (R/c)^2 { W eps sin a (2 + eps cos a)/((2 + eps^2) u^2) + eps_dot/eps [1/u^2 - 2/(2 + eps^2)] } with
   !> a = theta + pi and u = 1 + eps cos a = h/c, written without the division by eps.
   pure function pressure(self, motion, theta)

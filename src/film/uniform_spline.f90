@@ -1,4 +1,5 @@
-!> Splines of the fifth degree through values at equal distances, as sums of B-splines: their fourth derivative is continuous.
+!> Interpolating splines of the fifth degree through equidistant values, as sums of B-splines. Their fourth derivative is
+!> continuous.
 module uniform_spline
   use gudgeon_kinds, only: dp
   use small_lu, only: decompose, solve
@@ -6,12 +7,13 @@ module uniform_spline
   private
   public :: spline_weights, spline_slopes, through_values, through_mirrored, before, after
 
-  !> Coefficients before the first value and after the last one.
+  !> Numbers of coefficients before the first value and after the last one.
   integer, parameter :: before = 2, after = 2
 
 contains
 
-  !> Weights of the six coefficients from the second before the left end of an interval on, at the part u (0 to 1) of it.
+  !> Weights of the six coefficients on which a spline depends in an interval, from the second one before its left end on. u is the
+  !> distance from this end, in intervals.
   pure function spline_weights(u) result(w)
     real(dp), intent(in) :: u
     real(dp) :: w(6), v, a, b
@@ -26,7 +28,7 @@ contains
     w(4) = (66 + b*(-60 + b*(30 - 10*v)))/120
   end function spline_weights
 
-  !> Their derivatives by u.
+  !> Derivatives of `spline_weights` with respect to u.
   pure function spline_slopes(u) result(w)
     real(dp), intent(in) :: u
     real(dp) :: w(6), v, a, b
@@ -41,8 +43,8 @@ contains
     w(4) = v*(12 - b*(12 - 5*v))/12
   end function spline_slopes
 
-  !> Coefficients (1-before : n+after) of the splines through values (n, any number), n >= 8. At both ends the fifth derivative is
-  !> continuous too at the next two values (not a knot).
+  !> Coefficients (1-before : n+after, m) of m splines through values (n, m), n >= 8. At the two values next to each end the fifth
+  !> derivative is continuous too (not-a-knot condition).
   pure function through_values(values) result(c)
     real(dp), intent(in) :: values(:, :)
     real(dp) :: c(1 - before:size(values, 1) + after, size(values, 2))
@@ -69,7 +71,8 @@ contains
     end do
   end function through_values
 
-  !> The same of functions that are mirrored at both ends: even (1) or odd (-1) about the first and the last value.
+  !> Coefficients, in the form of `through_values`, of splines that are even (parity 1) or odd (-1) about the first and the last
+  !> value.
   pure function through_mirrored(values, parity) result(c)
     real(dp), intent(in) :: values(:, :)
     integer, intent(in) :: parity
@@ -87,7 +90,7 @@ contains
         a(i, mirrored(i + k)) = a(i, mirrored(i + k)) + sign_of*weights(k + 3)
       end do
     end do
-    if (parity < 0) then   ! which is 0 there
+    if (parity < 0) then   ! an odd spline is 0 there
       a(1, :) = 0
       a(n, :) = 0
       a(1, 1) = 1
@@ -113,7 +116,7 @@ contains
     end function mirrored
   end function through_mirrored
 
-  !> What the five coefficients around a value weigh there.
+  !> Weights of the five coefficients around a value, at this value.
   pure function knots() result(weights)
     real(dp) :: weights(5)
     weights = [1.0_dp, 26.0_dp, 66.0_dp, 26.0_dp, 1.0_dp]/120
