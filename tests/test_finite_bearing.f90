@@ -456,15 +456,16 @@ contains
     call check%that(allocated(error), 'a short bearing without cavitation')
   end subroutine refuses
 
-  !> Numbers of table values and of nodes round the film, with which the key of a table ends: for a draft, at the standard and at the
-  !> reference level, and as given.
+  !> Numbers of table values and of nodes round the film, with which the key of a table ends: for a draft, at the standard and at
+  !> the reference level, and as given.
   subroutine points_by_tolerance(check)
     class(checks_t), intent(inout) :: check
     call one('', 1e-4_dp, ' 33 64')
     call one('', 1e-6_dp, ' 65 128')
     call one('', 1e-10_dp, ' 65 192')
     call one(" cavitation='gumbel'", 1e-10_dp, ' 97 192')
-    call one(" cavitation='none'", 1e-6_dp, ' 65 128')
+    call one(" cavitation='none'", 1e-6_dp, ' 97 128')
+    call one(" cavitation='gumbel'", 1e-4_dp, ' 33 64')
     call one(" cavitation='none' table_points=40", 1e-10_dp, ' 40 192')
     call one(' film_points=48', 1e-10_dp, ' 65 48')
 

@@ -77,7 +77,7 @@ contains
       'the oil shear acts on the pin with a moment; default .true. for finite_bearing, else .false.', &
       '.true.')
     call list%add('table_points', self%table_points, &
-      'points of the table in each direction; 0: 33 for tolerances above 3e-5, else 65; below 1e-8 97 with gumbel or none', &
+      'points of the table in each direction; 0: 33 for tolerances above 3e-5, else 65 with reynolds, 97 without', &
       '>= 17 and <= 513', '0')
     call list%add('film_points', self%film_points, &
       'grid points round the film, a multiple of 4; 0: by the tolerance 64 (above 3e-5), 128, 192 (below 1e-8)', &
@@ -130,14 +130,13 @@ contains
     if (tolerance < 1e-8_dp) film_points_for = 192
   end function film_points_for
 
-  !> Number of table values in each direction. With Reynolds' condition more than 65 would mainly interpolate the error of the solver,
-  !> at more than twice the cost.
+  !> Number of table values in each direction. With Reynolds' condition the solver takes long, and more than 65 values would mainly
+  !> interpolate its error.
   pure integer function table_points_for(tolerance, cavitation)
     real(dp), intent(in) :: tolerance
     character(len=*), intent(in) :: cavitation
-    table_points_for = 65
+    table_points_for = merge(65, 97, cavitation == 'reynolds')
     if (tolerance > 3e-5_dp) table_points_for = 33
-    if (tolerance < 1e-8_dp .and. cavitation /= 'reynolds') table_points_for = 97
   end function table_points_for
 
   !> The numbers of points given in the case, or chosen from the tolerance.
