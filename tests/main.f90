@@ -51,6 +51,7 @@ program gudgeon_tests
   use test_oscillating_film, only: run_test_oscillating_film
   use test_periodic, only: run_test_periodic
   use test_pinkus_sternlicht, only: run_test_pinkus_sternlicht
+  use test_published_films, only: run_test_published_films
   use test_radau, only: run_test_radau
   use test_reference, only: run_test_reference
   use test_restitution, only: run_test_restitution
@@ -125,6 +126,7 @@ program gudgeon_tests
   call run('number_writer', run_test_number_writer)
   call run('oscillating_film', run_test_oscillating_film)
   call run('periodic', run_test_periodic)
+  call run('published_films', run_test_published_films)
   call run('pinkus_sternlicht', run_test_pinkus_sternlicht)
   call run('radau', run_test_radau)
   call run('reference', run_test_reference)

@@ -29,8 +29,10 @@ module finite_film
     real(dp), allocatable :: linear(:, :)      !! solutions for the sources cos phi and sin phi
     real(dp), allocatable :: pressure(:)       !! of the last solution
     logical, allocatable :: active(:)          !! nodes at which it was positive; the next solution starts from them
+    logical, allocatable :: open(:)            !! nodes in a groove, where the pressure is 0
   contains
     procedure :: begin
+    procedure :: open_arc
     procedure :: solve
     procedure :: pressure_at
   end type film_solver_t
@@ -51,8 +53,9 @@ contains
     if (present(shift)) self%grid = new_reynolds_grid(n, m, gap, half_length, shift)
     self%n = n*m
     self%band = 2*m
-    if (allocated(self%matrix)) deallocate (self%matrix, self%linear, self%pressure, self%active, self%node)
+    if (allocated(self%matrix)) deallocate (self%matrix, self%linear, self%pressure, self%active, self%open, self%node)
     allocate (self%matrix(0:self%band, self%n), self%linear(self%n, 2), self%pressure(self%n), self%active(self%n), self%node(n))
+    allocate (self%open(self%n), source=.false.)
     self%matrix = 0
     do i = 1, n
       self%node(self%grid%place(i)) = i
@@ -80,6 +83,21 @@ contains
     self%active = .true.
     self%pressure = 0
   end subroutine begin
+
+  !> Keep the pressure at 0 over an arc of angles phi [rad], from < to, until the next `begin`: an axial groove open to the ambient.
+  !> Only Reynolds' condition takes it into account. The published tables of journal bearings are for bearings with grooves; films of
+  !> the program have none.
+  pure subroutine open_arc(self, from, to)
+    class(film_solver_t), intent(inout) :: self
+    real(dp), intent(in) :: from, to
+    real(dp), parameter :: tiny_angle = 1e-9_dp   !! so that a node at the end of the arc belongs to it
+    integer :: i, first
+    do i = 1, self%grid%n
+      if (modulo(self%grid%angle(i) - from + tiny_angle, 2*pi) > to - from + 2*tiny_angle) cycle
+      first = (self%grid%place(i) - 1)*self%grid%m + 1
+      self%open(first:first + self%grid%m - 1) = .true.
+    end do
+  end subroutine open_arc
 
   !> Add a conductance between two unknowns to the matrix.
   pure subroutine connect(a, k, l, conductance)
@@ -135,6 +153,7 @@ contains
     integer :: round
 
     threshold = 1e-13_dp*maxval(abs(source))
+    self%active = self%active .and. .not. self%open
     allocate (factor(0:self%band, self%n))
     do round = 1, most_rounds
       call restrict(self%n, self%band, self%matrix, self%active, factor)
@@ -142,7 +161,7 @@ contains
       self%pressure = merge(source, 0.0_dp, self%active)
       call substitute(self%n, self%band, factor, self%pressure)
       call multiply(self%n, self%band, self%matrix, self%pressure, product)
-      active = merge(self%pressure > 0, source - product > threshold, self%active)
+      active = merge(self%pressure > 0, source - product > threshold, self%active) .and. .not. self%open
       if (all(active .eqv. self%active)) exit
       self%active = active
     end do

@@ -1,0 +1,94 @@
+!> The film of a journal that turns under a steady load, against published tables: the Sommerfeld number S = mu N L D (R/c)^2/W and
+!> the attitude angle. Their films begin at a groove, so the solver keeps the pressure at 0 there.
+module test_published_films
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: pi, degree
+  use checks, only: checks_t
+  use finite_film, only: film_solver_t, film_answer_t, cavitation_reynolds
+  implicit none
+  private
+  public :: run_test_published_films
+
+contains
+
+  subroutine run_test_published_films(check)
+    class(checks_t), intent(inout) :: check
+    call raimondi_and_boyd(check)
+    call lund_and_thomsen(check)
+    call someya(check)
+  end subroutine run_test_published_films
+
+  !> Raimondi and Boyd (1958), the film beginning where it is thickest: L/D, eps, S, attitude [deg]. (Their S for L/D 1 and eps 0.4,
+  !> 0.264, is a misprint: Butenschoen has 0.2606.)
+  subroutine raimondi_and_boyd(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: printed(4, 8) = reshape([1.0_dp, 0.1_dp, 1.33_dp, 79.50_dp, 1.0_dp, 0.2_dp, 0.631_dp, 74.02_dp, &
+      1.0_dp, 0.6_dp, 0.121_dp, 50.58_dp, 1.0_dp, 0.8_dp, 0.0446_dp, 36.24_dp, 1.0_dp, 0.9_dp, 0.0188_dp, 26.45_dp, &
+      0.5_dp, 0.1_dp, 4.31_dp, 81.62_dp, 0.5_dp, 0.4_dp, 0.779_dp, 61.45_dp, 0.5_dp, 0.8_dp, 0.0923_dp, 33.31_dp], [4, 8])
+    real(dp) :: found(2)
+    integer :: i
+    do i = 1, size(printed, 2)
+      call find_journal(printed(1, i), printed(2, i), [pi], 0.0_dp, .false., found)
+      call compare(check, found, printed(3:, i), 1.2e-2_dp, 0.6_dp, 'Raimondi and Boyd')
+    end do
+  end subroutine raimondi_and_boyd
+
+  !> Lund and Thomsen (1978), two grooves of 20 degrees at right angles to the load.
+  subroutine lund_and_thomsen(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: printed(4, 6) = reshape([0.5_dp, 0.244_dp, 1.656_dp, 65.85_dp, 0.5_dp, 0.477_dp, 0.58_dp, 51.01_dp, &
+      0.5_dp, 0.655_dp, 0.244_dp, 40.25_dp, 1.0_dp, 0.15_dp, 0.991_dp, 70.58_dp, 1.0_dp, 0.46_dp, 0.235_dp, 49.27_dp, &
+      1.0_dp, 0.65_dp, 0.108_dp, 39.72_dp], [4, 6])
+    real(dp) :: found(2)
+    integer :: i
+    do i = 1, size(printed, 2)
+      call find_journal(printed(1, i), printed(2, i), [-0.5_dp*pi, 0.5_dp*pi], 20*degree, .true., found)
+      call compare(check, found, printed(3:, i), 1.2e-2_dp, 0.6_dp, 'Lund and Thomsen')
+    end do
+  end subroutine lund_and_thomsen
+
+  !> Someya's databook (1989), two grooves of 10 degrees at right angles to the load.
+  subroutine someya(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: printed(4, 5) = reshape([0.5_dp, 0.3_dp, 1.24_dp, 64.10_dp, 0.5_dp, 0.7_dp, 0.187_dp, 38.20_dp, &
+      0.5_dp, 0.9_dp, 0.0315_dp, 22.70_dp, 1.0_dp, 0.5_dp, 0.194_dp, 49.10_dp, 1.0_dp, 0.8_dp, 0.0469_dp, 32.10_dp], [4, 5])
+    real(dp) :: found(2)
+    integer :: i
+    do i = 1, size(printed, 2)
+      call find_journal(printed(1, i), printed(2, i), [-0.5_dp*pi, 0.5_dp*pi], 10*degree, .true., found)
+      call compare(check, found, printed(3:, i), 1.2e-2_dp, 0.6_dp, 'Someya')
+    end do
+  end subroutine someya
+
+  subroutine compare(check, found, printed, share, degrees, source)
+    class(checks_t), intent(inout) :: check
+    real(dp), intent(in) :: found(2), printed(2), share, degrees
+    character(len=*), intent(in) :: source
+    call check%relative(found(1), printed(1), share, 'Sommerfeld number of '//source)
+    call check%close_to(found(2), printed(2), degrees, 'attitude angle of '//source)
+  end subroutine compare
+
+  !> S and the attitude angle [deg] of a journal with grooves at some angles [rad], from the thinnest film or, `from_load`, from the
+  !> direction of the load, which is found by repetition.
+  subroutine find_journal(half_length, eps, grooves, width, from_load, found)
+    real(dp), intent(in) :: half_length, eps, grooves(:), width
+    logical, intent(in) :: from_load
+    real(dp), intent(out) :: found(2)
+    type(film_solver_t) :: solver
+    type(film_answer_t) :: film
+    real(dp) :: load
+    integer :: i, k
+    load = -50*degree
+    do k = 1, merge(6, 1, from_load)
+      call solver%begin(192, 8, 1 - eps, half_length)
+      do i = 1, size(grooves)
+        associate (middle => grooves(i) + merge(load, 0.0_dp, from_load))
+          call solver%open_arc(middle - 0.5_dp*width, middle + 0.5_dp*width)
+        end associate
+      end do
+      call solver%solve(-0.5_dp*pi, cavitation_reynolds, .false., film)
+      load = atan2(-film%force(2), -film%force(1))
+    end do
+    found = [2/(pi*eps*norm2(film%force)), abs(load)/degree]
+  end subroutine find_journal
+end module test_published_films
