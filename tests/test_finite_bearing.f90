@@ -413,6 +413,9 @@ contains
       call law%film_force(motion_of([0.0_dp, 0.0_dp], [1e-3_dp, 0.0_dp], omega), force, moment)
       call law%film_force(motion_of([1e-13_dp, 1e-13_dp], [1e-3_dp, 0.0_dp], omega), mirrored, moment)
       call check%that(norm2(force - mirrored) <= 1e-6_dp*norm2(force), 'continuous through the centre')
+      call law%film_force(motion_of([8e-6_dp, 0.0_dp], [-0.0_dp, -5e-3_dp], -omega), force, moment)   ! radial speed: a negative 0
+      call law%film_force(motion_of([8e-6_dp, 0.0_dp], [1e-16_dp, -5e-3_dp], -omega), mirrored, moment)
+      call check%that(norm2(force - mirrored) <= 1e-6_dp*norm2(force), 'continuous where the radial speed is 0')
       call law%film_force(motion_of([c*(1 - 1e-7_dp), 0.0_dp], [1e-6_dp, 1e-4_dp], omega), force, moment)
       call check%that(all(abs(force) < huge(force)) .and. force(1) < 0, 'finite and outwards bound next to the wall')
       call law%film_force(motion_of([1.5_dp*c, 0.0_dp], [1e-3_dp, 0.0_dp], omega), force, moment)

@@ -4,7 +4,7 @@ module test_measured_curves
   use gudgeon_constants, only: pi, two_pi, degree
   use gudgeon_errors, only: error_t
   use monotone_cubic, only: monotone_cubic_t, new_monotone_cubic, new_periodic_cubic
-  use curve_file, only: parse_curve, crank_angle, pressure
+  use curve_file, only: parse_curve, crank_angle, pressure, turning_speed, torque
   use case_curves, only: period_fault
   use measured_pressure, only: measured_pressure_t
   use working_gas, only: working_gas_t
@@ -105,6 +105,12 @@ contains
     call check%relative(y(2), 2e5_dp, 1e-15_dp, 'a pressure in kilopascals')
     call parse_curve('a[deg],b[psi]'//n//'0,1'//n//'1,1', crank_angle, pressure, x, y, lines, message, line)
     call check%relative(y(1), 0.45359237_dp*9.80665_dp/0.0254_dp**2, 1e-14_dp, 'a pound of force on a square inch')
+    call parse_curve('theta [°CA],p [bar]'//n//'0,1'//n//'1,1', crank_angle, pressure, x, y, lines, message, line)
+    call check%that(message == '' .and. abs(x(2) - 1) <= 0, 'degrees of crank angle by their sign')
+    call parse_curve('n[r/min],M[kN·m]'//n//'0,1'//n//'60,2', turning_speed, torque, x, y, lines, message, line)
+    call check%that(message == '', 'revolutions in a minute, kilonewton times metre: '//message)
+    call check%relative(x(2), 2*pi, 1e-14_dp, 'revolutions in a minute')
+    call check%relative(y(2), 2000.0_dp, 1e-14_dp, 'kilonewton times metre')
   end subroutine good_files
 
   subroutine bad_files(check)
@@ -112,7 +118,7 @@ contains
     character(len=*), parameter :: units = 'the header must name this column with its unit, the '
     call refused('', 1, 'needs a header and at least two rows')
     call refused(head//'1,2'//n, 2, 'needs a header and at least two rows')
-    call refused('0,1'//n//'1,2'//n, 1, '0: '//units//'crank angle in one of deg, rad, as in crank_angle[deg]')
+    call refused('0,1'//n//'1,2'//n, 1, '0: '//units//'crank angle in one of deg, degrees, degCA, rad, as in crank_angle[deg]')
     call refused('crank_angle[deg],pressure[atm]'//n, 1, 'pressure[atm]: '//units// &
       'pressure in one of Pa, hPa, kPa, MPa, mbar, bar, psi, as in pressure[Pa]')
     call refused('crank_angle[deg];pressure[bar]'//n, 1, 'crank_angle[deg];pressure[bar]: needs two columns '// &

@@ -44,7 +44,7 @@ contains
   pure real(dp) function chi_of(b, a, w)
     real(dp), intent(in) :: b, a, w
     chi_of = 0.5_dp*atan2(a*b*(1 + w), b**2 - w*a**2)
-    if (b < 0 .and. chi_of <= 0) chi_of = chi_of + pi
+    if (chi_of < 0 .or. (b < 0 .and. chi_of <= 0)) chi_of = chi_of + pi   ! also where b is a negative 0
   end function chi_of
 
   !> Derivatives of chi with respect to eps, B and A, not both B and A 0.

@@ -24,14 +24,14 @@ module curve_file
   end type quantity_t
 
   type(unit_t), parameter :: none = unit_t()
-  type(quantity_t), parameter :: crank_angle = quantity_t('crank angle', [unit_t('deg'), unit_t('rad', 180/pi), none, none, none, &
-    none, none])
+  type(quantity_t), parameter :: crank_angle = quantity_t('crank angle', [unit_t('deg'), unit_t('degrees'), unit_t('degCA'), &
+    unit_t('rad', 180/pi), none, none, none])
   type(quantity_t), parameter :: pressure = quantity_t('pressure', [unit_t('Pa'), unit_t('hPa', 1e2_dp), unit_t('kPa', 1e3_dp), &
     unit_t('MPa', 1e6_dp), unit_t('mbar', 1e2_dp), unit_t('bar', 1e5_dp), unit_t('psi', 6894.757293168361_dp)])
   type(quantity_t), parameter :: turning_speed = quantity_t('speed', [unit_t('rad/s'), unit_t('rpm', pi/30), &
-    unit_t('1/min', pi/30), unit_t('1/s', 2*pi), none, none, none])
-  type(quantity_t), parameter :: torque = quantity_t('torque', [unit_t('N.m'), unit_t('Nm'), unit_t('N m'), &
-    unit_t('kN.m', 1e3_dp), unit_t('kNm', 1e3_dp), none, none])
+    unit_t('1/min', pi/30), unit_t('r/min', pi/30), unit_t('min^-1', pi/30), unit_t('1/s', 2*pi), none])
+  type(quantity_t), parameter :: torque = quantity_t('torque', [unit_t('N.m'), unit_t('mN.m', 1e-3_dp), unit_t('kN.m', 1e3_dp), &
+    none, none, none, none])
 
 contains
 
@@ -142,7 +142,7 @@ contains
     last = scan(name, '])', back=.true.)
     if (first > 0 .and. last > first) then
       do i = 1, size(quantity%units)
-        if (quantity%units(i)%name == '' .or. quantity%units(i)%name /= adjustl(name(first + 1:last - 1))) cycle
+        if (quantity%units(i)%name == '' .or. plain(quantity%units(i)%name) /= plain(name(first + 1:last - 1))) cycle
         factor = quantity%units(i)%factor
         return
       end do
@@ -150,6 +150,27 @@ contains
     message = printable(name, 40)//': the header must name this column with its unit, the '//trim(quantity%name)// &
       ' in one of '//unit_list(quantity)//', as in '//underscored(trim(quantity%name))//'['//trim(quantity%units(1)%name)//']'
   end subroutine read_unit
+
+  !> A unit without blanks and signs of multiplication, so that N.m, N m, N*m and Nm are the same, and with deg for the degree sign.
+  pure function plain(unit)
+    character(len=*), intent(in) :: unit
+    character(len=:), allocatable :: plain
+    character(len=*), parameter :: degree_sign = char(194)//char(176), raised_dot = char(194)//char(183)
+    integer :: i
+    plain = ''
+    i = 1
+    do while (i <= len(unit))
+      if (index(unit(i:), degree_sign) == 1) then
+        plain = plain//'deg'
+        i = i + 1
+      else if (index(unit(i:), raised_dot) == 1) then
+        i = i + 1
+      else if (index(' .*', unit(i:i)) == 0) then
+        plain = plain//unit(i:i)
+      end if
+      i = i + 1
+    end do
+  end function plain
 
   !> The text with blanks replaced by underscores.
   pure function underscored(name) result(text)
