@@ -78,6 +78,8 @@ def what_the_program_misses(template: dict) -> None:
     value = float(better.settings[1].split("=")[1])
     check(abs(value / 0.1 - 1.38e-5 / 0.0117) < 1e-8, "the kinematic viscosity is that of the case's oil", str(value))
     check(completed(better, "x.nml: &lubrication kinematic_viscosity: required", case, template) is None, "not twice the same")
+    better = completed(film, "x.nml: &joint of crank_pin bearing_length: required with contact geometry = 'johnson' (m)", case, template)
+    check(better is not None and better.settings[1].startswith("crank_pin.joint.bearing_length=0."), "a length of the other pin", str(better))
     check(completed(film, "x.nml: &output interval = 3: must be > 0", case, template) is None, "what no default mends")
 
 

@@ -209,19 +209,21 @@ def together(*parts: Variant) -> tuple[str, ...]:
     return tuple(f"{key}={value}" for key, value in settings.items())
 
 
-REQUIRED = re.compile(r"&(\w+) (\w+): required\b")
+REQUIRED = re.compile(r"&(\w+)(?: of (\w+))? (\w+): required\b")
 NOT_OF_LAW = re.compile(r"&(\w+) (\w+) = \S+: must be one of (\w+)")
 
 
 def completed(variant: Variant, message: str, case: Case, template: dict[str, dict[str, Key]]) -> Variant | None:
     """The variant with what the program missed when it refused it, taken from the template; None where nothing can be done."""
     if match := REQUIRED.search(message):
-        group, key = match[1], match[2]
-        place = next((name for name in PLACES if any(one.startswith(f"{name}{group}.") for one in variant.settings)), "")
+        group, key = match[1], match[3]
+        given = (name for name in PLACES if any(one.startswith(f"{name}{group}.") for one in variant.settings))
+        place = f"{match[2]}." if match[2] else next(given, "")
         value = missing_value(f"{place}{group}", group, key, case, template)
         if value is None:
             return None
-        setting, assumed = f"{place}{group}.{key}={value}", f"{key} = {value}"
+        where = " at the crank pin" if match[2] else ""
+        setting, assumed = f"{place}{group}.{key}={value}", f"{key} = {value}{where}"
     elif match := NOT_OF_LAW.search(message):
         setting, assumed = f"{match[1]}.{match[2]}={match[3]}", ""
     else:
