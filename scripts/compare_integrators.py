@@ -2,7 +2,8 @@
 """The program's integrators beside public ones on the shipped scenes; run by scripts/compare_integrators.sh.
 
     compare_integrators.py DIR              writes DIR/integrators.md, integrators.csv and integrators.png
-    compare_integrators.py DIR --compiled   measures the compiled codes anew, and takes SciPy's counts from DIR/integrators.csv
+    compare_integrators.py DIR --compiled   measures the compiled codes again, and takes SciPy's counts from DIR/integrators.csv
+    compare_integrators.py DIR --draw       only draws DIR/integrators.csv again; with --language pt in Portuguese
 
 All codes integrate the same right-hand side, from build/scene_library/scene_library.so, in the program's own coordinates with its own
 absolute tolerances. Each runs at tolerances of 1e-3 to 1e-12, compiled codes at two a decade, until one takes more than a given number
@@ -14,6 +15,7 @@ the crank; a run with other contacts has failed. Times are of compiled codes onl
 """
 from __future__ import annotations
 
+import argparse
 import ctypes
 import sys
 import time
@@ -23,6 +25,7 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 import pandas as pd
+from gudgeon_plots import language
 from gudgeon_plots.measured import write_table
 from scene_problem import FOLDER, Outcome, Scene, load_library
 from scipy import __version__ as scipy_version
@@ -180,7 +183,7 @@ def report(data: pd.DataFrame, has_cvode: bool) -> str:
 
 
 def draw(data: pd.DataFrame, path: Path) -> None:
-    """Error against evaluations (above) and time (below), a column a scene."""
+    """Error over evaluations (above) and time (below), a column for each scene."""
     scenes = list(data["scene"].unique())
     figure, axes = plt.subplots(2, len(scenes), figsize=(3.2 * len(scenes), 6.6), layout="constrained", squeeze=False, sharey=True)
     for i, scene in enumerate(scenes):
@@ -198,7 +201,7 @@ def draw(data: pd.DataFrame, path: Path) -> None:
             axis.xaxis.set_minor_formatter(NullFormatter())
             if high < 30 * low:   # hardly a decade: name what lies between
                 axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-                axis.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
+                axis.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.0f}"))
             axis.set_xlabel(label)
             axis.grid(True, which="major", linewidth=0.4, alpha=0.5)
             if i == 0:
@@ -207,16 +210,24 @@ def draw(data: pd.DataFrame, path: Path) -> None:
                 axis.set_title(scene, fontsize=10)
     handles, labels = axes[0][0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), fontsize=9)
+    language.current.localise(figure)
     figure.savefig(path, dpi=110)
+    language.current.warn("compare_integrators.py")
 
 
 def main() -> int:
     """Measure, write the page."""
-    compiled_only = sys.argv[2:] == ["--compiled"]
-    if len(sys.argv) != (3 if compiled_only else 2):
-        print(__doc__, file=sys.stderr)
-        return 2
-    folder, library = Path(sys.argv[1]), load_library()
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path, metavar="DIR", help="folder of the results")
+    parser.add_argument("--compiled", action="store_true", help="measure the compiled codes only")
+    parser.add_argument("--draw", action="store_true", help="only draw the picture again")
+    language.add_option(parser)
+    options = parser.parse_args()
+    folder, compiled_only = options.folder, options.compiled
+    if options.draw:
+        draw(pd.read_csv(folder / "integrators.csv"), folder / "integrators.png")
+        return 0
+    library = load_library()
     driver = FOLDER / "cvode_run.so"
     cvode = ctypes.CDLL(str(driver)) if driver.exists() else None
     data = pd.DataFrame([row for problem in PROBLEMS for row in measure(problem, library, cvode, not compiled_only)])

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Draws what each loose joint and each elastic member changes in one mechanism: Flores's slider-crank at 3500 rpm, 0.2 mm, dry.
+"""Draws the effect of each joint with clearance and of each elastic member in one mechanism: Flores's slider-crank at 3500 rpm, 0.2 mm, dry.
 
     scripts/plot_members.py                     -> results/members/members.png
-    scripts/plot_members.py --out cases/joints  the picture that is shipped; --table: and the table data/measured/members.md
+    scripts/plot_members.py --out cases/joints  the picture that is shipped; --table also writes the table data/measured/members.md
 
-The mechanism of cases/elastic/first_impact.nml runs three revolutions with one member added at a time, and with all of them. Prints what
-the second and third revolution have of impacts, forces and losses.
+The mechanism of cases/elastic/first_impact.nml runs three revolutions, with one more joint or member at a time, and with all of them.
+Prints impacts, forces and losses of the second and third revolution.
 """
 
 import argparse
@@ -18,7 +18,7 @@ from gudgeon_plots.environment import TOP, use_virtual_environment
 
 use_virtual_environment()
 
-from gudgeon_plots import elastic_pictures, figures  # noqa: E402
+from gudgeon_plots import elastic_pictures, figures, language  # noqa: E402
 from gudgeon_plots.measured import write_table  # noqa: E402
 from gudgeon_plots.program import release_program  # noqa: E402
 from gudgeon_plots.results import MissingResult, load_run  # noqa: E402
@@ -30,8 +30,9 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, default=TOP / "results" / "members", metavar="DIR", help="(default: results/members)")
     parser.add_argument("--format", action="append", choices=("png", "svg", "pdf"), help="repeatable (default: png)")
-    parser.add_argument("--table", action="store_true", help="write data/measured/members.md too")
-    parser.add_argument("--program", type=Path, help="this program instead of a release build")
+    parser.add_argument("--table", action="store_true", help="also write data/measured/members.md")
+    parser.add_argument("--program", type=Path, help="gudgeon (default: the release build, brought up to date)")
+    language.add_option(parser)
     options = parser.parse_args()
     runs = []
     try:
@@ -52,6 +53,7 @@ def main() -> int:
                     f"{elastic_pictures.MEMBERS_SAY}\n\n{table}")
     for path in figures.save(elastic_pictures.draw_members(runs), options.out, "members", options.format or ["png"]):
         print(path)
+    language.current.warn("plot_members.py")
     return 0
 
 

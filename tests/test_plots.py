@@ -531,8 +531,19 @@ class Drawing(unittest.TestCase):
             made.summary.update({"rhs_evaluations": ("7", "1"), "contacts": ("6", "1"), "guide_1_contacts": ("1", "1"), "guide_4_contacts": ("2", "1")})
         drawing = elastic_pictures.draw_members(runs)
         self.assertEqual(overlaps(drawing), [])
+        portuguese = language.Language("pt")
+        portuguese.localise(drawing)
+        self.assertEqual(portuguese.unknown, set())
         plt.close(drawing)
         self.assertIn(f"| all of it | 2.0 | 0.0 | 1.0 | 5.0 | 1.0 | 2.0 | {4 * math.pi:.2f} | 7 |", elastic_pictures.describe_members(runs))
+
+    def test_integrators_in_portuguese(self) -> None:
+        portuguese = language.Language("pt")
+        scenes = pd.read_csv(TOP / "data" / "measured" / "integrators.csv")["scene"].unique()
+        for text in (*scenes, "right-hand sides", "time, in bare right-hand sides", "error", "SciPy DOP853", "CVODE BDF", "adams"):
+            portuguese.say(text)
+        self.assertEqual(portuguese.unknown, set())
+        self.assertEqual(portuguese.say("simulation IV"), "simulação IV")
 
     def test_largest_deflection_of_a_rod(self) -> None:
         zero, far = np.zeros(3), np.array([0.0, 2e-6, 1e-6])

@@ -5,10 +5,24 @@ UNTRANSLATED = {
     "rad", "mm", "cm", "cm³", "µs", "µm", "nm", "ms", "kN", "MPa", "GPa", "Pa", "mPa", "nJ", "MJ", "bar", "kg", "mJ", "µJ", "kJ", "mrad", "Hz", "rpm", "deg", "min",
     "II", "III", "IV", "VI", "Pinkus", "Sternlicht", "Hertz", "Lankarani", "Nikravesh", "Flores", "Coulomb", "Ambrosio", "Morris", "Sobol",
     "hertz", "sphere", "johnson", "conformal", "pereira", "winkler", "lankarani", "nikravesh", "hunt", "crossley", "herbert", "mcwhannell",
-    "zhiying", "qishao", "gonthier", "flores", "carvalho", "martins", "csv", "sim", "Reynolds", "Lyapunov", "gudgeon", "plotly", "js",
+    "zhiying", "qishao", "gonthier", "flores", "carvalho", "martins", "csv", "sim", "Reynolds", "Lyapunov", "gudgeon", "plotly", "js", "adams", "radau", "auto", "SciPy", "DOP", "Radau", "LSODA", "CVODE", "Adams", "BDF",
 }
 
 TEXTS = {
+    # members of a mechanism (plot_members.py) and integrators (compare_integrators.py)
+    "piston pin loose": "folga no pino do pistão",
+    "crank pin loose too": "folga também no pino da manivela",
+    "piston loose in its bore too": "folga também entre pistão e cilindro",
+    "elastic rod": "biela elástica",
+    "elastic crankshaft": "virabrequim elástico",
+    "all of it": "tudo junto",
+    "force on the piston pin [kN]": "força no pino do pistão [kN]",
+    "revolutions of the crank": "revoluções da manivela",
+    "right-hand sides": "avaliações do lado direito",
+    "time, in bare right-hand sides": "tempo, em avaliações do lado direito",
+    "dry contact": "contato seco",
+    "ideal joint (sim. VI)": "junta ideal (sim. VI)",
+    "simulation {}": "simulação {}",
     # templates
     "{} [{}]": "{} [{}]",
     "Δ {}": "Δ {}",

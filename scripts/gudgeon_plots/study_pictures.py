@@ -238,24 +238,35 @@ def draw_bifurcation(strobes: dict[str, tuple[pd.DataFrame, str, str]], title: s
         repeats = strobe[parameter].map(periods(strobe, parameter)).to_numpy()
         for axis, (column, label) in zip(panels, RATIOS.items()):
             label = label if axis in axes[:, 0] else ""
-            if EXPONENT in strobe:
-                coloured = exponent_panel(axis, strobe, parameter, column, label)
-            else:
-                strobe_panel(axis, strobe, parameter, column, repeats, label)
+            coloured = panel_of_strobes(axis, strobe, parameter, column, repeats, label) or coloured
         panels[0].set_title(held)
         panels[0].set_xlabel("")
-    if coloured is not None:
-        label = of_column(EXPONENT, "1/revolution", [EXPONENT_SHOWN]).label
-        drawing.colorbar(coloured, ax=axes, location="bottom", aspect=50, pad=0.02, extend="both").set_label(label)
-    if any(EXPONENT not in strobe for strobe, _, _ in strobes.values()):
-        add_legend(drawing, axes.flat, markerscale=3)
+    explain_strobes(drawing, axes, coloured, all(EXPONENT in strobe for strobe, _, _ in strobes.values()))
     drawing.suptitle(title)
     return drawing
 
 
+def panel_of_strobes(
+    axis: Axes, strobe: pd.DataFrame, parameter: str, column: str, repeats: np.ndarray, label: str
+) -> PathCollection | None:
+    """Points of a column in the colours of the Lyapunov exponent, which are returned, or, without it, of the period."""
+    if EXPONENT in strobe:
+        return exponent_panel(axis, strobe, parameter, column, label)
+    return strobe_panel(axis, strobe, parameter, column, repeats, label)
+
+
+def explain_strobes(drawing: Drawing, axes: np.ndarray, coloured: PathCollection | None, all_coloured: bool) -> None:
+    """The colour bar of exponents, and the legend of periods."""
+    if coloured is not None:
+        label = of_column(EXPONENT, "1/revolution", [EXPONENT_SHOWN]).label
+        drawing.colorbar(coloured, ax=axes, location="bottom", aspect=50, pad=0.02, extend="both").set_label(label)
+    if not all_coloured:
+        add_legend(drawing, axes.flat, markerscale=3)
+
+
 def exponent_panel(axis: Axes, strobe: pd.DataFrame, parameter: str, column: str, label: str) -> PathCollection:
     """Points of a column once in a revolution over the parameter, coloured by the largest Lyapunov exponent of their run: blue where
-    neighbours come together, red where they part."""
+    neighbouring motions converge, red where they diverge."""
     shown = of_parameter(parameter, strobe[parameter])
     points = axis.scatter(
         shown.factor * strobe[parameter],
@@ -282,12 +293,14 @@ def draw_strobes(strobe: pd.DataFrame, parameter: str, title: str) -> Drawing:
     found = {run: period(scaled.loc[rows.index].to_numpy(), SAME_POINT) for run, rows in strobe.groupby("run")}
     repeats = strobe["run"].map(found).to_numpy()
     drawing, axes = plt.subplots(len(columns), 1, figsize=(WIDTH, 0.7 + 2.2 * len(columns)), sharex=True, squeeze=False)
+    coloured = None
     for axis, column in zip(axes[:, 0], columns):
         shown = of_column(column, strobe.attrs.get(column, ""), strobe[column])
-        strobe_panel(axis, strobe.assign(**{column: shown.factor * strobe[column]}), parameter, column, repeats, shown.label)
+        scaled = strobe.assign(**{column: shown.factor * strobe[column]})
+        coloured = panel_of_strobes(axis, scaled, parameter, column, repeats, shown.label)
     for axis in axes[:-1, 0]:
         axis.set_xlabel("")
-    add_legend(drawing, axes.flat, markerscale=3)
+    explain_strobes(drawing, axes, coloured, coloured is not None)
     drawing.suptitle(title)
     return drawing
 
