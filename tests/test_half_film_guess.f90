@@ -1,10 +1,12 @@
-!> The first guess at the zeros of the half film's pressure: its coefficients computed again, and how far it is off.
+!> The initial guess of the zeros of the half film's pressure, its coefficients computed again and its error, and the angle between
+!> the zeros.
 module test_half_film_guess
+  use, intrinsic :: iso_fortran_env, only: qp => real128
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
   use checks, only: checks_t
   use small_lu, only: decompose, solve
-  use half_film, only: first_guess
+  use half_film, only: first_guess, turn_between
   implicit none
   private
   public :: run_test_half_film_guess
@@ -15,6 +17,7 @@ contains
     class(checks_t), intent(inout) :: check
     call is_the_least_square(check)
     call is_close_enough(check)
+    call turns_are_right(check)
   end subroutine run_test_half_film_guess
 
   !> The normal equations, over the disc by Gauss's rule in pieces of the radius and by the middle of equal angles.
@@ -59,6 +62,51 @@ contains
     end do
     call check%relative(worst, 3.1e-3_dp, 0.01_dp, 'as far off as it says')
   end subroutine is_close_enough
+
+  !> Against the arc tangent in quadruple precision, in every octant and on both sides of where one formula meets the next.
+  subroutine turns_are_right(check)
+    class(checks_t), intent(inout) :: check
+    integer, parameter :: parts = 4096, exponents = 300
+    real(dp) :: angle, c, s, worst
+    real(qp) :: exact
+    integer :: i, j, edge
+    worst = 0
+    do i = 0, 16*parts - 1
+      angle = 2*pi*(i + 0.37_dp)/(16*parts)
+      worst = max(worst, off(3*cos(angle), 3*sin(angle)))
+    end do
+    do edge = 0, 15
+      do j = 1, 60
+        do i = -1, 1, 2
+          angle = edge*pi/8 + i*0.5_dp**j
+          worst = max(worst, off(0.7_dp*cos(angle), 0.7_dp*sin(angle)))
+        end do
+      end do
+    end do
+    do i = 1, exponents
+      worst = max(worst, off(1.0_dp, 10.0_dp**(-i)), off(10.0_dp**(-i), 1.0_dp), off(-10.0_dp**(-i), -1.0_dp), &
+        off(-1.0_dp, 10.0_dp**(-i)), off(-1.0_dp, -10.0_dp**(-i)), off(1.0_dp, -10.0_dp**(-i)))
+    end do
+    call check%that(worst <= 4e-16_dp, 'the angle between the zeros, of itself')
+    worst = max(off(1.0_dp, 0.0_dp), off(0.0_dp, 1.0_dp), off(-1.0_dp, 0.0_dp), off(0.0_dp, -1.0_dp))
+    call check%that(worst <= 2e-16_dp, 'the angle between the zeros, quarters')
+
+  contains
+
+    real(dp) function off(cosine, sine)
+      real(dp), intent(in) :: cosine, sine
+      c = cosine
+      s = sine
+      exact = atan2(real(s, qp), real(c, qp))
+      if (exact < 0) exact = exact + 2*acos(-1.0_qp)
+      off = 0
+      if (exact > 0) then
+        off = real(abs(turn_between(c, s) - exact)/exact, dp)
+      else if (abs(turn_between(c, s)) > 0) then
+        off = 1
+      end if
+    end function off
+  end subroutine turns_are_right
 
   pure function terms_at(x, y) result(terms)
     real(dp), intent(in) :: x, y
