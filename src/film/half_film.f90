@@ -45,8 +45,8 @@ contains
   !> separates from the wall some digits cancel as eps -> 1: the relative error is about 1e-15/(1 - eps).
   !>
   !> Multiplied by eps^3, the brackets contain only eps^2, eps A, eps B, eps c and eps s, and n is e/(c eps): no square root of the
-  !> eccentricity is needed. A^2 + B^2 is the square of w, the velocity of the pin in clearances relative to axes that rotate at half
-  !> the pin speed.
+  !> eccentricity is needed. A^2 + B^2 is the square of w, the velocity of the pin in clearances relative to axes that rotate at
+  !> half the pin speed.
   pure subroutine film_force(self, motion, force, moment)
     class(half_film_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
