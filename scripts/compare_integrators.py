@@ -168,16 +168,21 @@ def report(data: pd.DataFrame, has_cvode: bool) -> str:
     codes = f"SciPy {scipy_version}" + (", SUNDIALS CVODE of Debian (libsundials-dev)" if has_cvode else "; CVODE was not installed")
     dates = " to ".join(sorted({data["date"].min(), data["date"].max()}))
     head = [f"gfortran, -O3 -flto; {codes}. Measured {dates}.", "",
-            "Right-hand sides that the cheapest run needs for an error, of those at tolerances 1e-3 to 1e-12 (two a decade; SciPy",
-            "one); in brackets the shortest time of a compiled code, in bare right-hand sides that wait for each other. All codes integrate the",
-            "program's own right-hand side in its own coordinates, with its own absolute tolerances (but not with the hundredth to which a run holds",
-            "the crank's speed), without the work integral that the program's own methods carry. Right-hand sides for difference Jacobians are",
-            "counted; `radau` and `auto` have theirs in closed form where the piston pin alone is loose, and these are in the time, not in the",
-            "count. SciPy's time is Python's: only its counts are compared. \"–\": not",
-            f"reached, or given up after {MOST_PYTHON:,} right-hand sides (SciPy) or {MOST_COMPILED:,}.", "",
-            "Errors: largest of crank angle, rod angle, piston position and their rates at the end, over the largest value on the way (lubricated, IV",
-            "and V 2 revolutions, I and ideal 4); dry contact: of the first 40 instants at which contacts begin and end, to 10 ms, over the time of",
-            "one radian. Every run is in `integrators.csv`.", "",
+            "Each column is for one error, and each entry has two numbers:", "",
+            "- the right-hand sides that the cheapest run with at most this error takes, of the runs at tolerances 1e-3 to 1e-12 (two a",
+            "  decade; SciPy one). Right-hand sides for difference Jacobians are counted. `radau` and `auto` have Jacobians in closed form",
+            "  where only the piston pin is loose; these are in the time, but not in the count;",
+            "- in brackets, the shortest processor time of a run with at most this error, divided by the time of one right-hand side that",
+            "  waits for the one before (given above each table). It may be another run than that of the first number. SciPy's time is",
+            "  Python's, so that it is not given.", "",
+            f"\"–\" means that no run had this error. A code is given up after a run of more than {MOST_PYTHON:,} (SciPy) or",
+            f"{MOST_COMPILED:,} right-hand sides. All codes integrate the program's own right-hand side in its own coordinates and with",
+            "its own absolute tolerances, but for the crank speed, which a run of the program holds to a hundredth of its tolerance. The",
+            "program's own methods also carry the integral of the work of the forces, which the other codes do not.", "",
+            "The error is the largest error of crank angle, rod angle, piston position and their rates at the end, each divided by its",
+            "largest value during the run (lubricated, IV and V 2 revolutions, I and ideal 4). In dry contact it is the largest error of the",
+            f"first {CONTACTS} instants at which contacts begin and end, up to 10 ms, divided by the time of one radian of the crank. Every run",
+            "is in `integrators.csv`.", "",
             "![Error against evaluations and time](integrators.png)"]
     return "\n".join(head + table(data)) + "\n"
 

@@ -4,23 +4,33 @@
 #
 #   scripts/compare_integrators.sh [DIR]                writes DIR/integrators.md, .csv and .png (default: data/measured)
 #   scripts/compare_integrators.sh [DIR] --compiled     measures only the program's own methods and CVODE anew
+#   scripts/compare_integrators.sh [DIR] --draw         measures nothing: draws the picture again, from DIR/integrators.csv
 #
-# Takes about 15 minutes, most of it Python's. Evaluations are the same on any machine with this compiler; times are the processor's.
+# With --language pt the texts of the picture are Portuguese. Takes about three minutes of processor time, one of them to build, and
+# asks nothing. Other programs on the machine falsify the times; evaluations are the same on any machine with this compiler.
 cd "$(dirname "$0")/.." || exit 1
 scripts/setup.sh --python || exit 1
+options=
 part=
 out=data/measured
-for argument; do
-  case $argument in
-    --compiled) part=--compiled ;;
+while [ $# -gt 0 ]; do
+  case $1 in
+    --compiled | --draw) part=$1 ;;
+    --language)
+      options="--language ${2-}"
+      [ $# -gt 1 ] && shift
+      ;;
     -*)
-      echo "compare_integrators: usage: scripts/compare_integrators.sh [DIR] [--compiled]" >&2
+      echo "compare_integrators: usage: scripts/compare_integrators.sh [DIR] [--compiled|--draw] [--language pt]" >&2
       exit 2
       ;;
-    *) out=$argument ;;
+    *) out=$1 ;;
   esac
+  shift
 done
 mkdir -p "$out" || exit 5
+# shellcheck disable=SC2086  # options or nothing
+[ "$part" = --draw ] && exec .venv/bin/python scripts/compare_integrators.py "$out" --draw $options
 scripts/build_scene_library.sh >&2 || exit 1
 folder=build/scene_library
 if [ -e /usr/include/cvode/cvode.h ]; then
@@ -30,5 +40,5 @@ else
   rm -f $folder/cvode_run.so
   echo "compare_integrators: no CVODE: apt-get install libsundials-dev" >&2
 fi
-# shellcheck disable=SC2086  # an option or nothing
-exec .venv/bin/python scripts/compare_integrators.py "$out" $part
+# shellcheck disable=SC2086  # options or nothing
+exec .venv/bin/python scripts/compare_integrators.py "$out" $part $options

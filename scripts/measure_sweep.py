@@ -2,12 +2,15 @@
 """What a parameter study costs beyond its runs, and what a second thread brings.
 
     scripts/measure_sweep.py [--runs 10000] [--repeats 3] [--threads 2]
+    scripts/measure_sweep.py --instructions
 
 Simulation I, method auto, draft accuracy, over clearance and viscosity (Latin hypercube). Three measurements:
- - throughput of `gudgeon sweep` on one thread and on several, in turns, the best of the repeats: wants idle cores;
+ - throughput of `gudgeon sweep` on one thread and on several, in turns, the best of the repeats. Other programs on the machine
+   falsify it;
  - processor time of the sweep against that of the same runs simulated one after the other in one process
-   (scripts/measure_runs.f90), bare and with the statistics of revolutions;
- - instructions of the same under valgrind, on 100 runs: the same figures without the noise of the machine.
+   (scripts/measure_runs.f90), without and with the statistics of revolutions;
+ - instructions of a sweep of 100 runs under valgrind: those of the simulations themselves, and what the sweep adds to them (setting
+   and checking the parameters, writing the row). With --instructions only this is measured.
 Run it from the top of the checkout. Prints a table.
 """
 import argparse
@@ -47,13 +50,24 @@ def instructions(command, function, folder):
     return int(re.search(r"Collected : (\d+)", done.stderr).group(1))
 
 
+def count_instructions(sweep, folder):
+    """Print the instructions that a sweep of 100 runs on one thread takes beside the simulations themselves."""
+    whole = instructions(sweep, "__study_runner_MOD_work", folder)
+    simulated = instructions(sweep, "__gudgeon_simulation_MOD_simulate", folder)
+    if simulated == 0:
+        raise SystemExit("measure_sweep: the procedure `simulate` was not found in the program")
+    print(f"sweep, 1 thread: {simulated/100:.0f} instructions a run in the simulation, {(whole - simulated)/100:.0f} beside it, "
+          f"{100*(whole/simulated - 1):.2f} %")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--runs", type=int, default=10000)
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--instructions", action="store_true", help="only the instructions of a sweep")
     options = parser.parse_args()
-    gudgeon, runs = program(), program("measure_runs")
+    gudgeon = program()
     with tempfile.TemporaryDirectory() as folder:
         def study(count):
             path = f"{folder}/study_{count}.nml"
@@ -64,7 +78,10 @@ def main():
         def sweep(path, threads):
             return [gudgeon, "sweep", *SETTINGS, "-j", str(threads), "-o", folder, path]
 
-        path = study(options.runs)
+        if options.instructions:
+            count_instructions(sweep(study(100), 1), folder)
+            return
+        path, runs = study(options.runs), program("measure_runs")
         clock, processor = {}, {}
         for _ in range(options.repeats):
             for name, command in (("sweep, 1 thread", sweep(path, 1)),
@@ -82,12 +99,7 @@ def main():
         print(f"throughput on {options.threads} threads over 1: "
               f"{clock['sweep, 1 thread']/clock[f'sweep, {options.threads} threads']:.2f}; processor time of a run, 1 thread over "
               f"{options.threads}: {processor['sweep, 1 thread']/processor[f'sweep, {options.threads} threads']:.3f}")
-        path = study(100)
-        bare = instructions([runs, path], "__simulation_MOD_simulate", folder)
-        for name, command, function in (("runs with statistics", [runs, path, "watched"], "__simulation_MOD_simulate"),
-                                        ("sweep", sweep(path, 1), "__study_runner_MOD_work")):
-            count = instructions(command, function, folder)
-            print(f"{name:24s} {count/100:12.0f} instructions a run, {100*(count/bare - 1):+5.2f} % of bare runs ({bare/100:.0f})")
+        count_instructions(sweep(study(100), 1), folder)
 
 
 if __name__ == "__main__":

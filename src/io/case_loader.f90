@@ -4,7 +4,7 @@ module case_loader
   use gudgeon_errors, only: error_t
   use gudgeon_parameters, only: parameter_list_t, has_parameters_t, law_t, key_t, word_kind
   use case_definition, only: case_t, visit_case
-  use case_schema, only: find_group, is_listed
+  use case_schema, only: find_group, is_listed, is_named
   use case_value, only: set_to_default
   use case_values, only: case_values_t
   use case_curves, only: provide_curves
@@ -127,7 +127,8 @@ contains
     character(len=*), intent(in) :: key
     associate (group => self%values%groups(self%at))
       do place_of = group%first, group%last
-        if (self%values%keys(place_of)%name(1:1) == key(1:1) .and. self%values%keys(place_of)%name == key) return
+        if (self%values%keys(place_of)%name(1:1) /= key(1:1)) cycle
+        if (is_named(self%values%keys(place_of)%name, key)) return
       end do
     end associate
     place_of = 0

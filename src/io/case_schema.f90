@@ -7,8 +7,8 @@ module case_schema
   use case_definition, only: case_t, visit_case, piston_pin_place
   implicit none
   private
-  public :: key_t, group_definition_t, schema_t, case_schema_of, find_key, find_group, is_listed, is_group_of_cases, shown_group
-  public :: real_kind, integer_kind, logical_kind, word_kind, text_kind, shared_keys_differ
+  public :: key_t, group_definition_t, schema_t, case_schema_of, find_key, find_group, is_named, is_listed, is_group_of_cases
+  public :: shown_group, real_kind, integer_kind, logical_kind, word_kind, text_kind, shared_keys_differ
 
   !> A group. The group of an optional model may be missing in a case; its model is then absent from the scene.
   type :: group_definition_t
@@ -259,7 +259,7 @@ contains
     letter = name
     do place = size(keys), 1, -1
       if (keys(place)%name(1:1) /= letter) cycle   ! a fast test that excludes nearly all of them
-      if (keys(place)%group == group .and. keys(place)%name == name) return
+      if (is_named(keys(place)%name, name) .and. is_named(keys(place)%group, group)) return
     end do
   end function find_key
 
@@ -271,7 +271,18 @@ contains
     letter = name
     do place = size(groups), 1, -1
       if (groups(place)%name(1:1) /= letter) cycle
-      if (groups(place)%name == name) return
+      if (is_named(groups(place)%name, name)) return
     end do
   end function find_group
+
+  !> Whether a word, filled up with blanks, is `name`: several times as fast as the comparison of texts of different lengths.
+  pure logical function is_named(word, name)
+    character(len=*), intent(in) :: word, name
+    if (len(name) >= len(word)) then
+      is_named = word == name
+    else
+      is_named = word(:len(name)) == name
+      if (is_named) is_named = word(len(name) + 1:len(name) + 1) == ' '
+    end if
+  end function is_named
 end module case_schema

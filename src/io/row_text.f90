@@ -9,6 +9,7 @@ module row_text
   use value_reader, only: read_real
   use number_writer, only: number_writer_t, longest_number
   use growing_text, only: growing_text_t
+  use text_tools, only: integer_text
   implicit none
   private
   public :: row_text_t, begins_formula
@@ -59,20 +60,24 @@ contains
     if (self%is_open) call self%append(',')
     if (needs_quotes) call self%append('"')
     if (needs_apostrophe) call self%append("'")
-    do i = 1, len_trim(text)
-      if (text(i:i) == '"') call self%append('"')
-      call self%append(text(i:i))
-    end do
-    if (needs_quotes) call self%append('"')
+    if (needs_quotes) then
+      do i = 1, len_trim(text)
+        if (text(i:i) == '"') call self%append('"')
+        call self%append(text(i:i))
+      end do
+      call self%append('"')
+    else
+      call self%append(text(:len_trim(text)))
+    end if
     self%is_open = .true.
   end subroutine add_text
 
   pure subroutine add_whole(self, number)
     class(row_text_t), intent(inout) :: self
     integer, intent(in) :: number
-    character(len=11) :: digits
-    write (digits, '(i0)') number
-    call self%add_text(digits)
+    if (self%is_open) call self%append(',')
+    call self%append(integer_text(number))
+    self%is_open = .true.
   end subroutine add_whole
 
   !> Append a number, or an empty field if `is_there` is false.

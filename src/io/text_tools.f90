@@ -22,8 +22,15 @@ contains
     integer, intent(in) :: number
     character(len=:), allocatable :: text
     character(len=11) :: digits
-    write (digits, '(i0)') number
-    text = trim(digits)
+    integer :: rest, i
+    rest = merge(number, -number, number < 0)   ! negative, since the most negative number has no positive one
+    do i = len(digits), 1, -1
+      digits(i:i) = achar(iachar('0') - mod(rest, 10))
+      rest = rest/10
+      if (rest == 0) exit
+    end do
+    text = digits(i:)
+    if (number < 0) text = '-'//text
   end function integer_text
 
   !> The number in a text: at most 18 digits, possibly with a sign.
