@@ -52,7 +52,7 @@ def instructions(command, function, folder):
 
 def count_instructions(sweep, folder):
     """Print the instructions that a sweep of 100 runs on one thread takes beside the simulations themselves."""
-    whole = instructions(sweep, "__study_runner_MOD_work", folder)
+    whole = instructions(sweep, "__study_worker_MOD_run", folder)
     simulated = instructions(sweep, "__gudgeon_simulation_MOD_simulate", folder)
     if simulated == 0:
         raise SystemExit("measure_sweep: the procedure `simulate` was not found in the program")
