@@ -1,4 +1,4 @@
-!> A scene in the coordinates (q, A, x) of its bodies, with the parts of the gas's cycle as its events.
+!> A scene in the coordinates (q, A, x) of its bodies, with the parts of the gas cycle as events.
 module absolute_gas_engine
   use gudgeon_kinds, only: dp
   use ode_problem, only: event_continue

@@ -1,11 +1,11 @@
-!> A case in the coordinates (q, A, x) of its bodies, by the numerics of the print: one tolerance for relative and absolute error,
-!> steps of limited length.
+!> Runs a case in the coordinates (q, A, x) of its bodies with the numerical settings of the dissertation: one tolerance for
+!> relative and absolute error, and a largest step.
 !>
 !>     absolute_run CASE.nml REVOLUTIONS SAMPLES TOLERANCE MAX_STEP
 !>
-!> Prints time [s], crank acceleration [rad/s^2] and eccentricity over clearance, SAMPLES times in the time of a revolution at the
-!> starting speed, as CSV. The right-hand side is the program's own. The pin must stay in its film: the run ends, with exit status
-!> 1, where it touches.
+!> Prints time [s], crank acceleration [rad/s^2] and eccentricity over clearance as CSV, SAMPLES times in the duration of a
+!> revolution at the starting speed. The right-hand side is that of the program. The pin must not touch the bearing: if it does, the
+!> run ends with exit status 1.
 program absolute_run
   use, intrinsic :: iso_fortran_env, only: error_unit
   use gudgeon_kinds, only: dp

@@ -1,5 +1,5 @@
-!> Stick-slip: a mass on a dry floor, drawn by a spring whose other end moves at a constant speed. Friction is a law of the program;
-!> where that is set-valued, sticking and slipping are told by the procedures of a joint.
+!> Stick-slip: a mass on a dry floor, pulled by a spring whose other end moves at constant speed. The friction law is one of the
+!> program; for set-valued laws, sticking and slipping are determined by the procedures of a joint.
 module belt_problem
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t, event_continue

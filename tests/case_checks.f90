@@ -1,5 +1,5 @@
-!> Checks of cases that tests of joints share: a short case with further groups is accepted, or refused with the expected message;
-!> every method gives the same result for a case.
+!> Checks of cases used by several tests of joints: a short case with additional groups is accepted, or refused with the expected
+!> message; all methods give the same result for a case.
 module case_checks
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t

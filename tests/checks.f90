@@ -1,7 +1,7 @@
-!> The test harness: named assertions, failures printed as they happen.
+!> The test harness: named assertions; failures are printed at once.
 !>
-!> An assertion is a suite and a name without figures: one that a loop makes a thousand times, or at several tolerances, counts
-!> once. It has passed if every one of its turns has.
+!> An assertion is identified by its suite and its name without digits: an assertion that a loop makes a thousand times, or at
+!> several tolerances, counts once. It has passed if it has passed each time.
 module checks
   use, intrinsic :: iso_fortran_env, only: output_unit, int64
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan

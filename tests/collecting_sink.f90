@@ -1,4 +1,4 @@
-!> A sink that keeps rows and events in memory, and one call to run a case file into it.
+!> A sink that stores rows and events in memory, and a procedure that runs a case file with it.
 module collecting_sink
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t

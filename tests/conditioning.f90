@@ -1,4 +1,4 @@
-!> How far a problem of the standard battery carries a change of its state: what no integrator can do better than.
+!> The growth of a change of the initial state in a problem of the standard battery, which limits the accuracy of any integrator.
 module conditioning
   use gudgeon_kinds, only: dp
   use adams, only: adams_t

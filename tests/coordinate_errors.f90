@@ -1,4 +1,4 @@
-!> How well the pin's place in its bearing is known, by coordinates and tolerances.
+!> The accuracy of the eccentricity in several coordinates and at several tolerances.
 module coordinate_errors
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t

@@ -1,6 +1,6 @@
-!> An elastic rod as what it is: points of mass along a line that bends and stretches. Kinetic and potential energy are sums over
-!> these points (Gauss's quadrature of 40 nodes, in quadruple precision), truncated after the second order of the shapes by nothing
-!> but values at five amplitudes; Lagrange's equations are differences of them.
+!> An elastic rod as a continuum: mass points along a line that bends and stretches. Kinetic and potential energy are sums over
+!> these points (Gauss's quadrature with 40 nodes, in quadruple precision), reduced to second order in the shapes by differences at
+!> five amplitudes only; Lagrange's equations are differences of the energies.
 module elastic_rod_field
   use gudgeon_kinds, only: dp
   use chain_bodies, only: bodies_t

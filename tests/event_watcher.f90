@@ -1,4 +1,4 @@
-!> An observer that keeps the instants of contact events.
+!> An observer that stores the times of contact events.
 module event_watcher
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t

@@ -1,4 +1,5 @@
-!> The impact of a free mass on a contact law as a problem of the program's integrators: from touch to the end of the contact.
+!> The impact of a free mass under a contact law as a problem for the program's integrators, from the beginning to the end of the
+!> contact.
 module impact_problem
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t

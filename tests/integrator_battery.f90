@@ -1,5 +1,5 @@
-!> The integrator measured: evaluations, steps and error against tolerance on four scenes and on the standard battery of
-!> non-stiff problems. Run by scripts/compare_adams.sh.
+!> Measures the integrator: evaluations, steps and error over tolerance on four scenes and on the standard battery of non-stiff
+!> problems. Run by scripts/compare_adams.sh.
 !>
 !>     integrator_battery reference       prints a reference for every scene; meant for a build in extended precision
 !>     integrator_battery scenes FILE     prints the table, errors against the references in FILE

@@ -1,5 +1,5 @@
-!> An observer that measures the error that each accepted step makes by itself, as DETEST does (Enright & Pryce 1987): against
-!> the local solution, which passes through the step's own beginning, integrated by an independent method.
+!> An observer that measures the local error of each accepted step, as in DETEST (Enright & Pryce 1987): the difference from the
+!> local solution, which starts at the beginning of the step and is integrated by an independent method.
 module local_errors
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t

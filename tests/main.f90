@@ -1,5 +1,5 @@
-!> Runs every test, or the suites named on the command line, and prints `N passed, N failed` as its last line: assertions that
-!> differ, whatever the number of turns in which they are made.
+!> Runs all tests, or the suites named on the command line, and prints `N passed, N failed` as its last line. N counts different
+!> assertions, not how often they are made.
 !>
 !>     fpm test                          every suite
 !>     fpm test -- contact friction      the suites test_contact and test_friction

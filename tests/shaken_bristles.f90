@@ -1,4 +1,4 @@
-!> Bristles whose surfaces are moved to and fro, as a system of equations: y = (deflection, work of friction), F_N = 1 N.
+!> Bristles between surfaces that oscillate, as a system of equations: y = (deflection, work of friction), F_N = 1 N.
 module shaken_bristles
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t

@@ -2,7 +2,7 @@
 !> Fellen & Sedgwick 1972, SIAM J. Numer. Anal. 9, 603; class F: Enright & Pryce 1987, ACM TOMS 13, 1), the Arenstorf orbit
 !> and the Pleiades (Hairer, Norsett & Wanner 1993, II.0 and II.10).
 !>
-!> The discontinuities of class F are events: f changes its branch only there.
+!> The discontinuities of class F are events; f changes its branch only at events.
 module standard_problems
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi

@@ -1,4 +1,4 @@
-!> States of a scene made by hand.
+!> States of a scene from given values.
 module state_making
   use gudgeon_kinds, only: dp
   use gudgeon_scene, only: scene_t

@@ -1,4 +1,4 @@
-!> An observer that keeps the states q, A, x, their rates and the eccentricity, and the largest sizes that they took.
+!> An observer that stores the states q, A, x, their rates and the eccentricity, and their largest magnitudes.
 module state_watcher
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t

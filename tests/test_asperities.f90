@@ -1,5 +1,5 @@
 !> Rough surfaces: the integral of Greenwood and Tripp and the mean gap against tables, the force on the pin against another
-!> quadrature; mixed lubrication against its limits, in runs by every method, and what a case may not ask of it.
+!> quadrature; mixed lubrication against its limits, in runs by all methods, and errors in cases.
 module test_asperities
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi

@@ -1,4 +1,4 @@
-!> Friction laws with bristles: alone, by the program's integrators.
+!> Friction laws with bristles, without a mechanism, by the program's integrators.
 module test_bristles
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi

@@ -1,4 +1,4 @@
-!> Case files: what is read, what is refused and with which words, and that a resolved case is the same case.
+!> Case files: what is read, what is refused and with which message, and that the resolved case gives the same case.
 module test_case_file
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, status_case_file

@@ -1,4 +1,4 @@
-!> Certificates against runs at 1e-13: they claim no more than is true, and not much less.
+!> Certificates against runs at 1e-13: they must not claim more accuracy than there is, and not much less.
 module test_certificate
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t

@@ -1,5 +1,5 @@
-!> The chain and its pieces: closed forms against the general assembly, and both against the energy of bodies whose velocities
-!> come from their positions alone.
+!> The chain: closed forms against the general assembly, and both against the energy of bodies whose velocities are computed from
+!> their positions.
 module test_chain
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi, degree

@@ -1,4 +1,4 @@
-!> Checkpoints: what comes back, what is refused, the checksum that tells, and the identity of a run.
+!> Checkpoints: what is restored, what is refused, detection by the checksum, and the identity of a run.
 module test_checkpoint
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp

@@ -1,4 +1,4 @@
-!> The test harness itself: what counts as one assertion, and that a turn that fails is never lost.
+!> The test harness itself: what counts as one assertion, and that no failure is lost.
 module test_checks
   use, intrinsic :: iso_fortran_env, only: int64
   use checks, only: checks_t, without_figures

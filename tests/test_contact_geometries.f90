@@ -1,5 +1,5 @@
-!> Contact geometries: forces against tables of an independent implementation (data/contact), slopes against differences, energies
-!> against closed forms and quadrature, continuity, extremes, what a bearing must have.
+!> Contact geometries: forces against tables of an independent implementation (data/contact), derivatives against differences,
+!> energies against closed forms and quadrature, continuity, extreme values, requirements on the bearing.
 module test_contact_geometries
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi

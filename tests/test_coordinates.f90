@@ -1,4 +1,4 @@
-!> Where the pin is in its bearing: the scenes' coordinates (q, e) against (q, A, x), with the pin in a film of 20 and 40 um.
+!> The eccentricity of the pin: the scenes' coordinates (q, e) against (q, A, x), with the pin in films of 20 and 40 um.
 module test_coordinates
   use gudgeon_kinds, only: dp
   use checks, only: checks_t

@@ -1,5 +1,5 @@
-!> Rows at equal crank angles: exactly there, none left out, also by a crank that turns back, and with the values that the steps of
-!> the integrator have there.
+!> Rows at equal crank angles: they are exactly at these angles, none is missing even if the crank turns back, and their values are
+!> those of the integrator's steps.
 module test_crank_angle
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi, degree

@@ -1,5 +1,5 @@
-!> Cases with clearance at the crank pin, as a user has them: what is written of each joint, how a run ends, methods, limits; and
-!> gravity across the cylinder.
+!> Cases with clearance at the crank pin: results of each joint, end of a run, methods, limits; and gravity perpendicular to the
+!> cylinder.
 module test_crank_pin
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp

@@ -1,4 +1,4 @@
-!> Runs that end when the crank has made so many turns by itself: closed forms, every kind of scene, cranks that do not get there.
+!> Runs that end when the crank has made a number of turns: closed forms, all kinds of scenes, cranks that do not reach that number.
 module test_crank_turns
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi

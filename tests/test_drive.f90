@@ -1,4 +1,4 @@
-!> Drives that vary: a speed that is run up, a torque that follows from the speed, a flywheel.
+!> Drives that vary: a prescribed speed with run-up, a torque that depends on the speed, a flywheel.
 module test_drive
   use gudgeon_kinds, only: dp
   use ode_problem, only: difference_jacobian

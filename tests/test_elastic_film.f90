@@ -1,5 +1,5 @@
-!> A film between elastic walls: the inverse of a film's force, derivatives, energy, the limit of stiff walls, every method, the
-!> start, the viscosity under pressure, and what a case may not ask of it.
+!> A film between elastic walls: the inverse of a film's force, derivatives, energy, the limit of stiff walls, all methods, the
+!> initial state, the viscosity under pressure, and errors in cases.
 module test_elastic_film
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t

@@ -1,5 +1,5 @@
-!> The elastic rod by itself and in the chain: its equations against sums over its points, closed forms against the assembly,
-!> reactions, frequencies and buckling.
+!> The elastic rod alone and in the chain: its equations against sums over its points, closed forms against the assembly, reactions,
+!> natural frequencies and buckling.
 module test_elastic_rod
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi

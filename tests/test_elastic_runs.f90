@@ -1,4 +1,4 @@
-!> Whole runs with elastic members: impacts against finite elements, the way to the rigid rod, energy, methods, the crankshaft.
+!> Whole runs with elastic members: impacts against finite elements, the limit of the rigid rod, energy, methods, the crankshaft.
 module test_elastic_runs
   use gudgeon_kinds, only: dp
   use checks, only: checks_t

@@ -1,4 +1,5 @@
-!> What long, loose and odd runs make of the energy: errors that stay in the crank or in the work of the forces.
+!> The energy in long runs, in runs with loose tolerance and in unusual ones: errors that remain in the crank or in the work of the
+!> forces.
 module test_energy_kept
   use gudgeon_kinds, only: dp
   use checks, only: checks_t

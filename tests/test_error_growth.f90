@@ -1,5 +1,5 @@
-!> Error against tolerance on the standard battery: each step by itself keeps the tolerance, and over a whole problem the error
-!> is what the problem's condition makes of it.
+!> Error over tolerance on the standard battery: the local error of each step is within the tolerance, and the global error is as
+!> large as the condition of the problem allows.
 module test_error_growth
   use gudgeon_kinds, only: dp
   use checks, only: checks_t

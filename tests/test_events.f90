@@ -1,4 +1,4 @@
-!> Events: several functions and directions, roots to the last bits, double passages, grazing, chatter, rejected steps.
+!> Events: several functions and directions, roots to the last bits, double passages, grazing contacts, chatter, rejected steps.
 module test_events
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi

@@ -1,5 +1,5 @@
-!> The derivatives of films that implicit integration asks for: of the table of a film of finite length against central differences
-!> of its force.
+!> The derivatives of films for implicit integration: those of the table of a film of finite length against central differences of
+!> its force.
 module test_film_derivatives
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t

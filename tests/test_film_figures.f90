@@ -1,4 +1,4 @@
-!> What films tell beside their force: side flow, largest pressure, power, moment. Against tables of an independent solver
+!> Results of films besides their force: side flow, largest pressure, power, moment. Against tables of an independent solver
 !> (data/film) and of Raimondi and Boyd, scans and quadrature; in whole runs against the energy that the bodies lose.
 module test_film_figures
   use gudgeon_kinds, only: dp

@@ -1,5 +1,5 @@
-!> The moment of a long film on its pin: against the shear stress integrated over the pin, its derivatives, the power that it takes,
-!> and the key that asks for it.
+!> The moment of a long film on its pin: against the shear stress integrated over the pin, its derivatives, its power, and the key
+!> that requests it.
 module test_film_moment
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi

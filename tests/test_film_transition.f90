@@ -1,5 +1,5 @@
-!> A film that gives way to the contact over a band of depths: weights, kinks, derivatives, a whole mechanism against an independent
-!> program, every method, and what a case may not ask of it.
+!> Transition from film to contact over a range of penetrations: weights, kinks, derivatives, a whole mechanism against an
+!> independent program, all methods, and errors in cases.
 module test_film_transition
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t

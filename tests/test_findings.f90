@@ -1,4 +1,4 @@
-!> What the dissertation found in its chapter 6 (Reis 2013), on the shipped cases.
+!> Statements of chapter 6 of the dissertation (Reis 2013), checked with the shipped cases.
 module test_findings
   use gudgeon_kinds, only: dp
   use chain_motion, only: piston_pin

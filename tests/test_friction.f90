@@ -1,4 +1,4 @@
-!> The friction laws without memory: values, slopes, continuity, signs, factory.
+!> The friction laws without memory: values, derivatives, continuity, signs, selection by name.
 module test_friction
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, status_case_file

@@ -1,4 +1,4 @@
-!> Two-stroke engines and compressors: the work of a cycle against closed forms, and what valves do whichever way the crank turns.
+!> Two-stroke engines and compressors: the work of a cycle against closed forms, and the valves for both senses of rotation.
 module test_gas_machines
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi, two_pi, degree

@@ -1,5 +1,5 @@
-!> The initial guess of the zeros of the half film's pressure, its coefficients computed again and its error, and the angle between
-!> the zeros.
+!> The initial guess of the zeros of the half film's pressure: its coefficients are computed again and its error measured; and the
+!> angle between the zeros.
 module test_half_film_guess
   use, intrinsic :: iso_fortran_env, only: qp => real128
   use gudgeon_kinds, only: dp

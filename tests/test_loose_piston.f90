@@ -1,5 +1,5 @@
-!> A piston with clearance in its bore: Newton's and Euler's laws of every body, the energy of bodies whose velocities come from
-!> their positions alone, and the two ways to the accelerations.
+!> A piston with clearance in its bore: Newton's and Euler's laws for every body, the energy of bodies whose velocities are computed
+!> from their positions, and agreement of the two ways to compute accelerations.
 module test_loose_piston
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi

@@ -1,4 +1,4 @@
-!> Measured curves: the cubic through their points, what files of them may hold, and a run with a measured pressure.
+!> Measured curves: the cubics through their points, valid and invalid files, and a run with a measured pressure.
 module test_measured_curves
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi, two_pi, degree

@@ -1,4 +1,4 @@
-!> Single numbers as text and back: the same as formatted writes and reads of the compiler; long texts of many pieces.
+!> Single numbers as text and back: compared with formatted writes and reads of the compiler; long texts of many pieces.
 module test_number_text
   use gudgeon_kinds, only: dp
   use number_text, only: real_text, exact_text, short_text

@@ -1,5 +1,5 @@
-!> Viscosity of an oil at a temperature: against values worked out at 30 digits from the published equations, and a published
-!> example; in a run; and what a case may not say of it.
+!> Viscosity of an oil at a temperature: against values computed with 30 digits from the published equations, and a published
+!> example; in a run; and errors in cases.
 module test_oil_viscosity
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp

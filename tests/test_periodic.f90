@@ -1,4 +1,5 @@
-!> Runs until the motion repeats, and the exponents of motions that do or do not: against the traces of other runs.
+!> Runs until the motion is periodic, and Lyapunov exponents of periodic and chaotic motions: compared with the traces of other
+!> runs.
 module test_periodic
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi

@@ -1,5 +1,5 @@
-!> What contact laws give back: free impacts by the program's integrators, under every law in every geometry, against tables of an
-!> independent implementation (data/contact) and closed forms.
+!> The restitution of contact laws: free impacts by the program's integrators, under every law in every geometry, against tables of
+!> an independent implementation (data/contact) and closed forms.
 module test_restitution
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t

@@ -1,4 +1,4 @@
-!> Result files, and the calls of the system under them.
+!> Result files, and the system calls that they use.
 module test_result_file
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use gudgeon_kinds, only: dp

@@ -1,4 +1,4 @@
-!> A run put away and resumed, between any two steps, ends bit for bit as one that was not.
+!> A run that is stopped between any two steps and continued ends with results identical to an uninterrupted run.
 module test_resume
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp

@@ -1,4 +1,4 @@
-!> The figures of a run: the time that each method has, and peaks between the steps.
+!> Results of a run: the time spent with each method, and peaks between steps.
 module test_run_figures
   use gudgeon_kinds, only: dp
   use chain_motion, only: crank_pin, piston_pin, n_pins, name_prefix

@@ -1,4 +1,4 @@
-!> Contact and friction inside whole scenes: entry by step rejection, sticking, energy, what a run leaves out.
+!> Contact and friction in whole scenes: contact entry by step rejection, sticking, energy, components that a run does not need.
 module test_scenes
   use gudgeon_kinds, only: dp
   use chain_motion, only: piston_pin

@@ -1,5 +1,5 @@
-!> Contacts that begin slowly, or before the run does: what a vanishing impact gives back, a pin that rests on its bearing, the
-!> start inside a contact and on the wall.
+!> Contacts that begin slowly or exist at the start: the restitution of very slow impacts, a pin at rest on its bearing, the start
+!> in contact and exactly at the wall.
 module test_slow_contact
   use gudgeon_kinds, only: dp
   use chain_motion, only: piston_pin

@@ -1,4 +1,4 @@
-!> Small dense systems, which need row exchanges, real and complex.
+!> Small dense systems that need row exchanges, real and complex.
 module test_small_lu
   use gudgeon_kinds, only: dp
   use checks, only: checks_t

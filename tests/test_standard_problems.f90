@@ -1,6 +1,5 @@
-!> A chosen few of the standard battery: the error at the end follows the tolerance; runs in threads are the same
-!> to the last bit; refused steps leave no trace; the interpolant is as good as the steps. (The whole battery:
-!> scripts/compare_adams.sh.)
+!> Some problems of the standard battery: the error at the end follows the tolerance; runs in threads give identical results;
+!> refused steps change nothing; the interpolant is as accurate as the steps. (The whole battery: scripts/compare_adams.sh.)
 module test_standard_problems
   use gudgeon_kinds, only: dp
   use checks, only: checks_t

@@ -1,4 +1,4 @@
-!> Where owners find their numbers in a state.
+!> The indices of the owners' components in the state vector.
 module test_state_layout
   use gudgeon_kinds, only: dp
   use checks, only: checks_t

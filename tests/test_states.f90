@@ -1,4 +1,4 @@
-!> First-order states beside positions, by every method.
+!> First-order states in addition to positions, with all methods.
 module test_states
   use gudgeon_kinds, only: dp
   use checks, only: checks_t

@@ -1,4 +1,4 @@
-!> A mass drawn over a dry floor by a spring: its stick-slip under every friction law, by the program's integrators.
+!> A mass pulled over a dry floor by a spring: stick-slip under every friction law, by the program's integrators.
 module test_stick_slip
   use gudgeon_kinds, only: dp
   use checks, only: checks_t

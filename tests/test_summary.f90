@@ -1,4 +1,4 @@
-!> What the summary says besides figures.
+!> Texts of the summary.
 module test_summary
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp

@@ -1,4 +1,4 @@
-!> The files of a running case: what is written is what was handed over.
+!> The files of a running case: they contain exactly what the run has passed to them.
 module test_trace_files
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp

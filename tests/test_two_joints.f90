@@ -1,4 +1,4 @@
-!> Scenes with clearance at both pins, built by hand.
+!> Scenes with clearance at both pins, built without case files.
 module test_two_joints
   use gudgeon_kinds, only: dp
   use checks, only: checks_t

@@ -75,7 +75,7 @@ def why_none(run: Run, cycles: Cycles, columns: list[str], is_wanted: bool) -> s
     if is_periodic(run) or is_wanted:
         return ""
     if cycles.number < 2:
-        return "None: one whole cycle in the second half of the run does not tell whether the motion has settled."
+        return "None: the second half of the run has a single whole cycle, which does not show whether the motion has settled."
     worst = max(columns, key=lambda name: drift(cycles, name))
     if drift(cycles, worst) <= SETTLED:
         return ""

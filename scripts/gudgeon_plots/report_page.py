@@ -252,8 +252,8 @@ def warnings(run: Run) -> list[str]:
         found.append(f"The energy balance is open by {residual:.1e} of the energy: tighten the tolerance.")
     if run.clearance and (deepest := number("max_penetration") or 0) > 0.1 * run.clearance:
         found.append(
-            f"The deepest penetration, {1e6 * deepest:.3g} µm, is {deepest / run.clearance:.2g} clearances: contact "
-            "laws take it for small."
+            f"The deepest penetration, {1e6 * deepest:.3g} µm, is {deepest / run.clearance:.2g} clearances; contact "
+            "laws assume that it is small."
         )
     if run.parameter("lubrication", "law") and run.clearance and 0 < (number("min_film_thickness") or 0) < 1e-6:
         found.append(
