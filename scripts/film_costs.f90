@@ -1,6 +1,6 @@
 !> What the film of finite length costs: a force from its table, beside a sine and a cosine of the same build; its table, computed
-!> and read from a file; simulation I with it, beside the closed form of Pinkus and Sternlicht. Run by scripts/film_costs.sh from the
-!> top of the checkout, with a folder for tables. Prints a table in Markdown: the least of several times.
+!> and read from a file; simulation I with it, beside the closed form of Pinkus and Sternlicht. Run by scripts/film_costs.sh from
+!> the top of the checkout, with a folder for tables. Prints a table in Markdown: the least of several times.
 program film_costs
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp

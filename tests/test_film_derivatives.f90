@@ -21,8 +21,8 @@ contains
     call derivatives_of_tables(check, 'none')
   end subroutine run_test_film_derivatives
 
-  !> From near the centre to beyond the last row of the table, approaching and leaving, the pin turning either way, with its moment; and
-  !> where one of the two velocities is 0.
+  !> From near the centre to beyond the last row of the table, approaching and leaving, the pin turning either way, with its moment;
+  !> and where one of the two velocities is 0.
   subroutine derivatives_of_tables(check, cavitation)
     class(checks_t), intent(inout) :: check
     character(len=*), intent(in) :: cavitation

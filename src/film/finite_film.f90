@@ -85,8 +85,8 @@ contains
   end subroutine begin
 
   !> Keep the pressure at 0 over an arc of angles phi [rad], from < to, until the next `begin`: an axial groove open to the ambient.
-  !> Only Reynolds' condition takes it into account. The published tables of journal bearings are for bearings with grooves; films of
-  !> the program have none.
+  !> Only Reynolds' condition takes it into account. The published tables of journal bearings are for bearings with grooves; films
+  !> of the program have none.
   pure subroutine open_arc(self, from, to)
     class(film_solver_t), intent(inout) :: self
     real(dp), intent(in) :: from, to

@@ -30,8 +30,8 @@ contains
     call add_power(self, now)
   end procedure find_general_accelerations
 
-  !> Set the position of a piston with clearance in its bore, of the shapes of the rod and of the flywheel. `inside` is false if they
-  !> are not admissible.
+  !> Set the position of a piston with clearance in its bore, of the shapes of the rod and of the flywheel. `inside` is false if
+  !> they are not admissible.
   pure subroutine place_more_bodies(self, t, y, now, inside)
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
