@@ -25,8 +25,8 @@ from assertions import Assertions
 TOP = Path(__file__).resolve().parents[1]
 
 #: A film that stays open, one with contacts and gas, dry contact, a piston that slaps (with a loose pin, with ideal ones), an ideal
-#: joint, dry contact on an elastic rod.
-CASES = ("sim_I", "sim_V_oscillating", "dry_0500um", "piston_slap", "slider_clearance", "ideal", "dry_friction")
+#: joint, dry contact on an elastic rod, clearance at both pins.
+CASES = ("sim_I", "sim_V_oscillating", "dry_0500um", "piston_slap", "slider_clearance", "ideal", "dry_friction", "both_pins")
 
 LARGEST_PAGE = 6_000_000  # bytes
 
@@ -136,6 +136,7 @@ def check_page(browser: Browser, page: Path, checks: Assertions, pictures: Path 
     clearance = browser.run("return gudgeon.scene.clearance > 0")
     canvases = ["mechanism", "timeline"] + (["joint", "orbit"] if clearance else [])
     canvases += ["bore"] if browser.run("return gudgeon.scene.bore !== null") else []
+    canvases += ["crank-pin-orbit"] if browser.run("return gudgeon.scene.crank_pin !== null") else []
     plots = browser.run("return gudgeon.scene.plots.length")
     checks.check(
         plots >= 5 and browser.run("return document.querySelectorAll('#plots .main-svg').length") >= plots,

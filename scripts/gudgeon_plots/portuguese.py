@@ -206,6 +206,8 @@ TEXTS = {
     "This page draws with JavaScript, which is switched off.": "Esta página desenha com JavaScript, que está desligado.",
     "The mechanism in motion": "O mecanismo em movimento",
     "The pin in its bearing, with forces and film pressure": "O pino no mancal, com forças e pressão do filme",
+    "Orbit of the crank pin in its clearance circle": "Órbita do pino da manivela em seu círculo da folga",
+    "crank-pin centre in its clearance circle": "centro do pino da manivela em seu círculo da folga",
     "Orbit of the pin in the clearance circle": "Órbita do pino no círculo da folga",
     "The piston in its bore, with the forces on its skirt": "O pistão no cilindro, com as forças na saia",
     "Film thickness and contacts over time": "Espessura do filme e contatos no tempo",

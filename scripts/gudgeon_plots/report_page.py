@@ -54,6 +54,9 @@ MOTION = (
     "normal_force",
     "cylinder_pressure",
     *(f"rod_mode_{k}" for k in range(1, 9)),
+    "crank_pin_eccentricity_x",
+    "crank_pin_eccentricity_y",
+    "crank_pin_phase",
     "piston_offset",
     "piston_tilt",
     *(f"guide_{corner}_force" for corner in CORNERS),
@@ -377,6 +380,7 @@ def page(
         "rod": float(run.parameter("mechanism", "rod_length")),
         "bearing": drawn_bearing_radius(run),
         "bore": bore,
+        "crank_pin": crank_pin_of(run, columns),
         "speed": float(run.parameter("initial", "crank_speed")),
         "modes": sum(name.startswith("rod_mode_") for name in used),
         "peak": {
@@ -481,6 +485,15 @@ def time_line(columns: dict[str, np.ndarray], run: Run) -> dict:
         "range": [0.0, largest],
         "extremes": [float(columns["pin_force"].min()), largest],
     }
+
+
+def crank_pin_of(run: Run, columns: dict[str, np.ndarray]) -> dict[str, float] | None:
+    """Clearance of a loose crank pin [m] and its largest eccentricity over it; None: it has none."""
+    if "crank_pin_eccentricity_x" not in columns:
+        return None
+    clearance = float(run.parameter("crank_pin.joint", "clearance", 0.0))
+    largest = np.hypot(columns["crank_pin_eccentricity_x"], columns["crank_pin_eccentricity_y"]).max()
+    return {"clearance": clearance, "peak_ratio": float(largest) / clearance}
 
 
 def bore_of(run: Run) -> dict[str, object]:

@@ -30,6 +30,9 @@ module elastic_rod
   public :: elastic_rod_t, most_of_a_kind, largest_shank
 
   integer, parameter :: most_of_a_kind = most_shapes/2   !! largest number of bending shapes, and of axial shapes
+  !> The equations are those of small deformations. A chord that is shorter or longer than the rod by this part of its length is
+  !> outside the model.
+  real(dp), parameter :: largest_change = 0.5_dp
 
   type, extends(has_parameters_t) :: elastic_rod_t
     real(dp) :: youngs_modulus = 0        !! E [Pa]
@@ -211,14 +214,14 @@ contains
   end subroutine find_chord
 
   !> Set the rod of a motion whose crank, offset and shapes are known: sin A = (R sin q - o_y)/l. `reachable` is false if there is
-  !> no rod angle.
+  !> no rod angle, or if the chord differs from the length of the rod by more than `largest_change` of it.
   pure subroutine follow(self, crank_length, motion, reachable)
     class(elastic_rod_t), intent(in) :: self
     real(dp), intent(in) :: crank_length   !! R [m]
     type(motion_t), intent(inout) :: motion
     logical, intent(out) :: reachable
     call self%find_chord(motion)
-    reachable = motion%chord > 0
+    reachable = abs(motion%chord - self%length) < largest_change*self%length
     if (.not. reachable) return
     motion%sin_rod = (crank_length*motion%sin_crank - motion%offset(2))/motion%chord
     reachable = abs(motion%sin_rod) < 1

@@ -27,9 +27,10 @@
   const pressure = scene.angles ? new Int8Array(await unpack("pressure")) : null;
   const time = column.time, begin = time[0], end = time[scene.rows - 1];
   const joint = scene.clearance > 0;
-  const bore = scene.bore;
+  const bore = scene.bore, crankPin = scene.crank_pin;
   document.body.classList.toggle("ideal", !joint);
   document.body.classList.toggle("boreless", !bore);
+  document.body.classList.toggle("tight-crank-pin", !crankPin);
   document.body.classList.toggle("contactless", scene.contacts.length === 0);
   document.body.classList.toggle("filmless", !scene.angles);
   document.body.classList.toggle("unsigned", !scene.signed);
@@ -122,6 +123,7 @@
   const largest = joint ? 0.45 * scene.bearing / scene.clearance : 1;
   const magnified = (most) => Math.pow(most, Number(byId("magnification").value));
   const magnification = () => magnified(largest);
+  const atCrankPin = () => magnified(0.2 * scene.bearing / crankPin.clearance);   // 1 ... where it is drawn as 20 % of the piston pin's bearing
   const inBore = (radius) => magnified(0.2 * radius / bore.clearance);   // of a piston drawn with this radius [m]
 
   // x is up, y to the right
@@ -136,6 +138,9 @@
     // of a piston loose in its bore: how far its axis and its pin are drawn beside the cylinder's, and its tilt
     const n = bore ? inBore(half) : 0, gap = bore ? n * bore.clearance : 0.05 * half;
     const aside = bore ? n * at("piston_offset") : 0, tilt = bore ? drawnTilt(n) : 0, pin = bore ? aside - bore.along * tilt - bore.across : 0;
+    // of a loose crank pin: where the big end's centre is drawn, off the pin's centre by the magnified eccentricity
+    const mc = crankPin ? atCrankPin() : 0;
+    const bx = px - (crankPin ? mc * at("crank_pin_eccentricity_x") : 0), by = py - (crankPin ? mc * at("crank_pin_eccentricity_y") : 0);
     const ex = joint ? m * at("eccentricity_x") : 0, ey = (joint ? m * at("eccentricity_y") : 0) + pin;
     g.strokeStyle = COLOUR.ink; g.lineWidth = 2.5;
     for (const side of [-1, 1]) {
@@ -156,11 +161,12 @@
     g.beginPath(); g.rect(-half * scale, -2.6 * bearing * scale, 2 * half * scale, 4.1 * bearing * scale); g.fill(); g.stroke();
     g.restore();
     circle(g, X(pin), Y(piston), bearing * scale, "#fff", COLOUR.ink, 1.2);
-    if (bending) bentBar(g, X, Y, [px, py], [piston + ex, ey], 0.55 * bearing, bending);
-    else bar(g, X(py), Y(px), X(ey), Y(piston + ex), 0.55 * bearing * scale);
+    if (bending) bentBar(g, X, Y, [bx, by], [piston + ex, ey], 0.55 * bearing, bending);
+    else bar(g, X(by), Y(bx), X(ey), Y(piston + ex), 0.55 * bearing * scale);
     circle(g, X(ey), Y(piston + ex), (bearing - m * scene.clearance) * scale * (joint ? 1 : 0.75), COLOUR.blue, COLOUR.ink, 1);
     circle(g, X(0), Y(0), 0.45 * bearing * scale, "#fff", COLOUR.ink, 1);
-    circle(g, X(py), Y(px), 0.45 * bearing * scale, "#fff", COLOUR.ink, 1);
+    if (crankPin) circle(g, X(by), Y(bx), (0.45 * bearing + mc * crankPin.clearance) * scale, "#fff", COLOUR.ink, 1);
+    circle(g, X(py), Y(px), 0.45 * bearing * scale, crankPin ? COLOUR.blue : "#fff", COLOUR.ink, 1);
   }
 
   // Lengths of arrows and heights of the pressure go with the square root: small values stay visible.
@@ -233,12 +239,15 @@
     });
   }
 
-  function drawOrbit() {
-    const { g, width, height } = prepare("orbit");
-    const cx = width / 2, cy = height / 2, unit = 0.46 * Math.min(width, height) / Math.max(1, scene.peak.eccentricity_ratio);
-    const x = (i) => cx + unit * column.eccentricity_y[i] / scene.clearance;
-    const y = (i) => cy - unit * column.eccentricity_x[i] / scene.clearance;
-    const touching = (i) => column.phase && column.phase[i] === 2;
+  // The way of a pin's centre in its clearance circle: `of` is what the names of the joint's columns begin with, `most` the largest
+  // eccentricity over the clearance.
+  function drawOrbit(id, of, clearance, most) {
+    const { g, width, height } = prepare(id);
+    const cx = width / 2, cy = height / 2, unit = 0.46 * Math.min(width, height) / Math.max(1, most);
+    const ex = `${of}eccentricity_x`, ey = `${of}eccentricity_y`, phase = column[`${of}phase`];
+    const x = (i) => cx + unit * column[ey][i] / clearance;
+    const y = (i) => cy - unit * column[ex][i] / clearance;
+    const touching = (i) => phase && phase[i] === 2;
     const line = (from, to, strength, thick) => {   // stretches in contact in a colour of their own
       g.lineWidth = thick;
       g.globalAlpha = strength;
@@ -258,9 +267,8 @@
     while (from > 0 && column.crank_angle[row] - column.crank_angle[from] < 2 * Math.PI) from--;
     line(from, row, 1, 1.4);
     circle(g, cx, cy, unit, null, COLOUR.ink, 1.5);
-    const inContact = near("phase") === 2;
-    circle(g, cx + unit * at("eccentricity_y") / scene.clearance, cy - unit * at("eccentricity_x") / scene.clearance, 5,
-      inContact ? COLOUR.purple : COLOUR.vermilion, "#fff", 1);
+    circle(g, cx + unit * at(ey) / clearance, cy - unit * at(ex) / clearance, 5,
+      touching(nearest()) ? COLOUR.purple : COLOUR.vermilion, "#fff", 1);
   }
 
   // ---- the time line: film thickness, or the pin's force, over all the run; contacts below
@@ -326,7 +334,8 @@
 
   function draw() {
     drawMechanism();
-    if (joint) { drawJoint(); drawOrbit(); }
+    if (joint) { drawJoint(); drawOrbit("orbit", "", scene.clearance, scene.peak.eccentricity_ratio); }
+    if (crankPin) drawOrbit("crank-pin-orbit", "crank_pin_", crankPin.clearance, crankPin.peak_ratio);
     if (bore) drawBore();
     drawTimeline();
     drawState();
@@ -337,7 +346,7 @@
   const turns = () => Math.pow(10, Number(byId("speed").value));   // revolutions a second
   function labels() {
     byId("speed-value").textContent = local(`${turns().toPrecision(2)} ${W("rev/s")}`);
-    byId("magnification-value").textContent = local(`× ${(joint || !bore ? magnification() : inBore(bore.radius)).toPrecision(3)}`);
+    byId("magnification-value").textContent = local(`× ${(joint || !(bore || crankPin) ? magnification() : crankPin ? atCrankPin() : inBore(bore.radius)).toPrecision(3)}`);
   }
 
   function frame(stamp) {
