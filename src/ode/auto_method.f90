@@ -16,6 +16,8 @@ module auto_method
   public :: auto_t
 
   integer, parameter :: first_patience = 40    !! excess of steps limited by stability over other steps after which Radau takes over
+  integer, parameter :: most_patience = 2560   !! largest such excess after repeated changes back to Adams: a motion whose start
+                                               !! Adams follows at less cost may be stiff later
   real(dp), parameter :: adams_price = 1.3_dp  !! evaluations of Adams limited by stability, per 1/rate of the fastest mode
   real(dp), parameter :: step_overhead = 5     !! cost of Jacobian and linear algebra of a Radau step, in evaluations
   real(dp), parameter :: most_loss = 80  !! largest number of additional evaluations by Radau in a mode before Adams takes over
@@ -128,7 +130,7 @@ contains
     status = step_done
     associate (mode => self%mode)
       if (self%stiff .and. self%loss(mode) > most_loss) then
-        self%patience(mode) = 4*self%patience(mode)
+        self%patience(mode) = min(4*self%patience(mode), most_patience)
         call change_over(self, problem, .false., status)
       else if (.not. self%stiff .and. self%bound >= self%patience(mode)) then
         self%loss(mode) = 0
