@@ -2,7 +2,7 @@
 """Draws what an elastic connecting rod makes of the first impacts of Flores's slider-crank (cases/elastic/first_impact.nml).
 
     scripts/plot_elastic.py                      -> results/elastic/first_impact.png
-    scripts/plot_elastic.py --out cases/elastic  the picture that is shipped
+    scripts/plot_elastic.py --out cases/elastic  the picture that is shipped; --table: and the table data/measured/first_impact.md
 
 Runs the case with a rigid rod, one that only bends, two that only stretch or stretch too simply, and the whole, by the release build,
 and prints the table of the first contact.
@@ -19,8 +19,9 @@ from gudgeon_plots.environment import TOP, use_virtual_environment
 use_virtual_environment()
 
 from gudgeon_plots import elastic_pictures, figures, language  # noqa: E402
+from gudgeon_plots.measured import write_table  # noqa: E402
 from gudgeon_plots.program import release_program  # noqa: E402
-from gudgeon_plots.results import MissingResult, load_run  # noqa: E402
+from gudgeon_plots.results import MissingResult, Run, load_run  # noqa: E402
 
 CASE = TOP / "cases" / "elastic" / "first_impact.nml"
 
@@ -29,22 +30,30 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, default=TOP / "results" / "elastic", metavar="DIR", help="(default: results/elastic)")
     parser.add_argument("--format", action="append", choices=("png", "svg", "pdf"), help="repeatable (default: png)")
+    parser.add_argument("--table", action="store_true", help="write data/measured/first_impact.md too")
     parser.add_argument("--program", type=Path, help="this program instead of a release build")
     language.add_option(parser)
     options = parser.parse_args()
-    runs = []
+    runs, shapes = [], []
     try:
         program = options.program or release_program()
         with tempfile.TemporaryDirectory(prefix="elastic") as scratch:
-            for i, (*_, settings) in enumerate(elastic_pictures.RODS):
-                out = Path(scratch) / str(i)
-                words = [word for setting in settings for word in ("--set", setting)]
-                subprocess.run([program, "-q", "-o", out, *words, CASE], check=True)
-                runs.append(load_run(out / f"{CASE.stem}.csv"))
+            def run(*settings: str) -> Run:
+                out = Path(scratch) / "_".join(("run", *settings))
+                subprocess.run([program, "-q", "-o", out, *(word for setting in settings for word in ("--set", setting)), CASE], check=True)
+                return load_run(out / f"{CASE.stem}.csv")
+
+            runs = [run(*settings) for *_, settings in elastic_pictures.RODS]
+            if options.table:
+                shapes = [run(f"elastic_rod.axial_shapes={number}") for number in elastic_pictures.AXIAL_SHAPES]
     except (MissingResult, subprocess.CalledProcessError) as failure:
         print(failure, file=sys.stderr)
         return 1
-    print(elastic_pictures.describe_first_impacts(runs))
+    table = elastic_pictures.describe_first_impacts(runs)
+    print(table)
+    if options.table:
+        print(write_table("first_impact", "What an elastic rod makes of the first impact", "scripts/plot_elastic.py --table", "\n\n".join(
+            (elastic_pictures.FIRST_IMPACT_SAYS, table, elastic_pictures.AXIAL_SHAPES_SAY, elastic_pictures.describe_axial_shapes(shapes)))))
     for path in figures.save(elastic_pictures.draw_first_impacts(runs), options.out, CASE.stem, options.format or ["png"]):
         print(path)
     language.current.warn("plot_elastic.py")

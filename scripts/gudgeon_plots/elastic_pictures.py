@@ -63,6 +63,28 @@ def describe_first_impacts(runs: list[Run]) -> str:
     return "\n".join(lines)
 
 
+#: Numbers of axial shapes whose first contacts are compared, and what the table of them says.
+AXIAL_SHAPES = range(1, 9)
+FIRST_IMPACT_SAYS = (
+    "`cases/elastic/first_impact.nml`: the pin meets its bearing 0.2 ms after the start. A rigid rod, and one that only bends, send it back with 1.74 m/s. "
+    "The waves along a rod that stretches take half of this speed away. Finite elements are 24 cable elements (ANCF, Exudyn)."
+)
+AXIAL_SHAPES_SAY = (
+    "The speed after the contact by the number of axial shapes, with 4 transverse modes. It hangs on the phase in which the shortest waves find the pin as "
+    "the contact ends: from 4 shapes on it lies on both sides of that of finite elements, -0.874 m/s, and comes nearer slowly. The 8 shapes of the "
+    "case, the most that a rod may have, give 3 to 4 % less. The instants agree much sooner."
+)
+
+
+def describe_axial_shapes(runs: list[Run]) -> str:
+    """A table of the first contact by the number of axial shapes."""
+    lines = ["| axial shapes | contact begins | ends |", "|---|---|---|"]
+    for shapes, run in zip(AXIAL_SHAPES, runs):
+        begin, end = (f"{1e3 * event['time']:.4f} ms, {event['normal_speed']:+.3f} m/s" for _, event in run.events.iloc[:2].iterrows())
+        lines.append(f"| {shapes} | {begin} | {end} |")
+    return "\n".join(lines)
+
+
 #: What is set of cases/elastic/first_impact.nml for all runs that compare members, and for each, which it is and what is set besides.
 MEMBER_RUN = (
     "integrator.end_time=0", "integrator.revolutions=3", "output.interval=0", "output.samples_per_revolution=3600",
