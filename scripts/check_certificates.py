@@ -43,8 +43,8 @@ takes too long (`--timeout`): the claim is checked up to there.
 """
 LIMIT = 1e-3
 KNOWN = 1e-5
-BEYOND = 1.25  # the runs at 1e-13 go on to this multiple of the certified time
-CLOSER_ROWS = 20  # as close as those of a case that says how far apart they are
+BEYOND = 1.25  # the runs at 1e-13 continue to this multiple of the certified time
+CLOSER_ROWS = 20  # as close as those of a case that gives their distance
 
 
 def arguments() -> argparse.Namespace:

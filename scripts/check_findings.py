@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compares what the dissertation says about its results with runs of the program, and writes data/measured/findings.md.
+"""Compares statements of the dissertation about its results with runs of the program, and writes data/measured/findings.md.
 
     scripts/setup.sh --python
     .venv/bin/python scripts/check_findings.py            # 30 seconds; exit status 1 where a number is not what is written here
@@ -36,7 +36,7 @@ AS_SHIPPED = slice(0, 2 * 3600)
 
 
 class Runs:
-    """Results of cases, each run when it is first asked for."""
+    """Results of cases; each case is run when its result is first needed."""
 
     def __init__(self, program: Path, folder: Path) -> None:
         self.program, self.folder = program, folder
@@ -105,7 +105,7 @@ def rms(values: np.ndarray) -> float:
 
 @dataclass
 class Finding:
-    """A statement of the dissertation and what the program says of it."""
+    """A statement of the dissertation and the result of the program."""
 
     place: str                          # section and page of the dissertation
     statement: str

@@ -1,8 +1,8 @@
 #!/bin/sh
 # scripts/compare_adams.sh [scenes | standard | coordinates]
-# The Adams method side by side with what a published Shampine-Gordon code needed on the same scenes: evaluations
-# and errors at four tolerances; before that, the standard battery of non-stiff problems; after it, how well the eccentricity
-# is known by coordinates. The references are integrated first, by a copy that computes in 80 bits.
+# Compares the Adams method with a published Shampine-Gordon code: first on the standard battery of non-stiff problems, then on scenes
+# of the program (evaluations and errors at four tolerances); last the accuracy of the eccentricity in several coordinates. The
+# references are integrated first, by a copy of the program that computes with 80 bits.
 cd "$(dirname "$0")/.." || exit 1
 set -e
 copy=build/extended_precision

@@ -22,7 +22,7 @@ LINK = re.compile(r"(\]\()([^)#\s]+)(#[^)\s]*)?(\))")
 
 
 def place_in_manual(path: Path) -> Path | None:
-    """Where a file of the repository stands among the built pages, if it is a page of the manual."""
+    """Path of a file of the repository among the built pages, if it is a page of the manual."""
     if path.parent in (SOURCE, MEASURED) and path.suffix == ".md":
         name = "findings" if path == MEASURED / "findings.md" else path.stem
         return BUILT / "page" / (name + ".html" if path.parent == SOURCE or name == "findings" else f"measured_{name}.html")
@@ -71,7 +71,7 @@ def collect(program: str) -> None:
 
 
 def link() -> None:
-    """README.md is the first page; FORD leaves its links as they stand."""
+    """README.md is the first page; FORD does not change its links."""
     page = BUILT / "index.html"
     text = page.read_text(encoding="utf-8")
 

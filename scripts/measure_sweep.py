@@ -51,7 +51,7 @@ def instructions(command, function, folder):
 
 
 def count_instructions(sweep, folder):
-    """Print the instructions that a sweep of 100 runs on one thread takes beside the simulations themselves."""
+    """Print the instructions of a sweep of 100 runs on one thread that do not belong to the simulations."""
     whole = instructions(sweep, "__study_worker_MOD_run", folder)
     simulated = instructions(sweep, "__gudgeon_simulation_MOD_simulate", folder)
     if simulated == 0:

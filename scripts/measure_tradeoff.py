@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measures what accuracy costs in a scene, and says which settings of the integrator to use.
+"""Measures the cost of accuracy in a scene, and recommends settings of the integrator.
 
     scripts/measure_tradeoff.py cases/sim_I.nml               table, picture and recommendation, in results/tradeoff
     scripts/measure_tradeoff.py cases/flores/*.nml --repeat 9 several cases, wall times the median of nine
@@ -177,7 +177,7 @@ class Study:
         ]
 
     def row(self, settings: Settings, reference: Reference) -> dict[str, object]:
-        """Run once for the errors, in full digits, and as the case asks for the wall time."""
+        """Run once with all digits for the errors, and with the settings of the case for the wall time."""
         with tempfile.TemporaryDirectory() as out:
             row: dict[str, object] = vars(settings) | {"made_of": self.made_of}
             row["status"] = self.run(settings, out, "output.digits=17")
@@ -191,7 +191,7 @@ class Study:
             return row | {"seconds": statistics.median(times)}
 
     def rows(self) -> pd.DataFrame:
-        """The rows in the table that are still true; it is written anew with them."""
+        """The rows of the table that are still valid; the table is written again with these."""
         columns = list(COLUMNS)
         if not self.table.exists():
             self.table.parent.mkdir(parents=True, exist_ok=True)
@@ -206,7 +206,7 @@ class Study:
         return found
 
     def measure(self, reference: Reference) -> pd.DataFrame:
-        """Run what the table lacks, a row at a time as they end; all rows asked for."""
+        """Run what is missing in the table, adding rows as runs end; returns all rows wanted."""
         wanted = self.settings(reference.run)
         old = self.rows()
         old.to_csv(self.table, index=False, na_rep="nan")

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Runs case files with the release build, side by side on the cores there are: a line each as they finish, then a table.
+# Runs case files with the release build, in parallel on all processor cores: a line for each case as it ends, then a table.
 #
 #   scripts/run_cases.sh [-o DIR] [-j N] [-s GROUP.KEY=VALUE] CASE.nml...      (options go to gudgeon)
 #

@@ -71,7 +71,7 @@ class Noise:
 
 
 def in_absolute_coordinates(program: Path, simulation: str, tolerance: float) -> pd.DataFrame:
-    """Rows of a simulation in (q, A, x); fewer than asked for where the pin came through its film."""
+    """Rows of a simulation in (q, A, x); fewer than wanted if the pin touched its bearing."""
     case = TOP / "cases" / f"sim_{simulation}.nml"
     words = [program, case, REVOLUTIONS[simulation], SAMPLES, tolerance, MAX_STEP]
     outcome = subprocess.run([str(word) for word in words], capture_output=True, text=True, check=False)

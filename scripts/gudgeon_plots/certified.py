@@ -7,7 +7,7 @@ from .style import GREY
 
 
 def certified_until(run: Run) -> float | None:
-    """Time up to which the run is certified [s]; None where that is all of it, or nobody asked."""
+    """Time up to which the run is certified [s]; None if all of it is certified, or no certificate was requested."""
     text = run.summary.get("certified_until", ("", ""))[0]
     if not text:
         return None

@@ -128,14 +128,14 @@ def report(found: list[Agreement], agreement: float) -> str:
 
 
 def shared_columns(a: Run, b: Run) -> list[str]:
-    """Columns to compare unless told: those that both have and that move in one of them."""
+    """Columns compared by default: those that both traces have and that vary in one of them."""
     return [
         column for column in COLUMNS if column in a and column in b and (np.ptp(a[column]) > 0 or np.ptp(b[column]) > 0)
     ]
 
 
 def different_names(a: Path, b: Path) -> tuple[str, str]:
-    """File names, with as many folders before them as it takes to tell them apart."""
+    """File names, with as many folders as are needed to distinguish them."""
     left, right = a.resolve().parts, b.resolve().parts
     for count in range(1, max(len(left), len(right)) + 1):
         if left[-count:] != right[-count:]:

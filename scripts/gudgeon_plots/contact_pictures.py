@@ -35,7 +35,7 @@ def law_of(run: Run) -> tuple[str, str]:
 
 
 def contact_loop(axis: Axes, runs: list[Run]) -> None:
-    """Normal force over penetration, loading and unloading told apart."""
+    """Normal force over penetration, with different lines for loading and unloading."""
     for run in runs:
         name, colour = law_of(run)
         states = contact_states(run)

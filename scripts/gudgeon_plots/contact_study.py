@@ -1,4 +1,4 @@
-"""The study of contact laws and geometries: its picture, and what it says in numbers."""
+"""The study of contact laws and geometries: its picture and its numbers."""
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -61,7 +61,7 @@ def draw_contact_laws(runs: Runs) -> Drawing:
 
 
 def describe_contact_laws(runs: Runs) -> str:
-    """What geometry and what law make of it: means over the laws that know a restitution, and how far these laws are apart."""
+    """Results by geometry and law: means over the laws with a restitution, and the scatter between these laws."""
     table = runs.table[runs.done]
     lines = [
         f"contact_laws: {runs.done.sum()} of {len(runs.table)} runs done; peak pin force, time in contact, dissipated in a "

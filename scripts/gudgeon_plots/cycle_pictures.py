@@ -12,7 +12,7 @@ HEIGHT = 1.7  # of a row [inch]
 
 
 def label(cycles: Cycles, column: str) -> str:
-    """A column's name and unit as an axis says it."""
+    """Name and unit of a column, as an axis label."""
     unit = cycles.run.units.get(column, "")
     return column.replace("_", " ") + (f" [{unit}]" if unit and unit != "-" else "")
 

@@ -181,7 +181,7 @@ def work(cycles: Cycles) -> pd.DataFrame:
 
 
 def loss_columns(cycles: Cycles) -> list[tuple[np.ndarray, str]]:
-    """Powers [W] that joints take from the bodies, negative, where the trace has what tells them."""
+    """Powers [W] that joints take from the bodies, negative, if the trace has the necessary columns."""
     found = []
     for prefix, place in (("", "piston pin"), ("crank_pin_", "crank pin")):
         if f"{prefix}friction_force" in cycles and f"{prefix}sliding_speed" in cycles:

@@ -1,4 +1,4 @@
-"""What an elastic rod makes of an impact: its picture, and what it says in numbers."""
+"""The effect of an elastic rod on an impact: its picture and its numbers."""
 
 import math
 

@@ -162,7 +162,7 @@ def draw(figure: Figure, results: Results, cycles: Results | None = None) -> Dra
 
 
 def span(run: Run) -> str:
-    """What a title says of the revolutions that a trace covers."""
+    """Part of a title: the revolutions that a trace covers."""
     first, last = (run["crank_angle"][row] / (2 * np.pi) for row in (0, -1))
     return f", revolutions {first:.4g} to {last:.4g}"
 

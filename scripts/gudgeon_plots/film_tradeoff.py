@@ -1,4 +1,4 @@
-"""Films against each other: what an evaluation and a run cost with each, and what the run says.
+"""Comparison of films: the cost of an evaluation and of a run with each film, and the results of the run.
 
 The same scene with every film, integrated by `auto` at the relative tolerance of the cases. Times are the least of some runs; a direct
 solution takes too long to be repeated. Instructions of an evaluation are counted by valgrind, where it is installed, as the difference
@@ -21,7 +21,7 @@ from .results import read_summary
 
 @dataclass(frozen=True)
 class Film:
-    """A film and the values of a case that ask for it."""
+    """A film and the values of a case that select it."""
 
     name: str
     overrides: tuple[str, ...]
@@ -59,7 +59,7 @@ def command(program: Path, case: Path, out: str, values: tuple[str, ...]) -> lis
 
 
 def run(program: Path, case: Path, out: str, values: tuple[str, ...], timeout: float) -> dict[str, float | str]:
-    """One run: the numbers in the summary of a run; `stopped` says why it did not come to an end."""
+    """One run: the numbers in the summary of a run; `stopped` is the reason if it did not reach its end."""
     try:
         done = subprocess.run(command(program, case, out, values), capture_output=True, text=True, check=False, timeout=timeout)
     except subprocess.TimeoutExpired:
@@ -79,7 +79,7 @@ def run(program: Path, case: Path, out: str, values: tuple[str, ...], timeout: f
 
 
 def instructions(program: Path, case: Path, film: Film, timeout: float) -> float | None:
-    """Of an evaluation with all that goes with it."""
+    """Cost of an evaluation, including everything that belongs to it."""
     valgrind = shutil.which("valgrind")
     if valgrind is None:
         return None
@@ -102,7 +102,7 @@ def instructions(program: Path, case: Path, film: Film, timeout: float) -> float
 
 
 def measure(program: Path, case: Path, film: Film, repeat: int, timeout: float) -> dict[str, float | str | None]:
-    """What one film costs and says in one scene."""
+    """Cost and results of one film in one scene."""
     with tempfile.TemporaryDirectory() as out:
         report = ("lubrication.report=.true.",) if film.reports else ()
         answers = run(program, case, out, (*film.overrides, *report), timeout)   # the first run makes the table of a film

@@ -22,7 +22,7 @@ _COMMA = re.compile(r"(?<=\d)\.(?=\d)")
 
 
 class Language:
-    """How texts are said. `unknown` collects what has no translation."""
+    """Translates texts. `unknown` collects texts without translation."""
 
     def __init__(self, name: str = "en") -> None:
         self.name = name

@@ -20,7 +20,7 @@ LEAST_PERCENT = 0.005  # less is shown as 0
 
 @dataclass(frozen=True)
 class Quantity:
-    """One that the user asks for, and how its change is told."""
+    """A quantity that the user selects, and the form in which its change is reported."""
 
     name: str
     label: str
@@ -84,7 +84,7 @@ class Laboratory:
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def run(self, settings: tuple[str, ...], *more: str) -> tuple[int, str, float]:
-        """Exit status, what was said, and processor time [s]; -1 where it took too long."""
+        """Exit status, messages, and processor time [s]; -1 if it took too long."""
         words = [str(self.program), "-q", "-o", str(self.folder), *more]
         for setting in (*self.settings, "output.ideal_twin=F", "run.lyapunov_revolutions=0", *settings):
             words += ["--set", setting]
@@ -161,13 +161,13 @@ def change(name: str, reference: Outcome, other: Outcome) -> tuple[float, float]
 
 
 def largest_change(names: list[str], reference: Outcome, other: Outcome) -> float:
-    """Largest change of the quantities; infinite where the other scene does not tell one of them."""
+    """Largest change of the quantities; infinite if the other scene does not have one of them."""
     changes = [change(name, reference, other) for name in names if name in reference.values]
     return max((abs(found[0]) if found else float("inf") for found in changes), default=0.0)
 
 
 def will_do(names: list[str], limit: float, reference: Outcome, other: Outcome) -> bool:
-    """Whether a scene tells every quantity within the limit, or as close as the certificates of both can tell."""
+    """Whether a scene gives every quantity within the limit, or within the accuracy of both certificates."""
     for name in names:
         if name not in reference.values:
             continue
@@ -261,7 +261,7 @@ def is_simplification(outcome: Outcome) -> bool:
 
 
 def saves(before: Outcome, after: Outcome, is_simpler: bool) -> bool:
-    """Whether a scene is worth while: a simpler one that costs no more, or one that saves both evaluations and time."""
+    """Whether a scene is useful: simpler without costing more, or cheaper in both evaluations and time."""
     if is_simpler:
         return after.evaluations <= (1 + NOISE) * before.evaluations or after.seconds < (1 - NOISE) * before.seconds
     return after.evaluations < (1 - NOISE) * before.evaluations and after.seconds < (1 + NOISE) * before.seconds

@@ -9,7 +9,7 @@ from .model_effects import QUANTITIES, Outcome, Search, change, largest_change, 
 from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION, WIDTH
 
 COLOURS = {"taken out": VERMILION, "exchanged": BLUE, "refined": GREEN, "added": ORANGE, "fullest": PURPLE, "cheapest": PURPLE}
-SMALLEST = 1e-3  # change that the picture tells apart from none [%]
+SMALLEST = 1e-3  # smallest change that the picture shows [%]
 
 
 def as_data(outcomes: list[Outcome]) -> pd.DataFrame:

@@ -41,7 +41,7 @@ class Variant:
     kind: str
     label: str
     settings: tuple[str, ...]  # GROUP.KEY=VALUE of the program's --set
-    assumed: str = ""  # what the case does not say
+    assumed: str = ""  # values that the case does not give
     fuller: bool = False  # closer to the machine than the case: a part of the fullest scene
 
 
@@ -76,7 +76,7 @@ def place_of(name: str) -> str:
 
 
 def variants_of(case: Case, template: dict[str, dict[str, Key]]) -> list[Variant]:
-    """All variants of a case, given as its resolved file. Not all of them need be possible: the program says so."""
+    """All variants of a case, given as its resolved file. Not all of them need be valid: the program refuses invalid ones."""
     return [*taken_out(case), *exchanged(case, template), *refined(case), *added(case, template)]
 
 
@@ -159,7 +159,7 @@ def refined(case: Case) -> list[Variant]:
 
 
 def added(case: Case, template: dict[str, dict[str, Key]]) -> list[Variant]:
-    """Models that the case does not have, as far as it has what they need; what is assumed beyond it is said."""
+    """Models that the case does not have, if it has the data they need; additional assumptions are stated."""
     found = []
     loose, mechanism = loose_joints(case), case["mechanism"]
     for name in ("joint", "crank_pin.joint"):

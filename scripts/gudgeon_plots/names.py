@@ -10,7 +10,7 @@ import numpy as np
 from .program import release_program
 from .results import MissingResult
 
-#: Keys of a case whose own name would not say what they are.
+#: Keys of a case whose names alone are not clear as labels.
 KEYS = {
     "joint.clearance": "radial clearance",
     "crank_pin.joint.clearance": "crank pin's radial clearance",
@@ -24,7 +24,7 @@ KEYS = {
     "drive.damping": "damping of the crank",
 }
 
-#: Columns of results whose own name would not say what they are.
+#: Columns of results whose names alone are not clear as labels.
 COLUMNS = {
     "min_film_thickness": "smallest film thickness",
     "min_film_thickness_mean": "smallest film thickness of a revolution, mean",
@@ -83,7 +83,7 @@ def plain_unit(unit: str) -> str:
 
 @lru_cache
 def key_units() -> dict[str, str]:
-    """The unit of every key of a case, by what the program's template says of it; of none if there is no program."""
+    """The unit of every key of a case, from the program's template; empty if there is no program."""
     try:
         text = subprocess.run([release_program(), "--template"], capture_output=True, text=True, check=True).stdout
     except (MissingResult, OSError, subprocess.CalledProcessError):

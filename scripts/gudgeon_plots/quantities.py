@@ -35,7 +35,7 @@ SECTION_CYCLES = 60
 #: A contact's largest force is seen in the samples that have this share of it.
 SEEN_PEAK = 0.98
 
-#: Where the pin touches, the axis of the film goes down to this [um]: on its way to contact every film passes through 0.
+#: Lower end of the axis of the film thickness for runs with contacts [um], since the thickness passes through 0.
 LEAST_DRAWN_FILM = 0.1
 
 
@@ -88,7 +88,7 @@ def touches(run: Run) -> bool:
 
 
 def least_film(run: Run) -> str:
-    """The run's smallest film thickness or largest penetration, of all steps where the summary tells it."""
+    """The run's smallest film thickness or largest penetration, of all steps if the summary has it."""
     least = 1e6 * float(run.summary.get("min_film_thickness", (run["film_thickness"].min(), ""))[0])
     return f"smallest film thickness {least:.3g} µm" if least >= 0 else f"deepest penetration {-least:.3g} µm"
 

@@ -68,7 +68,7 @@ class Quantity:
         return zoom_window(x, y, np.interp(run["time"], ideal["time"], self.values(ideal)), x[0] + 0.1 * np.ptp(x))
 
     def draw_zoom(self, axis: Axes, run: Run, ideal: Run, colour: str) -> None:
-        """Some of the oscillations that the envelope stands for."""
+        """Some of the oscillations that the envelope represents."""
         low, high = self.zoomed(run, ideal)
         x, name = abscissa(run)
         inside = (x >= low) & (x <= high)
@@ -114,7 +114,7 @@ def cut_start(axis: Axes, run: Run, values: np.ndarray, more: np.ndarray | None 
 
 
 def start_note(values: Callable[[Run], np.ndarray]) -> Callable[[Run], str]:
-    """What a title says of a start that is cut off: the value farthest from the rest of the run."""
+    """Part of a title for a start that is cut off: the value farthest from the rest of the run."""
 
     def note(run: Run) -> str:
         y = values(run)
@@ -151,7 +151,7 @@ def curve_name(run: Run) -> str:
 
 
 def label(run: Run) -> str:
-    """What tells a run from the others of its figure."""
+    """Label that distinguishes a run from the others of its figure."""
     law = run.parameter("lubrication", "law")
     if law == "pinkus_sternlicht" and not held_speed(run):
         return "Pinkus–Sternlicht film"

@@ -31,7 +31,7 @@ def chosen(cycles: Cycles, wanted: list[str] | None) -> list[str]:
 
 
 def drift(cycles: Cycles, column: str) -> float:
-    """How far the mean of a column goes from the first cycle to the last, over the column's range."""
+    """Change of the mean of a column from the first cycle to the last, relative to the column's range."""
     means = cycles[column].mean(axis=1)
     return float(abs(means[-1] - means[0]) / (np.ptp(cycles[column]) or 1.0))
 

@@ -222,7 +222,7 @@ def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
 
 
 def warnings(run: Run) -> list[str]:
-    """What a reader should know before trusting the run."""
+    """Warnings about a run."""
     found = []
 
     def number(name: str) -> float | None:

@@ -24,7 +24,7 @@ class MissingResult(Exception):
 
 @dataclass(frozen=True)
 class Run:
-    """One run: its trace by column name without unit, and what the program wrote beside it; events of the piston pin."""
+    """One run: its trace by column name without unit, and the other result files; events are those of the piston pin."""
 
     name: str
     trace: pd.DataFrame
@@ -144,7 +144,7 @@ def _value(text: str) -> object:
 
 
 def load_run(path: Path) -> Run:
-    """The run whose trace is `path`; events, summary and case are read where they lie beside it."""
+    """The run whose trace is `path`; events, summary and case are read from the same folder, if they exist."""
     name = path.name.removesuffix(".csv")
     base = path.with_name(name.removesuffix(".ideal"))
     trace, units = read_table(path)
@@ -176,7 +176,7 @@ class Results:
     def __init__(
         self, directory: Path, run_missing: bool = True, rerun: bool = False, case: Path | None = None
     ) -> None:
-        """`case` is a case file beside those of cases/."""
+        """`case` is a case file in addition to those of cases/."""
         self.directory = directory
         self.files = case_files() | ({case.stem: case.resolve()} if case else {})
         self.run_missing = run_missing

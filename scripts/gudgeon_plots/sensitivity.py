@@ -33,7 +33,7 @@ MARKS = (
     (BLUE, "o"), (VERMILION, "s"), (GREEN, "^"), (PURPLE, "D"), (ORANGE, "v"), (BLACK, "P"), (SKY, "X"), (GREY, "*"),
 )
 
-#: For each method, the index that ranks parameters, then the one beside it.
+#: For each method, the index that ranks the parameters, and a second index that is shown with it.
 INDICES = {"morris": ("mu_star", "sigma"), "sobol": ("ST", "S1")}
 
 
@@ -65,7 +65,7 @@ class Output:
 
 @dataclass(frozen=True)
 class Indices:
-    """What one method says about one output: a row a parameter."""
+    """Results of one method for one output: a row for each parameter."""
 
     method: str
     output: str
@@ -102,7 +102,7 @@ def sample(method: str, parameters: Sequence[Parameter], points: int, seed: int)
 
 
 def block(method: str, parameters: int) -> int:
-    """Rows that stand and fall together: a trajectory, or a base point with its exchanges."""
+    """Number of rows that belong together: a trajectory, or a base point with its exchanges."""
     return parameters + (1 if method == "morris" else 2)
 
 

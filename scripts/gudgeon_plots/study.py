@@ -82,7 +82,7 @@ def write_table_study(study: Study, values: np.ndarray, directory: Path, name: s
 
 
 def sweep(program: Path, study: Path, out: Path, options: Sequence[str] = ()) -> "Runs":
-    """Run a study with gudgeon; runs that failed say so in their rows."""
+    """Run a study with gudgeon; failed runs have the reason in their rows."""
     outcome = subprocess.run([program, "sweep", "--quiet", "-o", out, *options, study], check=False)
     if outcome.returncode not in (0, 4):
         raise MissingResult(f"{study}: gudgeon sweep ended with status {outcome.returncode}")

@@ -1,4 +1,4 @@
-"""Pictures of parameter studies: curves, maps, bifurcation diagrams, and what they say in numbers."""
+"""Pictures of parameter studies: curves, maps, bifurcation diagrams, and their numbers."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -19,7 +19,7 @@ from .results import MissingResult, events_of, read_table
 from .study import Runs
 from .style import BLACK, BLUE, GREEN, GREY, VERMILION, WIDTH, mark_decades
 
-#: Values whose largest is more than this many times the least ask for a logarithmic scale.
+#: Ratio of largest to smallest value above which a scale is logarithmic.
 WIDE_RATIO = 30.0
 
 #: Colours of a map reach over these percentiles of its values where they leave less than this share of the whole range.
@@ -66,7 +66,7 @@ def scale_axis(axis: Axes, which: str, values: np.ndarray) -> None:
 
 
 def spans_decades(values: np.ndarray) -> bool:
-    """Whether values ask for a logarithmic scale."""
+    """Whether values need a logarithmic scale."""
     finite = values[np.isfinite(values)]
     return bool(finite.size and finite.min() > 0 and finite.max() > WIDE_RATIO * finite.min())
 
@@ -141,7 +141,7 @@ def draw_maps(studies: dict[str, Runs]) -> Drawing:
 
 
 def failed_note(runs: Runs) -> str:
-    """What a title says of runs that failed."""
+    """Part of a title about failed runs."""
     failed = int((~runs.done).sum())
     return f"; {failed} of {len(runs.table)} runs failed (×)" if failed else ""
 
@@ -162,7 +162,7 @@ def describe_maps(studies: dict[str, Runs]) -> list[str]:
 
 
 def read_strobe(path: Path, runs: Runs) -> pd.DataFrame:
-    """NAME.strobe.csv, with the parameters of each point's run beside it."""
+    """NAME.strobe.csv, with the parameters of the run of each point."""
     if not path.exists():
         raise MissingResult(f"no result {path}")
     strobe, units = read_table(path)
@@ -217,7 +217,7 @@ def strobe_panel(axis: Axes, strobe: pd.DataFrame, parameter: str, column: str, 
     axis.set_ylabel(label)
 
 
-#: Column of the largest Lyapunov exponent [1/revolution], where a study has it, and the largest size that colours tell apart.
+#: Column of the largest Lyapunov exponent [1/revolution], and the largest magnitude that the colours show.
 EXPONENT = "lyapunov_exponent"
 EXPONENT_SHOWN = 1.0
 
@@ -350,7 +350,7 @@ def measured_restitution(directory: Path, runs: Runs, settled_from: float) -> pd
 
 
 def draw_restitution(runs: Runs, measured: pd.DataFrame) -> Drawing:
-    """What the coefficient of restitution changes, and the coefficient that comes out."""
+    """Results over the coefficient of restitution, and the measured restitution."""
     drawing, axes = plt.subplots(2, 2, figsize=(WIDTH, 4.8), sharex=True)
     nominal = runs["contact.restitution"]
     panels = (
@@ -398,7 +398,7 @@ def describe_restitution(runs: Runs, measured: pd.DataFrame) -> str:
 
 
 def shown_columns(runs: Runs, columns: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Of the columns asked for, those that differ between runs, and what a title says of the others; all if none differs."""
+    """The columns that differ between runs, and a text for the title about the others; all columns if none differs."""
     varying = [column for column in columns if not is_constant(runs, column)] or list(columns)
     notes = []
     for column in columns:

@@ -1,4 +1,4 @@
-"""How the figures look: sizes for print, colours told apart by colour-blind readers (Okabe and Ito)."""
+"""Style of the figures: sizes for print, colours that colour-blind readers can distinguish (Okabe and Ito)."""
 
 import matplotlib as mpl
 from matplotlib.axis import Axis
