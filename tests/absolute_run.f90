@@ -68,8 +68,8 @@ contains
     read (text, *) argument
   end function argument
 
-  !> The samples. The gas is that of the end of the run, whose part of the cycle does not tell on earlier rows: they are sampled as
-  !> they were, with the accelerations that the sampled state had.
+  !> The samples. The gas has its state at the end of the run; since its part of the cycle does not influence earlier rows, these
+  !> are sampled with the accelerations of the sampled states.
   subroutine print_rows(engine, clearance)
     type(absolute_gas_engine_t), intent(inout) :: engine
     real(dp), intent(in) :: clearance   !! [m]

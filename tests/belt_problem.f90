@@ -74,7 +74,7 @@ contains
     sticks = self%joint%friction%set_valued .and. self%joint%sliding == 0
   end function sticks
 
-  !> What the procedures of a joint need to know of the mass: it slides along y on a wall across x.
+  !> The data that the procedures of a joint need about the mass: it slides along y on a wall normal to x.
   pure subroutine see_as_joint(self, t, y, motion, own, accelerations)
     class(belt_t), intent(in) :: self
     real(dp), intent(in) :: t, y(:)

@@ -197,7 +197,7 @@ contains
     end do
   end function without_figures
 
-  !> Whether no letter, digit or underscore stands before character i.
+  !> Whether no letter, digit or underscore precedes character i.
   pure logical function begins_word(name, i)
     character(len=*), intent(in) :: name
     integer, intent(in) :: i

@@ -43,8 +43,9 @@ contains
     self%largest_per_unit = max(self%largest_per_unit, error/(t_to - method%t_old))
   end subroutine step_taken
 
-  !> The solution through (t, y) at t_to by Gragg's extrapolated midpoint rule in as many pieces as it takes, by a clock that
-  !> stands still at both ends: roots of the time in f at either end do no harm. `doubt` is the last change of it.
+  !> The solution through (t, y) at t_to by Gragg's extrapolated midpoint rule in several pieces, with an independent variable whose
+  !> rate vanishes at both ends, so that square roots of the time in f at the ends do no harm. `doubt` is the last change of the
+  !> result.
   subroutine local_solution(problem, t, y, t_to, y_to, doubt)
     class(ode_problem_t), intent(in) :: problem
     real(dp), intent(in) :: t, y(:), t_to
@@ -69,8 +70,7 @@ contains
     if (pieces > 1) doubt = min(doubt, maxval(abs(y_to - before)))
   end subroutine local_solution
 
-  !> Advance y over start <= s <= start + length of the clock; `change` tells the last column of the extrapolation from the
-  !> last but one.
+  !> Advance y over start <= s <= start + length; `change` is the difference of the last two columns of the extrapolation.
   subroutine extrapolated_midpoint(problem, t_from, t_to, start, length, columns, y, change)
     class(ode_problem_t), intent(in) :: problem
     real(dp), intent(in) :: t_from, t_to, start, length

@@ -154,7 +154,7 @@ program gudgeon_tests
 
 contains
 
-  !> Run a suite if it is asked for.
+  !> Run a suite if it is selected.
   subroutine run(name, suite)
     character(len=*), intent(in) :: name
     interface

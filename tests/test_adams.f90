@@ -113,8 +113,8 @@ contains
     call check%that(worst <= 1.5_dp*step_error + 1e-9_dp, 'the interpolant is as accurate as the steps')
   end subroutine interpolant_is_smooth
 
-  !> A start where f is smooth in the square root of the time, as at the beginning of a contact: told so, the method needs
-  !> a fraction of the evaluations, keeps the tolerance inside its steps too, and keeps to the longest step in time.
+  !> A start at which f is smooth in the square root of the time, as at the beginning of a contact: if the problem says so, the
+  !> method needs a fraction of the evaluations, keeps the tolerance inside its steps, and observes the largest step.
   subroutine root_at_start(check)
     class(checks_t), intent(inout) :: check
     type(root_t) :: problem

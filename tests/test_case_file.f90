@@ -434,7 +434,7 @@ contains
                       'for contact_entry = ''step_rejection'' (m)')
   end subroutine test_runs
 
-  !> A run ends where the last word says, and the resolved case says so; two words of one place are a mistake.
+  !> The last key given for the end of a run counts, also in the resolved case; two such keys in one place are an error.
   subroutine test_ends_of_runs(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: both = 'x.nml: &integrator end_time = 1: must not be given together with revolutions = '
@@ -505,8 +505,8 @@ contains
                     'x.nml: --set output.sampling=angle: &output sampling = angle: must be one of time, crank_angle')
   end subroutine test_sampling
 
-  !> Turns counted by the crank: end_time may stand beside them, revolutions not; the file's other end goes, but not where the file
-  !> gives both.
+  !> End of a run by turns of the crank: end_time is allowed with crank_revolutions, revolutions is not; an override replaces the
+  !> other end of the file, unless the file gives both.
   subroutine test_turns(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: turned = bodies//'&integrator crank_revolutions=4 /', &
@@ -535,7 +535,7 @@ contains
                     'more than 1e9 rows (s)')
   end subroutine test_turns
 
-  !> A case with overrides is accepted, and resolved these two lines begin as told.
+  !> A case with overrides is accepted, and its resolved form begins with the two given lines.
   subroutine resolves(check, text, overrides, first, second)
     class(checks_t), intent(inout) :: check
     character(len=*), intent(in) :: text, overrides(:), first, second
@@ -593,7 +593,7 @@ contains
       'a hint for none as a law')
   end subroutine test_groups_taken_out
 
-  !> 0,05 for 0.05 is said to be that, where it is not two values.
+  !> 0,05 instead of 0.05 is reported as a decimal comma, unless it is a pair of values.
   subroutine test_decimal_commas(check)
     class(checks_t), intent(inout) :: check
     type(case_t) :: c
@@ -614,7 +614,7 @@ contains
     call check%that(abs(c%mechanism%rod_com(2) - 5) < 1e-15_dp .and. abs(c%mechanism%crank_com(1) - 1) < 1e-15_dp, 'are two')
   end subroutine test_decimal_commas
 
-  !> A study is no case; a torque that does nothing is told.
+  !> A study file is not a case file; a torque without effect is reported.
   subroutine test_hints(check)
     class(checks_t), intent(inout) :: check
     type(case_t) :: c

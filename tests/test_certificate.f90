@@ -78,7 +78,7 @@ contains
     call check%that(index(certificate_summary(certificate), 'certified_until,') == 1, what//': summary')
   end subroutine holds
 
-  !> The errors of the forces up to the certified time are those that the certificate says, but for what peaks between its rows.
+  !> The errors of the forces in the certified part are those of the certificate, except for peaks between its rows.
   subroutine columns_hold(check, run, truth, certificate, what)
     class(checks_t), intent(inout) :: check
     type(trace_t), intent(in) :: run, truth

@@ -213,8 +213,8 @@ contains
     end do
   end subroutine reactions_match_the_joints
 
-  !> Accelerations with a further load are those without it and what the load adds; the loads of ideal pins are those that the
-  !> accelerations ask for.
+  !> Accelerations with an additional load are those without it plus the response to the load; the loads of ideal pins agree with
+  !> the accelerations.
   subroutine loads_respond_linearly(check)
     class(checks_t), intent(inout) :: check
     type(random_numbers_t) :: random

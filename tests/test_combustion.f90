@@ -195,8 +195,8 @@ contains
     call check%relative(inner + work, 165*(1 - exp(-5.0_dp)), 1e-9_dp, 'first law over the combustion')
   end subroutine energy_of_the_gas
 
-  !> Tables of four tolerances against the best, where neither has points, and the best against p V^gamma, which is constant without
-  !> heat. The tables' own estimate is not asked.
+  !> Tables for four tolerances against the most accurate one, at angles at which neither has points; and that one against p
+  !> V^gamma, which is constant without heat release. The tables' own estimate of their error is not used.
   subroutine tables_are_accurate(check, best)
     class(checks_t), intent(inout) :: check
     type(gas_cycle_t), intent(in) :: best   !! made with a tolerance of 1e-11

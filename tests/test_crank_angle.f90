@@ -65,8 +65,8 @@ contains
     call check%that(all(nint(abs(place(2:) - place(:n - 1))) == 1), what//': no angle is left out')
   end subroutine steps_through_grid
 
-  !> The steps of the integrator, so short that a parabola through angle, speed and acceleration tells when the crank is at an
-  !> angle, and a straight line the values there.
+  !> The steps of the integrator are so short that a parabola through angle, speed and acceleration gives the time at which the
+  !> crank is at an angle, and linear interpolation the values there.
   subroutine values_are_those_between_steps(check)
     class(checks_t), intent(inout) :: check
     character(len=long), parameter :: common(4) = [character(len=long) :: 'integrator.revolutions=0.3', &

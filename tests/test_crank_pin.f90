@@ -174,7 +174,7 @@ contains
       call check%that(all(abs(twin%values - ideal%values) <= 0), 'is the mechanism with ideal pins')
   end subroutine has_an_ideal_twin
 
-  !> In every row: the force that the rod's motion asks for at the crank pin is that of the laws, and the energy is kept.
+  !> In every row the force at the crank pin that the motion of the rod requires is that of the laws, and the energy is conserved.
   subroutine energy_and_reactions(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -206,7 +206,7 @@ contains
     end function of
   end subroutine energy_and_reactions
 
-  !> With next to no clearance and an ever stiffer contact without loss the motion comes to that of an ideal crank pin.
+  !> With nearly no clearance and increasing contact stiffness without loss the motion converges to that of an ideal crank pin.
   subroutine a_stiff_crank_pin_is_an_ideal_one(check)
     class(checks_t), intent(inout) :: check
     character(len=long), parameter :: common(6) = [character(len=long) :: 'integrator.revolutions=0', 'integrator.end_time=6e-4', &

@@ -24,7 +24,7 @@ module test_crank_turns
     'mechanism.crank_mass=0', 'mechanism.rod_mass=0', 'mechanism.rod_inertia=0', 'mechanism.piston_mass=1e-12', &
     'mechanism.gravity=0', 'drive.kind=free', 'output.interval=0.01', 'integrator.relative_tolerance=1e-10']
 
-  !> Notes what it is told of the end.
+  !> Stores the messages about the end.
   type, extends(collecting_sink_t) :: hearing_sink_t
     integer :: reports = 0
     real(dp) :: earliest = huge(1.0_dp), latest = 0   !! ends that it was to expect, but for the last report
@@ -88,8 +88,8 @@ contains
     end associate
   end subroutine ends_at
 
-  !> A torque against the crank turns it back after I w^2/(2 tau); a pendulum let go at 90 degrees swings to 270; a damping stops a
-  !> crank after I w/D, which it comes to within the tolerance; end_time comes first; a crank at rest that nothing moves.
+  !> A torque against the rotation turns the crank back after I w^2/(2 tau); a pendulum released at 90 degrees swings to 270;
+  !> damping stops a crank after I w/D, within the tolerance; end_time is reached first; a crank at rest without loads.
   subroutine cranks_that_do_not_get_there(check)
     class(checks_t), intent(inout) :: check
     integer :: k
@@ -191,8 +191,8 @@ contains
     end do
   end subroutine held_cranks_turn_as_before
 
-  !> With film, contact, friction and gas, where 720 degrees are a bound of the gas cycle too, and of the ideal twin: at exactly so
-  !> many turns, where the time is that at which a trace says so.
+  !> With film, contact, friction and gas, where 720 degrees are also a bound of the gas cycle, and for the ideal twin: the run ends
+  !> exactly at the number of turns, at the time at which a trace has that angle.
   subroutine all_scenes_end_at_their_turns(check)
     class(checks_t), intent(inout) :: check
     character(len=30), parameter :: files(6) = [character(len=30) :: 'sim_I', 'sim_IV', 'sim_II_oscillating', &

@@ -188,8 +188,8 @@ contains
     call check%relative(late, watch%statistics%total%pin(piston_pin)%force_integral, 2e-5_dp, 'ideal joint: force to the tolerance')
   end subroutine revolutions_follow_the_crank
 
-  !> The joint's loss from the work, and integrated by itself where a damping that does very little asks for that; and the
-  !> means at loose tolerances, from crank angles at which the force is small and large at the ends of revolutions.
+  !> The loss of the joint from the work, and integrated separately where a very small damping requires that; and the means at loose
+  !> tolerances, for starting angles at which the force at the ends of revolutions is small or large.
   subroutine losses_are_the_same_however_found(check)
     class(checks_t), intent(inout) :: check
     type(cycle_watch_t), allocatable :: watch, loose

@@ -90,7 +90,7 @@ contains
       'its energy is the work done')
   end subroutine moment_of_an_ideal_ramp
 
-  !> With clearance the moment does the work that the energy tells, in the closed form of each chain.
+  !> With clearance the work of the driving moment agrees with the energy, in the closed form of each chain.
   subroutine ramp_with_play(check, place, kind)
     class(checks_t), intent(inout) :: check
     character(len=10), intent(in) :: place(1)
@@ -135,7 +135,7 @@ contains
       'its energy is the work done')
   end subroutine run_up_on_a_line
 
-  !> The closed form of the Jacobian knows the slope of the torque, and a held crank's acceleration.
+  !> The closed form of the Jacobian includes the slope of the torque and the acceleration of a prescribed speed.
   subroutine slopes_of_a_torque(check)
     class(checks_t), intent(inout) :: check
     type(case_t) :: case
@@ -167,7 +167,7 @@ contains
     end do
   end subroutine slopes_of_a_torque
 
-  !> A flywheel on the crank is the same as more inertia of the crank, and what a stiff crankshaft makes of its own.
+  !> A flywheel on the crank equals additional inertia of the crank, and is the limit of a stiff crankshaft with its own flywheel.
   subroutine a_flywheel_is_inertia(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: flywheel, inertia, shaft

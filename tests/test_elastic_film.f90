@@ -141,8 +141,8 @@ contains
     end do
   end subroutine derivatives
 
-  !> Undriven, the bodies' energy, what the walls store and what the film has taken (the integral of a column that knows nothing of
-  !> the walls) stay together; the film never gives.
+  !> Without drive, the sum of the bodies' energy, the elastic energy of the walls and the loss in the film (the integral of a
+  !> column that does not depend on the walls) is constant; the film never supplies energy.
   subroutine energy_is_known(check)
     class(checks_t), intent(inout) :: check
     character(len=long) :: set(9)
@@ -173,7 +173,7 @@ contains
     call check%that(all(power >= 0), 'the film never gives')
   end subroutine energy_is_known
 
-  !> The film of walls a thousand and a million times stiffer comes to that of rigid walls.
+  !> With walls a thousand and a million times stiffer the film converges to that of rigid walls.
   subroutine stiff_walls_are_rigid(check)
     class(checks_t), intent(inout) :: check
     character(len=long) :: set(8)
@@ -242,7 +242,8 @@ contains
       'whose least thickness the summary has')
   end subroutine goes_beyond_the_clearance
 
-  !> Under 5 kN on 20 x 15 mm an oil of 2e-8 1/Pa is thicker by exp(2e-8 * 16.7 MPa) = 1.396, and gives way by so much less.
+  !> Under 5 kN on 20 x 15 mm an oil of 2e-8 1/Pa is more viscous by exp(2e-8 * 16.7 MPa) = 1.396, and the film thins more slowly by
+  !> this factor.
   subroutine oil_under_pressure(check)
     class(checks_t), intent(inout) :: check
     type(case_t) :: case

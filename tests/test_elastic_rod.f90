@@ -37,8 +37,8 @@ contains
     call it_buckles_at_eulers_load(check)
   end subroutine run_test_elastic_rod
 
-  !> A random chain with an elastic rod of n sines and na shapes along, its pins loose as `piece` says, in a random state under
-  !> random loads. Coordinates are (q, c, e, eta, a).
+  !> A random chain with an elastic rod of n bending and na axial shapes, with clearance at the pins given by `piece`, in a random
+  !> state under random loads. Coordinates are (q, c, e, eta, a).
   subroutine draw(random, piece, n, na, chain, motion, loads, z, z_rate)
     type(random_numbers_t), intent(inout) :: random
     integer, intent(in) :: piece, n, na

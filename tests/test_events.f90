@@ -164,8 +164,8 @@ contains
     passages_of = problem%passages
   end function passages_of
 
-  !> A ball that leaves a table upwards at the speed v, sunk by d: with d < v^2/(2 g) it comes out and back; with more it turns
-  !> below the table, and comes back as it turns. Never is it lost below the table.
+  !> A ball thrown upwards from d below a table with the speed v: for d < v^2/(2 g) it rises above the table and returns; otherwise
+  !> it turns below it, and its event occurs again where it turns. It must never be lost below the table.
   subroutine turns_before_it_is_out(check)
     class(checks_t), intent(inout) :: check
     type(ball_t) :: problem

@@ -233,7 +233,7 @@ contains
     end associate
   end subroutine energy_lost_without_moment
 
-  !> Columns that take work are there for those who name them.
+  !> Columns that need additional computation exist only if they are requested.
   subroutine columns_on_request(check)
     class(checks_t), intent(inout) :: check
     character(len=80), parameter :: run(3) = [character(len=60) :: 'integrator.revolutions=0.01', 'lubrication.variant=short', &

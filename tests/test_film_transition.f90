@@ -209,8 +209,8 @@ contains
     end do
   end subroutine derivatives
 
-  !> Instants and speeds of contacts by an independent program (Python, SciPy's DOP853 with events by root finding), which knows
-  !> them to 3.1e-11 s.
+  !> Times and speeds of contacts by an independent program (Python, SciPy's DOP853 with events by root finding), with an accuracy
+  !> of 3.1e-11 s.
   subroutine meets_the_reference(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: instants(5) = [0.000771425953518_dp, 0.00267020412613_dp, 0.00414047530389_dp, 0.0096517489615_dp, &

@@ -344,7 +344,8 @@ contains
     end do
   end subroutine table_without_cavitation
 
-  !> What a table says of its error is what is found at other points than those it was measured at; a smaller table says more.
+  !> The stated error of a table agrees with the error at points other than those at which it was measured; a smaller table states a
+  !> larger error.
   subroutine table_states_its_error(check)
     class(checks_t), intent(inout) :: check
     integer, parameter :: points = 150
@@ -370,7 +371,7 @@ contains
       'a table of half as many values says that it is worse')
   end subroutine table_states_its_error
 
-  !> A table that was put away and taken back gives the same bits, and says the same of its error.
+  !> A table that is stored and restored gives identical results and states the same error.
   subroutine table_goes_through_an_archive(check)
     class(checks_t), intent(inout) :: check
     type(film_map_t) :: map, again

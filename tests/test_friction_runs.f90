@@ -60,7 +60,7 @@ contains
     end associate
   end subroutine surfaces_stick_above_the_sliding_friction
 
-  !> Stribeck's curve, steeper and steeper: the contacts come to those of Coulomb's law with static friction.
+  !> Stribeck's curve with decreasing transition speed: the contacts converge to those of Coulomb's law with static friction.
   subroutine coulomb_is_the_limit_of_smooth_curves(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: coulomb, smooth

@@ -150,8 +150,8 @@ contains
     end do
   end subroutine energy_changes_by_the_power
 
-  !> Forces found from the motion of the rod alone are those that the piston, by Newton and Euler about its centre of mass, and the
-  !> joints' laws ask for; the guide receives what the bore gives.
+  !> Forces found from the motion of the rod alone agree with those that follow for the piston (Newton and Euler about its centre of
+  !> mass) and from the joints' laws; the guide receives the reaction of the bore.
   subroutine newton_and_euler_hold(check)
     class(checks_t), intent(inout) :: check
     type(random_numbers_t) :: random

@@ -31,8 +31,8 @@ contains
     call refuses(check)
   end subroutine run_test_oil_viscosity
 
-  !> An ISO VG 32 oil (32 and 5.4 mm^2/s at 40 and 100 degrees C has 8.5 at 80, as a published table of ASTM D341 says), one of SAE
-  !> 15W-40, and a fuel that is thinner than 2 mm^2/s, where the exponential in Z counts.
+  !> An ISO VG 32 oil (32 and 5.4 mm^2/s at 40 and 100 degrees C; 8.5 at 80 according to a published table of ASTM D341), an SAE
+  !> 15W-40 oil, and a fuel below 2 mm^2/s, where the exponential in Z matters.
   subroutine walther(check)
     class(checks_t), intent(inout) :: check
     type(oil_t) :: oil
@@ -93,7 +93,7 @@ contains
     end do
   end subroutine known_points
 
-  !> A run with an oil is the run with the viscosities that it has then, for every film; the summary says the viscosity.
+  !> A run with an oil equals the run with the resulting viscosities, for every film; the summary contains the viscosity.
   subroutine every_film(check)
     class(checks_t), intent(inout) :: check
     character(len=long), parameter :: films(5) = [character(len=long) :: 'lubrication.variant=closed_form', &

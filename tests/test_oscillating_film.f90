@@ -190,7 +190,7 @@ contains
       /(abs(b%pressure) + abs(b%moment))
   end function distance
 
-  !> The rule's own choice of points keeps the accuracy asked for.
+  !> The number of points chosen by the rule gives the required accuracy.
   subroutine test_chosen_points(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: accuracies(3) = [1e-6_dp, 1e-9_dp, 1e-12_dp]
@@ -212,8 +212,8 @@ contains
     end do
   end subroutine test_chosen_points
 
-  !> The series in Q against sums over many points, up to the Q that it serves, for any eccentricity: to the accuracy asked
-  !> for, and to rounding. Points that are asked for are taken, not the series.
+  !> The series in Q against sums over many points, up to its limit in Q, for any eccentricity: to the required accuracy, and to
+  !> rounding. If a number of points is given, sums are used and not the series.
   subroutine test_series(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: accuracies(4) = [1e-8_dp, 1e-10_dp, 1e-13_dp, epsilon(1.0_dp)]

@@ -126,8 +126,8 @@ contains
     call check%that(trace%report%periods%period == 2, 'gas: period of two revolutions')
   end subroutine gas_takes_two_revolutions
 
-  !> A damped crank driven by the gas comes to a speed at which it stays; an undriven one with a film slows for ever, and one that
-  !> stops says how far it came.
+  !> A damped crank driven by the gas reaches a constant mean speed; one without drive and with a film slows down for ever; one that
+  !> stops reports how far it came.
   subroutine free_crank(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -148,8 +148,8 @@ contains
     call check%that(index(trace%report%status, '&run most_revolutions') > 0, 'a crank that stops: '//trace%report%status)
   end subroutine free_crank
 
-  !> A damped crank without clearance: its speed, the only state, goes to its mean as the damping over the inertia tells, and so do
-  !> neighbours. Measured by the differences of the speed from revolution to revolution.
+  !> A damped crank without clearance: its speed, the only state, converges to its mean at the rate damping over inertia, and so do
+  !> neighbouring motions. Measured from the differences of the speed between revolutions.
   subroutine exponent_is_the_decay(check)
     class(checks_t), intent(inout) :: check
     character(len=long), parameter :: driven(6) = [character(len=long) :: auto, 'drive.damping=0.05', 'drive.torque=10', &
@@ -211,8 +211,8 @@ contains
     end subroutine settles
   end subroutine exponents_of_machines
 
-  !> Two runs at 1e-12, one with its pin 1e-12 m aside: their difference grows as the exponent says, where the motion does not
-  !> repeat. From several starts, since both are means over what the motion happens to do.
+  !> Two runs at 1e-12 whose pins differ by 1e-12 m: their difference grows according to the exponent, if the motion is not
+  !> periodic. From several initial states, since both are means over a chaotic motion.
   subroutine exponent_is_the_growth(check, machine, what)
     class(checks_t), intent(inout) :: check
     character(len=*), intent(in) :: machine(:), what   !! what the scene has beside the dry joint

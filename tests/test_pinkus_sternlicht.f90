@@ -38,7 +38,7 @@ contains
     call test_factory(check)
   end subroutine run_test_pinkus_sternlicht
 
-  !> The film of a variant; the tests know its names.
+  !> The film of a variant, selected by name.
   subroutine make(variant, film)
     character(len=*), intent(in) :: variant
     class(film_law_t), allocatable, intent(out) :: film

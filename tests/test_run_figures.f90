@@ -56,7 +56,8 @@ contains
     end associate
   end subroutine all_time_is_counted_once
 
-  !> Curves with known peaks: smooth, lopsided, with a kink, nearly at one end; found to the accuracy asked, with few values.
+  !> Curves with known peaks: smooth, asymmetric, with a kink, close to an end; found with the required accuracy and few
+  !> evaluations.
   subroutine peaks_of_curves(check)
     class(checks_t), intent(inout) :: check
     type(peak_search_t) :: search
@@ -153,8 +154,8 @@ contains
     end do
   end subroutine hertz_in_closed_form
 
-  !> A contact that ends at once, with the crank at 60 degrees: the force of the film falls from its first instant on. There it
-  !> is what the rows say on the straight line back to that instant.
+  !> A contact that ends at once, with the crank at 60 degrees: the force of the film decreases from the first instant. Its value
+  !> there is the linear extrapolation of the rows back to that instant.
   subroutine a_film_begins_at_its_highest(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: interval = 1e-9_dp

@@ -161,7 +161,8 @@ contains
     end do
   end subroutine sticking_keeps_the_sliding_speed
 
-  !> Where a film is not defined an evaluation still tells the crank angle and where the pin is; where the rod cannot reach, too.
+  !> Where a film is not defined an evaluation still gives the crank angle and the position of the pin; also where the rod is too
+  !> short.
   subroutine outside_the_pin_is_known(check)
     class(checks_t), intent(inout) :: check
     type(case_t) :: case

@@ -18,7 +18,7 @@ module test_slow_contact
   integer, parameter :: long = 60
   character(len=*), parameter :: dry = 'cases/flores/dry_0100um.nml'
 
-  !> The crank hangs at rest, and the piston on the pin.
+  !> The crank hangs at rest, and the piston rests on the pin.
   character(len=long), parameter :: hanging(6) = [character(len=long) :: 'initial.crank_angle_deg=180', &
     'initial.crank_speed=0', 'integrator.revolutions=0', 'output.interval=1e-3', 'mechanism.gravity=9.80665', 'drive.kind=free']
 
@@ -34,8 +34,8 @@ contains
     call revolution_has_a_budget(check)
   end subroutine run_test_slow_contact
 
-  !> From 1e-3 to 1e-15 m/s a free impact gives back what the law's exact solution says for chi v/least_impact_speed, never more
-  !> than it had, and the slower the more.
+  !> From 1e-3 to 1e-15 m/s the restitution of a free impact is that of the law's exact solution for chi v/least_impact_speed: never
+  !> above 1, and larger for slower impacts.
   subroutine slow_impacts_lose_less(check)
     class(checks_t), intent(inout) :: check
     class(contact_law_t), allocatable :: law
@@ -102,7 +102,7 @@ contains
     resting_depth = (0.14_dp*9.80665_dp/hertz_stiffness(0.010_dp, 1e-4_dp, [207e9_dp, 207e9_dp], [0.3_dp, 0.3_dp]))**(2/3.0_dp)
   end function resting_depth
 
-  !> Started at rest deeper than it would rest, the pin stays in contact and comes to the same depth.
+  !> Started at rest with a larger penetration than in equilibrium, the pin remains in contact and reaches the equilibrium.
   subroutine start_in_contact(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -147,7 +147,8 @@ contains
     call check%relative(trace%event(1)%normal_speed, 0.5_dp, 1e-9_dp, 'as fast as it was')
   end subroutine start_off_centre
 
-  !> A budget for a revolution stops a run that a budget for the whole would let continue, and says where.
+  !> A limit of evaluations per revolution stops a run that the limit for the whole run would let continue, and the message gives
+  !> the place.
   subroutine revolution_has_a_budget(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace

@@ -293,8 +293,7 @@ contains
       'texts that begin as formulas')
   end subroutine test_row_text
 
-  !> Rows in any order come out in the order of their runs, torn ones and those of runs left out go, and what is counted of them
-  !> is what they say.
+  !> Rows in any order are sorted by run, incomplete rows and those of excluded runs are removed, and the counts agree.
   subroutine test_row_file(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: path = 'build/test_rows.csv', header = 'run,x,y'//n

@@ -239,7 +239,8 @@ contains
     end do
   end subroutine both_touch_at_once
 
-  !> One joint with clearance at either pin, the other ideal: energy, and the ideal pin's force with what the bodies ask for.
+  !> Clearance at either pin with the other pin ideal: energy, and the force of the ideal pin, which must agree with the motion of
+  !> the bodies.
   subroutine one_of_each_at_either_pin(check)
     class(checks_t), intent(inout) :: check
     type(case_t) :: case
