@@ -1,5 +1,6 @@
 !> The accuracy levels of the command line, as values of keys of the case. They were chosen by measurement:
-!> scripts/measure_tradeoff.py --presets reports the errors that each level has in every shipped case (data/measured/presets.md).
+!> scripts/measure_tradeoff.py --presets reports the errors that each level has in shipped cases; scripts/record.py writes them to
+!> data/measured/presets.md.
 module accuracy_presets
   implicit none
   private
