@@ -285,6 +285,12 @@ def main() -> int:
             film_tradeoff.write_table(program, options.cases, options.repeat, options.timeout, options.out)
             return 0
         if options.presets:
+            print(
+                "Error of the states (coordinates and speeds) at the worst time of the run, relative to their ranges, and number of evaluations.",
+                "`E for T ms`: the motion is chaotic, and the error stays below E up to the time T; `reference known to`: the same for the run",
+                "with which the others are compared.\n",
+                sep="\n",
+            )
             print("| case | length | reference known to | draft | standard | reference |", "|---|---|---|---|---|---|", sep="\n")
             for case in options.cases:
                 try:
