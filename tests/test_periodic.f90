@@ -19,7 +19,7 @@ contains
   subroutine run_test_periodic(check)
     class(checks_t), intent(inout) :: check
     call held_crank_with_film(check)
-    call period_two(check)
+    call long_periods(check)
     call chaos(check)
     call gas_takes_two_revolutions(check)
     call free_crank(check)
@@ -83,21 +83,28 @@ contains
     call check%that((difference <= tolerance) .eqv. wanted, what//': rows a period apart')
   end subroutine closes
 
-  !> A dry joint of the bifurcation picture with two revolutions: not one, and the second is not the first.
-  subroutine period_two(check)
+  !> A dry joint of the bifurcation picture: periods of two and three revolutions, no shorter ones, and negative exponents.
+  subroutine long_periods(check)
     class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: clearances(3) = [character(len=7) :: '55e-6', '52.2e-6', '73e-6  ']
+    integer, parameter :: periods(3) = [2, 3, 3]
     type(trace_t) :: trace
-    trace = run_case(dry, [character(len=long) :: until, auto, window, 'joint.clearance=55e-6', 'run.most_revolutions=200', &
-      'output.samples_per_revolution=20', exponent])
-    associate (p => trace%report%periods)
-      call check%that(p%period == 2, 'dry, 55 um: period of two revolutions')
-      call check%that(size(trace%values, 2) == 41, 'dry, 55 um: rows of two revolutions')
-    end associate
-    if (size(trace%values, 2) /= 41) return
-    call closes(check, trace, 1, 41, 2e-4_dp, .true., 'dry, 55 um, two revolutions')
-    call closes(check, trace, 1, 21, 1e-2_dp, .false., 'dry, 55 um, one revolution')
-    call check%that(trace%report%exponent%is_known .and. trace%report%exponent%mean < -0.2_dp, 'dry, 55 um: negative exponent')
-  end subroutine period_two
+    character(len=:), allocatable :: what
+    integer :: i, k
+    do i = 1, size(periods)
+      what = 'dry, '//trim(clearances(i))//' m'
+      trace = run_case(dry, [character(len=long) :: until, auto, window, 'joint.clearance='//clearances(i), &
+        'run.most_revolutions=200', 'output.samples_per_revolution=20', exponent])
+      call check%that(trace%report%periods%period == periods(i), what//': period')
+      call check%that(size(trace%values, 2) == 20*periods(i) + 1, what//': rows of a period')
+      if (size(trace%values, 2) /= 20*periods(i) + 1) cycle
+      call closes(check, trace, 1, 20*periods(i) + 1, 2e-4_dp, .true., what//', a period')
+      do k = 1, periods(i) - 1
+        call closes(check, trace, 1, 20*k + 1, 2e-4_dp, .false., what//', less than a period')
+      end do
+      call check%that(trace%report%exponent%is_known .and. trace%report%exponent%mean < -0.1_dp, what//': negative exponent')
+    end do
+  end subroutine long_periods
 
   !> 0.5 mm of clearance: it does not repeat, and ends at most_revolutions, with the rows and events of the last of them.
   subroutine chaos(check)

@@ -153,7 +153,6 @@ contains
     if (allocated(companion%scene%turns)) companion%scene%turns%wanted = 1e30_dp   ! never reached
     call new_method('auto', companion%method, ignored)
     companion%method%settings = settings_for(close, companion%scene)
-    companion%method%settings%max_evaluations = 0
     companion%t = t
     companion%y = y
     companion%direction = sign(1.0_dp, companion%scene%crank_speed(t, y))
