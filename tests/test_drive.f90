@@ -28,6 +28,7 @@ contains
     call ramp_with_play(check, ['piston_pin'], 0)
     call ramp_with_play(check, ['crank_pin '], 1)
     call ramp_with_play(check, ['both      '], 2)
+    call ramp_with_elastic_rod(check)
     call run_up_on_a_line(check)
     call slopes_of_a_torque(check)
     call a_flywheel_is_inertia(check)
@@ -111,6 +112,45 @@ contains
       'its energy is the work done: '//place(1))
     call check%that(maxval(trace%values(column(trace, 'crank_acceleration[rad/s2]'), :)) > 1e4_dp, 'and it is accelerated')
   end subroutine ramp_with_play
+
+  !> With an elastic rod, ideal pins and loose ones: the moment accelerates the crank against the force that Newton's law of the rod
+  !> asks for at the crank pin, and it does the work that the energy tells.
+  subroutine ramp_with_elastic_rod(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: r = 0.05_dp, inertia = 1.0e-5_dp + 0.30_dp*0.025_dp**2
+    character(len=long), parameter :: run(7) = [character(len=long) :: 'drive.kind=constant_speed', 'drive.ramp_time=4e-3', &
+      'drive.ramp_from=20', 'integrator.relative_tolerance=1e-8', 'integrator.revolutions=0.4', 'elastic_rod.section_area=9.6e-5', &
+      'elastic_rod.section_inertia=5.12e-10']
+    character(len=*), parameter :: files(4) = [character(len=32) :: 'cases/flores/ideal.nml', 'cases/flores/dry_0500um.nml', &
+      'cases/joints/crank_pin.nml', 'cases/joints/both_pins.nml']
+    type(trace_t) :: trace
+    real(dp), allocatable :: turning(:)
+    integer :: i
+    do i = 1, size(files)
+      trace = run_case(trim(files(i)), [run, [character(len=long) :: 'mechanism.gravity=0', 'drive.damping=0', &
+        'mechanism.crank_length=0.05', 'mechanism.crank_mass=0.30', 'mechanism.crank_inertia=1e-5', 'mechanism.crank_com=0.025,0']])
+      call check%equal_text(outcome(trace), 'done', 'a ramp with an elastic rod: '//trim(files(i)))
+      if (allocated(trace%error)) cycle
+      associate (q => values_of('crank_angle[rad]'))
+        turning = inertia*values_of('crank_acceleration[rad/s2]') &
+          + r*(values_of('crankpin_force_y[N]')*cos(q) - values_of('crankpin_force_x[N]')*sin(q))
+      end associate
+      call check%that(trace%report%figures%max_energy_residual < 1e-6_dp*trace%report%figures%max_energy, &
+        'its energy is the work done: '//trim(files(i)))
+      call check%that(maxval(values_of('crank_acceleration[rad/s2]')) > 1e4_dp, 'and it is accelerated')
+      if (i > 2) cycle   ! at a loose crank pin friction turns the crank too
+      call check%close_to(maxval(abs(values_of('crank_moment[N.m]') - turning)), 0.0_dp, 1e-9_dp*maxval(abs(turning)), &
+        'Euler''s equation of the crank: '//trim(files(i)))
+    end do
+
+  contains
+
+    function values_of(name) result(values)
+      character(len=*), intent(in) :: name
+      real(dp) :: values(size(trace%values, 2))
+      values = trace%values(column(trace, name), :)
+    end function values_of
+  end subroutine ramp_with_elastic_rod
 
   !> A pure inertia J on a motor of M = M0 (1 - w/w0): w = w0 (1 - exp(-M0 t/(J w0))).
   subroutine run_up_on_a_line(check)

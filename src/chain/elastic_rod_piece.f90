@@ -137,7 +137,7 @@ contains
         + dot_product(by_crank, force - matmul(mass, centripetal))
       on_rod = force(3) - dot_product(mass(:, 3), centripetal)
       crank_moment = drive%torque
-      acceleration = 0
+      acceleration = drive%acceleration
       if (drive%free_crank) then
         determinant = m11*m22 - m12**2
         solvable = determinant > 0 .and. m22 > 0
@@ -149,7 +149,7 @@ contains
       if (.not. solvable) return
       own = centripetal + by_crank*acceleration
       own(3) = (on_rod - m12*acceleration)/m22
-      if (.not. drive%free_crank) crank_moment = drive%torque + m12*own(3) - on_crank
+      if (.not. drive%free_crank) crank_moment = drive%torque + m11*acceleration + m12*own(3) - on_crank
     end associate
   end subroutine turn_with_crank
 
