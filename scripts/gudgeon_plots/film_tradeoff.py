@@ -1,9 +1,9 @@
-"""Comparison of films: the cost of an evaluation and of a run with each film, and the results of the run.
+"""Comparison of films: the cost of an evaluation and of a run with each of them, and the results of the run.
 
-The same scene with every film, integrated by `auto` at the relative tolerance of the cases. Times are the least of some runs; a direct
-solution takes too long to be repeated. Instructions of an evaluation are counted by valgrind, where it is installed, as the difference
-of two short runs: they do not depend on what else the computer does. Rows are kept, so that the same command goes on where it was
-interrupted, unless the case or the program has changed.
+The same scene with every film, integrated by `auto` at the relative tolerance of the cases. Times are the shortest of several runs; a
+direct solution takes too long to be repeated. The instructions of an evaluation are counted by valgrind, if it is installed, as the
+difference of two short runs, so that they do not depend on the load of the computer. Rows are stored, so that the same command
+continues after an interruption, unless the case or the program has changed.
 """
 
 import hashlib
@@ -21,12 +21,12 @@ from .results import read_summary
 
 @dataclass(frozen=True)
 class Film:
-    """A film and the values of a case that select it."""
+    """A film, and the settings of a case that select it."""
 
     name: str
     overrides: tuple[str, ...]
-    repeats: bool = True  # quick enough to be run several times
-    reports: bool = True  # and to be looked at three times in each step
+    repeats: bool = True  # fast enough to be run several times
+    reports: bool = True  # fast enough for the report, which evaluates the film three times a step
     counted: tuple[float, float] = (0.05, 0.35)  # revolutions of the two runs whose instructions are counted
 
 
@@ -48,18 +48,18 @@ FILMS = (
     table(65, 128),
     Film("direct, 32 nodes", (*FINITE, "lubrication.variant=direct", "lubrication.film_points=32"), repeats=False, counted=(0.002, 0.004)),
 )
-YARDSTICK = "closed_form"  # whose costs are 1
+YARDSTICK = "closed_form"  # the film to which the costs of the others are compared
 
 
 def command(program: Path, case: Path, out: str, values: tuple[str, ...]) -> list[str]:
-    """A run without rows."""
+    """The command of a run with as few rows as possible."""
     always = ("integrator.method=auto", "output.ideal_twin=.false.", "output.columns=time", "output.samples_per_revolution=1")
     overrides = [part for value in (*always, *values) for part in ("-s", value)]
     return [str(program), "-q", "-j", "1", "-o", out, *overrides, str(case)]
 
 
 def run(program: Path, case: Path, out: str, values: tuple[str, ...], timeout: float) -> dict[str, float | str]:
-    """One run: the numbers in the summary of a run; `stopped` is the reason if it did not reach its end."""
+    """Run a case: the numbers in its summary; `stopped` is the reason why it did not reach its end."""
     try:
         done = subprocess.run(command(program, case, out, values), capture_output=True, text=True, check=False, timeout=timeout)
     except subprocess.TimeoutExpired:
@@ -79,7 +79,7 @@ def run(program: Path, case: Path, out: str, values: tuple[str, ...], timeout: f
 
 
 def instructions(program: Path, case: Path, film: Film, timeout: float) -> float | None:
-    """Cost of an evaluation, including everything that belongs to it."""
+    """Instructions of one evaluation of the whole scene, with its share of the integrator; None without valgrind."""
     valgrind = shutil.which("valgrind")
     if valgrind is None:
         return None
@@ -105,7 +105,7 @@ def measure(program: Path, case: Path, film: Film, repeat: int, timeout: float) 
     """Cost and results of one film in one scene."""
     with tempfile.TemporaryDirectory() as out:
         report = ("lubrication.report=.true.",) if film.reports else ()
-        answers = run(program, case, out, (*film.overrides, *report), timeout)   # the first run makes the table of a film
+        answers = run(program, case, out, (*film.overrides, *report), timeout)   # the first run computes the table of a film
         seconds = answers.get("wall_time")
         if film.repeats and "stopped" not in answers:
             seconds = min(run(program, case, out, film.overrides, timeout)["wall_time"] for _ in range(repeat))
@@ -127,13 +127,13 @@ def line(case: str, film: str, row: dict[str, float | str | None], yardstick: di
             over_whole = f"{each * row['rhs_evaluations'] / yardstick['instructions'] / yardstick['rhs_evaluations']:.3g}"
     cells = [f"`{case}`", film, cell("rhs_evaluations", "{:.0f}"), f"{each:.4g}" if each else "", over,
              whole, over_whole, cell("seconds", "{:.3g}", 1e3),
-             "" if thinnest is None else f"{1e6 * thinnest:.3f}" if thinnest > 0 else f"{1e6 * thinnest:.1f}, touches",
+             "" if thinnest is None else f"{1e6 * thinnest:.3f}" if thinnest > 0 else f"{1e6 * thinnest:.1f}, contact",
              cell("max_film_pressure", "{:.4g}", 1e-6), cell("film_energy_lost", "{:.4g}", 1e3), row.get("stopped") or ""]
     return "| " + " | ".join(cells) + " |"
 
 
 def write_table(program: Path, cases: list[Path], repeat: int, timeout: float, out: Path) -> None:
-    """Measure what is missing, and write the table to data/measured."""
+    """Measure the rows that are missing, and write the table to data/measured."""
     kept = out / "films.json"
     rows: dict[str, dict] = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
     mark = hashlib.sha1(program.read_bytes()).hexdigest()[:10]
@@ -154,11 +154,12 @@ def write_table(program: Path, cases: list[Path], repeat: int, timeout: float, o
     print(write_measured("films", "Films against each other", f"scripts/measure_tradeoff.py --films {names}", HEAD + "\n".join(lines)))
 
 
-HEAD = """The same scenes with every film, by `auto` at 1e-6. Instructions are those of an evaluation of the whole scene with its share of the
-integrator, counted by valgrind; times, the least of some (`as_printed` and `direct`: the only one), hang on what else the computer does.
-"Over" is what it is over that of `closed_form` in the same scene. An oscillating film follows the ideal rotation and does not resist the
-motion of the pin's centre: it may give energy.
+HEAD = """Each scene with every film, integrated by `auto` at a relative tolerance of 1e-6. "Instructions each" are the instructions of one evaluation of
+the whole scene with its share of the integrator, counted by valgrind; "in the run" is this number times the evaluations. The columns "over"
+are ratios to `closed_form` in the same scene. Times are the shortest of several runs (`as_printed` and `direct`: of one run) and depend on the
+load of the computer. The oscillating film follows the motion of the ideal mechanism and does not resist the motion of the pin's centre, so
+it may add energy.
 
-| case | film | evaluations | instructions each | over | in the run [10^6] | over | time [ms] | thinnest film [um] | largest pressure [MPa] | lost in the film [mJ] | |
+| case | film | evaluations | instructions each | over | in the run [10^6] | over | time [ms] | smallest film thickness [um] | largest pressure [MPa] | energy dissipated in the film [mJ] | |
 |---|---|---|---|---|---|---|---|---|---|---|---|
 """
