@@ -24,7 +24,7 @@ LEAST_GAP = 1e-4   # over the clearance: where the table of a film ends
 OSCILLATING = 2e-5  # of a force: of the oscillating film's means
 ASPERITIES = 1e-5  # of a force: of the series of F52 and of the spline through the forces
 CLEAR = 0.01       # of a force: what the velocity of its film, taken from the rows, may leave open
-MOVING = 2e-4, 2000  # of a force, and in tolerances: what it is off by in rows between two steps, where the places of the film are
+MOVING = 2e-4, 2000  # of a rate, and in tolerances: what it is off by in rows between two steps, where the places of the film are
                      # as accurate as in the steps, but not their differences
 LEAST_BEND = 5e-9  # [m] bristles that give way sooner do so within a step: rows between the steps cannot tell how
 BENT = 1000       # tolerances of the static friction: what bristles may be bent beyond it in rows between the steps
@@ -300,10 +300,13 @@ class RowChecks:
         others = [] if law.is_solved else [law.force(eps, gap, along + dx, across + dy, turn) for dx, dy in ((give, 0), (0, give))]
         blur = sum(math.hypot(other[0] - want[0], other[1] - want[1]) for other in others)
         blur += 1e-15 / max(gap, least) * math.hypot(*want)
-        if self.weighted:   # the share is a difference of two lengths over another
-            blur += 4e-15 * c / self.run.number("lubrication.transition_depth") * math.hypot(*want)
+        blur += self.blur_of_share() * math.hypot(*want)
         miss = math.hypot(n[0] * force[0] + n[1] * force[1] - share * want[0], n[0] * force[1] - n[1] * force[0] - share * want[1])
         self.take("film law", miss, (LAW + law.margin) * share * math.hypot(*want) + 10 * blur, t)
+
+    def blur_of_share(self) -> float:
+        """Rounding of the share of a film that gives way to the contact: a difference of two lengths over another."""
+        return 4e-15 * self.run.number("joint.clearance") / self.run.number("lubrication.transition_depth") if self.weighted else 0.0
 
     def check_oscillating(self, row: Row, n: tuple[float, float], force: tuple[float, float], share: float, eps: float, gap: float,
                           i: int) -> None:
@@ -313,9 +316,9 @@ class RowChecks:
             self.take("no load along the line of centres", abs(force[0] * n[0] + force[1] * n[1]), SUM * math.hypot(*force) + row.law_noise, t)
         if self.joint != "piston_pin" or not self.film_law.is_known or not self.is_judged(i) or not (abs(row.turn) > 1e-3 and eps > 1e-3):
             return
-        want = share * self.film_law.oscillating(row, eps, gap)
+        whole = self.film_law.oscillating(row, eps, gap)
         found = n[0] * force[1] - n[1] * force[0]
-        self.take("film law", abs(found - want), OSCILLATING * abs(want) + row.law_noise, t)
+        self.take("film law", abs(found - share * whole), (OSCILLATING * share + self.blur_of_share()) * abs(whole) + row.law_noise, t)
 
     def check_moving_film(self, row: Row, force: tuple[float, float], i: int) -> None:
         """Between elastic walls the film's own place moves as its load asks for: at the rate of the rows round this one."""
@@ -331,17 +334,24 @@ class RowChecks:
         load = math.hypot(*force)
         thicker = math.exp(self.run.number("lubrication.pressure_viscosity") * load / (2 * law.radius * law.length))
 
-        def at_rate(reach: int) -> tuple[float, float]:
+        turn = row.journal_turn + row.bearing_turn
+
+        def rate(reach: int) -> tuple[float, float]:
             rows = range(i - reach, i + reach + 1)
             x, y = (slope([times[k] for k in rows], [column[k] for k in rows]) for column in columns)
-            return law.force(size / c, row.get["film_thickness"] / c, n[0] * x + n[1] * y, n[0] * y - n[1] * x, row.journal_turn + row.bearing_turn)
+            return n[0] * x + n[1] * y, n[0] * y - n[1] * x
+
+        def at_rate(reach: int) -> tuple[float, float]:
+            return law.force(size / c, row.get["film_thickness"] / c, *rate(reach), turn)
 
         want, coarse = at_rate(2), at_rate(1)
         blur = thicker * math.hypot(want[0] - coarse[0], want[1] - coarse[1])
         if blur > CLEAR * load:
             return
         miss = math.hypot(n[0] * force[0] + n[1] * force[1] - thicker * want[0], n[0] * force[1] - n[1] * force[0] - thicker * want[1])
-        between = max(MOVING[0], MOVING[1] * self.run.number("integrator.relative_tolerance"))
+        along, across = rate(2)   # of which a film that hardly gives way leaves next to nothing beyond its turning with the pin
+        given = math.hypot(along, across - turn * size / 2) / (math.hypot(along, across) or 1.0)
+        between = max(MOVING[0], MOVING[1] * self.run.number("integrator.relative_tolerance")) / min(max(given, 1e-12), 1.0)
         self.take("film law", miss, (between + law.margin) * load + 3 * blur + row.law_noise, row.get["time"])
 
     def check_gas(self, row: Row, i: int, t: float) -> None:
