@@ -271,7 +271,7 @@ MUTANTS = [
      "finite", "film law"),
     ("a film that pulls", "finite_film.f90", "if (cavitation == cavitation_gumbel) then", "if (cavitation < 0) then", "gumbel", "film law"),
     ("a thinner film than there is", "reynolds_grid.f90", "height = gap + 2*(1 - gap)", "height = gap + 1.9_dp*(1 - gap)", "direct", "film law"),
-    ("a table that draws the pin the other way", "film_map.f90", "if (t < 0) tangential = -tangential", "if (t > 0) tangential = -tangential", "finite", "film law"),
+    ("a table that draws the pin less one way", "film_map.f90", "if (t < 0) tangential = -tangential", "if (t < 0) tangential = -0.9_dp*tangential", "finite", "film law"),
     ("a table without cavitation that is scaled as the others", "film_map.f90", "      s_r = b/(w2*w)", "      s_r = abs(b)/(w2*w)", "full", "film law"),
     ("half of the wedge", "finite_bearing.f90", "[v(1) + 0.5_dp*motion%pin_speed*e(2), v(2) - 0.5_dp*motion%pin_speed*e(1)]",
      "[v(1) + 0.25_dp*motion%pin_speed*e(2), v(2) - 0.25_dp*motion%pin_speed*e(1)]", "short", "film law"),

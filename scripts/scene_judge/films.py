@@ -17,7 +17,6 @@ from .trace import Run
 RATIO = 3.0     # from one piece of the film to the next one away from the thinnest place
 NODES = ((-0.9739065285171717, 0.0666713443086881), (-0.8650633666889845, 0.1494513491505806), (-0.6794095682990244, 0.2190863625159820),
          (-0.4333953941292472, 0.2692667193099963), (-0.1488743389816312, 0.2955242247147529))   # of Gauss and Legendre, the left half
-POINTS = 512    # round an oscillating film
 GRID = (64, 6)  # nodes round half of a film of finite length, and along it
 SWEEPS = 600    # at most, of its relaxation
 GAP_AT_WALL = 1e-6   # 1 - eps at which films that do not end at the wall are held
@@ -48,6 +47,18 @@ def over_arc(function, start: float, end: float, scale: float) -> Vector:
     inside = [mark for mark in sorted(marks) if start <= mark <= end]
     pieces = [gauss(function, a, b) for a, b in zip(inside, inside[1:])]
     return math.fsum(piece[0] for piece in pieces), math.fsum(piece[1] for piece in pieces)
+
+
+def half_circle(scale: float) -> list[tuple[float, float]]:
+    """Places from 0 to pi with their weights in an integral of an even function over the whole circle, which changes within `scale`
+    at 0: of Gauss and Legendre in pieces that grow."""
+    found, start, end = [], 0.0, 0.5 * scale
+    while start < math.pi:
+        end = min(end, math.pi)
+        middle, half = 0.5 * (start + end), 0.5 * (end - start)
+        found += [(middle + side * half * at, 2 * half * weight) for at, weight in NODES for side in (1, -1)]
+        start, end = end, end + RATIO * (end - start)
+    return found
 
 
 class Film:
@@ -162,11 +173,8 @@ class Film:
         eps = 1 - held if held > gap else eps
         kappa = math.sqrt(held / (1 + eps))
         moved, held_back, shares = [], [], []
-        for i in range(POINTS):   # evenly in psi, tan(theta/2) = kappa tan(psi/2)
-            s = math.pi * (i + 0.5) / POINTS
-            theta = 2 * math.atan2(kappa * math.sin(s), math.cos(s))
+        for theta, weight in half_circle(kappa):
             h = self.clearance * (held + 2 * eps * math.sin(0.5 * theta)**2)
-            weight = 2 * math.pi / POINTS / (math.cos(s)**2 / kappa + kappa * math.sin(s)**2)
             half = 0.5 * root * h
             slow = cmath.tanh(half) / half
             moved.append(0.5 * h * surface * slow)                                   # flow with the surface

@@ -300,13 +300,17 @@ class RowChecks:
         others = [] if law.is_solved else [law.force(eps, gap, along + dx, across + dy, turn) for dx, dy in ((give, 0), (0, give))]
         blur = sum(math.hypot(other[0] - want[0], other[1] - want[1]) for other in others)
         blur += 1e-15 / max(gap, least) * math.hypot(*want)
-        blur += self.blur_of_share() * math.hypot(*want)
+        blur += self.blur_of_share(row) * math.hypot(*want)
         miss = math.hypot(n[0] * force[0] + n[1] * force[1] - share * want[0], n[0] * force[1] - n[1] * force[0] - share * want[1])
         self.take("film law", miss, (LAW + law.margin) * share * math.hypot(*want) + 10 * blur, t)
 
-    def blur_of_share(self) -> float:
-        """Rounding of the share of a film that gives way to the contact: a difference of two lengths over another."""
-        return 4e-15 * self.run.number("joint.clearance") / self.run.number("lubrication.transition_depth") if self.weighted else 0.0
+    def blur_of_share(self, row: Row) -> float:
+        """Rounding of the share of a film that gives way to the contact: a difference of two lengths over another, at a time that is
+        rounded too."""
+        if not self.weighted:
+            return 0.0
+        rounding = 4e-15 * self.run.number("joint.clearance") + 4e-16 * abs(row.get["time"]) * math.hypot(*row.slip)
+        return rounding / self.run.number("lubrication.transition_depth")
 
     def check_oscillating(self, row: Row, n: tuple[float, float], force: tuple[float, float], share: float, eps: float, gap: float,
                           i: int) -> None:
@@ -318,7 +322,7 @@ class RowChecks:
             return
         whole = self.film_law.oscillating(row, eps, gap)
         found = n[0] * force[1] - n[1] * force[0]
-        self.take("film law", abs(found - share * whole), (OSCILLATING * share + self.blur_of_share()) * abs(whole) + row.law_noise, t)
+        self.take("film law", abs(found - share * whole), (OSCILLATING * share + self.blur_of_share(row)) * abs(whole) + row.law_noise, t)
 
     def check_moving_film(self, row: Row, force: tuple[float, float], i: int) -> None:
         """Between elastic walls the film's own place moves as its load asks for: at the rate of the rows round this one."""
