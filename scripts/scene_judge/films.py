@@ -14,7 +14,7 @@ import math
 from .mechanics import Row, Vector
 from .trace import Run
 
-RATIO = 3.0     # from one piece of the film to the next one away from the thinnest place
+RATIO = 2.0     # from one piece of the film to the next one away from the thinnest place
 NODES = ((-0.9739065285171717, 0.0666713443086881), (-0.8650633666889845, 0.1494513491505806), (-0.6794095682990244, 0.2190863625159820),
          (-0.4333953941292472, 0.2692667193099963), (-0.1488743389816312, 0.2955242247147529))   # of Gauss and Legendre, the left half
 GRID = (64, 6)  # nodes round half of a film of finite length, and along it
@@ -77,7 +77,9 @@ class Film:
         self.scale = self.viscosity * self.length * self.radius**3 / self.clearance**2
         self.lever = number("mechanism.crank_length") / number("mechanism.rod_length")
         self.is_solved = self.law == "finite_bearing" and self.variant != "short"
-        self.margin = 0.03 if self.is_solved else 0.0   # of the force: what the coarse solution may be off
+        self.margin = 0.0   # of the force: what the coarse solution may be off, and a table by what it says itself
+        if self.is_solved:
+            self.margin = 0.03 + float(run.summary.get("film_table_error", 0.0))
 
     @property
     def is_known(self) -> bool:
