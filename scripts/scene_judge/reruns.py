@@ -217,6 +217,9 @@ class Reruns:
             return
         run, reference, neighbours = runs
         late = [abs(turn) for turn, t in zip(reference.columns["crank_speed"], reference.times) if t >= first * block]
+        if not late:   # `until = 'periodic'`: settled, or given up, before
+            found.no_statistics = "the reference ends before"
+            return
         if min(late) < STEADY * max(late):
             found.no_statistics = "the crank does not keep its speed"
             return
