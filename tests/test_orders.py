@@ -166,7 +166,7 @@ def sections_of_pages() -> None:
     check("2 cycles of one revolution" in section(cut), "a last period whose rows by time end before it does")
     portuguese = Language("pt")
     check("Trabalho em um ciclo" in section(settled(0.0), None, portuguese) and portuguese.unknown <= {"made"}, "in Portuguese", str(portuguese.unknown))
-    check("None: one whole cycle" in section(settled(0.0, 2)), "a run of one cycle")
+    check("a single whole cycle" in section(settled(0.0, 2)), "a run of one cycle")
     try:
         section(settled(0.0), ["nonsense"])
         check(False, "a column that is not there")
