@@ -341,13 +341,15 @@ def viscosity(run: Run) -> float:
         share = (1 / (t - pole) - 1 / (t2 - pole)) / (1 / (t1 - pole) - 1 / (t2 - pole))
         nu = nu1**share * nu2**(1 - share)
     else:
-        def height(nu: float) -> float:
-            return math.log10(math.log10(1e6 * nu + 0.7 + math.exp(-1.47 - 1.84e6 * nu - 0.51e12 * nu**2)))
-        wanted = height(nu2) + (height(nu1) - height(nu2)) * math.log(t / t2) / math.log(t1 / t2)
-        low, high = 1.7e-7, 1e30
+        def sum_of(nu: float) -> float:
+            return 1e6 * nu + 0.7 + math.exp(-1.47 - 1.84e6 * nu - 0.51e12 * nu**2)
+
+        height = [math.log10(math.log10(sum_of(nu))) for nu in (nu1, nu2)]
+        wanted = 10 ** 10 ** (height[1] + (height[0] - height[1]) * math.log(t / t2) / math.log(t1 / t2))
+        low, high = 1e-12, 1e30
         for _ in range(400):
             middle = math.sqrt(low * high)
-            low, high = (middle, high) if height(middle) < wanted else (low, middle)
+            low, high = (middle, high) if sum_of(middle) < wanted else (low, middle)
         nu = low
     way = 0.6278 * (t - 288.15) / rho
     return rho * math.exp(-way * (1 + 0.8 * way)) * nu
