@@ -59,7 +59,6 @@ contains
     real(dp), dimension(2) :: cosine, sine, radials, tangentials
     force = 0
     moment = 0
-    if (self%film_moment) moment = self%shear_moment(self%force_scale, motion, force)
     e = motion%eccentricity*self%per_clearance
     square = e(1)**2 + e(2)**2
     if (square > held**2) then
@@ -84,8 +83,6 @@ contains
       tangential = scale*(root*(tangentials(2) - tangentials(1)) + (2*a*gap)*turn)
       force(1) = radial*e(1) - tangential*e(2)
       force(2) = radial*e(2) + tangential*e(1)
-    else
-      return
     end if
     if (self%film_moment) moment = self%shear_moment(self%force_scale, motion, force)
   end subroutine film_force
