@@ -55,21 +55,14 @@ contains
     real(dp), intent(out) :: crank_moment
     logical, intent(out) :: solvable
     type(drive_t) :: drive
-    logical :: is_special, has_elastic_rod
     solvable = .true.
-    drive = self%drive
-    has_elastic_rod = .false.
-    is_special = allocated(self%varying) .or. allocated(self%elastic)
-    if (is_special) then
-      has_elastic_rod = self%has_elastic_rod()
-      drive = drive_of_crank(self, motion)
-    end if
-    if (has_elastic_rod) then
+    drive = drive_of_crank(self, motion)
+    if (self%has_elastic_rod()) then
       call accelerate_with_elastic_rod(self, drive, motion, loads, accelerations, crank_moment, solvable)
     else
-      call accelerate_rigid(self, drive, motion, loads, accelerations, crank_moment)
+      call self%accelerate_rigid(drive, motion, loads, accelerations, crank_moment)
     end if
-    if (is_special) call accelerate_flywheel(self, motion, accelerations, crank_moment)
+    call accelerate_flywheel(self, motion, accelerations, crank_moment)
   end subroutine accelerate
 
   !> The present drive of the crank: the drive or, with an elastic crankshaft, the shaft.
@@ -109,27 +102,28 @@ contains
     call chain%elastic%crankshaft%accelerate_flywheel(present_drive(chain, motion), motion, accelerations%flywheel, drive_moment)
   end subroutine accelerate_flywheel
 
-  pure subroutine accelerate_rigid(chain, drive, motion, loads, accelerations, crank_moment)
-    class(chain_t), intent(in) :: chain
+  !> The same with a rigid rod and a given drive of the crank; `crank_moment` is the moment of this drive [N m].
+  pure subroutine accelerate_rigid(self, drive, motion, loads, accelerations, crank_moment)
+    class(chain_t), intent(in) :: self
     type(drive_t), intent(in) :: drive
     type(motion_t), intent(in) :: motion
     type(loads_t), intent(inout) :: loads
     type(accelerations_t), intent(out) :: accelerations
     real(dp), intent(out) :: crank_moment
-    if (chain%is_loose(piston_pin)) then
-      if (chain%is_loose(crank_pin)) then
-        call accelerate_free_rod(chain%bodies, drive, loads, motion, accelerations, crank_moment)
+    if (self%is_loose(piston_pin)) then
+      if (self%is_loose(crank_pin)) then
+        call accelerate_free_rod(self%bodies, drive, loads, motion, accelerations, crank_moment)
       else
-        call accelerate_crank_rod(chain%bodies, drive, loads, motion, accelerations, crank_moment)
+        call accelerate_crank_rod(self%bodies, drive, loads, motion, accelerations, crank_moment)
       end if
-      if (chain%bodies%piston%is_loose) call free_piston(chain%bodies, motion, loads, accelerations)
-    else if (chain%bodies%piston%is_loose) then
-      call accelerate_assembled(chain%bodies, drive, chain%is_loose, loads, motion, accelerations, crank_moment)
-      call chain%complete_loads(motion, accelerations, loads)
-    else if (chain%is_loose(crank_pin)) then
-      call accelerate_rod_piston(chain%bodies, drive, motion, loads, accelerations, crank_moment)
+      if (self%bodies%piston%is_loose) call free_piston(self%bodies, motion, loads, accelerations)
+    else if (self%bodies%piston%is_loose) then
+      call accelerate_assembled(self%bodies, drive, self%is_loose, loads, motion, accelerations, crank_moment)
+      call self%complete_loads(motion, accelerations, loads)
+    else if (self%is_loose(crank_pin)) then
+      call accelerate_rod_piston(self%bodies, drive, motion, loads, accelerations, crank_moment)
     else
-      call accelerate_ideal_chain(chain%bodies, drive, motion, loads, accelerations, crank_moment)
+      call accelerate_ideal_chain(self%bodies, drive, motion, loads, accelerations, crank_moment)
     end if
     accelerations%rod_end = -accelerations%rod
   end subroutine accelerate_rigid

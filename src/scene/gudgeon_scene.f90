@@ -276,7 +276,8 @@ contains
   end subroutine evaluate
 
   !> Compute motion, loads, accelerations and power. `inside` is false if an eccentricity is not admissible. (The joints are passed
-  !> as an argument of fixed size, which avoids looking up bounds and strides.)
+  !> as an argument of fixed size, which avoids looking up bounds and strides. The equations of the two most common chains are
+  !> called directly, so that the compiler includes them here.)
   pure subroutine find_accelerations(self, n, joints, t, y, now, inside)
     class(scene_t), intent(in) :: self
     integer, intent(in) :: n
