@@ -229,9 +229,7 @@ contains
     call self%map%force_slopes(eps, b, t, radial, tangential)
     radial = self%force_scale*radial
     tangential = self%force_scale*tangential
-    derivatives = derivatives_in_components(motion, self%clearance, n, eps, b, radial, tangential)
-    if (self%film_moment) derivatives(3, :) = self%shear_moment_slopes(self%force_scale, motion, &
-      [radial(0)*n(1) - tangential(0)*n(2), radial(0)*n(2) + tangential(0)*n(1)], derivatives)
+    derivatives = derivatives_in_components(self, self%force_scale, motion, n, eps, b, radial, tangential)
   end subroutine force_derivatives
 
   !> The direction n of the eccentricity, the square of the eccentricity ratio (< 1), and the components of v*/c along n and

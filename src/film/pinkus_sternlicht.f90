@@ -174,11 +174,8 @@ contains
     end if
     radial(3) = -2*radial(3)
     tangential(3) = -2*tangential(3)
-    associate (n => state%normal)
-      derivatives = derivatives_in_components(motion, self%clearance, n, state%ratio, state%ratio_rate, radial, tangential)
-      if (self%film_moment) derivatives(3, :) = self%shear_moment_slopes(self%force_scale, motion, &
-        [radial(0)*n(1) - tangential(0)*n(2), radial(0)*n(2) + tangential(0)*n(1)], derivatives)
-    end associate
+    derivatives = derivatives_in_components(self, self%force_scale, motion, state%normal, state%ratio, state%ratio_rate, radial, &
+      tangential)
   end subroutine force_derivatives
 
   !> Radial and tangential force (element 0) and their derivatives with respect to eps, eps_dot and eps W (elements 1 to 3). At rest
