@@ -25,12 +25,7 @@ contains
     real(dp), parameter :: printed(4, 8) = reshape([1.0_dp, 0.1_dp, 1.33_dp, 79.50_dp, 1.0_dp, 0.2_dp, 0.631_dp, 74.02_dp, &
       1.0_dp, 0.6_dp, 0.121_dp, 50.58_dp, 1.0_dp, 0.8_dp, 0.0446_dp, 36.24_dp, 1.0_dp, 0.9_dp, 0.0188_dp, 26.45_dp, &
       0.5_dp, 0.1_dp, 4.31_dp, 81.62_dp, 0.5_dp, 0.4_dp, 0.779_dp, 61.45_dp, 0.5_dp, 0.8_dp, 0.0923_dp, 33.31_dp], [4, 8])
-    real(dp) :: found(2)
-    integer :: i
-    do i = 1, size(printed, 2)
-      call find_journal(printed(1, i), printed(2, i), [pi], 0.0_dp, .false., found)
-      call compare(check, found, printed(3:, i), 1.2e-2_dp, 0.6_dp, 'Raimondi and Boyd')
-    end do
+    call compare(check, printed, [pi], 0.0_dp, .false., 'Raimondi and Boyd')
   end subroutine raimondi_and_boyd
 
   !> Lund and Thomsen (1978), two grooves of 20 degrees at right angles to the load.
@@ -39,12 +34,7 @@ contains
     real(dp), parameter :: printed(4, 6) = reshape([0.5_dp, 0.244_dp, 1.656_dp, 65.85_dp, 0.5_dp, 0.477_dp, 0.58_dp, 51.01_dp, &
       0.5_dp, 0.655_dp, 0.244_dp, 40.25_dp, 1.0_dp, 0.15_dp, 0.991_dp, 70.58_dp, 1.0_dp, 0.46_dp, 0.235_dp, 49.27_dp, &
       1.0_dp, 0.65_dp, 0.108_dp, 39.72_dp], [4, 6])
-    real(dp) :: found(2)
-    integer :: i
-    do i = 1, size(printed, 2)
-      call find_journal(printed(1, i), printed(2, i), [-0.5_dp*pi, 0.5_dp*pi], 20*degree, .true., found)
-      call compare(check, found, printed(3:, i), 1.2e-2_dp, 0.6_dp, 'Lund and Thomsen')
-    end do
+    call compare(check, printed, [-0.5_dp*pi, 0.5_dp*pi], 20*degree, .true., 'Lund and Thomsen')
   end subroutine lund_and_thomsen
 
   !> Someya's databook (1989), two grooves of 10 degrees at right angles to the load.
@@ -52,24 +42,27 @@ contains
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: printed(4, 5) = reshape([0.5_dp, 0.3_dp, 1.24_dp, 64.10_dp, 0.5_dp, 0.7_dp, 0.187_dp, 38.20_dp, &
       0.5_dp, 0.9_dp, 0.0315_dp, 22.70_dp, 1.0_dp, 0.5_dp, 0.194_dp, 49.10_dp, 1.0_dp, 0.8_dp, 0.0469_dp, 32.10_dp], [4, 5])
+    call compare(check, printed, [-0.5_dp*pi, 0.5_dp*pi], 10*degree, .true., 'Someya')
+  end subroutine someya
+
+  !> Sommerfeld numbers within 1.2 % and attitude angles within 0.6 degrees of a table; for the grooves see `find_journal`.
+  subroutine compare(check, printed, grooves, width, from_load, source)
+    class(checks_t), intent(inout) :: check
+    real(dp), intent(in) :: printed(:, :)   !! columns of L/D, eps, S, attitude [deg]
+    real(dp), intent(in) :: grooves(:), width
+    logical, intent(in) :: from_load
+    character(len=*), intent(in) :: source
     real(dp) :: found(2)
     integer :: i
     do i = 1, size(printed, 2)
-      call find_journal(printed(1, i), printed(2, i), [-0.5_dp*pi, 0.5_dp*pi], 10*degree, .true., found)
-      call compare(check, found, printed(3:, i), 1.2e-2_dp, 0.6_dp, 'Someya')
+      call find_journal(printed(1, i), printed(2, i), grooves, width, from_load, found)
+      call check%relative(found(1), printed(3, i), 1.2e-2_dp, 'Sommerfeld number of '//source)
+      call check%close_to(found(2), printed(4, i), 0.6_dp, 'attitude angle of '//source)
     end do
-  end subroutine someya
-
-  subroutine compare(check, found, printed, share, degrees, source)
-    class(checks_t), intent(inout) :: check
-    real(dp), intent(in) :: found(2), printed(2), share, degrees
-    character(len=*), intent(in) :: source
-    call check%relative(found(1), printed(1), share, 'Sommerfeld number of '//source)
-    call check%close_to(found(2), printed(2), degrees, 'attitude angle of '//source)
   end subroutine compare
 
-  !> S and the attitude angle [deg] of a journal with grooves at some angles [rad], from the thinnest film or, `from_load`, from the
-  !> direction of the load, which is found by repetition.
+  !> S and the attitude angle [deg] of a journal whose bearing has grooves of a `width` [rad] at given angles [rad]: measured from
+  !> the thinnest film or, with `from_load`, from the direction of the load, which is found by iteration.
   subroutine find_journal(half_length, eps, grooves, width, from_load, found)
     real(dp), intent(in) :: half_length, eps, grooves(:), width
     logical, intent(in) :: from_load
