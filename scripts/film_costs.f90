@@ -1,33 +1,29 @@
-!> What the film of finite length costs: a force from its table, beside a sine and a cosine of the same build; its table, computed
-!> and read from a file; simulation I with it, beside the closed form of Pinkus and Sternlicht. Run by scripts/film_costs.sh from
-!> the top of the checkout, with a folder for tables. Prints a table in Markdown: the least of several times.
+!> The cost of the film of finite length: the time of a force from its table, compared with that of a sine and a cosine in the same
+!> program; of its table, computed and read from a file; and of simulation I with it, compared with the closed form of Pinkus and
+!> Sternlicht. Run by scripts/film_costs.sh from the top of the checkout, with a folder for tables as its argument. Prints a table
+!> in Markdown with the shortest of several times; a table is computed once.
 program film_costs
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
   use gudgeon_errors, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use film_law, only: film_motion_t
   use film_tables, only: provide_tables
-  use gudgeon_solver, only: integrate, silent_observer_t
-  use gudgeon_scene, only: scene_t
-  use scene_builder, only: build_scene, settings_for, simulated_time
-  use ode_method, only: ode_method_t
-  use gudgeon_methods, only: new_method
+  use measured_times, only: time_of_pairs, time_of_integration, no_difference
   implicit none
 
   integer, parameter :: n_motions = 64, calls = 6400, blocks = 101, runs = 25, loads = 9
-  real(dp), parameter :: no_difference = 1e-200_dp   !! times any result: added to an angle or a place it changes nothing
   character(len=*), parameter :: finite = 'cases/film/sim_I_finite.nml', long = 'cases/sim_I.nml'
   character(len=300) :: folder
   real(dp) :: pair(2), yardstick
+  integer :: i
 
   call get_command_argument(1, folder)
   if (folder == '') error stop 'film_costs: give a folder for tables'
   print '(a)', '| what | measured | in pairs of sine and cosine, or over the closed form | wanted |'
   print '(a)', '|---|---|---|---|'
-  pair = [time_of_pairs(.false.), time_of_pairs(.true.)]
+  pair = [minval([(time_of_pairs(calls, .false.), i=1, blocks)]), minval([(time_of_pairs(calls, .true.), i=1, blocks)])]
   print '(2(a,f0.1),a)', '| sine and cosine of an angle; each waiting for the one before | ', pair(1), ' ns; ', pair(2), ' ns | | |'
   call print_table('gumbel', 2)
   call print_table('reynolds', 20)
@@ -42,7 +38,7 @@ program film_costs
 
 contains
 
-  !> A case with a table of 65 x 65 values from 128 nodes, which it keeps in the folder.
+  !> Read a case; the table of a film of finite length is stored in the folder of tables.
   subroutine read_film(file, setting, case)
     character(len=*), intent(in) :: file, setting
     type(case_t), intent(out) :: case
@@ -54,6 +50,7 @@ contains
     if (allocated(error)) error stop 'film_costs: run it from the top of the checkout'
   end subroutine read_film
 
+  !> Provide the table of the film of a case and prepare the film.
   subroutine prepare(case)
     type(case_t), intent(inout) :: case
     type(error_t), allocatable :: error
@@ -62,7 +59,7 @@ contains
     call case%joint%film%prepare(case%joint%bearing(case%mechanism%rod_length), case%integrator%relative_tolerance)
   end subroutine prepare
 
-  !> The table, computed and then read.
+  !> Print the times in which the table is computed and then read.
   subroutine print_table(cavitation, wanted)
     character(len=*), intent(in) :: cavitation
     integer, intent(in) :: wanted   !! [s]
@@ -81,31 +78,7 @@ contains
     print '(a,f0.4,a)', '| the same read from its file | ', minval(seconds(1:)), ' s | | 0.05 s |'
   end subroutine print_table
 
-  !> Nanoseconds of a sine and a cosine.
-  real(dp) function time_of_pairs(in_turn) result(ns)
-    logical, intent(in) :: in_turn
-    integer(int64) :: before, after, rate
-    real(dp) :: total, angle
-    integer :: i, j
-    ns = huge(ns)
-    total = 0
-    do i = 1, blocks
-      call system_clock(before, rate)
-      do j = 1, calls
-        angle = pi*(1.05_dp + 0.8_dp*modulo(j, n_motions)/n_motions)
-        if (in_turn) then
-          angle = angle + no_difference*total
-          total = sin(angle) + cos(angle)
-        else
-          total = total + sin(angle) + cos(angle)
-        end if
-      end do
-      call system_clock(after)
-      ns = min(ns, 1e9_dp*real(after - before, dp)/real(rate, dp)/calls)
-    end do
-    if (total > huge(total)) print *, total
-  end function time_of_pairs
-
+  !> Print the time of a force, independent of the others and in turn.
   subroutine print_force(what, file, setting, wanted)
     character(len=*), intent(in) :: what, file, setting, wanted
     type(case_t) :: case
@@ -117,7 +90,7 @@ contains
       wanted, ' |'
   end subroutine print_force
 
-  !> Nanoseconds of a force, at eccentricity ratios from 0.1 to 0.9 and velocities in every direction.
+  !> Shortest time of a force [ns], at eccentricity ratios from 0.1 to 0.9 and velocities in every direction.
   real(dp) function time_of_force(case, in_turn) result(ns)
     type(case_t), intent(in) :: case
     logical, intent(in) :: in_turn
@@ -148,34 +121,13 @@ contains
     if (total > huge(total)) print *, total
   end function time_of_force
 
-  !> Milliseconds of an integration.
+  !> Shortest time of an integration of simulation I [ms].
   real(dp) function time_of_run(file) result(ms)
     character(len=*), intent(in) :: file
     type(case_t) :: case
-    type(scene_t), allocatable :: scene
-    class(ode_method_t), allocatable :: method
-    type(error_t), allocatable :: error
-    type(silent_observer_t) :: nobody
-    integer(int64) :: before, after, rate
-    real(dp), allocatable :: y(:)
-    real(dp) :: t
-    integer :: i, status
+    integer :: i
     call read_film(file, trim(merge('lubrication.cavitation=reynolds', 'lubrication.variant=closed_form', file == finite)), case)
     call prepare(case)
-    ms = huge(ms)
-    do i = 1, runs
-      call build_scene(case, .false., scene, error)
-      if (.not. allocated(error)) call new_method('auto', method, error)
-      if (allocated(error)) error stop 'film_costs: no such scene'
-      method%settings = settings_for(case, scene)
-      if (allocated(y)) deallocate (y)
-      allocate (y(scene%n), source=scene%initial_state())
-      t = 0
-      call system_clock(before, rate)
-      call integrate(scene, method, t, y, simulated_time(case), 0, nobody, status)
-      call system_clock(after)
-      ms = min(ms, 1e3_dp*real(after - before, dp)/real(rate, dp))
-      deallocate (scene, method)
-    end do
+    ms = minval([(time_of_integration(case, .false.), i=1, runs)])
   end function time_of_run
 end program film_costs

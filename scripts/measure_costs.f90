@@ -23,10 +23,10 @@ program measure_costs
   use gudgeon_recorder, only: recorder_t
   use trace_sink, only: trace_sink_t
   use silent_sink, only: silent_sink_t
+  use measured_times, only: time_of_pairs, time_of_integration, no_difference
   implicit none
 
   integer, parameter :: n_states = 64, blocks = 31, calls = 6400, steps_in_block = 2000
-  real(dp), parameter :: no_difference = 1e-200_dp   !! times any result: added to an angle or a state it changes nothing
   integer, parameter :: name_length = 28, n_scenes = 32, n_quantities = 8
   character(len=name_length), parameter :: scenes(n_scenes) = [character(len=name_length) :: 'ideal', 'ideal+gas', 'free', &
     'free+gas', 'contact_hertz', 'contact', 'contact_johnson', 'contact_conformal', 'contact+quadrature', 'contact+ambrosio', &
@@ -194,40 +194,6 @@ contains
     if (quantity == 'events') ns = max(0.0_dp, median(ns))
     print '(3a,",",f0.1,2(",",f0.2))', name, ',', quantity, minval(ns), minval(ns)/minval(pair), evaluations
   end subroutine measure
-
-  !> A sine and a cosine. A processor works on several at a time, unless they are made `in_turn`: each begins when the one before
-  !> is known.
-  real(dp) function time_of_pairs(count, in_turn) result(ns)
-    integer, intent(in) :: count
-    logical, intent(in) :: in_turn
-    integer(int64) :: before, after, rate
-    real(dp) :: total, angle(n_states)
-    integer :: i, j
-    angle = [(pi*(1.05_dp + 0.8_dp*j/n_states), j=1, n_states)]
-    total = 0
-    call system_clock(before, rate)
-    if (in_turn) then
-      do i = 1, count/n_states
-        do j = 1, n_states
-          total = sine_and_cosine(angle(j) + no_difference*total)
-        end do
-      end do
-    else
-      do i = 1, count/n_states
-        do j = 1, n_states
-          total = total + sine_and_cosine(angle(j))
-        end do
-      end do
-    end if
-    call system_clock(after)
-    ns = 1e9_dp*real(after - before, dp)/real(rate, dp)/(count/n_states*n_states)
-    if (total > huge(total)) print *, total
-  end function time_of_pairs
-
-  real(dp) function sine_and_cosine(x)
-    real(dp), intent(in) :: x
-    sine_and_cosine = sin(x) + cos(x)
-  end function sine_and_cosine
 
   !> Evaluations of the right-hand side, independent of each other or, as in an integration, `in_turn`: each at a state that waits
   !> for all results of the one before.
@@ -479,28 +445,4 @@ contains
     end do
     print '(f0.4)', best
   end subroutine integrate_case
-
-  !> Milliseconds.
-  real(dp) function time_of_integration(case, ideal_joint) result(ms)
-    type(case_t), intent(in) :: case
-    logical, intent(in) :: ideal_joint
-    type(scene_t), allocatable :: scene
-    class(ode_method_t), allocatable :: method
-    type(error_t), allocatable :: error
-    type(silent_observer_t) :: nobody
-    integer(int64) :: before, after, rate
-    real(dp), allocatable :: y(:)
-    real(dp) :: t
-    integer :: status
-    call build_scene(case, ideal_joint, scene, error)
-    if (.not. allocated(error)) call new_method('auto', method, error)
-    if (allocated(error)) error stop 'measure_costs: no such scene'
-    method%settings = settings_for(case, scene)
-    allocate (y(scene%n), source=scene%initial_state())
-    t = 0
-    call system_clock(before, rate)
-    call integrate(scene, method, t, y, simulated_time(case), 0, nobody, status)
-    call system_clock(after)
-    ms = 1e3_dp*real(after - before, dp)/real(rate, dp)
-  end function time_of_integration
 end program measure_costs
