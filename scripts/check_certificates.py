@@ -6,10 +6,11 @@
     scripts/check_certificates.py --set integrator.method=auto --set integrator.relative_tolerance=1e-8
 
 Each case is certified, run with close rows, and run twice at 1e-13, with `auto` and with Radau, to a quarter beyond the certified time:
-where those two part (1e-5 of a state's range), or one of them has taken --timeout seconds of processor time, nothing is known any more. A certificate
+from where those two differ by more than 1e-5 of a state's range, or where one of them has taken --timeout seconds of processor time, the true motion is not known. A certificate
 fails where it claims more than is true: a time at which some coordinate or speed is off by more than 1e-3 of its range, or a smaller
 error than the largest one up to there; or far less: neither 95 % of the true time nor a time at which the error was a tenth of the
-limit. Ends with `N passed, N failed`. `--write`: the rows go into data/measured/certificates.md, in place of those that the same cases
+limit. A case without a certificate, or without runs to compare it with in time, is neither passed nor failed: it is counted as not compared.
+Ends with `N passed, N failed`. `--write`: the rows go into data/measured/certificates.md, in place of those that the same cases
 have there. `--until` certifies a shorter run, where one at 1e-13 takes too long.
 """
 
@@ -127,15 +128,15 @@ def row_settings(case: Path, options: argparse.Namespace) -> list[str]:
     return [*settings, f"output.samples_per_revolution={options.rows}"]
 
 
-def judge(program: Path, case: Path, options: argparse.Namespace, out: Path) -> tuple[str, str]:
-    """A row of the table and what is wrong, or an empty text."""
+def judge(program: Path, case: Path, options: argparse.Namespace, out: Path) -> tuple[str, str | None]:
+    """A row of the table and what is wrong (an empty text: nothing); None for what is wrong where nothing could be compared."""
     settings = row_settings(case, options)
     plain, claim = run(program, case, out, settings, 4 * options.timeout, "--certify")
     name = f"{case.stem:32s}"
     if claim.get("status") != "done":
-        return f"{name} has no run in time", ""
+        return f"{name} has no run in time", None
     if "certified_until" not in claim:
-        return f"{name} {claim.get('certificate', '?')}", ""
+        return f"{name} {claim.get('certificate', '?')}", None
     until, error, end = float(claim["certified_until"]), float(claim["state_error"]), plain["time[s]"].iloc[-1]
     tight = [*settings, "integrator.relative_tolerance=1e-13", "integrator.absolute_tolerance=0"]
     if BEYOND * until < end:
@@ -143,7 +144,7 @@ def judge(program: Path, case: Path, options: argparse.Namespace, out: Path) -> 
     truth, _ = run(program, case, out, [*tight, "integrator.method=auto"], options.timeout)
     check, _ = run(program, case, out, [*tight, "integrator.method=radau"], options.timeout)
     if truth.empty or check.empty:
-        return f"{name} has no run at 1e-13 in time", ""
+        return f"{name} has no run at 1e-13 in time", None
     ranges = plain.max() - plain.min()
     times = truth["time[s]"].to_numpy()
     doubts = state_errors(truth, check, ranges)
@@ -179,7 +180,7 @@ def earlier_rows() -> dict[str, str]:
 def main() -> int:
     options = arguments()
     program = options.program or release_program()
-    failed = passed = 0
+    failed = passed = not_compared = 0
     title = f"{'case':32s} {'until [ms]':>10s} {'true':>10s} {'known':>10s} {'end':>9s} {'error':>9s} {'true':>9s} digits impacts"
     command = " ".join(["scripts/check_certificates.py --write", *(f"--set {setting}" for setting in options.set)])
     rows = earlier_rows()
@@ -190,10 +191,13 @@ def main() -> int:
             rows[case.stem] = f"{row} FAILED: {wrong}" if wrong else row
             print(rows[case.stem], flush=True)
             failed += bool(wrong)
-            passed += not wrong
+            passed += wrong == ""
+            not_compared += wrong is None
             if options.write:
                 lines = "\n".join(f"    {line}" for line in (title, *(rows[name] for name in sorted(rows))))
                 write_table("certificates", "Certificates against runs at the tolerance 1e-13", command, WORDS + lines)
+    if not_compared:
+        print(f"{not_compared} not compared")
     print(f"{passed} passed, {failed} failed")
     return failed > 0
 

@@ -26,16 +26,17 @@ class Quantity:
     label: str
     source: str  # in the summary
     measure: str  # "relative"; "clearance": over the clearance; "share": as it is
+    unit: str = ""
 
 
 QUANTITIES = {
     quantity.name: quantity
     for quantity in (
-        Quantity("peak_force", "peak force", "max_pin_force", "relative"),
+        Quantity("peak_force", "peak force", "max_pin_force", "relative", "N"),
         Quantity("contact_share", "contact share", "contact_time_fraction", "share"),
-        Quantity("min_film", "minimum film", "min_film_thickness", "clearance"),
-        Quantity("loss", "loss", "loss_per_revolution", "relative"),
-        Quantity("mean_speed", "mean speed", "mean_crank_speed", "relative"),
+        Quantity("min_film", "minimum film", "min_film_thickness", "clearance", "m"),
+        Quantity("loss", "loss", "loss_per_revolution", "relative", "J"),
+        Quantity("mean_speed", "mean speed", "mean_crank_speed", "relative", "rad/s"),
     )
 }
 
@@ -148,13 +149,20 @@ def certificate_of(summary: dict[str, str]) -> str:
     return f"{digits} to the end" if until >= end * (1 - 1e-9) else f"{digits} to {100 * until / end:.2g} % of the time"
 
 
+def scale_of(name: str, outcome: Outcome) -> float:
+    """What a change of a quantity is divided by; 0 where there is nothing to divide by."""
+    measure = QUANTITIES[name].measure
+    return abs(outcome.values[name]) if measure == "relative" else outcome.clearance if measure == "clearance" else 1.0
+
+
 def change(name: str, reference: Outcome, other: Outcome) -> tuple[float, float] | None:
-    """Change of a quantity from a reference, and how far both certificates leave it open; None where one of them does not have it."""
+    """Change of a quantity from a reference, and its uncertainty by both certificates; None where one of them does not have it."""
     if name not in reference.values or name not in other.values:
         return None
     was, value = reference.values[name], other.values[name]
-    measure = QUANTITIES[name].measure
-    scale = max(abs(was), 1e-12 * abs(value)) if measure == "relative" else reference.clearance if measure == "clearance" else 1.0
+    scale = scale_of(name, reference)
+    if QUANTITIES[name].measure == "relative":
+        scale = max(scale, 1e-12 * abs(value))
     if not scale:
         return (0.0, 0.0) if value == was else None
     return (value - was) / scale, (reference.uncertainty[name] + other.uncertainty[name]) / scale
@@ -184,11 +192,11 @@ def fullest(laboratory: Laboratory, outcomes: list[Outcome]) -> tuple[Outcome, l
     found = None
     candidates = [outcome.variant for outcome in outcomes if outcome.variant.fuller and outcome.is_there]
     if candidates:
-        found = laboratory.measure(joined(candidates, "fullest scene"))
+        found = laboratory.measure(joined(candidates, "most complete scene"))
         if found.is_there:
             return found, candidates
     for candidate in candidates:
-        trial = laboratory.measure(joined([*parts, candidate], "fullest scene so far"))
+        trial = laboratory.measure(joined([*parts, candidate], "most complete scene so far"))
         if trial.is_there:
             parts, found = [*parts, candidate], trial
     return (found if parts and found else laboratory.measure(base)), parts
@@ -200,7 +208,7 @@ def joined(parts: list[Variant], label: str) -> Variant:
 
 @dataclass
 class Search:
-    """The way from the fullest scene to the cheapest one that will do."""
+    """The way from the most complete scene to the cheapest one that will do."""
 
     fullest: Outcome
     parts: list[Variant]
@@ -210,7 +218,7 @@ class Search:
 
 
 def find_cheapest(laboratory: Laboratory, outcomes: list[Outcome], names: list[str], limit: float) -> Search:
-    """Take from the fullest scene what changes the quantities by less than the limit and saves time: the parts that make it fuller
+    """Take from the most complete scene what changes the quantities by less than the limit and saves time: the parts that make it fuller
     than the case, then models of the case, and exchanges that are cheaper, those that save most first."""
     top, parts = fullest(laboratory, outcomes)
     search = Search(top, parts, top)

@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
-from .model_effects import QUANTITIES, Outcome, Search, change, largest_change, percent
+from .model_effects import QUANTITIES, Outcome, Search, change, largest_change, percent, scale_of
 from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION, WIDTH
 
 COLOURS = {"taken out": VERMILION, "exchanged": BLUE, "refined": GREEN, "added": ORANGE, "fullest": PURPLE, "cheapest": PURPLE}
@@ -40,11 +40,12 @@ def as_markdown(file: str, outcomes: list[Outcome], search: Search, names: list[
     given = outcomes[0]
     shown = [quantity for quantity in QUANTITIES if quantity in given.values]
     lines = [
-        "One model at a time is taken out, exchanged, refined or added; all scenes with method auto. Cost: evaluations of the right-hand",
-        "side and processor time over those of the case (least of three runs). Changes are those of the whole run: of the peak force at the piston pin, the loss in",
-        "a revolution and the mean crank speed relative, of the minimum film over the clearance, of the contact share in parts of the time.",
-        "Behind ±: how far the certificates of both scenes leave the change open, where that is a tenth of it or more. `-`: that scene does",
-        "not have the quantity.",
+        "One model at a time is taken out, exchanged, refined or added; method auto integrates all scenes. The cost is given as the number of",
+        "evaluations of the right-hand side and the processor time, both divided by those of the case; the time is the shortest of three runs.",
+        "The changes refer to the whole run: those of the peak force at the piston pin, of the loss per revolution and of the mean crank speed",
+        "are relative to the value of the case, that of the minimum film thickness is relative to the clearance, and that of the contact share",
+        "is in per cent of the time. After ± stands the uncertainty of the change, by the certificates of both scenes, where it is at least a",
+        "tenth of the change. `-`: the scene does not have the quantity.",
         "",
         "| # | | scene | evaluations | time | " + " | ".join(QUANTITIES[one].label for one in shown) + " | certificate |",
         "|---|---|---|---|---|" + "---|" * (len(shown) + 1),
@@ -63,11 +64,11 @@ def as_markdown(file: str, outcomes: list[Outcome], search: Search, names: list[
         lines.append("| " + " | ".join([*cells, outcome.certificate]) + " |")
     lines.append("")
     if idle:
-        lines += ["Of no effect at all here: " + ", ".join(f"{n} ({outcomes[n].variant.label})" for n in idle) + ".", ""]
+        lines += ["No effect at all in this case: " + ", ".join(f"{n} ({outcomes[n].variant.label})" for n in idle) + ".", ""]
     if assumed := [f"{n}: {one.variant.assumed}" for n, one in enumerate(outcomes) if one.is_there and one.variant.assumed and n not in idle]:
-        lines += ["\\* Assumed beyond the case: " + "; ".join(assumed) + ".", ""]
+        lines += ["\\* Assumed, since the case does not give it: " + "; ".join(assumed) + ".", ""]
     if refused := [(outcome.variant.label, outcome.refusal) for outcome in outcomes if not (outcome.is_there or outcome.is_no_choice)]:
-        lines += ["Not to be had:", "", *(f"- {label}: {why}" for label, why in refused), ""]
+        lines += ["Not possible with this case:", "", *(f"- {label}: {why}" for label, why in refused), ""]
     return "\n".join([*lines, *answer(search, given, names, limit, file)]) + "\n"
 
 
@@ -84,8 +85,7 @@ def idle_scenes(outcomes: list[Outcome]) -> list[int]:
 
 
 def figure(name: str, outcome: Outcome) -> str:
-    units = {"peak_force": "N", "contact_share": "", "min_film": "m", "loss": "J", "mean_speed": "rad/s"}
-    return f"{outcome.values[name]:.4g} {units[name]}".strip()
+    return f"{outcome.values[name]:.4g} {QUANTITIES[name].unit}".strip()
 
 
 def answer(search: Search, given: Outcome, names: list[str], limit: float, file: str) -> list[str]:
@@ -93,25 +93,25 @@ def answer(search: Search, given: Outcome, names: list[str], limit: float, file:
     told = [name for name in names if name in search.fullest.values]
     lines = ["## What this scene requires", ""]
     parts = ", ".join(part.label for part in search.parts) or "nothing beyond the case"
-    lines += [f"The fullest scene is the case with: {parts}. It takes {cost(search.fullest, given)} of the case.", ""]
+    lines += [f"The most complete scene is the case with: {parts}. It takes {cost(search.fullest, given)} of the case.", ""]
     changes = ", ".join(f"{QUANTITIES[name].label} {percent(change(name, search.fullest, given))}" for name in told)
     lines += [f"The case as it is differs from it: {changes}.", ""]
     changes = ", ".join(f"{QUANTITIES[name].label} {percent(change(name, search.fullest, search.cheapest))}" for name in told)
     lines += [
-        f"The cheapest scene found within {100 * limit:g} % of the fullest ({', '.join(QUANTITIES[name].label for name in told)}) takes"
+        f"The cheapest scene found within {100 * limit:g} % of the most complete one ({', '.join(QUANTITIES[name].label for name in told)}) takes"
         f" {cost(search.cheapest, given)} of the case: {changes}.",
         "",
         "    " + " ".join(["gudgeon", file, *(f"--set {setting}" for setting in ("integrator.method=auto", *search.cheapest.variant.settings))]),
         "",
     ]
     if search.left_out:
-        lines += ["Left out of the fullest scene, one after the other: " + "; ".join(label.removeprefix("without: ") for label in search.left_out) + ".", ""]
+        lines += ["Left out of the most complete scene, one after the other: " + "; ".join(label.removeprefix("without: ") for label in search.left_out) + ".", ""]
     if search.needed:
-        lines += ["Needed, or not worth it:", "", *(f"- {label}: {why}" for label, why in search.needed), ""]
+        lines += ["Needed, or tried without any saving:", "", *(f"- {label}: {why}" for label, why in search.needed), ""]
     open_ones = [name for name in told if search.fullest.uncertainty[name] > limit * scale_of(name, search.fullest)]
     if open_ones:
         words = ", ".join(QUANTITIES[name].label for name in open_ones)
-        lines += [f"The certificate of the fullest scene itself leaves more than {100 * limit:g} % open in: {words}.", ""]
+        lines += [f"By its certificate, the most complete scene itself is uncertain by more than {100 * limit:g} % in: {words}.", ""]
     return lines
 
 
@@ -119,24 +119,27 @@ def cost(outcome: Outcome, given: Outcome) -> str:
     return f"{ratio(outcome.evaluations, given.evaluations)} times the evaluations and {ratio(outcome.seconds, given.seconds)} times the time"
 
 
-def scale_of(name: str, outcome: Outcome) -> float:
-    measure = QUANTITIES[name].measure
-    return abs(outcome.values[name]) if measure == "relative" else outcome.clearance if measure == "clearance" else 1.0
-
-
 def draw_largest(axis: Axes, points: list[tuple[str, str, Outcome]], shown: list[str], given: Outcome, limit: float) -> None:
     """The largest change of all quantities against the evaluations."""
     for number, kind, outcome in points:
         largest = largest_change(shown, given, outcome)
-        if largest == float("inf"):
-            continue
-        where = (outcome.evaluations / given.evaluations, max(SMALLEST, 100 * largest))
-        axis.plot(*where, "o", color=COLOURS.get(kind, GREY), markersize=3)
-        axis.annotate(number, where, xytext=(2, 2), textcoords="offset points", fontsize=5)
+        if largest < float("inf"):
+            draw_point(axis, number, kind, outcome.evaluations / given.evaluations, largest)
+    finish(axis, "largest of these", limit)
+
+
+def draw_point(axis: Axes, number: str, kind: str, cost: float, change: float, label: str | None = None) -> None:
+    """A scene with its number; `change` as a fraction."""
+    where = (cost, max(SMALLEST, 100 * change))
+    axis.plot(*where, "o", color=COLOURS.get(kind, GREY), markersize=3, label=label)
+    axis.annotate(number, where, xytext=(2, 2), textcoords="offset points", fontsize=5)
+
+
+def finish(axis: Axes, title: str, limit: float) -> None:
     axis.axhline(100 * limit, color=GREY, linestyle="--", linewidth=0.6)
     axis.set_xscale("log")
     axis.set_yscale("log")
-    axis.set_title("largest of these")
+    axis.set_title(title)
     axis.set_ylabel("change [%]")
 
 
@@ -154,19 +157,13 @@ def draw(name: str, outcomes: list[Outcome], search: Search, names: list[str], l
             found = change(quantity, given, outcome)
             if found is None:
                 continue
-            where = (outcome.seconds / given.seconds, max(SMALLEST, 100 * abs(found[0])))
             first = kind not in kinds and kind != "cheapest"
             if first:
                 kinds.append(kind)
-            label = {"fullest": "F fullest, C cheapest"}.get(kind, kind) if first else None
-            axis.plot(*where, "o", color=COLOURS.get(kind, GREY), markersize=3, label=label)
-            axis.annotate(number, where, xytext=(2, 2), textcoords="offset points", fontsize=5)
-        axis.axhline(100 * limit, color=GREY, linestyle="--", linewidth=0.6)
-        axis.set_xscale("log")
-        axis.set_yscale("log")
-        axis.set_title(QUANTITIES[quantity].label)
-        axis.set_ylabel("change [%]")
-    for axis in list(axes.flat)[len(shown) :]:  # a place that is left
+            label = {"fullest": "F most complete, C cheapest"}.get(kind, kind) if first else None
+            draw_point(axis, number, kind, outcome.seconds / given.seconds, abs(found[0]), label)
+        finish(axis, QUANTITIES[quantity].label, limit)
+    for axis in list(axes.flat)[len(shown) :]:  # where no quantity is drawn
         draw_largest(axis, points, shown, given, limit)
     for axis in axes.flat[: len(shown)]:
         axis.set_xlabel("processor time over that of the case")

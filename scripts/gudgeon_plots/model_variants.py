@@ -42,7 +42,7 @@ class Variant:
     label: str
     settings: tuple[str, ...]  # GROUP.KEY=VALUE of the program's --set
     assumed: str = ""  # values that the case does not give
-    fuller: bool = False  # closer to the machine than the case: a part of the fullest scene
+    fuller: bool = False  # closer to the machine than the case: a part of the most complete scene
 
 
 def read_template(text: str) -> dict[str, dict[str, Key]]:

@@ -14,6 +14,7 @@ import math
 from .mechanics import Row, Vector
 from .trace import Run
 
+MOST_TABLE_ERROR = 0.15  # of the force; a table that is less accurate is reported, whatever it states
 RATIO = 2.0     # from one piece of the film to the next one away from the thinnest place
 NODES = ((-0.9739065285171717, 0.0666713443086881), (-0.8650633666889845, 0.1494513491505806), (-0.6794095682990244, 0.2190863625159820),
          (-0.4333953941292472, 0.2692667193099963), (-0.1488743389816312, 0.2955242247147529))   # of Gauss and Legendre, the left half
@@ -77,9 +78,9 @@ class Film:
         self.scale = self.viscosity * self.length * self.radius**3 / self.clearance**2
         self.lever = number("mechanism.crank_length") / number("mechanism.rod_length")
         self.is_solved = self.law == "finite_bearing" and self.variant != "short"
-        self.margin = 0.0   # of the force: what the coarse solution may be off, and a table by what it says itself
+        self.margin = 0.0   # possible error of the force: of the coarse solution here, and of the program's table, as it states
         if self.is_solved:
-            self.margin = 0.03 + float(run.summary.get("film_table_error", 0.0))
+            self.margin = 0.03 + min(float(run.summary.get("film_table_error", 0.0)), MOST_TABLE_ERROR)
 
     @property
     def is_known(self) -> bool:
