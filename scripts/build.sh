@@ -1,10 +1,12 @@
 #!/bin/sh
-# Builds a fast program (fpm @release, set up where needed) and prints its path, relative to the top of the checkout.
+# Builds the fast program (release profile, `fpm @release`) and prints its path, relative to the top of the checkout. The tool chain
+# is set up first if it is missing.
 #
-#   scripts/build.sh            gudgeon
-#   scripts/build.sh PROGRAM    one of scripts/fpm.toml: check_numbers, measure_costs, ...
+#   scripts/build.sh            builds gudgeon
+#   scripts/build.sh PROGRAM    builds one of the programs of scripts/fpm.toml: check_numbers, measure_costs, ...
 #
-# Nothing else goes to standard output. The exit status is 1, with what fpm said, if it cannot be built.
+# Nothing else is printed on standard output. If the build fails, the exit status is 1 and the messages of fpm are on standard
+# error.
 cd "$(dirname "$0")/.." || exit 1
 . scripts/setup.sh || exit 1
 folder=
@@ -19,7 +21,7 @@ build() {
 
 build "$@" && echo "$found" && exit 0
 if printf '%s\n' "$said" | grep -q -e 'multiple definition of' -e 'Mismatch in components of derived type'; then
-  rm -rf build/gfortran_* scripts/build/gfortran_*   # left by an earlier state of the sources
+  rm -rf build/gfortran_* scripts/build/gfortran_*   # objects of earlier sources are in the way
   build "$@" && echo "$found" && exit 0
 fi
 printf '%s\n' "$said" >&2

@@ -1,6 +1,7 @@
 #!/bin/sh
-# Builds a library of scenes that C and Python can call (scripts/scene_library/scene_library.f90, optimised as the program is) and prints its
-# path. Its objects are position-independent, so they have a build folder of their own: build/scene_library.
+# Builds a library of scenes that C and Python can call (scripts/scene_library/scene_library.f90, optimised like the program) and
+# prints the path of the library. Its objects must be position-independent, so they have their own build folder,
+# build/scene_library.
 cd "$(dirname "$0")/.." || exit 1
 . scripts/setup.sh || exit 1
 folder=build/scene_library

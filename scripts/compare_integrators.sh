@@ -1,13 +1,14 @@
 #!/bin/sh
-# The program's methods beside public codes on its own right-hand side, in its own coordinates and scales: SciPy's DOP853, Radau and
-# LSODA, SUNDIALS CVODE (Debian: apt-get install libsundials-dev; left out where it is missing).
+# Compares the program's integrators with public codes on the program's own right-hand side, coordinates and scales: SciPy's DOP853,
+# Radau and LSODA, and SUNDIALS CVODE (Debian: apt-get install libsundials-dev; left out if it is not installed).
 #
 #   scripts/compare_integrators.sh [DIR]                writes DIR/integrators.md, .csv and .png (default: data/measured)
-#   scripts/compare_integrators.sh [DIR] --compiled     measures only the program's own methods and CVODE anew
-#   scripts/compare_integrators.sh [DIR] --draw         measures nothing: draws the picture again, from DIR/integrators.csv
+#   scripts/compare_integrators.sh [DIR] --compiled     measures only the program's own methods and CVODE again
+#   scripts/compare_integrators.sh [DIR] --draw         measures nothing, draws the picture again from DIR/integrators.csv
 #
-# With --language pt the texts of the picture are Portuguese. Takes about three minutes of processor time, one of them to build, and
-# asks nothing. Other programs on the machine falsify the times; evaluations are the same on any machine with this compiler.
+# With --language pt the picture has Portuguese texts. The comparison takes about three minutes of processor time, including one
+# minute for the build. Other programs that run on the machine make the times too long; the numbers of evaluations depend on the
+# compiler only.
 cd "$(dirname "$0")/.." || exit 1
 scripts/setup.sh --python || exit 1
 options=
@@ -38,7 +39,7 @@ if [ -e /usr/include/cvode/cvode.h ]; then
     -lsundials_sunmatrixdense -lsundials_sunlinsoldense -lm || exit 1
 else
   rm -f $folder/cvode_run.so
-  echo "compare_integrators: no CVODE: apt-get install libsundials-dev" >&2
+  echo "compare_integrators: CVODE is not installed and is left out (apt-get install libsundials-dev)" >&2
 fi
 # shellcheck disable=SC2086  # options or nothing
 exec .venv/bin/python scripts/compare_integrators.py "$out" $part $options

@@ -1,5 +1,6 @@
 #!/bin/sh
-# What the film of finite length costs: a force, its table, a run; release build; see film_costs.f90. On a quiet computer:
+# Measures the time of one force of the film of finite length, of its force table, and of a whole run (release build; see
+# film_costs.f90). To write data/measured/film_costs.md, on a machine that runs nothing else:
 #
 #   scripts/record.py film_costs "What the film of finite length costs" scripts/film_costs.sh
 cd "$(dirname "$0")/.." || exit 1

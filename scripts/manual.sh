@@ -1,8 +1,8 @@
 #!/bin/sh
-# Builds the manual into build/manual by FORD: the pages of data/manual, the measured tables of data/measured, the reference pages that the
-# program prints, and the comments of the source. Ends with an error if FORD warns of anything.
+# Builds the manual into build/manual with FORD from the pages of data/manual, the measured tables of data/measured, the reference
+# pages that the program prints, and the comments of the source. Any warning of FORD is an error: the exit status is then 1.
 #
-#   scripts/manual.sh [PROGRAM]      PROGRAM: a gudgeon to ask for the reference pages (default: the one of scripts/build.sh)
+#   scripts/manual.sh [PROGRAM]      PROGRAM: the gudgeon that prints the reference pages (default: that of scripts/build.sh)
 cd "$(dirname "$0")/.." || exit 1
 scripts/setup.sh --manual || exit 1
 program=${1:-$(scripts/build.sh)} || exit 1

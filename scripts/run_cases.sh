@@ -1,9 +1,10 @@
 #!/bin/sh
-# Runs case files with the release build, in parallel on all processor cores: a line for each case as it ends, then a table.
+# Runs case files with the release build, in parallel on all processor cores. Prints one line for each case when it ends, then a
+# table.
 #
-#   scripts/run_cases.sh [-o DIR] [-j N] [-s GROUP.KEY=VALUE] CASE.nml...      (options go to gudgeon)
+#   scripts/run_cases.sh [-o DIR] [-j N] [-s GROUP.KEY=VALUE] CASE.nml...      (options are passed to gudgeon)
 #
-# The exit status is that of gudgeon: not 0 if one case failed.
+# The exit status is that of gudgeon: not 0 if any case failed.
 cd "$(dirname "$0")/.." || exit 1
 
 out=results
@@ -19,12 +20,12 @@ program=$(scripts/build.sh) || exit 1
 status=$?
 [ "$status" = 2 ] && exit 2
 
-number() {   # number FORMAT QUANTITY: of the present summary; nothing where it has none
+number() {   # number FORMAT QUANTITY: prints a value of $summary; prints nothing if the summary lacks it
   found=$(value "$2" "$summary")
   [ -z "$found" ] || printf "$1" "$found"
 }
 
-value() { sed -n "s/^$1,\([^,]*\),.*/\1/p" "$2"; }   # value QUANTITY SUMMARY: one value of a summary
+value() { sed -n "s/^$1,\([^,]*\),.*/\1/p" "$2"; }   # value QUANTITY SUMMARY: prints a value of a summary
 
 printf '\n%-24s %9s %9s %12s %12s %11s %10s %9s  %s\n' case contacts contact 'min film' 'peak pin' 'mean speed' residual \
   time status

@@ -1,11 +1,12 @@
 #!/bin/sh
-# Runs the shipped studies with the fast program, draws them and prints their results: when a film carries the pin, to which motion
-# the mechanism settles, what restitution and contact laws change, on which parameters the films depend.
+# Runs the shipped parameter studies with the fast program, draws their pictures and prints their results. The studies find where a
+# film carries the pin without contact, which motion the mechanism settles to, what restitution and contact laws change, and which
+# parameters determine film thickness and contact.
 #
-#   scripts/run_studies.sh [-o DIR] [-j N] [--fresh]     number of threads; discard earlier runs
+#   scripts/run_studies.sh [-o DIR] [-j N] [--fresh]     -j: number of threads; --fresh: discard the runs of an earlier call
 #
 # Results, tables and pictures are in DIR (default: results/studies); the numbers are written to data/measured/studies.md and
-# data/measured/sensitivity.md. An interrupted run is continued by the same command.
+# data/measured/sensitivity.md. If the script is interrupted, the same command continues it.
 cd "$(dirname "$0")/.." || exit 1
 scripts/setup.sh --studies || exit 1
 

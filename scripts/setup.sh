@@ -1,15 +1,16 @@
 #!/bin/sh
-# Sets up the tool chain: gfortran (Debian package) and fpm (PyPI), each only where it is missing.
+# Installs the tool chain, gfortran (Debian package) and fpm (PyPI), where it is missing.
 #
-#   . scripts/setup.sh         from the top of the checkout: also puts fpm on the PATH of the calling shell
-#   scripts/setup.sh           the same for scripts and for later shells
-#   scripts/setup.sh --python  also the Python packages of all scripts that draw (plot.py, report.py, plot_study.py, ...), in .venv
-#   scripts/setup.sh --browser the same, and Chromium (Debian packages) for tests/test_report.py
-#   scripts/setup.sh --studies also the packages of scripts/sensitivity.py, scripts/run_studies.sh and scripts/cluster
-#   scripts/setup.sh --manual  also FORD, which scripts/manual.sh needs
+#   . scripts/setup.sh          from the top of the checkout; also puts fpm on the PATH of the calling shell
+#   scripts/setup.sh            the same for scripts and for later shells
+#   scripts/setup.sh --python   also installs, in .venv, the Python packages of the scripts that draw (plot.py, report.py,
+#   plot_study.py, ...)
+#   scripts/setup.sh --browser  as --python, and Chromium (Debian packages), which tests/test_report.py needs
+#   scripts/setup.sh --studies  also the packages of scripts/sensitivity.py, scripts/run_studies.sh and scripts/cluster
+#   scripts/setup.sh --manual   also FORD, which scripts/manual.sh needs
 #
-# Needs root or sudo only to install Debian packages. An fpm that is installed here lives in .venv, with a link in
-# /usr/local/bin or ~/.local/bin. POSIX sh; leaves no option of the calling shell changed.
+# Root or sudo is needed only to install Debian packages. fpm is installed in .venv, with a link to it in /usr/local/bin or
+# ~/.local/bin. This file is POSIX sh; if it is sourced, it changes no option of the calling shell.
 
 gudgeon_apt() {   # install Debian packages, as root or by sudo
   if [ "$(id -u)" = 0 ]; then
@@ -24,7 +25,7 @@ gudgeon_apt() {   # install Debian packages, as root or by sudo
     $gudgeon_sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@" >&2
 }
 
-gudgeon_link() {   # a link to .venv's fpm where later shells find it
+gudgeon_link() {   # link the fpm of .venv into a folder of the PATH, where later shells find it
   for gudgeon_dir in /usr/local/bin "$HOME/.local/bin"; do
     case ":$PATH:" in *":$gudgeon_dir:"*) ;; *) continue ;; esac
     mkdir -p "$gudgeon_dir" 2>/dev/null
@@ -33,7 +34,7 @@ gudgeon_link() {   # a link to .venv's fpm where later shells find it
   echo "setup: fpm is $PWD/.venv/bin/fpm; add $PWD/.venv/bin to PATH for later shells" >&2
 }
 
-gudgeon_venv() {   # .venv, a virtual environment of Python, made where it is missing
+gudgeon_venv() {   # create .venv, a virtual environment of Python, if it is missing
   [ -x .venv/bin/python ] && .venv/bin/python -m pip --version >/dev/null 2>&1 && return 0
   if ! { command -v python3 >/dev/null 2>&1 && python3 -c 'import venv, ensurepip' >/dev/null 2>&1; }; then
     gudgeon_apt python3 python3-venv || return 1
@@ -43,12 +44,12 @@ gudgeon_venv() {   # .venv, a virtual environment of Python, made where it is mi
 
 gudgeon_pip() { .venv/bin/python -m pip install --quiet --disable-pip-version-check "$@" >&2; }
 
-gudgeon_python() {   # the packages of these lists; pip looks only at what is missing
+gudgeon_python() {   # install the packages of these lists; pip skips those that are installed
   gudgeon_venv && gudgeon_pip "$@"
 }
 
-# fpm 0.12 still links the objects of source files that were moved or removed, without a message. If the list of sources has
-# changed since the last set-up, all programs are built again.
+# fpm 0.12 still links the objects of source files that have been moved or removed, without a message. Therefore all programs are
+# built again if the list of source files has changed since the last set-up.
 gudgeon_sources() {
   gudgeon_list=$(find src tests scripts -name '*.f90' | sort)
   [ "$gudgeon_list" = "$(cat build/sources 2>/dev/null)" ] && return 0
@@ -81,7 +82,7 @@ gudgeon_setup() {
 
 gudgeon_setup
 gudgeon_status=$?
-# sourced, the positional parameters are those of the caller
+# if this file is sourced, the positional parameters belong to the caller
 case "${0##*/} $#" in
   "setup.sh 0") ;;
   setup.sh*)
@@ -108,5 +109,5 @@ case "${0##*/} $#" in
 esac
 unset -f gudgeon_apt gudgeon_link gudgeon_venv gudgeon_pip gudgeon_python gudgeon_sources gudgeon_setup
 unset gudgeon_sudo gudgeon_dir gudgeon_packages gudgeon_list
-# the status of the last command is that of the set-up, sourced or not
+# the status of the last command is that of the set-up, whether this file is sourced or run
 [ "$gudgeon_status" = 0 ]

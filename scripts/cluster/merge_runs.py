@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Puts the result files of a study's chunks together: byte for byte what one process would have written.
+"""Merges the result files of a study's chunks into the files that one process would have written, byte for byte.
 
-    scripts/cluster/merge_runs.py DIR/NAME OUT [A-B...]    DIR/NAME.A-B.runs.csv of these chunks, or of all that are
-                                                           there, -> OUT/NAME.runs.csv
-    gudgeon sweep --check STUDY.nml | scripts/cluster/merge_runs.py --count    the number of runs it names
+    scripts/cluster/merge_runs.py DIR/NAME OUT [A-B...]    merge DIR/NAME.A-B.runs.csv of the given chunks (default: of all
+                                                           chunks found) into OUT/NAME.runs.csv
+    gudgeon sweep --check STUDY.nml | scripts/cluster/merge_runs.py --count    print the number of runs of the study
 
-Also NAME.cycles.csv and NAME.strobe.csv where the chunks have them. Chunks must lie end to end from run 1 on, with
-equal first lines. Needs only Python itself.
+NAME.cycles.csv and NAME.strobe.csv are merged as well if the chunks have them. The chunks must follow one another without a gap,
+beginning with run 1, and their first lines must be equal. Only the standard library of Python is needed.
 """
 
 import argparse
@@ -27,7 +27,7 @@ Chunk = tuple[int, int, Path]  # first run, last run, file
 
 
 def chunks_of(prefix: Path, kind: str, ranges: Sequence[str] = ()) -> list[Chunk]:
-    """The chunks' files in the order of their runs: those of `ranges` (A-B), or all that are there."""
+    """The files of the chunks in the order of their runs: those of `ranges` (A-B), or all that are found."""
     pattern = re.compile(re.escape(prefix.name) + rf"\.(\d+)-(\d+)\.{kind}\.csv")
     names = (f"{prefix.name}.{range_}.{kind}.csv" for range_ in ranges)
     paths = [prefix.with_name(name) for name in names] if ranges else list(prefix.parent.iterdir())
@@ -46,7 +46,8 @@ def check_order(chunks: list[Chunk]) -> None:
 
 
 def check_rows(lines: Iterable[bytes], first: int, last: int, every: bool, path: Path) -> Iterable[bytes]:
-    """The lines, whose first field must be runs in order from first to last; `every`: each exactly once."""
+    """The lines of a chunk. Their first field must be a run number from `first` to `last`, in order; `every`: each number exactly
+    once."""
     expected = first
     for line in lines:
         field = line.split(b",", 1)[0]
@@ -62,12 +63,12 @@ def check_rows(lines: Iterable[bytes], first: int, last: int, every: bool, path:
 
 
 def merge(chunks: list[Chunk], every: bool, target: Path) -> None:
-    """Write one file of all chunks, whole and on the disk or not at all; `every`: with each run exactly once."""
+    """Write one file of all chunks, complete and flushed to the disk, or none; `every`: with each run exactly once."""
     check_order(chunks)
     partial = target.with_name(target.name + ".partial")
     partial.unlink(missing_ok=True)
     header = None
-    with partial.open("xb") as out:  # a new file: no link of that name is followed
+    with partial.open("xb") as out:  # "x": a link of that name is not followed
         for first, last, path in chunks:
             with path.open("rb") as file:
                 head = file.readline()
@@ -76,7 +77,7 @@ def merge(chunks: list[Chunk], every: bool, target: Path) -> None:
                     out.write(head)
                 elif head != header:
                     raise BadChunks(f"{path}: its first line is not that of {chunks[0][2]}")
-                # rows hold no line breaks but their own
+                # the only line break of a row is at its end
                 out.writelines(check_rows(file, first, last, every, path))
         out.flush()
         os.fsync(out.fileno())
@@ -84,7 +85,7 @@ def merge(chunks: list[Chunk], every: bool, target: Path) -> None:
 
 
 def merge_all(prefix: Path, out: Path, ranges: Sequence[str]) -> None:
-    """Merge every kind of file that the chunks have. The file of runs is last: where it is, the others are."""
+    """Merge every kind of file that the chunks have. The file of runs is written last: if it exists, the others are complete."""
     out.mkdir(parents=True, exist_ok=True)
     for kind in reversed(KINDS):
         chunks = chunks_of(prefix, kind, ranges)
@@ -95,16 +96,16 @@ def merge_all(prefix: Path, out: Path, ranges: Sequence[str]) -> None:
 
 
 def count_of(text: str) -> int:
-    """The number of runs that gudgeon sweep --check names, also where some of them would fail."""
+    """The number of runs that `gudgeon sweep --check` prints, also where some of the runs would fail."""
     found = re.findall(r"\b(\d+) runs?\b", text)
     if len(found) != 1:
-        raise BadChunks(f"gudgeon sweep --check names no number of runs: {text.strip()!r}")
+        raise BadChunks(f"gudgeon sweep --check prints no number of runs: {text.strip()!r}")
     return int(found[0])
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--count", action="store_true", help="print the number of runs named on standard input")
+    parser.add_argument("--count", action="store_true", help="print the number of runs found in the text on standard input")
     parser.add_argument("chunks", nargs="?", type=Path, metavar="DIR/NAME")
     parser.add_argument("out", nargs="?", type=Path, metavar="OUT")
     parser.add_argument("ranges", nargs="*", metavar="A-B")

@@ -1,12 +1,12 @@
 #!/bin/bash
-# Runs a small study through the Snakefile's SLURM executor, on a cluster of one node that is started for it on this
-# machine and stopped at the end, and compares the result with that of one process, byte for byte.
+# Runs a small study with the SLURM executor of the Snakefile and compares the result with that of one process, byte for byte. The
+# cluster has one node, on this machine; the script starts it and stops it at the end.
 #
-#   scripts/cluster/test_slurm.sh [--keep]     from anywhere, as root; --keep leaves the files and the daemons' logs
+#   scripts/cluster/test_slurm.sh [--keep]     from anywhere, as root; --keep: do not delete the files and the logs of the daemons
 #
-# Needs Debian's packages slurmctld, slurmd, slurm-client and munge, and installs them where they are missing. Everything
-# it writes is in one temporary directory; its own ports and key leave a SLURM of this machine alone. Ends with the line
-# "N passed, N failed".
+# Needs Debian's packages slurmctld, slurmd, slurm-client and munge, and installs those that are missing. All files are
+# in one temporary directory; separate ports and a separate key avoid conflicts with a SLURM that is installed on this machine. Ends
+# with the line "N passed, N failed".
 cd "$(dirname "$0")/../.." || exit 1
 [ "$(id -u)" = 0 ] || { echo "test_slurm: must be root, to start the daemons of SLURM" >&2; exit 1; }
 scripts/setup.sh --studies || exit 1
@@ -51,13 +51,13 @@ JobAcctGatherType=jobacct_gather/none
 AccountingStorageType=accounting_storage/none
 SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU
-# how long squeue knows of jobs that have ended [s]
+# time for which squeue lists jobs that have ended [s]
 MinJobAge=600
 NodeName=$node NodeAddr=127.0.0.1 CPUs=$(nproc) RealMemory=1000
 PartitionName=all Nodes=$node Default=YES
 END
 export SLURM_CONF=$work/slurm.conf
-# Snakemake's job steps take SLURM_CONF out of the environment of srun; this puts it back
+# the job steps of Snakemake remove SLURM_CONF from the environment of srun; this script sets it again
 mkdir "$work/bin"
 printf '#!/bin/sh\nSLURM_CONF=%s exec %s "$@"\n' "$SLURM_CONF" "$(command -v srun)" >"$work/bin/srun"
 chmod +x "$work/bin/srun"
@@ -101,14 +101,14 @@ snakemake -s scripts/cluster/Snakefile --directory "$work" --executor slurm --jo
 check "snakemake, SLURM executor" [ $? = 0 ]
 [ "$failed" = 0 ] || tail -n 40 "$work/snakemake.out"
 jobs=$(grep -c 'has been submitted with SLURM jobid' "$work/snakemake.out")
-check "four chunks went through SLURM ($jobs)" [ "$jobs" = 4 ]
-check "SLURM knows four completed jobs" [ "$(squeue --states=COMPLETED --noheader | wc -l)" = 4 ]
+check "four chunks were submitted to SLURM ($jobs)" [ "$jobs" = 4 ]
+check "SLURM lists four completed jobs" [ "$(squeue --states=COMPLETED --noheader | wc -l)" = 4 ]
 
 # shellcheck disable=SC2086  # options are words
 "$work/cluster/small.chunks/gudgeon" sweep -q -o "$work/one" $options "$work/small.nml"
 check "one process" [ $? = 0 ]
 for kind in runs cycles strobe; do
-  check "$kind: chunks merge into what one process writes" cmp "$work/one/small.$kind.csv" "$work/cluster/small.$kind.csv"
+  check "$kind: the merged file is that of one process" cmp "$work/one/small.$kind.csv" "$work/cluster/small.$kind.csv"
 done
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]
