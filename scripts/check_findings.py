@@ -2,11 +2,12 @@
 """Compares statements of the dissertation about its results with runs of the program, and writes data/measured/findings.md.
 
     scripts/setup.sh --python
-    .venv/bin/python scripts/check_findings.py            # 30 seconds; exit status 1 where a number is not what is written here
+    .venv/bin/python scripts/check_findings.py            # 30 seconds; exit status 1 if a number is outside the range given here
     .venv/bin/python scripts/check_findings.py --check    # the same without writing the table
 
-Each statement of the dissertation, in our words, has the command that shows it, a number that is computed from the result files, and the range in which
-this number must lie. Simulations are run with rows at equal crank angles, where run and ideal joint can be compared directly.
+Each statement of the dissertation is given in our words, together with the command that shows it, a number that is computed from
+the result files, and the range in which this number must lie. The simulations write rows at equal crank angles, so that a run and
+its ideal joint can be compared row by row.
 """
 from __future__ import annotations
 
@@ -28,7 +29,7 @@ use_virtual_environment()
 import numpy as np  # noqa: E402
 from gudgeon_plots.measured import write_table  # noqa: E402
 
-START = 0.02   # share of a run that is left out: the pin, released from the centre, hits the bearing
+START = 0.02   # share of the run that is left out: the pin is released in the centre and hits the bearing
 SIMULATION = ("-a", "reference", "-s", "output.sampling=crank_angle")
 LONG = ("-a", "standard", "-s", "integrator.revolutions=62", "-s", "output.sampling=crank_angle", "-s", "output.samples_per_revolution=3600")
 SETTLED = slice(12 * 3600, None)
@@ -66,12 +67,12 @@ class Run:
         return np.abs(run[:n] - ideal[:n])[int(START * n):] / np.max(np.abs(ideal))
 
     def lag(self) -> float:
-        """By how many degrees the crank is behind that of the ideal joint when the run ends."""
+        """Angle in degrees by which the crank is behind that of the ideal joint at the end of the run."""
         time, angle = self.rows["time"], self.rows["crank_angle"]
         return math.degrees(np.interp(time[-1], self.ideal["time"], self.ideal["crank_angle"]) - angle[-1])
 
     def speed_gap(self) -> float:
-        """Largest difference of the crank speeds at equal times, in percent of the largest."""
+        """Largest difference of the crank speeds at equal times, in percent of the largest speed."""
         ideal = np.interp(self.rows["time"], self.ideal["time"], self.ideal["crank_speed"])
         inside = self.rows["time"] <= self.ideal["time"][-1]
         return 100 * np.max(np.abs(self.rows["crank_speed"] - ideal)[inside]) / np.max(np.abs(ideal))
@@ -110,7 +111,7 @@ class Finding:
     place: str                          # section and page of the dissertation
     statement: str
     verdict: str                        # yes, no, or partly
-    what: str                           # is measured
+    what: str                           # the measured quantity
     cases: str
     value: Callable[[], float]
     low: float
@@ -132,7 +133,8 @@ def findings_of_chapter_6(runs: Runs) -> list[Finding]:
     return [
         Finding("6.2.1, p. 63", "I: the crank speed follows the ideal joint with a lag, from the dissipation of the film", "yes",
                 "lag at the end, Pinkus-Sternlicht", "sim_I", lambda: sim("I").lag(), 0.4, 0.7, "deg"),
-        Finding("6.2.1, p. 63", "the same with the oscillating film", "yes", "lag at the end", "sim_I_oscillating",
+        Finding("6.2.1, p. 63", "I: the crank speed lags behind the ideal joint with the oscillating film too", "yes",
+                "lag at the end", "sim_I_oscillating",
                 lambda: sim("I", osc).lag(), 2.5, 3.7, "deg"),
         Finding("6.2.1, p. 64", "I, Pinkus-Sternlicht: accelerations are very near those of the ideal joint", "yes",
                 "largest deviation of the crank acceleration", "sim_I", lambda: 100 * sim("I").deviation(crank).max(), 0, 0.3, "%"),
@@ -149,7 +151,8 @@ def findings_of_chapter_6(runs: Runs) -> list[Finding]:
                 lambda: sim("I", osc).number("max_pin_force") / 1e3, 18, 20.5, "kN"),
         Finding("6.2.2, p. 68", "a larger clearance dissipates more (Pinkus-Sternlicht)", "yes", "loss in II over loss in I", "sim_I sim_II",
                 lambda: sim("II").loss() / sim("I").loss(), 1.9, 2.1),
-        Finding("6.2.2, p. 68", "the same with the oscillating film", "yes, but little", "loss in II over loss in I",
+        Finding("6.2.2, p. 68", "a larger clearance dissipates more (oscillating film)", "yes, but little",
+                "loss in II over loss in I",
                 "sim_I_oscillating sim_II_oscillating", lambda: sim("II", osc).loss() / sim("I", osc).loss(), 1.0, 1.15),
         Finding("6.2.2, p. 68", "II, Pinkus-Sternlicht: noise in the accelerations", "no: see below",
                 "share of rows whose piston acceleration is off by more than 2 %", "sim_II", lambda: noisy(sim("II"), piston), 0, 0.5, "%"),
@@ -157,9 +160,10 @@ def findings_of_chapter_6(runs: Runs) -> list[Finding]:
                 lambda: 1e6 * sim("II").number("min_film_thickness"), 0.7, 0.85, "um"),
         Finding("6.2.2, p. 70", "II, oscillating film: it cannot carry the load", "yes", "time in contact", "sim_II_oscillating",
                 lambda: sim("II", osc).contact(), 90, 98, "%"),
-        Finding("6.2.3, p. 72", "III: energy is lost with both films", "yes", "loss, Pinkus-Sternlicht", "sim_III",
+        Finding("6.2.3, p. 72", "III: energy is lost with the Pinkus-Sternlicht film", "yes", "loss, Pinkus-Sternlicht", "sim_III",
                 lambda: sim("III").loss(), 6.3, 7.0, "J"),
-        Finding("6.2.3, p. 72", "the same", "yes", "loss, oscillating film", "sim_III_oscillating", lambda: sim("III", osc).loss(), 36, 42, "J"),
+        Finding("6.2.3, p. 72", "III: energy is lost with the oscillating film", "yes", "loss, oscillating film",
+                "sim_III_oscillating", lambda: sim("III", osc).loss(), 36, 42, "J"),
         Finding("6.2.3, p. 74", "III, Pinkus-Sternlicht: a film throughout", "yes", "contacts", "sim_III",
                 lambda: sim("III").number("contacts"), 0, 0),
         Finding("6.2.3, p. 74", "III, oscillating film: contact for most of the time", "yes", "time in contact", "sim_III_oscillating",
@@ -172,18 +176,21 @@ def findings_of_chapter_6(runs: Runs) -> list[Finding]:
         Finding("6.3, p. 76", "the damping of 0.030 N m s/rad keeps IV near 250 rad/s", "yes, after some 100 revolutions",
                 "mean crank speed of the last of 200 revolutions", "sim_IV", lambda: last_speed(runs, "sim_IV"), 244, 253, "rad/s",
                 options="-a standard --set integrator.crank_revolutions=200"),
-        Finding("6.3, p. 76", "the same for VI near 1000 rad/s", "nearly", "mean crank speed of the last of 200 revolutions", "sim_VI",
+        Finding("6.3, p. 76", "the damping of 0.030 N m s/rad keeps VI near 1000 rad/s", "nearly",
+                "mean crank speed of the last of 200 revolutions", "sim_VI",
                 lambda: last_speed(runs, "sim_VI"), 960, 990, "rad/s", options="-a standard --set integrator.crank_revolutions=200"),
         Finding("6.3.1, p. 78", "IV: the crank speed is as with the ideal joint (Pinkus-Sternlicht)", "yes", "largest difference", "sim_IV",
                 lambda: sim("IV").speed_gap(), 0, 1.0, "%"),
-        Finding("6.3.1, p. 78", "the same with the oscillating film", "no after two cycles", "largest difference", "sim_IV_oscillating",
+        Finding("6.3.1, p. 78", "IV: the crank speed is as with the ideal joint (oscillating film)", "no after two cycles",
+                "largest difference", "sim_IV_oscillating",
                 lambda: sim("IV", osc).speed_gap(), 4, 10, "%"),
-        Finding("6.3.1, p. 79", "IV: accelerations alternate between calm and high frequency with both films",
-                "no with Pinkus-Sternlicht", "share of rows whose rod acceleration is off by more than 2 %", "sim_IV",
+        Finding("6.3.1, p. 79", "IV, Pinkus-Sternlicht: accelerations alternate between calm and high frequency",
+                "no", "share of rows whose rod acceleration is off by more than 2 %", "sim_IV",
                 lambda: noisy(sim("IV"), rod), 0, 0.5, "%"),
-        Finding("6.3.1, p. 79", "the same", "yes with the oscillating film", "the same", "sim_IV_oscillating",
+        Finding("6.3.1, p. 79", "IV, oscillating film: accelerations alternate between calm and high frequency", "yes",
+                "share of rows whose rod acceleration is off by more than 2 %", "sim_IV_oscillating",
                 lambda: noisy(sim("IV", osc), rod), 50, 90, "%"),
-        Finding("6.3.1, p. 80", "disturbances go with nearness to contact", "yes", "time in contact", "sim_IV_oscillating",
+        Finding("6.3.1, p. 80", "disturbances occur where the pin is near contact", "yes", "time in contact", "sim_IV_oscillating",
                 lambda: sim("IV", osc).contact(), 93, 99, "%"),
         Finding("6.3.1, p. 81", "IV: the portrait of the piston is altered with both films", "no with Pinkus-Sternlicht",
                 "largest deviation of the piston acceleration", "sim_IV", lambda: 100 * sim("IV").deviation(piston).max(), 0, 0.6, "%"),
@@ -202,18 +209,21 @@ def findings_of_chapter_6(runs: Runs) -> list[Finding]:
                 lambda: sim("VI").rows["cylinder_pressure"].max() / 1e5, 62.3, 62.6, "bar"),
         Finding("6.3.3, p. 89", "VI, Pinkus-Sternlicht: the film oscillates without contact", "yes", "contacts", "sim_VI",
                 lambda: sim("VI").number("contacts"), 0, 0),
-        Finding("6.3.3, p. 89", "VI, oscillating film: contact nearly always", "yes", "time in contact", "sim_VI_oscillating",
+        Finding("6.3.3, p. 89", "VI, oscillating film: contact for nearly all of the time", "yes", "time in contact",
+                "sim_VI_oscillating",
                 lambda: sim("VI", osc).contact(), 98, 100, "%"),
-        Finding("6.3.3, p. 90", "VI: maps of both films are similar", "yes", "correlation of the piston accelerations", "sim_VI",
+        Finding("6.3.3, p. 90", "VI: Poincare maps of both films are similar", "yes", "correlation of the piston accelerations",
+                "sim_VI",
                 lambda: correlation(sim("VI"), sim("VI", osc), piston), 0.99, 1),
         Finding("7, p. 93", "the largest step decides the cost", "yes", "evaluations with at most 1e-6 s over those without limit (Adams)",
                 "sim_I", lambda: evaluations(runs, "sim_I", "1e-6") / evaluations(runs, "sim_I", "0"), 1.15, 1.35,
                 options="--set integrator.max_step=1e-6"),
-        Finding("7, p. 93", "the Pinkus-Sternlicht film is cheap, the oscillating one dear", "yes with `auto`, no with Adams alone",
+        Finding("7, p. 93", "the Pinkus-Sternlicht film is cheap, the oscillating film is expensive",
+                "yes with `auto`, no with Adams alone",
                 "evaluations, oscillating over Pinkus-Sternlicht", "sim_I sim_I_oscillating",
                 lambda: sim("I", osc).number("rhs_evaluations") / sim("I").number("rhs_evaluations"), 1.5, 20),
-        Finding("4.2.1, p. 43", "the contact law holds below 1e-5 sqrt(E/rho)", "broken by the dissertation's own cases",
-                "impacts beyond it", "sim_I_oscillating", lambda: sim("I", osc).number("impacts_beyond_validity"), 10, 80),
+        Finding("4.2.1, p. 43", "the contact law holds below 1e-5 sqrt(E/rho)", "exceeded in the dissertation's own cases",
+                "impacts beyond this speed", "sim_I_oscillating", lambda: sim("I", osc).number("impacts_beyond_validity"), 10, 80),
     ]
 
 
@@ -250,26 +260,30 @@ def findings_of_appendix_b(runs: Runs) -> list[Finding]:
                 lambda: error("dry_0010um", "crank_moment", SETTLED) / error("dry_0500um", "crank_moment", SETTLED), 0.02, 0.1, "", options),
         Finding("B.1, p. 107", "less clearance means more time in contact", "yes", "contact with 0.5 mm, settled", "flores/dry_0500um",
                 lambda: contact("dry_0500um", SETTLED), 65, 90, "%", options),
-        Finding("B.1, p. 107", "the same", "yes", "contact with 0.01 mm, settled", "flores/dry_0010um",
+        Finding("B.1, p. 107", "less clearance means more time in contact", "yes", "contact with 0.01 mm, settled",
+                "flores/dry_0010um",
                 lambda: contact("dry_0010um", SETTLED), 99.9, 100, "%", options),
         Finding("B.1, p. 108", "less clearance leads to periodic motion", "yes", "scatter of the piston velocity at q = 0 with 0.5 mm, settled",
                 "flores/dry_0500um", lambda: scatter("dry_0500um"), 0.6, 1.8, "m/s", options),
-        Finding("B.1, p. 108", "the same", "yes", "the same with 0.01 mm", "flores/dry_0010um", lambda: scatter("dry_0010um"), 0, 1e-5, "m/s",
+        Finding("B.1, p. 108", "less clearance leads to periodic motion", "yes", "scatter with 0.01 mm", "flores/dry_0010um",
+                lambda: scatter("dry_0010um"), 0, 1e-5, "m/s",
                 options),
-        Finding("B.2, p. 110", "more friction lessens the oscillation of the moment", "no in the first two revolutions",
+        Finding("B.2, p. 110", "more friction reduces the oscillation of the moment", "no in the first two revolutions",
                 "peak with friction 0.1 over that with 0.01, revolutions 0 to 2", "flores/friction_010 flores/friction_100",
                 lambda: peak("friction_100", AS_SHIPPED) / peak("friction_010", AS_SHIPPED), 1.05, 1.6, "", options),
-        Finding("B.2, p. 110", "the same", "yes once settled", "the same ratio, revolutions 12 to 62", "flores/friction_010 flores/friction_100",
+        Finding("B.2, p. 110", "more friction reduces the oscillation of the moment", "yes once settled",
+                "peak with friction 0.1 over that with 0.01, revolutions 12 to 62", "flores/friction_010 flores/friction_100",
                 lambda: peak("friction_100", SETTLED) / peak("friction_010", SETTLED), 0.15, 0.4, "", options),
         Finding("B.2, p. 111", "more friction means longer contact", "yes once settled", "contact with friction 0.1, settled",
                 "flores/friction_100", lambda: contact("friction_100", SETTLED), 99.9, 100, "%", options),
         Finding("B.2, p. 112", "more friction leads to periodic motion", "yes once settled", "scatter with friction 0.1, settled",
                 "flores/friction_100", lambda: scatter("friction_100"), 0, 1e-3, "m/s", options),
-        Finding("B.3, p. 114", "oil lessens the deviation from the ideal joint", "yes", "rms deviation of the moment, settled",
+        Finding("B.3, p. 114", "oil reduces the deviation from the ideal joint", "yes", "rms deviation of the moment, settled",
                 "flores/lubricated_400cP", lambda: error("lubricated_400cP", "crank_moment", SETTLED), 4.5, 6.5, "%", options),
         Finding("B.3, p. 115", "the orbit of the pin is near the wall, without contact", "yes", "smallest film thickness",
                 "flores/lubricated_400cP", lambda: 1e6 * run("lubricated_400cP").number("min_film_thickness"), 13, 16, "um", options),
-        Finding("B.3, p. 116", "the map is periodic", "yes", "scatter of the piston velocity at q = 0, settled", "flores/lubricated_400cP",
+        Finding("B.3, p. 116", "the Poincare map is periodic", "yes", "scatter of the piston velocity at q = 0, settled",
+                "flores/lubricated_400cP",
                 lambda: scatter("lubricated_400cP"), 0, 1e-5, "m/s", options),
         Finding("B.3, p. 116", "the reaction is near that of a bearing without clearance", "yes", "settled peak over the ideal one",
                 "flores/lubricated_400cP", lambda: run("lubricated_400cP").pin_force()[SETTLED].max() / run("ideal").pin_force().max(), 0.98, 1.03, "",
@@ -297,20 +311,21 @@ def correlation(one: Run, other: Run, column: str) -> float:
 
 
 NOTES = """
-What is called *settled* are revolutions 12 to 62. The first two revolutions, which the printed figures of appendix B show, are the transient of a pin that
-is released from the centre of its bearing: there friction seems to do the opposite of what it does later.
+Revolutions 12 to 62 are called *settled*. The first two revolutions, which the printed figures of appendix B show, are the
+transient of a pin that is released from the centre of its bearing; in this transient friction has the opposite effect.
 
-**The noise of the Pinkus-Sternlicht film.** The dissertation reports noise in the accelerations of II, and of IV and V, where the pin nears the wall.
-The program finds none. The noise is the integration error of the dissertation: it integrates the coordinates (q, A, x) with a relative and absolute
-error of 1e-6, and 1e-6 m is more than the film of II, which is 0.77 um thick. Integrated in this way the same equations show it, in I not, in II to V near
-the wall; with an error of 1e-8 it is nearly gone. `scripts/show_noise.py` measures it: [noise](noise.md).
+**The noise of the Pinkus-Sternlicht film.** The dissertation reports noise in the accelerations of II, and of IV and V, where the
+pin comes near the wall. The program finds none. The noise is the integration error of the dissertation: it integrates the
+coordinates (q, A, x) with a relative and absolute error of 1e-6, and 1e-6 m is more than the smallest film thickness of II, 0.77
+um. If the same equations are integrated in this way, the noise appears in II to V near the wall, but not in I; with an error of
+1e-8 it nearly vanishes. `scripts/show_noise.py` measures it: [noise](noise.md).
 """
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--check", action="store_true", help="do not write the table")
-    parser.add_argument("--program", type=Path, help="this program instead of a release build")
+    parser.add_argument("--program", type=Path, help="program to run (default: the release build)")
     options = parser.parse_args()
     program = options.program or TOP / subprocess.run(["scripts/build.sh"], cwd=TOP, check=True, capture_output=True, text=True).stdout.strip()
     lines = ["| where | what the dissertation says, in our words | agrees? | what is measured | cases | value |", "|---|---|---|---|---|---|"]

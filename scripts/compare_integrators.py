@@ -1,17 +1,19 @@
 #!/usr/bin/env python3
-"""The program's integrators beside public ones on the shipped scenes; run by scripts/compare_integrators.sh.
+"""Compares the program's integrators with public codes on shipped scenes; scripts/compare_integrators.sh runs this script.
 
     compare_integrators.py DIR              writes DIR/integrators.md, integrators.csv and integrators.png
-    compare_integrators.py DIR --compiled   measures the compiled codes again, and takes SciPy's counts from DIR/integrators.csv
-    compare_integrators.py DIR --draw       only draws DIR/integrators.csv again; with --language pt in Portuguese
+    compare_integrators.py DIR --compiled   measures the compiled codes again; keeps SciPy's rows in DIR/integrators.csv
+    compare_integrators.py DIR --draw       draws DIR/integrators.csv again; with --language pt in Portuguese
 
-All codes integrate the same right-hand side, from build/scene_library/scene_library.so, in the program's own coordinates with its own
-absolute tolerances. Each runs at tolerances of 1e-3 to 1e-12, compiled codes at two a decade, until one takes more than a given number
-of right-hand sides. Those that a code spends on difference Jacobians are counted.
+All codes integrate the same right-hand side, that of build/scene_library/scene_library.so, in the program's own coordinates and
+with its own absolute tolerances. Each code runs at tolerances from 1e-3 to 1e-12 (compiled codes: two per decade) until a run needs
+more than a given number of evaluations. Evaluations for Jacobians by finite differences are counted.
 
-Smooth scenes: the error is the largest of q, A, x and of their rates at the end over its largest value on the way, against a run of
-the program's own at 1e-13. Dry contact: that of the first 40 instants at which contacts begin and end, over the time of one radian of
-the crank; a run with other contacts has failed. Times are of compiled codes only, the processor's, over that of one right-hand side in turn.
+In smooth scenes the error is the largest error of q, A, x and their rates at the end, each divided by its largest value during the
+run; the reference is a run of the program at 1e-13. In dry contact it is the largest error of the first 40 instants at which
+contacts begin and end, divided by the time of one radian of the crank; a run with other contacts has failed. Times are processor
+times and are measured for compiled codes only; they are divided by the time of one right-hand side of a sequence in which each
+waits for the one before.
 """
 from __future__ import annotations
 
@@ -37,9 +39,9 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: 
 
 TOLERANCES = [10 ** (-k / 2) for k in range(6, 25)]
 TARGETS = (1e-4, 1e-6, 1e-8, 1e-10)
-CONTACTS = 40      # instants that are compared
-REPEATS = 3        # of short runs: the best time counts
-MOST_COMPILED, MOST_PYTHON = 1_000_000, 50_000   # right-hand sides, then a run is given up
+CONTACTS = 40      # number of instants that are compared
+REPEATS = 3        # a short run is repeated so often; the shortest time counts
+MOST_COMPILED, MOST_PYTHON = 1_000_000, 50_000   # a run is given up after so many evaluations
 OWN = ("adams", "radau", "auto")
 SCIPY = {"SciPy DOP853": integrate.DOP853, "SciPy Radau": integrate.Radau, "SciPy LSODA": integrate.LSODA}
 CVODE = {"CVODE Adams": 1, "CVODE BDF": 2}
@@ -55,7 +57,7 @@ class Problem:
     name: str
     case: str
     revolutions: float
-    reference: str           # method of the reference
+    reference: str           # integrator of the reference run
     by_contacts: bool = False
     twin: bool = False
 
@@ -69,7 +71,7 @@ PROBLEMS = (Problem("lubricated", "flores/lubricated_400cP", 2, "adams"),
 
 
 def best_of(run, repeats: int) -> Outcome:
-    """The outcome of a run with the shortest time of several, of one where it is long."""
+    """The outcome of a run, with the shortest time of several runs; a long run is made only once."""
     outcome = run()
     for _ in range(repeats - 1):
         if outcome.seconds > 0.3:
@@ -81,7 +83,7 @@ def best_of(run, repeats: int) -> Outcome:
 
 
 class Judge:
-    """Knows the reference of a scene."""
+    """Computes the error of an outcome against the reference run of a scene."""
 
     def __init__(self, scene: Scene, problem: Problem) -> None:
         self.scene = scene
@@ -92,7 +94,7 @@ class Judge:
         self.instants = scene.run_own(problem.reference, 1e-13).instants[:CONTACTS]
 
     def error(self, outcome: Outcome) -> float:
-        """Of an outcome; nan where it is none."""
+        """Error of an outcome; nan if the run failed."""
         if not outcome.done:
             return np.nan
         if not self.by_contacts:
@@ -104,8 +106,8 @@ class Judge:
 
 
 def measure(problem: Problem, library: ctypes.CDLL, cvode: ctypes.CDLL | None, has_scipy: bool) -> list[dict]:
-    """All runs on one scene, or those of the compiled codes alone."""
-    np.seterr(all="ignore")   # of codes that leave the model's domain
+    """Measures all codes on one scene, or only the compiled codes."""
+    np.seterr(all="ignore")   # warnings of codes that leave the range of the model
     scene = Scene(library, problem.case, f"integrator.revolutions={problem.revolutions}", problem.twin)
     judge, in_turn, rows = Judge(scene, problem), scene.seconds_in_turn(), []
 
@@ -133,7 +135,7 @@ def measure(problem: Problem, library: ctypes.CDLL, cvode: ctypes.CDLL | None, h
 
 
 def with_rows_of_scipy(new: pd.DataFrame, path: Path) -> pd.DataFrame:
-    """Rows of compiled codes with those of SciPy that were measured before."""
+    """The new rows of compiled codes, together with the rows of SciPy from an earlier measurement."""
     before = pd.read_csv(path)
     before = before[before["method"].isin(SCIPY)]
     return pd.concat([rows for problem in PROBLEMS for rows in (new[new["scene"] == problem.name], before[before["scene"] == problem.name])])
@@ -146,7 +148,8 @@ def cheapest(rows: pd.DataFrame, target: float, by: str = "evaluations") -> pd.S
 
 
 def table(data: pd.DataFrame) -> list[str]:
-    """For each scene what each method needs for the target errors: evaluations, and time in right-hand sides."""
+    """For each scene and target error, what each method needs: evaluations, and processor time divided by that of a right-hand
+    side."""
     lines = []
     for scene, of_scene in data.groupby("scene", sort=False):
         lines += ["", f"## {scene}", "", f"One right-hand side in turn: {of_scene['ns_in_turn'].iloc[0]:.0f} ns.", "",
@@ -164,21 +167,22 @@ def table(data: pd.DataFrame) -> list[str]:
 
 
 def report(data: pd.DataFrame, has_cvode: bool) -> str:
-    """The measured page, without its head."""
+    """The text of the measured page, without its first lines."""
     codes = f"SciPy {scipy_version}" + (", SUNDIALS CVODE of Debian (libsundials-dev)" if has_cvode else "; CVODE was not installed")
     dates = " to ".join(sorted({data["date"].min(), data["date"].max()}))
     head = [f"gfortran, -O3 -flto; {codes}. Measured {dates}.", "",
             "Each column is for one error, and each entry has two numbers:", "",
-            "- the right-hand sides that the cheapest run with at most this error takes, of the runs at tolerances 1e-3 to 1e-12 (two a",
-            "  decade; SciPy one). Right-hand sides for difference Jacobians are counted. `radau` and `auto` have Jacobians in closed form",
-            "  where only the piston pin is loose; these are in the time, but not in the count;",
-            "- in brackets, the shortest processor time of a run with at most this error, divided by the time of one right-hand side that",
-            "  waits for the one before (given above each table). It may be another run than that of the first number. SciPy's time is",
-            "  Python's, so that it is not given.", "",
+            "- the number of evaluations of the right-hand side in the cheapest run with at most this error, of the runs at",
+            "  tolerances 1e-3 to 1e-12 (two per decade; SciPy one). Evaluations for Jacobians by finite differences are counted.",
+            "  `radau` and `auto` have Jacobians in closed form where only the piston pin has clearance; these are part of the",
+            "  time, but are not counted;",
+            "- in brackets, the shortest processor time of a run with at most this error, divided by the time of one right-hand",
+            "  side that waits for the one before (given above each table). This may be another run than that of the first number.",
+            "  SciPy has no second number, because its time is mainly that of Python.", "",
             f"\"–\" means that no run had this error. A code is given up after a run of more than {MOST_PYTHON:,} (SciPy) or",
-            f"{MOST_COMPILED:,} right-hand sides. All codes integrate the program's own right-hand side in its own coordinates and with",
-            "its own absolute tolerances, but for the crank speed, which a run of the program holds to a hundredth of its tolerance. The",
-            "program's own methods also carry the integral of the work of the forces, which the other codes do not.", "",
+            f"{MOST_COMPILED:,} evaluations. All codes integrate the program's own right-hand side in its own coordinates and with",
+            "its own absolute tolerances, except the crank speed, which the program integrates at a hundredth of its tolerance.",
+            "The program's own methods also carry the integral of the work of the forces, which the other codes do not.", "",
             "The error is the largest error of crank angle, rod angle, piston position and their rates at the end, each divided by its",
             "largest value during the run (lubricated, IV and V 2 revolutions, I and ideal 4). In dry contact it is the largest error of the",
             f"first {CONTACTS} instants at which contacts begin and end, up to 10 ms, divided by the time of one radian of the crank. Every run",
@@ -188,11 +192,11 @@ def report(data: pd.DataFrame, has_cvode: bool) -> str:
 
 
 def draw(data: pd.DataFrame, path: Path) -> None:
-    """Error over evaluations (above) and time (below), a column for each scene."""
+    """Draw the error over the evaluations (above) and over the time (below), with a column for each scene."""
     scenes = list(data["scene"].unique())
     figure, axes = plt.subplots(2, len(scenes), figsize=(3.2 * len(scenes), 6.6), layout="constrained", squeeze=False, sharey=True)
     for i, scene in enumerate(scenes):
-        for k, (quantity, label) in enumerate((("evaluations", "right-hand sides"), ("bare", "time, in bare right-hand sides"))):
+        for k, (quantity, label) in enumerate((("evaluations", "evaluations"), ("bare", "time / time of a right-hand side"))):
             axis = axes[k][i]
             for method, rows in data[data["scene"] == scene].groupby("method", sort=False):
                 done = rows.dropna(subset=["error", quantity])
@@ -204,7 +208,7 @@ def draw(data: pd.DataFrame, path: Path) -> None:
                             markersize=3.5, linewidth=1, label=method)
             low, high = axis.get_xlim()
             axis.xaxis.set_minor_formatter(NullFormatter())
-            if high < 30 * low:   # hardly a decade: name what lies between
+            if high < 30 * low:   # hardly a decade: label values within it
                 axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
                 axis.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.0f}"))
             axis.set_xlabel(label)
@@ -221,9 +225,9 @@ def draw(data: pd.DataFrame, path: Path) -> None:
 
 
 def main() -> int:
-    """Measure, write the page."""
+    """Measure all codes and write the page."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=Path, metavar="DIR", help="folder of the results")
+    parser.add_argument("folder", type=Path, metavar="DIR", help="folder in which the results are written")
     parser.add_argument("--compiled", action="store_true", help="measure the compiled codes only")
     parser.add_argument("--draw", action="store_true", help="only draw the picture again")
     language.add_option(parser)

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""Piston slap against Siconos: the benchmark of Flores, Leine and Glocker (2010), and what its first impact makes of it.
+"""Compares the piston slap of the benchmark of Flores, Leine and Glocker (2010) with Siconos, and examines its first impact.
 
     scripts/compare_siconos.py [--program FILE] [--out DIR]
 
-Siconos (data/siconos_guide_clearance.csv) has rigid walls; a stiff contact should come near to them. Both ends of the slider hit its
-guide 2 us apart, and what two impacts at once leave of the motion no law of a single impact says. Runs cases/joints/slider_clearance.nml
-with stiffnesses from 1e7 to 1e11 N/m, once from the start, once from Siconos's own state just after that impact, once without the
-tilt, and works out the first impact by itself with rigid walls, impact after impact and by Moreau's time stepping at several steps.
-Writes slider_clearance.md into the folder --out (default: data/measured).
+The walls of Siconos (data/siconos_guide_clearance.csv) are rigid; a stiff contact should give nearly the same motion. Both ends of
+the slider hit the guide within 2 us, and no law of a single impact determines the motion after two simultaneous impacts. This
+script runs cases/joints/slider_clearance.nml with stiffnesses from 1e7 to 1e11 N/m: from the start, from Siconos's own state just
+after the first impact, and without tilt of the slider. It also computes the first impact alone with rigid walls, as a sequence of
+impacts and by Moreau's time stepping with several step sizes. The tables are written to slider_clearance.md in the folder --out
+(default: data/measured).
 """
 from __future__ import annotations
 
@@ -27,10 +28,10 @@ REFERENCE = ROOT / "data/siconos_guide_clearance.csv"
 STIFFNESSES = ("1e7", "1e8", "3e8", "1e9", "3e9", "1e10", "1e11")
 CLEARANCE = 1e-3
 TOLERANCE = "1e-9"
-EARLY = 0.04          # [s] for the mean difference of y
-AFTER = 2.8e-3        # [s] the row of Siconos just after the first impact
+EARLY = 0.04          # [s] time over which the mean difference of y is taken
+AFTER = 2.8e-3        # [s] time of the row of Siconos just after the first impact
 
-# The benchmark (Multibody System Dynamics 23:165), for the rigid model here
+# Data of the benchmark (Multibody System Dynamics 23:165), for the model with rigid bodies
 L1, L2, M1, M2, M3, J1, J2, J3 = 0.153, 0.306, 0.038, 0.038, 0.076, 7.4e-5, 5.9e-4, 2.7e-6
 LONG, HIGH, G, RESTITUTION, FRICTION = 0.05, 0.025, 9.81, 0.4, 0.01
 COUPLING = (M2 / 2 + M3) * L1 * L2
@@ -39,7 +40,8 @@ Vector = list[float]
 
 
 def solved(q: Vector, force: Vector) -> Vector:
-    """The mass matrix's inverse on a vector of forces: crank, rod, slider's tilt, each angle from x to y."""
+    """Solve the equations of motion: accelerations of crank, rod and slider's tilt (angles from x to y) for a vector of generalized
+    forces."""
     a, b = J1 + (M1 / 4 + M2 + M3) * L1**2, J2 + (M2 / 4 + M3) * L2**2
     c = COUPLING * math.cos(q[0] - q[1])
     det = a * b - c * c
@@ -53,7 +55,8 @@ def acceleration(q: Vector, v: Vector) -> Vector:
 
 
 def corner(q: Vector, k: int) -> tuple[float, Vector, Vector]:
-    """Gap of corner k (towards +y: top, bottom; towards -y the same), and how its gap and its place along x go with the angles."""
+    """Gap of corner k of the slider, and the derivatives of the gap and of the corner's position along x with respect to the
+    angles. The corners are top and bottom on the side of +y, then top and bottom on the side of -y."""
     along, side = (LONG, -LONG)[k % 2], (1, 1, -1, -1)[k]
     s, c = math.sin(q[2]), math.cos(q[2])
     y = L1 * math.sin(q[0]) + L2 * math.sin(q[1]) + along * s + side * HIGH * c
@@ -66,7 +69,7 @@ def dot(a: Vector, b: Vector) -> float:
 
 
 def moved(q: Vector, v: Vector, h: float) -> tuple[Vector, Vector]:
-    """A step of Heun's method."""
+    """State after a step h of Heun's method."""
     one = acceleration(q, v)
     then = [a + h * b for a, b in zip(v, one)]
     two = acceleration([a + h * (b + c) / 2 for a, b, c in zip(q, v, then)], then)
@@ -89,8 +92,9 @@ def across(q: Vector, v: Vector) -> float:
 
 
 def moreau(h: float) -> tuple[int, float, float]:
-    """Moreau and Jean's time stepping through the first impact: impacts, speed across and tilt rate after it. In a step all corners
-    that are shut by its middle take Newton's law at once, by projected Gauss and Seidel."""
+    """The first impact by the time stepping of Moreau and Jean: number of impacts, lateral speed and tilt rate after it. In each
+    step Newton's impact law is solved for all corners that are closed at the middle of the step together, by projected Gauss-Seidel
+    iterations."""
     _, q, v = before_impact()
     impacts = 0
     for _ in range(round(12e-6 / h)):
@@ -117,8 +121,8 @@ def moreau(h: float) -> tuple[int, float, float]:
 
 
 def one_by_one(most: int) -> list[tuple[float, int, float, float]]:
-    """Impact after impact, each by Newton's law alone: time, corner, speed across and tilt rate after it. In the few microseconds
-    between them nothing but the impacts changes the speeds."""
+    """The first impact as a sequence of single impacts, each by Newton's law: time, corner, lateral speed and tilt rate after each.
+    In the few microseconds between the impacts other forces are neglected."""
     time, q, v = before_impact()
     found = []
     for _ in range(most):
@@ -144,7 +148,7 @@ def table(file: Path) -> dict[str, list[float]]:
 
 
 def run(program: Path, case: Path, settings: dict[str, str]) -> dict[str, list[float]]:
-    """The trace of a run."""
+    """Run a case with settings and return its trace."""
     with tempfile.TemporaryDirectory(prefix="siconos") as out:
         words = [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
         subprocess.run([program, "-q", "-o", out, *words, case], check=True)
@@ -152,7 +156,7 @@ def run(program: Path, case: Path, settings: dict[str, str]) -> dict[str, list[f
 
 
 def differences(got: dict[str, list[float]], want: dict[str, list[float]], start: float, until: tuple[float, ...]) -> list[float]:
-    """Largest difference of the crank angle [revolutions]; mean difference of y over the clearance up to each time."""
+    """Largest difference of the crank angle [revolutions], and the mean difference of y over the clearance up to each time."""
     first = next(i for i, t in enumerate(want["time"]) if t > start - 1e-9)
     y = [abs(a / CLEARANCE - b) for a, b in zip(got["piston_offset"], want["slider_y_over_clearance"][first:])]
     turn = [abs(a / (2 * math.pi) - b) for a, b in zip(got["crank_angle"], want["crank_revolutions"][first:])]
@@ -161,7 +165,7 @@ def differences(got: dict[str, list[float]], want: dict[str, list[float]], start
 
 
 def rebound(program: Path, stiffness: str) -> tuple[int, float, float]:
-    """Contacts of the first impact, speed across and tilt rate after it."""
+    """Contacts of the first impact, lateral speed and tilt rate after it."""
     got = run(program, CASE, {"guide.stiffness": stiffness, "integrator.end_time": "2.76e-3", "output.interval": "1e-5",
                               "integrator.relative_tolerance": TOLERANCE})
     shut = sum(sum(b > 0 >= a for a, b in zip(f, f[1:])) for f in ([-g for g in got[f"guide_{k}_gap"]] for k in (1, 2)))
@@ -169,7 +173,7 @@ def rebound(program: Path, stiffness: str) -> tuple[int, float, float]:
 
 
 def build() -> Path:
-    """The program of the release build."""
+    """Path of the release build of the program."""
     found = subprocess.run([ROOT / "scripts" / "build.sh"], capture_output=True, text=True, check=False)
     if found.returncode:
         sys.exit(found.stderr)
@@ -177,21 +181,23 @@ def build() -> Path:
 
 
 def lines_of(program: Path) -> list[str]:
-    """The tables."""
+    """The lines of all tables."""
     want = table(REFERENCE)
     lines = ["## With rigid walls: the first impact", "",
-             "Siconos's own rows from 2.8 to 3.0 ms: the slider leaves at -0.29 m/s at 2.8 ms and turns at 3.92 rad/s. Here, by steps of Moreau's kind:", "",
-             "| step | impacts of single corners | speed across after [m/s] | tilt rate after [rad/s] |", "|---|---|---|---|"]
+             "In Siconos's rows from 2.8 to 3.0 ms the slider leaves at -0.29 m/s with a tilt rate of 3.92 rad/s. By Moreau's "
+             "time stepping here:", "",
+             "| step | impacts of single corners | lateral speed after [m/s] | tilt rate after [rad/s] |", "|---|---|---|---|"]
     for name, step in (("2 us", 2e-6), ("0.5 us (Siconos)", 5e-7), ("0.1 us", 1e-7), ("0.02 us", 2e-8), ("0.005 us", 5e-9)):
         lines.append("| {} | {} | {:.3f} | {:.2f} |".format(name, *moreau(step)))
-    lines += ["", "Impact after impact, each by Newton's law of one corner (approach 0.842 m/s):", "",
-              "| impact | time after the first [us] | corner | speed across after [m/s] | tilt rate after [rad/s] |", "|---|---|---|---|---|"]
+    lines += ["", "As a sequence of impacts, each by Newton's law for one corner (approach speed 0.842 m/s):", "",
+              "| impact | time after the first [us] | corner | lateral speed after [m/s] | tilt rate after [rad/s] |",
+              "|---|---|---|---|---|"]
     blows = one_by_one(400)
     for k in [*range(6), 20, 50, 100, 200, 399]:
         time, at, speed, tilt = blows[k]
         lines.append(f"| {k + 1} | {1e6 * (time - blows[0][0]):.4f} | {at} | {speed:.5f} | {tilt:.4f} |")
     lines += ["", "## With a stiff contact: the speed after the first impact", "",
-              "| stiffness [N/m] | speed across after [m/s] | tilt rate after [rad/s] |", "|---|---|---|"]
+              "| stiffness [N/m] | lateral speed after [m/s] | tilt rate after [rad/s] |", "|---|---|---|"]
     for k in range(32, 53):
         stiffness = f"{10 ** (k / 4):.3g}"
         _, speed, tilt = rebound(program, stiffness)
@@ -214,12 +220,13 @@ def lines_of(program: Path) -> list[str]:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", type=Path, help="this program instead of a release build")
+    parser.add_argument("--program", type=Path, help="program to run (default: the release build)")
     parser.add_argument("--out", type=Path, default=FOLDER, metavar="DIR", help="folder of slider_clearance.md (default: data/measured)")
     options = parser.parse_args()
     lines = lines_of(options.program or build())
     write_table("slider_clearance", "Piston slap against Siconos", "scripts/compare_siconos.py",
-                "\n".join(["Differences from `data/siconos_guide_clearance.csv`; what they mean is in data/README.md.", "", *lines]), options.out)
+                "\n".join(["Differences from `data/siconos_guide_clearance.csv`; data/README.md explains them.", "", *lines]),
+                options.out)
     print("\n".join(lines))
     return 0
 

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""The pages of the manual: for scripts/manual.sh.
+"""Prepares the pages of the manual for scripts/manual.sh.
 
-    scripts/manual_pages.py collect PROGRAM   into build/manual_pages: data/manual, tables of data/measured, reference pages of the program
-    scripts/manual_pages.py link              in build/manual: links of README.md to files of the repository
+    scripts/manual_pages.py collect PROGRAM   into build/manual_pages: data/manual, the tables of data/measured and the program's
+                                              reference pages
+    scripts/manual_pages.py link              changes the links of README.md in build/manual to files of the repository
 """
 from __future__ import annotations
 
@@ -17,7 +18,7 @@ SOURCE = TOP / "data/manual"
 MEASURED = TOP / "data/measured"
 PAGES = TOP / "build/manual_pages"
 BUILT = TOP / "build/manual"
-REFERENCE = {"case_file": "case", "results": "results", "studies": "study"}   # page, and what the program prints for it
+REFERENCE = {"case_file": "case", "results": "results", "studies": "study"}   # page: argument of gudgeon --reference
 LINK = re.compile(r"(\]\()([^)#\s]+)(#[^)\s]*)?(\))")
 
 
@@ -30,7 +31,7 @@ def place_in_manual(path: Path) -> Path | None:
 
 
 def relinked(text: str, origin: Path, page: Path) -> str:
-    """Links of a Markdown text at `origin`, as they must be from the built page."""
+    """The Markdown text of the file `origin` with its links changed so that they hold in the built page."""
 
     def new(match: re.Match[str]) -> str:
         if "://" in match[2]:
@@ -71,7 +72,7 @@ def collect(program: str) -> None:
 
 
 def link() -> None:
-    """README.md is the first page; FORD does not change its links."""
+    """Change the links of README.md, the first page of the manual, which FORD leaves unchanged."""
     page = BUILT / "index.html"
     text = page.read_text(encoding="utf-8")
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Tables of what the shipped cases give, and how results depend on some keys; each into data/measured/NAME.md.
+"""Measures the results of the shipped cases, and how they depend on some keys. Each table is written to data/measured/NAME.md.
 
     scripts/measure_cases.py              all tables
-    scripts/measure_cases.py NAME ...     some of them
-    scripts/measure_cases.py --list       which there are
+    scripts/measure_cases.py NAME ...     these tables
+    scripts/measure_cases.py --list       the names of the tables
 
-Numbers are those of the summaries, by method auto with the tolerance of each case (`-a standard`).
+The numbers are from the summaries of runs with the method auto and the tolerance of each case (`-a standard`).
 """
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ TOP = Path(__file__).resolve().parent.parent
 SIMULATIONS = [f"sim_{number}{film}" for film in ("", "_oscillating") for number in ("I", "II", "III", "IV", "V", "VI")]
 FINITE = [f"film/sim_{number}_finite" for number in ("I", "II", "III", "IV", "V", "VI")]
 
-#: Column of a table: heading, quantity of the summary, factor, format.
+#: Column of a table: heading, quantity of the summary, factor, format of the number.
 Column = tuple[str, str, float, str]
 CONTACTS: Column = ("contacts", "contacts", 1, ".0f")
 SHARE: Column = ("in contact [%]", "contact_time_fraction", 100, ".1f")
@@ -99,28 +99,34 @@ def elastic_methods() -> list[Row]:
 TABLES = {
     "simulations": Table("The simulations of chapter 6", (CONTACTS, SHARE, FILM, FORCE, SPEED, RESIDUAL, WORK),
                          of_cases(*SIMULATIONS, *FINITE, "film/sim_IV_mixed"),
-                         "A negative film thickness is a penetration. With the Pinkus-Sternlicht film the pin never touches. The oscillating film has "
-                         "no force along the line of centres and cannot carry a load: with it the pin is in contact for most of the time."),
-    "joints": Table("Clearance at the crank pin, and in the bore", (
+                         "A negative film thickness is a penetration. With the Pinkus-Sternlicht film there is no contact. The "
+                         "oscillating film has no force along the line of centres and cannot carry a load: with it the pin is in contact for most of the "
+                         "time."),
+    "joints": Table("Clearance at the crank pin, and clearance of the piston in its bore", (
         CONTACTS, SHARE, FILM, FORCE, ("crank pin: contacts", "crank_pin_contacts", 1, ".0f"),
         ("crank pin: film thickness [um]", "crank_pin_min_film_thickness", 1e6, ".3f"),
         ("crank pin: force [kN]", "crank_pin_max_pin_force", 1e-3, ".2f"), ("skirt corner 1: contacts", "guide_1_contacts", 1, ".0f"), RESIDUAL),
         of_cases("joints/both_pins", "joints/crank_pin", "joints/both_pins_lubricated", "joints/piston_slap", "joints/guide_friction"),
-        "`both_pins` and `piston_slap` are chaotic: their numbers change with the tolerance."),
+        "`both_pins` and `piston_slap` are chaotic: their numbers depend on the tolerance."),
     "weighted": Table("Film and contact that share the load: shape, `transition_depth`, `least_film_ratio`", (CONTACTS, SHARE, DEPTH, FILM),
-                      weighted(), "Case `film/weighted`. Both lengths are tuning: results depend on them."),
+                      weighted(), "Case `film/weighted`. Both lengths are chosen, not derived from the bearing; the results "
+                                  "depend on them."),
     "elastic_walls": Table("Elastic walls under the film", (FILM, FORCE, PRESSURE, LOST, WORK), elastic_walls(),
                            "Case `film/elastic` with a film of finite length. Inertia sets the load of a piston pin, so elastic walls change neither film "
                            "thickness nor pressure; oil whose viscosity grows with the pressure does. Elastic walls make the equations less stiff."),
-    "viscosity": Table("Simulation I by the temperature of its oil", (("viscosity [mPa s]", "viscosity", 1e3, ".3g"), FILM, FORCE), viscosity(),
+    "viscosity": Table("Simulation I with oil of several temperatures", (
+        ("viscosity [mPa s]", "viscosity", 1e3, ".3g"), FILM, FORCE), viscosity(),
                        "An oil of 32 mm2/s at 40 and 5.4 mm2/s at 100 degrees C (Walther's law)."),
-    "elastic_methods": Table("Elastic members by method and tolerance", (WORK, ("Jacobians", "jacobians", 1, ".0f"),
-                             ("changes of method", "method_switches", 1, ".0f"), RESIDUAL), elastic_methods(),
-                             "A Jacobian is found by differences: it takes as many further evaluations as there are positions and rates. In dry contact "
-                             "every impact excites waves along the rod anew, and Adams follows them at about the cost of Radau. In an engine the film "
-                             "lets them die out; the steps of Adams stay limited by stability, and it takes 300 to 5000 times the evaluations of Radau."),
-    "elastic_rod": Table("Shapes of an elastic rod and what they cost", (CONTACTS, FORCE, WORK, RESIDUAL), shapes(),
-                         "Case `elastic/dry_friction`, two revolutions, method auto. The waves along the rod set the steps: axial shapes cost most."),
+    "elastic_methods": Table("Scenes with elastic members by several methods and tolerances", (
+        WORK, ("Jacobians", "jacobians", 1, ".0f"),
+        ("changes of method", "method_switches", 1, ".0f"), RESIDUAL), elastic_methods(),
+                             "A Jacobian is found by finite differences: it takes as many further evaluations as there are "
+                             "positions and rates. In dry contact every impact excites new waves along the rod, and Adams needs "
+                             "about as many evaluations as Radau. In an engine with a film the waves are damped, but stability "
+                             "still limits the steps of Adams, which needs 300 to 5000 times the evaluations of Radau."),
+    "elastic_rod": Table("Number of shapes of an elastic rod, and evaluations", (CONTACTS, FORCE, WORK, RESIDUAL), shapes(),
+                         "Case `elastic/dry_friction`, two revolutions, method auto. The waves along the rod determine the size "
+                         "of the steps; therefore axial shapes need most evaluations."),
 }
 
 

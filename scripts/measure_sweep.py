@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
-"""What a parameter study costs beyond its runs, and what a second thread brings.
+"""Measures the cost of a parameter study beyond that of its runs, and the gain by a second thread.
 
     scripts/measure_sweep.py [--runs 10000] [--repeats 3] [--threads 2]
     scripts/measure_sweep.py --instructions
 
-Simulation I, method auto, draft accuracy, over clearance and viscosity (Latin hypercube). Three measurements:
- - throughput of `gudgeon sweep` on one thread and on several, in turns, the best of the repeats. Other programs on the machine
-   falsify it;
- - processor time of the sweep against that of the same runs simulated one after the other in one process
-   (scripts/measure_runs.f90), without and with the statistics of revolutions;
- - instructions of a sweep of 100 runs under valgrind: those of the simulations themselves, and what the sweep adds to them (setting
-   and checking the parameters, writing the row). With --instructions only this is measured.
-Run it from the top of the checkout. Prints a table.
+The study varies clearance and viscosity of simulation I (method auto, accuracy draft, Latin hypercube). Three measurements:
+ - throughput of `gudgeon sweep` on one thread and on several, measured alternately; the best of the repeats. Other programs that
+   run on the machine make it wrong;
+ - processor time of the sweep and of the same runs simulated one after the other in one process (scripts/measure_runs.f90), without
+   and with the statistics of revolutions;
+ - instructions of a sweep of 100 runs under valgrind: those of the simulations, and those of the sweep itself (setting and checking
+   the parameters, writing the rows). With --instructions only this is measured.
+Run it from the top of the checkout. It prints a table.
 """
 import argparse
 import os
@@ -29,12 +29,12 @@ SETTINGS = ["-q", "--fresh", "-s", "integrator.method=auto", "-s", "integrator.r
 
 
 def program(*target):
-    """Path of a program of the release build, which is made where it is missing."""
+    """Path of a program of the release build; the program is built if it is missing."""
     return os.path.abspath(subprocess.run(["scripts/build.sh", *target], check=True, capture_output=True, text=True).stdout.strip())
 
 
 def timed(command):
-    """Seconds of clock and processor of a command, and what it prints."""
+    """Wall time and processor time of a command in seconds, and its output."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     start = time.monotonic()
     done = subprocess.run(command, check=True, capture_output=True, text=True)
@@ -51,7 +51,7 @@ def instructions(command, function, folder):
 
 
 def count_instructions(sweep, folder):
-    """Print the instructions of a sweep of 100 runs on one thread that do not belong to the simulations."""
+    """Print the number of instructions in a sweep of 100 runs on one thread that are not part of the simulations."""
     whole = instructions(sweep, "__study_worker_MOD_run", folder)
     simulated = instructions(sweep, "__gudgeon_simulation_MOD_simulate", folder)
     if simulated == 0:
@@ -65,7 +65,7 @@ def main():
     parser.add_argument("--runs", type=int, default=10000)
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--threads", type=int, default=2)
-    parser.add_argument("--instructions", action="store_true", help="only the instructions of a sweep")
+    parser.add_argument("--instructions", action="store_true", help="count only the instructions of a sweep")
     options = parser.parse_args()
     gudgeon = program()
     with tempfile.TemporaryDirectory() as folder:
@@ -88,13 +88,13 @@ def main():
                                   (f"sweep, {options.threads} threads", sweep(path, options.threads)),
                                   ("bare runs", [runs, path]), ("runs with statistics", [runs, path, "watched"])):
                 seconds, cpu, _, printed = timed(command)
-                if "runs" == name.split()[-1] or "statistics" in name:   # without making the cases
+                if "runs" == name.split()[-1] or "statistics" in name:   # without the time that builds the cases
                     cpu, seconds = (float(x) for x in printed.split("\n")[1].split(",")[2:])
                 clock[name] = min(seconds, clock.get(name, seconds))
                 processor[name] = min(cpu, processor.get(name, cpu))
         print(f"{options.runs} runs, best of {options.repeats}; load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
         for name in clock:
-            print(f"{name:24s} {clock[name]:8.2f} s  {processor[name]:8.2f} s of processor, "
+            print(f"{name:24s} {clock[name]:8.2f} s  {processor[name]:8.2f} s processor time, "
                   f"{1e6*processor[name]/options.runs:8.1f} us a run, {100*(processor[name]/processor['bare runs'] - 1):+5.1f} %")
         print(f"throughput on {options.threads} threads over 1: "
               f"{clock['sweep, 1 thread']/clock[f'sweep, {options.threads} threads']:.2f}; processor time of a run, 1 thread over "

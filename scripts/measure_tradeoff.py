@@ -3,13 +3,13 @@
 
     scripts/measure_tradeoff.py cases/sim_I.nml               table, picture and recommendation, in results/tradeoff
     scripts/measure_tradeoff.py cases/flores/*.nml --repeat 9 several cases, wall times the median of nine
-    scripts/measure_tradeoff.py --presets                     what --accuracy draft, standard, reference give in every case
-    scripts/measure_tradeoff.py --films cases/sim_I.nml       every film in this scene: cost and answers, to data/measured/films.md
+    scripts/measure_tradeoff.py --presets                     the results of --accuracy draft, standard, reference in every case
+    scripts/measure_tradeoff.py --films cases/sim_I.nml       every film in this scene: cost and results, to data/measured/films.md
 
-Runs a case for all combinations of tolerance, method, max_order and contact entry with the release build, in parallel on
-all processor cores, and compares each run with a reference at the tightest setting, whose own error is estimated from
-the next tightest tolerance and the other method. An interrupted measurement is continued by the same command: rows of
-the table are not measured again unless the case or the program has changed. Wall times are measured while other cores
+Runs a case with all combinations of tolerance, method, max_order and step_rejection with the release build, in parallel on
+all processor cores. Each run is compared with a reference at the tightest setting, whose own error is estimated from a run
+at the next tightest tolerance and one by the other method. If the measurement is interrupted, the same command continues it: rows
+of the table are measured again only if the case or the program has changed. Wall times are measured while other cores
 are busy; numbers of evaluations are exact.
 """
 
@@ -47,8 +47,9 @@ COLUMNS = (
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("cases", nargs="*", type=Path, metavar="CASE.nml")
-    parser.add_argument("--presets", action="store_true", help="only the accuracy levels (default: of every shipped case)")
-    parser.add_argument("--films", action="store_true", help="only the films against each other, in the scenes of these cases")
+    parser.add_argument("--presets", action="store_true",
+                        help="measure only the accuracy levels (of every shipped case unless cases are given)")
+    parser.add_argument("--films", action="store_true", help="compare the films with each other in the scenes of these cases")
     parser.add_argument(
         "--out", type=Path, default=TOP / "results" / "tradeoff", metavar="DIR", help="(default: results/tradeoff)"
     )
@@ -63,14 +64,14 @@ def arguments() -> argparse.Namespace:
         type=float,
         default=[1e-3, 1e-5, 1e-7],
         metavar="SHARE",
-        help="max_penetration of step_rejection, in clearances, for scenes that touch (default: 1e-3 1e-5 1e-7)",
+        help="max_penetration of step_rejection in clearances, for scenes with contact (default: 1e-3 1e-5 1e-7)",
     )
     parser.add_argument(
         "--variants",
         nargs="+",
         default=[""],
         metavar="NAME",
-        help="of the film, each with its own reference (default: the case's own)",
+        help="variants of the film, each compared with its own reference (default: the case's own)",
     )
     parser.add_argument(
         "--points",
@@ -88,9 +89,11 @@ def arguments() -> argparse.Namespace:
         metavar="TOL",
         help="tightest and next tightest tolerance (default: 1e-13 1e-12)",
     )
-    parser.add_argument("--horizon", type=float, metavar="S", help="time up to which errors are taken (default: found)")
+    parser.add_argument("--horizon", type=float, metavar="S",
+                        help="time up to which errors are measured (default: while the reference is known)")
     parser.add_argument(
-        "--digits", nargs="+", type=int, default=[3, 6], metavar="N", help="to recommend for (default: 3 6)"
+        "--digits", nargs="+", type=int, default=[3, 6], metavar="N",
+        help="numbers of correct digits for which settings are recommended (default: 3 6)"
     )
     parser.add_argument(
         "--repeat", type=int, default=5, metavar="N", help="wall time is the median of N runs (default: 5)"
@@ -107,7 +110,7 @@ def arguments() -> argparse.Namespace:
         options.cases = sorted(TOP.glob("cases/*.nml")) + sorted(TOP.glob("cases/*/*.nml"))
         options.cases = [case for case in options.cases if "&mechanism" in case.read_text(encoding="utf-8")]
     if not options.cases:
-        parser.error("no CASE.nml")
+        parser.error("a CASE.nml is needed")
     if options.timeout is None:
         options.timeout = 7200.0 if options.films else 120.0
     return options
@@ -124,7 +127,7 @@ class Study:
         self.made_of = hashlib.sha1(b"".join(made_of)).hexdigest()[:10]
 
     def run(self, settings: Settings, out: str, *more: str) -> str:
-        """Run the case once into a directory; the status."""
+        """Run the case once with its results in the directory `out`, and return the status."""
         values = [*settings.overrides(), "output.ideal_twin=.false.", *more]
         overrides = [part for value in values for part in ("-s", value)]
         command = [str(self.program), "-q", "-o", out, *overrides, str(self.case)]
@@ -132,7 +135,7 @@ class Study:
             outcome = subprocess.run(command, capture_output=True, text=True, check=False, timeout=self.options.timeout)
         except subprocess.TimeoutExpired:
             return "timeout"
-        if outcome.returncode in (2, 3):  # the settings or the case are wrong: no other run would do better
+        if outcome.returncode in (2, 3):  # the settings or the case are wrong: all other runs would fail too
             raise MissingResult(outcome.stderr.strip())
         return "done" if outcome.returncode == 0 else "failed"
 
@@ -140,7 +143,7 @@ class Study:
         return load_run(Path(out) / f"{self.case.stem}.csv")
 
     def reference(self) -> Reference:
-        """The tightest runs of both methods, and the next tightest, made side by side."""
+        """The runs at the tightest tolerance by both methods and at the next tightest, made in parallel."""
         wanted = list(product(("adams", "radau"), self.options.reference))
 
         def make(method: str, tolerance: float) -> Run | None:
@@ -159,7 +162,7 @@ class Study:
         return tradeoff.choose_reference(tight, loose, self.options.horizon)
 
     def settings(self, run: Run) -> list[Settings]:
-        """Everything that is to be run, for a case whose reference is `run`."""
+        """All settings to be run for a case whose reference is `run`."""
         touches, clearance = len(tradeoff.impact_times(run)) > 0, run.clearance
         has_points = "oscillating" in str(run.parameter("lubrication", "law", default=""))
         entries = [("root", 0.0)]
@@ -177,7 +180,7 @@ class Study:
         ]
 
     def row(self, settings: Settings, reference: Reference) -> dict[str, object]:
-        """Run once with all digits for the errors, and with the settings of the case for the wall time."""
+        """Run once with all digits, for the errors, and with the settings of the case, for the wall time."""
         with tempfile.TemporaryDirectory() as out:
             row: dict[str, object] = vars(settings) | {"made_of": self.made_of}
             row["status"] = self.run(settings, out, "output.digits=17")
@@ -191,7 +194,7 @@ class Study:
             return row | {"seconds": statistics.median(times)}
 
     def rows(self) -> pd.DataFrame:
-        """The rows of the table that are still valid; the table is written again with these."""
+        """The rows of the table that are still valid; the file is written again with these rows only."""
         columns = list(COLUMNS)
         if not self.table.exists():
             self.table.parent.mkdir(parents=True, exist_ok=True)
@@ -206,7 +209,7 @@ class Study:
         return found
 
     def measure(self, reference: Reference) -> pd.DataFrame:
-        """Run what is missing in the table, adding rows as runs end; returns all rows wanted."""
+        """Run the settings that the table lacks, and add a row when a run ends. Returns all rows of the wanted settings."""
         wanted = self.settings(reference.run)
         old = self.rows()
         old.to_csv(self.table, index=False, na_rep="nan")
@@ -229,7 +232,7 @@ class Study:
 
 
 def progress(text: str, last: bool) -> None:
-    """On standard error: one line that is overwritten on a terminal, else the last only."""
+    """Print a line on standard error: on a terminal it overwrites the one before, otherwise only the last is printed."""
     if sys.stderr.isatty():
         print(f"\r{text}", end="\n" if last else "", file=sys.stderr, flush=True)
     elif last:
@@ -252,7 +255,7 @@ def preset_row(study: Study) -> str:
 
 
 def report(study: Study, reference: Reference, table: pd.DataFrame) -> None:
-    """Print the reference, the Pareto front and the recommendation; draw."""
+    """Print the reference, the Pareto front and the recommendation; draw the picture."""
     run, done = reference.run, table[table["status"] == "done"].reset_index(drop=True)
     print(f"\n== {study.name}")
     print(
@@ -261,7 +264,7 @@ def report(study: Study, reference: Reference, table: pd.DataFrame) -> None:
         + (" to the end" if reference.whole else f" up to {reference.horizon:.4g} s of {run['time'][-1]:.4g} s")
         + f", {(tradeoff.impact_times(run) <= reference.horizon).sum()} impacts"
     )
-    print(f"{len(done)} of {len(table)} runs came to an end; Pareto front of wall time and state error:")
+    print(f"{len(done)} of {len(table)} runs were finished; Pareto front of wall time and state error:")
     digits = ", ".join(f"{n} digits up to {reference.known(10.0**-n):.4g} s" for n in study.options.digits)
     beyond = tradeoff.turn_statistics(run, 0.0 if reference.whole else reference.horizon)
     print(f"known to {digits}; revolutions " + ("" if reference.whole else "beyond the horizon: ")
@@ -286,9 +289,9 @@ def main() -> int:
             return 0
         if options.presets:
             print(
-                "Error of the states (coordinates and speeds) at the worst time of the run, relative to their ranges, and number of evaluations.",
-                "`E for T ms`: the motion is chaotic, and the error stays below E up to the time T; `reference known to`: the same for the run",
-                "with which the others are compared.\n",
+                "Largest error of the states (coordinates, speeds) in the run, relative to their ranges, and number of evaluations.",
+                "`E for T ms`: the motion is chaotic, and the error stays below E up to the time T. `reference known to`: the same",
+                "error of the reference run, with which the others are compared.\n",
                 sep="\n",
             )
             print("| case | length | reference known to | draft | standard | reference |", "|---|---|---|---|---|---|", sep="\n")

@@ -1,18 +1,18 @@
 #!/usr/bin/env python3
-"""What a run does cycle by cycle, once it has settled: orders and spectra, means with their scatter, work and losses, loads on the
-bearings.
+"""Analyses the settled cycles of a run: orders and spectra, means and their scatter, work and losses, loads on the bearings.
 
-    scripts/orders.py sim_IV                                 the case's own results, run if they are missing
+    scripts/orders.py sim_IV                                 the results of the case, which is run if they are missing
     scripts/orders.py results/sim_IV.csv --columns crank_speed guide_force
     scripts/orders.py dry_0500um --settle 20 --highest 60    cycles after 20 revolutions, orders up to 60
 
-A cycle is a revolution of the crank, or two with gas. Taken are whole cycles at the end of the run: those after half of it, or after
---settle revolutions. A trace with `&output sampling = 'crank_angle'` is taken as it is; in others values at equal crank angles are
-interpolated. Best of all is a run with `&run until = 'periodic'` and `&output window = 'last_period'`. Writes, into --out:
+A cycle is one revolution of the crank, or two if there is gas. The analysis takes the whole cycles after the first half of the run,
+or after --settle revolutions. A trace with `&output sampling = 'crank_angle'` is used as it is; other traces are interpolated to
+equal crank angles. The most accurate input is a run with `&run until = 'periodic'` and `&output window = 'last_period'`. Writes,
+into --out:
 
     NAME.orders.csv      each column's amplitude, phase and scatter by order
-    NAME.work.csv        work of the gas (p dV), drive and damping, losses of the joints, in a cycle [J]; with gas as mean effective
-                         pressures over the swept volume [Pa]
+    NAME.work.csv        work in a cycle [J] of the gas (integral of p dV), drive and damping, losses of the joints; with gas
+                         also as mean effective pressures [Pa]: work over the swept volume
     NAME.cycles.png, NAME.orders.png, NAME.bearings.png and, with gas, NAME.indicator.png
 """
 
@@ -34,13 +34,15 @@ from gudgeon_plots.results import MissingResult, Results  # noqa: E402
 
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("case", metavar="NAME", help="a case's name, its file or its trace")
-    parser.add_argument("--columns", nargs="+", metavar="COLUMN", help=f"without units (default: {' '.join(COLUMNS)}, if they change)")
-    parser.add_argument("--settle", type=float, metavar="REVOLUTIONS", help="at the start that are left out (default: half)")
-    parser.add_argument("--cycles", type=int, metavar="N", help="at most so many, the last ones")
-    parser.add_argument("--highest", type=float, default=20.0, metavar="ORDER", help="in the picture (default: 20)")
-    parser.add_argument("--results", type=Path, metavar="DIR", help="where traces are (default: results, or the trace's)")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="(default: beside the trace)")
+    parser.add_argument("case", metavar="NAME", help="name of a case, its file or its trace")
+    parser.add_argument("--columns", nargs="+", metavar="COLUMN",
+                        help=f"columns to analyse, without units (default: {' '.join(COLUMNS)}, those that vary)")
+    parser.add_argument("--settle", type=float, metavar="REVOLUTIONS",
+                        help="revolutions that are left out at the start (default: half of the run)")
+    parser.add_argument("--cycles", type=int, metavar="N", help="analyse only the last N cycles")
+    parser.add_argument("--highest", type=float, default=20.0, metavar="ORDER", help="highest order in the picture (default: 20)")
+    parser.add_argument("--results", type=Path, metavar="DIR", help="folder of the traces (default: results, or that of the trace)")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="folder for the files (default: beside the trace)")
     parser.add_argument("--format", action="append", choices=("png", "svg", "pdf"), help="repeatable (default: png)")
     language.add_option(parser)
     return parser.parse_args()

@@ -4,11 +4,11 @@
     scripts/plot.py --all                       every figure, as PNG, in results/figures
     scripts/plot.py --figure 6.7 --format pdf   one figure; both options can be repeated
     scripts/plot.py --figure B.7 --window start appendix B from the pin's release on, as figure_B.07_start
-    scripts/plot.py --list                      the figures there are
-    scripts/plot.py --compare A.csv B.csv       two traces overlaid, their difference, how long they agree
+    scripts/plot.py --list                      list the figures
+    scripts/plot.py --compare A.csv B.csv       two traces in one picture, their difference, and how long they agree
     scripts/plot.py --readme                    the picture of README.md, data/readme.png
 
-Runs the cases whose results are missing with the release build.
+Cases whose results are missing are run with the release build.
 """
 
 import argparse
@@ -36,10 +36,10 @@ def arguments() -> argparse.Namespace:
     what.add_argument("--compare", nargs=2, type=Path, metavar=("A.csv", "B.csv"), help="compare two traces")
     what.add_argument("--readme", action="store_true", help="draw README.md's picture")
     parser.add_argument(
-        "--results", type=Path, default=TOP / "results", metavar="DIR", help="traces (default: results)"
+        "--results", type=Path, default=TOP / "results", metavar="DIR", help="folder of the traces (default: results)"
     )
     parser.add_argument(
-        "--out", type=Path, metavar="DIR", help="pictures (default: figures in the directory of traces)"
+        "--out", type=Path, metavar="DIR", help="folder for the pictures (default: figures in the folder of the traces)"
     )
     language.add_option(parser)
     parser.add_argument("--format", action="append", choices=("png", "svg", "pdf"), help="repeatable (default: png)")
@@ -50,21 +50,21 @@ def arguments() -> argparse.Namespace:
         help="appendix B: the settled motion, or the cases' own first revolutions, in which the pin drops from the centre "
         "(default: settled)",
     )
-    parser.add_argument("--no-run", action="store_true", help="say what to run where a result is missing")
-    parser.add_argument("--rerun", action="store_true", help="run the cases even where there are results")
+    parser.add_argument("--no-run", action="store_true", help="do not run cases; print the command where a result is missing")
+    parser.add_argument("--rerun", action="store_true", help="run the cases even if there are results")
     parser.add_argument("--columns", nargs="+", metavar="NAME", help="columns to compare, without units")
     parser.add_argument(
         "--agreement",
         type=float,
         default=compare.AGREEMENT,
         metavar="SHARE",
-        help="runs agree while they differ by less than this share of the range (default: %(default)s)",
+        help="two runs agree as long as they differ by less than this share of the range (default: %(default)s)",
     )
     return parser.parse_args()
 
 
 def draw_figures(wanted: list[Figure], own: Results, out: Path, formats: list[str]) -> int:
-    """Draw figures one after the other; the number of those that could not be drawn."""
+    """Draw the figures; returns the number of those that could not be drawn."""
     fine, cycles = FineResults(own), ManyCycles(own)
     windows = {figure.window: WindowResults(own, figure.window) for figure in wanted if figure.window}
 
@@ -106,7 +106,7 @@ def main() -> int:
             return 0
         unknown = [number for number in options.figure or [] if number not in table]
         if unknown:
-            print(f"plot.py: no such figure: {' '.join(unknown)}; --list tells which there are", file=sys.stderr)
+            print(f"plot.py: no such figure: {' '.join(unknown)}; --list prints the figures", file=sys.stderr)
             return 2
         started = time.monotonic()
         wanted = [table[number] for number in options.figure or table]

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Draws what an elastic connecting rod makes of the first impacts of Flores's slider-crank (cases/elastic/first_impact.nml).
+"""Draws the effect of an elastic connecting rod on the first impacts of Flores's slider-crank (cases/elastic/first_impact.nml).
 
-    scripts/plot_elastic.py                      -> results/elastic/first_impact.png
-    scripts/plot_elastic.py --out cases/elastic  the picture that is shipped; --table: and the table data/measured/first_impact.md
+    scripts/plot_elastic.py                      writes results/elastic/first_impact.png
+    scripts/plot_elastic.py --out cases/elastic  writes the picture that is shipped; with --table also data/measured/first_impact.md
 
-Runs the case with a rigid rod, one that only bends, two that only stretch or stretch too simply, and the whole, by the release build,
-and prints the table of the first contact.
+The case is run by the release build with a rigid rod, with a rod that only bends, with two that only stretch (one of them with too
+few axial shapes), and with the full model of the rod. Prints a table of the first contact.
 """
 
 import argparse
@@ -30,8 +30,8 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, default=TOP / "results" / "elastic", metavar="DIR", help="(default: results/elastic)")
     parser.add_argument("--format", action="append", choices=("png", "svg", "pdf"), help="repeatable (default: png)")
-    parser.add_argument("--table", action="store_true", help="write data/measured/first_impact.md too")
-    parser.add_argument("--program", type=Path, help="this program instead of a release build")
+    parser.add_argument("--table", action="store_true", help="also write data/measured/first_impact.md")
+    parser.add_argument("--program", type=Path, help="program to run (default: the release build)")
     language.add_option(parser)
     options = parser.parse_args()
     runs, shapes = [], []

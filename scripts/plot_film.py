@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Draws what films do: the pressure over the bore at chosen times, and the six simulations with each film.
+"""Draws results of films: the pressure in the bearing at chosen times, and the six simulations with each film.
 
-    scripts/plot_film.py cases/film/sim_I_finite.nml --at 0.0942,0.0985   runs the case, draws its pressures at these times [s]
-    scripts/plot_film.py RESULTS/sim_I_finite.film.csv                    draws those of a run with &output film_times
-    scripts/plot_film.py --simulations                                    thickness and force of simulations I to VI, three films
+    scripts/plot_film.py cases/film/sim_I_finite.nml --at 0.0942,0.0985   run the case, draw its pressures at these times [s]
+    scripts/plot_film.py RESULTS/sim_I_finite.film.csv                    draw the pressures of a run with &output film_times
+    scripts/plot_film.py --simulations                                    thickness and force in simulations I to VI, three films
 
-Pictures go to results/figures. Runs the release build of the program, which solves for the pressures.
+Pictures are written to results/figures. The pressures are computed by the release build of the program.
 """
 
 import argparse
@@ -26,14 +26,18 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument("source", nargs="?", type=Path, metavar="CASE.nml|NAME.film.csv")
-    what.add_argument("--simulations", action="store_true", help="the six simulations with each film")
-    parser.add_argument("--at", metavar="TIMES", help="times [s] of a case's pressures: t1,t2,.. or from:to:count")
-    parser.add_argument("--set", action="append", default=[], metavar="GROUP.KEY=VALUE", help="of the case; repeatable")
-    parser.add_argument("--results", type=Path, default=TOP / "results", metavar="DIR", help="traces (default: results)")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="pictures (default: figures in the directory of traces)")
+    what.add_argument("--simulations", action="store_true", help="draw the six simulations with each film")
+    parser.add_argument("--at", metavar="TIMES", help="times [s] at which the pressures of the case are drawn: t1,t2,.. or "
+                                                      "from:to:count")
+    parser.add_argument("--set", action="append", default=[], metavar="GROUP.KEY=VALUE",
+                        help="change a key of the case; repeatable")
+    parser.add_argument("--results", type=Path, default=TOP / "results", metavar="DIR",
+                        help="folder of the traces (default: results)")
+    parser.add_argument("--out", type=Path, metavar="DIR",
+                        help="folder for the pictures (default: figures in the folder of the traces)")
     language.add_option(parser)
     parser.add_argument("--format", action="append", choices=("png", "svg", "pdf"), help="repeatable (default: png)")
-    parser.add_argument("--no-run", action="store_true", help="say what to run where a result is missing")
+    parser.add_argument("--no-run", action="store_true", help="do not run cases; print the command where a result is missing")
     options = parser.parse_args()
     if options.source and options.source.suffix == ".nml" and not options.at:
         parser.error("a case needs --at")
@@ -41,7 +45,7 @@ def arguments() -> argparse.Namespace:
 
 
 def fields_file(options: argparse.Namespace) -> Path:
-    """The file of the pressures; of a case, after it has been run."""
+    """The file of the pressures; if a case is given, it is run first."""
     if options.source.suffix != ".nml":
         return options.source
     overrides = [part for value in (*options.set, f"output.film_times='{options.at}'") for part in ("-s", value)]
@@ -67,7 +71,7 @@ def main() -> int:
         name = path.name.removesuffix(".film.csv")
         fields = film_pressure.fields_of(path)
         if not fields:
-            raise MissingResult(f"{path}: holds no pressures")
+            raise MissingResult(f"{path}: contains no pressures")
         drawing = film_pictures.pressure_fields(load_run(path.with_name(f"{name}.csv")), fields, name)
         print(*figures.save(drawing, out, f"{name}_pressure", formats))
         language.current.warn("plot_film.py")

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Draws the effect of each joint with clearance and of each elastic member in one mechanism: Flores's slider-crank at 3500 rpm, 0.2 mm, dry.
 
-    scripts/plot_members.py                     -> results/members/members.png
-    scripts/plot_members.py --out cases/joints  the picture that is shipped; --table also writes the table data/measured/members.md
+    scripts/plot_members.py                     writes results/members/members.png
+    scripts/plot_members.py --out cases/joints  writes the picture that is shipped; with --table also data/measured/members.md
 
-The mechanism of cases/elastic/first_impact.nml runs three revolutions, with one more joint or member at a time, and with all of them.
-Prints impacts, forces and losses of the second and third revolution.
+The mechanism of cases/elastic/first_impact.nml runs three revolutions with each joint or member alone, and with all of them
+together. Prints impacts, forces and losses of the second and third revolution.
 """
 
 import argparse
@@ -31,7 +31,7 @@ def main() -> int:
     parser.add_argument("--out", type=Path, default=TOP / "results" / "members", metavar="DIR", help="(default: results/members)")
     parser.add_argument("--format", action="append", choices=("png", "svg", "pdf"), help="repeatable (default: png)")
     parser.add_argument("--table", action="store_true", help="also write data/measured/members.md")
-    parser.add_argument("--program", type=Path, help="gudgeon (default: the release build, brought up to date)")
+    parser.add_argument("--program", type=Path, help="program to run (default: the release build)")
     language.add_option(parser)
     options = parser.parse_args()
     runs = []
@@ -49,7 +49,7 @@ def main() -> int:
     table = elastic_pictures.describe_members(runs)
     print(table)
     if options.table:
-        write_table("members", "What each loose joint and each elastic member changes", "scripts/plot_members.py --table",
+        write_table("members", "Effects of each joint with clearance and of each elastic member", "scripts/plot_members.py --table",
                     f"{elastic_pictures.MEMBERS_SAY}\n\n{table}")
     for path in figures.save(elastic_pictures.draw_members(runs), options.out, "members", options.format or ["png"]):
         print(path)

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Draws parameter studies from their results, NAME.runs.csv and NAME.strobe.csv.
 
-    scripts/plot_study.py                        the shipped studies, as scripts/run_studies.sh leaves them
+    scripts/plot_study.py                        the shipped studies, from the results of scripts/run_studies.sh
     scripts/plot_study.py --picture map          one of map, bifurcation, restitution, contact_laws
     scripts/plot_study.py results/x.runs.csv     any study: curves, maps or points of --columns
     scripts/plot_study.py --numbers              only print the numbers of the shipped studies, in Markdown
 
-Prints the numbers of the pictures and the paths of the files. Failed runs are left blank, and counted on standard error.
+Prints the numbers of the pictures and the paths of the files. Runs that failed are not drawn; their number is printed on standard
+error.
 """
 
 import argparse
@@ -28,7 +29,7 @@ COLUMNS = ("min_film_thickness", "contact_time_fraction")
 
 MAPS = ("map_I", "map_I_oscillating", "map_IV", "map_IV_oscillating")
 
-#: Of the Flores studies, where it is not their parameter.
+#: Values of the Flores studies that do not vary the key.
 FLORES_SPEED = 523.5987755982989  # rad/s
 FLORES_CLEARANCE = 100e-6  # m
 
@@ -37,13 +38,14 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("runs", nargs="*", type=Path, metavar="NAME.runs.csv", help="results of any study")
     parser.add_argument(
-        "--picture", action="append", choices=tuple(PICTURES), help="of the shipped studies; repeatable"
+        "--picture", action="append", choices=tuple(PICTURES), help="picture of the shipped studies; repeatable"
     )
-    parser.add_argument("--columns", nargs="+", default=list(COLUMNS), metavar="COLUMN", help="without their units")
+    parser.add_argument("--columns", nargs="+", default=list(COLUMNS), metavar="COLUMN",
+                        help="columns to draw, without their units")
     parser.add_argument(
         "--results", type=Path, default=TOP / "results" / "studies", metavar="DIR", help="(default: results/studies)"
     )
-    parser.add_argument("--out", type=Path, metavar="DIR", help="pictures (default: beside the results)")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="folder for the pictures (default: beside the results)")
     parser.add_argument("--numbers", action="store_true", help="only print the numbers of the shipped studies, in Markdown")
     language.add_option(parser)
     parser.add_argument("--format", action="append", choices=("png", "svg", "pdf"), help="repeatable (default: png)")
@@ -92,14 +94,14 @@ PICTURES = {"map": maps, "bifurcation": bifurcation, "restitution": restitution,
 
 
 def any_study(path: Path, columns: list[str]) -> dict[str, figures.Drawing]:
-    """Pictures of a study by their names: curves over one parameter, maps over a grid of two, points over each of more or of a
-    sample; where the study strobes its runs, these points too."""
+    """Pictures of a study by their names: curves over one parameter, maps over a grid of two, points over each parameter of a
+    sample or of a grid of more; also the strobed points, if the study has them."""
     runs = Runs.read(path)
     warn_of_failures(path.name, runs)
     names = list(runs.table.columns)
     parameters = names[1 : names.index("status")]
     if unknown := [column for column in columns if column not in names]:
-        raise MissingResult(f"{path}: no column {' '.join(unknown)}; there are {' '.join(names)}")
+        raise MissingResult(f"{path}: no column {' '.join(unknown)}; the columns are {' '.join(names)}")
     stem = path.name.removesuffix(".runs.csv")
     study = path.with_name(f"{stem}.study.nml")
     settings = f90nml.read(study)["study"] if study.exists() else {}

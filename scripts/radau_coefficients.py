@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Write src/ode/radau/radau_coefficients.f90: the Radau IIA formulas of 3, 5 and 7 stages.
+"""Writes src/ode/radau/radau_coefficients.f90: the Radau IIA formulas of 3, 5 and 7 stages.
 
 Nodes are the roots of the right Radau polynomial, A the collocation matrix, and T the real matrix that brings A^-1 to
 block-diagonal form (Hairer & Wanner 1996, IV.8), all computed in 60-digit arithmetic. Needs mpmath (PyPI).

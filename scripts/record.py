@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Runs a command that prints a table, and writes what it prints to data/measured/NAME.md behind its command, date and machine.
+"""Runs a command that prints a table, and writes its output to data/measured/NAME.md, after the command, the date and the machine.
 
     scripts/record.py NAME TITLE COMMAND [ARGUMENT ...]
     scripts/record.py costs "What a model costs" scripts/measure_costs
 
-The lines are also shown on standard error as they come. If the command fails, an existing file is not changed.
+The lines are also shown on standard error as they are printed. If the command fails, an existing file is not changed.
 """
 import shlex
 import subprocess

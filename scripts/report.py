@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Writes a page about one run: the mechanism in motion, interactive plots, the case, the summary, warnings.
+"""Writes an HTML page about one run: the mechanism in motion, interactive plots, the case, the summary, warnings.
 
     scripts/report.py sim_V_oscillating             -> results/sim_V_oscillating.html
     scripts/report.py cases/flores/dry_0500um.nml -o dry.html
-    scripts/report.py engine                        results/engine.csv in the current folder
+    scripts/report.py engine                        from results/engine.csv in the current folder
     scripts/report.py sim_IV --cycles crank_speed guide_force
 
-The page is one file that needs no network. It shows the pressure round the pin in a film of finite length if the run has
-written it (&output film_times = 'from:to:count'). Traces are looked for in results/ of the current folder, then in results/
-of the checkout. A shipped case, or a case file, whose result is missing is run with the release build.
+The page is one file and needs no network. It shows the pressure around the pin in a film of finite length if the run has written
+it (&output film_times = 'from:to:count'). Traces are searched in results/ of the current folder, then in results/ of the
+checkout. If the result of a shipped case or of a case file is missing, the case is run with the release build.
 """
 
 import argparse
@@ -26,7 +26,8 @@ from gudgeon_plots.results import MissingResult, Results  # noqa: E402
 
 
 def folder_of(given: Path, name: str) -> Path:
-    """Folder of the trace: that of a trace that is given, results/ of the current folder if the trace is there, else of the checkout."""
+    """Folder of the trace: that of the given trace, or results/ of the current folder if the trace is there, or results/ of the
+    checkout."""
     if given.suffix == ".csv":
         return given.parent
     return Path("results") if (Path("results") / f"{name}.csv").exists() else TOP / "results"
@@ -34,13 +35,14 @@ def folder_of(given: Path, name: str) -> Path:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("case", metavar="CASE", help="a case's name, its file or its trace")
+    parser.add_argument("case", metavar="CASE", help="name of a case, its file or its trace")
     parser.add_argument(
         "--results", type=Path, metavar="DIR", help="folder of the traces (default: results, or that of the trace)"
     )
-    parser.add_argument("-o", "--out", type=Path, metavar="FILE", help="the page (default: CASE.html beside the trace)")
-    parser.add_argument("--cycles", nargs="+", metavar="COLUMN", help="columns whose cycles and orders are shown, also of a run that has not settled")
-    parser.add_argument("--no-run", action="store_true", help="say what to run if the result is missing")
+    parser.add_argument("-o", "--out", type=Path, metavar="FILE", help="file of the page (default: CASE.html beside the trace)")
+    parser.add_argument("--cycles", nargs="+", metavar="COLUMN",
+                        help="columns whose cycles and orders are shown, even if the run has not settled")
+    parser.add_argument("--no-run", action="store_true", help="do not run the case; print the command if the result is missing")
     language.add_option(parser)
     options = parser.parse_args()
     given = Path(options.case)

@@ -1,4 +1,4 @@
-"""Scenes of gudgeon as problems for the integrators of Python and C, through build/scene_library/scene_library.so."""
+"""Makes scenes of gudgeon available to integrators in Python and C, through build/scene_library/scene_library.so."""
 from __future__ import annotations
 
 import ctypes as c
@@ -16,12 +16,12 @@ Doubles = np.ctypeslib.ndpointer(dtype=np.float64, flags="C_CONTIGUOUS")
 
 
 class TooManyEvaluations(Exception):
-    """More right-hand sides than a run may take."""
+    """Raised when a run needs more evaluations of the right-hand side than are allowed."""
 
 
 @dataclass
 class Outcome:
-    """What one run leaves."""
+    """Result of one run."""
 
     done: bool = False
     evaluations: int = 0
@@ -29,12 +29,12 @@ class Outcome:
     steps: int = 0
     seconds: float = 0.0
     y: np.ndarray = field(default_factory=lambda: np.empty(0))
-    instants: np.ndarray = field(default_factory=lambda: np.empty(0))   # of contact events [s]
+    instants: np.ndarray = field(default_factory=lambda: np.empty(0))   # times at which contacts begin and end [s]
     said: str = ""
 
 
 def load_library(path: Path = FOLDER / "scene_library.so") -> c.CDLL:
-    """The library of scenes, with the types of its functions."""
+    """Load the library of scenes and declare the types of its functions."""
     library = c.CDLL(str(path))
     ints = np.ctypeslib.ndpointer(dtype=np.int32, flags="C_CONTIGUOUS")
     types = {
@@ -59,7 +59,7 @@ def load_library(path: Path = FOLDER / "scene_library.so") -> c.CDLL:
 
 
 class CvodeRun(c.Structure):
-    """run_t of scripts/scene_library/cvode_run.c."""
+    """The C structure run_t of scripts/scene_library/cvode_run.c."""
 
     _fields_ = [("handle", c.c_void_p), ("rates", c.c_void_p), ("events", c.c_void_p), ("handle_event", c.c_void_p),
                 ("sizes", c.c_void_p), ("n", c.c_int), ("most_rates", c.c_int), ("n_rates", c.c_int), ("n_jacobians", c.c_int),
@@ -67,7 +67,7 @@ class CvodeRun(c.Structure):
 
 
 class Scene:
-    """A case, its right-hand side, and the runs on it."""
+    """A case, its right-hand side, and runs of it by several codes."""
 
     def __init__(self, library: c.CDLL, case: str, options: str = "", twin: bool = False) -> None:
         self.library = library
@@ -81,13 +81,13 @@ class Scene:
         self.start()
 
     def sizes(self) -> np.ndarray:
-        """States without and with quadratures, event functions now."""
+        """Number of states without and with quadratures, and present number of event functions."""
         sizes = np.zeros(3, dtype=np.int32)
         self.library.scene_sizes(self.handle, sizes)
         return sizes
 
     def start(self) -> np.ndarray:
-        """The scene at its start, and the state there."""
+        """Set the scene to its start, and return the state there."""
         y, t_end = np.zeros(self.n), c.c_double()
         if self.library.scene_start(self.handle, y, c.byref(t_end), self.relative, self.absolute) != 0:
             raise SystemExit("compare_integrators: a scene cannot be built")
@@ -95,27 +95,27 @@ class Scene:
         return y
 
     def look(self, y: np.ndarray) -> np.ndarray:
-        """q, A, x, their rates, e_x, e_y at the end."""
+        """q, A, x, their rates, and e_x, e_y, for the state y at the end."""
         values = np.zeros(8)
         self.library.scene_look(self.handle, self.t_end, np.ascontiguousarray(y), values)
         return values
 
     def largest(self) -> np.ndarray:
-        """The largest sizes of the same in the last run that was watched."""
+        """The largest absolute values of the same quantities in the last run with watches = True."""
         values = np.zeros(8)
         self.library.scene_largest(self.handle, values)
         return values
 
     def seconds_in_turn(self) -> float:
-        """Of a right-hand side, each waiting for the one before."""
+        """Time in seconds of one right-hand side in a sequence in which each waits for the one before."""
         return self.library.scene_seconds_in_turn(self.handle, 0.0, self.start())
 
     def tolerances(self, tolerance: float) -> tuple[float, np.ndarray]:
-        """A relative tolerance for all states and an absolute one for each, in the program's own scales."""
+        """The relative tolerance for all states, and an absolute tolerance for each state from the program's own scales."""
         return tolerance, tolerance * np.where(self.absolute > 0, self.absolute, 1.0)
 
     def run_own(self, method: str, tolerance: float, watches: bool = False) -> Outcome:
-        """By adams, radau or auto."""
+        """Run by the program's own method adams, radau or auto."""
         y, seconds, counts = np.zeros(self.n), c.c_double(), np.zeros(4, dtype=np.int32)
         status = self.library.scene_integrate(self.handle, method.encode(), tolerance, int(watches), y, c.byref(seconds), counts)
         instants = np.zeros(min(int(counts[3]), MOST_INSTANTS))
@@ -123,7 +123,7 @@ class Scene:
         return Outcome(status == 0, int(counts[0]), int(counts[1]), int(counts[2]), seconds.value, y, instants, f"status {status}")
 
     def run_compiled(self, driver: c.CDLL, name: str, method: int, tolerance: float, most: int) -> Outcome:
-        """By a driver in C, such as scripts/scene_library/cvode_run.c."""
+        """Run by a driver in C, such as scripts/scene_library/cvode_run.c."""
         y = self.start()
         relative, absolute = self.tolerances(tolerance)
         address = {f: c.cast(getattr(self.library, f"scene_{f}"), c.c_void_p) for f in ("rates", "events", "handle_event", "sizes")}
@@ -137,7 +137,7 @@ class Scene:
                        f"status {status}")
 
     def run_scipy(self, method: type, tolerance: float, most: int) -> Outcome:
-        """By a method of scipy.integrate."""
+        """Run by a method of scipy.integrate."""
         outcome = Outcome()
         f = np.zeros(self.n)
 
@@ -171,7 +171,8 @@ class Scene:
         return outcome
 
     def run_phase(self, solver: integrate.OdeSolver, outcome: Outcome) -> tuple[float, np.ndarray, int, bool]:
-        """Up to the next event: time, state, the event's number (0: the end)."""
+        """Integrate up to the next event: time, state, number of the event (0: the end of the run), and whether the run can
+        continue."""
         g, rate = self.events(solver.t, solver.y)
         low = g < 0
         while solver.status == "running":
@@ -193,14 +194,15 @@ class Scene:
         return solver.t, solver.y, 0, True
 
     def events(self, t: float, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Event functions and their rates."""
+        """Event functions and their derivatives with respect to time."""
         n = int(self.sizes()[2])
         g, rate = np.zeros(n), np.zeros(n)
         self.library.scene_events(self.handle, t, np.ascontiguousarray(y), g, rate)
         return g, rate
 
     def passage(self, solver: integrate.OdeSolver, i: int, low: bool) -> tuple[bool, float, bool]:
-        """The first passage of an event function to not negative in the last step, looked for at ten places."""
+        """The first zero crossing of an event function in the last step, from negative to not negative; ten places of the step are
+        tested."""
         dense = solver.dense_output()
 
         def g(t: float) -> float:
@@ -216,7 +218,8 @@ class Scene:
 
 
 def stays_negative(width: float, left: float, left_rate: float, right: float, right_rate: float) -> bool:
-    """Whether a function that is negative at both ends of a step cannot reach zero between: by its cubic, its bend counted twice."""
+    """Whether a function that is negative at both ends of a step stays negative between them. The estimate is its cubic Hermite
+    interpolant, with the curvature counted twice."""
     if left >= 0 or right >= 0:
         return False
     inner = left + width * left_rate / 3, right - width * right_rate / 3

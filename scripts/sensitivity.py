@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Measures on which parameters of a study its results depend: samples their ranges, runs the study, analyses it with SALib.
+"""Measures how the results of a study depend on its parameters: samples their ranges, runs the study, and analyses it with SALib.
 
     scripts/sensitivity.py cases/studies/sensitivity_I.nml        both methods; table and picture in results/sensitivity
     scripts/sensitivity.py STUDY.nml --method morris --morris 20 --outputs log:min_film_thickness impacts
-    scripts/sensitivity.py --table cases/studies/sensitivity_*.nml  only print the total Sobol indices found before, as one table
+    scripts/sensitivity.py --table cases/studies/sensitivity_*.nml  only print a table of the Sobol indices of earlier calls
 
 The study's &parameter groups give the ranges (from, to, scale); its design is replaced by those of Morris (elementary
 effects along trajectories) and Sobol (shares of the variance, by Saltelli's scheme). Samples are reproducible (--seed).
-Runs that failed are counted and listed; the trajectory or base point that contains one is left out. An interrupted
-analysis is continued by the same command. Confidence intervals are of 95 %; --convergence also prints the indices from a
+Failed runs are counted and listed; the trajectory or base point that contains a failed run is left out. If an analysis is
+interrupted, the same command continues it. Confidence intervals are 95 % intervals; --convergence also prints the indices from a
 quarter and a half of the sample.
 """
 
@@ -33,18 +33,21 @@ OUTPUTS = ("min_film_thickness", "contact_time_fraction")
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("studies", nargs="+", type=Path, metavar="STUDY.nml")
-    parser.add_argument("--method", action="append", choices=METHODS, help="repeatable (default: both)")
+    parser.add_argument("--method", action="append", choices=METHODS, help="method of analysis; repeatable (default: both)")
     parser.add_argument(
         "--outputs",
         nargs="+",
         type=Output.parse,
         default=[Output(name) for name in OUTPUTS],
         metavar="COLUMN",
-        help=f"results without their units, log:COLUMN for the logarithm (default: {' '.join(OUTPUTS)})",
+        help=f"columns to analyse, without their units; log:COLUMN for the logarithm (default: {' '.join(OUTPUTS)})",
     )
-    parser.add_argument("--morris", type=int, default=50, metavar="N", help="trajectories (default: 50)")
-    parser.add_argument("--sobol", type=int, default=256, metavar="N", help="base points, a power of 2 (default: 256)")
-    parser.add_argument("--seed", type=int, default=1, metavar="N", help="of samples and intervals (default: 1)")
+    parser.add_argument("--morris", type=int, default=50, metavar="N",
+                        help="number of trajectories of Morris's method (default: 50)")
+    parser.add_argument("--sobol", type=int, default=256, metavar="N",
+                        help="number of base points of Sobol's method, a power of 2 (default: 256)")
+    parser.add_argument("--seed", type=int, default=1, metavar="N",
+                        help="seed of the samples and of the confidence intervals (default: 1)")
     parser.add_argument(
         "--out",
         type=Path,
@@ -53,12 +56,13 @@ def arguments() -> argparse.Namespace:
         help="(default: results/sensitivity)",
     )
     parser.add_argument("-j", "--jobs", type=int, metavar="N", help="threads (default: number of processor cores)")
-    parser.add_argument("-s", "--set", action="append", default=[], metavar="GROUP.KEY=VALUE", help="of the base case")
-    parser.add_argument("--program", type=Path, help="gudgeon (default: the release build, brought up to date)")
+    parser.add_argument("-s", "--set", action="append", default=[], metavar="GROUP.KEY=VALUE", help="change a key of the base case")
+    parser.add_argument("--program", type=Path, help="program to run (default: the release build)")
     parser.add_argument("--fresh", action="store_true", help="discard the runs of an earlier call")
     language.add_option(parser)
-    parser.add_argument("--convergence", action="store_true", help="also print the indices of parts of the sample")
-    parser.add_argument("--table", action="store_true", help="only print the indices that are in --out, as a Markdown table")
+    parser.add_argument("--convergence", action="store_true", help="also print the indices from parts of the sample")
+    parser.add_argument("--table", action="store_true",
+                        help="only print the indices found in the folder --out, as a Markdown table")
     options = parser.parse_args()
     if options.sobol < 2 or options.sobol & (options.sobol - 1):
         parser.error(f"--sobol {options.sobol}: must be a power of 2")
@@ -68,7 +72,7 @@ def arguments() -> argparse.Namespace:
 
 
 def examine(path: Path, method: str, program: Path, options: argparse.Namespace) -> tuple[list[Indices], list[Indices]]:
-    """Sample, sweep and analyse one study with one method: indices of each output, and those of parts of the sample."""
+    """Sample, run and analyse one study by one method: indices of each output, and those from parts of the sample."""
     given = study.read_study(path)
     points = options.morris if method == "morris" else options.sobol
     sampled = sensitivity.sample(method, given.parameters, points, options.seed)
@@ -83,7 +87,7 @@ def examine(path: Path, method: str, program: Path, options: argparse.Namespace)
     found, parts = [], []
     for output in options.outputs:
         if output.column not in runs.table:
-            raise MissingResult(f"{table.stem}: no result {output.column}; there are {' '.join(runs.units)}")
+            raise MissingResult(f"{table.stem}: no column {output.column}; the columns are {' '.join(runs.units)}")
         result = output.values(runs)
         for rows in sensitivity.prefixes(method, len(given.parameters), len(sampled)):
             named = (output.name, output.unit(runs))
@@ -93,7 +97,7 @@ def examine(path: Path, method: str, program: Path, options: argparse.Namespace)
 
 
 def print_convergence(found: list[Indices], parts: list[Indices]) -> None:
-    """The ranking index of each parameter, by the size of the sample."""
+    """Print the ranking index of each parameter over the size of the sample."""
     for whole in found:
         if whole.constant:
             continue
@@ -106,7 +110,7 @@ def print_convergence(found: list[Indices], parts: list[Indices]) -> None:
 
 
 def report(path: Path, program: Path, options: argparse.Namespace) -> None:
-    """One study with every method: table, picture, paragraph."""
+    """Analyse one study by every method: print the table, draw the picture, print a paragraph of text."""
     given = study.read_study(path)
     results = [examine(path, method, program, options) for method in options.method or METHODS]
     found = [item for whole, _ in results for item in whole]
@@ -122,7 +126,8 @@ def report(path: Path, program: Path, options: argparse.Namespace) -> None:
 
 
 def print_table(studies: list[Path], folder: Path) -> None:
-    """Total Sobol indices of all studies with their 95 % intervals: a row for each parameter, a column for each study and result."""
+    """Print the total Sobol indices of all studies with their 95 % intervals: a row for each parameter, a column for each study and
+    result."""
     columns = {}
     for path in studies:
         indices = pd.read_csv(folder / f"{path.stem}.indices.csv")

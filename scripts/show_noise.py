@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""Shows where the noise comes from that the print reports with the Pinkus-Sternlicht film (6.2.2, 6.2.3, 6.3): from its integration.
+"""Shows the cause of the noise that the dissertation reports with the Pinkus-Sternlicht film (6.2.2, 6.2.3, 6.3): the integration
+error.
 
     scripts/show_noise.py                 simulations I to V: data/measured/noise.md, results/figures/noise.png
 
-The print integrates the coordinates (q, A, x) of the bodies with a relative and absolute error of 1e-6 and steps of at most 1e-7 s (table
-6.3): 1e-6 m of the piston's position is more than the thinnest film. Each simulation is run so, by the program's own right-hand side; then
-with 1e-8; and in the program's own coordinates, in which the eccentricity is a state, with 1e-9. The difference of the crank's
-acceleration from the last is the integration error.
+The dissertation integrates the coordinates (q, A, x) of the bodies with a relative and absolute error of 1e-6 and steps of at most
+1e-7 s (table 6.3). An error of 1e-6 m of the piston's position is larger than the smallest film thickness. Here each simulation is
+integrated in the same way, with the program's right-hand side, then with an error of 1e-8, and finally in the program's own
+coordinates, in which the eccentricity is a state, with 1e-9. The integration error is the difference of the crank acceleration from
+that of the last run.
 """
 
 import argparse
@@ -31,21 +33,21 @@ from gudgeon_plots.results import COLUMN, MissingResult, read_table  # noqa: E40
 from gudgeon_plots.style import BLACK, BLUE, GREY, VERMILION, WIDTH, mark_decades  # noqa: E402
 
 SIMULATIONS = ("I", "II", "III", "IV", "V")
-#: Two revolutions; with combustion a cycle and the beginning of the next.
+#: Revolutions of a run: two; with combustion one cycle and the beginning of the next.
 REVOLUTIONS = {"I": 2, "II": 2, "III": 2, "IV": 3, "V": 3}
 SAMPLES = 720
 MAX_STEP = 1e-7  # s
 PRINTED, TIGHT = 1e-6, 1e-8
-#: Share of the largest acceleration from which a difference counts as noise.
+#: A difference larger than this share of the largest acceleration counts as noise.
 NOISE = 0.02
-#: Share of the run in which the pin, released in the centre, falls on its film: it does not count.
+#: This share of the run is not counted: the pin is released in the centre and falls onto its film.
 START = 0.02
 
 
 @dataclass(frozen=True)
 class Noise:
-    """One simulation: times [s], the crank's acceleration [rad/s2] and eccentricity ratio of the reference, differences of the others
-    from it in shares of its largest acceleration, by their tolerance."""
+    """One simulation: times [s], crank acceleration [rad/s2] and eccentricity ratio of the reference, and by tolerance the
+    differences of the other runs from it, divided by the largest acceleration."""
 
     simulation: str
     time: np.ndarray
@@ -64,14 +66,14 @@ class Noise:
         return self.counted & (np.abs(self.difference[tolerance]) > NOISE)
 
     def eccentricities(self, tolerance: float) -> tuple[float, float]:
-        """Median of the eccentricity ratio where there is noise and where there is none."""
+        """Median of the eccentricity ratio in the rows with noise, and in those without."""
         noisy = self.noisy(tolerance)
         quiet = self.counted & ~noisy
         return (float(np.median(self.ratio[noisy])) if noisy.any() else np.nan, float(np.median(self.ratio[quiet])))
 
 
 def in_absolute_coordinates(program: Path, simulation: str, tolerance: float) -> pd.DataFrame:
-    """Rows of a simulation in (q, A, x); fewer than wanted if the pin touched its bearing."""
+    """Rows of a simulation integrated in (q, A, x); fewer rows than asked for if the pin comes into contact."""
     case = TOP / "cases" / f"sim_{simulation}.nml"
     words = [program, case, REVOLUTIONS[simulation], SAMPLES, tolerance, MAX_STEP]
     outcome = subprocess.run([str(word) for word in words], capture_output=True, text=True, check=False)
@@ -82,7 +84,7 @@ def in_absolute_coordinates(program: Path, simulation: str, tolerance: float) ->
 
 
 def in_own_coordinates(program: Path, simulation: str, out: Path) -> pd.DataFrame:
-    """The same rows by the program itself."""
+    """The same rows from a run of the program in its own coordinates."""
     settings = (
         f"integrator.revolutions={REVOLUTIONS[simulation]}",
         "integrator.method=auto",
@@ -130,7 +132,7 @@ def table(found: list[Noise]) -> list[str]:
 
 
 def draw(found: list[Noise]) -> plt.Figure:
-    """A row a simulation: the acceleration as the print would have it, and the error over how near the pin is to contact."""
+    """One row for each simulation: the acceleration as the dissertation integrates it, and its error over the film thickness."""
     drawing, axes = plt.subplots(len(found), 2, figsize=(WIDTH, 0.6 + 1.45 * len(found)), width_ratios=[3, 2], squeeze=False)
     for (left, right), noise in zip(axes, found):
         scale = 1e-3 * np.abs(noise.acceleration).max()
@@ -153,15 +155,18 @@ def draw(found: list[Noise]) -> plt.Figure:
     axes[-1][0].set_xlabel("time [ms]")
     axes[-1][1].set_xlabel("film thickness / c")
     figures.add_legend(drawing, axes.flat, markerscale=4)
-    drawing.suptitle("Crank acceleration with the Pinkus–Sternlicht film, integrated as the print does")
+    drawing.suptitle("Crank acceleration with the Pinkus–Sternlicht film, integrated as in the dissertation")
     return drawing
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--simulation", action="append", choices=SIMULATIONS, help="repeatable (default: all)")
-    parser.add_argument("--results", type=Path, default=TOP / "results", metavar="DIR", help="runs (default: results)")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="pictures (default: figures in the directory of runs)")
+    parser.add_argument("--simulation", action="append", choices=SIMULATIONS,
+                        help="simulation to measure; repeatable (default: all)")
+    parser.add_argument("--results", type=Path, default=TOP / "results", metavar="DIR",
+                        help="folder of the runs (default: results)")
+    parser.add_argument("--out", type=Path, metavar="DIR",
+                        help="folder for the pictures (default: figures in the folder of the runs)")
     language.add_option(parser)
     parser.add_argument("--format", action="append", choices=("png", "svg", "pdf"), help="repeatable (default: png)")
     options = parser.parse_args()
@@ -174,10 +179,11 @@ def main() -> int:
         print(*lines, sep="\n")
         if not options.simulation:
             said = (
-                "Crank acceleration in the coordinates (q, A, x), relative = absolute error as given, steps of at most 1e-7 s, against the\n"
-                "program's own coordinates at 1e-9; in shares of the largest acceleration, after the first 2 % of the run.\n\n"
+                "Integration error of the crank acceleration with the coordinates (q, A, x), the given relative = absolute error\n"
+                "and steps of at most 1e-7 s. The reference is the program in its own coordinates at 1e-9. Errors are divided by the\n"
+                "largest acceleration; the first 2 % of the run are left out.\n\n"
             )
-            title = "Noise of the Pinkus-Sternlicht film by the print's integration"
+            title = "Noise of the Pinkus-Sternlicht film in the coordinates of the dissertation"
             print(write_table("noise", title, "scripts/show_noise.py", said + "\n".join(lines)))
         print(*figures.save(draw(found), options.out or options.results / "figures", "noise", options.format or ["png"]))
         language.current.warn("show_noise.py")

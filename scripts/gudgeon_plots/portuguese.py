@@ -18,8 +18,7 @@ TEXTS = {
     "all of it": "tudo junto",
     "force on the piston pin [kN]": "força no pino do pistão [kN]",
     "revolutions of the crank": "revoluções da manivela",
-    "right-hand sides": "avaliações do lado direito",
-    "time, in bare right-hand sides": "tempo, em avaliações do lado direito",
+    "time / time of a right-hand side": "tempo / tempo de uma avaliação",
     "dry contact": "contato seco",
     "ideal joint (sim. VI)": "junta ideal (sim. VI)",
     "simulation {}": "simulação {}",
@@ -182,7 +181,7 @@ TEXTS = {
     "error": "erro",
     "% of the largest": "% da maior",
     "film thickness / c": "espessura do filme / c",
-    "Crank acceleration with the Pinkus–Sternlicht film, integrated as the print does": "Aceleração da manivela com o filme de Pinkus–Sternlicht, integrada como na dissertação",
+    "Crank acceleration with the Pinkus–Sternlicht film, integrated as in the dissertation": "Aceleração da manivela com o filme de Pinkus–Sternlicht, integrada como na dissertação",
     # the page of a run
     "{} samples over {} s": "{} amostras em {} s",
     "{} samples over {} s, of which {} are kept here, peaks among them": "{} amostras em {} s, das quais {} estão aqui, com os picos",
