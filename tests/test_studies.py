@@ -169,7 +169,7 @@ class Indices(unittest.TestCase):
         self.check_ishigami(found)
         self.assertEqual((found.points, found.left_out), (1024, 0))
         self.assertEqual(list(found.ranked.index), ["x.1", "x.2", "x.3"])
-        self.assertNotIn("none at all", sensitivity.describe(found))
+        self.assertNotIn("no effect at all", sensitivity.describe(found))
 
     def test_failed_runs_leave_out_their_block_only(self) -> None:
         x = sensitivity.sample("sobol", PI, 1024, 1)

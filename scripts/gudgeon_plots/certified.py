@@ -1,4 +1,4 @@
-"""How far a run is certified (`gudgeon --certify`), and the shade over what is not."""
+"""Reads how far a run is certified (`gudgeon --certify`), and shades the part of a plot beyond that time."""
 
 from matplotlib.axes import Axes
 
@@ -16,7 +16,8 @@ def certified_until(run: Run) -> float | None:
 
 
 def shade_uncertified(axis: Axes, run: Run, abscissa: object) -> None:
-    """Shade what the certificate of a run does not reach; `abscissa` holds the horizontal value of each row, `axis` has its range."""
+    """Shade the part of a run beyond its certified time; `abscissa` holds the horizontal value of each row, `axis` has its
+    range."""
     until = certified_until(run)
     if until is None:
         return

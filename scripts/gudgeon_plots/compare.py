@@ -1,9 +1,9 @@
 """Compares two traces: overlay, difference, and the horizon up to which they agree.
 
-Runs A and B agree in a column at a time if they differ there by no more than a share (the agreement) of the range that
-the column has in A over the time that both cover; a column that is constant in A is measured by its size. B is taken at
-the times of A by linear interpolation. A column's horizon is the last time up to which it has agreed without a break; the
-horizon of the runs is the earliest of their columns.
+Runs A and B agree in a column at a time if their difference is at most a given share (the agreement) of the column's range in
+A over the time that both runs cover; for a column that is constant in A, a share of its absolute value. B is interpolated linearly
+to the times of A. The horizon of a column is the last time up to which it agrees without interruption; the horizon of the runs is
+the earliest horizon of their columns.
 """
 
 from collections.abc import Iterable
@@ -18,11 +18,11 @@ from . import figures
 from .results import MissingResult, Run, load_run
 from .style import BLACK, BLUE, GREY, VERMILION, WIDTH
 
-#: Share of the range by which runs that agree may differ.
+#: Two runs agree while they differ by less than this share of the range.
 AGREEMENT = 0.01
 
-#: Columns that are compared where both runs have them: states, since forces and accelerations jump, and a jump a sample
-#: later is no other motion.
+#: Columns that are compared if both runs have them. They are states: forces and accelerations jump, and a jump one sample later
+#: would look like another motion.
 COLUMNS = ("crank_speed", "rod_speed", "piston_velocity", "film_thickness")
 
 
@@ -55,7 +55,7 @@ def horizon(time: np.ndarray, difference: np.ndarray, tolerance: float) -> tuple
 
 
 def scale_of(values: np.ndarray) -> float:
-    """Range of a curve, or its size if it is constant."""
+    """Range of the values, or their absolute value if they are constant."""
     spread = float(np.ptp(values))
     size = float(np.abs(values).max())
     return spread if spread > 1e-12 * size else size
@@ -66,7 +66,7 @@ def agree(a: Run, b: Run, columns: Iterable[str], agreement: float) -> list[Agre
     begin, end = max(a["time"][0], b["time"][0]), min(a["time"][-1], b["time"][-1])
     inside = (a["time"] >= begin) & (a["time"] <= end)
     if inside.sum() < 2:
-        raise MissingResult(f"{a.name} and {b.name} cover no common time")
+        raise MissingResult(f"{a.name} and {b.name} have no time in common")
     time = a["time"][inside]
     found = []
     for column in columns:
@@ -113,10 +113,10 @@ def draw(a: Run, b: Run, names: tuple[str, str], found: list[Agreement], agreeme
 
 
 def report(found: list[Agreement], agreement: float) -> str:
-    """What is printed: each column's largest difference and horizon, then the horizon of the runs."""
+    """The text to print: largest difference and horizon of each column, then the horizon of the runs."""
     lines = [
         f"compared from {found[0].time[0]:.6g} s to {found[0].time[-1]:.6g} s; "
-        f"agreeing: within {agreement:g} of a column's range in A"
+        f"agreement: within {agreement:g} of a column's range in A"
     ]
     for item in found:
         largest = np.abs(item.difference).max() / item.scale if item.scale else np.abs(item.difference).max()
@@ -135,7 +135,7 @@ def shared_columns(a: Run, b: Run) -> list[str]:
 
 
 def different_names(a: Path, b: Path) -> tuple[str, str]:
-    """File names, with as many folders as are needed to distinguish them."""
+    """The names of two files, with as many folders as are needed to distinguish them."""
     left, right = a.resolve().parts, b.resolve().parts
     for count in range(1, max(len(left), len(right)) + 1):
         if left[-count:] != right[-count:]:
@@ -144,7 +144,7 @@ def different_names(a: Path, b: Path) -> tuple[str, str]:
 
 
 def compare_files(a: Path, b: Path, columns: list[str] | None, agreement: float, out: Path, formats: list[str]) -> int:
-    """Compare two traces, print the horizon, draw; 0."""
+    """Compare two traces, print the horizon, draw the picture; returns 0."""
     for path in (a, b):
         if not path.is_file():
             raise MissingResult(f"{path}: no such file")

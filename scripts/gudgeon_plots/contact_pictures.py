@@ -1,4 +1,4 @@
-"""The laws of contact and friction, as runs show them: force over penetration and speed, friction over sliding speed."""
+"""Pictures of the laws of contact and friction in runs: force over penetration and its rate, friction force over sliding speed."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,7 +12,7 @@ LAWS = {"hertz": ("Hertz", BLACK), "lankarani_nikravesh": ("Lankarani–Nikraves
 
 
 def contact_states(run: Run) -> dict[str, np.ndarray]:
-    """The rows of a trace in contact: time since the first [s], penetration [m], its rate [m/s], normal force [N]."""
+    """The rows of a trace in contact: time since the first of them [s], penetration [m], its rate [m/s], normal force [N]."""
     inside = run["phase"] == CONTACT_PHASE
     time = run["time"][inside]
     return {
@@ -24,7 +24,7 @@ def contact_states(run: Run) -> dict[str, np.ndarray]:
 
 
 def restitution(run: Run) -> float:
-    """Speed of separation over speed of approach, of the first contact."""
+    """Speed of separation divided by speed of approach, for the first contact."""
     speeds = run.events["normal_speed"].astype(float)
     return float(-speeds[run.events["event"] == "contact_ends"].iloc[0] / speeds.iloc[0])
 
@@ -57,7 +57,7 @@ def penetration_portrait(axis: Axes, runs: list[Run]) -> None:
 
 
 def _speed_over(axis: Axes, runs: list[Run], abscissa: str, name: str) -> None:
-    """Penetration speed over a state of the contact, in millionths of its unit; each run with its restitution."""
+    """Penetration rate over a state of the contact, in millionths of its unit; the label of each run has its restitution."""
     for run in runs:
         law, colour = law_of(run)
         states = contact_states(run)
@@ -69,7 +69,7 @@ def _speed_over(axis: Axes, runs: list[Run], abscissa: str, name: str) -> None:
 
 
 def friction(axis: Axes, run: Run, _ideal: Run | None, _colour: str) -> None:
-    """Friction force on the pin over the sliding speed, between the bounds that the normal force sets."""
+    """Friction force on the pin over the sliding speed, with the bounds coefficient of friction times mean normal force."""
     inside = run["phase"] == CONTACT_PHASE
     order = np.argsort(run["sliding_speed"][inside], kind="stable")
     speed = 1e3 * run["sliding_speed"][inside][order]

@@ -31,7 +31,7 @@ SHOWN = (
 
 
 def draw_contact_laws(runs: Runs) -> Drawing:
-    """Every law across, a mark for each geometry; a column of panels for each coefficient of restitution."""
+    """One horizontal position for each law, one mark for each geometry; a column of panels for each coefficient of restitution."""
     table = runs.table.assign(done=runs.done)
     laws = list(dict.fromkeys(table[LAW]))
     asked = sorted(set(table[RESTITUTION]), reverse=True)
@@ -61,7 +61,8 @@ def draw_contact_laws(runs: Runs) -> Drawing:
 
 
 def describe_contact_laws(runs: Runs) -> str:
-    """Results by geometry and law: means over the laws with a restitution, and the scatter between these laws."""
+    """Results by geometry and law: means over the laws that have a coefficient of restitution, and the scatter between these
+    laws."""
     table = runs.table[runs.done]
     lines = [
         f"contact_laws: {runs.done.sum()} of {len(runs.table)} runs done; peak pin force, time in contact, dissipated in a "

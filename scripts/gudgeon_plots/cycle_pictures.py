@@ -8,7 +8,7 @@ from matplotlib.ticker import MaxNLocator
 from .cycles import Cycles, bearing_loads, orders, spectrum
 from .style import BLACK, BLUE, GREY, ORANGE, VERMILION, WIDTH
 
-HEIGHT = 1.7  # of a row [inch]
+HEIGHT = 1.7  # height of a row [inch]
 
 
 def label(cycles: Cycles, column: str) -> str:
@@ -18,7 +18,7 @@ def label(cycles: Cycles, column: str) -> str:
 
 
 def draw_means(cycles: Cycles, columns: list[str]) -> Drawing:
-    """Each column over the cycle: every cycle thin, their mean, and one standard deviation to both sides of it."""
+    """Each column over the cycle: single cycles as thin lines, their mean, and a band of one standard deviation on both sides."""
     drawing, axes = plt.subplots(len(columns), 1, figsize=(WIDTH, 0.5 + HEIGHT * len(columns)), sharex=True, squeeze=False)
     order = np.argsort(cycles.place)
     angle = np.degrees(cycles.place[order])
@@ -65,8 +65,8 @@ def draw_orders(cycles: Cycles, columns: list[str], highest: float) -> Drawing:
 
 
 def draw_bearings(cycles: Cycles) -> Drawing:
-    """Polar plots of the loads on the bearings: mean cycle dark, every cycle light; dots each 90 degrees of the crank, each 180 where a
-    cycle has two revolutions."""
+    """Polar plots of the loads on the bearings: the mean cycle dark, single cycles light. Dots mark each 90 degrees of the crank,
+    or each 180 degrees where a cycle has two revolutions."""
     loads = bearing_loads(cycles)
     drawing, axes = plt.subplots(
         1, len(loads), figsize=(WIDTH, WIDTH / len(loads) + 0.6), subplot_kw={"projection": "polar"}, squeeze=False
@@ -95,7 +95,7 @@ def draw_bearings(cycles: Cycles) -> Drawing:
 
 
 def draw_indicator(cycles: Cycles) -> Drawing:
-    """Pressure over volume: every cycle light, the mean dark."""
+    """Pressure over volume: single cycles light, the mean dark."""
     drawing, axis = plt.subplots(figsize=(0.65 * WIDTH, 0.5 * WIDTH))
     volume, pressure = cycles["cylinder_volume"] * 1e6, cycles["cylinder_pressure"] / 1e5
     for k in range(min(cycles.number, 40)):

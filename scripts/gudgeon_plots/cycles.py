@@ -9,7 +9,7 @@ from scipy import fft, integrate, interpolate, signal
 from .results import MissingResult, Run
 
 TURN = 2 * np.pi
-POINTS = 720  # of a revolution, where the trace's own rows are not at equal crank angles
+POINTS = 720  # in a revolution, where the rows of the trace are not at equal crank angles
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,7 @@ class Cycles:
     angle: np.ndarray  # within a cycle [rad], from 0
     start: np.ndarray  # crank angle at which each cycle begins [rad]
     values: dict[str, np.ndarray]
-    sense: float  # in which the crank turns
+    sense: float  # sign of the crank's rotation
 
     @property
     def length(self) -> float:
@@ -29,7 +29,7 @@ class Cycles:
 
     @property
     def place(self) -> np.ndarray:
-        """Crank angle of each column of the values within the cycle, counted from 0 of the trace's own crank angle [rad]."""
+        """Crank angle within the cycle of each column of the values, measured from 0 of the trace's own crank angle [rad]."""
         return np.mod(self.start[0] * self.sense + self.angle + 1e-9, self.length) - 1e-9
 
     @property
@@ -44,9 +44,9 @@ class Cycles:
 
 
 def whole_cycles(run: Run, settle: float | None = None, most: int | None = None) -> Cycles:
-    """The whole cycles at the end of a run, `most` of them, that begin after `settle` revolutions (default: half of the run; none where
-    the trace is of the last period alone). Rows at equal crank angles are taken as they are; others are interpolated by cubics over the
-    crank angle."""
+    """The last `most` whole cycles of a run that begin after `settle` revolutions (default: half of the run; 0 if the trace
+    contains the last period alone). Rows at equal crank angles are used as they are; other rows are interpolated by cubic
+    polynomials over the crank angle."""
     travel = run["crank_angle"] - run["crank_angle"][0]
     sense = 1.0 if travel[-1] >= 0 else -1.0
     travel = sense * travel
@@ -55,7 +55,7 @@ def whole_cycles(run: Run, settle: float | None = None, most: int | None = None)
     if settle is None:
         settle = 0.0 if run.parameter("output", "window") == "last_period" else travel[-1] / TURN / 2
     rounding = 1e-6
-    if run.parameter("output", "window") == "last_period" and len(travel) > 1:  # rows by time end before the period does
+    if run.parameter("output", "window") == "last_period" and len(travel) > 1:  # rows at equal times end before the period ends
         rounding = 1.01 * float(np.max(np.diff(travel)))
     number = int((travel[-1] - settle * TURN + rounding) // run.cycle)
     if most is not None:
@@ -81,7 +81,7 @@ def whole_cycles(run: Run, settle: float | None = None, most: int | None = None)
 
 
 def grid_of(travel: np.ndarray, length: float, number: int) -> tuple[int, int | None]:
-    """Points of a cycle, and the row at which the first begins where the rows are at equal crank angles already."""
+    """Number of points of a cycle; and the row of the first point, if the rows are already at equal crank angles."""
     steps = np.diff(travel)
     points = int(round(length / np.median(steps)))
     if np.ptp(steps) < 1e-4 * np.median(steps) and abs(points * np.median(steps) - length) < 1e-6 * length and points > 1:
@@ -92,9 +92,9 @@ def grid_of(travel: np.ndarray, length: float, number: int) -> tuple[int, int | 
 
 
 def orders(cycles: Cycles, column: str) -> pd.DataFrame:
-    """Amplitude and phase [deg] of each order (cycles of the quantity in a revolution), by Fourier's sum over all cycles together: of
-    amplitude cos(order q + phase), q the crank angle in the sense in which the crank turns. `scatter` is the standard deviation of the
-    amplitude from cycle to cycle. Order 0 is the mean."""
+    """Amplitude and phase [deg] of each order (cycles of the quantity per revolution), by a Fourier sum over all cycles together. A
+    term is amplitude cos(order q + phase), with the crank angle q positive in the direction of rotation. `scatter` is the standard
+    deviation of the amplitude from cycle to cycle. Order 0 is the mean."""
     values = cycles[column]
     points = values.shape[1]
     of_each = fft.rfft(values, axis=1) / points
@@ -115,7 +115,8 @@ def orders(cycles: Cycles, column: str) -> pd.DataFrame:
 
 
 def spectrum(cycles: Cycles, column: str) -> tuple[np.ndarray, np.ndarray]:
-    """Frequency [Hz] and amplitude density [unit/sqrt(Hz)] over the time of the cycles (Welch, Hann windows of half of it)."""
+    """Frequency [Hz] and amplitude spectral density [unit/sqrt(Hz)] over the time of the cycles (Welch, Hann windows of half of
+    it)."""
     time = cycles["time"].ravel()
     count = len(time)
     even = np.linspace(time[0], time[-1], count)
@@ -126,28 +127,28 @@ def spectrum(cycles: Cycles, column: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 def over_cycle(cycles: Cycles, integrand: np.ndarray, over: np.ndarray) -> np.ndarray:
-    """Integral of each cycle by the trapezoidal rule, with the first row of the next cycle as its last."""
+    """Integral over each cycle by the trapezoidal rule; the last row of a cycle is the first row of the next."""
     result = []
     for k in range(cycles.number):
         y, x = integrand[k], over[k]
         if k + 1 < cycles.number:
             y, x = np.append(y, integrand[k + 1, 0]), np.append(x, over[k + 1, 0])
-        else:  # the last one closes with the step before it
+        else:  # the last cycle has no next row: its last step equals the one before
             y, x = np.append(y, integrand[k, 0]), np.append(x, 2 * over[k, -1] - over[k, -2])
         result.append(integrate.trapezoid(y, x))
     return np.array(result)
 
 
 def closed_integral(integrand: np.ndarray, over: np.ndarray) -> np.ndarray:
-    """Integral of each cycle over a quantity that comes back to where it was."""
+    """Integral over each cycle with respect to a quantity that returns to its initial value."""
     y = np.concatenate([integrand, integrand[:, :1]], axis=1)
     x = np.concatenate([over, over[:, :1]], axis=1)
     return integrate.trapezoid(y, x, axis=1)
 
 
 def work(cycles: Cycles) -> pd.DataFrame:
-    """Work and losses of a cycle [J], mean and standard deviation over the cycles, and as mean effective pressure [Pa] where there is a
-    cylinder: over the volume that the piston sweeps."""
+    """Work and losses of a cycle [J], mean and standard deviation over the cycles. If there is a cylinder, also as mean effective
+    pressure [Pa], that is divided by the volume that the piston sweeps."""
     run = cycles.run
     time = cycles["time"]
     found: dict[str, np.ndarray] = {}
@@ -163,7 +164,7 @@ def work(cycles: Cycles) -> pd.DataFrame:
         found["damping"] = -over_cycle(cycles, damping * speed**2, time)
     for name, label in loss_columns(cycles):
         found[label] = over_cycle(cycles, name, time)
-    done = cycles["energy"] - cycles["energy_residual"]  # the work of all forces but gravity, and a constant
+    done = cycles["energy"] - cycles["energy_residual"]  # the work of all forces except gravity, plus a constant
     all_work = np.append(done[:, 0], run["energy"][-1] - run["energy_residual"][-1])
     if cycles.number > 1 and ("eccentricity_x" in cycles or "crank_pin_eccentricity_x" in cycles):
         of_forces = np.diff(all_work)[: cycles.number - 1]
@@ -194,8 +195,8 @@ def loss_columns(cycles: Cycles) -> list[tuple[np.ndarray, str]]:
 
 
 def bearing_loads(cycles: Cycles) -> dict[str, np.ndarray]:
-    """Loads on the bearings over all cycles, (2, cycles, angles) [N]: the force of the piston on the rod and of the crank on the rod, both
-    along the rod, outwards, and across it, and of the crank on its main bearing, along x and y."""
+    """Loads on the bearings over all cycles, (2, cycles, angles) [N]: the force of the piston on the rod and of the crank on the
+    rod, both along the rod (positive outwards) and across it; and the force of the crank on its main bearing, along x and y."""
     angle = cycles["rod_angle"]
     cosine, sine = np.cos(angle), np.sin(angle)
 
@@ -203,7 +204,7 @@ def bearing_loads(cycles: Cycles) -> dict[str, np.ndarray]:
         return np.array([x * cosine + y * sine, -x * sine + y * cosine])
 
     loads = {}
-    if "pin_force_x" in cycles:  # of the joint on the pin, which is the rod's
+    if "pin_force_x" in cycles:  # force of the joint on the pin, which belongs to the rod
         loads["piston on the rod, in the rod's frame"] = along_rod(cycles["pin_force_x"], cycles["pin_force_y"])
     if "crankpin_force_x" in cycles:
         loads["crank on the rod, in the rod's frame"] = along_rod(cycles["crankpin_force_x"], cycles["crankpin_force_y"])

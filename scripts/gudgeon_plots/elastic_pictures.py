@@ -1,4 +1,4 @@
-"""The effect of an elastic rod on an impact: its picture and its numbers."""
+"""Picture and numbers of the effect of an elastic rod on an impact, and of members and joints on a mechanism."""
 
 import math
 
@@ -10,7 +10,7 @@ from .figures import add_legend
 from .results import Run
 from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION, WIDTH
 
-#: Rods: name, colour, line, what is set of cases/elastic/first_impact.nml. Those that lie on each other are dashed.
+#: Rods: name, colour, line, settings of cases/elastic/first_impact.nml. Curves that nearly coincide with others are dashed.
 RODS = (
     ("rigid", BLACK, "-", ("elastic_rod=none",)),
     ("bends (4 modes)", GREEN, (0, (4, 4)), ("elastic_rod.axial_shapes=0",)),
@@ -18,14 +18,14 @@ RODS = (
     ("bends and stretches", BLUE, "-", ()),
     ("stretches (8 shapes)", VERMILION, (0, (4, 4)), ("elastic_rod.transverse_modes=0",)),
 )
-WHOLE = 3  #: of them, the one that does both
+WHOLE = 3  #: index of the rod that bends and stretches
 
-#: Begin, end [ms] and speeds [m/s] of the first two contacts with 24 cable elements (ANCF) along the rod.
+#: Begin and end [ms] and speeds [m/s] of the first two contacts with 24 cable elements (ANCF) along the rod.
 FINITE_ELEMENTS = ((0.2107, 1.972, 0.3394, -0.874), (0.6871, 1.074, 0.8728, -0.764))
 
 
 def draw_first_impacts(runs: list[Run]) -> Drawing:
-    """Film thickness, contact force, and how the rod is bent and stretched, over time."""
+    """Film thickness, contact force, deflection and elongation of the rod, over time."""
     drawing, axes = plt.subplots(3, 1, figsize=(WIDTH, 6.4), layout="constrained")
     for (name, colour, line, _), run in zip(RODS, runs):
         time = 1e3 * run["time"]
@@ -63,21 +63,24 @@ def describe_first_impacts(runs: list[Run]) -> str:
     return "\n".join(lines)
 
 
-#: Numbers of axial shapes whose first contacts are compared, and what the table of them says.
+#: Numbers of axial shapes whose first contacts are compared, and the text for their table.
 AXIAL_SHAPES = range(1, 9)
 FIRST_IMPACT_SAYS = (
-    "`cases/elastic/first_impact.nml`: the pin meets its bearing 0.2 ms after the start. A rigid rod, and one that only bends, send it back with 1.74 m/s. "
-    "The waves along a rod that stretches take half of this speed away. Finite elements are 24 cable elements (ANCF, Exudyn)."
+    "`cases/elastic/first_impact.nml`: the pin hits its bearing 0.2 ms after the start. A rigid rod, and a rod that only bends, "
+    "leave the bearing "
+    "with 1.74 m/s. The waves along a rod that stretches take half of this speed away. The finite elements are 24 cable elements (ANCF, Exudyn)."
 )
 AXIAL_SHAPES_SAY = (
-    "The speed after the contact by the number of axial shapes, with 4 transverse modes. It hangs on the phase in which the shortest waves find the pin as "
-    "the contact ends: from 4 shapes on it lies on both sides of that of finite elements, -0.874 m/s, and comes nearer slowly. The 8 shapes of the "
-    "case, the most that a rod may have, give 3 to 4 % less. The instants agree much sooner."
+    "Speed after the first contact for several numbers of axial shapes, with 4 transverse modes. The speed depends on the phase "
+    "of the shortest waves "
+    "at the end of the contact: from 4 shapes on it is above or below that of the finite elements, -0.874 m/s, and converges "
+    "slowly. The 8 shapes of "
+    "the case, the largest number that a rod may have, give a speed 3 to 4 % smaller. The times of the contact converge much faster."
 )
 
 
 def describe_axial_shapes(runs: list[Run]) -> str:
-    """A table of the first contact by the number of axial shapes."""
+    """A table of the first contact for several numbers of axial shapes."""
     lines = ["| axial shapes | contact begins | ends |", "|---|---|---|"]
     for shapes, run in zip(AXIAL_SHAPES, runs):
         begin, end = (f"{1e3 * event['time']:.4f} ms, {event['normal_speed']:+.3f} m/s" for _, event in run.events.iloc[:2].iterrows())
@@ -85,7 +88,8 @@ def describe_axial_shapes(runs: list[Run]) -> str:
     return "\n".join(lines)
 
 
-#: What is set of cases/elastic/first_impact.nml for all runs that compare members, and for each, which it is and what is set besides.
+#: Settings of cases/elastic/first_impact.nml for all runs that compare members; then, for each run, its name and its further
+#: settings.
 MEMBER_RUN = (
     "integrator.end_time=0", "integrator.revolutions=3", "output.interval=0", "output.samples_per_revolution=3600",
     "contact.law=lankarani_nikravesh", "contact.restitution=0.9",
@@ -114,20 +118,22 @@ MEMBERS = (
     ("all of it", (*ELASTIC_ROD, *LOOSE_CRANK_PIN, *LOOSE_PISTON, *ELASTIC_CRANKSHAFT)),
 )
 MEMBERS_SAY = (
-    "Flores's slider-crank at 3500 rpm with 0.2 mm at the piston pin, dry, restitution 0.9 (`cases/elastic/first_impact.nml` over three "
-    "revolutions), and one thing more in each row. Impacts are those of all three revolutions, forces and losses of the last two. The motions are "
-    "chaotic: the numbers change with the tolerance."
+    "Flores's slider-crank at 3500 rpm with a clearance of 0.2 mm at the piston pin, dry, restitution 0.9 "
+    "(`cases/elastic/first_impact.nml` over "
+    "three revolutions). Each row adds one joint or member to the first row. Impacts are those of all three revolutions, forces "
+    "and losses those of "
+    "the last two. The motions are chaotic: the numbers depend on the tolerance."
 )
 
 
 def late_part(run: Run) -> tuple[np.ndarray, np.ndarray]:
-    """Crank angle in revolutions, and the rows after the first."""
+    """Crank angle in revolutions and rows, after the first revolution."""
     turns = (run["crank_angle"] - run["crank_angle"][0]) / (2 * math.pi)
     return turns, turns >= 1
 
 
 def impacts(run: Run, joint: str) -> float:
-    """Contacts begun in a revolution, of the whole run; of a skirt, those of its four corners."""
+    """Contacts that begin per revolution, over the whole run; for a skirt, those of its four corners together."""
     names = [f"guide_{i}_contacts" for i in range(1, 5)] if joint == "skirt" else [f"{joint}contacts"]
     return sum(float(run.summary[name][0]) for name in names if name in run.summary) / 3
 
@@ -146,9 +152,9 @@ def draw_members(runs: list[Run]) -> Drawing:
 
 
 def describe_members(runs: list[Run]) -> str:
-    """A table of impacts, forces and losses, by member."""
-    lines = ["| | impacts a revolution: piston pin | crank pin | skirt | largest force on the piston pin [kN] | on the crank's bearing [kN] | "
-             "side force [kN] | lost a revolution [J] | evaluations |", "|---|---|---|---|---|---|---|---|---|"]
+    """A table of impacts, forces and losses for each member."""
+    lines = ["| | impacts per revolution: piston pin | crank pin | skirt | largest force on the piston pin [kN] | on the crank's bearing [kN] "
+             "| side force [kN] | loss per revolution [J] | evaluations |", "|---|---|---|---|---|---|---|---|---|"]
     for (name, _), run in zip(MEMBERS, runs):
         _, late = late_part(run)
         counts = [impacts(run, joint) for joint in ("", "crank_pin_", "skirt")]

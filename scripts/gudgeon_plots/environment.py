@@ -1,4 +1,4 @@
-"""Finds the Python that has the plots' packages. Imports only what every Python has."""
+"""Finds a Python that has the packages for the plots. This module imports only the standard library."""
 
 import importlib.util
 import os
@@ -11,8 +11,9 @@ STUDIES = ("SALib", "f90nml")
 
 
 def use_virtual_environment(studies: bool = False, more: tuple[str, ...] = ()) -> None:
-    """Continue with .venv's Python if this one lacks the packages, with `studies` also those of parameter studies, and `more`. If
-    neither has them, exit with a message that says which command installs them."""
+    """Restart the script with the Python of .venv if this one lacks the packages for the plots (with `studies` also those for
+    parameter studies, and those named in `more`). If both lack them, exit with a message that names the command that installs
+    them."""
     wanted = PACKAGES + (STUDIES if studies else ()) + more
     missing = [name for name in wanted if importlib.util.find_spec(name) is None]
     if not missing:

@@ -1,7 +1,7 @@
-"""The table of figures, scripts/figures.csv: number, quantities, runs, ideal joint's run, window, title.
+"""Reads the table of figures, scripts/figures.csv: number, quantities, runs, run of the ideal joint, window, title.
 
-A window, "10-12", names the revolutions that are drawn of a run that is made so long; without one the case's own run is
-drawn."""
+A window such as "10-12" names the revolutions that are drawn; the run is then made long enough. Without a window the case's own run
+is drawn."""
 
 import csv
 import re
@@ -13,7 +13,7 @@ TABLE = Path(__file__).resolve().parents[1] / "figures.csv"
 
 @dataclass(frozen=True)
 class Figure:
-    """A figure: every quantity (a key of quantities.QUANTITIES) of every run, the ideal joint's run overlaid."""
+    """A figure: every quantity (a key of quantities.QUANTITIES) of every run, with the run of the ideal joint in the same axes."""
 
     number: str
     quantities: tuple[str, ...]
@@ -21,17 +21,17 @@ class Figure:
     ideal: str
     title: str
     window: tuple[int, int] | None = None  # revolutions of the crank
-    has_windows: bool = False  # whether the table gives it a window, shown or not
+    has_windows: bool = False  # whether the table names a window for it, even if another part is drawn
 
     @property
     def stem(self) -> str:
-        """Name of its files: figures sort by number."""
+        """Name of its files, chosen so that figures are sorted by number."""
         chapter, count = self.number.split(".")
         return f"figure_{chapter}.{int(count):02d}{'_start' if self.has_windows and not self.window else ''}"
 
     @property
     def at_start(self) -> "Figure":
-        """The same figure of the case's own run, from its start on."""
+        """The same figure of the case's own run, from its beginning."""
         return replace(self, window=None)
 
     @property
@@ -44,15 +44,15 @@ class Figure:
 
 
 def read_figures(path: Path = TABLE) -> dict[str, Figure]:
-    """The table by number, in its order. Raises ValueError on a wrong or repeated number and on a wrong window."""
+    """The figures of the table by number, in its order. Raises ValueError for a wrong or repeated number and for a wrong window."""
     figures: dict[str, Figure] = {}
     with path.open(newline="", encoding="utf-8") as file:
         for row in csv.DictReader(file):
             number = row["number"]
             if not re.fullmatch(r"[0-9A-Z]\.[1-9][0-9]*", number):
-                raise ValueError(f"{path}: {number!r} is no figure number")
+                raise ValueError(f"{path}: {number!r} is not a figure number")
             if number in figures:
-                raise ValueError(f"{path}: figure {number} is there twice")
+                raise ValueError(f"{path}: figure {number} appears twice")
             window = read_window(row["window"])
             figures[number] = Figure(
                 number,
@@ -67,10 +67,10 @@ def read_figures(path: Path = TABLE) -> dict[str, Figure]:
 
 
 def read_window(text: str) -> tuple[int, int] | None:
-    """The revolutions that "10-12" names, none of an empty text. Raises ValueError if they are none."""
+    """The revolutions of a window such as "10-12"; None for an empty text. Raises ValueError if the text is not a window."""
     if not text:
         return None
     match = re.fullmatch(r"([0-9]+)-([0-9]+)", text)
     if not match or int(match[1]) >= int(match[2]):
-        raise ValueError(f"{text!r} is no window of revolutions")
+        raise ValueError(f"{text!r} is not a window of revolutions")
     return int(match[1]), int(match[2])

@@ -17,20 +17,20 @@ from .quantity import Quantity, colour, label
 from .results import MissingResult, Results, Run
 from .style import GREY, WIDTH
 
-WIDE_HEIGHT = 1.75  # of an axis with a curve over time [inch]
-SQUARE_WIDTH = 4.2  # of a figure of one orbit, the room for its title [inch]
-LEGEND_HEIGHT = 0.55  # of title and legend [inch]
+WIDE_HEIGHT = 1.75  # height of an axis with a curve over time [inch]
+SQUARE_WIDTH = 4.2  # width of a figure of one orbit, which leaves room for its title [inch]
+LEGEND_HEIGHT = 0.55  # height of title and legend [inch]
 
-#: Letters of a legend that have room side by side, and those that a handle takes the room of.
+#: Number of letters of a legend that fit side by side, and the number that a legend handle takes the place of.
 LETTERS_IN_A_ROW, HANDLE_LETTERS = 125, 9
 
 
 @dataclass(frozen=True)
 class Panel:
-    """One axis of a figure: a run, several, or none where its result is missing.
+    """One axis of a figure: one run, several, or none if its result is missing.
 
-    `kind` is "full", "detail" (the range around the ideal joint), "difference" (the run less the ideal joint), "zoom" (some
-    oscillations of a curve that rings) or "below" (what else the quantity shows of the run). `rows` is its height in rows.
+    `kind` is "full", "detail" (the range around the ideal joint), "difference" (the run minus the ideal joint), "zoom" (some
+    oscillations of a curve that rings) or "below" (a second view of the quantity). `rows` is its height in rows.
     """
 
     quantity: Quantity
@@ -42,9 +42,9 @@ class Panel:
 
 
 def second_look(panel: Panel) -> Panel | None:
-    """What a curve with the ideal joint's overlaid needs beside it: a zoom where it rings faster than can be seen; where the run's
-    peaks would flatten the rest, the range around the ideal joint; else the difference, which the line width hides. None where
-    nothing helps."""
+    """The second panel that a curve drawn together with the ideal joint needs: a zoom if it oscillates faster than the picture can
+    show; the range around the ideal joint if peaks of the run would flatten the rest; otherwise the difference, which the line
+    width hides. None if no second panel helps."""
     quantity, ideal = panel.quantity, panel.ideal
     if panel.missing:
         return None
@@ -60,9 +60,9 @@ def second_look(panel: Panel) -> Panel | None:
 
 
 def arrange(figure: Figure, results: Results, cycles: Results | None = None) -> list[list[Panel | None]]:
-    """Rows of panels: runs side by side, a second look at each below; three runs over time go one below the other, the
-    second look at their side. A panel without a second look reaches over both rows: None is the place that it covers. `cycles`
-    has the runs over many cycles."""
+    """Rows of panels: runs side by side, the second panel of each below it; three runs over time are placed one below the other,
+    with the second panels at their side. A panel without a second panel covers both rows; None stands for the place that it covers.
+    `cycles` contains the runs over many cycles."""
     rows: list[list[Panel | None]] = []
     for name in figure.quantities:
         quantity = QUANTITIES[name]
@@ -119,14 +119,15 @@ def draw_panel(axis: Axes, panel: Panel, named: bool) -> None:
 
 
 def panel_label(panel: Panel) -> str:
-    """What is on its vertical axis."""
+    """Label of its vertical axis."""
     if panel.kind == "below":
         return panel.quantity.below_label
     return ("Δ " if panel.kind == "difference" else "") + panel.quantity.label
 
 
 def draw(figure: Figure, results: Results, cycles: Results | None = None) -> Drawing:
-    """The figure, ready to be saved; `cycles` has the runs over many cycles. Raises MissingResult if none of its runs is there."""
+    """The figure, ready to be saved; `cycles` contains the runs over many cycles. Raises MissingResult if none of its runs
+    exists."""
     rows = arrange(figure, results, cycles)
     runs = [run for row in rows for panel in row if panel for run in panel.runs]
     if not runs:
@@ -148,7 +149,7 @@ def draw(figure: Figure, results: Results, cycles: Results | None = None) -> Dra
                 axis.set_ylabel(panel_label(panel))
                 previous = panel_label(panel)
             if column in lowest and panel.quantity.wide and lowest[column][0].get_xlim() == axis.get_xlim():
-                lowest[column][0].set_xlabel("")  # curves over the same time: numbers below the lowest only
+                lowest[column][0].set_xlabel("")  # curves over the same time: labels below the lowest only
                 lowest[column][0].tick_params(labelbottom=False)
             lowest[column] = (axis, place)
     if len(drawing.axes) == 1 and drawing.axes[0].get_aspect() == 1:
@@ -162,13 +163,13 @@ def draw(figure: Figure, results: Results, cycles: Results | None = None) -> Dra
 
 
 def span(run: Run) -> str:
-    """Part of a title: the revolutions that a trace covers."""
+    """The revolutions that a trace covers, as part of a title."""
     first, last = (run["crank_angle"][row] / (2 * np.pi) for row in (0, -1))
     return f", revolutions {first:.4g} to {last:.4g}"
 
 
 def add_legend(drawing: Drawing, axes: Iterable[Axes], markerscale: float = 1.0) -> None:
-    """One legend for all axes, below them; each label once."""
+    """One legend for all axes, below them, with each label once."""
     entries = {}
     for axis in axes:
         for handle, text in zip(*axis.get_legend_handles_labels()):
@@ -186,7 +187,7 @@ def add_legend(drawing: Drawing, axes: Iterable[Axes], markerscale: float = 1.0)
 
 
 def save(drawing: Drawing, directory: Path, stem: str, formats: Iterable[str]) -> list[Path]:
-    """Write a drawing in each format, in the language of the script; dates are left out, so that equal results give equal files."""
+    """Write a drawing in each format, in the language of the script. Dates are left out, so that equal results give equal files."""
     language.current.localise(drawing)
     directory.mkdir(parents=True, exist_ok=True)
     paths = []

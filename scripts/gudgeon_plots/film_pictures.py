@@ -1,4 +1,4 @@
-"""Pictures of films: the pressure over the bore at chosen times, and the six simulations with each film."""
+"""Pictures of films: the pressure in the bearing at chosen times, and the six simulations with each film."""
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -14,22 +14,22 @@ FILMS = (("", "Pinkus–Sternlicht", BLUE), ("_oscillating", "oscillating", VERM
 
 
 def grid_of(field: pd.DataFrame) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Angles round the bore [rad] from -pi to pi, places along all of it [m], pressures (places, angles) [Pa], thickness at
-    the angles [m]."""
+    """Angles around the bore [rad] from -pi to pi, positions along its whole length [m], pressures (positions, angles) [Pa], film
+    thickness at the angles [m]."""
     angle = (field["angle"] + np.pi) % (2 * np.pi) - np.pi
     table = field.assign(angle=angle).pivot(index="place", columns="angle", values="pressure")
     thickness = field.assign(angle=angle).groupby("angle")["film_thickness"].first().to_numpy()
     angles, half = table.columns.to_numpy(), table.to_numpy()
     places = np.concatenate([-table.index.to_numpy()[:0:-1], table.index.to_numpy()])
     pressure = np.concatenate([half[:0:-1], half])
-    seam = 0.5 * (pressure[:, :1] + pressure[:, -1:])   # at -pi and pi, between the outer nodes
+    seam = 0.5 * (pressure[:, :1] + pressure[:, -1:])   # pressure at -pi and pi, midway between the outer nodes
     ends = 0.5 * (thickness[0] + thickness[-1])
     return (np.concatenate([[-np.pi], angles, [np.pi]]), places, np.hstack([seam, pressure, seam]),
             np.concatenate([[ends], thickness, [ends]]))
 
 
 def pressure_fields(run: Run, fields: list[pd.DataFrame], name: str) -> Drawing:
-    """One row a time: the bore unrolled, and pressure in its middle with the film's thickness."""
+    """One row for each time: the pressure over the unrolled bore, and the pressure in its middle plane with the film thickness."""
     drawing, axes = plt.subplots(len(fields), 2, figsize=(WIDTH, 0.5 + 1.75 * len(fields)), squeeze=False,
                                  gridspec_kw={"width_ratios": (3, 2)})
     for (left, right), field in zip(axes, fields):

@@ -1,4 +1,4 @@
-"""Pressure around the pin, from a trace: the films' pressures, which the program integrates but does not write.
+"""Pressure around the pin, computed from a trace: the program integrates the pressures of films but does not write them.
 
 Angles are measured from the direction of the eccentricity, x towards y; arrays are (rows of the trace, angles).
 """
@@ -16,7 +16,7 @@ FILM_PHASE = 1
 
 @dataclass(frozen=True)
 class FilmMotion:
-    """What a film sees of the joint, one value a row of the trace."""
+    """The motion of a joint that determines its film, one value for each row of the trace."""
 
     ratio: np.ndarray  # eps = |e|/c
     direction: np.ndarray  # of the eccentricity, from x towards y [rad]
@@ -26,7 +26,7 @@ class FilmMotion:
 
 
 def film_motion(run: Run) -> FilmMotion:
-    """Eccentricity and its rate, from the columns of a trace with clearance."""
+    """Eccentricity and its rate, from the columns of a trace of a joint with clearance."""
     crank, rod = (float(run.parameter("mechanism", key)) for key in ("crank_length", "rod_length"))
     q, a = run["crank_angle"], run["rod_angle"]
     q1, a1 = run["crank_speed"], run["rod_speed"]
@@ -40,7 +40,7 @@ def film_motion(run: Run) -> FilmMotion:
 
 
 def pinkus_sternlicht(run: Run, angles: np.ndarray) -> np.ndarray:
-    """Pressure (5.20) [Pa], its positive part."""
+    """Pressure (5.20) [Pa], negative pressures set to 0."""
     clearance, pin_radius = run.clearance, float(run.parameter("joint", "bearing_radius")) - run.clearance
     motion = film_motion(run)
     eps = np.minimum(motion.ratio, 1 - 1e-12)[:, None]
@@ -53,7 +53,7 @@ def pinkus_sternlicht(run: Run, angles: np.ndarray) -> np.ndarray:
 
 
 def inertia_function(v: np.ndarray) -> np.ndarray:
-    """B = u^2 t/(1 - t), t = tanh(u)/u, at u^2 = i v: the resistance of the film with its inertia; 3 without."""
+    """B = u^2 t/(1 - t), t = tanh(u)/u, at u^2 = i v: the flow resistance of the film with its inertia; without inertia B = 3."""
     u = np.sqrt(1j * np.maximum(v, 1e-3))
     t = np.tanh(u) / u
     small = 3 + 1j * v / 5 + v**2 / 175
@@ -61,7 +61,8 @@ def inertia_function(v: np.ndarray) -> np.ndarray:
 
 
 def ideal_rod_motion(run: Run) -> tuple[np.ndarray, np.ndarray]:
-    """The rod's angular velocity [rad/s] and acceleration [rad/s2], x towards y, of the ideal joint at held speed."""
+    """The rod's angular velocity [rad/s] and acceleration [rad/s2], x towards y, in the mechanism with an ideal joint at constant
+    speed."""
     ratio = float(run.parameter("mechanism", "crank_length")) / float(run.parameter("mechanism", "rod_length"))
     q, q1 = run["crank_angle"], run["crank_speed"]
     sine = ratio * np.sin(q)
@@ -71,9 +72,9 @@ def ideal_rod_motion(run: Run) -> tuple[np.ndarray, np.ndarray]:
 
 
 def oscillating(run: Run, angles: np.ndarray, points: int = 160) -> np.ndarray:
-    """Pressure of the oscillating film (5.1-5.9) in the bearing's frame [Pa] about its mean, both signs: dP/dth
-    integrated over points that crowd where the film is thin (Sommerfeld's substitution). The acceleration terms of the
-    variant 'as_printed' are left out."""
+    """Pressure of the oscillating film (5.1-5.9) in the bearing's frame [Pa], relative to its mean, of both signs: dP/dth is
+    integrated over points that are closer where the film is thin (Sommerfeld's substitution). The acceleration terms of the
+    variant 'as_printed' are omitted."""
     clearance, pin_radius = run.clearance, float(run.parameter("joint", "bearing_radius")) - run.clearance
     least = float(run.parameter("lubrication", "least_film_ratio", 1e-3))
     eps = np.minimum(film_motion(run).ratio, 1 - least)[:, None]
@@ -105,8 +106,8 @@ def _integral(values: np.ndarray, theta: np.ndarray) -> np.ndarray:
 
 
 def pressure(run: Run, angles: np.ndarray) -> np.ndarray | None:
-    """Pressure [Pa] at the angles from the eccentricity; 0 where no film acts. None for a run without film, and with a
-    film of finite length, whose pressure is no formula: see `from_fields`."""
+    """Pressure [Pa] at the angles from the eccentricity; 0 where no film acts. None for a run without film, and for a
+    film of finite length, whose pressure has no closed form: see `from_fields`."""
     law = run.parameter("lubrication", "law")
     if law is None or "phase" not in run or law == "finite_bearing":
         return None
@@ -116,7 +117,7 @@ def pressure(run: Run, angles: np.ndarray) -> np.ndarray | None:
 
 
 def fields_of(path: Path) -> list[pd.DataFrame]:
-    """The nodes of each time in a NAME.film.csv, of the piston pin."""
+    """The nodes of the piston pin's film in a NAME.film.csv, one table for each time."""
     if not path.exists():
         raise MissingResult(f"no pressure fields {path}")
     table = read_table(path)[0]
@@ -124,8 +125,8 @@ def fields_of(path: Path) -> list[pd.DataFrame]:
 
 
 def from_fields(run: Run, fields: list[pd.DataFrame], angles: np.ndarray) -> np.ndarray:
-    """Pressure [Pa] in the middle of the bore at the angles from the eccentricity, between the times of a NAME.film.csv by straight
-    lines; 0 before the first and after the last."""
+    """Pressure [Pa] in the middle plane of the bore at the angles from the eccentricity, interpolated linearly between the times of
+    a NAME.film.csv; 0 before the first and after the last."""
     times = np.array([field["time"].iloc[0] for field in fields])
     lines = []
     for field in fields:
@@ -143,7 +144,7 @@ def from_fields(run: Run, fields: list[pd.DataFrame], angles: np.ndarray) -> np.
 
 
 def resultant(run: Run, angles: np.ndarray, found: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Force on the pin [N] along and across the eccentricity, of pressures at evenly spaced angles."""
+    """Force on the pin [N] along and across the eccentricity, from pressures at equally spaced angles."""
     radius = float(run.parameter("joint", "bearing_radius")) - run.clearance
     area = float(run.parameter("joint", "bearing_length")) * radius * (angles[1] - angles[0])
     return -area * (found * np.cos(angles)).sum(axis=1), -area * (found * np.sin(angles)).sum(axis=1)

@@ -1,9 +1,9 @@
 """Comparison of films: the cost of an evaluation and of a run with each of them, and the results of the run.
 
-The same scene with every film, integrated by `auto` at the relative tolerance of the cases. Times are the shortest of several runs; a
-direct solution takes too long to be repeated. The instructions of an evaluation are counted by valgrind, if it is installed, as the
-difference of two short runs, so that they do not depend on the load of the computer. Rows are stored, so that the same command
-continues after an interruption, unless the case or the program has changed.
+The same scene runs with every film, integrated by `auto` at the relative tolerance of the cases. Times are the shortest of several
+runs; the direct solution runs once because it takes long. The instructions of an evaluation are counted by valgrind, if it is
+installed, as the difference of two short runs, so that they do not depend on other programs on the computer. Finished rows are
+stored: after an interruption the same command continues, unless the case or the program has changed.
 """
 
 import hashlib
@@ -59,7 +59,7 @@ def command(program: Path, case: Path, out: str, values: tuple[str, ...]) -> lis
 
 
 def run(program: Path, case: Path, out: str, values: tuple[str, ...], timeout: float) -> dict[str, float | str]:
-    """Run a case: the numbers in its summary; `stopped` is the reason why it did not reach its end."""
+    """Run a case and return the numbers of its summary; `stopped` is the reason why it did not reach its end."""
     try:
         done = subprocess.run(command(program, case, out, values), capture_output=True, text=True, check=False, timeout=timeout)
     except subprocess.TimeoutExpired:
@@ -79,7 +79,7 @@ def run(program: Path, case: Path, out: str, values: tuple[str, ...], timeout: f
 
 
 def instructions(program: Path, case: Path, film: Film, timeout: float) -> float | None:
-    """Instructions of one evaluation of the whole scene, with its share of the integrator; None without valgrind."""
+    """Instructions of one evaluation of the whole scene, including its share of the integrator; None without valgrind."""
     valgrind = shutil.which("valgrind")
     if valgrind is None:
         return None

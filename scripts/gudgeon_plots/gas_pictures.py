@@ -1,5 +1,5 @@
-"""Pressure and force of the gas, over the first cycle. They depend on the crank angle alone: cycles repeat, and runs that
-share a load share an axis, one dashed on the other."""
+"""Pressure and force of the gas over the first cycle. They depend on the crank angle alone, so the cycles are equal, and runs with
+the same load share an axis, where one of them is dashed."""
 
 from collections.abc import Callable
 
@@ -14,7 +14,7 @@ DASHES = ("-", (0, (4, 3)))
 
 
 def each(draw: Callable[[Axes, Run, dict], None]) -> Callable[[Axes, list[Run]], None]:
-    """What draws one run, for all of an axis; named where there are several."""
+    """A function that draws all runs of an axis by drawing one after the other; runs have a name if there are several."""
 
     def draw_all(axis: Axes, runs: list[Run]) -> None:
         for run, dashes in zip(runs, DASHES):
@@ -25,7 +25,7 @@ def each(draw: Callable[[Axes, Run, dict], None]) -> Callable[[Axes, list[Run]],
 
 
 def first_cycle(run: Run) -> np.ndarray:
-    """The rows of the first cycle; runs begin with one."""
+    """The rows of the first cycle; a run begins with one."""
     return np.abs(run["crank_angle"] - run["crank_angle"][0]) <= run.cycle
 
 

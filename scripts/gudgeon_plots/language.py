@@ -1,6 +1,7 @@
-"""Pictures in another language: texts are translated and numbers get decimal commas as a drawing is saved.
+"""Pictures in another language: when a drawing is saved, its texts are translated and its numbers get decimal commas.
 
-A translation is a text or a template: "{}" in it stands for a part that is translated by itself. Lines are translated one by one.
+A translation is a text or a template, in which "{}" stands for a part that is translated separately. Lines are translated one by
+one.
 """
 
 import argparse
@@ -40,19 +41,19 @@ class Language:
         return self.name == "en"
 
     def number(self, text: str) -> str:
-        """A text with decimal commas; in formulas such that no space follows."""
+        """The text with decimal commas, set in formulas so that no space follows the comma."""
         return text if self.is_english else _COMMA.sub("{,}" if "$" in text else ",", text)
 
     def say(self, text: str) -> str:
-        """A text of any number of lines."""
+        """The translation of a text of one or more lines."""
         if self.is_english:
             return text
-        if text.strip() in self.exact:  # one that spans its lines
+        if text.strip() in self.exact:  # a translation of the whole text, with its lines
             return self.exact[text.strip()]
         return "\n".join(self._line(line) for line in text.split("\n"))
 
     def _line(self, text: str) -> str:
-        if figure := re.match(r"([0-9A-Z]\.[0-9]+  )(.*)", text):  # numbers of figures keep their point
+        if figure := re.match(r"([0-9A-Z]\.[0-9]+  )(.*)", text):  # numbers of figures keep the decimal point
             return figure[1] + self._line(figure[2])
         if text in self.exact:
             return self.exact[text]
@@ -69,7 +70,7 @@ class Language:
         return self.number(text)
 
     def localise(self, drawing: Drawing) -> None:
-        """Translate every text of a drawing; once only."""
+        """Translate every text of a drawing. Call it once for each drawing."""
         if self.is_english or getattr(drawing, "_gudgeon_language", "en") == self.name:
             return
         drawing.canvas.draw()
@@ -88,13 +89,13 @@ class Language:
         drawing._gudgeon_language = self.name
 
     def warn(self, script: str) -> None:
-        """A line on standard error if texts were left in English."""
+        """Print a line on standard error if texts have no translation."""
         if self.unknown:
             print(f"{script}: no translation of: {'; '.join(sorted(self.unknown))}", file=sys.stderr)
 
 
 class LocalFormatter(Formatter):
-    """The numbers of another formatter with decimal commas, its words translated."""
+    """Formats numbers as another formatter does, but with decimal commas and translated words."""
 
     def __init__(self, inner: Formatter, language: Language) -> None:
         self.inner, self.language = inner, language
@@ -121,14 +122,14 @@ current = Language()
 
 
 def use(name: str) -> Language:
-    """Take a language for all pictures that are saved from now on."""
+    """Set the language of all pictures that are saved afterwards."""
     global current
     current = Language(name)
     return current
 
 
 def add_option(parser: argparse.ArgumentParser) -> None:
-    """--language, which takes effect as the command line is read."""
+    """Add the option --language, which takes effect while the command line is read."""
 
     class Use(argparse.Action):
         def __call__(self, parser: object, namespace: argparse.Namespace, value: str, option: str | None = None) -> None:
@@ -136,5 +137,5 @@ def add_option(parser: argparse.ArgumentParser) -> None:
             use(value)
 
     parser.add_argument(
-        "--language", choices=LANGUAGES, default="en", action=Use, help="of the pictures; pt has decimal commas (default: en)"
+        "--language", choices=LANGUAGES, default="en", action=Use, help="language of the pictures; pt also has decimal commas (default: en)"
     )

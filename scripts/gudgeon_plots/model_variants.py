@@ -1,11 +1,11 @@
-"""Which models a case has and what else it could have: variants of a case by one model each, found in its resolved file and in the
-program's template, whatever the case is."""
+"""Finds the models of any case and their alternatives: variants of the case that change one model each. They are derived from its
+resolved file and the template of the program."""
 
 import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-PLACES = ("", "crank_pin.")  # in front of a group: the piston pin's or every joint's, and the crank pin's own
+PLACES = ("", "crank_pin.")  # prefix of a group: none (piston pin or all joints), or crank pin only
 LAWS = ("friction", "asperities", "lubrication", "contact")
 OTHER_GROUPS = ("guide", "elastic_rod", "crankshaft", "combustion", "cylinder_pressure")
 WORDS = {
@@ -28,7 +28,7 @@ Case = dict[str, dict[str, object]]
 
 @dataclass(frozen=True)
 class Key:
-    """A key of the template: its value there, and what it may be."""
+    """A key of the template: its value there, and its allowed values."""
 
     value: str
     choices: tuple[str, ...] = ()
@@ -42,11 +42,11 @@ class Variant:
     label: str
     settings: tuple[str, ...]  # GROUP.KEY=VALUE of the program's --set
     assumed: str = ""  # values that the case does not give
-    fuller: bool = False  # closer to the machine than the case: a part of the most complete scene
+    fuller: bool = False  # more detailed than the case: a part of the most complete scene
 
 
 def read_template(text: str) -> dict[str, dict[str, Key]]:
-    """What `gudgeon --template` prints: group -> key -> Key, groups in comments too."""
+    """The groups and keys that `gudgeon --template` prints, including groups that are commented out: group -> key -> Key."""
     groups: dict[str, dict[str, Key]] = {}
     name = ""
     for line in text.splitlines():
@@ -62,7 +62,7 @@ def read_template(text: str) -> dict[str, dict[str, Key]]:
 
 
 def groups_named(case: Case, group: str) -> list[str]:
-    """The case's groups of that name, with their places."""
+    """The groups of the case with that name, with their prefixes."""
     return [place + group for place in PLACES if place + group in case]
 
 
@@ -71,7 +71,7 @@ def loose_joints(case: Case) -> list[str]:
 
 
 def place_of(name: str) -> str:
-    """' at the crank pin' behind what belongs to that joint alone."""
+    """' at the crank pin' for a group that belongs to the crank pin alone, otherwise an empty text."""
     return " at the crank pin" if name.startswith("crank_pin.") else ""
 
 
@@ -86,7 +86,7 @@ def taken_out(case: Case) -> list[Variant]:
     for group in LAWS + OTHER_GROUPS:
         for name in groups_named(case, group):
             settings = [f"{name}=none"]
-            if group == "contact":  # friction follows its normal force
+            if group == "contact":  # friction needs the normal force
                 settings += [f"{other}=none" for other in groups_named(case, "friction") if place_of(other) == place_of(name)]
             label = f"no {WORDS[group]}{place_of(name)}"
             if group == "contact" and len(settings) > 1:
@@ -108,7 +108,7 @@ def taken_out(case: Case) -> list[Variant]:
 
 
 def ideal_joints(case: Case, names: list[str]) -> tuple[str, ...]:
-    """Settings that make these joints ideal; laws that no joint has then go too."""
+    """Settings that make these joints ideal, and remove the laws that no joint uses any more."""
     settings = [f"{name}.kind=ideal" for name in names]
     if len(loose_joints(case)) == len(names):
         settings += [f"{law}=none" for group in LAWS for law in groups_named(case, group)]
@@ -142,7 +142,7 @@ def exchanged(case: Case, template: dict[str, dict[str, Key]]) -> list[Variant]:
 
 
 def is_fuller(case: Case, name: str, key: str, choice: str) -> bool:
-    """Whether a law is closer to the machine than the case's: a bearing of its real length, a pin in a bore."""
+    """Whether a law is more detailed than that of the case: a bearing of its real length, a pin in a bore."""
     now = case[name][key]
     return (key, now, choice) in (("law", "pinkus_sternlicht", "finite_bearing"), ("geometry", "hertz_sphere", "conformal"))
 
@@ -159,7 +159,7 @@ def refined(case: Case) -> list[Variant]:
 
 
 def added(case: Case, template: dict[str, dict[str, Key]]) -> list[Variant]:
-    """Models that the case does not have, if it has the data they need; additional assumptions are stated."""
+    """Models that the case lacks, if the case has the data that they need. Assumed values are stated."""
     found = []
     loose, mechanism = loose_joints(case), case["mechanism"]
     for name in ("joint", "crank_pin.joint"):
@@ -189,7 +189,7 @@ def added(case: Case, template: dict[str, dict[str, Key]]) -> list[Variant]:
 
 
 def added_rod(mechanism: dict[str, object], template: dict[str, Key]) -> Variant:
-    """A steel rod whose shank has the rod's mass, and a section of the template's proportions."""
+    """A steel rod with the mass of the case's rod in its shank, and a section with the proportions of the template."""
     area = float(mechanism["rod_mass"]) / (STEEL_DENSITY * float(mechanism["rod_length"]))
     proportion = float(template["section_inertia"].value) / float(template["section_area"].value) ** 2
     settings = (f"elastic_rod.section_area={area:.4g}", f"elastic_rod.section_inertia={proportion * area**2:.4g}")
@@ -198,7 +198,7 @@ def added_rod(mechanism: dict[str, object], template: dict[str, Key]) -> Variant
 
 
 def together(*parts: Variant) -> tuple[str, ...]:
-    """Settings of several variants at once: a later one wins, and one that takes a group out takes its settings with it."""
+    """Settings of several variants together: later settings replace earlier ones, and removing a group removes its settings."""
     settings: dict[str, str] = {}
     for part in parts:
         for setting in part.settings:
@@ -214,7 +214,8 @@ NOT_OF_LAW = re.compile(r"&(\w+) (\w+) = \S+: must be one of (\w+)")
 
 
 def completed(variant: Variant, message: str, case: Case, template: dict[str, dict[str, Key]]) -> Variant | None:
-    """The variant with what the program missed when it refused it, taken from the template; None where nothing can be done."""
+    """The variant with the key that was missing when the program refused it, taken from the template; None if it cannot be
+    completed."""
     if match := REQUIRED.search(message):
         group, key = match[1], match[3]
         given = (name for name in PLACES if any(one.startswith(f"{name}{group}.") for one in variant.settings))
@@ -238,7 +239,7 @@ def missing_value(name: str, group: str, key: str, case: Case, template: dict[st
     if key == "kinematic_viscosity" and case.get(name, {}).get("viscosity"):
         density = float(template[group]["viscosity"].value) / float(template[group][key].value)
         return f"{float(case[name]['viscosity']) / density:.6g}"
-    if key == "bedding_modulus":  # of a bearing wall as thick as its radius
+    if key == "bedding_modulus":  # for a bearing wall as thick as the bearing's radius
         joint = case.get(name.replace(group, "joint"), {})
         modulus = case.get(name, {}).get("youngs_modulus", [0.0])
         modulus = modulus[0] if isinstance(modulus, list) else modulus

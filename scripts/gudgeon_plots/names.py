@@ -1,4 +1,4 @@
-"""What axes call the parameters and results of studies, and the units they show them in."""
+"""Labels of the parameters and results of studies on axes, and the units in which they are shown."""
 
 import re
 import subprocess
@@ -50,7 +50,7 @@ PREFIXES = ((1e-9, "n"), (1e-6, "µ"), (1e-3, "m"), (1.0, ""), (1e3, "k"), (1e6,
 
 @dataclass(frozen=True)
 class Shown:
-    """A quantity as an axis shows it: its name, its unit, and by how much its values are multiplied for that unit."""
+    """A quantity on an axis: its name, its unit, and the factor from its values to that unit."""
 
     name: str
     unit: str = ""
@@ -62,7 +62,7 @@ class Shown:
 
 
 def prefixed(unit: str, values: np.ndarray) -> tuple[str, float]:
-    """A unit with the prefix that brings the largest value to between 1 and 1000, and the factor for it."""
+    """The unit with the prefix that brings the largest value between 1 and 1000, and the factor to this unit."""
     sizes = np.abs(values[np.isfinite(values)])
     if unit not in PREFIXED or not sizes.any():
         return unit, 1.0
@@ -75,7 +75,7 @@ def prefixed(unit: str, values: np.ndarray) -> tuple[str, float]:
 
 
 def plain_unit(unit: str) -> str:
-    """A unit as print has it; none for a number."""
+    """A unit in typographic form; empty for a number without unit."""
     if unit in ("-", "1", ""):
         return ""
     return unit.replace("^2", "²").replace("^3", "³").replace("degrees", "deg")
@@ -99,7 +99,7 @@ def key_units() -> dict[str, str]:
 
 
 def of_parameter(key: str, values: np.ndarray) -> Shown:
-    """A key of a study."""
+    """A key of a study, as an axis shows it."""
     own = key.split(".")[-2:]
     name = KEYS.get(key) or own[-1].replace("_", " ")
     unit = key_units().get(".".join(own), "")
@@ -109,7 +109,8 @@ def of_parameter(key: str, values: np.ndarray) -> Shown:
 
 
 def of_column(column: str, unit: str, values: np.ndarray) -> Shown:
-    """A column of a study's results. A film that is negative in every run is a penetration."""
+    """A column of a study's results, as an axis shows it. A film thickness that is negative in every run is shown as a
+    penetration."""
     values = np.asarray(values, dtype=float)
     finite = values[np.isfinite(values)]
     if column == "min_film_thickness" and finite.size and (finite < 0).all():

@@ -1,4 +1,4 @@
-"""What a figure can show of a run. A new quantity is a new entry of QUANTITIES."""
+"""The quantities of a run that a figure can show. A new quantity is a new entry of QUANTITIES."""
 
 from dataclasses import replace
 
@@ -23,16 +23,16 @@ from .quantity import (
 from .results import Run
 from .style import BLACK, GREY, PURPLE, mark_decades
 
-#: Points once a cycle are spread no farther than to this share of the run's range.
+#: If points taken once a cycle spread over less than this share of the run's range, the axis still covers this share.
 LEAST_SHARE = 1e-5
 
-#: Crank angle in the cycle at which a point is taken once a cycle [rad]: neither velocity nor acceleration is stationary there.
+#: Crank angle in the cycle at which points are taken once a cycle [rad]: neither velocity nor acceleration is stationary there.
 SECTION = np.pi / 4
 
-#: Cycles of which a point is shown, the last of the run.
+#: Number of cycles with a point, the last of the run.
 SECTION_CYCLES = 60
 
-#: A contact's largest force is seen in the samples that have this share of it.
+#: The samples show the largest force of a contact if one of them has at least this share of it.
 SEEN_PEAK = 0.98
 
 #: Lower end of the axis of the film thickness for runs with contacts [um], since the thickness passes through 0.
@@ -45,7 +45,7 @@ def pin_force(run: Run) -> np.ndarray:
 
 
 def contact_peaks(axis: Axes, run: Run) -> None:
-    """The largest force of those contacts whose peak the samples of the trace miss."""
+    """Mark the largest force of those contacts whose peak lies between the samples of the trace."""
     contacts = run.contacts
     contacts = contacts[contacts["end"] >= run["time"][0]]
     time, force = run["time"], pin_force(run)
@@ -59,7 +59,7 @@ def contact_peaks(axis: Axes, run: Run) -> None:
 
 
 def film_thickness(axis: Axes, run: Run, _ideal: Run | None, colour: str) -> None:
-    """Film thickness on a logarithmic axis, with gaps where the pin touches."""
+    """Film thickness on a logarithmic axis, with gaps where the pin is in contact."""
     x, _ = abscissa(run)
     h = 1e6 * run["film_thickness"]
     axis.plot(x, np.where(h > 0, h, np.nan), color=colour, label=curve_name(run))
@@ -71,7 +71,7 @@ def film_thickness(axis: Axes, run: Run, _ideal: Run | None, colour: str) -> Non
 
 
 def penetration(axis: Axes, run: Run, _colour: str) -> None:
-    """How deep the pin is in its bearing, upwards from 0; the start is cut off where it would flatten the rest."""
+    """Penetration of the pin into its bearing, positive upwards; the start is cut off if it would flatten the rest."""
     x, _ = abscissa(run)
     depth = np.maximum(-1e6 * run["film_thickness"], 0.0)
     axis.fill_between(x, depth, 0, color=PURPLE, alpha=0.25, linewidth=0)
@@ -88,7 +88,7 @@ def touches(run: Run) -> bool:
 
 
 def least_film(run: Run) -> str:
-    """The run's smallest film thickness or largest penetration, of all steps if the summary has it."""
+    """The run's smallest film thickness or largest penetration, from the summary (over all steps) if it is there."""
     least = 1e6 * float(run.summary.get("min_film_thickness", (run["film_thickness"].min(), ""))[0])
     return f"smallest film thickness {least:.3g} µm" if least >= 0 else f"deepest penetration {-least:.3g} µm"
 
@@ -122,7 +122,7 @@ def last_cycle(run: Run) -> Run:
 
 
 def portrait(axis: Axes, run: Run, ideal: Run | None, colour: str) -> None:
-    """Piston acceleration over velocity in the last cycle. The ideal joint's is broad and lies below."""
+    """Piston acceleration over velocity in the last cycle. The curve of the ideal joint is broad and lies behind."""
     if ideal is not None:
         shown = last_cycle(ideal)
         axis.plot(
@@ -140,7 +140,7 @@ def portrait(axis: Axes, run: Run, ideal: Run | None, colour: str) -> None:
 
 
 def portrait_difference(axis: Axes, run: Run, ideal: Run, colour: str) -> None:
-    """Piston acceleration less that of the ideal joint at the same crank angle, over velocity."""
+    """Piston acceleration minus that of the ideal joint at the same crank angle, over velocity."""
     shown = last_cycle(run)
     other = np.interp(np.abs(shown["crank_angle"]), np.abs(ideal["crank_angle"]), ideal["piston_acceleration"])
     axis.axhline(0, color=BLACK, linewidth=0.7)
@@ -151,7 +151,7 @@ def portrait_difference(axis: Axes, run: Run, ideal: Run, colour: str) -> None:
 
 
 def cycle_note(run: Run) -> str:
-    """Which cycle a portrait shows."""
+    """The cycle that a portrait shows, as text."""
     if first_revolution(run) > 0:
         return ""
     cycles = round(abs(run["crank_angle"][-1] - run["crank_angle"][0]) / run.cycle)
@@ -159,8 +159,8 @@ def cycle_note(run: Run) -> str:
 
 
 def once_a_cycle(run: Run, section: float) -> tuple[np.ndarray, np.ndarray]:
-    """Piston velocity [m/s] and acceleration [m/s2] each time the crank angle passes `section` [rad] of a cycle, the
-    start itself left out: there the pin is placed, not moved, in the centre."""
+    """Piston velocity [m/s] and acceleration [m/s2] whenever the crank angle passes `section` [rad] of a cycle. The start
+    is left out: there the pin is placed in the centre."""
     angle = run["crank_angle"]
     ahead = np.maximum.accumulate(angle)
     first = np.floor((angle[0] - section) / run.cycle + 1e-9) + 1
@@ -170,7 +170,7 @@ def once_a_cycle(run: Run, section: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def section(axis: Axes, run: Run, ideal: Run | None, colour: str) -> None:
-    """The last cycles of a long run, a point in each, from light to dark."""
+    """One point for each of the last cycles of a long run, from light to dark."""
     if ideal is not None:
         velocity, acceleration = once_a_cycle(ideal, SECTION)
         axis.plot(
@@ -197,7 +197,7 @@ def section(axis: Axes, run: Run, ideal: Run | None, colour: str) -> None:
 
 
 def widened(bounds: tuple[float, float], least: float) -> tuple[float, float]:
-    """A range no narrower than `least`: points that agree to many digits are shown as one."""
+    """A range that is not narrower than `least`, so that points that agree to many digits appear as one point."""
     middle, half = 0.5 * (bounds[0] + bounds[1]), 0.5 * max(least, bounds[1] - bounds[0])
     return middle - half, middle + half
 

@@ -1,4 +1,4 @@
-"""How a quantity of runs is drawn on an axis, and what curves of all quantities share: abscissa, names, colours."""
+"""The ways in which quantities of runs are drawn on an axis, and what all curves share: abscissa, names, colours."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,14 +12,14 @@ from .results import Run
 from .ringing import draw_envelope, rings, zoom_window
 from .style import BLACK, BLUE, GREY, VERMILION
 
-#: A run's range is called far larger than the ideal joint's from this factor on: the figure then adds a detail.
+#: From this ratio of the run's range to that of the ideal joint on, the figure also has a detail of the smaller range.
 FAR_LARGER = 3.0
 
-#: Share of a run in which a pin released in the centre falls on its bearing or film.
+#: Share of a run during which a pin that is released in the centre falls onto its bearing or film.
 STARTING_SHARE = 0.02
 
 
-#: The start is cut off where the rest of the run covers less than this share of the whole range.
+#: The start is cut off if the rest of the run covers less than this share of the whole range.
 START_CUT = 0.7
 
 
@@ -27,9 +27,9 @@ START_CUT = 0.7
 class Quantity:
     """A way to draw runs on an axis.
 
-    `values` gives what is on the vertical axis, for ranges; `draw(axis, run, ideal, colour)` draws one run, or
-    `draw_all(axis, runs)` all of them on one axis. `wide` axes show a curve over time, others a plane. `below` draws a second panel
-    of a run, named `below_label`, where `has_below` says that the run needs one. A quantity of `many_cycles` is drawn of runs over
+    `values` returns the values on the vertical axis, from which ranges are found. `draw(axis, run, ideal, colour)` draws one run,
+    or `draw_all(axis, runs)` all runs on one axis. `wide` axes show a curve over time, others a plane. `below` draws a second panel
+    of a run, labelled `below_label`, if `has_below` is true for the run. A quantity with `many_cycles` is drawn from runs over
     hundreds of revolutions.
     """
 
@@ -38,28 +38,29 @@ class Quantity:
     draw: Callable[[Axes, Run, Run | None, str], None] | None = None
     draw_all: Callable[[Axes, list[Run]], None] | None = None
     wide: bool = True
-    note: Callable[[Run], str] | None = None  # beside the run's name
-    difference: Callable[[Axes, Run, Run, str], None] | None = None  # of a plane
+    note: Callable[[Run], str] | None = None  # text beside the run's name
+    difference: Callable[[Axes, Run, Run, str], None] | None = None  # draws the difference, for a plane
     below: Callable[[Axes, Run, str], None] | None = None
     below_label: str = ""
     has_below: Callable[[Run], bool] = lambda run: False
     many_cycles: bool = False
-    fine: bool = False  # drawn of runs with many rows in each contact
+    fine: bool = False  # drawn from runs with many rows in each contact
 
     def needs_detail(self, run: Run, ideal: Run | None) -> bool:
-        """Whether the ideal joint's curve would be flattened by the run's peaks."""
+        """Whether peaks of the run would flatten the curve of the ideal joint."""
         if ideal is None or self.values is None:
             return False
         return np.ptp(self.values(run)) > FAR_LARGER * np.ptp(self.values(ideal)) > 0
 
     def detail_range(self, ideal: Run) -> tuple[float, float]:
-        """The range of the ideal joint with as much room again on both sides together; above it only, for a size."""
+        """The range of the ideal joint, extended on both sides to twice its width; extended upwards only if values cannot be
+        negative."""
         low, high = self.values(ideal).min(), self.values(ideal).max()
         room = high - low
         return (-0.03 * high, high + room) if low >= 0 else (low - 0.5 * room, high + 0.5 * room)
 
     def rings(self, run: Run) -> bool:
-        """Whether the curve over time is a filled band at the width of a picture."""
+        """Whether the curve over time would be a filled band at the width of a picture."""
         return self.wide and self.values is not None and is_band(run, self.values(run))
 
     def zoomed(self, run: Run, ideal: Run) -> tuple[float, float]:
@@ -80,8 +81,8 @@ class Quantity:
         axis.set_title("zoom on the grey stretch", color=GREY)
 
     def draw_difference(self, axis: Axes, run: Run, ideal: Run, colour: str) -> None:
-        """The run less the ideal joint at the same time. A run from t = 0 begins with a pin that nothing carries yet: its
-        first moments do not count for the range."""
+        """The run minus the ideal joint at the same time. In a run from t = 0 nothing carries the pin at first; these first moments
+        are not taken into account for the range."""
         if self.difference is not None:
             self.difference(axis, run, ideal, colour)
             return
@@ -94,7 +95,7 @@ class Quantity:
 
 
 def after_start(run: Run) -> np.ndarray:
-    """The rows after a run's first moments, in which a pin released in the centre falls; all of a window of later revolutions."""
+    """The rows after the first moments of a run, in which a pin released in the centre falls; all rows of a later window."""
     return run["time"] >= STARTING_SHARE * run["time"][-1]
 
 
@@ -103,7 +104,8 @@ def start_is_cut(run: Run, values: np.ndarray) -> bool:
 
 
 def cut_start(axis: Axes, run: Run, values: np.ndarray, more: np.ndarray | None = None) -> bool:
-    """Limit an axis to what comes after the start, and to `more` values, where the start would flatten it; whether it did."""
+    """Limit an axis to the values after the start, and to the values `more`, if the start would flatten them. Returns whether it
+    did."""
     if not start_is_cut(run, values):
         return False
     counted = values[after_start(run)]
@@ -114,7 +116,7 @@ def cut_start(axis: Axes, run: Run, values: np.ndarray, more: np.ndarray | None 
 
 
 def start_note(values: Callable[[Run], np.ndarray]) -> Callable[[Run], str]:
-    """Part of a title for a start that is cut off: the value farthest from the rest of the run."""
+    """A function that returns a note for the title if the start is cut off: the value farthest from the rest of the run."""
 
     def note(run: Run) -> str:
         y = values(run)
@@ -129,14 +131,14 @@ def start_note(values: Callable[[Run], np.ndarray]) -> Callable[[Run], str]:
 
 
 def is_band(run: Run, y: np.ndarray) -> bool:
-    """Whether a curve over time rings faster than a picture can show. At a held speed pictures have two revolutions, in which single
-    impacts are told apart; the start, which is cut off, does not count."""
+    """Whether a curve over time oscillates faster than a picture can show. At constant speed a picture has two revolutions, in
+    which single impacts can be distinguished; the start, which is cut off, is not taken into account."""
     counted = after_start(run)
     return not held_speed(run) and rings(abscissa(run)[0][counted], y[counted])
 
 
 def plot_curve(axis: Axes, run: Run, y: np.ndarray, colour: str) -> None:
-    """A curve over time or crank angle; its envelope where it rings faster than a picture can show."""
+    """Draw a curve over time or crank angle, or its envelope if it oscillates faster than a picture can show."""
     x = abscissa(run)[0]
     if is_band(run, y):
         draw_envelope(axis, x, y, colour)
@@ -145,7 +147,7 @@ def plot_curve(axis: Axes, run: Run, y: np.ndarray, colour: str) -> None:
 
 
 def curve_name(run: Run) -> str:
-    """What the legend calls a run's curve: its film, or that its joint has clearance."""
+    """The name of a run's curve in the legend: its film, or "with clearance"."""
     law = run.parameter("lubrication", "law")
     return label(run) if law in ("pinkus_sternlicht", "oscillating_film") and not held_speed(run) else "with clearance"
 
@@ -179,7 +181,7 @@ def first_revolution(run: Run) -> int:
 
 
 def abscissa(run: Run) -> tuple[np.ndarray, str]:
-    """Crank angle in degrees where the speed is held, from the trace's first whole revolution on; else time in
+    """Crank angle in degrees if the speed is constant, measured from the first whole revolution of the trace; otherwise time in
     milliseconds."""
     if held_speed(run):
         return np.degrees(run["crank_angle"]) - 360 * first_revolution(run), "crank angle [deg]"
@@ -187,7 +189,7 @@ def abscissa(run: Run) -> tuple[np.ndarray, str]:
 
 
 def mark_abscissa(axis: Axes, run: Run) -> None:
-    """Name and range of time or crank angle; angles are numbered in quarter, half or whole turns."""
+    """Set label and range of time or crank angle; angles have ticks at quarter, half or whole revolutions."""
     x, name = abscissa(run)
     axis.set_xlabel(name)
     axis.set_xlim(x[0], x[-1])
@@ -210,7 +212,7 @@ def column(name: str, factor: float = 1.0) -> Callable[[Run], np.ndarray]:
 def series(
     label: str, values: Callable[[Run], np.ndarray], extra: Callable[[Axes, Run], None] | None = None
 ) -> Quantity:
-    """A curve over time or crank angle, the ideal joint overlaid."""
+    """A curve over time or crank angle, with that of the ideal joint."""
 
     def draw(axis: Axes, run: Run, ideal: Run | None, colour: str) -> None:
         y = values(run)

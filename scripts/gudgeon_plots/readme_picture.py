@@ -11,10 +11,10 @@ from .quantity import ideal_line
 from .results import Results, Run
 from .style import BLACK, BLUE, GREY, VERMILION
 
-#: A dry run that is not chaotic, so that the picture stays.
+#: A dry run that is not chaotic, so that the picture is the same with every version.
 DRY, OILED, IDEAL = "friction_100", "lubricated_400cP", "ideal"
 
-#: Of the clearance in the drawing: the pin is drawn that much smaller and farther from the centre.
+#: Magnification of the clearance in the drawing: the pin is drawn smaller and farther from the centre.
 MAGNIFICATION = 8.0
 
 #: Crank angle of the drawing [deg].

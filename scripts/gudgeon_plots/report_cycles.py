@@ -16,12 +16,12 @@ from .results import MissingResult, Run
 
 COLUMNS = ("crank_speed", "piston_acceleration", "guide_force", "frame_force_x", "crank_moment", "film_thickness")
 FOR_WORK = ("energy", "energy_residual", "crank_moment", "crank_speed", "time")  # columns that the table of work needs
-SETTLED = 0.05  # most that the mean of a column may drift over the cycles, over its range
-HIGHEST = 20.0  # order shown
+SETTLED = 0.05  # largest drift of a column's mean over the cycles, divided by the column's range
+HIGHEST = 20.0  # highest order shown
 
 
 def chosen(cycles: Cycles, wanted: list[str] | None) -> list[str]:
-    """Columns to look at. Raises MissingResult for one that the trace does not have."""
+    """The columns to analyse. Raises MissingResult for a column that the trace lacks."""
     if wanted:
         for name in wanted:
             if name not in cycles:
@@ -37,8 +37,8 @@ def drift(cycles: Cycles, column: str) -> float:
 
 
 def section(run: Run, wanted: list[str] | None = None, language: Language | None = None) -> str:
-    """The section as HTML; one line that says why, where the run has no settled cycles, unless columns are asked for. Raises
-    MissingResult for a column that the trace does not have."""
+    """The section as HTML. If the run has no settled cycles and no columns are requested, one line that states the reason. Raises
+    MissingResult for a column that the trace lacks."""
     language = language or Language()
     try:
         cycles = whole_cycles(run)
@@ -69,7 +69,7 @@ def is_periodic(run: Run) -> bool:
 
 
 def why_none(run: Run, cycles: Cycles, columns: list[str], is_wanted: bool) -> str:
-    """Why the cycles of a run are not shown; empty where they are."""
+    """The reason why the cycles of a run are not shown; empty if they are shown."""
     if not columns:
         return "None: no column changes."
     if is_periodic(run) or is_wanted:
@@ -104,9 +104,9 @@ def paragraph(text: str) -> str:
 
 
 def picture(drawing: Drawing, said: str, language: Language) -> str:
-    """A drawing inside the page."""
+    """A drawing as an image inside the page."""
     said = language.say(said)
-    drawing.suptitle("")  # the page has the run's name
+    drawing.suptitle("")  # the page already names the run
     language.localise(drawing)
     buffer = io.BytesIO()
     drawing.savefig(buffer, format="png", dpi=110, metadata={"Software": None})

@@ -1,6 +1,6 @@
 """The page of one run: everything in one HTML file that needs no network.
 
-The trace travels as float32 columns and plotly.js as it is, both gzipped; the browser unpacks them.
+The trace is stored as float32 columns, and plotly.js unchanged; both are compressed by gzip and unpacked by the browser.
 """
 
 import base64
@@ -23,7 +23,7 @@ from .style import BLACK, BLUE, GREEN, PURPLE, VERMILION
 
 PAGE = Path(__file__).parent / "page"
 
-#: More rows than this are thinned out, peaks kept.
+#: A trace with more rows is thinned out; peaks are kept.
 MOST_ROWS = 8000
 
 #: Angles around the pin at which the film's pressure is drawn.
@@ -32,13 +32,13 @@ ANGLES = 72
 #: Axes of an orbit.
 ECCENTRICITIES = ("<i>e<sub>y</sub></i> / <i>c</i>", "<i>e<sub>x</sub></i> / <i>c</i>")
 
-#: Of a summary, what concerns the program and not the run.
+#: Quantities of a summary that concern the program and not the run.
 OF_THE_PROGRAM = ("identity", "version", "compiler", "compiler_options", "trace_bytes", "events_bytes")
 
-#: Corners of a skirt in its bore, and what the page calls them.
+#: Corners of a skirt in its bore, and their names on the page.
 CORNERS = {1: "top, +y", 2: "bottom, +y", 3: "top, -y", 4: "bottom, -y"}
 
-#: Columns that the animation needs, where the run has them.
+#: Columns that the animation needs, if the run has them.
 MOTION = (
     "time",
     "crank_angle",
@@ -62,7 +62,7 @@ MOTION = (
     *(f"guide_{corner}_force" for corner in CORNERS),
 )
 
-#: Plots over time: column, title, unit shown, factor; the ideal joint's curve overlaid where there is a twin.
+#: Plots over time: column, title, unit shown, factor; with the curve of the ideal joint if there is such a run.
 OVER_TIME = (
     ("film_thickness", "Film thickness (below 0: penetration)", "µm", 1e6),
     ("pin_force", "Pin reaction", "kN", 1e-3),
@@ -86,17 +86,17 @@ OVER_TIME = (
     ("energy_residual", "Energy residual", "J", 1.0),
 )
 
-#: Plots that show the ideal joint's curve in a plot of its own, since it is a property of that run.
+#: Plots in which the run of the ideal joint has a plot of its own, because the quantity is a property of that run.
 APART = ("energy_residual",)
 
 
 def packed(data: bytes) -> str:
-    """Bytes as base64 of gzip, equal for equal bytes."""
+    """Bytes compressed by gzip, as base64 text; equal bytes give equal texts."""
     return base64.b64encode(gzip.compress(data, 9, mtime=0)).decode("ascii")
 
 
 def chosen_rows(columns: list[np.ndarray], most: int = MOST_ROWS) -> np.ndarray:
-    """Rows to keep: all, or of each stretch of rows its first and every column's least and largest."""
+    """Rows to keep: all, or for each stretch of rows the first and those with the smallest and largest value of every column."""
     rows = len(columns[0])
     if rows <= most:
         return np.arange(rows)
@@ -111,7 +111,7 @@ def chosen_rows(columns: list[np.ndarray], most: int = MOST_ROWS) -> np.ndarray:
 
 
 def with_sizes(run: Run) -> dict[str, np.ndarray]:
-    """The run's columns and the size of the pin's force."""
+    """The run's columns, and the magnitude of the pin's force."""
     columns = {name: run[name] for name in run.trace.columns}
     columns["pin_force"] = np.hypot(run["pin_force_x"], run["pin_force_y"])
     return columns
@@ -122,7 +122,7 @@ def is_informative(values: np.ndarray) -> bool:
 
 
 def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
-    """What the page plots, as the script takes it: curves name columns."""
+    """The plots of the page, in the form that its script expects: curves refer to columns by name."""
     found = []
     for name, title, unit, factor in OVER_TIME:
         if name not in columns or not is_informative(columns[name]):
@@ -234,12 +234,12 @@ def warnings(run: Run) -> list[str]:
 
     if (until := certified_until(run)) is not None:
         found.append(
-            f"The run is certified up to {1e3 * until:.4g} ms: beyond, shaded in the plots, single values cannot be believed, and "
-            "only means over revolutions count (beyond_..., in the summary)."
+            f"The run is certified up to {1e3 * until:.4g} ms: beyond, shaded in the plots, single values are not reliable, and "
+            "only means over revolutions are meaningful (beyond_..., in the summary)."
         )
     status = run.summary.get("status", ("unknown", ""))[0]
     if status != "done":
-        found.append(f"The run did not end as asked: {status}.")
+        found.append(f"The run did not end as requested: {status}.")
     for prefix, at in (("", ""), ("crank_pin_", " at the crank pin")):
         contacts = number(f"{prefix}contacts") or 0
         if (beyond := number(f"{prefix}impacts_beyond_validity") or 0) > 0:
@@ -249,10 +249,10 @@ def warnings(run: Run) -> list[str]:
             )
         if (deep := number(f"{prefix}contacts_beyond_validity") or 0) > 0:
             found.append(
-                f"{deep:.0f} of {contacts:.0f} contacts{at} went deeper than the contact geometry is meant for."
+                f"{deep:.0f} of {contacts:.0f} contacts{at} penetrated deeper than the contact geometry is valid for."
             )
     if (residual := number("max_energy_residual_relative") or 0) > 1e-6:
-        found.append(f"The energy balance is open by {residual:.1e} of the energy: tighten the tolerance.")
+        found.append(f"The energy residual is {residual:.1e} of the energy: use a smaller tolerance.")
     if run.clearance and (deepest := number("max_penetration") or 0) > 0.1 * run.clearance:
         found.append(
             f"The deepest penetration, {1e6 * deepest:.3g} µm, is {deepest / run.clearance:.2g} clearances; contact "
@@ -261,20 +261,20 @@ def warnings(run: Run) -> list[str]:
     if run.parameter("lubrication", "law") and run.clearance and 0 < (number("min_film_thickness") or 0) < 1e-6:
         found.append(
             f"The film gets as thin as {1e6 * number('min_film_thickness'):.3g} µm, the order of surface roughness, "
-            "which the film law does not know."
+            "which the film law neglects."
         )
     if (
         run.parameter("lubrication", "law") == "oscillating_film"
         and (share := number("contact_time_fraction") or 0) > 0.5
     ):
-        found.append(f"The pin touches the bearing {100 * share:.0f} % of the time: this film carries no radial load.")
+        found.append(f"The pin is in contact {100 * share:.0f} % of the time: this film carries no radial load.")
     if not run.contacts.empty:
         duration = float((run.contacts["end"] - run.contacts["begin"]).median())
         interval = float(np.median(np.diff(run["time"])))
         if duration < 5 * interval:
             found.append(
                 f"Half of the contacts are shorter than {duration / interval:.1f} samples of the trace: peaks in the "
-                "plots are cut short; the time line and the summary have them whole."
+                "plots may be too low; the time line and the summary have the exact peaks."
             )
     return found
 
@@ -305,8 +305,8 @@ def summary_number(text: str) -> str:
 
 
 def film_columns(run: Run, rows: np.ndarray, fields: list[pd.DataFrame] | None = None) -> tuple[np.ndarray, np.ndarray, bool] | None:
-    """Square roots of the film's pressure over its largest as bytes (rows, angles), its peak of each row [Pa], and
-    whether it goes below its mean."""
+    """Square root of the film's pressure divided by its largest value, as bytes (rows, angles); peak pressure of each row [Pa]; and
+    whether the pressure is below its mean anywhere."""
     angles = 2 * np.pi * np.arange(ANGLES) / ANGLES - np.pi
     found = film_pressure.pressure(run, angles)
     if found is None and fields:
@@ -320,7 +320,7 @@ def film_columns(run: Run, rows: np.ndarray, fields: list[pd.DataFrame] | None =
 
 
 def largest_deflection(columns: dict[str, np.ndarray]) -> float:
-    """Of an elastic rod across its chord, anywhere along it [m]."""
+    """Largest deflection of an elastic rod across its chord, anywhere along the rod [m]."""
     modes = [name for name in columns if name.startswith("rod_mode_")]
     if not modes:
         return 0.0
@@ -336,7 +336,8 @@ def page(
     language: Language | None = None,
     cycle_columns: list[str] | None = None,
 ) -> str:
-    """The page as text; `fields`: the pressures of a NAME.film.csv; `cycle_columns`: those whose cycles and orders are shown."""
+    """The HTML text of the page. `fields`: the pressures of a NAME.film.csv; `cycle_columns`: columns whose cycles and orders are
+    shown."""
     say = (language or Language()).say
     columns = with_sizes(run)
     if ideal is not None:
@@ -421,7 +422,7 @@ def page(
         "style": (PAGE / "page.css").read_text(encoding="utf-8"),
         "script": (PAGE / "page.js").read_text(encoding="utf-8"),
         "warnings": "".join(f'<p class="warning">{html.escape(text)}</p>' for text in said)
-        or f'<p class="fine">{html.escape(say("Nothing to warn of."))}</p>',
+        or f'<p class="fine">{html.escape(say("No warnings."))}</p>',
         "cycles": report_cycles.section(run, cycle_columns, language),
         "summary": f"<table>{summary(False)}</table>",
         "program": f"<table>{summary(True)}</table>",
@@ -439,25 +440,25 @@ def page(
     }
     text = (PAGE / "page.html").read_text(encoding="utf-8")
     text = re.sub(r"\[\[(.+?)\]\]", lambda found: html.escape(say(found[1])), text)
-    head, *fields = text.split("{{")  # each field once, so that nothing is replaced inside what was put in
+    head, *fields = text.split("{{")  # each field once, so that inserted texts are not searched for fields
     return head + "".join(parts[name] + rest for name, rest in (field.split("}}", 1) for field in fields))
 
 
 def first_moment(columns: dict[str, np.ndarray]) -> float:
-    """The time that the page opens at [s]: that of the largest pin force after the first tenth of the run."""
+    """The time at which the page opens [s]: that of the largest pin force after the first tenth of the run."""
     time = columns["time"]
     force = np.where(time >= time[0] + 0.1 * (time[-1] - time[0]), columns["pin_force"], 0.0)
     return float(time[int(np.argmax(force))])
 
 
 def script_words() -> list[str]:
-    """The texts of the page's script: those in W(...)."""
+    """The texts in the page's script: those in W(...)."""
     return re.findall(r'\bW\("([^"]+)"\)', (PAGE / "page.js").read_text(encoding="utf-8"))
 
 
 def time_line(columns: dict[str, np.ndarray], run: Run) -> dict:
-    """What the page's time line shows: the film's thickness from 0 or below, or the size of the pin's force. Its extremes are those of
-    the summary, which knows what happens between two rows."""
+    """The curve of the page's time line: the film thickness from 0 or below, or the magnitude of the pin's force. Its extremes are
+    those of the summary, which include the values between two rows."""
 
     def of_summary(name: str, otherwise: float) -> float:
         try:
@@ -488,7 +489,7 @@ def time_line(columns: dict[str, np.ndarray], run: Run) -> dict:
 
 
 def crank_pin_of(run: Run, columns: dict[str, np.ndarray]) -> dict[str, float] | None:
-    """Clearance of a loose crank pin [m] and its largest eccentricity over it; None: it has none."""
+    """Clearance of the crank pin [m] and its largest eccentricity over the clearance; None if the crank pin has no clearance."""
     if "crank_pin_eccentricity_x" not in columns:
         return None
     clearance = float(run.parameter("crank_pin.joint", "clearance", 0.0))
@@ -504,7 +505,7 @@ def bore_of(run: Run) -> dict[str, object]:
 
 
 def drawn_bearing_radius(run: Run) -> float:
-    """The bearing's radius [m], or one that looks well where the case has none."""
+    """The bearing's radius [m], or a radius that suits the picture if the case gives none."""
     return float(run.parameter("joint", "bearing_radius", 0) or 0) or 0.2 * float(
         run.parameter("mechanism", "crank_length")
     )

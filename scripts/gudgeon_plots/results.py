@@ -19,7 +19,7 @@ COLUMN = re.compile(r"^(?P<name>\w+)\[(?P<unit>.*)\]$")
 
 
 class MissingResult(Exception):
-    """A result that is not there and cannot be made."""
+    """Raised for a result that does not exist and cannot be made."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Run:
         return column in self.trace.columns
 
     def parameter(self, group: str, key: str, default: object = None) -> object:
-        """A value of the case as run, or the default where the case has no such model."""
+        """A value of the case as it was run, or the default if the case lacks this group."""
         return self.case.get(group, {}).get(key, default)
 
     @property
@@ -57,8 +57,8 @@ class Run:
 
     @cached_property
     def contacts(self) -> pd.DataFrame:
-        """One row a contact: begin [s], end [s], penetration [m], force [N]. One that lasts beyond the run ends with
-        it, its largest values those of the trace."""
+        """One row for each contact: begin [s], end [s], penetration [m], force [N]. A contact that lasts beyond the run ends with
+        the run; its largest values are those of the trace."""
         ends = self.events[self.events["event"] == "contact_ends"]
         found = (
             pd.DataFrame(
@@ -105,9 +105,9 @@ def read_summary(path: Path) -> dict[str, tuple[str, str]]:
 
 
 def read_case(path: Path) -> dict[str, dict[str, object]]:
-    """A NAME.resolved.nml: group -> key -> number, list of numbers, truth or text. Reads what the program writes.
+    """Reads a NAME.resolved.nml as the program writes it: group -> key -> number, list of numbers, logical or text.
 
-    A group of one joint alone has its place in front: crank_pin.joint. It is told by the group's first key."""
+    A group that belongs to one joint has a prefix, as in crank_pin.joint; the first key of the group names the joint."""
     case: dict[str, dict[str, object]] = {}
     name = ""
     for line in path.read_text(encoding="utf-8").splitlines():
@@ -127,7 +127,7 @@ def read_case(path: Path) -> dict[str, dict[str, object]]:
 
 
 def events_of(joint: str, events: pd.DataFrame) -> pd.DataFrame:
-    """Those of one joint, piston_pin or crank_pin; a table without that column has the piston pin's alone."""
+    """The events of one joint, piston_pin or crank_pin; a table without the column `joint` has those of the piston pin only."""
     if "joint" not in events:
         return events if joint == "piston_pin" else events.iloc[:0]
     return events[events["joint"] == joint].reset_index(drop=True)
@@ -149,7 +149,7 @@ def load_run(path: Path) -> Run:
     base = path.with_name(name.removesuffix(".ideal"))
     trace, units = read_table(path)
     if trace.empty:
-        raise MissingResult(f"{path}: holds no rows")
+        raise MissingResult(f"{path}: contains no rows")
     ideal = name.endswith(".ideal")
 
     def beside(suffix: str) -> Path:
@@ -166,17 +166,17 @@ def load_run(path: Path) -> Run:
 
 
 def case_files() -> dict[str, Path]:
-    """Case file of each name under cases/; cases/studies/ holds studies, and cases in base/ below it."""
+    """The case file of each name under cases/. In cases/studies/ only base/ has cases; the other files are studies."""
     return {path.stem: path for path in sorted((TOP / "cases").rglob("*.nml")) if path.parent.name != "studies"}
 
 
 class Results:
-    """The runs in a directory, made by the release build where they are missing."""
+    """The runs in a folder; missing runs are made with the release build."""
 
     def __init__(
         self, directory: Path, run_missing: bool = True, rerun: bool = False, case: Path | None = None
     ) -> None:
-        """`case` is a case file in addition to those of cases/."""
+        """`case` is a case file in addition to those in cases/."""
         self.directory = directory
         self.files = case_files() | ({case.stem: case.resolve()} if case else {})
         self.run_missing = run_missing
@@ -191,11 +191,11 @@ class Results:
         return self.path(name).exists()
 
     def settings(self, names: Iterable[str]) -> list[str]:
-        """What runs of these cases are made with: their own values."""
+        """Additional settings for the runs of these cases: none."""
         return []
 
     def make(self, names: Iterable[str]) -> None:
-        """Run the cases among `names` (a twin's name stands for its case) that have no result."""
+        """Run the cases among `names` that have no result. The name of an ideal joint's run stands for its case."""
         wanted = {name.removesuffix(".ideal") for name in names if self.rerun or not self.path(name).exists()}
         if not wanted:
             return
@@ -222,8 +222,8 @@ class Results:
 
 
 class FineResults(Results):
-    """The same runs with the rows that a picture of contacts needs: those in which the pin touches are made again with ten times the
-    cases' samples, and the columns of figures alone, in a folder of their own; the others are the cases' own. Samples do not change
+    """The same runs with the rows that a picture of contacts needs. Runs with contact are made again with ten times the samples
+    of the case, with the columns of the figures only, in a separate folder; other runs are the cases' own. Samples do not change
     the motion."""
 
     SAMPLES = 7200
@@ -250,7 +250,7 @@ class FineResults(Results):
         super().make(name for name in names if self.own.has(name) and self.touches(name))
 
     def touches(self, name: str) -> bool:
-        """Whether the pin touches its bearing in a run."""
+        """Whether the pin is in contact at any time of a run."""
         return not self.own[name].contacts.empty
 
     def __getitem__(self, name: str) -> Run:
@@ -258,7 +258,7 @@ class FineResults(Results):
 
 
 class ManyCycles(Results):
-    """The same cases run on for hundreds of revolutions, with eight rows in each, at equal crank angles."""
+    """The same cases over hundreds of revolutions, with eight rows in each at equal crank angles."""
 
     REVOLUTIONS = 200
     SAMPLES = 8
@@ -277,13 +277,13 @@ class ManyCycles(Results):
 
 
 class WindowResults(Results):
-    """The same cases run on, so that a window of later revolutions can be shown: traces of that window alone, in a folder
-    of their own below the cases' own results."""
+    """The same cases over more revolutions, so that a later window can be shown: traces of that window only, in a separate folder
+    below the results of the cases."""
 
-    #: Rows in a revolution: a contact of a millisecond's hundredth still has several.
+    #: Rows in a revolution: a contact of a hundredth of a millisecond still has several rows.
     SAMPLES = 3600
-    #: Relative tolerance. At the cases' own 1e-6 impacts on the way decide how far a run has settled by then: friction 0.1 repeats
-    #: within 2e-5 to 4e-2 m/s, depending on the tolerance's last digits; from 1e-7 on within 6e-5 to 8e-5 m/s at any.
+    #: Relative tolerance. At the cases' own 1e-6 the last digits of the tolerance determine how far a run with friction 0.1 has
+    #: settled by then: it repeats within 2e-5 to 4e-2 m/s. At 1e-7 and below it repeats within 6e-5 to 8e-5 m/s.
     TOLERANCE = 1e-8
 
     def __init__(self, own: Results, window: tuple[int, int]) -> None:
@@ -293,7 +293,7 @@ class WindowResults(Results):
         self.window = window
 
     def settings(self, names: Iterable[str]) -> list[str]:
-        """Raises MissingResult where the cases' speeds differ, which makes the window's time a different one for each."""
+        """Raises MissingResult if the speeds of the cases differ, because the window then has a different time in each."""
         self.own.make(names)
         speeds = {abs(float(self.own[name].parameter("initial", "crank_speed"))) for name in names}
         if len(speeds) != 1:

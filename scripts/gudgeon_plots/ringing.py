@@ -1,26 +1,27 @@
-"""Curves that ring faster than a picture's width can show: their envelope with the mean of it, and a zoom on some of the oscillations."""
+"""Curves that oscillate faster than the width of a picture can show: their envelope with its mean, and a zoom on some
+oscillations."""
 
 from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
 
-#: Stretches of the abscissa that an envelope is made of: some dots of a printed panel each.
+#: Number of stretches of the abscissa in an envelope; each is some dots wide in a printed panel.
 STRETCHES = 150
 
-#: A stretch rings if the curve turns at least so often in it and covers at least this share of the curve's range.
+#: A stretch rings if the curve turns at least this often in it and covers at least this share of the curve's range.
 LEAST_TURNS, LEAST_SHARE = 2, 0.1
 
-#: A curve rings if this share of its stretches does.
+#: A curve rings if at least this share of its stretches rings.
 RINGING_SHARE = 0.08
 
-#: Oscillations that a zoom shows.
+#: Number of oscillations that a zoom shows.
 SHOWN_OSCILLATIONS = 12
 
 
 @dataclass(frozen=True)
 class Envelope:
-    """Least, largest and mean value of a curve in stretches of equal length of its abscissa, and how often it turns in each."""
+    """Smallest, largest and mean value of a curve in stretches of the abscissa of equal length, and how often it turns in each."""
 
     x: np.ndarray
     low: np.ndarray
@@ -32,13 +33,13 @@ class Envelope:
     def rings(self) -> np.ndarray:
         """Whether each stretch rings."""
         span = np.nanmax(self.high) - np.nanmin(self.low)
-        # a far peak elsewhere hides no ringing: the usual width of a stretch counts as well
+        # a far peak elsewhere must not hide ringing, so the median width of a stretch is used as well
         usual = np.nanmedian(self.high) - np.nanmedian(self.low)
         return (self.turns >= LEAST_TURNS) & (self.high - self.low > LEAST_SHARE * min(span, 10 * max(usual, span / 10)))
 
 
 def envelope(x: np.ndarray, y: np.ndarray, stretches: int = STRETCHES) -> Envelope:
-    """The mean is over x, by the trapezoidal rule, so that a stretch with many rows where little happens is not weighed more."""
+    """The mean is over x, by the trapezoidal rule, so that a stretch with many close rows has no more weight than others."""
     bounds = np.linspace(x[0], x[-1], stretches + 1)
     place = np.clip(np.searchsorted(bounds, x, side="right") - 1, 0, stretches - 1)
     low, high = np.full(stretches, np.inf), np.full(stretches, -np.inf)
@@ -54,21 +55,22 @@ def envelope(x: np.ndarray, y: np.ndarray, stretches: int = STRETCHES) -> Envelo
 
 
 def rings(x: np.ndarray, y: np.ndarray) -> bool:
-    """Whether a picture of the whole curve would be a filled band."""
+    """Whether a picture of the whole curve would show a filled band."""
     if len(x) < 4 * STRETCHES:
         return False
     return bool(np.mean(envelope(x, y).rings) > RINGING_SHARE)
 
 
 def draw_envelope(axis: Axes, x: np.ndarray, y: np.ndarray, colour: str) -> None:
-    """The band between least and largest value light, the mean dark."""
+    """Draw the band between smallest and largest value light, and the mean dark."""
     found = envelope(x, y)
     axis.fill_between(found.x, found.low, found.high, color=colour, alpha=0.4, linewidth=0, label="range of the ringing")
     axis.plot(found.x, found.mean, color=colour, label="mean of the ringing")
 
 
 def zoom_window(x: np.ndarray, y: np.ndarray, reference: np.ndarray, after: float) -> tuple[float, float]:
-    """Bounds in x round the beginning of the largest ringing about the reference after a place, for some of its oscillations."""
+    """Bounds in x of a zoom on some oscillations, around the beginning of the largest ringing about the reference beyond x =
+    after."""
     found = envelope(x, y)
     later = found.x > after
     width = np.where(later & found.rings, found.high - found.low, 0.0)

@@ -1,4 +1,4 @@
-"""Global sensitivity of a study's results to its parameters, by SALib: Morris' elementary effects, Sobol's indices."""
+"""Global sensitivity of a study's results to its parameters, computed by SALib: elementary effects of Morris, indices of Sobol."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,13 +19,13 @@ from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, WID
 
 METHODS = ("morris", "sobol")
 
-#: Levels of Morris' grid.
+#: Number of levels of Morris's grid.
 LEVELS = 4
 
-#: Of every interval given.
+#: Confidence level of all intervals.
 CONFIDENCE = 0.95
 
-#: Resamples of the bootstrap that gives the intervals.
+#: Number of resamples of the bootstrap that gives the intervals.
 RESAMPLES = 500
 
 #: Colour and mark of each parameter in the order of the study.
@@ -56,7 +56,7 @@ class Output:
         return "decades" if self.log else runs.units[self.column]
 
     def values(self, runs: Runs) -> np.ndarray:
-        """NaN where the run failed or has no such value."""
+        """The values; NaN where the run failed or has no such value."""
         values = np.where(runs.done, pd.to_numeric(runs.table[self.column], errors="coerce"), np.nan).astype(float)
         if not self.log:
             return values
@@ -86,7 +86,7 @@ class Indices:
 
 
 def problem(parameters: Sequence[Parameter]) -> dict[str, object]:
-    """As SALib wants it."""
+    """The parameters in the form that SALib expects."""
     return {
         "num_vars": len(parameters),
         "names": [parameter.key for parameter in parameters],
@@ -95,19 +95,19 @@ def problem(parameters: Sequence[Parameter]) -> dict[str, object]:
 
 
 def sample(method: str, parameters: Sequence[Parameter], points: int, seed: int) -> np.ndarray:
-    """Rows of the sampled space: `points` trajectories of Morris, or base points of Saltelli's scheme."""
+    """Rows of the sampled space: `points` trajectories of Morris, or base points of Saltelli's scheme with their exchanges."""
     if method == "morris":
         return morris_sample.sample(problem(parameters), points, num_levels=LEVELS, seed=seed)
     return sobol_sample.sample(problem(parameters), points, calc_second_order=False, seed=seed)
 
 
 def block(method: str, parameters: int) -> int:
-    """Number of rows that belong together: a trajectory, or a base point with its exchanges."""
+    """Number of rows that belong together: those of a trajectory, or of a base point with its exchanges."""
     return parameters + (1 if method == "morris" else 2)
 
 
 def values(parameters: Sequence[Parameter], sampled: np.ndarray) -> np.ndarray:
-    """Of the case, for rows of the sampled space."""
+    """Values of the case's keys for rows of the sampled space."""
     return np.column_stack([p.value(column) for p, column in zip(parameters, sampled.T)])
 
 
@@ -119,8 +119,9 @@ def analyse(
     output: tuple[str, str],
     seed: int,
 ) -> Indices:
-    """Indices of a result (`output`: its name and unit) with their confidence intervals. A block with a result that is
-    not finite is left out whole: the others are still a sample of the same scheme, of what runs to its end."""
+    """Indices of a result (`output`: its name and unit) with their confidence intervals. A block that contains a value that is not
+    finite is left out as a whole; the remaining blocks are still a sample of the same scheme, restricted to runs that reach their
+    end."""
     size = block(method, len(parameters))
     whole = np.isfinite(result.reshape(-1, size)).all(axis=1)
     kept = np.repeat(whole, size)
@@ -144,7 +145,7 @@ def analyse(
 
 
 def prefixes(method: str, parameters: int, rows: int) -> list[int]:
-    """Rows of a quarter, a half and all of the sample."""
+    """Numbers of rows in a quarter, a half and all of the sample."""
     size = block(method, parameters)
     points = rows // size
     return [size * n for n in sorted({max(points // 4, 2), max(points // 2, 2), points})]
@@ -171,12 +172,12 @@ def records(found: Indices) -> list[dict[str, object]]:
 
 
 def describe(found: Indices) -> str:
-    """One sentence or three."""
+    """One to three sentences about the result."""
     left_out = f", {found.left_out} left out for runs without a value" if found.left_out else ""
     what = "trajectories" if found.method == "morris" else "base points"
     head = f"{found.output}, {found.method} ({found.points} {what}{left_out}):"
     if found.points < 2:
-        return f"{head} too few are left to say anything."
+        return f"{head} too few are left for a result."
     if found.constant:
         return f"{head} {found.mean:.4g} in every run: no parameter matters within these ranges."
     index, beside = INDICES[found.method]
@@ -188,12 +189,12 @@ def describe(found: Indices) -> str:
     text = f"{head} mean {found.mean:.4g}, standard deviation {found.spread:.3g}; {index} ({beside}): {', '.join(said)}"
     nothing = [key for key, row in ranked.iterrows() if row[index] == 0]
     unclear = [key for key in ranked.index if key not in ahead.index and key not in nothing]
-    text += f"; not told from none: {', '.join(unclear)}" if unclear else ""
-    text += f"; none at all: {', '.join(nothing)}." if nothing else "."
+    text += f"; not distinguishable from no effect: {', '.join(unclear)}" if unclear else ""
+    text += f"; no effect at all: {', '.join(nothing)}." if nothing else "."
     if found.method == "sobol":
         alone = 100 * ranked["S1"].sum()
         text += f" The parameters one by one explain {np.clip(alone, 0, 100):.0f} % of the variance, "
-        text += "interaction the rest (with it, chance)." if alone < 100 else "interaction nothing that shows."
+        text += "their interaction the rest (including random errors)." if alone < 100 else "their interaction no measurable part."
     return text
 
 
@@ -216,14 +217,14 @@ def draw(found: Sequence[Indices], parameters: Sequence[Parameter], title: str) 
 
 
 def output_name(found: Indices) -> str:
-    """What a title calls a result."""
+    """Name of a result in titles."""
     column = found.output.removeprefix("log10 ")
     return of_column(column, "", np.zeros(0)).name + (", its logarithm" if found.output != column else "")
 
 
 def draw_panel(axis: plt.Axes, found: Indices, parameters: Sequence[Parameter]) -> None:
-    """Morris: scatter of a parameter's effects over their mean size, each parameter a mark. Sobol: a bar for its total index, and
-    within it a dark one for its first-order index."""
+    """Morris: standard deviation of a parameter's effects over their mean magnitude, one mark for each parameter. Sobol: a light
+    bar for its total index, and within it a dark bar for its first-order index."""
     axis.set_title(f"{output_name(found)}: {'Morris' if found.method == 'morris' else 'Sobol'}")
     if found.constant:
         text = "no value" if np.isnan(found.mean) else f"{found.mean:.3g} in every run"
@@ -236,7 +237,8 @@ def draw_panel(axis: plt.Axes, found: Indices, parameters: Sequence[Parameter]) 
 
 
 def draw_morris(axis: plt.Axes, found: Indices, names: Sequence[str]) -> None:
-    """The plane of mu* and sigma of the effect of going through the whole range: to the right matters, above the line sigma = mu* acts together with others or out of proportion."""
+    """The plane of mu* and sigma, for the effect of a change over the whole range of a parameter. Parameters far to the right have
+    a large effect; those above the line sigma = mu* interact with others or act nonlinearly."""
     unit, factor = prefixed(found.unit, found.table["mu_star"].to_numpy())
     size, scatter = factor * found.table["mu_star"], factor * found.table["sigma"]
     error = factor * found.table["mu_star_conf"]

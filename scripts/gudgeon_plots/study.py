@@ -1,4 +1,4 @@
-"""Parameter studies: their files, their sweeps, their results."""
+"""Parameter studies: their files, their runs, their results."""
 
 import re
 import subprocess
@@ -16,7 +16,7 @@ from .results import MissingResult, read_table
 
 @dataclass(frozen=True)
 class Parameter:
-    """A key of the case, from one value to another, evenly in its logarithm where `log`."""
+    """A key of the case that varies between two values, evenly in its logarithm if `log`."""
 
     key: str
     low: float
@@ -25,11 +25,11 @@ class Parameter:
 
     @property
     def bounds(self) -> list[float]:
-        """In the space that is sampled."""
+        """Bounds in the sampled space."""
         return [float(value) for value in np.log([self.low, self.high])] if self.log else [self.low, self.high]
 
     def value(self, sampled: np.ndarray) -> np.ndarray:
-        """Of the case, from that of the sampled space, rounding kept within the range."""
+        """Value of the key for a value of the sampled space; rounding cannot bring it outside the range."""
         return np.clip(np.exp(sampled) if self.log else sampled, self.low, self.high)
 
 
@@ -51,7 +51,7 @@ class Study:
 
 
 def read_study(path: Path) -> Study:
-    """The study in a file, its parameters given as ranges."""
+    """Read the study in a file; its parameters must be given as ranges."""
     if not path.is_file():
         raise MissingResult(f"{path}: no such file")
     groups = f90nml.read(path)
@@ -70,8 +70,8 @@ def read_study(path: Path) -> Study:
 
 
 def write_table_study(study: Study, values: np.ndarray, directory: Path, name: str, title: str) -> Path:
-    """The study with one run for each row of `values`, columns in the order of its parameters: NAME.nml and its table
-    NAME.csv; the path of the first."""
+    """Write a study with one run for each row of `values`, columns in the order of the parameters, to NAME.nml and its table
+    NAME.csv. Returns the path of NAME.nml."""
     directory.mkdir(parents=True, exist_ok=True)
     table = pd.DataFrame(values, columns=[parameter.key for parameter in study.parameters])
     table.to_csv(directory / f"{name}.csv", index=False, lineterminator="\n", float_format="%.12e")
@@ -82,7 +82,7 @@ def write_table_study(study: Study, values: np.ndarray, directory: Path, name: s
 
 
 def sweep(program: Path, study: Path, out: Path, options: Sequence[str] = ()) -> "Runs":
-    """Run a study with gudgeon; failed runs have the reason in their rows."""
+    """Run a study with gudgeon; failed runs state the reason in their rows."""
     outcome = subprocess.run([program, "sweep", "--quiet", "-o", out, *options, study], check=False)
     if outcome.returncode not in (0, 4):
         raise MissingResult(f"{study}: gudgeon sweep ended with status {outcome.returncode}")
@@ -91,7 +91,7 @@ def sweep(program: Path, study: Path, out: Path, options: Sequence[str] = ()) ->
 
 @dataclass(frozen=True)
 class Runs:
-    """The results of a study, NAME.runs.csv: a row a run, columns by name without unit."""
+    """The results of a study, NAME.runs.csv: one row for each run, columns by name without unit."""
 
     table: pd.DataFrame
     units: dict[str, str]
@@ -104,7 +104,7 @@ class Runs:
         for name in table.select_dtypes(exclude="number").columns:
             table[name] = table[name].map(_as_written)
         if list(table["run"]) != list(range(1, len(table) + 1)):
-            raise MissingResult(f"{path}: runs are missing; the same sweep goes on from there")
+            raise MissingResult(f"{path}: runs are missing; the same command of gudgeon sweep continues it")
         return cls(table, units)
 
     @property
@@ -115,7 +115,7 @@ class Runs:
         return self.table[column].to_numpy()
 
     def failures(self) -> dict[str, int]:
-        """How many runs failed for each reason."""
+        """The number of runs that failed for each reason."""
         return self.table.loc[~self.done, "status"].value_counts().to_dict()
 
 
@@ -125,6 +125,6 @@ def _as_written(cell: object) -> object:
 
 
 def warn_of_failures(name: str, runs: Runs) -> None:
-    """A line on standard error for each reason for which runs failed."""
+    """Print a line on standard error for each reason for which runs failed."""
     for reason, count in runs.failures().items():
         print(f"{name}: {count} of {len(runs.table)} runs failed: {reason}", file=sys.stderr)

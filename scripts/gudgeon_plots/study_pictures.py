@@ -1,4 +1,4 @@
-"""Pictures of parameter studies: curves, maps, bifurcation diagrams, and their numbers."""
+"""Pictures of parameter studies: curves, maps and bifurcation diagrams, and their numbers."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -19,19 +19,19 @@ from .results import MissingResult, events_of, read_table
 from .study import Runs
 from .style import BLACK, BLUE, GREEN, GREY, VERMILION, WIDTH, mark_decades
 
-#: Ratio of largest to smallest value above which a scale is logarithmic.
+#: From this ratio of largest to smallest value on, a scale is logarithmic.
 WIDE_RATIO = 30.0
 
-#: Colours of a map reach over these percentiles of its values where they leave less than this share of the whole range.
+#: The colours of a map cover these percentiles of its values if the percentiles cover less than this share of the whole range.
 OUTER_PERCENTILES, KEPT_RANGE = (1, 99), 0.75
 
-#: Strobed points that differ by less than this share of the clearance are one point.
+#: Strobed points that differ by less than this share of the clearance count as one point.
 SAME_POINT = 2e-3
 
-#: Longest period that is looked for [revolutions].
+#: Longest period that is searched for [revolutions].
 LONGEST_PERIOD = 8
 
-#: Impacts at more than this share of the fastest of a run: slower ones are those that the load presses on.
+#: Impacts count if they are faster than this share of the fastest in the run; slower ones are influenced by the load on the pin.
 HARD_IMPACT = 0.5
 
 
@@ -43,7 +43,7 @@ def grid(runs: Runs, x: str, y: str, column: str) -> tuple[np.ndarray, np.ndarra
 
 
 def mark_failed(axis: Axes, runs: Runs, x: str, y: str, scale: tuple[float, float] = (1.0, 1.0)) -> None:
-    """Crosses where runs failed."""
+    """Draw crosses where runs failed."""
     if not runs.done.all():
         failed = runs.table[~runs.done]
         axis.plot(scale[0] * failed[x], scale[1] * failed[y], "x", color=VERMILION, markersize=4, label="failed")
@@ -59,21 +59,21 @@ def is_even_in_logarithm(values: np.ndarray) -> bool:
 
 
 def scale_axis(axis: Axes, which: str, values: np.ndarray) -> None:
-    """A logarithmic axis for values that are even in their logarithm."""
+    """Make an axis logarithmic if its values are spaced evenly in their logarithm."""
     if is_even_in_logarithm(values):
         getattr(axis, f"set_{which}scale")("log")
         mark_decades(getattr(axis, f"{which}axis"))
 
 
 def spans_decades(values: np.ndarray) -> bool:
-    """Whether values need a logarithmic scale."""
+    """Whether the range of values needs a logarithmic scale."""
     finite = values[np.isfinite(values)]
     return bool(finite.size and finite.min() > 0 and finite.max() > WIDE_RATIO * finite.min())
 
 
 def colour_scale(values: np.ndarray) -> tuple[Normalize, str]:
-    """Range of colours for the values of a map, and at which ends values lie beyond it ("neither", "min", "max" or "both"): a few
-    far ones do not take the colours from all others."""
+    """Range of colours for the values of a map, and the ends at which values lie beyond it ("neither", "min", "max" or "both").
+    Outliers are left out of the range, so that the other values can be distinguished."""
     finite = values[np.isfinite(values)]
     as_log = spans_decades(finite)
     bend = np.log if as_log else np.asarray
@@ -99,7 +99,7 @@ def is_grid(runs: Runs, x: str, y: str) -> bool:
 
 
 def map_panel(drawing: Drawing, axis: Axes, runs: Runs, x: str, y: str, column: str) -> None:
-    """A column of a study over its two parameters, the colour bar below."""
+    """A column of a study over its two parameters, with the colour bar below."""
     xs, ys, values = grid(runs, x, y, column)
     shown_x, shown_y = of_parameter(x, xs), of_parameter(y, ys)
     shown = of_column(column, runs.units[column], values)
@@ -162,7 +162,7 @@ def describe_maps(studies: dict[str, Runs]) -> list[str]:
 
 
 def read_strobe(path: Path, runs: Runs) -> pd.DataFrame:
-    """NAME.strobe.csv, with the parameters of the run of each point."""
+    """NAME.strobe.csv, with the parameters of its run at each point."""
     if not path.exists():
         raise MissingResult(f"no result {path}")
     strobe, units = read_table(path)
@@ -174,8 +174,8 @@ def read_strobe(path: Path, runs: Runs) -> pd.DataFrame:
 
 
 def period(points: np.ndarray, tolerance: float) -> int:
-    """Revolutions after which a sequence of points (rows) repeats within a tolerance; 0 if not within the longest
-    period looked for, or if there are not two of it."""
+    """Number of revolutions after which a sequence of points (rows) repeats within a tolerance; 0 if it does not within the longest
+    period that is searched for, or if the sequence is shorter than two periods."""
     for length in range(1, min(LONGEST_PERIOD, len(points) // 2) + 1):
         if np.abs(points[length:] - points[:-length]).max() <= tolerance:
             return length
@@ -183,7 +183,7 @@ def period(points: np.ndarray, tolerance: float) -> int:
 
 
 def periods(strobe: pd.DataFrame, parameter: str) -> pd.Series:
-    """Of each run, by the value of its parameter."""
+    """The period of each run, by the value of its parameter."""
     found = {}
     for _, points in strobe.groupby("run", sort=True):
         found[points[parameter].iloc[0]] = period(points[["eccentricity_ratio_y"]].to_numpy(), SAME_POINT)
@@ -191,7 +191,8 @@ def periods(strobe: pd.DataFrame, parameter: str) -> pd.Series:
 
 
 def with_ratios(strobe: pd.DataFrame, clearance: float | None, speed: float | None) -> pd.DataFrame:
-    """Points over clearance and over the speed at which it turns; what is not a parameter is given."""
+    """The points divided by the clearance and by clearance times crank speed; a value that is not a parameter of the study is
+    passed."""
     clearance = strobe["joint.clearance"] if clearance is None else clearance
     speed = strobe["initial.crank_speed"] if speed is None else speed
     return strobe.assign(
@@ -201,7 +202,7 @@ def with_ratios(strobe: pd.DataFrame, clearance: float | None, speed: float | No
 
 
 def strobe_panel(axis: Axes, strobe: pd.DataFrame, parameter: str, column: str, repeats: np.ndarray, label: str = "") -> None:
-    """Points of a column once in a revolution over the parameter, coloured by the revolutions after which each run's repeat."""
+    """Points of a column once in a revolution over the parameter, coloured by the period of each run."""
     shown = of_parameter(parameter, strobe[parameter])
     for mask, colour, size, name in (
         (repeats == 0, BLACK, 0.5, f"does not repeat within {LONGEST_PERIOD} revolutions"),
@@ -221,7 +222,7 @@ def strobe_panel(axis: Axes, strobe: pd.DataFrame, parameter: str, column: str, 
 EXPONENT = "lyapunov_exponent"
 EXPONENT_SHOWN = 1.0
 
-#: Columns of a strobe over the clearance, or over the speed at which it turns.
+#: Columns of a strobe divided by the clearance, or by clearance times crank speed.
 RATIOS = {
     "eccentricity_ratio_y": "eccentricity across the cylinder / c",
     "velocity_ratio": "piston velocity / (c · crank speed)",
@@ -229,7 +230,7 @@ RATIOS = {
 
 
 def draw_bifurcation(strobes: dict[str, tuple[pd.DataFrame, str, str]], title: str) -> Drawing:
-    """Strobed points over a parameter: for each study its points, the parameter and what else is held."""
+    """Strobed points over a parameter; for each study its points, its parameter, and a text about the values that are constant."""
     drawing, axes = plt.subplots(
         len(RATIOS), len(strobes), figsize=(WIDTH, 0.6 + 2.4 * len(RATIOS)), sharey="row", sharex="col", squeeze=False
     )
@@ -249,14 +250,15 @@ def draw_bifurcation(strobes: dict[str, tuple[pd.DataFrame, str, str]], title: s
 def panel_of_strobes(
     axis: Axes, strobe: pd.DataFrame, parameter: str, column: str, repeats: np.ndarray, label: str
 ) -> PathCollection | None:
-    """Points of a column in the colours of the Lyapunov exponent, which are returned, or, without it, of the period."""
+    """Points of a column in the colours of the Lyapunov exponent, which are returned; without an exponent in the colours of the
+    period."""
     if EXPONENT in strobe:
         return exponent_panel(axis, strobe, parameter, column, label)
     return strobe_panel(axis, strobe, parameter, column, repeats, label)
 
 
 def explain_strobes(drawing: Drawing, axes: np.ndarray, coloured: PathCollection | None, all_coloured: bool) -> None:
-    """The colour bar of exponents, and the legend of periods."""
+    """Add the colour bar of the exponents and the legend of the periods."""
     if coloured is not None:
         label = of_column(EXPONENT, "1/revolution", [EXPONENT_SHOWN]).label
         drawing.colorbar(coloured, ax=axes, location="bottom", aspect=50, pad=0.02, extend="both").set_label(label)
@@ -265,8 +267,8 @@ def explain_strobes(drawing: Drawing, axes: np.ndarray, coloured: PathCollection
 
 
 def exponent_panel(axis: Axes, strobe: pd.DataFrame, parameter: str, column: str, label: str) -> PathCollection:
-    """Points of a column once in a revolution over the parameter, coloured by the largest Lyapunov exponent of their run: blue where
-    neighbouring motions converge, red where they diverge."""
+    """Points of a column once in a revolution over the parameter, coloured by the largest Lyapunov exponent of their run: blue if
+    neighbouring motions converge, red if they diverge."""
     shown = of_parameter(parameter, strobe[parameter])
     points = axis.scatter(
         shown.factor * strobe[parameter],
@@ -285,8 +287,8 @@ def exponent_panel(axis: Axes, strobe: pd.DataFrame, parameter: str, column: str
 
 
 def draw_strobes(strobe: pd.DataFrame, parameter: str, title: str) -> Drawing:
-    """The strobed columns of any study of one parameter. A run's points are one if all its columns agree within a share of the
-    column's range in the whole study."""
+    """The strobed columns of a study of one parameter. Points of a run count as one if all their columns agree within a share of
+    the column's range in the whole study."""
     parameters = list(strobe.columns).index(parameter)
     columns = [name for name in strobe.columns[2:parameters]]
     scaled = strobe[columns] / (strobe[columns].max() - strobe[columns].min()).replace(0, 1)
@@ -306,7 +308,8 @@ def draw_strobes(strobe: pd.DataFrame, parameter: str, title: str) -> Drawing:
 
 
 def describe_bifurcation(strobe: pd.DataFrame, name: str, parameter: str, unit: float, label: str) -> str:
-    """How many motions repeat after how many revolutions, and where the last of each kind are."""
+    """The number of runs that repeat after one revolution, after several, or not at all, and the parameter ranges where they
+    lie."""
     found = periods(strobe, parameter)
     counts = found.value_counts()
     later = counts[[n for n in counts.index if n > 1]].sum()
@@ -319,8 +322,8 @@ def describe_bifurcation(strobe: pd.DataFrame, name: str, parameter: str, unit: 
 
 
 def restitution_of_law(nominal: float) -> float:
-    """The ratio of speeds after and before an impact that nothing else acts on, by Lankarani and Nikravesh's law: with
-    F = K d^n (1 + q v/v0), q = 3 (1 - e^2)/4, the energy gives q - ln(1 + q) = -q r - ln(1 - q r) for the ratio r."""
+    """The ratio of speeds after and before an impact without other forces, by the law of Lankarani and Nikravesh: with
+    F = K d^n (1 + q v/v0), q = 3 (1 - e^2)/4, the energy balance is q - ln(1 + q) = -q r - ln(1 - q r) for the ratio r."""
     q = 0.75 * (1.0 - nominal**2)
     if q == 0.0:
         return 1.0
@@ -328,7 +331,7 @@ def restitution_of_law(nominal: float) -> float:
 
 
 def impacts(path: Path, settled_from: float) -> tuple[np.ndarray, np.ndarray]:
-    """Speeds at which the contacts of a run's events begin and end, of those that begin after a crank angle."""
+    """Speeds at which the contacts in an events file begin and end, for contacts that begin after a crank angle."""
     events = events_of("piston_pin", read_table(path)[0])
     begins = events[events["event"] == "contact_begins"].reset_index(drop=True)
     ends = events[events["event"] == "contact_ends"].reset_index(drop=True)
@@ -339,7 +342,7 @@ def impacts(path: Path, settled_from: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def measured_restitution(directory: Path, runs: Runs, settled_from: float) -> pd.DataFrame:
-    """For each run the median ratio of speeds, and its quartiles, of the hard impacts, and how many there were."""
+    """For each run the median and quartiles of the ratio of speeds in the fast impacts, and the number of these impacts."""
     rows = []
     for run, nominal in zip(runs["run"], runs["contact.restitution"]):
         before, after = impacts(directory / f"{run}.events.csv", settled_from)
@@ -383,7 +386,7 @@ def draw_restitution(runs: Runs, measured: pd.DataFrame) -> Drawing:
 
 
 def describe_restitution(runs: Runs, measured: pd.DataFrame) -> str:
-    """The numbers of the picture at a few coefficients."""
+    """The numbers of the picture for a few coefficients."""
     lines = [f"restitution: {runs.done.sum()} of {len(runs.table)} runs done; asked for: time in contact, peak force, "]
     lines[0] += "dissipated in a revolution, speed after over before hard impacts (their number; the law alone)"
     for wanted in (0.0, 0.25, 0.5, 0.75, 0.9, 1.0):
@@ -398,7 +401,7 @@ def describe_restitution(runs: Runs, measured: pd.DataFrame) -> str:
 
 
 def shown_columns(runs: Runs, columns: Sequence[str]) -> tuple[list[str], list[str]]:
-    """The columns that differ between runs, and a text for the title about the others; all columns if none differs."""
+    """The columns that differ between runs, and a text for the title about the others; if none differs, all columns."""
     varying = [column for column in columns if not is_constant(runs, column)] or list(columns)
     notes = []
     for column in columns:
@@ -416,7 +419,7 @@ def titled(drawing: Drawing, title: str, runs: Runs, notes: Sequence[str]) -> Dr
 
 
 def draw_curves(runs: Runs, parameter: str, columns: Sequence[str], title: str) -> Drawing:
-    """Columns over the one parameter of any study; crosses on the axis where runs failed."""
+    """Columns over the only parameter of a study, with crosses on the axis where runs failed."""
     columns, notes = shown_columns(runs, columns)
     drawing, axes = plt.subplots(len(columns), 1, figsize=(WIDTH, 0.5 + 1.9 * len(columns)), sharex=True, squeeze=False)
     is_number = pd.api.types.is_numeric_dtype(runs.table[parameter])
@@ -445,7 +448,7 @@ def draw_curves(runs: Runs, parameter: str, columns: Sequence[str], title: str) 
 
 
 def draw_map(runs: Runs, x: str, y: str, columns: Sequence[str], title: str) -> Drawing:
-    """Columns over the two parameters of any study."""
+    """Columns over the two parameters of a study."""
     columns, notes = shown_columns(runs, columns)
     across = min(len(columns), 2)
     rows = -(-len(columns) // across)

@@ -49,7 +49,8 @@ mpl.rcParams.update(SETTINGS)
 
 
 def mark_decades(axis: Axis) -> None:
-    """Numbers as 0.1, 1, 10 on a logarithmic axis, with 2 and 5 on less than three decades, and 1, 2, 3, 4, 6, 8 on less than one."""
+    """Label a logarithmic axis with 0.1, 1, 10; with less than three decades also at 2 and 5; with less than one at 1, 2, 3, 4, 6
+    and 8."""
     low, high = sorted(axis.get_view_interval())
     subs = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0) if high < 10 * low else (1.0, 2.0, 5.0) if high < 1e3 * low else (1.0,)
     axis.set_major_locator(LogLocator(10, subs=subs))

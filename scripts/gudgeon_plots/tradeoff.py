@@ -1,7 +1,7 @@
-"""Speed against accuracy: what settings of the integrator cost in a scene, and how far they are from a reference run.
+"""Speed against accuracy: the cost of integrator settings in a scene, and the error of each run against a reference run.
 
-Errors are taken up to the horizon: the time up to which the reference and its checks (the next tightest tolerance, the
-other method) agree within REFERENCE_AGREEMENT of each state's range. Beyond it nobody knows the motion.
+Errors are measured up to the horizon: the time up to which the reference and its checks (the next tightest tolerance, the
+other method) agree within REFERENCE_AGREEMENT of each state's range. Beyond the horizon the true motion is not known.
 """
 
 from collections.abc import Sequence
@@ -17,10 +17,10 @@ from . import compare
 from .results import Run
 from .style import BLACK, BLUE, GREEN, GREY, VERMILION, WIDTH
 
-#: Share of a state's range within which the reference's checks agree with it up to the horizon.
+#: The horizon ends where the checks differ from the reference by more than this share of a state's range.
 REFERENCE_AGREEMENT = 1e-7
 
-#: What a scene's state shows in a trace; of these, the ones that it has and that move are compared.
+#: Columns of a trace that are states of a scene; those that the scene has and that change are compared.
 STATES = (
     "crank_angle",
     "rod_angle",
@@ -38,7 +38,8 @@ MARKERS = {"adams": "o", "radau": "s", "auto": "^"}
 
 @dataclass(frozen=True)
 class Settings:
-    """What is varied. `max_penetration` [m] is 0 for contact entry root; `variant` is empty for the case's own film."""
+    """The settings that are varied. `max_penetration` [m] is 0 for contact entry root; `variant` is empty for the case's own
+    film."""
 
     variant: str
     method: str
@@ -46,11 +47,11 @@ class Settings:
     contact_entry: str
     max_penetration: float
     tolerance: float
-    points: int = 0  # of the film's quadrature; 0: chosen from the tolerance
+    points: int = 0  # points of the film's quadrature; 0: chosen from the tolerance
 
     @property
     def key(self) -> tuple:
-        """Equal for equal settings, also once they have been written and read."""
+        """Equal for equal settings, also after they have been written and read."""
         return (
             self.variant,
             self.method,
@@ -88,16 +89,16 @@ class Settings:
 
 @dataclass(frozen=True)
 class Reference:
-    """The run that others are measured against, and how well it is known itself."""
+    """The run with which others are compared, and its own accuracy."""
 
     run: Run
     horizon: float  # s
     whole: bool  # whether the horizon is the end of the run
-    error: float  # largest difference to its checks up to the horizon, in shares of the range
-    checks: tuple[Run, ...] = ()  # what it was checked by
+    error: float  # largest difference from its checks up to the horizon, relative to the range
+    checks: tuple[Run, ...] = ()  # the runs by which it is checked
 
     def known(self, agreement: float) -> float:
-        """Time [s] up to which it is known within a share of the states' ranges: the later the coarser."""
+        """Time [s] up to which the error is at most `agreement` of the states' ranges; a larger agreement gives a later time."""
         return known_until(self.run, self.checks, agreement)[0] if self.checks else self.horizon
 
 
@@ -106,7 +107,7 @@ def moving_states(run: Run) -> list[str]:
 
 
 def state_error(reference: Run, run: Run, until: float) -> float:
-    """Largest difference of any state up to a time, in shares of the state's range; infinite if the run ends before."""
+    """Largest difference of any state up to a time, relative to the state's range; infinite if the run ends before."""
     if run["time"][-1] < until * (1 - 1e-9):
         return np.inf
     found = compare.agree(reference, run, moving_states(reference), compare.AGREEMENT)
@@ -114,15 +115,16 @@ def state_error(reference: Run, run: Run, until: float) -> float:
 
 
 def known_until(reference: Run, checks: Sequence[Run], agreement: float) -> tuple[float, bool]:
-    """Time up to which all checks agree with the reference in every state, and whether that is the end."""
+    """Time up to which all checks agree with the reference in every state, and whether that is the end of the run."""
     found = [item for check in checks for item in compare.agree(reference, check, moving_states(reference), agreement)]
     end = min(item.horizon for item in found)
     return end, all(item.whole for item in found) and end >= reference["time"][-1]
 
 
 def choose_reference(tight: dict[str, Run], next_tight: dict[str, Run], horizon: float | None = None) -> Reference:
-    """Of the methods' tightest runs, the one that differs least from its own next tightest; checked by that and by the
-    other methods' tightest. `horizon` is a time [s] that is asked for; it is cut where runs end."""
+    """Choose, among the tightest runs of the methods, the one that differs least from its own next tightest run. It is checked by
+    that run and by the tightest runs of the other methods. `horizon` is a time [s] given by the user; it is limited to the end of
+    the runs."""
 
     def steadiness(method: str) -> tuple[float, float]:
         if method not in next_tight:
@@ -142,8 +144,8 @@ def choose_reference(tight: dict[str, Run], next_tight: dict[str, Run], horizon:
 
 
 def match_times(reference: Sequence[float], found: Sequence[float], until: float = np.inf) -> list[tuple[int, int]]:
-    """Pairs (index in reference, index in found) of times that are each other's nearest, and no further apart than half
-    the way from the reference's to its nearest neighbour. Reference times beyond `until` are left out."""
+    """Pairs (index in reference, index in found) of times that are mutually nearest, and closer than half the distance of the
+    reference time to its nearest neighbour. Reference times beyond `until` are left out."""
     a, b = np.asarray(reference, dtype=float), np.asarray(found, dtype=float)
     if a.size == 0 or b.size == 0:
         return []
@@ -164,8 +166,8 @@ def impact_times(run: Run) -> np.ndarray:
 
 
 def peak_force(run: Run, until: float) -> float:
-    """Largest pin force up to a time [N]: of the trace, and of the contacts that have ended, which are followed between
-    rows too."""
+    """Largest pin force up to a time [N]: of the rows, and of the contacts that have ended, whose largest force may lie between
+    rows."""
     inside = run["time"] <= until
     peaks = [np.hypot(run["pin_force_x"][inside], run["pin_force_y"][inside]).max()]
     ended = run.events[(run.events["event"] == "contact_ends") & (run.events["time"].astype(float) <= until)]
@@ -173,7 +175,7 @@ def peak_force(run: Run, until: float) -> float:
 
 
 def least_film(run: Run, until: float) -> float:
-    """Smallest film thickness up to a time [m], negative in contact; not a number with an ideal joint."""
+    """Smallest film thickness up to a time [m], negative in contact; NaN with an ideal joint."""
     if "film_thickness" not in run:
         return np.nan
     ended = run.events[(run.events["event"] == "contact_ends") & (run.events["time"].astype(float) <= until)]
@@ -181,12 +183,12 @@ def least_film(run: Run, until: float) -> float:
 
 
 def turn_statistics(run: Run, after: float) -> dict[str, float]:
-    """What a motion that nobody can follow any more is judged by, from a time on: means over whole crank revolutions."""
+    """Statistics of a chaotic motion from a time on: means over whole crank revolutions."""
     turn = np.floor(np.abs(run["crank_angle"] - run["crank_angle"][0]) / (2 * np.pi) + 1e-9)
     first = turn[np.searchsorted(run["time"], after)] + 1 if after < run["time"][-1] else turn[-1]
     inside = (turn >= first) & (turn < turn[-1] + (turn[-1] == 0))
     if inside.sum() < 2:
-        inside = run["time"] >= 0  # too short for that: all of it
+        inside = run["time"] >= 0  # the run is too short: use all of it
     time = run["time"][inside]
     force = np.hypot(run["pin_force_x"][inside], run["pin_force_y"][inside])
     impacts = impact_times(run)
@@ -201,7 +203,7 @@ def turn_statistics(run: Run, after: float) -> dict[str, float]:
 
 
 def measure(reference: Reference, run: Run) -> dict[str, float]:
-    """The errors of a run, by the columns of the table; beyond the horizon the statistics of its revolutions."""
+    """The errors of a run, by the columns of the table; beyond the horizon the differences of its statistics."""
     until = reference.horizon
     expected, found = impact_times(reference.run), impact_times(run)
     pairs = match_times(expected, found, until)
@@ -224,8 +226,8 @@ def measure(reference: Reference, run: Run) -> dict[str, float]:
 
 
 def pareto_front(cost: Sequence[float], error: Sequence[float]) -> list[int]:
-    """Indices, by rising cost, of the points that no other beats: none is at most as dear and at most as wrong. Of
-    equal points the first is kept; points that are not finite are left out."""
+    """Indices, by rising cost, of the points on the Pareto front: no other point has at most the same cost and at most the same
+    error. Of equal points the first is kept; points that are not finite are left out."""
     cost, error = np.asarray(cost, dtype=float), np.asarray(error, dtype=float)
     front: list[int] = []
     for i in np.lexsort((error, cost)):
@@ -235,7 +237,7 @@ def pareto_front(cost: Sequence[float], error: Sequence[float]) -> list[int]:
 
 
 def cheapest(table: pd.DataFrame, digits: int) -> pd.Series | None:
-    """The fastest run that has so many digits of the state right, and every impact, no more and no fewer."""
+    """The fastest run whose states are right to so many digits, and that has the same impacts as the reference."""
     good = table[
         (table["status"] == "done")
         & (table["state_error"] <= 10.0**-digits)
@@ -258,12 +260,12 @@ def settings_of(row: pd.Series) -> Settings:
 
 
 def recommendation(table: pd.DataFrame, reference: Reference, digits: Sequence[int]) -> list[str]:
-    """For each number of digits: what to use and what it costs."""
+    """For each number of digits: the recommended settings and their cost."""
     lines = []
     for count in digits:
         best = cheapest(table, count)
         if reference.error > 10.0**-count:
-            lines.append(f"for {count} digits: cannot be told, the reference itself is known to {reference.error:.1e}")
+            lines.append(f"for {count} digits: unknown, because the error of the reference itself is {reference.error:.1e}")
         elif best is None:
             lines.append(f"for {count} digits: none of these settings")
         else:
@@ -291,12 +293,13 @@ def markdown(name: str, table: pd.DataFrame, reference: Reference, digits: Seque
     return rows
 
 
-#: The accuracy levels of the command line and the share of a state's range that each is for.
+#: The accuracy levels of the command line, and the share of a state's range that each is meant for.
 LEVELS = {"draft": 1e-2, "standard": 1e-4, "reference": 1e-8}
 
 
 def level_cell(reference: Reference, run: Run, promise: float) -> str:
-    """What a level gives: the state error to the end, or the time up to which a motion with impacts is that good."""
+    """Result of an accuracy level: the state error over the whole run, or the time up to which a motion with impacts is as
+    accurate."""
     evaluations = int(run.summary["rhs_evaluations"][0])
     error = state_error(reference.run, run, reference.horizon) if moving_states(reference.run) else 0.0
     cost = f"{evaluations / 1000:.3g}k" if evaluations >= 1000 else str(evaluations)
@@ -314,7 +317,7 @@ ERRORS = (
 
 
 def draw(table: pd.DataFrame, reference: Reference, title: str) -> Drawing:
-    """Errors against evaluations, which do not depend on how busy the machine is, as times do; the Pareto fronts marked."""
+    """Errors over evaluations, which do not depend on the load of the machine as times do, with the Pareto fronts."""
     done = table[(table["status"] == "done") & np.isfinite(table["state_error"])].reset_index(drop=True)
     drawing, axes = plt.subplots(1, len(ERRORS), figsize=(WIDTH, 3.6))
     for axis, (error, label) in zip(axes, ERRORS):

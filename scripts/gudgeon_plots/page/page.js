@@ -1,10 +1,10 @@
 "use strict";
-// Unpacks the trace, moves the mechanism, draws the plots. `gudgeon` is what a test holds on to.
+// Unpacks the trace, moves the mechanism, draws the plots. Tests use the object `gudgeon`.
 (async function () {
   const COLOUR = { ink: "#1b1f23", grey: "#8a9096", blue: "#0072B2", vermilion: "#D55E00", purple: "#CC79A7",
     green: "#009E73", sky: "#56B4E9", steel: "#c8cdd2", light: "#e4e8eb" };
   const byId = (id) => document.getElementById(id);
-  let words = {}, comma = false;   // of the page's language
+  let words = {}, comma = false;   // words in the page's language
   const W = (text) => words[text] || text;
   const local = (text) => (comma ? text.replace(/(\d)\.(?=\d)/g, "$1,") : text);
   const fail = (message) => { byId("failure").hidden = false; byId("failure").textContent = message; };
@@ -39,7 +39,7 @@
   let now = begin, playing = false, before = null, row = 0, share = 0;
   const at = (name) => column[name][row] + share * (column[name][Math.min(row + 1, scene.rows - 1)] - column[name][row]);
 
-  // Forces jump: those of the nearest row, so that they belong together.
+  // Forces jump in contacts; therefore all forces are those of the nearest row.
   const nearest = () => (share > 0.5 ? Math.min(row + 1, scene.rows - 1) : row);
   const near = (name) => column[name][nearest()];
 
@@ -84,7 +84,7 @@
     g.strokeStyle = COLOUR.ink; g.lineWidth = 1; g.stroke();
   }
 
-  // An elastic rod: a bar along the deflected line, `bend` times as far from its chord as it is. Points are (x up, y right).
+  // An elastic rod: a bar along the deflection curve, magnified `bend` times. Points are (x up, y right).
   function bentBar(g, X, Y, from, to, half, bend) {
     const steps = 40, ux = to[0] - from[0], uy = to[1] - from[1], length = Math.hypot(ux, uy) || 1, left = [], right = [];
     for (let i = 0; i <= steps; i++) {
@@ -103,7 +103,7 @@
     g.strokeStyle = COLOUR.ink; g.lineWidth = 1; g.stroke();
   }
 
-  // How many times as bent as it is an elastic rod is drawn: its largest deflection as a tenth of its length.
+  // Magnification of an elastic rod's deflection: the largest deflection is drawn as a tenth of the length.
   const bending = scene.modes && scene.peak.rod_deflection > 0 ? 0.1 * scene.rod / scene.peak.rod_deflection : 0;
 
   function arrow(g, x, y, dx, dy, colour) {
@@ -119,11 +119,11 @@
     g.closePath(); g.fill();
   }
 
-  // ---- magnification: 1 ... where the clearance is drawn as 45 % of the bearing's radius, that of the bore as 20 % of the piston's
+  // ---- magnification of the clearance, from 1 to 45 % of the bearing's radius; that of the bore to 20 % of the piston's
   const largest = joint ? 0.45 * scene.bearing / scene.clearance : 1;
   const magnified = (most) => Math.pow(most, Number(byId("magnification").value));
   const magnification = () => magnified(largest);
-  const atCrankPin = () => magnified(0.2 * scene.bearing / crankPin.clearance);   // 1 ... where it is drawn as 20 % of the piston pin's bearing
+  const atCrankPin = () => magnified(0.2 * scene.bearing / crankPin.clearance);   // at most 20 % of the piston pin's bearing
   const inBore = (radius) => magnified(0.2 * radius / bore.clearance);   // of a piston drawn with this radius [m]
 
   // x is up, y to the right
@@ -135,10 +135,10 @@
     const X = (y) => width / 2 + scale * y, Y = (x) => height - scale * (x - bottom);
     const q = at("crank_angle"), piston = at("piston_position"), m = magnification();
     const px = crank * Math.cos(q), py = crank * Math.sin(q);
-    // of a piston loose in its bore: how far its axis and its pin are drawn beside the cylinder's, and its tilt
+    // for a piston with clearance in its bore: the drawn distances of its axis and its pin from the cylinder axis, and its tilt
     const n = bore ? inBore(half) : 0, gap = bore ? n * bore.clearance : 0.05 * half;
     const aside = bore ? n * at("piston_offset") : 0, tilt = bore ? drawnTilt(n) : 0, pin = bore ? aside - bore.along * tilt - bore.across : 0;
-    // of a loose crank pin: where the big end's centre is drawn, off the pin's centre by the magnified eccentricity
+    // for a crank pin with clearance: the big end's centre is drawn at the magnified eccentricity from the pin's centre
     const mc = crankPin ? atCrankPin() : 0;
     const bx = px - (crankPin ? mc * at("crank_pin_eccentricity_x") : 0), by = py - (crankPin ? mc * at("crank_pin_eccentricity_y") : 0);
     const ex = joint ? m * at("eccentricity_x") : 0, ey = (joint ? m * at("eccentricity_y") : 0) + pin;
@@ -169,7 +169,7 @@
     circle(g, X(py), Y(px), 0.45 * bearing * scale, crankPin ? COLOUR.blue : "#fff", COLOUR.ink, 1);
   }
 
-  // Lengths of arrows and heights of the pressure go with the square root: small values stay visible.
+  // Lengths of arrows and heights of the pressure are proportional to the square root, so that small values are visible.
   const rooted = (value, peak, length) => (peak > 0 ? length * Math.sqrt(Math.min(1, Math.abs(value) / peak)) : 0);
 
   function drawJoint() {
@@ -195,7 +195,7 @@
     circle(g, cx, cy, radius, "#fff", COLOUR.ink, 2);
     circle(g, pinX, pinY, radius - gap, COLOUR.steel, COLOUR.ink, 1.2);
     circle(g, cx, cy, radius, null, COLOUR.ink, 2);
-    const turn = -at("rod_angle"), mark = radius - gap;   // a line on the pin shows how it turns with the rod
+    const turn = -at("rod_angle"), mark = radius - gap;   // a line on the pin shows that it turns with the rod
     g.beginPath(); g.moveTo(pinX, pinY); g.lineTo(pinX - mark * Math.sin(turn), pinY + mark * Math.cos(turn));
     g.strokeStyle = COLOUR.grey; g.lineWidth = 1; g.stroke();
     circle(g, pinX, pinY, 2.5, COLOUR.ink);
@@ -212,14 +212,15 @@
     }
   }
 
-  // A tilt drawn as large as the gaps are, but no piston lies on its side.
+  // The tilt is magnified as much as the gaps, up to a limit.
   const drawnTilt = (n) => Math.max(-0.6, Math.min(0.6, n * at("piston_tilt")));
 
   function drawBore() {
     const { g, width, height } = prepare("bore");
     const n = inBore(bore.radius), tall = bore.top + bore.bottom;
     const scale = Math.min(0.8 * height / tall, 0.36 * width / (bore.radius + n * bore.clearance)), wall = scale * (bore.radius + n * bore.clearance);
-    const cx = width / 2, cy = height / 2, sine = n * at("piston_tilt");   // gaps are drawn n times as wide, and so is what the tilt takes of them
+    const cx = width / 2, cy = height / 2, sine = n * at("piston_tilt");   // gaps are magnified n times,
+    and so is the change of the gaps by the tilt
     const Y = (h) => cy - scale * (h - (bore.top - bore.bottom) / 2);
     const X = (h, side) => cx + scale * (side * bore.radius + n * at("piston_offset") + (h - bore.along) * sine);
     g.strokeStyle = COLOUR.ink; g.lineWidth = 2.5;
@@ -239,8 +240,8 @@
     });
   }
 
-  // The way of a pin's centre in its clearance circle: `of` is what the names of the joint's columns begin with, `most` the largest
-  // eccentricity over the clearance.
+  // The orbit of a pin's centre in its clearance circle. `of` is the prefix of the joint's columns, `most` the largest eccentricity
+  // over the clearance.
   function drawOrbit(id, of, clearance, most) {
     const { g, width, height } = prepare(id);
     const cx = width / 2, cy = height / 2, unit = 0.46 * Math.min(width, height) / Math.max(1, most);
@@ -248,7 +249,7 @@
     const x = (i) => cx + unit * column[ey][i] / clearance;
     const y = (i) => cy - unit * column[ex][i] / clearance;
     const touching = (i) => phase && phase[i] === 2;
-    const line = (from, to, strength, thick) => {   // stretches in contact in a colour of their own
+    const line = (from, to, strength, thick) => {   // parts in contact have another colour
       g.lineWidth = thick;
       g.globalAlpha = strength;
       for (let i = from; i < to;) {
@@ -271,7 +272,7 @@
       touching(nearest()) ? COLOUR.purple : COLOUR.vermilion, "#fff", 1);
   }
 
-  // ---- the time line: film thickness, or the pin's force, over all the run; contacts below
+  // ---- the time line: film thickness, or the pin's force, over the whole run, with the contacts below
   function drawTimeline() {
     const { g, width, height } = prepare("timeline");
     const curve = scene.line, values = column[curve.column], strip = scene.contacts.length ? 26 : 0, [low, high] = curve.range;
@@ -402,11 +403,11 @@
   const charts = [];
   let linking = false, marked = null;
 
-  // What the run's certificate does not reach.
+  // The part of the run beyond its certified time.
   const uncertified = scene.certified === null ? [] : [{ type: "rect", layer: "below", x0: 1e3 * scene.certified, x1: 1e3 * end,
     yref: "paper", y0: 0, y1: 1, fillcolor: "rgba(127,127,127,0.18)", line: { width: 0 } }];
 
-  function markPlots() {   // the moment shown, on the time axes; not while playing, it would be too slow
+  function markPlots() {   // mark the moment shown on the time axes; not while playing, which would be too slow
     clearTimeout(marked);
     marked = setTimeout(() => {
       for (const chart of charts.filter((c) => c.timed)) {
@@ -469,7 +470,7 @@
   document.head.append(library);
   for (const plot of scene.plots) {
     await drawPlot(plot);
-    await new Promise((done) => setTimeout(done));   // let the page answer between two plots
+    await new Promise((done) => setTimeout(done));   // let the page respond between two plots
   }
   const scrubbed = () => { if (!playing) markPlots(); };
   byId("scrub").addEventListener("change", scrubbed);
