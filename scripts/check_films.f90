@@ -1,9 +1,9 @@
-!> How close the film of finite length comes to the tables of an independent solver (data/film/phi_LD*.csv), bearing by bearing:
-!> worst relative error of the force, of the side flow and of the largest pressure up to eps = 0.99, and of the force at 0.999.
+!> Compares the film of finite length with the tables of an independent solver (data/film/phi_LD*.csv), bearing by bearing:
+!> largest relative error of the force, of the side flow and of the largest pressure up to eps = 0.99, and of the force at 0.999.
 !>
-!>     check_films                  solved in every row with 64, 128 and 192 nodes round the film: draft, standard, reference
-!>     check_films POINTS NODES     from tables of POINTS values in each direction, solved with NODES; and processor times
-!>     check_films POINTS NODES 0.75 gumbel     of one bearing and condition alone
+!>     check_films                  solve every row with 64, 128 and 192 nodes around the film: draft, standard, reference
+!>     check_films POINTS NODES     use tables of POINTS values in each direction, solved with NODES nodes; with processor times
+!>     check_films POINTS NODES 0.75 gumbel     the same for one bearing and one cavitation condition
 program check_films
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: degree

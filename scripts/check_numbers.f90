@@ -1,13 +1,13 @@
-!> Compares `number_writer` with a formatted write: check_numbers [NUMBERS] (10000000). Half of the numbers are any bits,
-!> half have ordinary magnitudes; the significant digits change from number to number. Then times both. Ends with `N passed,
-!> N failed`.
+!> Compares `number_writer` with formatted writes: check_numbers [NUMBERS] (default 10000000). Half of the numbers are random bit
+!> patterns, half have ordinary magnitudes; the number of significant digits changes from number to number. Then measures the time
+!> of both. Ends with `N passed, N failed`.
 program check_numbers
   use, intrinsic :: iso_fortran_env, only: int64, output_unit
   use gudgeon_kinds, only: dp
   use number_writer, only: number_writer_t, append_formatted, longest_number, fewest_digits, most_digits
   implicit none
   real(dp), parameter :: least_gain = 8
-  integer, parameter :: timed(4) = [9, 10, 12, 17]   !! digits
+  integer, parameter :: timed(4) = [9, 10, 12, 17]   !! numbers of digits that are timed
   integer :: n, wrong, passed, i
   real(dp) :: gain, one
   character(len=16) :: argument
@@ -56,7 +56,7 @@ contains
     end do
   end subroutine compare
 
-  !> Nanoseconds a number, in rows, the best of several rounds, and their ratio.
+  !> Time of a number [ns] by each method in whole rows, the shortest of several rounds, and the ratio of the times.
   subroutine time_both(digits, gain)
     integer, intent(in) :: digits
     real(dp), intent(out) :: gain
@@ -98,13 +98,13 @@ contains
     write (output_unit, '(i0,3(a,f0.1))') digits, ' digits: ns a number: ', fast, ', formatted write ', slow, ', ratio ', gain
   end subroutine time_both
 
-  !> A number of either sign between some 1e-13 and 1e8.
+  !> A random number of either sign between about 1e-13 and 1e8.
   pure real(dp) function ordinary(random)
     integer(int64), intent(in) :: random
     ordinary = real(random, dp)*2.0_dp**(-63)*10.0_dp**(int(ibits(random, 0, 4)) - 8)
   end function ordinary
 
-  !> The next of Marsaglia's xorshift numbers.
+  !> The next number of Marsaglia's xorshift generator.
   subroutine draw(random)
     integer(int64), intent(inout) :: random
     random = ieor(random, shiftl(random, 13))

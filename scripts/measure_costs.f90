@@ -1,10 +1,10 @@
-!> What a scene costs: a right-hand side, an accepted step of Adams without and with the figures of the summary, a row of the
-!> trace, for scenes that grow by one model at a time. Run by scripts/measure_costs.
+!> Measures the cost of a scene: of an evaluation of the right-hand side, of an accepted Adams step without and with the values for
+!> the summary, and of a row of the trace, for scenes that have one more model at a time. Run by scripts/measure_costs.
 !>
-!>     measure_costs                       a CSV table of nanoseconds: the best of many blocks, beside a pair of sine and cosine
-!>     measure_costs SCENE QUANTITY COUNT  does it COUNT times: for counting instructions
-!>     measure_costs FILE integration N    the best of N integrations of a case by method auto, nothing recorded, in milliseconds:
-!>                                         its scene, and its ideal twin if it asks for one
+!>     measure_costs                       print a CSV table of times [ns], the shortest of many blocks, and of a sine and cosine
+!>     measure_costs SCENE QUANTITY COUNT  perform it COUNT times, so that instructions can be counted
+!>     measure_costs FILE integration N    print the shortest of N integrations of a case by method auto [ms], without output:
+!>                                         of its scene, and of its ideal twin if the case asks for one
 program measure_costs
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp
@@ -60,9 +60,9 @@ program measure_costs
 
 contains
 
-  !> The scene of a name: simulation IV with what it needs and nothing else. Steps of the dry scenes are those of Flores's
-  !> benchmark with 0.5 mm, contacts and flights. Every scene integrates the work of its forces, for the energy residual;
-  !> `+quadrature` is one integral more, of the size of the joint's force.
+  !> Build the scene of a name: simulation IV with the models of the name and no others. Steps of the dry scenes are those of
+  !> Flores's benchmark with 0.5 mm clearance, in contact and in free flight. Every scene integrates the work of its forces, for the
+  !> energy residual; `+quadrature` adds one integral, of the magnitude of the joint's force.
   subroutine make(name, quantity, case, scene)
     character(len=*), intent(in) :: name, quantity
     type(case_t), intent(out) :: case
@@ -70,7 +70,7 @@ contains
     type(error_t), allocatable :: error
     character(len=*), parameter :: oscillating(2) = [character(len=40) :: 'lubrication.law=oscillating_film', &
       'lubrication.kinematic_viscosity=1.38e-5']
-    ! the size of a table costs an evaluation nothing
+    ! the size of a table does not influence the cost of an evaluation
     character(len=*), parameter :: small_table(3) = [character(len=40) :: 'lubrication.cavitation=gumbel', &
       'lubrication.table_points=17', 'lubrication.film_points=32']
     character(len=*), parameter :: friction(3) = [character(len=40) :: &
@@ -117,11 +117,12 @@ contains
     if (index(name, '+quadrature') > 0) call scene%measure_joint()
   end subroutine make
 
-  !> What makes a member of simulation IV elastic or loose. Of a rod the name ends with its transverse modes and axial shapes.
+  !> Settings that make a member of simulation IV elastic or give it clearance. The name of a rod ends with its numbers of modes and
+  !> shapes.
   function member(name) result(settings)
     character(len=*), intent(in) :: name
     character(len=40) :: settings(7)
-    settings = 'friction.transition_speed=1e-3'   ! as in every scene
+    settings = 'friction.transition_speed=1e-3'   ! the same in every scene
     if (index(name, '+rod') > 0) settings(:4) = [character(len=40) :: 'elastic_rod.section_area=426e-6', &
       'elastic_rod.section_inertia=3e-8', 'elastic_rod.transverse_modes='//name(len(name) - 2:len(name) - 2), &
       'elastic_rod.axial_shapes='//name(len(name):)]
@@ -134,7 +135,7 @@ contains
       'guide.stiffness=1e8']
   end function member
 
-  !> States along one compression stroke, the pin in the film, or touching where the scene does.
+  !> States along one compression stroke, with the pin in the film, or in contact if the scene has contact.
   subroutine make_states(name, scene, y)
     character(len=*), intent(in) :: name
     type(scene_t), intent(inout) :: scene
@@ -165,7 +166,7 @@ contains
     end do
   end subroutine make_states
 
-  !> The best of many blocks, beside as many blocks of the pair.
+  !> The shortest of many blocks, measured alternately with blocks of sines and cosines.
   subroutine measure(name, quantity)
     character(len=*), intent(in) :: name, quantity
     type(case_t) :: case
@@ -174,7 +175,7 @@ contains
     real(dp) :: ns(blocks), pair(blocks), evaluations
     integer :: i
 
-    if (name(:4) == 'free' .and. along_case(quantity)) return   ! nothing would hold the pin
+    if (name(:4) == 'free' .and. along_case(quantity)) return   ! no law would limit the motion of the pin
     call make(name, quantity, case, scene)
     if (.not. along_case(quantity)) call make_states(name, scene, y)
     evaluations = 1
@@ -195,8 +196,8 @@ contains
     print '(3a,",",f0.1,2(",",f0.2))', name, ',', quantity, minval(ns), minval(ns)/minval(pair), evaluations
   end subroutine measure
 
-  !> Evaluations of the right-hand side, independent of each other or, as in an integration, `in_turn`: each at a state that waits
-  !> for all results of the one before.
+  !> Evaluations of the right-hand side, independent of each other or, as in an integration, `in_turn`: each at a state that depends
+  !> on all results of the evaluation before.
   real(dp) function time_of_evaluations(scene, y, count, in_turn) result(ns)
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: y(:, :)
@@ -226,7 +227,7 @@ contains
     if (total > huge(total)) print *, total
   end function time_of_evaluations
 
-  !> An evaluation for the trace and the values of its row, without their conversion to text.
+  !> An evaluation for the trace, and the values of its row without their conversion to text.
   real(dp) function time_of_rows(case, scene, y, quantity, count) result(ns)
     type(case_t), intent(in) :: case
     type(scene_t), intent(in) :: scene
@@ -265,7 +266,7 @@ contains
     if (total > huge(total)) print *, total
   end function time_of_rows
 
-  !> Accepted steps of Adams along the case, from its start to its end and again, and evaluations of each: starts and events
+  !> Accepted Adams steps along the case, repeatedly from its start to its end, and the evaluations of a step; starts and events are
   !> included.
   subroutine run_steps(case, template, with_figures, count, ns, evaluations)
     type(case_t), intent(in) :: case
@@ -309,8 +310,8 @@ contains
     evaluations = evaluations/steps
   end subroutine run_steps
 
-  !> What a step spends on looking for events, the finding of those that happen included: by how much steps become longer whose
-  !> events are sought twice.
+  !> Time that a step needs for the search for events, including those that are found: the increase of a step's time if its events
+  !> are searched for twice.
   real(dp) function time_of_events(case, template, count) result(ns)
     type(case_t), intent(in) :: case
     type(scene_t), intent(in) :: template
@@ -318,7 +319,7 @@ contains
     ns = time_of_searching(case, template, count, 2) - time_of_searching(case, template, count, 1)
   end function time_of_events
 
-  !> Nanoseconds of a step as `integrate` makes it, nobody looking on, whose events are sought `searches` times.
+  !> Time of a step of `integrate` [ns] without an observer, if its events are searched for `searches` times.
   real(dp) function time_of_searching(case, template, count, searches) result(ns)
     type(case_t), intent(in) :: case
     type(scene_t), intent(in) :: template
@@ -374,13 +375,13 @@ contains
     end do
   end subroutine begin_all
 
-  !> Whether a quantity is measured along a case, else at states given to it.
+  !> Whether a quantity is measured along a case; otherwise it is measured at given states.
   pure logical function along_case(quantity)
     character(len=*), intent(in) :: quantity
     along_case = index(quantity, 'step') == 1 .or. quantity == 'events'
   end function along_case
 
-  !> Of an odd number of values.
+  !> The median of an odd number of values.
   pure real(dp) function median(values)
     intrinsic :: count
     real(dp), intent(in) :: values(:)
@@ -391,7 +392,7 @@ contains
     end do
   end function median
 
-  !> A recorder whose rows are never due.
+  !> Prepare a recorder that never has to write a row.
   subroutine prepare_recorder(case, recorder)
     type(case_t), intent(in) :: case
     type(recorder_t), intent(inout) :: recorder
@@ -426,7 +427,7 @@ contains
       ns = time_of_rows(case, scene, y, quantity, count)
     end select
   end subroutine do_once
-  !> The case file of the first argument.
+  !> Integrate the case file of the first argument, repeatedly.
   subroutine integrate_case(count)
     integer, intent(in) :: count
     character(len=500) :: path

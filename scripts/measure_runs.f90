@@ -1,6 +1,6 @@
-!> How long the runs of a study take by themselves: `measure_runs STUDY.nml [watched]` simulates them one after the other in
-!> one process, cases made beforehand, without a file, without rows; `watched` with the statistics of revolutions. Prints the
-!> runs, the evaluations and the seconds of processor and clock.
+!> Measures the time of the runs of a study alone: `measure_runs STUDY.nml [watched]` simulates them one after the other in one
+!> process. The cases are built before the measurement; there are no files and no rows. With `watched` the statistics of revolutions
+!> are computed. Prints the number of runs, the evaluations, and the seconds of processor time and of wall time.
 program measure_runs
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp
@@ -80,7 +80,7 @@ contains
       call design%get_values(run, texts)
       call base%put(texts, error)
       if (.not. allocated(error)) call base%check(error)
-      if (allocated(error)) error stop 'measure_runs: a run that cannot be'
+      if (allocated(error)) error stop 'measure_runs: a run is not valid'
       cases(run) = base%case
     end do
   end subroutine make_cases

@@ -1,4 +1,5 @@
-!> Times that several measuring programs need: a sine and a cosine, to which other times are compared, and an integration.
+!> Times that several measuring programs need: that of a sine and cosine, with which other times are compared, and of an
+!> integration.
 module measured_times
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp
@@ -15,7 +16,7 @@ module measured_times
   public :: time_of_pairs, time_of_integration, no_difference
 
   integer, parameter :: n_angles = 64
-  real(dp), parameter :: no_difference = 1e-200_dp   !! times any result: added to an angle or a state it changes nothing
+  real(dp), parameter :: no_difference = 1e-200_dp   !! a result times this is added to an angle or a state and does not change it
 
 contains
 

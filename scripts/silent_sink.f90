@@ -1,4 +1,4 @@
-!> A sink that throws everything away, for measuring what a recorder costs.
+!> A sink that discards everything, for measuring the cost of a recorder.
 module silent_sink
   use gudgeon_kinds, only: dp
   use trace_sink, only: trace_sink_t, trace_event_t

@@ -9,7 +9,7 @@ from .trace import Run
 
 
 def root(rises: Callable[[float], float], low: float, high: float) -> float:
-    """Where a function that rises is zero, by halving."""
+    """The zero of an increasing function, by bisection."""
     for _ in range(200):
         middle = (low + high) / 2
         if not low < middle < high:
@@ -23,7 +23,7 @@ def simpson(values: list[float], step: float) -> float:
 
 
 class Geometry:
-    """The elastic force by penetration, of the geometry that a case names."""
+    """The elastic force as a function of the penetration, for the geometry that a case names."""
 
     def __init__(self, run: Run) -> None:
         self.number = lambda key: run.number(f"contact.{key}")
@@ -32,7 +32,7 @@ class Geometry:
         self.give = (1 - nu1**2) / e1 + (1 - nu2**2) / e2
         self.name = run.text("contact.geometry")
         self.force: Callable[[float], float] = getattr(self, self.name)
-        self.exponent = run.number("contact.exponent", 2.0)   # how fast the force rises with the penetration, at most
+        self.exponent = run.number("contact.exponent", 2.0)   # largest exponent of the force's growth with the penetration
 
     def hertz_sphere(self, depth: float) -> float:
         """F = K d^n."""
@@ -68,7 +68,7 @@ class Geometry:
         return (0.965 * c + 0.0965) * 1e3 * self.length / (1e6 * self.give) / c * (1e3 * depth)**(factor * c**-0.005)
 
     def winkler(self, depth: float) -> float:
-        """Springs around the bore: the sum of k (depth at that angle) over the arc that touches."""
+        """Springs around the bore: the sum of k (penetration at the angle) over the arc in contact."""
         bedding, nu = self.number("bedding_modulus"), self.number("liner_poissons_ratio")
         if not bedding:
             bedding = self.number("liner_modulus") * (1 - nu) / ((1 + nu) * (1 - 2 * nu) * self.number("liner_thickness"))
@@ -78,8 +78,8 @@ class Geometry:
         return 2 * bedding * self.bore * self.length * simpson(springs, half / 128)
 
     def carried(self, half_angle: float, peak: float) -> tuple[float, float]:
-        """What an arc and its pressure in the middle carry after Persson (1964), whatever the penetration: the load x that has such an
-        arc, and the force of the pressures."""
+        """The load of a contact arc, by Persson (1964), independently of the penetration: the dimensionless load x that belongs to
+        the arc, and the force that results from the pressures with the given peak."""
         b = math.tan(half_angle / 2)
         x = 2 * b**2 * (b**2 + 1) / (2 - math.log(b**2 + 1) - 2 * b**4)
 
@@ -87,7 +87,7 @@ class Geometry:
             y, rest = math.tan(angle / 2), math.sqrt(max(0.0, b**2 - math.tan(angle / 2)**2))
             near = 2 * math.atanh(rest / math.sqrt(b**2 + 1)) / (2 * math.pi * b**2 * (b**2 + 1))
             return 2 * rest / (math.pi * math.sqrt(b**2 + 1) * (1 + y**2)) + near
-        # the angle as half_angle sin(s): the pressure ends like a root
+        # the angle is half_angle sin(s), because the pressure goes to zero like a square root
         steps = [math.pi / 2 * i / 256 for i in range(257)]
         shape = [pressure(half_angle * math.sin(s)) * math.cos(half_angle * math.sin(s)) * math.cos(s) for s in steps]
         return x, 2 * peak * self.bore * self.length * half_angle * simpson(shape, math.pi / 512) / pressure(0.0)
@@ -96,8 +96,8 @@ class Geometry:
 class Contact:
     """F = f(d) [1 + chi d'/d'_0] (Reis 2013, 4.7), d'_0 the speed at which the contact began, with the elastic force of the geometry.
 
-    The program's manual bounds it: it never pulls, the quotient of the rates is at most 100 and a slower impact counts as one
-    of the least impact speed."""
+    The program's manual limits it: the force never pulls, the quotient of the rates is at most 100, and a slower impact counts as
+    one with the least impact speed."""
 
     MOST = 100.0
     DAMPING = {
@@ -129,10 +129,10 @@ class Contact:
 
     @staticmethod
     def exact(e: float) -> float:
-        """The chi whose free impact gives back e: chi (1 + e) = ln[(1 + chi)/(1 - chi e)]."""
+        """The chi for which a free impact has the restitution e: chi (1 + e) = ln[(1 + chi)/(1 - chi e)]."""
         if 1 - e < 1e-3:
             h = 1 - e
-            return 3 / 2 * h * (1 + h)   # two terms of its series
+            return 3 / 2 * h * (1 + h)   # two terms of the series
         return root(lambda chi: math.log1p(chi) - math.log1p(-chi * e) - chi * (1 + e), (1 - e) / 2, (1 - 1e-15) / e)
 
     def force(self, depth: float, rate: float, time: float) -> float:

@@ -1,4 +1,4 @@
-"""What drives the crank, against the rows of a trace: a torque that follows from the speed, or a held speed that is run up."""
+"""The drive of the crank against the rows of a trace: a torque that depends on the speed, or a prescribed speed with a ramp."""
 from __future__ import annotations
 
 import bisect
@@ -38,7 +38,7 @@ class Drive:
 
     @staticmethod
     def end_slope(width: float, next_width: float, secant: float, next_secant: float) -> float:
-        """Of the parabola through three points, not against the first secant and not steeper than twice it."""
+        """Slope of the parabola through three points, limited to the sign of the first secant and to twice its value."""
         slope = secant + (secant - next_secant) * width / (width + next_width)
         return 0.0 if slope * secant <= 0 else math.copysign(min(abs(slope), 2 * abs(secant)), secant)
 
@@ -53,7 +53,7 @@ class Drive:
                 + width * s * (1 - s) * ((1 - s) * self.slopes[i] - s * self.slopes[i + 1]))
 
     def misses(self, row: Row, t: float) -> dict[str, tuple[float, float]]:
-        """By check, how far the row is off and what is allowed."""
+        """For each check the error of the row, and the allowed error."""
         if self.is_free:
             size = abs(self.torque) + max(map(abs, self.y), default=0.0) if self.x else abs(self.torque)
             return {"drive's torque": (abs(row.get["crank_moment"] - self.torque_at(row.turn)), 1e-12 * size)}

@@ -1,8 +1,8 @@
 """A rod that bends and stretches and a crankshaft that twists, by Lagrange's equations.
 
-The rod's points are at xi + u - sigma along the chord from pin to pin and at w across it. Its shapes' masses are integrals over the rod
-by Gauss's rule, from the shapes themselves; kinetic energy is written to the second order of the amplitudes; what the equations of
-motion ask of it, its derivatives along the motion, is found by steps into the complex plane, not by formulas.
+The points of the rod are at xi + u - sigma along the chord from pin to pin and at w across it. Mass integrals of the shapes are
+computed by Gauss's rule from the shapes themselves. The kinetic energy is of second order in the amplitudes. Its derivatives in the
+equations of motion are found by complex-step differentiation along the motion, not by formulas.
 """
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from typing import Sequence
 from .trace import Run
 
 Vector = tuple[float, float]
-STEP = 1e-40       # into the complex plane
-POINTS = 48        # of Gauss's rule
+STEP = 1e-40       # complex step of the differentiation
+POINTS = 48        # points of Gauss's rule
 
 
 def gauss(n: int) -> list[tuple[float, float]]:
-    """Points and weights on [0, 1]."""
+    """Points and weights of Gauss's rule on [0, 1]."""
     found = []
     for i in range(n):
         x = math.cos(math.pi * (i + 0.75) / (n + 0.5))
@@ -35,7 +35,8 @@ def gauss(n: int) -> list[tuple[float, float]]:
 
 
 class ElasticRod:
-    """Constants of the shapes: those across come first. A state is (A, amplitudes...), A the angle of the chord from y to x."""
+    """Constants of the shapes, transverse shapes first. A state is (A, amplitudes...), where A is the angle of the chord from y to
+    x."""
 
     def __init__(self, run: Run) -> None:
         n = run.number
@@ -88,7 +89,7 @@ class ElasticRod:
         self.damping += [2 * n("elastic_rod.axial_damping_ratio") * math.sqrt(k * self.ma[j][j]) for j, k in enumerate(pull)]
 
     def first_moment(self, shapes: Sequence) -> tuple:
-        """Of the rod about its big end, along the chord and across [kg m]."""
+        """First moment of the rod about its big end, along and across the chord [kg m]."""
         eta, a = shapes[:self.across], shapes[self.across:]
         du = sum(z * x for z, x in zip(self.z0, a))
         for x, row in zip(eta, self.p):
@@ -96,7 +97,7 @@ class ElasticRod:
         return self.mass * self.com[0] + du, self.mass * self.com[1] + sum(s * x for s, x in zip(self.s, eta))
 
     def moment_rate(self, shapes: Sequence, rates: Sequence) -> tuple:
-        """Its rate in the chord's frame."""
+        """Rate of the first moment in the frame of the chord."""
         eta, rate = shapes[:self.across], rates[:self.across]
         du = sum(z * x for z, x in zip(self.z0, rates[self.across:]))
         for x, row in zip(rate, self.p):
@@ -104,7 +105,8 @@ class ElasticRod:
         return du, sum(s * x for s, x in zip(self.s, rate))
 
     def turning(self, shapes: Sequence, rates: Sequence) -> tuple:
-        """Moment of inertia about the big end [kg m^2], angular momentum of the shapes [kg m^2/s] and twice their own kinetic energy."""
+        """Moment of inertia about the big end [kg m^2], angular momentum of the shapes [kg m^2/s], twice the shapes' own kinetic
+        energy."""
         n = self.across
         eta, a, eta_rate, a_rate = shapes[:n], shapes[n:], rates[:n], rates[n:]
         inertia = self.inertia + self.mass * (self.com[0]**2 + self.com[1]**2)
@@ -120,7 +122,7 @@ class ElasticRod:
         return inertia, momentum, twice
 
     def kinetic(self, state: Sequence, rates: Sequence, end: Sequence):
-        """Kinetic energy [J] with the big end's centre moving at `end`."""
+        """Kinetic energy [J] if the centre of the big end moves with the velocity `end`."""
         angle, shapes, turn = state[0], state[1:], rates[0]
         c, s = cmath.cos(angle), cmath.sin(angle)
         along, across = end[0] * c - end[1] * s, end[0] * s + end[1] * c
@@ -130,11 +132,11 @@ class ElasticRod:
                 + (inertia * turn / 2 + momentum) * turn + twice / 2)
 
     def energies(self, state: Sequence[float], rates: Sequence[float], end: Vector) -> tuple[float, float]:
-        """Kinetic energy, and that of its strain [J]."""
+        """Kinetic energy and strain energy [J]."""
         return self.kinetic(state, rates, end).real, sum(k * x * x for k, x in zip(self.stiffness, state[1:])) / 2
 
     def from_big_end(self, state: Sequence[float], rates: Sequence[float]) -> tuple[Vector, Vector]:
-        """Place and velocity of the centre of mass against the big end's."""
+        """Position and velocity of the centre of mass relative to the big end."""
         (u, v), (du, dv), turn = self.first_moment(state[1:]), self.moment_rate(state[1:], rates[1:]), rates[0]
         c, s = math.cos(state[0]), math.sin(state[0])
 
@@ -143,7 +145,7 @@ class ElasticRod:
         return turned(u, v), turned(du + turn * v, dv - turn * u)
 
     def chord(self, shapes: Sequence, rates: Sequence) -> tuple:
-        """From pin to pin [m], and its rate."""
+        """Length of the chord from pin to pin [m], and its rate."""
         n = self.across
         stretch, speed = (shapes[n], rates[n]) if self.along else (0.0, 0.0)
         return (self.length + stretch - sum(d * x * x for d, x in zip(self.drawn_in, shapes)) / 2,
@@ -155,12 +157,13 @@ class ElasticRod:
         return moved[1].imag / STEP
 
     def end_turn(self, end: int, turn: float, rates: Sequence[float]) -> float:
-        """Turning speed of the rod at its big end (0) or its pin (1), from x to y [rad/s]; of the chord the state's, from y to x."""
+        """Angular velocity of the rod at its big end (0) or its pin (1), from x to y [rad/s]; the state has that of the chord from
+        y to x."""
         return -turn + sum(slope * v for slope, v in zip(self.slopes[end], rates))
 
     def inertial_forces(self, state: Sequence[float], rates: Sequence[float], second: Sequence[float], end: Vector, end_second: Vector
                         ) -> list[tuple[float, float]]:
-        """d/dt dT/dz' - dT/dz of the big end's x and y, of the chord's angle and of each shape, and the size of its terms."""
+        """d/dt dT/dz' - dT/dz for x and y of the big end, the angle of the chord and each shape; and the magnitude of its terms."""
         h = 1j * STEP
         z = [x + h * v for x, v in zip(state, rates)]
         v = [x + h * a for x, a in zip(rates, second)]
@@ -168,7 +171,7 @@ class ElasticRod:
 
         def momentum_rate(lower: tuple, upper: tuple) -> tuple[float, float]:
             one, two = self.kinetic(z, *upper).imag / STEP, self.kinetic(z, *lower).imag / STEP
-            return (one - two) / 2, 1e-7 * (abs(one) + abs(two))   # T is quadratic in the rates: the difference is exact but for rounding
+            return (one - two) / 2, 1e-7 * (abs(one) + abs(two))   # T is quadratic in the rates, so the difference is exact except for rounding
 
         found = [momentum_rate((v, (c[0] - (k == 0), c[1] - (k == 1))), (v, (c[0] + (k == 0), c[1] + (k == 1)))) for k in (0, 1)]
         for k in range(len(state)):
@@ -179,8 +182,8 @@ class ElasticRod:
 
     def applied(self, state: Sequence[float], rates: Sequence[float], weight: Vector, big_end: tuple[Vector, float], pin: tuple[Vector, float]
                 ) -> list[list[float]]:
-        """Terms of the generalised forces of the same coordinates: of the weight's acceleration, the force and moment at the big end and
-        those at the pin, stiffness and damping. Virtual work at the displaced pin and centre of mass."""
+        """Terms of the generalized forces of the same coordinates: weight, force and moment at the big end, force and moment at the
+        pin, stiffness and damping; from the virtual work at the displaced pin and centre of mass."""
         shapes = state[1:]
         found = [[self.mass * weight[k], big_end[0][k], pin[0][k]] for k in (0, 1)]
         for k in range(len(state)):
@@ -201,7 +204,7 @@ class ElasticRod:
 
 
 def requested_columns(run: Run) -> dict[str, str]:
-    """The setting that makes a trace show what the judge needs of elastic members beyond the standard columns."""
+    """The setting that adds to the trace the columns of elastic members that the judge needs."""
     names = []
     if "elastic_rod.section_area" in run.case:
         names += [f"{name}_{what}" for name in ElasticRod(run).names for what in ("rate", "acceleration")]

@@ -1,4 +1,4 @@
-"""The balance of energy of a run, and whether its speeds and positions are the integrals of its accelerations and speeds."""
+"""The energy balance of a run, and whether its speeds and positions are the integrals of its accelerations and speeds."""
 from __future__ import annotations
 
 import bisect
@@ -10,29 +10,31 @@ from .quadrature import Stencil, integral, stencils
 from .rows import CONTACT, LEAST_BEND, RowChecks
 from .trace import Run
 
-BLURRED = 1e-2   # of a size: rows between which a force changes beyond measure tell nothing of integrals
-SAFETY = 4.0   # the difference of two quadratures bounds the error of the better one where the rows resolve the motion; where
-#                they hardly do, four times that
+BLURRED = 1e-2   # of a size: if the quadrature error exceeds this, the rows are too far apart to judge integrals
+SAFETY = 4.0   # the difference of two quadratures bounds the error of the better one if the rows resolve the motion; if
+#                they hardly do, four times the difference
 
 
 @dataclasses.dataclass
 class Balances:
-    """Largest residuals, in shares of the sizes of what is balanced: as found, and beyond the bound of the quadrature."""
+    """Largest residuals relative to the sizes of the balanced quantities: as found, and beyond the error bound of the
+    quadrature."""
 
     plain: float         # energy - its first value - work, over the energy scale
-    residual: float      # the same beyond the bound
-    bound: float         # of the quadrature, in the same scale
-    differs: float       # from the column energy_residual, over the energy scale
-    claimed: float       # the largest of that column, over the energy scale
-    drift: float         # the worst speed or position against the integral of its rate
+    residual: float      # the same, minus the bound
+    bound: float         # error bound of the quadrature, in the same scale
+    differs: float       # largest difference from the column energy_residual, over the energy scale
+    claimed: float       # largest value of that column, over the energy scale
+    drift: float         # largest error of a speed or position against the integral of its rate
     drift_bound: float
-    time: float          # of the largest residual [s]
-    worst: str = ""      # which speed or position
+    time: float          # time of the largest residual [s]
+    worst: str = ""      # name of that speed or position
     scale: float = 0.0   # [J]
 
 
 def phase_key(checks: RowChecks, i: int) -> tuple[float, int, tuple[int, bool], tuple[bool, bool]]:
-    """Phase of a joint in a row, number of its contact, side of its friction, and of the kinks of a film that gives way to it."""
+    """Phase of a joint in a row, number of its contact, side of its friction, and sides of the kinks of a film in transition to
+    contact."""
     columns = checks.run.columns
     phase = columns["phase"][i] if "phase" in columns else 0
     if phase != CONTACT:
@@ -50,7 +52,8 @@ def gas_part(checks: RowChecks, i: int) -> int:
 
 
 def pieces_of(checks: RowChecks, run: Run) -> list[list[int]]:
-    """Runs of rows within which nothing jumps: same phase, same contact, same part of the gas cycle, same side of the friction."""
+    """Pieces of rows within which nothing jumps: same phase, same contact, same part of the gas cycle, same side of the
+    friction."""
     begins = checks.guide.begins if checks.guide else []
     keys = [(phase_key(checks, i), phase_key(checks.crank_pin, i) if checks.crank_pin else None, gas_part(checks, i),
              checks.guide.side(checks.row(i), i, begins, run.times[i]) if checks.guide else None) for i in range(len(run.times))]
@@ -64,8 +67,8 @@ def pieces_of(checks: RowChecks, run: Run) -> list[list[int]]:
 
 
 def sizes(run: Run) -> dict[str, float]:
-    """What speeds and positions are measured against where they are next to nothing: of the pin one clearance, of the crank one
-    radian, in the time that one radian takes; of a crank at rest, in the time simulated."""
+    """Sizes that errors of speeds and positions are divided by when the values are nearly zero: for the pin one clearance, for the
+    crank one radian, in the time of one radian; if the crank is at rest, in the simulated time."""
     span = max(run.times[-1] - run.times[0], 1e-300)
     speed = max(max(map(abs, run.columns["crank_speed"])), 1 / span)
     way = run.number("joint.clearance") or run.number("mechanism.crank_length")
@@ -76,7 +79,7 @@ def sizes(run: Run) -> dict[str, float]:
 
 
 def bore_sizes(run: Run, speed: float) -> dict[str, float]:
-    """Those of a piston loose in its bore."""
+    """The same sizes for a piston with clearance in its bore."""
     if not run.has_loose_guide:
         return {}
     way = run.number("guide.bore_clearance")
@@ -85,7 +88,7 @@ def bore_sizes(run: Run, speed: float) -> dict[str, float]:
 
 
 def elastic_sizes(run: Run, speed: float) -> dict[str, float]:
-    """Those of elastic members: what the shapes of one kind are at most, for each of them."""
+    """The same sizes for elastic members: for each shape the largest value of all shapes of its kind."""
     found = {"crankshaft_twist": 1.0, "flywheel_speed": speed}
     for what in ("", "_rate"):
         for kind in (("rod_mode",), ("rod_stretch", "rod_axial")):
@@ -96,14 +99,14 @@ def elastic_sizes(run: Run, speed: float) -> dict[str, float]:
 
 
 def worst_drift(run: Run, rates: dict[str, str], stencil: list[list[Stencil]]) -> tuple[float, float, str]:
-    """The largest of |value - first - integral of its rate| less its bound, over the value's size; that bound, and the name. Values
-    whose integral is not known to a hundredth of their size are left out."""
+    """The largest of |value - first - integral of its rate| minus its bound, divided by the value's size; that bound, and the name.
+    Values whose integral is not known to a hundredth of their size are left out."""
     worst = (0.0, 0.0, "")
     least = sizes(run)
     for name, rate in rates.items():
         values, found = run.columns[name], integral(run.columns[rate], stencil)
         size = max(least[name], *map(abs, values), abs(found.value[-1]))
-        if SAFETY * max(found.bound) > BLURRED * size:   # contacts shorter than the rows are apart
+        if SAFETY * max(found.bound) > BLURRED * size:   # contacts shorter than the distance of the rows
             continue
         for value, by_rate, bound in zip(values, found.value, found.bound):
             beyond = (abs(value - values[0] - by_rate) - SAFETY * bound) / size
@@ -113,9 +116,9 @@ def worst_drift(run: Run, rates: dict[str, str], stencil: list[list[Stencil]]) -
 
 
 def bristle_drift(checks: RowChecks, pieces: list[list[int]]) -> tuple[float, float, str]:
-    """The same of the deflection of bristles, from the first row of each piece, over ten times that of break-away: rows inside a step over
-    a reversal of sliding, where its rate has a kink, are off by some 5e-4 of it at a tolerance of 1e-6. Rows so far apart that the
-    bristles forget more than a quarter of their deflection from one to the next tell nothing."""
+    """The same for the deflection of bristles, integrated from the first row of each piece, divided by ten times the break-away
+    deflection. Where sliding reverses, the rate has a kink, and rows within such a step have errors of about 5e-4 at a tolerance of
+    1e-6. Rows so far apart that the deflection relaxes by more than a quarter from one to the next are not judged."""
     columns, friction = checks.run.columns, checks.friction
     z = columns["bristle"]
     touching = [phase == CONTACT for phase in columns["phase"]]
@@ -136,13 +139,13 @@ def bristle_drift(checks: RowChecks, pieces: list[list[int]]) -> tuple[float, fl
 
 
 def balances(checks: RowChecks) -> Balances:
-    """Kinetic and potential energy against the work of gas, joint, damping and drive, by quadrature over the rows."""
+    """Kinetic and potential energy against the work of gas, joints, damping and drive, by quadrature over the rows."""
     run = checks.run
     film = checks.film or checks.crank_pin and checks.crank_pin.film
     pieces = pieces_of(checks, run)
     stencil = stencils(run.times, pieces, joined=not (film or checks.gas))
     kinetic, potential, power = [], [], []
-    rod: list[list[float]] = [[], [], [], []]   # speeds and accelerations of its centre of mass
+    rod: list[list[float]] = [[], [], [], []]   # speeds and accelerations of the rod's centre of mass
     for i in range(len(run.times)):
         row = checks.row(i)
         one, two = row.energy_terms()
@@ -168,7 +171,7 @@ def balances(checks: RowChecks) -> Balances:
         found.differs = max(found.differs, (abs(residual - column[i]) - SAFETY * work.bound[i]) / scale)
     rates = {"crank_speed": "crank_acceleration", "rod_speed": "rod_acceleration", "piston_velocity": "piston_acceleration",
              "crank_angle": "crank_speed", "piston_position": "piston_velocity"}
-    if checks.crank_pin:   # Newton's law of the rod, and its place
+    if checks.crank_pin:   # Newton's law of the rod, and its position
         names = "rod_velocity_x", "rod_velocity_y", "rod_acceleration_x", "rod_acceleration_y"
         run = dataclasses.replace(run, columns=run.columns | dict(zip(names, rod)))
         rates |= {f"rod_velocity_{axis}": f"rod_acceleration_{axis}" for axis in "xy"}
@@ -188,7 +191,8 @@ def balances(checks: RowChecks) -> Balances:
 
 
 def elastic_rates(run: Run, bodies: Bodies) -> tuple[Run, dict[str, str]]:
-    """What of elastic members is the integral of what; the run with a column of the twist's rate."""
+    """Pairs of columns of elastic members of which one is the integral of the other; and the run with a column of the twist's
+    rate."""
     rates: dict[str, str] = {}
     if bodies.elastic:
         for name in bodies.elastic.names:
@@ -201,7 +205,7 @@ def elastic_rates(run: Run, bodies: Bodies) -> tuple[Run, dict[str, str]]:
 
 
 def power_of(checks: RowChecks, row: Row, i: int) -> float:
-    """Of gas on the piston, of the joints on their bodies, of damping and drive on the crank [W]."""
+    """Power of the gas on the piston, of the joints on their bodies, of damping and drive on the crank [W]."""
     turn = row.driven_turn()
     power = row.get["crank_moment"] * turn - row.bodies.damping * turn**2 - row.gas * row.com_velocity[0] + row.elastic_power()
     if checks.guide:

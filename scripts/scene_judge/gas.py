@@ -11,26 +11,26 @@ GAUSS_5 = ((0.0, 0.5688888888888889), (0.5384693101056831, 0.47862867049936647),
 
 
 class Cylinder:
-    """The volume over the crank angle, and what a row of a trace should say of the gas."""
+    """The volume as a function of the crank angle, and the values of the gas that a row of a trace should have."""
 
     def __init__(self, run: Run, group: str) -> None:
         self.under = run.number(f"{group}.crankcase_pressure")
         self.area = math.pi / 4 * run.number(f"{group}.bore")**2
         self.crank, self.rod = run.number("mechanism.crank_length"), run.number("mechanism.rod_length")
         self.dead = 0.0
-        self.rounding = 1e-15 * self.area * (self.crank + self.rod)   # of `volume`, a difference of lengths
+        self.rounding = 1e-15 * self.area * (self.crank + self.rod)   # rounding of `volume`, a difference of lengths
 
     def volume(self, q: float) -> float:
-        """Dead volume, and the piston's way from its top times the area [m^3]."""
+        """Dead volume, plus the distance of the piston from its top position times the area [m^3]."""
         height = self.crank * math.cos(q) + math.sqrt((self.rod - self.crank * math.sin(q)) * (self.rod + self.crank * math.sin(q)))
         return self.dead + self.area * (self.crank + self.rod - height)
 
     def wanted(self, i: int, q: float) -> float | None:
-        """Pressure of row i, at the crank angle q [Pa]; None where the law does not tell."""
+        """Pressure of row i, at the crank angle q [Pa]; None if the law does not determine it."""
         return None if self.jumps_near(q, 1e-7) else self.pressure(q)
 
     def part_of(self, i: int, q: float, turn: float) -> int:
-        """Part of the cycle; a row at a bound stands for what was before it."""
+        """Part of the cycle; a row on a boundary belongs to the part before it."""
         return self.part(q - math.copysign(1e-10, turn))
 
     def pressure(self, q: float) -> float:
@@ -44,7 +44,8 @@ class Cylinder:
 
 
 class Gas(Cylinder):
-    """Engines of appendix A, of four strokes or of two with ports: the first law of thermodynamics for the closed cylinder, integrated in closed form.
+    """Engines of appendix A, four-stroke or two-stroke with ports: the first law of thermodynamics for the closed cylinder,
+    integrated.
 
     p V^g = p_1 V_1^g + (g - 1) * integral of V^(g-1) dQ, Wiebe's release Q = Q_in (1 - exp(-a z^n))."""
 
@@ -66,7 +67,7 @@ class Gas(Cylinder):
             self.grid.append(self.grid[-1] + self.panel(i / self.panels, (i + 1) / self.panels))
 
     def source(self, s: float) -> float:
-        """V^(g-1) dQ/ds, where s is z, or for a release that begins abruptly the power z^n."""
+        """V^(g-1) dQ/ds, where s is z, or for a release that begins abruptly z^n."""
         if self.n >= 1:
             z, rate = s, self.n * s**(self.n - 1) if s > 0 or self.n == 1 else 0.0
             burnt = s**self.n
@@ -80,7 +81,7 @@ class Gas(Cylinder):
                           for x, w in GAUSS_5)
 
     def pressure(self, q: float) -> float:
-        """At the crank angle q [Pa]."""
+        """Pressure at the crank angle q [Pa]."""
         angle = self.closes + (q - self.closes) % self.period
         if not angle < self.opens:
             return self.intake
@@ -93,20 +94,21 @@ class Gas(Cylinder):
         return (self.closed + (self.exponent - 1) * added) / self.volume(angle)**self.exponent
 
     def jumps_near(self, q: float, margin: float) -> bool:
-        """Whether a part of the cycle begins or ends so near that a row stands for either side."""
+        """Whether a part of the cycle begins or ends so near that the row may belong to either side."""
         bounds = (self.closes, self.start, self.start + self.duration, self.opens)
         return any(abs((q - bound + margin) % self.period) < 2 * margin for bound in bounds)
 
     def part(self, q: float) -> int:
-        """Number of the part of the cycle, counted on over the cycles."""
+        """Number of the part of the cycle, counted through all cycles."""
         cycle, angle = divmod(q - self.closes, self.period)
         bounds = (self.start, min(self.start + self.duration, self.opens), self.opens)
         return 4 * int(cycle) + sum(angle + self.closes >= bound for bound in bounds)
 
 
 class Compressor(Cylinder):
-    """Gas behind valves that open by themselves: while the piston goes one way, p = K / V^n between the pressures of suction and discharge;
-    a valve that holds one of them sets K anew. Followed from row to row, since a piston may turn back anywhere."""
+    """Gas behind self-acting valves: while the piston moves in one direction, p = K / V^n between suction and discharge pressure;
+    an open valve holds one of these pressures and determines a new K. K is followed from row to row, since a piston may turn back
+    anywhere."""
 
     def __init__(self, run: Run) -> None:
         super().__init__(run, "combustion")
@@ -133,7 +135,7 @@ class Compressor(Cylinder):
             self.rows.append((pressure, piece))
 
     def start(self, q: float, turn: float) -> float:
-        """Of a machine that has long been running; one at rest is filled at the suction pressure."""
+        """K of a machine that has run for a long time; a machine at rest is filled at the suction pressure."""
         if turn == 0:
             return self.low * self.volume(q)**self.exponent
         full, empty = self.low * self.volume(math.pi)**self.exponent, self.volume(0.0)**self.exponent
@@ -145,8 +147,8 @@ class Compressor(Cylinder):
         return (self.low, "suction") if pressure <= self.low else (self.high, "discharge") if pressure >= self.high else (pressure, "closed")
 
     def reached(self, known: float | None, before: float, here: float, turn_before: float, turn: float) -> float | None:
-        """K at the end of a way, after the dead centres on it. Where the piston turned back between two rows with a valve open, or did
-        all of a stroke there, the rows do not tell."""
+        """K at the end of a movement, after the dead centres in it. None if the piston turned back between two rows with a valve
+        open, or made a whole stroke between them: then the rows do not determine K."""
         if abs(here - before) > math.pi:
             return None
         first, last = sorted((before, here))
@@ -165,7 +167,7 @@ class Compressor(Cylinder):
 
 
 class Measured(Cylinder):
-    """A table of the pressure over a period, between its rows by Steffen's cubics."""
+    """A table of the pressure over a period, interpolated by Steffen's cubic polynomials."""
 
     UNITS = {"deg": 1.0, "rad": 180 / math.pi, "Pa": 1.0, "hPa": 1e2, "kPa": 1e3, "MPa": 1e6, "mbar": 1e2, "bar": 1e5,
              "psi": 4.4482216152605 / 0.0254**2}

@@ -1,4 +1,4 @@
-"""The piston's guide: friction on it, and the corners of a skirt with clearance in its bore, against the rows of a trace."""
+"""The piston's guide against the rows of a trace: its friction, and the corners of a skirt with clearance in its bore."""
 from __future__ import annotations
 
 import bisect
@@ -10,12 +10,12 @@ from .laws import ROUNDING, Friction
 from .mechanics import Row, rotated
 from .trace import Run
 
-LAW = 1e-6    # of a force: what a law may be missed by, beyond the rounding of what it was given
-SUM = 1e-9    # of a sum's terms
+LAW = 1e-6    # allowed relative error of a law's force, beyond the rounding of its arguments
+SUM = 1e-9    # allowed error of a sum, relative to its terms
 
 
 class Guide:
-    """What the case says of its guide. The corners are numbered from 1: top and bottom towards +y, top and bottom towards -y."""
+    """The guide of a case. The corners are numbered from 1: top and bottom towards +y, then top and bottom towards -y."""
 
     def __init__(self, run: Run) -> None:
         n = run.number
@@ -35,20 +35,20 @@ class Guide:
                          for k in range(1, 5)]
 
     def corner(self, k: int, row: Row) -> tuple[float, float]:
-        """From the piston's centre of mass [m]."""
+        """Position of corner k relative to the piston's centre of mass [m]."""
         return rotated(self.height[(k - 1) % 2], math.copysign(self.radius, 2.5 - k), row.tilt)
 
     def depth(self, k: int, row: Row) -> float:
-        """In the wall [m]."""
+        """Penetration of corner k into the wall [m]."""
         return math.copysign(1.0, 2.5 - k) * (row.offset_y + self.corner(k, row)[1]) - self.radius - self.clearance
 
     def rates(self, k: int, row: Row) -> tuple[float, float]:
-        """Of the depth and of the corner along the wall [m/s]."""
+        """Rate of the penetration, and speed of the corner along the wall [m/s]."""
         x, y = self.corner(k, row)
         return math.copysign(1.0, 2.5 - k) * (row.offset_rate_y + row.tilt_rate * x), row.com_velocity[0] - row.tilt_rate * y
 
     def power(self, row: Row) -> float:
-        """Of all that the bore does to the piston [W]."""
+        """Power of all forces of the bore on the piston [W]."""
         get, v = row.get, row.com_velocity[0]
         if not self.is_loose:
             return get["guide_friction_force"] * v
@@ -59,7 +59,7 @@ class Guide:
         return total
 
     def side(self, row: Row, i: int, begins: list[list[float]], time: float) -> tuple:
-        """What jumps or bends: corners that touch, which of their contacts it is, and the sense of sliding."""
+        """Everything that jumps or has a kink: corners in contact, the number of their contact, and the sense of sliding."""
         if not self.is_loose:
             sense = row.get["guide_force"] > 0
             return self.friction.side(row.com_velocity[0], 0.0)[0], sense
@@ -74,7 +74,7 @@ class Guide:
         return [contact.begin for contact in self.contacts] if self.is_loose else []
 
     def check(self, checks, row: Row, t: float) -> None:
-        """One row; `checks` takes the misses."""
+        """Check one row; `checks` records the errors."""
         get, v = row.get, row.com_velocity[0]
         give = 10 * ROUNDING * (row.speed_size + abs(row.tilt_rate) * math.hypot(*row.com))
         if not self.is_loose:
@@ -94,7 +94,7 @@ class Guide:
             low, high = min(low, high), max(low, high)
             blur = 4e-15 * (self.radius + self.clearance) / depth * self.contacts[k - 1].geometry.exponent if depth > 0 else 0.0
             near = 1e-15 * (self.radius + self.clearance + abs(self.height[(k - 1) % 2] * row.tilt)) + 1e-9 * self.clearance
-            at_wall = self.contacts[k - 1].geometry.force(2 * near) if abs(depth) <= near else 0.0   # a row where it begins or ends
+            at_wall = self.contacts[k - 1].geometry.force(2 * near) if abs(depth) <= near else 0.0   # a row where the contact begins or ends
             checks.take("contact law of a corner", max(low - normal, normal - high, 0.0), (LAW + blur) * max(abs(high), abs(normal)) + at_wall, t)
             low, high = (one * normal for one in self.friction.range(along, give))
             checks.take("friction law of a corner", max(low - friction, friction - high, 0.0), LAW * (abs(low) + abs(high)) / 2 + 1e-300, t)
@@ -108,7 +108,7 @@ class Guide:
         forces = sum(abs(get[f"guide_{k}_force"]) for k in range(1, 5)) + math.hypot(*row.force)
         checks.take("force of the corners on the guide", abs(pressing - get["guide_force"]), SUM * forces + 10 * row.noise(), t)
         joint = checks.joint_moment(row) if checks.has_joint else 0.0
-        if joint is None:   # the shear of a film, whose moment no column tells
+        if joint is None:   # the moment of a film's shear has no column
             return
         turning = row.piston_moment_terms(joint) + [moment]
         size += sum(map(abs, turning))

@@ -5,13 +5,13 @@ import math
 
 from .trace import Run
 
-ROUNDING = 1e-14   # of a speed found from those of crank, rod and piston, in their sum
+ROUNDING = 1e-14   # of a speed that is the sum of those of crank, rod and piston, relative to their magnitudes
 
 
 class Friction:
-    """Friction over normal force along t, at a sliding speed: Ambrosio (4.9, 4.10), Coulomb (4.8) with a larger friction at rest,
-    Threlfall, Brown and McPhee (2016), and Stribeck's curve eased in by a hyperbolic tangent; with bristles of a deflection z that
-    follows its own equation: LuGre (1995), Dahl (1968), elasto-plastic (Dupont et al. 2002)."""
+    """Friction force over normal force along t at a sliding speed: Ambrosio (4.9, 4.10), Coulomb (4.8) with a larger friction at
+    rest, Threlfall, Brown and McPhee (2016), and a Stribeck curve smoothed by a hyperbolic tangent; and with bristles, whose
+    deflection z has a differential equation of its own: LuGre (1995), Dahl (1968), elasto-plastic (Dupont et al. 2002)."""
 
     def __init__(self, run: Run) -> None:
         self.law = run.text("friction.law")
@@ -27,7 +27,7 @@ class Friction:
         self.grip = {"ambrosio": self.ramp, "threlfall": self.eased, "brown_mcphee": self.peaked, "stribeck": self.falling}.get(self.law)
 
     def range(self, speed: float, give: float) -> tuple[float, float]:
-        """Least and largest friction over normal force along t at a sliding speed known to +- `give`."""
+        """Smallest and largest friction over normal force along t, for a sliding speed known within +- `give`."""
         found = sorted(self.ratio(v) for v in (speed - give, speed, speed + give))
         return found[0], found[-1]
 
@@ -40,14 +40,14 @@ class Friction:
         return -math.copysign(grip + self.number("viscous_coefficient") * size, speed)
 
     def steady(self, v: float) -> float:
-        """Of bristles that slide on, without the viscous part."""
+        """Friction of bristles in steady sliding, without the viscous part."""
         if self.static == self.coefficient:
             return self.coefficient
         fall = math.exp(-((v / self.number("stribeck_speed")) ** 2))
         return self.static * fall + self.coefficient * (1 - fall)
 
     def side(self, v: float, z: float) -> tuple[int, bool]:
-        """On which side of what is not smooth: the sense of sliding, bristles that give way."""
+        """Sides of what is not smooth: the sense of sliding, and whether the bristles are beyond break-away."""
         sense = (v > 0) - (v < 0) if abs(v) > self.v1 else 0
         return sense, self.law == "elasto_plastic" and v * z > 0 and abs(z) > self.elastic
 
@@ -62,7 +62,7 @@ class Friction:
         return v - share * abs(v) * z / full
 
     def bristle_range(self, speed: float, z: float, give: float) -> tuple[float, float]:
-        """As `range`, with the deflection z of the bristles [m]."""
+        """Like `range`, with the deflection z of the bristles [m]."""
         found = []
         for v in (speed - give, speed, speed + give):
             damping = self.number("bristle_damping")

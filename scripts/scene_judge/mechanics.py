@@ -1,7 +1,8 @@
-"""Kinematics, energy and the balances of force and moment of crank, rod and piston, written from the motion of each body.
+"""Kinematics, energy, and balances of force and moment of crank, rod and piston, written from the motion of each body.
 
-x points up along the cylinder, y sideways, the crank turns from x to y; the rod's column counts its angle the other way, so its
-angular velocity in the plane is minus the column. A body is a frame: an origin, an angle, its centre of mass (u, v) in it.
+x points up along the cylinder, y sideways, and the crank turns from x to y. The column of the rod counts its angle in the opposite
+sense, so its angular velocity in the plane is minus the column. A body is a frame with an origin, an angle, and its centre of mass
+(u, v).
 """
 from __future__ import annotations
 
@@ -13,7 +14,7 @@ from .elastic import ElasticRod
 from .trace import Run
 
 Vector = tuple[float, float]
-LAST_DIGITS = 1e-13   # of the forces that a force is the difference of
+LAST_DIGITS = 1e-13   # rounding, relative to the forces whose difference a force is
 
 
 def cross(a: Vector, b: Vector) -> float:
@@ -26,7 +27,7 @@ def rotated(u: float, v: float, angle: float) -> Vector:
 
 
 def velocity(origin: Vector, arm: Vector, turn: float) -> Vector:
-    """Of a point `arm` away from an origin that moves so, on a body of angular velocity `turn`."""
+    """Velocity of a point at `arm` from the body's origin, which has the given velocity; the angular velocity is `turn`."""
     return origin[0] - turn * arm[1], origin[1] + turn * arm[0]
 
 
@@ -36,8 +37,8 @@ def acceleration(origin: Vector, arm: Vector, turn: float, turn_rate: float) -> 
 
 @dataclasses.dataclass
 class Balance:
-    """A sum that must vanish, and the sum of its terms' sizes, against which rounding is measured; `noise` is rounding that the
-    terms bring along."""
+    """A sum that must vanish, and the sum of the magnitudes of its terms, to which rounding is proportional; `noise` is rounding
+    that the terms already contain."""
 
     miss: float
     size: float
@@ -53,14 +54,14 @@ def scaled(factor: float, vector: Vector) -> Vector:
 
 
 def vector_balance(name: str, *terms: Vector) -> dict[str, Balance]:
-    """Of both components, each against the sizes of the vectors: one of them may be rounding alone."""
+    """Balances of both components, each relative to the magnitudes of the vectors, because one component may be rounding only."""
     size = sum(math.hypot(*term) for term in terms)
     return {f"{name} along {axis}": Balance(abs(math.fsum(term[k] for term in terms)), size) for k, axis in enumerate("xy")}
 
 
 @dataclasses.dataclass
 class Bodies:
-    """The constants of a case that mechanics needs."""
+    """The constants of a case that the mechanics needs."""
 
     crank_length: float
     rod_length: float
@@ -69,13 +70,13 @@ class Bodies:
     crank_com: Vector
     rod_com: Vector
     gravity: float
-    downwards: Vector                     # of length 1
+    downwards: Vector                     # unit vector
     damping: float
     pin_radius: float
-    piston_inertia: float = 0.0           # about its centre of mass, and that from the pin, of a piston loose in its bore
+    piston_inertia: float = 0.0           # about its centre of mass; for a piston with clearance in its bore
     piston_com: Vector = (0.0, 0.0)
     elastic: ElasticRod | None = None
-    shaft: tuple[float, float, float] | None = None   # of an elastic crankshaft: flywheel's inertia, stiffness, damping
+    shaft: tuple[float, float, float] | None = None   # elastic crankshaft: flywheel's inertia, stiffness, damping
 
     @classmethod
     def of(cls, run: Run) -> Bodies:
@@ -95,7 +96,7 @@ class Bodies:
 
 
 class Row:
-    """One row of a trace: the motion of every body and the forces of its columns."""
+    """One row of a trace: the motion of every body, and the forces in its columns."""
 
     def __init__(self, bodies: Bodies, columns: dict[str, list[float]], i: int) -> None:
         self.bodies = bodies
@@ -109,17 +110,17 @@ class Row:
         self.crankpin = rotated(bodies.crank_length, 0.0, self.q)
         self.rod_arm = rotated(*bodies.rod_com, rod_angle)
         self.chord, self.chord_rate = bodies.rod_length, 0.0
-        self.shape_state, self.shape_rates, self.shape_second = [], [], []   # chord's angle from y to x and shapes of an elastic rod
+        self.shape_state, self.shape_rates, self.shape_second = [], [], []   # elastic rod: angle of the chord from y to x, and shapes
         if bodies.elastic:
             names = bodies.elastic.names
             self.shape_state = [get["rod_angle"], *(get[name] for name in names)]
             self.shape_rates = [get["rod_speed"], *(get[f"{name}_rate"] for name in names)]
             self.shape_second = [get["rod_acceleration"], *(get[f"{name}_acceleration"] for name in names)]
             self.chord, self.chord_rate = bodies.elastic.chord(self.shape_state[1:], self.shape_rates[1:])
-        self.is_detailed = True   # the equations of an elastic rod are looked at in this row
+        self.is_detailed = True   # the equations of an elastic rod are checked in this row
         self.rod = rotated(self.chord, 0.0, rod_angle)
         self.crankpin_velocity = velocity((0.0, 0.0), self.crankpin, self.turn)
-        # of the crank pin in the rod's big end, and that end's centre
+        # crank pin in the rod's big end: eccentricity, and the centre of the big end
         self.has_loose_crank_pin = "crank_pin_phase" in get
         self.offset = get.get("crank_pin_eccentricity_x", 0.0), get.get("crank_pin_eccentricity_y", 0.0)
         self.offset_rate = get.get("crank_pin_eccentricity_rate_x", 0.0), get.get("crank_pin_eccentricity_rate_y", 0.0)
@@ -127,7 +128,8 @@ class Row:
         self.big_end_velocity = self.crankpin_velocity[0] - self.offset_rate[0], self.crankpin_velocity[1] - self.offset_rate[1]
         self.pin_velocity = velocity(self.big_end_velocity, self.rod, self.rod_turn)
         self.pin_velocity = tuple(v + self.chord_rate * one / self.chord for v, one in zip(self.pin_velocity, self.rod))
-        # of a piston loose in its bore: its centre of mass across, its tilt, and that centre from the pin's bearing
+        # piston with clearance in its bore: lateral position of its centre of mass, tilt, and the centre relative to the pin's
+        # bearing
         self.is_loose = "piston_tilt" in get
         self.offset_y, self.offset_rate_y = get.get("piston_offset", 0.0), get.get("piston_offset_rate", 0.0)
         self.tilt, self.tilt_rate, self.tilt_acceleration = (get.get(f"piston_tilt{one}", 0.0) for one in ("", "_rate", "_acceleration"))
@@ -137,10 +139,10 @@ class Row:
         self.bearing_velocity = self.vx, self.offset_rate_y - self.tilt_rate * self.com[0]
         self.bore_friction = get.get("guide_friction_force", 0.0)
         self.journal_turn, self.bearing_turn = self.end_turn(1), self.tilt_rate
-        self.law_noise = 0.0   # of the column of the joint's force: it is the law's own
+        self.law_noise = 0.0   # rounding of the column of the joint's force: none, because the law computes it
         self.force = get["pin_force_x"], get["pin_force_y"]
         self.gas = get.get("gas_force", 0.0)
-        # of the pin in its bearing
+        # eccentricity of the pin in its bearing
         self.slip = self.pin_velocity[0] - self.vx, self.pin_velocity[1] - self.bearing_velocity[1]
         self.speed_size = abs(bodies.crank_length * self.turn) + abs(bodies.rod_length * self.rod_turn) + abs(self.vx)
 
@@ -164,30 +166,31 @@ class Row:
 
     @property
     def com_acceleration(self) -> Vector:
-        """Of the piston's centre of mass."""
+        """Acceleration of the piston's centre of mass."""
         return self.ax - self.tilt_acceleration * self.com[1] - self.tilt_rate**2 * self.com[0], self.get.get("piston_offset_acceleration", 0.0)
 
     @property
     def bearing_acceleration(self) -> float:
-        """Of the pin's bearing in the piston, across."""
+        """Lateral acceleration of the pin's bearing in the piston."""
         return self.com_acceleration[1] - self.tilt_acceleration * self.com[0] + self.tilt_rate**2 * self.com[1]
 
     def piston_moment_terms(self, joint_moment: float) -> list[float]:
-        """Euler's law of the piston about its centre of mass, all but what the bore gives, from the joint's moment on the rod [N m]."""
+        """Terms of Euler's law of the piston about its centre of mass without the bore, from the joint's moment on the rod [N
+        m]."""
         e = self.get.get("eccentricity_x", 0.0), self.get.get("eccentricity_y", 0.0)
         return [-self.bodies.piston_inertia * self.tilt_acceleration, -joint_moment, -e[0] * self.force[1], e[1] * self.force[0],
                 self.com[0] * self.force[1], -self.com[1] * self.force[0]]
 
     @property
     def rod_velocity(self) -> Vector:
-        """Of the rod's centre of mass."""
+        """Velocity of the rod's centre of mass."""
         if self.bodies.elastic:
             own = self.bodies.elastic.from_big_end(self.shape_state, self.shape_rates)[1]
             return self.big_end_velocity[0] + own[0], self.big_end_velocity[1] + own[1]
         return velocity(self.big_end_velocity, self.rod_arm, self.rod_turn)
 
     def crank_pin(self, columns: dict[str, list[float]], i: int) -> Row:
-        """The row as the joint of crank and rod has it, from the columns that it has: what its journal, the crank, takes from it."""
+        """The row seen from the joint of crank and rod, from its columns; the journal of this joint belongs to the crank."""
         row = copy.copy(self)
         row.get = {name: column[i] for name, column in columns.items()}
         row.force = -self.get["crankpin_force_x"], -self.get["crankpin_force_y"]
@@ -197,15 +200,15 @@ class Row:
         return row
 
     def end_turn(self, end: int) -> float:
-        """Turning speed of the rod's big end (0) and of its pin (1), from x to y."""
+        """Angular velocity of the rod's big end (0) and of its pin (1), from x to y."""
         return self.bodies.elastic.end_turn(end, -self.rod_turn, self.shape_rates[1:]) if self.bodies.elastic else self.rod_turn
 
     def crank_drive(self) -> float:
-        """Moment that turns the crank: of the drive and its damping, or of an elastic shaft [N m]."""
+        """Moment that drives the crank: that of the drive and its damping, or that of an elastic shaft [N m]."""
         return self.get["crankshaft_moment"] if self.bodies.shaft else self.get["crank_moment"] - self.bodies.damping * self.turn
 
     def elastic_power(self) -> float:
-        """Of the damping of the shapes and of the shaft [W]."""
+        """Power of the damping of the shapes and of the shaft [W]."""
         power = 0.0
         if self.bodies.elastic:
             power -= sum(c * v * v for c, v in zip(self.bodies.elastic.damping, self.shape_rates[1:]))
@@ -214,17 +217,18 @@ class Row:
         return power
 
     def driven_turn(self) -> float:
-        """Turning speed of what the drive turns [rad/s]."""
+        """Angular velocity of the part that the drive turns [rad/s]."""
         return self.get["flywheel_speed"] if self.bodies.shaft else self.turn
 
     def elastic_rod_sums(self, joint_moment: float, at_big_end: float) -> tuple[list[float], list[float]]:
-        """What is left of Lagrange's equations of the rod, and the sizes of their terms: big end along x and y, chord's angle, shapes."""
+        """Residuals of Lagrange's equations of the rod, and the magnitudes of their terms: x and y of the big end, chord's angle,
+        shapes."""
         b, elastic = self.bodies, self.bodies.elastic
         on_rod = self.get["crankpin_force_x"], self.get["crankpin_force_y"]
         weight = scaled(b.gravity, b.downwards)
         forces = elastic.applied(self.shape_state, self.shape_rates, weight, (on_rod, at_big_end), (self.force, joint_moment))
         second = acceleration((0.0, 0.0), self.crankpin, self.turn, self.turn_rate)
-        if self.has_loose_crank_pin:   # Newton's law gives the big end's acceleration, which no column has
+        if self.has_loose_crank_pin:   # no column has the big end's acceleration; it follows from Newton's law
             free = elastic.inertial_forces(self.shape_state, self.shape_rates, self.shape_second, self.big_end_velocity, (0.0, 0.0))
             second = tuple((math.fsum(forces[k]) - free[k][0]) / b.mass[1] for k in (0, 1))
         inertial = elastic.inertial_forces(self.shape_state, self.shape_rates, self.shape_second, self.big_end_velocity, second)
@@ -234,11 +238,13 @@ class Row:
                 [size + sum(map(abs, terms)) + more for (_, size), terms, more in zip(inertial, forces, extra)])
 
     def bearing_moment(self, moment: float) -> float:
-        """What the rod takes at the crank pin about its big end's centre, from the moment on the crank: all balance about any point [N m]."""
+        """Moment on the rod at the crank pin about the centre of its big end, from the moment on the crank: together with the
+        forces they balance about any point [N m]."""
         return -(moment - cross(self.offset, (self.get["crankpin_force_x"], self.get["crankpin_force_y"])))
 
     def rod_moment_terms(self) -> list[float]:
-        """Euler's law of the rod about its centre of mass, all but the joint's moment: what is left is that moment [N m]."""
+        """Terms of Euler's law of the rod about its centre of mass, without the joint's moment; their sum gives that moment [N
+        m]."""
         at_crank = self.get["crankpin_force_x"], self.get["crankpin_force_y"]
         to_crank = -self.rod_arm[0], -self.rod_arm[1]
         to_pin = self.rod[0] - self.rod_arm[0], self.rod[1] - self.rod_arm[1]
@@ -246,7 +252,7 @@ class Row:
                 -to_pin[0] * self.force[1], to_pin[1] * self.force[0]]
 
     def noise(self) -> float:
-        """Rounding that any force of the row may carry: of weights, of what the motion takes and of the gas, to the last digits [N]."""
+        """Rounding that any force of the row may contain: the last digits of weights, inertial forces and the gas force [N]."""
         b = self.bodies
         speeds = (b.crank_length + b.rod_length) * (self.turn**2 + self.rod_turn**2)
         size = sum(b.mass) * (abs(b.gravity) + speeds) + abs(self.gas) + math.hypot(*self.force)
@@ -254,17 +260,17 @@ class Row:
             size += sum(k * abs(x) for k, x in zip(b.elastic.stiffness, self.shape_state[1:]))
             size += sum(b.mass) * sum(map(abs, self.shape_second[1:]))
         size += b.inertia[1] * (self.turn**2 + self.rod_turn**2 + abs(self.rod_turn_rate)) / b.rod_length
-        return LAST_DIGITS * size * b.rod_length / abs(self.rod[0])   # the guide's force has the rod's slope in it
+        return LAST_DIGITS * size * b.rod_length / abs(self.rod[0])   # the guide force is proportional to the rod's slope
 
     def joint_moment(self) -> float:
-        """Of the piston pin's joint on the rod, from the rod's motion [N m]."""
+        """Moment of the piston pin's joint on the rod, from the rod's motion [N m]."""
         at_big_end = self.bearing_moment(self.crank_pin_moment()) if self.has_loose_crank_pin else 0.0
         if self.bodies.elastic:
-            return -self.elastic_rod_sums(0.0, at_big_end)[0][2]   # of the chord's equation
+            return -self.elastic_rod_sums(0.0, at_big_end)[0][2]   # residual of the chord's equation
         return math.fsum((*self.rod_moment_terms(), -at_big_end))
 
     def crank_pin_moment(self) -> float:
-        """Of the crank pin's joint on the crank, from the crank's motion [N m]."""
+        """Moment of the crank pin's joint on the crank, from the crank's motion [N m]."""
         b, get = self.bodies, self.get
         pin = self.crankpin[0] - self.crank_arm[0], self.crankpin[1] - self.crank_arm[1]
         return math.fsum((b.inertia[0] * self.turn_rate, -self.crank_drive(),
@@ -272,13 +278,13 @@ class Row:
                           cross(pin, (get["crankpin_force_x"], get["crankpin_force_y"]))))
 
     def rod_acceleration(self) -> Vector:
-        """Of its centre of mass, from the forces on it."""
+        """Acceleration of the rod's centre of mass, from the forces on the rod."""
         weight = scaled(self.bodies.gravity, self.bodies.downwards)
         forces = (self.get["crankpin_force_x"], self.get["crankpin_force_y"]), self.force
         return (weight[0] + (forces[0][0] + forces[1][0]) / self.bodies.mass[1], weight[1] + (forces[0][1] + forces[1][1]) / self.bodies.mass[1])
 
     def pin_acceleration(self, big_end: Vector) -> Vector:
-        """Of the rod's pin, from that of its big end; of a chord whose length changes as well."""
+        """Acceleration of the rod's pin, from that of its big end; also for a chord whose length changes."""
         at_end = acceleration(big_end, self.rod, self.rod_turn, self.rod_turn_rate)
         if not self.bodies.elastic:
             return at_end
@@ -287,7 +293,7 @@ class Row:
         return (at_end[0] + (second * self.rod[0] - across * self.rod[1]) / self.chord, at_end[1] + (second * self.rod[1] + across * self.rod[0]) / self.chord)
 
     def elastic_balances(self, joint_moment: float | None, crank_pin_moment: float | None) -> dict[str, Balance]:
-        """Lagrange's equations of an elastic rod; without those that a moment enters which no law here gives."""
+        """Lagrange's equations of an elastic rod, without those that contain a moment that no law here determines."""
         known = joint_moment is not None and crank_pin_moment is not None
         at_big_end = self.bearing_moment(crank_pin_moment) if known else 0.0
         sums = [Balance(abs(miss), size) for miss, size in zip(*self.elastic_rod_sums(joint_moment if known else 0.0, at_big_end))]
@@ -300,8 +306,8 @@ class Row:
         return found
 
     def balances(self, joint_moment: float | None, crank_pin_moment: float | None = 0.0) -> dict[str, Balance]:
-        """Sums that vanish in every row, by name. `joint_moment`: of the joint on the rod [N m], None where no law here gives it;
-        `crank_pin_moment`: of that at the crank pin on the crank."""
+        """Sums that vanish in every row, by name. `joint_moment`: moment of the joint on the rod [N m], None if no law here
+        determines it; `crank_pin_moment`: moment of the joint at the crank pin on the crank."""
         b, get, g = self.bodies, self.get, scaled(self.bodies.gravity, self.bodies.downwards)
         found = {}
         kinetic, potential = self.energy_terms()
@@ -312,13 +318,13 @@ class Row:
         crank = acceleration((0.0, 0.0), self.crank_arm, self.turn, self.turn_rate)
         rod = acceleration(at_pin, self.rod_arm, self.rod_turn, self.rod_turn_rate)
         found["Newton, piston"] = balance(b.mass[2] * self.com_acceleration[0], self.gas, self.force[0], -self.bore_friction, -b.mass[2] * g[0])
-        # the guide's force follows from the rod's moments, so their rounding is in it
+        # the guide force follows from the rod's moments, so it contains their rounding
         found["guide force"] = Balance(abs(get["guide_force"] + self.force[1] - b.mass[2] * (g[1] - self.com_acceleration[1])), abs(self.force[1]) + abs(on_rod[1]) + (
             sum(map(abs, self.rod_moment_terms())) + abs(self.rod[1] * on_rod[0])) / abs(self.rod[0]))
         if b.elastic:
             if self.is_detailed:
                 found |= self.elastic_balances(joint_moment, crank_pin_moment)
-        elif not self.has_loose_crank_pin:   # where there is no column of the rod's acceleration
+        elif not self.has_loose_crank_pin:   # there is no column of the rod's acceleration
             found |= vector_balance("Newton, rod", scaled(b.mass[1], rod), scaled(-b.mass[1], g), scaled(-1, on_rod), scaled(-1, self.force))
         found |= vector_balance("Newton, crank", scaled(b.mass[0], crank), scaled(-b.mass[0], g), scaled(-1, on_crank), on_rod)
         arm, pin = self.crank_arm, (self.crankpin[0] - self.crank_arm[0], self.crankpin[1] - self.crank_arm[1])

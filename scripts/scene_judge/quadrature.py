@@ -1,16 +1,16 @@
-"""Integrals over the rows of a trace, which need not be equally far apart, with a bound of their error by halving the rows."""
+"""Integrals over the rows of a trace, which may have unequal distances, with a bound of their error from every second row."""
 from __future__ import annotations
 
 import dataclasses
 import math
 
-NODES = 6   # rows that the polynomial of an interval goes through
-GAUSS = ((0.0, 4 / 9), (-math.sqrt(0.15), 5 / 18), (math.sqrt(0.15), 5 / 18))   # on an interval of length 1: exact for its degree
+NODES = 6   # number of rows through which the polynomial of an interval passes
+GAUSS = ((0.0, 4 / 9), (-math.sqrt(0.15), 5 / 18), (math.sqrt(0.15), 5 / 18))   # points, weights on [-1/2, 1/2]; exact
 
 
 @dataclasses.dataclass
 class Integral:
-    """The integral from the first row to each, and what it may be off by there."""
+    """The integral from the first row to each row, and the bound of its error there."""
 
     value: list[float]
     bound: list[float]
@@ -18,7 +18,7 @@ class Integral:
 
 @dataclasses.dataclass
 class Stencil:
-    """The rows that the integral over one interval is made of, and their weights; the same from every second row."""
+    """The rows from which the integral over one interval is computed, and their weights; and the same for every second row."""
 
     fine: list[int]
     by: list[float]
@@ -27,7 +27,7 @@ class Stencil:
 
 
 def weights(nodes: list[float], a: float, b: float) -> list[float]:
-    """Of the integral from a to b of the polynomial through values at the nodes, six at most."""
+    """Weights of the integral from a to b of the polynomial through values at the nodes, of which there are at most six."""
     middle, length = 0.5 * (a + b), b - a
     found = []
     for j, x in enumerate(nodes):
@@ -44,16 +44,16 @@ def weights(nodes: list[float], a: float, b: float) -> list[float]:
 
 
 def nearest(rows: list[int], position: int, count: int) -> list[int]:
-    """`count` of the rows around the interval that ends with the row at `position` of the list."""
+    """The `count` rows nearest to the interval that ends with the row at `position` of the list."""
     first = min(max(position - count // 2, 0), max(len(rows) - count, 0))
     return rows[first:first + count]
 
 
 def stencils(times: list[float], pieces: list[list[int]], joined: bool) -> list[list[Stencil]]:
-    """The stencils of every interval, piece by piece.
+    """The stencils of every interval, for each piece.
 
     A piece is a list of consecutive rows in which everything is smooth; the interval before its first row belongs to it. The row
-    before stands for the motion before the jump: where only slopes jump (`joined`), it is a row of this piece too.
+    before that interval is the state before the jump. If only slopes jump (`joined`), this row belongs to the piece as well.
     """
     found = []
     for own in pieces:
@@ -72,10 +72,10 @@ def stencils(times: list[float], pieces: list[list[int]], joined: bool) -> list[
 
 
 def integral(values: list[float], stencil: list[list[Stencil]]) -> Integral:
-    """The running integral of one quantity given at the rows.
+    """The running integral of a quantity given at the rows.
 
-    Its bound is what it differs by from the integral over every second row: some sixty times its error where all is smooth. The
-    differences of the pieces are added by size, so that those of one contact do not hide those of another."""
+    Its error bound is the difference from the integral over every second row, which is about sixty times the error if everything is
+    smooth. The magnitudes of the differences of all pieces are added, so that differences of two contacts cannot cancel."""
     total, bound = [0.0], [0.0]
     before = 0.0
     for piece in stencil:

@@ -1,11 +1,12 @@
-"""A run against the same scene by the other method at a hundredth of its tolerance: states up to the horizon, statistics beyond.
+"""Compares a run with one of the same scene by the other method at a hundredth of its tolerance: states up to the horizon, then
+statistics.
 
-How far two runs may lie apart is measured, not assumed: two further runs, at the hundredth too, start as far off as the tolerance
-means (the relative tolerance times the size of each coordinate), and one of them has constants of its laws that far off besides,
-since errors are made all along. What they have moved apart from the reference by some time is
-what one error of the size of the tolerance becomes by then. A run makes such an error in every step at most, so its distance is
-judged in these units, and beyond the time at which they are of order one, not at all: there the motion has forgotten its start,
-and only statistics can agree.
+The distance that two accurate runs may have is measured, not assumed. Two further runs, also at a hundredth of the tolerance, start
+with an error of one tolerance (the relative tolerance times the size of each coordinate); one of them has the same relative error
+in constants of its laws, because a run makes errors all the time. Their distance from the reference at a later time shows to what
+an error of one tolerance has grown: it is one grown tolerance. A run makes at most one such error in every step, so its distance is
+measured in grown tolerances. Where a grown tolerance is of order one, states are not compared: the motion no longer depends on its
+start, and only statistics can agree.
 """
 from __future__ import annotations
 
@@ -18,32 +19,32 @@ from typing import Callable
 from .mechanics import Bodies, Row
 from .trace import Run, run_case
 
-ROWS = 400            # at which states are compared
-LIMIT = 100.0         # grown tolerances that a run may be off, for each revolution begun
-LATE = 3              # rows for which the run may be in another contact than its reference before it is compared nevertheless
-HORIZON = 0.2         # the limit in sizes of the coordinates beyond which states say nothing
-FINEST = 1e-13        # tolerance of a reference
-MOST_EVALUATIONS = 2_000_000_000   # that a case may ask for
-BLOCKS = 10           # revolutions for the statistics
-LEAST_BLOCKS = 4      # of them beyond the horizon
-STEADY = 0.7          # least over largest crank speed where statistics of revolutions mean something
-SPREAD = 5.0          # standard errors between means that agree, by the scatter of many blocks
-FEW = 14.0            # the same by the scatter of three runs: Student's distribution, as rare
-SLACK = 0.02          # and this part of the mean: errors of order one do not stop at the horizon
+ROWS = 400            # number of rows at which states are compared
+LIMIT = 100.0         # allowed error in grown tolerances, for each revolution begun
+LATE = 3              # rows for which the run may be in another contact than its reference and is not compared
+HORIZON = 0.2         # states are not compared if the allowed error exceeds this part of the coordinates' sizes
+FINEST = 1e-13        # smallest tolerance of a reference
+MOST_EVALUATIONS = 2_000_000_000   # largest value that a case may have
+BLOCKS = 10           # number of revolutions for the statistics
+LEAST_BLOCKS = 4      # smallest number of them beyond the horizon
+STEADY = 0.7          # smallest over largest crank speed for which statistics of revolutions are meaningful
+SPREAD = 5.0          # allowed difference of means in standard errors, from the scatter of many blocks
+FEW = 14.0            # the same from the scatter of three runs, equally improbable by Student's distribution
+SLACK = 0.02          # and in addition this part of the mean: errors of order one continue beyond the horizon
 
 
 @dataclasses.dataclass
 class Comparison:
-    """How a run and its reference agree. Shares above 1 fail."""
+    """Agreement of a run with its reference. The check fails if a share is above 1."""
 
-    share: float = 0.0          # worst distance over what is allowed, up to the horizon
-    tolerances: float = 0.0     # the same in grown tolerances
-    time: float = 0.0           # where [s]
+    share: float = 0.0          # largest distance over the allowed distance, up to the horizon
+    tolerances: float = 0.0     # largest distance in grown tolerances
+    time: float = 0.0           # time of the largest distance [s]
     horizon: float = 0.0        # [s]
-    rows: int = 0               # compared
+    rows: int = 0               # number of rows that were compared
     statistics: dict[str, float] = dataclasses.field(default_factory=dict)   # shares, by name
-    unjudged: str = ""          # why nothing could be compared
-    no_statistics: str = ""     # why statistics could not be, where they should
+    unjudged: str = ""          # reason why nothing could be compared
+    no_statistics: str = ""     # reason why statistics could not be compared, if they should be
 
     @property
     def has_statistics(self) -> bool:
@@ -52,7 +53,7 @@ class Comparison:
 
 @dataclasses.dataclass
 class Scales:
-    """Sizes of the coordinates and their rates; of each joint with clearance those of its eccentricity."""
+    """Sizes of the coordinates and their rates; for each joint with clearance those of its eccentricity."""
 
     angle: float
     speed: float
@@ -60,8 +61,9 @@ class Scales:
 
 
 def states(run: Run) -> list[tuple[float, ...]]:
-    """Crank angle and speed, of each joint with clearance eccentricity and its rate, at every row; of a piston with clearance in its
-    bore how far its centre of mass is off the axis and what its tilt moves the ends of its skirt, and the rates of both."""
+    """Crank angle and speed, and for each joint with clearance the eccentricity and its rate, at every row; for a piston with
+    clearance in its bore the distance of its centre of mass from the axis, the displacement of the skirt's ends by the tilt, and
+    the rates of both."""
     bodies = Bodies.of(run)
     found = []
     for i in range(len(run.times)):
@@ -85,7 +87,7 @@ def scales_of(run: Run, rows: list[tuple[float, ...]]) -> Scales:
 
 
 def loose_joints(run: Run) -> list[tuple[str, str]]:
-    """Group of each joint with clearance, and what the keys of its start begin with."""
+    """Group of each joint with clearance, and the prefix of the keys of its start."""
     found = [("joint", "")] if run.has_clearance else []
     if run.has_loose_crank_pin:
         found.append(("crank_pin.joint", "crank_pin_"))
@@ -98,7 +100,7 @@ def skirt_arm(run: Run) -> float:
 
 
 def distance(one: tuple[float, ...], two: tuple[float, ...], scales: Scales) -> float:
-    """The largest difference of two states, in the sizes of the coordinates or of what is there, whichever is larger."""
+    """The largest difference of two states, relative to the size of the coordinate or to its present value, whichever is larger."""
     sizes = [scales.angle, scales.speed]
     for k, (eccentricity, rate) in enumerate(scales.joints):
         rate = max(rate, math.hypot(*two[4 + 4 * k:6 + 4 * k]))
@@ -107,7 +109,7 @@ def distance(one: tuple[float, ...], two: tuple[float, ...], scales: Scales) -> 
 
 
 def contacts_before(run: Run) -> list[int]:
-    """At every row how many contacts have begun and ended."""
+    """At every row, the number of contacts that have begun and of those that have ended."""
     times = [float(event["time[s]"]) for event in run.events]
     found, k = [], 0
     for t in run.times:
@@ -118,7 +120,7 @@ def contacts_before(run: Run) -> list[int]:
 
 
 class Reruns:
-    """The runs of one scene that are compared. `settings` are those of the run that is judged."""
+    """Runs of one scene that are compared. `settings` are those of the judged run."""
 
     def __init__(self, program: Path, case: Path, settings: dict[str, str], judged: Run, limit: float, seed: int) -> None:
         self.program, self.case, self.limit = program, case, limit
@@ -143,7 +145,7 @@ class Reruns:
                         integrator__relative_tolerance=repr(max(self.tolerance / 100, FINEST)), **change)
 
     def neighbour_start(self, scales: Scales, off: float) -> dict[str, str]:
-        """The start, off by so much of its size in every coordinate that is integrated."""
+        """Settings of the start in which every integrated coordinate has an error of `off` times its size."""
         run = self.judged
 
         def sign() -> float:
@@ -163,7 +165,8 @@ class Reruns:
         return start
 
     def neighbour_laws(self, off: float) -> dict[str, str]:
-        """Constants of the laws, off by so much: an error that goes on being made, as that of the steps does."""
+        """Settings of the laws' constants with a relative error of `off`: an error that acts all the time, as that of the steps
+        does."""
         changed = {}
         for key in ("joint.clearance", "contact.youngs_modulus", "lubrication.viscosity", "mechanism.piston_mass", "mechanism.crank_inertia",
                     "guide.stiffness", "guide.coefficient", "guide.viscous"):
@@ -173,7 +176,7 @@ class Reruns:
         return changed
 
     def compare(self) -> Comparison:
-        """States up to the horizon; where that comes before the end of the run, statistics over ten revolutions."""
+        """Compare states up to the horizon; if the horizon is before the end of the run, statistics over ten revolutions too."""
         runs = self.family(self.span, ROWS, max(self.tolerance, 10 * FINEST))
         if isinstance(runs, str):
             return Comparison(unjudged=runs)
@@ -183,12 +186,12 @@ class Reruns:
         return found
 
     def family(self, span: float, rows: int, off: float) -> tuple[Run, Run, list[Run]] | str:
-        """The run, its reference and two neighbours of the reference; or why one of them has not come to the end."""
+        """The run, its reference and two neighbours of the reference; or the reason why one of them did not reach the end."""
         again = self.run(span, rows)
         reference = self.reference(span, rows, {})
         for name, run in (("the run itself", again), (f"the reference by {self.other}", reference)):
             if run.status == 3:
-                raise ValueError(f"a scene to compare with is refused: {run.message}")
+                raise ValueError(f"a scene for the comparison was refused: {run.message}")
             if run.status or len(run.times) < 10:
                 return f"{name}: {run.summary.get('status', run.message)[:120]}"
         scales = scales_of(reference, states(reference))
@@ -196,7 +199,7 @@ class Reruns:
         neighbours = [self.reference(span, rows, change) for change in changes]
         for run in neighbours:
             if run.status == 3:
-                raise ValueError(f"a scene to compare with is refused: {run.message}")
+                raise ValueError(f"a scene for the comparison was refused: {run.message}")
             if run.status:
                 return f"a neighbour of the reference: {run.summary.get('status', run.message)[:120]}"
         return again, reference, neighbours
@@ -210,28 +213,28 @@ class Reruns:
         first = min(math.ceil(found.horizon / block), BLOCKS)
         if BLOCKS - first < LEAST_BLOCKS:
             return
-        # the neighbours start so far off that they have forgotten their start where the run may have
+        # the neighbours start with so large an error that they become independent of their start as early as the run
         runs = self.family(BLOCKS * block, 720 * BLOCKS, LIMIT * max(self.tolerance, 10 * FINEST))
         if isinstance(runs, str):
             found.no_statistics = runs
             return
         run, reference, neighbours = runs
         late = [abs(turn) for turn, t in zip(reference.columns["crank_speed"], reference.times) if t >= first * block]
-        if not late:   # `until = 'periodic'`: settled, or given up, before
-            found.no_statistics = "the reference ends before"
+        if not late:   # `until = 'periodic'`: the run may have settled or stopped before
+            found.no_statistics = "the reference ends before these revolutions"
             return
         if min(late) < STEADY * max(late):
-            found.no_statistics = "the crank does not keep its speed"
+            found.no_statistics = "the crank speed is not steady"
             return
         for name, figure in FIGURES.items():
             by_run = [[figure(one, k * block, (k + 1) * block) for k in range(first, BLOCKS)] for one in (run, reference, *neighbours)]
-            # the energy itself is kept to its tolerance only
+            # the energy itself is accurate to the tolerance only
             known = LIMIT * self.tolerance * max(map(abs, reference.columns["energy"])) if figure is loss else 0.0
             found.statistics[name] = mean_share(by_run[0], by_run[1:], known)
 
 
 def compare_states(run: Run, reference: Run, neighbours: list[Run], tolerance: float, revolutions: float) -> Comparison:
-    """The worst distance of a run from its reference over what is allowed up to the horizon."""
+    """The largest distance of a run from its reference, over the allowed distance, up to the horizon."""
     count = min(map(len, (run.times, reference.times, *(one.times for one in neighbours))))
     ours, theirs = states(run), states(reference)
     others = [states(one) for one in neighbours]
@@ -243,7 +246,7 @@ def compare_states(run: Run, reference: Run, neighbours: list[Run], tolerance: f
     for i in range(count):
         late = late + 1 if events[0][i] != events[1][i] else 0
         if len({number[i] for number in events[1:]}) > 1 or 0 < late <= LATE:
-            continue   # one of them has not yet come to the contact that another is in
+            continue   # one run is already in a contact that another has not reached
         grown = max(grown, *(distance(theirs[i], one[i], scales) for one in others))
         allowed = LIMIT * revolutions * grown
         if allowed > HORIZON:
@@ -255,7 +258,7 @@ def compare_states(run: Run, reference: Run, neighbours: list[Run], tolerance: f
         if not apart / allowed <= found.share:
             found.share, found.tolerances, found.time = apart / allowed, apart / grown, run.times[i]
     else:
-        if last < count - 1 - LATE:   # from there on they are in different contacts
+        if last < count - 1 - LATE:   # after that row the runs have different contacts
             found.horizon = run.times[last]
     return found
 
@@ -273,7 +276,8 @@ def contact_share(run: Run, low: float, high: float) -> float:
 
 
 def mean_pin_force(run: Run, low: float, high: float) -> float:
-    """Its logarithm: a few hard blows are most of it, and means of numbers of so many sizes say little."""
+    """Logarithm of the mean pin force: a few hard impacts dominate the force, and means of values of such different size are
+    uncertain."""
     rows = window(run, low, high)
     mean = sum(math.hypot(run.columns["pin_force_x"][i], run.columns["pin_force_y"][i]) for i in rows) / max(len(rows), 1)
     return math.log(max(mean, 1e-300))
@@ -284,7 +288,7 @@ def impacts(run: Run, low: float, high: float) -> float:
 
 
 def loss(run: Run, low: float, high: float) -> float:
-    """What the joint takes from the bodies [J]: the work of drive, damping and gas less what the energy has grown by."""
+    """Energy that the joint takes from the bodies [J]: the work of drive, damping and gas minus the increase of the energy."""
     rows = window(run, low, high)
     if len(rows) < 2:
         return 0.0
@@ -304,12 +308,13 @@ FIGURES: dict[str, Callable[[Run, float, float], float]] = {
 
 
 def mean_share(ours: list[float], theirs: list[list[float]], known: float) -> float:
-    """The difference of the means over what chance allows, by the scatter of the references block by block, and `known` besides."""
+    """The difference of the means over the difference that chance allows, from the scatter of the references' blocks plus
+    `known`."""
     blocks, n = len(ours), len(theirs)
     means = [sum(one[k] for one in theirs) / n for k in range(blocks)]
     mean = sum(means) / blocks
     by_block = sum((one[k] - means[k])**2 for one in theirs for k in range(blocks)) / ((n - 1) * blocks * blocks)
-    by_run = sum((sum(one) / blocks - mean)**2 for one in theirs) / (n - 1)   # larger where blocks follow from one another
+    by_run = sum((sum(one) / blocks - mean)**2 for one in theirs) / (n - 1)   # larger than by blocks if the blocks are correlated
     chance = max(SPREAD * math.sqrt(by_block), FEW * math.sqrt(by_run)) * math.sqrt(1 + 1 / n)
     allowed = chance + SLACK * max(abs(value) for value in means) + known
     apart = abs(sum(ours) / blocks - mean)

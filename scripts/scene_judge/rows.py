@@ -1,4 +1,4 @@
-"""Every row of a trace against mechanics and the laws."""
+"""Checks every row of a trace against mechanics and the laws."""
 from __future__ import annotations
 
 import dataclasses
@@ -14,25 +14,25 @@ from .mechanics import Bodies, Row
 from .trace import Run
 
 FREE, FILM, CONTACT = 0, 1, 2
-SUM = 1e-9        # of a sum's terms: what may be left of one that vanishes
-LAW = 1e-6        # of a force: what a law may be missed by, beyond the rounding of the speeds it was given
-DETAILED = 1500   # rows of a run in which the equations of an elastic rod are looked at
-STICKS = 10       # tolerances of the speeds: how fast surfaces that stick may seem to slide
-INTEGRATED = 1500  # rows in which a film is judged whose pressure is integrated or
-SOLVED = 8         # solved for
-LEAST_GAP = 1e-4   # over the clearance: where the table of a film ends
-OSCILLATING = 2e-5  # of a force: of the oscillating film's means
-ASPERITIES = 1e-5  # of a force: of the series of F52 and of the spline through the forces
-CLEAR = 0.01       # of a force: what the velocity of its film, taken from the rows, may leave open
-MOVING = 2e-4, 2000  # of a rate, and in tolerances: what it is off by in rows between two steps, where the places of the film are
-                     # as accurate as in the steps, but not their differences
-LEAST_BEND = 5e-9  # [m] bristles that give way sooner do so within a step: rows between the steps cannot tell how
-BENT = 1000       # tolerances of the static friction: what bristles may be bent beyond it in rows between the steps
+SUM = 1e-9        # allowed residual of a sum that must vanish, relative to its terms
+LAW = 1e-6        # allowed relative error of a law's force, beyond the rounding of its arguments
+DETAILED = 1500   # number of rows in which the equations of an elastic rod are checked
+STICKS = 10       # allowed sliding speed of surfaces that stick, in tolerances of the speeds
+INTEGRATED = 1500  # number of rows in which a film is judged if its pressure is integrated
+SOLVED = 8         # the same if its pressure is solved for
+LEAST_GAP = 1e-4   # smallest film thickness over the clearance in the table of a film
+OSCILLATING = 2e-5  # allowed relative error of the oscillating film's averages
+ASPERITIES = 1e-5  # allowed relative error of the series of F52 and of the spline through the forces
+CLEAR = 0.01       # largest relative uncertainty of a force, from the film's velocity between rows
+MOVING = 2e-4, 2000  # allowed error of a rate in rows between two steps, relative and in tolerances: there the positions of the film
+                     # are as accurate as in the steps, but not their differences
+LEAST_BEND = 5e-9  # [m] if the break-away deflection is smaller, break-away is within a step and cannot be checked between steps
+BENT = 1000       # allowed excess over static friction in rows between the steps, in tolerances of the static friction
 
 
 @dataclasses.dataclass
 class Miss:
-    """The worst row of one check: how much of what is allowed it takes. Above 1 the check fails."""
+    """The worst row of one check: its error over the allowed error. The check fails if this share is above 1."""
 
     check: str
     share: float = 0.0
@@ -44,7 +44,7 @@ class Miss:
         if miss <= 0:
             return
         share = miss / allowed if allowed > 0 else math.inf
-        if not share <= self.share:   # NaN is the worst of all
+        if not share <= self.share:   # NaN counts as the worst
             self.share, self.time = (share if share == share else math.inf), time
 
     @property
@@ -53,7 +53,7 @@ class Miss:
 
 
 def slope(times: list[float], values: list[float]) -> float:
-    """Of the polynomial through values at times, at the time in the middle."""
+    """Derivative at the middle time of the polynomial through values at times."""
     middle = len(times) // 2
     here, total = times[middle], 0.0
     for j, t in enumerate(times):
@@ -68,12 +68,12 @@ def slope(times: list[float], values: list[float]) -> float:
 
 
 def inside(value: float, low: float, high: float) -> float:
-    """How far a value is outside of a range."""
+    """Distance of a value from a range; 0 inside it."""
     return max(low - value, value - high, 0.0) if value == value else math.nan
 
 
 class RowChecks:
-    """Goes through the rows of a run; `misses` are the worst of each check."""
+    """Checks the rows of a run; `misses` are the worst row of each check."""
 
     def __init__(self, whole: Run, joint: str = "piston_pin") -> None:
         run = self.run = whole.at(joint)
@@ -103,15 +103,15 @@ class RowChecks:
         return Row(self.bodies, self.run.columns, i)
 
     def share(self, depth: float) -> float:
-        """Of the contact in the joint's load, at a penetration [m]: all of it, or as a film gives way."""
+        """Share of the contact in the joint's load at a penetration [m]: all of it, or the share in a transition from the film."""
         if not self.weighted:
             return 1.0
         s = min(max(depth / self.run.number("lubrication.transition_depth"), 0.0), 1.0)
         return s if self.run.text("lubrication.transition_shape") == "linear" else 3 * s**2 - 2 * s**3
 
     def zone(self, i: int) -> tuple[bool, bool]:
-        """Whether the pin is beyond the kinks of a film that gives way over a depth: where it is held, and where it is gone. A row on a
-        kink stands for what was before it."""
+        """Whether the pin is beyond each kink of a film in transition to contact: where it is limited, and where it vanishes. A row
+        on a kink belongs to the side before it."""
         if not self.weighted:
             return False, False
         number, clearance = self.run.number, self.run.number("joint.clearance")
@@ -122,7 +122,8 @@ class RowChecks:
         return held, gone
 
     def joint_moment(self, row: Row) -> float | None:
-        """Of the joint on its journal [N m]: friction at the pin's radius; none by pressure; None for the shear of a film."""
+        """Moment of the joint on its journal [N m]: friction at the pin's radius, none from pressure; None for the shear of a
+        film."""
         phase = row.get.get("phase", FREE)
         if self.film and phase != FREE and self.run.case.get("lubrication.film_moment", [False])[0]:
             return None
@@ -212,13 +213,14 @@ class RowChecks:
         low, high = self.friction.range(get["sliding_speed"], 10 * give)
         drift = STICKS * self.run.number("integrator.relative_tolerance")
         law = LAW
-        if self.friction.coulomb and abs(sliding) <= max(1e3 * give, drift * row.speed_size):   # sticking, or about to
+        if self.friction.coulomb and abs(sliding) <= max(1e3 * give, drift * row.speed_size):   # the surfaces stick, or nearly stick
             low, high = -self.friction.static, self.friction.static
-            law = max(LAW, drift)   # the row where they slip stands where the friction has passed its limit
+            law = max(LAW, drift)   # in the row where slip begins, friction is already beyond its limit
         self.take("friction law", inside(friction, low * normal, high * normal), law * normal * (abs(low) + abs(high)) / 2 + 1e-300, t)
 
     def check_arc(self, row: Row, depth: float, normal: float, blur: float, t: float) -> None:
-        """The load that has such an arc is that of the penetration, and the pressures over the arc carry the pressing force."""
+        """The load that belongs to the contact arc is that of the penetration, and the pressures over the arc result in the normal
+        force."""
         if depth <= 0:
             return
         geometry = self.contact.geometry
@@ -245,7 +247,7 @@ class RowChecks:
         self.check_film_law(row, n, film if self.asperities else row.force, 1.0, give, i)
 
     def check_asperities(self, row: Row, n: tuple[float, float], give: float, t: float) -> None:
-        """Those that touch press the pin to the middle, and rub."""
+        """Check that asperities in contact press the pin towards the centre, and their friction."""
         get, rough = row.get, self.asperities
         size, gap = math.hypot(get["eccentricity_x"], get["eccentricity_y"]), get["film_thickness"]
         normal, friction = get["asperity_force"], get["friction_force"]
@@ -257,7 +259,7 @@ class RowChecks:
         self.take("boundary friction", inside(friction, low, high), LAW * abs(normal) * rough.coefficient + 1e-300, t)
 
     def check_walls(self, row: Row, give: float, t: float) -> None:
-        """Walls that give way under a film bear what it bears, along their deflection."""
+        """Check that the load of the elastic walls is that of the film, along their deflection."""
         get = row.get
         d = get["eccentricity_x"] - get["film_eccentricity_x"], get["eccentricity_y"] - get["film_eccentricity_y"]
         depth = math.hypot(*d)
@@ -268,13 +270,13 @@ class RowChecks:
         self.take("wall deflection", abs(depth - get["wall_deflection"]), 1e-14 * (depth + self.run.number("joint.clearance")), t)
 
     def is_judged(self, i: int) -> bool:
-        """Whether a film is judged in a row: not in each where that takes long."""
+        """Whether a film is judged in a row; not in every row if it takes long."""
         if self.film == "pinkus_sternlicht" and self.film_law.variant != "half_film":
             return True
         return i % max(1, len(self.run.times) // (SOLVED if self.film_law.is_solved else INTEGRATED)) == 0
 
     def check_film_law(self, row: Row, n: tuple[float, float], force: tuple[float, float], share: float, give: float, i: int) -> None:
-        """A share of the film that the case names."""
+        """Check a share of the film that the case names."""
         get, law, c, t = row.get, self.film_law, self.run.number("joint.clearance"), row.get["time"]
         eps, gap = get["eccentricity_ratio"], get["film_thickness"] / c
         least = self.run.number("lubrication.least_film_ratio") if self.weighted else 0.0
@@ -305,8 +307,8 @@ class RowChecks:
         self.take("film law", miss, (LAW + law.margin) * share * math.hypot(*want) + 10 * blur, t)
 
     def blur_of_share(self, row: Row) -> float:
-        """Rounding of the share of a film that gives way to the contact: a difference of two lengths over another, at a time that is
-        rounded too."""
+        """Rounding of the share of a film in transition to contact: a quotient of two differences of lengths, at a time that is
+        rounded as well."""
         if not self.weighted:
             return 0.0
         rounding = 4e-15 * self.run.number("joint.clearance") + 4e-16 * abs(row.get["time"]) * math.hypot(*row.slip)
@@ -314,7 +316,7 @@ class RowChecks:
 
     def check_oscillating(self, row: Row, n: tuple[float, float], force: tuple[float, float], share: float, eps: float, gap: float,
                           i: int) -> None:
-        """A film without load along the line of centres."""
+        """Check a film that carries no load along the line of centres."""
         t = row.get["time"]
         if self.film_law.is_known:
             self.take("no load along the line of centres", abs(force[0] * n[0] + force[1] * n[1]), SUM * math.hypot(*force) + row.law_noise, t)
@@ -325,7 +327,7 @@ class RowChecks:
         self.take("film law", abs(found - share * whole), (OSCILLATING * share + self.blur_of_share(row)) * abs(whole) + row.law_noise, t)
 
     def check_moving_film(self, row: Row, force: tuple[float, float], i: int) -> None:
-        """Between elastic walls the film's own place moves as its load asks for: at the rate of the rows round this one."""
+        """Check a film between elastic walls, whose film thickness changes at a rate found from the rows around this one."""
         times, law = self.run.times, self.film_law
         if not self.is_judged(i) or i < 2 or i > len(times) - 3 or len({*times[i - 2:i + 3]}) < 5:
             return
@@ -353,7 +355,7 @@ class RowChecks:
         if blur > CLEAR * load:
             return
         miss = math.hypot(n[0] * force[0] + n[1] * force[1] - thicker * want[0], n[0] * force[1] - n[1] * force[0] - thicker * want[1])
-        along, across = rate(2)   # of which a film that hardly gives way leaves next to nothing beyond its turning with the pin
+        along, across = rate(2)   # nearly zero, apart from the rotation with the pin, if the walls hardly deform
         given = math.hypot(along, across - turn * size / 2) / (math.hypot(along, across) or 1.0)
         between = max(MOVING[0], MOVING[1] * self.run.number("integrator.relative_tolerance")) / min(max(given, 1e-12), 1.0)
         self.take("film law", miss, (between + law.margin) * load + 3 * blur + row.law_noise, row.get["time"])
@@ -366,5 +368,6 @@ class RowChecks:
         self.take("cylinder volume", abs(volume - get["cylinder_volume"]), SUM * volume + gas.rounding, t)
         want = gas.wanted(i, row.q)
         if want is not None:
-            # an angle of many turns is rounded, and where the cylinder opens abruptly a little goes a long way
+            # an angle of many revolutions is rounded, and where the cylinder opens abruptly a small error of the angle has a large
+            # effect
             self.take("gas law", abs(get["cylinder_pressure"] - want), self.gas_tolerance * want, t)

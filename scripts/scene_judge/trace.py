@@ -1,4 +1,4 @@
-"""Running the program and reading what it wrote."""
+"""Runs the program and reads the files that it writes."""
 from __future__ import annotations
 
 import csv
@@ -9,13 +9,13 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-Values = dict[str, list]         # of a case: 'joint.clearance' -> [4e-05]
-Columns = dict[str, list[float]]  # of a trace: 'crank_angle' -> values
+Values = dict[str, list]         # values of a case: 'joint.clearance' -> [4e-05]
+Columns = dict[str, list[float]]  # columns of a trace: 'crank_angle' -> values
 
 
 @dataclasses.dataclass
 class Run:
-    """What one run of the program left: exit status, message, resolved case, columns, contact events and summary."""
+    """The result of one run of the program: exit status, message, resolved case, columns, contact events and summary."""
 
     status: int
     message: str
@@ -25,7 +25,7 @@ class Run:
     summary: dict[str, str] = dataclasses.field(default_factory=dict)
 
     def number(self, key: str, default: float = 0.0) -> float:
-        """A value of the case; `default` where its group is absent."""
+        """A value of the case; `default` if its group is absent."""
         return self.case.get(key, [default])[0]
 
     def pair(self, key: str) -> tuple[float, float]:
@@ -56,7 +56,7 @@ class Run:
         return self.text("guide.kind") == "clearance"
 
     def at(self, joint: str) -> Run:
-        """The run as one joint has it, under the names that the piston pin's have: its group, its laws, its columns, its events."""
+        """The run seen from one joint: its group, laws, columns and events under the names that those of the piston pin have."""
         case = {key: value for key, value in self.case.items() if not (joint != "piston_pin" and key.startswith("joint."))}
         case |= {key.removeprefix(f"{joint}."): value for key, value in self.case.items() if key.startswith(f"{joint}.")}
         columns = self.columns
@@ -67,7 +67,7 @@ class Run:
 
 
 def read_case(text: str) -> Values:
-    """The values of a resolved case file, by group and key: crank_pin.joint.clearance where the group is one joint's."""
+    """The values of a resolved case file by group and key; crank_pin.joint.clearance if the group belongs to one joint."""
     values: Values = {}
     group = ""
     for line in text.splitlines():
@@ -78,7 +78,7 @@ def read_case(text: str) -> Values:
             continue
         key, rest = found.groups()
         quoted = re.match(r"'((?:[^']|'')*)'", rest)
-        if key == "place":   # the first key of a group that is one joint's
+        if key == "place":   # the first key of a group that belongs to one joint
             group = f"{quoted[1]}.{group}"
         elif quoted:
             values[f"{group}.{key}"] = [quoted[1]]
@@ -90,7 +90,7 @@ def read_case(text: str) -> Values:
 
 
 def read_columns(path: Path) -> Columns:
-    """A trace, without the units of its column names. Cells that are no numbers become NaN, which passes no check."""
+    """A trace, without the units of its column names. Cells that are not numbers become NaN, which fails every check."""
     with path.open() as file:
         names = [name.split("[")[0] for name in file.readline().strip().split(",")]
         rows = []
@@ -104,7 +104,7 @@ def read_columns(path: Path) -> Columns:
 
 
 def read_run(folder: Path, name: str, status: int = 0, message: str = "") -> Run:
-    """What the case NAME left in a folder."""
+    """The results of the case NAME in a folder."""
     run = Run(status, message)
     for suffix in (".resolved.nml", ".csv", ".summary.csv"):
         if not (folder / f"{name}{suffix}").exists():
@@ -121,7 +121,7 @@ def read_run(folder: Path, name: str, status: int = 0, message: str = "") -> Run
 
 
 def run_case(program: Path, case: Path, settings: dict[str, str], limit: float = 60.0) -> Run:
-    """Run one case with settings on top, in a folder that is gone afterwards. Status -1: it took more than `limit` seconds."""
+    """Run one case with additional settings, in a temporary folder. Status -1: it took more than `limit` seconds."""
     with tempfile.TemporaryDirectory(prefix="judged") as out:
         words = [str(program), "-q", "-j", "1", "-o", out]
         for key, value in settings.items():
@@ -134,7 +134,7 @@ def run_case(program: Path, case: Path, settings: dict[str, str], limit: float =
 
 
 def merged(one: Run, other: Run) -> Run:
-    """The rows of two runs of the same motion in the order of time; of rows at the same time the first stays."""
+    """The rows of two runs of the same motion, sorted by time; of two rows at the same time that of `one` is kept."""
     order = sorted([(t, 0, i) for i, t in enumerate(one.times)] + [(t, 1, i) for i, t in enumerate(other.times)])
     order = [here for k, here in enumerate(order) if k == 0 or here[0] > order[k - 1][0]]
     sources = (one.columns, other.columns)

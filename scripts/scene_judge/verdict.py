@@ -1,4 +1,4 @@
-"""Everything that is judged of one scene, in one verdict."""
+"""The verdict on one scene: the results of all checks."""
 from __future__ import annotations
 
 import dataclasses
@@ -12,17 +12,17 @@ from .reruns import Comparison, Reruns
 from .rows import RowChecks
 from .trace import Run, merged, run_case
 
-MOST_STEPS = 60_000       # of a run that is traced at every step besides the grid
-CLOSER = 5     # times as many rows where something is found
-GRID = 4_000              # rows of the grid
-ENERGY = 100.0            # relative tolerances that the energy may be off, for each revolution begun
-CEILING = 1e-3            # part of the energy beyond which a result is wrong whatever the tolerance
-FLOOR = 1e-10             # rounding
+MOST_STEPS = 60_000       # largest number of steps for which rows are written at every step, besides the grid
+CLOSER = 5     # factor for the number of rows if a fault is found
+GRID = 4_000              # number of rows of the grid
+ENERGY = 100.0            # allowed error of the energy in relative tolerances, for each revolution begun
+CEILING = 1e-3            # largest relative error of the energy at any tolerance
+FLOOR = 1e-10             # smallest allowed error of the energy: rounding
 
 
 @dataclasses.dataclass
 class Verdict:
-    """`faults` is empty where nothing is wrong; `notes` say what could not be judged."""
+    """`faults` is empty if nothing is wrong; `notes` state what could not be judged."""
 
     faults: list[str] = dataclasses.field(default_factory=list)
     notes: list[str] = dataclasses.field(default_factory=list)
@@ -32,7 +32,7 @@ class Verdict:
 
 
 def judge_rows(run: Run, verdict: Verdict) -> RowChecks:
-    """Mechanics and laws in every row."""
+    """Check mechanics and laws in every row."""
     checks = RowChecks(run)
     found = checks.check()
     verdict.checks += len(found)
@@ -41,7 +41,7 @@ def judge_rows(run: Run, verdict: Verdict) -> RowChecks:
 
 
 def judge_energy(checks: RowChecks, verdict: Verdict) -> None:
-    """The balance of energy and the drift of speeds and positions from the integrals of their rates."""
+    """Check the energy balance, and speeds and positions against the integrals of their rates."""
     run = checks.run
     tolerance = min(run.number("integrator.relative_tolerance"), 1e-3)
     angle = run.columns["crank_angle"]
@@ -62,7 +62,7 @@ def judge_energy(checks: RowChecks, verdict: Verdict) -> None:
 
 
 def judge_files(run: Run, resolved: bool = True) -> Verdict:
-    """What can be judged of the files of one run alone. `resolved`: rows lie closely enough for integrals over them."""
+    """Judge the files of one run only. `resolved`: the rows are close enough for integrals over them."""
     verdict = Verdict()
     if run.status or len(run.times) < 2:
         verdict.faults.append(f"no rows to judge: {run.summary.get('status', run.message)[:120]}")
@@ -71,12 +71,12 @@ def judge_files(run: Run, resolved: bool = True) -> Verdict:
     if resolved:
         judge_energy(checks, verdict)
     else:
-        verdict.notes.append("no integrals: too many steps to trace each, and contacts between the rows of the grid")
+        verdict.notes.append("integrals not judged: too many steps for a row at each, and contacts between the rows of the grid")
     return verdict
 
 
 def judge_scene(program: Path, case: Path, settings: dict[str, str], limit: float = 60.0) -> Verdict:
-    """Run a scene with rows at every step and on a fine grid, judge them, and run it again with the other method."""
+    """Run a scene with rows at every step and on a fine grid, judge them, and compare with runs by the other method."""
     plain = {key: value for key, value in settings.items() if not key.startswith("output.")}
     plain |= {"output.ideal_twin": ".false.", "output.digits": "17"}
     rows = {key: value for key, value in settings.items() if key in ("output.interval", "output.samples_per_revolution")}
@@ -95,31 +95,32 @@ def judge_scene(program: Path, case: Path, settings: dict[str, str], limit: floa
         return judge_files(fine, resolved or not first.events)
 
     verdict = judge_rows_on(GRID)
-    if verdict.faults:   # those of integrals over rows that lie too far apart go away with more of them
+    if verdict.faults:   # faults of integrals over rows that are too far apart vanish with more rows
         verdict = judge_rows_on(CLOSER * GRID)
     seed = zlib.crc32(repr(sorted(settings.items())).encode())
     found = verdict.states = Reruns(program, case, settings | requested_columns(first), first, limit, seed).compare()
     if found.unjudged:
         verdict.notes.append(f"states not compared: {found.unjudged}")
     if not found.share <= 1:
-        verdict.faults.append(f"the state is {found.tolerances:.3g} grown tolerances off the other method's at t = {found.time:.9g} s "
-                              f"(horizon {found.horizon:.3g} s): {found.share:.3g} times what is allowed")
+        verdict.faults.append(f"the state is {found.tolerances:.3g} grown tolerances from that of the other method at t = {found.time:.9g} s "
+                              f"(horizon {found.horizon:.3g} s): {found.share:.3g} times the allowed distance")
     if found.no_statistics:
         verdict.notes.append(f"statistics not compared: {found.no_statistics}")
     for name, share in found.statistics.items():
         if not share <= 1:
-            verdict.faults.append(f"{name} beyond the horizon: {share:.3g} times as far off as chance allows")
+            verdict.faults.append(f"{name} beyond the horizon: {share:.3g} times the difference that chance allows")
     return verdict
 
 
 def summary_of(verdict: Verdict) -> list[str]:
-    """What was measured, what could not be judged and what is wrong, a line each."""
-    lines = [f"{verdict.checks} kinds of checks in every row"] if verdict.checks else ["nothing judged"]
+    """Lines that state what was measured, what could not be judged, and what is wrong."""
+    lines = [f"{verdict.checks} kinds of checks in every row"] if verdict.checks else ["nothing was judged"]
     if verdict.energy:
         one = verdict.energy
         lines.append(f"energy balances to {one.plain:.1e} of it by a quadrature known to {one.bound:.1e}; the column says {one.claimed:.1e}")
     if verdict.states and not verdict.states.unjudged:
         two = verdict.states
-        lines.append(f"state within {two.tolerances:.2g} grown tolerances of the other method's in {two.rows} rows up to {two.horizon:.3g} s")
-        lines += [f"{name} beyond that: {share:.2g} of what chance allows" for name, share in two.statistics.items()]
+        lines.append(f"state within {two.tolerances:.2g} grown tolerances of that by the other method in {two.rows} rows up to "
+                     f"{two.horizon:.3g} s")
+        lines += [f"{name} beyond the horizon: {share:.2g} of the difference that chance allows" for name, share in two.statistics.items()]
     return lines + verdict.notes + [f"FAILED: {fault}" for fault in verdict.faults]

@@ -12,7 +12,7 @@
 
 enum { most_events = 16 };
 
-/* The scene, as the library of scenes offers it: see there. */
+/* The scene, through the functions of scene_library.f90, which explains them. */
 typedef struct {
   void *handle;
   int (*rates)(void *, double, const double *, double *);
@@ -24,9 +24,9 @@ typedef struct {
   int n_rates;        /* evaluations so far */
   int n_jacobians;
   int n_steps;
-  int n_instants;     /* contact events so far */
-  int most_instants;  /* room for their instants */
-  double seconds;     /* of the processor */
+  int n_instants;     /* number of contact events so far */
+  int most_instants;  /* size of the array of their times */
+  double seconds;     /* processor time */
 } run_t;
 
 static int rates(double t, N_Vector y, N_Vector f, void *data) {
@@ -41,7 +41,7 @@ static int events(double t, N_Vector y, double *g, void *data) {
   return run->events(run->handle, t, NV_DATA_S(y), g, rate);
 }
 
-/* What happens in the present discrete state: all event functions are passages upwards. */
+/* The present directions of the events: all event functions change from negative to not negative. */
 static int watch_events(void *cvode, run_t *run) {
   int sizes[3], upwards[most_events], status;
   run->sizes(run->handle, sizes);
@@ -55,7 +55,7 @@ static void silent(int code, const char *module, const char *function, char *mes
   (void)code, (void)module, (void)function, (void)message, (void)data;
 }
 
-/* Add the counts of CVODE's present start. */
+/* Add the counts since CVODE's last start. */
 static void add_counts(void *cvode, run_t *run) {
   long steps = 0, jacobians = 0;
   CVodeGetNumSteps(cvode, &steps);
@@ -64,7 +64,7 @@ static void add_counts(void *cvode, run_t *run) {
   run->n_jacobians += (int)jacobians;
 }
 
-/* Integrate y from 0 to t_end with Newton's method and difference Jacobians; method: 1 Adams, 2 BDF. absolute: n tolerances. The
+/* Integrate y from 0 to t_end with Newton's method and numerical Jacobians; method: 1 Adams, 2 BDF. absolute: n tolerances. The
  * return value is CVODE's, or 1 where an event ended the run. */
 int cvode_run(run_t *run, int method, double relative, const double *absolute, double max_step, double t_end, double *state,
               double *instants) {

@@ -1,8 +1,8 @@
 !> A scene as a library that C and Python can call, for scripts/compare_integrators: the program's own right-hand side in its own
-!> coordinates, its event functions, and its own integrators on it.
+!> coordinates, its event functions, and integrations by the program's own methods.
 !>
-!> States are handed over without their quadratures, on which nothing depends: y = (positions | their rates | first-order states).
-!> Every function returns 0 where it did what it is asked for.
+!> States are passed without their quadratures, on which the right-hand side does not depend: y = (positions | their rates |
+!> first-order states). Functions with a status return 0 on success.
 module scene_library
   use, intrinsic :: iso_c_binding, only: c_ptr, c_loc, c_f_pointer, c_int, c_double, c_char, c_null_char, c_null_ptr
   use, intrinsic :: iso_fortran_env, only: int64
@@ -22,23 +22,23 @@ module scene_library
   private
 
   integer, parameter :: longest_text = 400
-  real(dp), parameter :: tightest = 1e-13_dp   !! of the models' own tables and of the gas: the same at every tolerance
+  real(dp), parameter :: tightest = 1e-13_dp   !! tolerance of tables and of the gas, the same in every run
 
   !> A scene, the case that it is built from and the settings of its integration.
   type :: handle_t
     type(case_t) :: case
-    logical :: is_twin = .false.       !! the ideal twin: without clearance
+    logical :: is_twin = .false.       !! whether it is the ideal twin, the same scene without clearance
     type(scene_t), allocatable :: scene
     type(ode_settings_t) :: settings   !! at the tolerance `tightest`
     integer :: n = 0                   !! states without quadratures
-    real(dp), allocatable :: y(:), f(:)   !! whole states
-    type(state_watcher_t) :: states    !! of the last integration by the program's own method
+    real(dp), allocatable :: y(:), f(:)   !! state with quadratures, and its derivative
+    type(state_watcher_t) :: states    !! largest values in the last integration by the program
     type(event_watcher_t) :: instants
   end type handle_t
 
 contains
 
-  !> Open a case, or, `twin` not 0, its ideal twin without clearance; `options` are lines of GROUP.KEY=VALUE.
+  !> Open a case or, if `twin` is not 0, its ideal twin without clearance; `options` are lines of GROUP.KEY=VALUE.
   integer(c_int) function scene_open(file, options, twin, handle) bind(c)
     character(kind=c_char), intent(in) :: file(*), options(*)
     integer(c_int), intent(in), value :: twin
@@ -75,7 +75,7 @@ contains
     deallocate (self)
   end subroutine scene_close
 
-  !> Number of states, without and with quadratures, and of event functions.
+  !> Number of states without and with quadratures, and number of event functions.
   subroutine scene_sizes(handle, sizes) bind(c)
     type(c_ptr), intent(in), value :: handle
     integer(c_int), intent(out) :: sizes(3)
@@ -84,7 +84,8 @@ contains
     sizes = [self%n, self%scene%n, self%scene%n_events]
   end subroutine scene_sizes
 
-  !> Set the scene to its start: state, end time, and the error weights of each state, relative and absolute, over the tolerance.
+  !> Set the scene to its start, and return state, end time, and the relative and absolute error weights of each state at tolerance
+  !> 1.
   integer(c_int) function scene_start(handle, y, t_end, relative, absolute) bind(c)
     type(c_ptr), intent(in), value :: handle
     real(c_double), intent(out) :: y(*), t_end, relative(*), absolute(*)
@@ -101,7 +102,7 @@ contains
     absolute(:self%n) = self%settings%absolute(:self%n)/self%settings%tolerance
   end function scene_start
 
-  !> f(t, y); 1 where the model is not defined at y.
+  !> f(t, y); returns 1 if the model is not defined at y.
   integer(c_int) function scene_rates(handle, t, y, f) bind(c)
     type(c_ptr), intent(in), value :: handle
     real(c_double), intent(in), value :: t
@@ -116,7 +117,7 @@ contains
     scene_rates = merge(0_c_int, 1_c_int, inside)
   end function scene_rates
 
-  !> The event functions and their rates: an event is a passage from negative to not negative.
+  !> The event functions and their rates; an event is a change of sign from negative to not negative.
   integer(c_int) function scene_events(handle, t, y, g, rate) bind(c)
     type(c_ptr), intent(in), value :: handle
     real(c_double), intent(in), value :: t
@@ -129,7 +130,7 @@ contains
     scene_events = 0
   end function scene_events
 
-  !> Take event `index` (from 1) at (t, y). 1: it ends the run. `is_contact`: it is one of those whose instants are compared.
+  !> Handle event `index` (from 1) at (t, y). Returns 1 if it ends the run. `is_contact`: it is an event whose time is compared.
   integer(c_int) function scene_handle_event(handle, index, t, y, is_contact) bind(c)
     type(c_ptr), intent(in), value :: handle
     integer(c_int), intent(in), value :: index
@@ -146,7 +147,7 @@ contains
     scene_handle_event = merge(1_c_int, 0_c_int, action == event_stop)
   end function scene_handle_event
 
-  !> q, A, x, q', A', x', e_x, e_y at (t, y): what errors are measured in.
+  !> q, A, x, q', A', x', e_x, e_y at (t, y), the quantities in which errors are measured.
   subroutine scene_look(handle, t, y, values) bind(c)
     type(c_ptr), intent(in), value :: handle
     real(c_double), intent(in), value :: t
@@ -160,10 +161,9 @@ contains
     values = look%values
   end subroutine scene_look
 
-  !> Integrate to the end by one of the program's own methods. `seconds` are the processor's: what else it does meanwhile is not in
-  !> them. `counts`: right-hand sides, Jacobians, accepted steps, contact
-  !> events. `watches`: look at the largest values on the way, or, 0, at nothing but events. The return value is that of the
-  !> integration.
+  !> Integrate to the end by one of the program's own methods, and return the status of the integration. `seconds`: processor time,
+  !> without that of the observation. `counts`: evaluations, Jacobians, accepted steps, contact events. `watches`: not 0 to record
+  !> the largest values during the run, 0 to record the events only.
   integer(c_int) function scene_integrate(handle, method_name, tolerance, watches, y, seconds, counts) bind(c)
     type(c_ptr), intent(in), value :: handle
     character(kind=c_char), intent(in) :: method_name(*)
@@ -206,7 +206,7 @@ contains
     scene_integrate = int(status, c_int)
   end function scene_integrate
 
-  !> Largest sizes of what `scene_look` gives, in the last integration that was watched.
+  !> Largest magnitudes of the values of `scene_look` in the last integration with `watches`.
   subroutine scene_largest(handle, values) bind(c)
     type(c_ptr), intent(in), value :: handle
     real(c_double), intent(out) :: values(watched)
@@ -215,7 +215,7 @@ contains
     values = self%states%largest
   end subroutine scene_largest
 
-  !> Instants of the contact events in the last integration that was not watched: the first `n` of them [s].
+  !> Times of the first `n` contact events in the last integration without `watches` [s].
   subroutine scene_instants(handle, n, instants) bind(c)
     type(c_ptr), intent(in), value :: handle
     integer(c_int), intent(in), value :: n
@@ -226,13 +226,13 @@ contains
     instants(:min(n, most_instants)) = self%instants%instant(:min(n, most_instants))
   end subroutine scene_instants
 
-  !> Seconds of one right-hand side where each waits for the result of the one before: the best of many blocks.
+  !> Time of one evaluation [s] in a sequence in which each depends on the result of the one before: the shortest of many blocks.
   real(c_double) function scene_seconds_in_turn(handle, t, y) bind(c)
     type(c_ptr), intent(in), value :: handle
     real(c_double), intent(in), value :: t
     real(c_double), intent(in) :: y(*)
     integer, parameter :: blocks = 60, calls = 2000
-    real(dp), parameter :: no_difference = 1e-200_dp   !! times any rate: added to a state it changes nothing
+    real(dp), parameter :: no_difference = 1e-200_dp   !! a rate times this is added to a state and does not change it
     type(handle_t), pointer :: self
     logical :: inside
     integer :: i, j
