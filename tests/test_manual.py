@@ -141,7 +141,7 @@ def check_law() -> None:
             (shutil.copytree if (ROOT / name).is_dir() else shutil.copy)(ROOT / name, copy / name)
         (copy / "src/friction/linear_ramp.f90").write_text(code_after(page, "**1. "), encoding="utf-8")
         use, _, line = code_after(page, "**2. ").partition("...")
-        registry = copy / "src/friction/friction_laws.f90"
+        registry = copy / "src/friction/friction_law_list.f90"
         text = registry.read_text(encoding="utf-8")
         text = text.replace("  implicit none\n", f"  {use.strip()}\n  implicit none\n", 1)
         text = text.replace("    call list%law(elasto_plastic_t())\n", f"    call list%law(elasto_plastic_t())\n    {line.strip()}\n", 1)
