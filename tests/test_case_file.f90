@@ -410,6 +410,10 @@ contains
     call accepted(check, whole//second, 'a crank pin that starts in contact', ['initial.crank_pin_eccentricity=1.1e-4,0'])
     call refused_on(check, whole//second//'&lubrication viscosity=0.01 /', [character(len=40) :: 'joint.bearing_length=0.01'], &
                     'x.nml: &joint of crank_pin bearing_length: required with lubrication (m)')
+    call refused_on(check, whole//second, ['crank_pin.contact=none'], 'x.nml: --set crank_pin.contact=none: no group of the '// &
+                    'crank pin alone is given: the group contact is for both pins, and --set contact=none removes it from both')
+    call accepted(check, whole//second, 'a group of the crank pin alone taken out', &
+                  [character(len=40) :: 'crank_pin.contact.law=hertz', 'crank_pin.contact=none'])
     call refused_on(check, whole//second, [character(len=40) :: 'contact=none', 'crank_pin.contact.law=hertz'], &
                     'x.nml: &joint kind = clearance: needs contact or lubrication: without them no force would act on the pin')
   end subroutine test_places

@@ -203,7 +203,12 @@ contains
     text = lowercase(trim(adjustl(override(equals + 1:))))
     group = trim(adjustl(lowercase(override(:max(0, equals - 1)))))
     if (equals > 1 .and. text == 'none' .and. (dot == 0 .or. find_group(values%groups, group) > 0)) then
-      call values%take_out(group, at, error)
+      if (is_shared(values, group)) then
+        call fail(error, at//'no group of the crank pin alone is given: the group '//group(dot + 1:)//' is for both pins, '// &
+          'and --set '//group(dot + 1:)//'=none removes it from both', status_case_file)
+      else
+        call values%take_out(group, at, error)
+      end if
       return
     else if (dot == 0) then
       call fail(error, at//'must have the form GROUP.KEY=VALUE or GROUP=none', status_case_file)
@@ -229,6 +234,18 @@ contains
     if (allocated(error) .and. lowercase(text) == 'none') &
       error%message = error%message//'; --set '//group//'=none takes the group out'
   end subroutine take_override
+
+  !> Whether the crank pin follows the group of this name for both pins, because it has none of its own.
+  pure logical function is_shared(values, group)
+    type(case_values_t), intent(in) :: values
+    character(len=*), intent(in) :: group   !! crank_pin.NAME, or any other name
+    integer :: own, common
+    is_shared = .false.
+    if (index(group, crank_pin_place//'.') /= 1 .or. group == crank_pin_place//'.joint') return
+    own = find_group(values%groups, group)
+    common = find_group(values%groups, group(len(crank_pin_place) + 2:))
+    if (own > 0 .and. common > 0) is_shared = values%is_present(common) .and. .not. values%is_present(own)
+  end function is_shared
 
   !> `path:line: `
   function at_line(values, line) result(at)
