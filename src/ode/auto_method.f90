@@ -38,6 +38,7 @@ module auto_method
     procedure :: step
     procedure :: interpolate
     procedure :: land_on
+    procedure :: withdraw
     procedure :: count_time
     procedure :: totals
     procedure :: exchange
@@ -206,17 +207,32 @@ contains
     end if
   end subroutine interpolate
 
-  subroutine land_on(self, problem, t, y)
+  subroutine land_on(self, problem, t, y, landed)
     class(auto_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
     real(dp), intent(in) :: t
     real(dp), intent(inout) :: y(:)
+    logical, intent(out) :: landed
     if (self%stiff) then
-      call self%radau%land_on(problem, t, y)
+      call self%radau%land_on(problem, t, y, landed)
     else
-      call self%adams%land_on(problem, t, y)
+      call self%adams%land_on(problem, t, y, landed)
     end if
   end subroutine land_on
+
+  subroutine withdraw(self, problem, longest, status)
+    class(auto_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    real(dp), intent(in) :: longest
+    integer, intent(out) :: status
+    if (self%stiff) then
+      call self%radau%withdraw(problem, longest, status)
+      call take_over(self, self%radau)
+    else
+      call self%adams%withdraw(problem, longest, status)
+      call take_over(self, self%adams)
+    end if
+  end subroutine withdraw
 
   !> Add the time of the last step to the total of the method and the mode with which it was made.
   subroutine count_time(self, t_to)

@@ -34,6 +34,7 @@ module gudgeon_events
     real(dp), allocatable :: y(:)         !! work
   contains
     procedure :: begin
+    procedure :: step_back
     procedure :: search
     procedure :: exchange
   end type event_watch_t
@@ -57,6 +58,15 @@ contains
     if (just_taken > 0) self%leaving(just_taken) = self%rate(just_taken) < 0
     self%leaving(:self%n) = self%leaving(:self%n) .and. .not. self%low(:self%n)
   end subroutine begin
+
+  !> Return to (t, y), the beginning of the last step, which the method has taken back.
+  subroutine step_back(self, problem, t, y)
+    class(event_watch_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    real(dp), intent(in) :: t, y(:)
+    call self%begin(problem, t, y, self%just_taken)
+    self%fresh = .false.   ! functions that were positive there have been looked at
+  end subroutine step_back
 
   !> Ask the problem for properties of its functions that are constant until the next restart.
   subroutine prepare(self, problem)

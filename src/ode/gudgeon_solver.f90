@@ -129,7 +129,8 @@ contains
     y = at%y
   end subroutine integrate
 
-  !> Find the first event in an accepted step, report step and event to the observer, handle the event and restart.
+  !> Move to the event found in an accepted step, report step and event to the observer, handle the event and restart. If the state
+  !> at the event cannot be computed accurately, the step is taken back and shorter ones are made: at%event is then 0.
   subroutine take_event(problem, method, observer, t_end, at, status)
     class(ode_problem_t), intent(inout) :: problem
     class(ode_method_t), intent(inout) :: method
@@ -139,9 +140,17 @@ contains
     integer, intent(inout) :: status
     real(dp) :: chatter_time
     integer :: action
+    logical :: landed
 
     if (at%t < method%t) then
-      call land(problem, method, at%event, at%t, at%y)
+      call land(problem, method, at%event, at%t, at%y, landed)
+      if (.not. landed) then
+        call method%withdraw(problem, 0.5_dp*(at%t - method%t_old), status)
+        call at%watch%step_back(problem, method%t, method%y)
+        at%event = 0
+        at%t = method%t
+        return
+      end if
     else
       call method%interpolate(at%t, at%y)
     end if
@@ -224,31 +233,54 @@ contains
   end subroutine exchange_all
 
   !> Move to an event inside the last step. If the method can compute the state there more accurately than its interpolant, on which
-  !> the event was found, the instant is corrected by Newton's method. If the correction fails because the function hardly changes,
-  !> and the event has not happened in the corrected state, the state of the interpolant is used.
-  subroutine land(problem, method, event, t, y)
+  !> the event was found, the instant is corrected by Newton's method. This may fail because the function hardly changes; then the
+  !> event is where it was found if the interpolant is within the tolerance of the state computed there, with the state of the
+  !> interpolant if the event has not happened in the other. Otherwise the interpolant has missed the motion, and `landed` is false.
+  subroutine land(problem, method, event, t, y, landed)
     class(ode_problem_t), intent(in) :: problem
     class(ode_method_t), intent(inout) :: method
     integer, intent(in) :: event
     real(dp), intent(inout) :: t, y(:)
-    real(dp) :: g(max_events), rate(max_events), longest, correction, t_found
+    logical, intent(out) :: landed
+    real(dp) :: g(max_events), rate(max_events), longest, correction, t_found, y_found(size(y))
+    logical :: is_near
     integer :: i
     t_found = t
     longest = 0.01_dp*(method%t - method%t_old)
-    call method%land_on(problem, t, y)
+    call method%interpolate(t, y_found)
+    call method%land_on(problem, t, y, landed)
+    is_near = landed
+    if (landed) is_near = method%difference(y, y_found) <= 1
     do i = 1, 3
+      if (.not. landed) exit
       call problem%events(t, y, g, rate)
       if (.not. abs(rate(event)) > 0) exit
       correction = -g(event)/rate(event)
       if (abs(correction) <= 1e-8_dp*longest) return
       if (.not. (abs(correction) < longest .and. t + correction > method%t_old)) exit
       t = t + correction
-      call method%land_on(problem, t, y)
+      call method%land_on(problem, t, y, landed)
     end do
-    if (i > 3 .or. .not. g(event) < 0) return
+    if (landed .and. is_near .and. (i > 3 .or. .not. g(event) < 0)) return
+    landed = is_near
+    if (.not. landed) landed = hardly_moves(problem, method, t_found, y_found)
     t = t_found
-    call method%interpolate(t, y)
+    y = y_found
   end subroutine land
+
+  !> Whether the state changes from the beginning of the last step to (t, y) by less than the tolerance, also according to its rates.
+  logical function hardly_moves(problem, method, t, y)
+    class(ode_problem_t), intent(in) :: problem
+    class(ode_method_t), intent(inout) :: method
+    real(dp), intent(in) :: t, y(:)
+    real(dp) :: f(problem%n)
+    logical :: inside
+    hardly_moves = method%difference(y, method%y_old) <= 1
+    if (.not. hardly_moves) return
+    method%statistics%evaluations = method%statistics%evaluations + 1
+    call problem%derivatives(method%t_old, method%y_old, f, inside)
+    hardly_moves = inside .and. method%difference(method%y_old + (t - method%t_old)*f, method%y_old) <= 1
+  end function hardly_moves
 
   subroutine ignore_step(self, method, problem, t_to)
     class(silent_observer_t), intent(inout) :: self

@@ -5,7 +5,7 @@ module ode_method
   use gudgeon_archive, only: archive_t
   implicit none
   private
-  public :: ode_method_t, ode_settings_t, step_statistics_t
+  public :: ode_method_t, ode_settings_t, step_statistics_t, start_again
   public :: step_done, step_too_small, tolerance_too_small, start_outside, left_domain
   public :: highest_order, with_adams, with_radau
   public :: limit_error, limit_stability, limit_max_step, limit_start, limit_refusal, n_limits, limit_names
@@ -91,6 +91,8 @@ module ode_method
     procedure(step), deferred :: step
     procedure(interpolate), deferred :: interpolate
     procedure :: land_on
+    procedure :: withdraw => start_again
+    procedure, non_overridable :: difference
     procedure, non_overridable :: exchange_solution
     procedure(exchange), deferred :: exchange
   end type ode_method_t
@@ -144,16 +146,49 @@ contains
   end function nominal_tolerance
 
   !> State at a time inside the last step at which the integration is to be restarted. Methods with steps more accurate than their
-  !> interpolant repeat the step up to that time; the default interpolates.
-  subroutine land_on(self, problem, t, y)
+  !> interpolant repeat the step up to that time, and `landed` is false where they cannot; the default interpolates.
+  subroutine land_on(self, problem, t, y, landed)
     class(ode_method_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
     real(dp), intent(in) :: t
     real(dp), intent(inout) :: y(:)
+    logical, intent(out) :: landed
     associate (unused_problem => problem)
     end associate
     call self%interpolate(t, y)
+    landed = .true.
   end subroutine land_on
+
+  !> Take back the last step, whose solution is not accurate inside it: start again at its beginning with a step of at most `longest`.
+  subroutine start_again(self, problem, longest, status)
+    class(ode_method_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    real(dp), intent(in) :: longest
+    integer, intent(out) :: status
+    real(dp) :: first_step, y(size(self%y))
+    first_step = self%settings%first_step
+    self%settings%first_step = min(first_step, longest)
+    y = self%y_old
+    call self%start(problem, self%t_old, y, .false., status)
+    self%settings%first_step = first_step
+  end subroutine start_again
+
+  !> The difference of two states relative to the tolerance, as root mean square over the components in the error control.
+  pure real(dp) function difference(self, y, other)
+    class(ode_method_t), intent(in) :: self
+    real(dp), intent(in) :: y(:), other(:)
+    real(dp) :: allowed
+    integer :: i, counted
+    difference = 0
+    counted = 0
+    do i = 1, size(y)
+      allowed = self%settings%relative(i)*abs(y(i)) + self%settings%absolute(i)
+      if (.not. allowed > 0) cycle
+      difference = difference + ((y(i) - other(i))/allowed)**2
+      counted = counted + 1
+    end do
+    difference = sqrt(difference/max(counted, 1))
+  end function difference
 
   !> The part of `exchange` that all methods have in common.
   subroutine exchange_solution(self, problem, archive)

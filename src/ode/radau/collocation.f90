@@ -17,11 +17,17 @@ module collocation
   private
   public :: collocation_t, most_iterations, n_formulas
   public :: newton_converged, newton_diverged, newton_outside
+  public :: guess_none, guess_ahead, guess_within
 
   !> Outcomes of Newton's method.
   integer, parameter :: newton_converged = 0   !! the stages are known
   integer, parameter :: newton_diverged = 1    !! no contraction, or a singular matrix
   integer, parameter :: newton_outside = 2     !! a trial state is outside the model
+
+  !> Initial guesses of the stages.
+  integer, parameter :: guess_none = 0     !! no change
+  integer, parameter :: guess_ahead = 1    !! the polynomial of the last step, beyond its end
+  integer, parameter :: guess_within = 2   !! the same inside the last step, which is repeated in part
 
   integer, parameter :: most_pairs = 3         !! largest number of pairs of complex eigenvalues
   integer, parameter :: n_formulas = 3         !! formulas of 3, 5 and 7 stages
@@ -67,6 +73,7 @@ module collocation
     procedure :: keep
     procedure :: filtered_error
     procedure :: polynomial
+    procedure :: end_defect
     procedure :: fastest_rate
     procedure :: exchange
   end type collocation_t
@@ -85,9 +92,19 @@ module collocation
       logical, intent(out) :: singular
     end subroutine decompose_matrices
 
-    !> Initial guess of the rate increments at the stages, by extrapolation of the last step's polynomial.
-    pure module subroutine guess_stages(self)
+    !> Defect of the trial's polynomial at its end: h (f_end - rate of the polynomial), 0 if its stages are known exactly. That of
+    !> quadratures is not computed.
+    pure module subroutine end_defect(self, f_end, defect)
+      class(collocation_t), intent(in) :: self
+      real(dp), intent(in) :: f_end(:)
+      real(dp), intent(out) :: defect(:)   !! (n)
+    end subroutine end_defect
+
+    !> Initial guess of the rate increments at the stages from the last step's polynomial. The step begins at the end of the last
+    !> step if it is `ahead`, otherwise at its beginning.
+    pure module subroutine guess_stages(self, ahead)
       class(collocation_t), intent(inout) :: self
+      logical, intent(in) :: ahead
     end subroutine guess_stages
 
     !> Simplified Newton iteration for the stage increments. Its contraction is also assumed for the first iteration of the next
@@ -172,20 +189,19 @@ contains
     stages = self%formula(self%level)%stages
   end function stages
 
-  !> Solve for the stages of the step of size h from (t, base), with the Jacobian in a_p and a_v. The initial guess is the
-  !> extrapolated polynomial of the last step if `extrapolates`, otherwise no change.
-  subroutine solve_stages(self, problem, extrapolates, outcome)
+  !> Solve for the stages of the step of size h from (t, base), with the Jacobian in a_p and a_v, and one of the initial guesses.
+  subroutine solve_stages(self, problem, guess, outcome)
     class(collocation_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
-    logical, intent(in) :: extrapolates
+    integer, intent(in) :: guess
     integer, intent(out) :: outcome
     logical :: singular
 
     outcome = newton_diverged
     call decompose_matrices(self, singular)
     if (singular) return
-    if (extrapolates .and. self%stages_done > 0) then
-      call guess_stages(self)
+    if (guess /= guess_none .and. self%stages_done > 0) then
+      call guess_stages(self, guess == guess_ahead)
       call iterate(self, problem, outcome)
       if (outcome /= newton_outside) return   ! otherwise the initial guess may be outside
     end if

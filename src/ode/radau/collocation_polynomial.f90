@@ -13,16 +13,37 @@ contains
     end do
   end procedure polynomial
 
+  module procedure end_defect
+    real(dp) :: slope   ! derivative of a Lagrange polynomial at the last node
+    integer :: i, j, k
+    k = self%m + self%k
+    defect = 0
+    defect(:k) = self%h*f_end(:k)
+    associate (s => self%formula(self%level)%stages, c => self%formula(self%level)%c)
+      slope = 1 + sum(1/(1 - c(:s - 1)))
+      defect(:k) = defect(:k) - slope*self%z_new(:k, s)
+      do j = 1, s - 1
+        slope = self%per_node(j, self%level)
+        do i = 1, s - 1
+          if (i /= j) slope = slope*(1 - c(i))
+        end do
+        defect(:k) = defect(:k) - slope*self%z_new(:k, j)
+      end do
+    end associate
+  end procedure end_defect
+
   module procedure guess_stages
     real(dp) :: weights(0:most_stages)
+    real(dp) :: begin
     integer :: i, j, l, s, m, k
 
+    begin = merge(1.0_dp, 0.0_dp, ahead)
     m = self%m
     k = self%k
     s = self%formula(self%level)%stages
     do i = 1, s
-      call lagrange(self, self%stages_done, 1 + self%formula(self%level)%c(i)*self%h/self%h_done, weights)
-      weights(self%stages_done) = weights(self%stages_done) - 1
+      call lagrange(self, self%stages_done, begin + self%formula(self%level)%c(i)*self%h/self%h_done, weights)
+      if (ahead) weights(self%stages_done) = weights(self%stages_done) - 1
       do l = 1, k
         self%rates(l, i) = 0
         do j = 1, self%stages_done

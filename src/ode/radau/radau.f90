@@ -7,7 +7,7 @@ module radau
   use ode_problem, only: ode_problem_t, step_admitted, step_too_deep
   use ode_method, only: ode_method_t, step_done, step_too_small, tolerance_too_small, left_domain
   use gudgeon_archive, only: archive_t
-  use collocation, only: collocation_t, n_formulas, newton_converged, newton_diverged, newton_outside
+  use collocation, only: collocation_t, n_formulas, newton_converged, newton_diverged, newton_outside, guess_ahead
   implicit none
   private
   public :: radau_t
@@ -36,7 +36,10 @@ module radau
     logical :: failed = .false.            !! the last trial was rejected
     integer :: cautious = 0                !! number of steps in which the step size still grows slowly
     logical :: first = .true.              !! no step since the start
+    real(dp) :: careful_until = -huge(1.0_dp)   !! steps before this time, after one was taken back, must solve the equations as
+                                                !! exactly as landings
     real(dp), allocatable :: f(:)                 !! right-hand side at (t, y), (n)
+    real(dp), allocatable :: f_old(:)             !! the same at (t_old, y_old)
     real(dp), allocatable :: y_try(:), y_new(:), f_new(:), error(:)
   contains
     procedure :: prepare
@@ -45,6 +48,7 @@ module radau
     procedure :: step
     procedure :: interpolate
     procedure :: land_on
+    procedure :: withdraw
     procedure :: exchange
   end type radau_t
 
@@ -69,6 +73,24 @@ module radau
       class(ode_problem_t), intent(in) :: problem
       type(archive_t), intent(inout) :: archive
     end subroutine exchange
+
+    !> Repeat the last step with the size that ends at t. `landed` is false if Newton's method does not converge, also with other
+    !> Jacobians, or if the error estimate is above the tolerance; y is then the interpolant.
+    module subroutine land_on(self, problem, t, y, landed)
+      class(radau_t), intent(inout) :: self
+      class(ode_problem_t), intent(in) :: problem
+      real(dp), intent(in) :: t
+      real(dp), intent(inout) :: y(:)
+      logical, intent(out) :: landed
+    end subroutine land_on
+
+    !> Take back the last step, which then counts as one without convergence.
+    module subroutine withdraw(self, problem, longest, status)
+      class(radau_t), intent(inout) :: self
+      class(ode_problem_t), intent(in) :: problem
+      real(dp), intent(in) :: longest
+      integer, intent(out) :: status
+    end subroutine withdraw
 
     !> The first formula: fewer stages for larger tolerances.
     pure integer module function first_level(self)
@@ -114,6 +136,27 @@ module radau
       class(ode_problem_t), intent(in) :: problem
       real(dp), intent(out) :: error
     end subroutine estimate_error
+
+    !> Required remainder of Newton's iteration of a landing, relative to the inner tolerance.
+    pure real(dp) module function landing_goal(self)
+      class(radau_t), intent(in) :: self
+    end function landing_goal
+
+    !> Whether the stages of a trial, with the right-hand side at its end in f_new, solve the equations. self%error is overwritten.
+    logical module function solves_equations(self)
+      class(radau_t), intent(inout) :: self
+    end function solves_equations
+
+    !> Prepare a step of size h from (t, y).
+    pure module subroutine set_out(self, t, y, h)
+      class(radau_t), intent(inout) :: self
+      real(dp), intent(in) :: t, y(:), h
+    end subroutine set_out
+
+    !> Add the evaluations of the stages to the statistics.
+    pure module subroutine collect(self)
+      class(radau_t), intent(inout) :: self
+    end subroutine collect
 
     !> Shorten the step after a failed trial.
     pure module subroutine retreat(self, outcome, error, fraction)
@@ -199,7 +242,7 @@ contains
     if (.not. self%fresh_jacobian .and. (self%first .or. self%failed .or. self%stages%contraction > keep_jacobian_below)) &
       call find_jacobian(self, problem)
     call set_out(self, self%t, self%y, self%h)
-    call self%stages%solve_stages(problem, .true., outcome)
+    call self%stages%solve_stages(problem, guess_ahead, outcome)
     if (outcome == newton_diverged) call try_other_jacobian(self, problem, outcome)
     call collect(self)
     if (outcome /= try_accepted) return
@@ -220,6 +263,12 @@ contains
     if (.not. inside) then
       outcome = try_outside
       return
+    end if
+    if (self%t < self%careful_until) then
+      if (.not. solves_equations(self)) then
+        outcome = newton_diverged
+        return
+      end if
     end if
     call self%stages%settle_quadratures(problem, self%f_new)
     call collect(self)
@@ -264,25 +313,8 @@ contains
     call problem%jacobian(self%t + self%h, self%y_try, self%stages%a_p, self%stages%a_v)
     self%statistics%jacobians = self%statistics%jacobians + 1
     self%stages%trust = 1
-    call self%stages%solve_stages(problem, .true., outcome)
+    call self%stages%solve_stages(problem, guess_ahead, outcome)
   end subroutine try_other_jacobian
-
-  !> Prepare a step of size h from (t, y).
-  pure subroutine set_out(self, t, y, h)
-    class(radau_t), intent(inout) :: self
-    real(dp), intent(in) :: t, y(:), h
-    self%stages%t = t
-    self%stages%base = y
-    self%stages%h = h
-    self%stages%goal = newton_goal(self)
-  end subroutine set_out
-
-  !> Add the evaluations of the stages to the statistics.
-  pure subroutine collect(self)
-    class(radau_t), intent(inout) :: self
-    self%statistics%evaluations = self%statistics%evaluations + self%stages%evaluations
-    self%stages%evaluations = 0
-  end subroutine collect
 
   pure subroutine accept(self)
     class(radau_t), intent(inout) :: self
@@ -293,6 +325,7 @@ contains
     if (abs(self%t - self%settings%stop_time) <= 4*spacing(self%t)) self%t = self%settings%stop_time
     self%y_old = self%y
     self%y = self%y_new
+    self%f_old(:) = self%f
     self%f = self%f_new
     call self%stages%keep()
     self%order = s
@@ -303,36 +336,6 @@ contains
       count%smallest_step = min(count%smallest_step, self%h)
     end associate
   end subroutine accept
-
-  !> Repeat the last step with the size that ends at t. If that fails, the interpolant is used.
-  subroutine land_on(self, problem, t, y)
-    class(radau_t), intent(inout) :: self
-    class(ode_problem_t), intent(in) :: problem
-    real(dp), intent(in) :: t
-    real(dp), intent(inout) :: y(:)
-    integer :: outcome, level
-    logical :: inside
-
-    call self%interpolate(t, y)
-    if (self%stages%stages_done == 0 .or. .not. t > self%t_old) return
-    level = self%stages%level
-    self%stages%level = self%stages%stages_done/2
-    call set_out(self, self%t_old, self%y_old, t - self%t_old)
-    call self%stages%solve_stages(problem, .false., outcome)
-    call collect(self)
-    if (outcome == newton_converged) then
-      self%y_try = self%y_old + self%stages%z_new(:, self%stages%stages_done)
-      self%statistics%evaluations = self%statistics%evaluations + 1
-      call problem%derivatives(t, self%y_try, self%f_new, inside)
-      if (inside) call self%stages%settle_quadratures(problem, self%f_new)
-      call collect(self)
-      call self%stages%keep()
-      y = self%y_old + self%stages%z(:, self%stages%stages_done)
-      self%t = t
-      self%y = y
-    end if
-    self%stages%level = level
-  end subroutine land_on
 
   !> The collocation polynomial of the last step.
   pure subroutine interpolate(self, t, y)

@@ -20,6 +20,19 @@ contains
     scaled_norm = sqrt(sum((x*self%stages%inverse_weight)**2)/self%weighted)
   end procedure scaled_norm
 
+  module procedure set_out
+    self%stages%t = t
+    self%stages%base = y
+    self%stages%h = h
+    self%stages%goal = newton_goal(self)
+    if (t < self%careful_until) self%stages%goal = landing_goal(self)
+  end procedure set_out
+
+  module procedure collect
+    self%statistics%evaluations = self%statistics%evaluations + self%stages%evaluations
+    self%stages%evaluations = 0
+  end procedure collect
+
   module procedure newton_goal
     real(dp) :: tolerance, s
     s = self%stages%stages()

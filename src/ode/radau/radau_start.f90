@@ -9,6 +9,7 @@ contains
 
     if (first .or. .not. allocated(self%error)) call prepare(self, problem)
     if (first) self%statistics = step_statistics_t()
+    self%careful_until = -huge(t)
     self%t = t
     self%t_old = t
     self%y = y
@@ -39,8 +40,8 @@ contains
     self%highest = 1
     if (self%settings%max_order >= 9) self%highest = 2
     if (self%settings%max_order >= 12) self%highest = 3
-    if (allocated(self%error)) deallocate (self%y_try, self%y_new, self%f_new, self%error, self%y, self%y_old, self%f)
-    allocate (self%y_try(n), self%y_new(n), self%f_new(n), self%error(n), self%y(n), self%y_old(n), self%f(n))
+    if (allocated(self%error)) deallocate (self%y_try, self%y_new, self%f_new, self%error, self%y, self%y_old, self%f, self%f_old)
+    allocate (self%y_try(n), self%y_new(n), self%f_new(n), self%error(n), self%y(n), self%y_old(n), self%f(n), self%f_old(n))
   end procedure prepare
 
   module procedure exchange
@@ -56,6 +57,7 @@ contains
     call archive%exchange(self%failed)
     call archive%exchange(self%cautious)
     call archive%exchange(self%first)
+    call archive%exchange(self%careful_until)
   end procedure exchange
 
   module procedure first_level
