@@ -232,10 +232,11 @@ contains
     if (archive%is_reading .and. .not. archive%is_at_end()) archive%failed = .true.
   end subroutine exchange_all
 
-  !> Move to an event inside the last step. If the method can compute the state there more accurately than its interpolant, on which
-  !> the event was found, the instant is corrected by Newton's method. This may fail because the function hardly changes; then the
-  !> event is where it was found if the interpolant is within the tolerance of the state computed there, with the state of the
-  !> interpolant if the event has not happened in the other. Otherwise the interpolant has missed the motion, and `landed` is false.
+  !> Move to an event inside the last step. If the method can compute the state there more accurately than its interpolant, on
+  !> which the event was found, the instant is corrected by Newton's method. This may fail because the function hardly changes.
+  !> Then the event is taken where it was found, if the state of the interpolant there is within the tolerance of the computed one;
+  !> the former is used if the event has not happened in the latter. Otherwise the interpolant misses the motion, and `landed` is
+  !> false.
   subroutine land(problem, method, event, t, y, landed)
     class(ode_problem_t), intent(in) :: problem
     class(ode_method_t), intent(inout) :: method
@@ -268,7 +269,8 @@ contains
     y = y_found
   end subroutine land
 
-  !> Whether the state changes from the beginning of the last step to (t, y) by less than the tolerance, also according to its rates.
+  !> Whether the state changes from the beginning of the last step to (t, y) by less than the tolerance, also according to its
+  !> rates.
   logical function hardly_moves(problem, method, t, y)
     class(ode_problem_t), intent(in) :: problem
     class(ode_method_t), intent(inout) :: method

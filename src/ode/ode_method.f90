@@ -159,7 +159,8 @@ contains
     landed = .true.
   end subroutine land_on
 
-  !> Take back the last step, whose solution is not accurate inside it: start again at its beginning with a step of at most `longest`.
+  !> Take back the last step, whose solution is not accurate inside it: start again at its beginning with a step of at most
+  !> `longest`.
   subroutine start_again(self, problem, longest, status)
     class(ode_method_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem

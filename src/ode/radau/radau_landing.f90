@@ -4,9 +4,10 @@ submodule (radau) radau_landing
   use collocation, only: guess_none, guess_within
   implicit none
 
-  !> Largest defect of a landing, in tolerances. Newton's method leaves one of h lambda times its own remainder, in stiff films up to
-  !> ten tolerances. Where the Jacobian is far stiffer than the force (friction that gives way within a narrow range of speeds), the
-  !> steps of Newton's method become small although the equations are not solved, with defects of hundreds of tolerances.
+  !> Largest defect of a landing, in tolerances. Newton's method leaves one of h lambda times its own remainder (lambda: rate of the
+  !> fastest mode), in stiff films up to ten tolerances. Where the Jacobian is far stiffer than the force (friction that gives way
+  !> within a narrow range of speeds), Newton steps are small although the equations are not solved: the defect is then hundreds
+  !> of tolerances.
   real(dp), parameter :: largest_defect = 10
 contains
 
