@@ -1,18 +1,19 @@
-"""Named assertions of the tests in Python, counted as tests/checks.f90 counts them.
+"""Named assertions of the tests in Python, counted in the same way as in tests/checks.f90.
 
-An assertion is a name without figures: one that is made for many files, kills or rows counts once, and has passed if every turn has.
+The numbers in a name are ignored: an assertion that is made for many files, kills or rows counts once, and passes if it holds each
+time.
 """
 from __future__ import annotations
 
 import collections
 import re
 
-MOST_PRINTED = 5   # failing turns of one assertion that are printed
+MOST_PRINTED = 5   # failures of one assertion that are printed
 NUMBER = re.compile(r"(?<![A-Za-z_0-9])[-+.]*\d[\d.+\-eEdD]*")
 
 
 def without_figures(name: str) -> str:
-    """A name in which every number is '#'; digits inside a word, as in dry_0100um, stay."""
+    """The name with every number replaced by '#'; digits inside a word, as in dry_0100um, are kept."""
     return NUMBER.sub("#", name)
 
 
@@ -24,7 +25,7 @@ class Assertions:
         self.failures: collections.Counter = collections.Counter()
 
     def check(self, held: object, name: str, found: str = "") -> None:
-        """One turn of the assertion `name`; `found` says what was there instead, and is no part of the name."""
+        """Make the assertion `name` once; `found` describes what was found instead, and is not part of the name."""
         key = without_figures(name)
         self.turns[key] += 1
         if held:
@@ -42,7 +43,7 @@ class Assertions:
         return len(self.turns) - self.failed
 
     def report(self) -> int:
-        """Print the last line; the exit status, 1 where anything failed or nothing was asserted."""
+        """Print the last line. Returns the exit status, 1 if an assertion failed or none was made."""
         for name, number in self.failures.items():
             if number > MOST_PRINTED:
                 print(f"FAILED: {name}: {number} of {self.turns[name]} turns")

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""What the machine does to a run: kills, signals, full disks, folders that cannot be written, two runs in one place, pipes and
-links where files should be, and what a power cut finds on the disk.
+"""Failures of the machine during a run: kills, signals, full disks, folders that cannot be written, two runs in one folder, pipes
+and links in the place of files, and the state of the disk after a power cut.
 
     tests/test_faults.py [--kills N] [--seed N] [--program PATH]
 
-Whatever happens, every file holds whole rows (but for the last row of a trace still under its temporary name, which a kill -9
-may cut), a summary or a resolved case is whole or not there, finished cases of a batch stay, and the exit status tells. Needs a release build (or makes one). What needs root is left out without it, and said.
+In every case all files contain complete rows (except the last row of a trace under its temporary name, which a kill -9 may cut), a
+summary or resolved case is complete or absent, the finished cases of a batch are kept, and the exit status states the failure.
+Needs a release build (or makes one). Tests that need root are skipped without it, with a message.
 Ends with the line "N passed, N failed".
 """
 from __future__ import annotations
@@ -27,15 +28,15 @@ from assertions import Assertions
 
 ROOT = Path(__file__).resolve().parent.parent
 FLORES = ROOT / "cases" / "flores"
-LONG = ("--set", "integrator.revolutions=400")          # many seconds
+LONG = ("--set", "integrator.revolutions=400")          # a run of many seconds
 SHORT = ("--set", "integrator.revolutions=0.2", "--set", "output.ideal_twin=F", "--set", "integrator.method=auto")
-PATIENCE = 60                                           # seconds for anything: a hang otherwise
+PATIENCE = 60                                           # seconds; a program that takes longer hangs
 assertions = Assertions()
 check = assertions.check
 
 
 class Gudgeon:
-    """The program, started in ways that people and machines start it."""
+    """The program, started as users and other programs start it."""
 
     def __init__(self, program: Path):
         self.program = program
@@ -58,20 +59,20 @@ def program_built() -> Path:
 
 
 def torn(path: Path) -> str:
-    """What is not whole in a result file; empty if nothing is."""
+    """What is incomplete in a result file; empty if the file is complete."""
     text = path.read_bytes()
     if path.suffix == ".checkpoint":
-        return "" if text.startswith(b"gudgeon checkpoint\n") else f"{path.name} is not one"
+        return "" if text.startswith(b"gudgeon checkpoint\n") else f"{path.name} is not a checkpoint"
     name = path.name.removesuffix(".part")
     if name != path.name:
         text = text[:text.rfind(b"\n") + 1]
     if text and not text.endswith(b"\n"):
-        return f"{path.name} ends within a row: {text[-60:]!r}"
+        return f"{path.name} ends in the middle of a row: {text[-60:]!r}"
     rows = text.decode().splitlines()
     if name.endswith(".summary.csv"):
-        return "" if rows and rows[-1].startswith("compiler_options,") else f"{path.name} is not whole"
+        return "" if rows and rows[-1].startswith("compiler_options,") else f"{path.name} is not complete"
     if name.endswith(".resolved.nml"):
-        return "" if rows and rows[-1] == "/" and rows[-2].strip().startswith("window") else f"{path.name} is not whole"
+        return "" if rows and rows[-1] == "/" and rows[-2].strip().startswith("window") else f"{path.name} is not complete"
     columns = rows[0].count(",") if rows else 0
     for row in rows[1:]:
         if row.count(",") != columns:
@@ -80,18 +81,18 @@ def torn(path: Path) -> str:
 
 
 def whole(folder: Path, what: str, parts: bool = False) -> None:
-    """Every file in a folder is whole; files under temporary names only where `parts` may be left."""
+    """Check that every file in a folder is complete; files under temporary names are allowed only with `parts`."""
     files = [path for path in folder.iterdir() if path.is_file()] if folder.is_dir() else []
     faults = [torn(path) for path in files if not (path.name.endswith(".part") and path.name.count(".resolved.") + path.name.count(
         ".summary.")) and not path.name.endswith(".lock")]
-    check(not any(faults), f"{what}: whole rows: {[fault for fault in faults if fault][:2]}")
+    check(not any(faults), f"{what}: incomplete files: {[fault for fault in faults if fault][:2]}")
     if not parts:
         left = [path.name for path in files if path.name.endswith((".part", ".lock"))]
-        check(not left, f"{what}: nothing under a temporary name, not {left}")
+        check(not left, f"{what}: no files under temporary names, not {left}")
 
 
 def test_kills(gudgeon: Gudgeon, work: Path, kills: int, rng: random.Random) -> None:
-    """kill -9 at random instants, now and then with an earlier run's results in place; the next run finds nothing in its way."""
+    """kill -9 at random times, sometimes with the results of an earlier run in the folder; the next run is not obstructed."""
     cases = [FLORES / "dry_0500um.nml", FLORES / "friction_050.nml", ROOT / "cases" / "sim_IV.nml"]
     left = 0
     for i in range(kills):
@@ -106,16 +107,16 @@ def test_kills(gudgeon: Gudgeon, work: Path, kills: int, rng: random.Random) -> 
         if folder.is_dir():
             left += any(folder.glob("*.part"))
             whole(folder, f"kill {i}", parts=True)
-    check(left > 0, "some runs are killed in the middle")
-    for ending in (".ideal.csv", ".summary.csv", ".resolved.nml"):   # also of files that the next run does not write
+    check(left > 0, "some runs are killed before their end")
+    for ending in (".ideal.csv", ".summary.csv", ".resolved.nml"):   # including files that the next run does not write
         (work / "killed" / f"sim_IV{ending}.part").write_text("left behind\n")
     status, _, err = gudgeon.run("-o", work / "killed", *SHORT, *cases)
-    check(status == 0 and not err, f"after the kills a run goes through: {status} {err}")
+    check(status == 0 and not err, f"a run after the kills is finished: {status} {err}")
     whole(work / "killed", "after the kills")
 
 
 def test_signals(gudgeon: Gudgeon, work: Path) -> None:
-    """Ctrl-C and its like end all cases of a batch, those that have not begun too."""
+    """Ctrl-C and similar signals end all cases of a batch, including those that have not begun."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         folder = work / number.name
         process = gudgeon.start("-o", folder, "-j", "1", *LONG, ROOT / "cases" / "sim_I.nml", FLORES / "dry_0100um.nml")
@@ -127,43 +128,44 @@ def test_signals(gudgeon: Gudgeon, work: Path) -> None:
         lines = err.decode().splitlines()
         check(process.returncode == 4, f"{number.name}: exit status 4, not {process.returncode}")
         check(len(lines) == 2 and "interrupted at t =" in lines[0] and "dry_0100um.nml: interrupted before" in lines[1],
-              f"{number.name}: one line a case: {lines}")
+              f"{number.name}: one line for each case: {lines}")
         summary = (folder / "sim_I.summary.csv").read_text()
-        check('status,"interrupted at t' in summary, f"{number.name}: the summary says so")
+        check('status,"interrupted at t' in summary, f"{number.name}: the summary states the interruption")
         whole(folder, number.name)
-    folder = work / "twin"   # goes beside its case, is stopped with it, and is a run of its own to take up; an earlier one goes
+    folder = work / "twin"   # runs in parallel with its case, is stopped with it, and replaces an earlier one
     folder.mkdir()
     (folder / "sim_I.ideal.csv").write_text("time[s]\n0\n")
     words = ("-o", folder, *LONG, "--set", "output.ideal_twin=T", ROOT / "cases" / "sim_I.nml")
     process = gudgeon.start("-j", "2", *words)
     while not ((folder / "sim_I.csv.part").exists() and (folder / "sim_I.ideal.csv.part").exists()):
         time.sleep(0.01)
-    check(not (folder / "sim_I.ideal.csv").exists(), "twin: the earlier one is gone")
+    check(not (folder / "sim_I.ideal.csv").exists(), "ideal twin: the earlier one is removed")
     process.send_signal(signal.SIGINT)
     _, err = process.communicate(timeout=PATIENCE)
-    check(process.returncode == 4 and err.decode().count("\n") == 1 and b"interrupted at t =" in err, f"twin: one line, not {err}")
-    check('status,"interrupted at t' in (folder / "sim_I.ideal.summary.csv").read_text(), "twin: its summary says so")
+    check(process.returncode == 4 and err.decode().count("\n") == 1 and b"interrupted at t =" in err, f"ideal twin: one line, not {err}")
+    check('status,"interrupted at t' in (folder / "sim_I.ideal.summary.csv").read_text(), "ideal twin: its summary states the interruption")
     whole(folder, "twin")
-    folder = work / "later"   # the case is done, its twin is not
+    folder = work / "later"   # the case is done, its ideal twin is not
     process = gudgeon.start("-o", folder, "-j", "1", *SHORT[:2], *SHORT[4:], "--set", "output.ideal_twin=T", "--set",
                             "output.interval=1e-8", ROOT / "cases" / "sim_II.nml")
     while not ((folder / "sim_II.ideal.csv.part").exists()):
         time.sleep(0.001)
     process.send_signal(signal.SIGINT)
     _, err = process.communicate(timeout=PATIENCE)
-    check(process.returncode == 4 and b"sim_II.nml: ideal twin: interrupted" in err, f"a twin that is interrupted is named: {err}")
-    check('status,"done"' in (folder / "sim_II.summary.csv").read_text(), "and its case is done")
+    check(process.returncode == 4 and b"sim_II.nml: ideal twin: interrupted" in err,
+          f"an ideal twin that is interrupted is named in the message: {err}")
+    check('status,"done"' in (folder / "sim_II.summary.csv").read_text(), "the case of an interrupted ideal twin is done")
     folder = work / "nohup"
     process = gudgeon.start("-o", folder, *SHORT, FLORES / "dry_0100um.nml",
                             preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
     process.send_signal(signal.SIGHUP)
     process.communicate(timeout=PATIENCE)
-    check(process.returncode == 0, "a signal that is ignored from the start stays ignored")
+    check(process.returncode == 0, "a signal that was ignored at the start of the program stays ignored")
 
 
 @contextlib.contextmanager
 def disk(folder: Path, options: str):
-    """A file system in memory; yields False where this user may not have one."""
+    """A file system in memory; yields False if this user is not allowed to mount one."""
     folder.mkdir()
     done = os.geteuid() == 0 and shutil.which("mount") and subprocess.run(
         ["mount", "-t", "tmpfs", "-o", options, "tmpfs", str(folder)], capture_output=True, check=False).returncode == 0
@@ -182,24 +184,25 @@ def full(gudgeon: Gudgeon, folder: Path, what: str, *words: object, **how) -> No
 
 
 def test_full_disk(gudgeon: Gudgeon, work: Path) -> None:
-    """No room for the trace, the summary, the resolved case, or for nothing at all."""
+    """A disk without room for the trace, the summary, the resolved case, or any file."""
     for size in (4, 8, 16, 64, 300):
         with disk(work / f"disk{size}", f"size={size}k") as mounted:
             if not mounted:
-                print("skipped: a full disk (needs root and tmpfs); files that may not grow stand in for it")
+                print("skipped: a full disk (needs root and tmpfs); a limit of the file size is tested instead")
                 break
             full(gudgeon, work / f"disk{size}", f"a disk of {size} kB")
     for size in (0, 100, 3000, 100_000, 300_000):
-        full(gudgeon, work / f"limit{size}", f"files of {size} bytes at most",
+        full(gudgeon, work / f"limit{size}", f"a limit of {size} bytes for files",
              preexec_fn=lambda size=size: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)))
-    for size in (300_000, 4_200_000):   # the second has room for the twin, whose thread then writes the rows
-        full(gudgeon, work / f"twin{size}", f"files of {size} bytes at most, with a twin", "-j", "2", "--set", "output.ideal_twin=T",
+    for size in (300_000, 4_200_000):   # the second is enough for the ideal twin; the case then fails while it writes its rows
+        full(gudgeon, work / f"twin{size}", f"a limit of {size} bytes for files, with an ideal twin", "-j", "2", "--set", "output.ideal_twin=T",
              "--set", "output.samples_per_revolution=5000",
              preexec_fn=lambda size=size: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)))
 
 
 def test_full_disk_has_summary(gudgeon: Gudgeon, work: Path) -> None:
-    """A run that finds the disk full says so in its summary, for which there is room: no trace that is cut stands without one."""
+    """If the disk becomes full, the run states this in its summary, for which room is reserved: an incomplete trace always has a
+    summary."""
     case = FLORES / "friction_100.nml"
     words = ("--set", "integrator.revolutions=30", "--set", "output.ideal_twin=F", case)
     for size in (40, 60, 100, 500, 2000):
@@ -213,12 +216,12 @@ def test_full_disk_has_summary(gudgeon: Gudgeon, work: Path) -> None:
             summary = folder / "friction_100.summary.csv"
             check(summary.exists() or not (folder / "friction_100.csv").exists(), f"a disk of {size} kB: a trace without a summary")
             if size >= 60:
-                check(summary.exists() and 'status,"stopped: ' in summary.read_text(), f"a disk of {size} kB: the summary tells")
+                check(summary.exists() and 'status,"stopped: ' in summary.read_text(), f"a disk of {size} kB: the summary states the failure")
             whole(folder, f"a disk of {size} kB")
 
 
 def test_planted(gudgeon: Gudgeon, work: Path) -> None:
-    """Links, pipes and devices where files should be: nothing is written through them, nothing waits for them."""
+    """Links, pipes and devices in the place of files: the program does not write through them and does not wait for them."""
     case = FLORES / "ideal.nml"
     folder = work / "links"
     folder.mkdir()
@@ -229,11 +232,11 @@ def test_planted(gudgeon: Gudgeon, work: Path) -> None:
             (folder / f"ideal.{name}{ending}").symlink_to(victim)
     (folder / "ideal.ideal.csv.part").hardlink_to(victim)
     status, _, err = gudgeon.run("-o", folder, "--set", "integrator.max_steps=30", "--checkpoint", 0.0001, case)
-    check(status == 4, f"a run among links: {status} {err}")
-    check(victim.read_text() == "precious\n", "what the links lead to stays")
-    check(not any(path.is_symlink() for path in folder.iterdir()), f"the links are gone: {[p.name for p in folder.iterdir()]}")
+    check(status == 4, f"a run in a folder with links: {status} {err}")
+    check(victim.read_text() == "precious\n", "the targets of the links are unchanged")
+    check(not any(path.is_symlink() for path in folder.iterdir()), f"the links are replaced: {[p.name for p in folder.iterdir()]}")
     status, _, err = gudgeon.run("-o", folder, "--resume", case)
-    check(status == 0 and not err, f"and goes on: {status} {err}")
+    check(status == 0 and not err, f"the run among links can be resumed: {status} {err}")
 
     pipe = work / "pipe.nml"
     os.mkfifo(pipe)
@@ -253,25 +256,25 @@ def test_planted(gudgeon: Gudgeon, work: Path) -> None:
     (blocked / "ideal.checkpoint").unlink()
     (blocked / "ideal.lock").symlink_to(victim)
     status, _, err = gudgeon.run("-o", blocked, *SHORT, case)
-    check(status == 5 and err.endswith("ideal.lock: a symbolic link\n"), f"a link for a lock: {status} {err}")
-    for name in ("csv", "summary.csv", "resolved.nml"):   # pipes under the names of results are replaced
+    check(status == 5 and err.endswith("ideal.lock: a symbolic link\n"), f"a link in the place of a lock: {status} {err}")
+    for name in ("csv", "summary.csv", "resolved.nml"):   # pipes with the names of results are replaced
         os.mkfifo(work / f"ideal.{name}")
     status, _, err = gudgeon.run("-o", work, *SHORT, case)
-    check(status == 0 and not err, f"pipes for results: {status} {err}")
+    check(status == 0 and not err, f"pipes in the place of results: {status} {err}")
 
 
 def test_standard_input(gudgeon: Gudgeon, work: Path) -> None:
-    """A case may come through /dev/stdin, and while it is waited for a signal ends the program."""
+    """A case can be read from /dev/stdin; a signal ends the program while it waits for the case."""
     case = FLORES / "ideal.nml"
     with case.open("rb") as file:
         status, _, err = gudgeon.run("-o", work / "file", *SHORT, "/dev/stdin", stdin=file)
-    check(status == 0, f"a case as a file on standard input: {status} {err}")
+    check(status == 0, f"a case on standard input, from a file: {status} {err}")
     process = gudgeon.start("-o", work / "pipe", *SHORT, "/dev/stdin", stdin=subprocess.PIPE)
     time.sleep(0.1)
     _, err = process.communicate(case.read_bytes(), timeout=PATIENCE)
-    check(process.returncode == 0, f"through a pipe, after a while: {process.returncode} {err}")
+    check(process.returncode == 0, f"a case on standard input, from a pipe after a delay: {process.returncode} {err}")
     same = [(work / name / "stdin.csv").read_bytes() for name in ("file", "pipe")]
-    check(same[0] == same[1], "with the same results")
+    check(same[0] == same[1], "a case on standard input gives the same results")
     for number in (signal.SIGINT, signal.SIGTERM):
         process = gudgeon.start("-o", work / "none", "/dev/stdin", stdin=subprocess.PIPE)
         time.sleep(0.3)
@@ -280,9 +283,9 @@ def test_standard_input(gudgeon: Gudgeon, work: Path) -> None:
         status = process.wait(timeout=PATIENCE)
         err = process.stderr.read().decode()
         process.stdin.close()
-        check(status == 4 and "interrupted before it began" in err, f"{number.name} while it waits: {status} {err}")
-        check(time.monotonic() - began < 2, f"{number.name} at once")
-    for delay in (0, 0.001, 0.002, 0.004, 0.008):   # from the first instant on: the system ends the program, or it ends itself
+        check(status == 4 and "interrupted before it began" in err, f"{number.name} while the program waits for a case: {status} {err}")
+        check(time.monotonic() - began < 2, f"{number.name} ends the program at once")
+    for delay in (0, 0.001, 0.002, 0.004, 0.008):   # early signals: either the system ends the program, or the program ends itself
         process = gudgeon.start("-o", work / "early", *LONG, FLORES / "dry_0500um.nml")
         time.sleep(delay)
         process.send_signal(signal.SIGTERM)
@@ -342,22 +345,23 @@ ssize_t write(int file, const void *bytes, size_t n) {
 
 
 def test_power_cut(gudgeon: Gudgeon, work: Path) -> None:
-    """The order of what goes to the disk, from a library that notes the calls: a file is there before it has its name, the names
-    are there before the program ends, and nothing earlier that says "done" is left when the first name of the new run comes."""
+    """The order of writes to the disk, recorded by a library that intercepts the calls. The content of a file is on the disk before
+    the file gets its name, all names are on the disk before the program ends, and an earlier summary that says "done" is removed
+    from the disk before the first result of the new run gets its name."""
     source, library, calls = work / "calls.c", work / "calls.so", work / "calls"
     source.write_text(LIBRARY)
     built = subprocess.run(["gcc", "-shared", "-fPIC", "-o", library, source, "-ldl"], capture_output=True, text=True, check=False)
     if built.returncode:
-        print(f"skipped: the order of what goes to the disk (gcc: {built.stderr[:100]})")
+        print(f"skipped: the order of writes to the disk (gcc: {built.stderr[:100]})")
         return
     folder = (work / "results").resolve()
     for i, words in enumerate((("-j", "1"), ("-j", "2", "--set", "initial.crank_speed=1010"), ("--set", "integrator.max_steps=12"))):
         calls.unlink(missing_ok=True)
         status, _, err = gudgeon.run("-o", folder, *SHORT[:2], *SHORT[4:], *words, ROOT / "cases" / "sim_III.nml",
                                      env={**os.environ, "LD_PRELOAD": str(library), "CALLS": str(calls)})
-        check(status == (4 if i == 2 else 0), f"a run that is watched: {status} {err}")
-        unsafe: set[str] = set()    # files with bytes that the disk may not have
-        loose: list[str] = []       # changes of the folder that it may not have
+        check(status == (4 if i == 2 else 0), f"a run whose calls are recorded: {status} {err}")
+        unsafe: set[str] = set()    # files with content that may not be on the disk
+        loose: list[str] = []       # changes of the folder that may not be on the disk
         done = 0
         for line in calls.read_text().splitlines():
             what, path, other = line.split("\t")
@@ -371,18 +375,18 @@ def test_power_cut(gudgeon: Gudgeon, work: Path) -> None:
                 loose.append(f"remove {path}")
             else:
                 source_path = str(Path(path).resolve().parent / Path(path).name)
-                check(source_path not in unsafe, f"run {i}: {Path(other).name} has its name before the disk has its bytes")
+                check(source_path not in unsafe, f"run {i}: {Path(other).name} gets its name before its content is on the disk")
                 check(not any("summary.csv" in each and "remove" in each and not each.endswith(".part") for each in loose),
-                      f"run {i}: {Path(other).name} comes while an earlier summary may come back")
+                      f"run {i}: {Path(other).name} gets its name while an earlier summary may still be on the disk")
                 loose.append(f"rename {other}")
                 done += 1
-        check(done >= 5, f"run {i}: {done} files get their names")
+        check(done >= 5, f"run {i}: only {done} files get their names")
         left = [each for each in loose if not each.endswith((".checkpoint", ".lock", ".part"))]
-        check(not left, f"run {i}: the disk may not have: {left}")
+        check(not left, f"run {i}: not certainly on the disk: {left}")
 
 
 def test_folders(gudgeon: Gudgeon, work: Path) -> None:
-    """Where results cannot go: one line and exit status 5, and what was written before stays."""
+    """A folder that cannot take results: one line and exit status 5; existing files stay."""
     case = FLORES / "dry_0500um.nml"
     with disk(work / "read_only", "ro") as mounted:
         if not mounted and os.geteuid() != 0:
@@ -391,26 +395,26 @@ def test_folders(gudgeon: Gudgeon, work: Path) -> None:
         if mounted:
             for folder in (work / "read_only", work / "read_only" / "sub"):
                 status, _, err = gudgeon.run("-o", folder, *SHORT, case)
-                check(status == 5 and err.count("\n") == 1, f"a folder that is read-only: {status} {err}")
+                check(status == 5 and err.count("\n") == 1, f"a read-only folder: {status} {err}")
         else:
-            print("skipped: a folder that is read-only (needs tmpfs)")
+            print("skipped: a read-only folder (needs tmpfs)")
     (work / "file").write_text("kept")
     for folder in (work / "file", work / "file" / "sub"):
         status, _, err = gudgeon.run("-o", folder, *SHORT, case)
-        check(status == 5 and err.count("\n") == 1 and "ot a directory" in err, f"a folder that is a file: {status} {err}")
-    check((work / "file").read_text() == "kept", "the file stays")
+        check(status == 5 and err.count("\n") == 1 and "ot a directory" in err, f"a file in the place of the folder: {status} {err}")
+    check((work / "file").read_text() == "kept", "a file in the place of the folder stays")
     for ending in ("csv", "events.csv", "summary.csv", "resolved.nml"):
         folder = work / ending
         (folder / f"dry_0500um.{ending}").mkdir(parents=True)
         status, _, err = gudgeon.run("-o", folder, *SHORT, case)
         check(status == 5 and err.count("\n") == 1 and f"dry_0500um.{ending}: Is a directory" in err,
-              f"a folder where {ending} should be: {status} {err}")
+              f"a folder in the place of {ending}: {status} {err}")
         whole(folder, f"a folder in place of {ending}", parts=ending.endswith("csv"))
-    check((work / "summary.csv" / "dry_0500um.csv").is_file(), "a summary that cannot be written leaves the trace")
+    check((work / "summary.csv" / "dry_0500um.csv").is_file(), "a trace whose summary cannot be written is kept")
 
 
 def test_standard_output(gudgeon: Gudgeon, work: Path) -> None:
-    """A reader that goes away is no failure, a full device is; a closed descriptor takes nothing of the results."""
+    """A reader of standard output that ends is not a failure, a full device is; closed descriptors do not change the results."""
     case = FLORES / "dry_0500um.nml"
     for words in (("-o", work / "pipe", *SHORT, case), ("--template",)):
         process = gudgeon.start(*words)
@@ -419,7 +423,7 @@ def test_standard_output(gudgeon: Gudgeon, work: Path) -> None:
         check(process.wait(timeout=PATIENCE) == 0 and not err, f"closed standard output, {words[0]}: {process.returncode} {err}")
         with open("/dev/full", "wb") as device:
             status, _, err = gudgeon.run(*words, stdout=device)
-        check(status == 5 and err.count("\n") == 1, f"standard output without room, {words[0]}: {status} {err}")
+        check(status == 5 and err.count("\n") == 1, f"standard output on a full device, {words[0]}: {status} {err}")
     whole(work / "pipe", "closed standard output")
     reference = (work / "pipe" / "dry_0500um.csv").read_bytes()
     for i, descriptors in enumerate(("1", "2", "1 2", "0 1 2")):
@@ -428,11 +432,11 @@ def test_standard_output(gudgeon: Gudgeon, work: Path) -> None:
         status = subprocess.run(f"{words} {shell}", shell=True, capture_output=True, check=False, timeout=PATIENCE).returncode
         check(status == 0, f"without descriptors {descriptors}: {status}")
         whole(work / f"none{i}", f"without descriptors {descriptors}")
-        check((work / f"none{i}" / "dry_0500um.csv").read_bytes() == reference, f"without descriptors {descriptors}: the same trace")
+        check((work / f"none{i}" / "dry_0500um.csv").read_bytes() == reference, f"without descriptors {descriptors}: the trace is the same")
 
 
 def test_two_runs(gudgeon: Gudgeon, work: Path) -> None:
-    """Two runs of one name in one folder do not mix: the second is refused while the first is at work."""
+    """Two runs of one name in one folder are not mixed: the second is refused while the first runs."""
     folder = work / "two"
     case = FLORES / "dry_0500um.nml"
     first = gudgeon.start("-o", folder, *LONG, case)
@@ -444,25 +448,25 @@ def test_two_runs(gudgeon: Gudgeon, work: Path) -> None:
     check(status == 0, f"another case may run there: {status} {err}")
     first.send_signal(signal.SIGTERM)
     first.communicate(timeout=PATIENCE)
-    check(first.returncode == 4, "the first run goes on until it is ended")
+    check(first.returncode == 4, "the first run continues until it is interrupted")
     whole(folder, "two runs")
     resolved = (folder / "dry_0500um.resolved.nml").read_text()
-    check("revolutions = 4.0" in resolved, "and its resolved case is its own")
+    check("revolutions = 4.0" in resolved, "the resolved case is that of the first run")
     status, _, err = gudgeon.run("-o", folder, *SHORT, case)
-    check(status == 0, f"then the way is free: {status} {err}")
+    check(status == 0, f"after the first run another is accepted: {status} {err}")
     reference = (folder / "dry_0500um.csv").read_bytes()
-    for i in range(5):   # all at the same moment
+    for i in range(5):   # all at the same time
         together = [gudgeon.start("-o", folder, *SHORT, case) for _ in range(8)]
         errors = [process.communicate(timeout=PATIENCE)[1].decode() for process in together]
         ended = [process.returncode for process in together]
         check(0 in ended and set(ended) <= {0, 5}, f"eight at once: {ended}")
         check(all((not error) if status == 0 else "another run" in error for status, error in zip(ended, errors)), f"{errors}")
-        check((folder / "dry_0500um.csv").read_bytes() == reference, f"eight at once, {i}: the trace of one")
+        check((folder / "dry_0500um.csv").read_bytes() == reference, f"eight at once, {i}: the trace is that of one run")
         whole(folder, "eight at once")
 
 
 def test_batch(gudgeon: Gudgeon, work: Path) -> None:
-    """One case of a batch fails, in each way: the others are finished, and the highest status wins."""
+    """One case of a batch fails in each possible way: the others are finished, and the highest exit status is returned."""
     folder = work / "batch"
     stops = work / "stops.nml"
     stops.write_text((ROOT / "cases" / "sim_I.nml").read_text().replace("&integrator", "&integrator\n  max_steps = 5"))
@@ -481,7 +485,7 @@ def test_batch(gudgeon: Gudgeon, work: Path) -> None:
             check('status,"done"' in (folder / f"{case.stem}.summary.csv").read_text(), f"{bad.name}: {case.stem} is done")
             (folder / f"{case.stem}.summary.csv").unlink()
     status, out, err = gudgeon.run("-o", folder, *SHORT, wrong, good[0], stops, blocked)
-    check(status == 5 and out.count("\n") == 1 and err.count("\n") == 3, f"three of four: {status} {out} {err}")
+    check(status == 5 and out.count("\n") == 1 and err.count("\n") == 3, f"three of four cases fail: {status} {out} {err}")
     whole(folder, "a batch", parts=True)
 
 
@@ -491,7 +495,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--program", type=Path)
     options = parser.parse_args()
-    signal.signal(signal.SIGINT, signal.default_int_handler)   # a background job, and all it starts, would ignore it
+    signal.signal(signal.SIGINT, signal.default_int_handler)   # a background job and its children would ignore the signal
     gudgeon = Gudgeon(options.program or program_built())
     with tempfile.TemporaryDirectory(prefix="faults") as work:
         for test in (test_signals, test_full_disk, test_full_disk_has_summary, test_planted, test_standard_input, test_power_cut,

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Films of finite length from outside: their tables in cache and file, their pressure fields, whole mechanisms against independent
-programs.
+"""Films of finite length in whole runs: their tables in the cache and in files, their pressure fields, and whole mechanisms against
+independent programs.
 
     tests/test_film_tables.py
 
@@ -38,7 +38,7 @@ def columns(path: Path) -> dict[str, list[float]]:
 
 
 class Cache(unittest.TestCase):
-    """A table is made once, kept whole or not at all, and checked when it is read."""
+    """A table is computed once, stored completely or not at all, and checked when it is read."""
 
     def setUp(self) -> None:
         self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
@@ -55,23 +55,24 @@ class Cache(unittest.TestCase):
         done, first = self.run_case("first")
         self.assertEqual(done.returncode, 0, done.stderr)
         tables = list((self.cache / "gudgeon").iterdir())
-        self.assertEqual([table.suffix for table in tables], [".table"], "one table, nothing half-written")
+        self.assertEqual([table.suffix for table in tables], [".table"], "one table and no incomplete file")
         whole = tables[0].read_bytes()
         written = tables[0].stat().st_mtime_ns
         _, again = self.run_case("again")
         self.assertEqual(first, again, "a table from the cache gives the same run")
-        self.assertEqual(tables[0].stat().st_mtime_ns, written, "and is not made again")
+        self.assertEqual(tables[0].stat().st_mtime_ns, written, "a table in the cache is not computed again")
         for what, bytes_there in (("truncated", whole[: len(whole) // 2]), ("changed", whole[:5000] + b"?" + whole[5001:]),
                                   ("empty", b""), ("foreign", b"x" * len(whole))):
             with self.subTest(what):
                 tables[0].write_bytes(bytes_there)
                 done, remade = self.run_case(what)
                 self.assertEqual(done.returncode, 0, done.stderr)
-                self.assertEqual(first, remade, f"a {what} table is made again")
+                self.assertEqual(first, remade, f"a {what} table is computed again")
                 self.assertEqual(tables[0].read_bytes(), whole, f"a {what} table is replaced")
 
     def test_stated_error(self) -> None:
-        """The summary says how exact the table is, from the cache too; one of fewer values is worse. A film without a table says nothing."""
+        """The summary states the error of the table, also of one from the cache; a smaller table has a larger error. Without a
+        table there is no such line."""
 
         def stated(name: str, *options: str) -> list[float]:
             done, _ = self.run_case(name, "-s", "lubrication.cavitation=gumbel", *options)
@@ -94,10 +95,10 @@ class Cache(unittest.TestCase):
         self.assertEqual(len(list((self.cache / "gudgeon").iterdir())), 1, "the table does not depend on the oil")
         self.run_case("longer", "-s", "joint.bearing_length=0.02")
         self.run_case("half", "-s", "lubrication.cavitation=gumbel")
-        self.assertEqual(len(list((self.cache / "gudgeon").iterdir())), 3, "but on length and cavitation")
+        self.assertEqual(len(list((self.cache / "gudgeon").iterdir())), 3, "the table depends on length and cavitation")
 
     def test_sweep(self) -> None:
-        """The runs of a sweep have each its own table, and leave no other in the cache."""
+        """Each run of a sweep has its own table, and the cache has no further ones."""
         case = self.folder / "short.nml"
         case.write_text(CASE.read_text().replace("law = 'finite_bearing'", "law = 'finite_bearing', cavitation = 'gumbel'")
                         .replace("revolutions = 4.0", "revolutions = 2.0"))
@@ -120,20 +121,20 @@ class Cache(unittest.TestCase):
         subprocess.run([GUDGEON, *options, "-q"], env={**os.environ, "XDG_CACHE_HOME": str(cache)}, check=True)
 
     def test_no_cache(self) -> None:
-        self.cache.write_text("a file in the place of the folder")
+        self.cache.write_text("a file in the place of the cache folder")
         done, trace = self.run_case("none")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertTrue(trace, "a run without a cache")
+        self.assertTrue(trace, "a run without a cache has a trace")
 
     def test_file_of_the_case(self) -> None:
         table = self.folder / "oil.table"
         named = ("-s", f"lubrication.table_file={table}")
         done, first = self.run_case("first", *named)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertFalse(self.cache.exists(), "not in the cache")
+        self.assertFalse(self.cache.exists(), "a table with a file of its own is not in the cache")
         written = table.stat().st_mtime_ns
         _, again = self.run_case("again", *named)
-        self.assertEqual((first, written), (again, table.stat().st_mtime_ns), "it is used again")
+        self.assertEqual((first, written), (again, table.stat().st_mtime_ns), "the file of a table is used again")
         self.run_case("longer", *named, "-s", "joint.bearing_length=0.02")
         self.assertNotEqual(written, table.stat().st_mtime_ns, "a table of another film is replaced")
         beside = self.folder / "cases" / CASE.name
@@ -142,19 +143,19 @@ class Cache(unittest.TestCase):
         done = subprocess.run([GUDGEON, "-q", "-o", self.folder / "beside", *SMALL, "-s", "lubrication.table_file=oil.table", beside],
                               capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertTrue((beside.parent / "oil.table").exists(), "it stands beside the case")
+        self.assertTrue((beside.parent / "oil.table").exists(), "a relative path of a table starts at the case")
         table.write_text("a letter")
         done, _ = self.run_case("foreign", *named)
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertIn("table_file", done.stderr)
-        self.assertEqual(table.read_text(), "a letter", "what is no table is left alone")
+        self.assertEqual(table.read_text(), "a letter", "a file that is not a table is not changed")
         done, _ = self.run_case("nowhere", "-s", f"lubrication.table_file={self.folder}/no/oil.table")
         self.assertEqual(done.returncode, 5, done.stderr)
 
     def test_check_makes_none(self) -> None:
         done, _ = self.run_case("check", "--check")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertFalse(self.cache.exists(), "--check makes no table")
+        self.assertFalse(self.cache.exists(), "--check computes no table")
 
     def test_interrupted(self) -> None:
         environment = {**os.environ, "XDG_CACHE_HOME": str(self.cache)}
@@ -162,16 +163,16 @@ class Cache(unittest.TestCase):
         process = subprocess.Popen([GUDGEON, "-o", self.folder / "stopped", "-s", "lubrication.table_points=129", CASE],
                                    env=environment, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
         time.sleep(1)
-        process.send_signal(signal.SIGTERM)   # (a shell has its background jobs ignore SIGINT)
+        process.send_signal(signal.SIGTERM)   # background jobs of a shell ignore SIGINT
         _, said = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 4, said)
         self.assertIn("interrupted before it began", said)
-        self.assertLess(time.monotonic() - began, 40, "an interruption is obeyed")
-        self.assertFalse(list(self.cache.glob("gudgeon/*")), "a table given up is not kept")
+        self.assertLess(time.monotonic() - began, 40, "an interruption ends the program while it computes a table")
+        self.assertFalse(list(self.cache.glob("gudgeon/*")), "an incomplete table is not stored")
 
 
 class Fields(unittest.TestCase):
-    """The pressures in NAME.film.csv, summed over the bore, are the force in the row of the same time."""
+    """The pressures in NAME.film.csv, integrated over the bore, give the force in the row of the same time."""
 
     def fields(self, case: Path, *options: str) -> tuple[dict[float, list[tuple[float, ...]]], dict[str, list[float]]]:
         folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
@@ -187,7 +188,7 @@ class Fields(unittest.TestCase):
         return times, columns(folder / f"{case.stem}.csv")
 
     def resultant(self, nodes: list[tuple[float, ...]], radius: float) -> tuple[float, float]:
-        """Trapezoids along the bore, then round it; both halves of the bore."""
+        """Force by the trapezoidal rule along the bore, then around it; for both halves of the bore."""
         lines: dict[float, list[tuple[float, float]]] = {}
         for angle, place, pressure, _ in nodes:
             lines.setdefault(angle, []).append((place, pressure))
@@ -215,19 +216,22 @@ class Fields(unittest.TestCase):
                     wanted = trace["film_force_x[N]"][row], trace["film_force_y[N]"][row]
                     self.assertLessEqual(math.dist(force, wanted), 0.02 * math.hypot(*wanted) + 1e-3, f"at {time_} s")
                     self.assertGreaterEqual(min(node[2] for node in nodes), 0.0)
-                    self.assertTrue(all(0 < node[3] < 2 * clearance for node in nodes), "thickness of the film")
+                    self.assertTrue(all(0 < node[3] < 2 * clearance for node in nodes),
+                                    "the film thickness is between 0 and the diametral clearance")
 
 
 STATES = ("crank_angle", "rod_angle", "piston_position", "crank_speed", "rod_speed", "piston_velocity")
 PLACES = ("eccentricity_x", "eccentricity_y", "film_thickness", "eccentricity_ratio")
-OTHER_NAMES = {"mixed_sim_I": {"normal_force[N]": "asperity_force[N]"}}   # columns that the references call by another name
+OTHER_NAMES = {"mixed_sim_I": {"normal_force[N]": "asperity_force[N]"}}   # columns that have another name in the references
 
 
 class References(unittest.TestCase):
-    """Whole mechanisms by independent programs (data/film/models): every column, as far as the two runs of the reference agree."""
+    """Whole mechanisms against independent programs (data/film/models): every column, as exactly as two runs of the reference
+    agree."""
 
     def compare(self, name: str, states: float, places: float, forces: float, *options: str) -> list[dict[str, str]]:
-        """Largest differences over the size of the column: states, eccentricities, all others. Our events."""
+        """Compare the largest differences over the size of the column: states, eccentricities, others. Returns the events of our
+        run."""
         with tempfile.TemporaryDirectory() as folder:
             done = subprocess.run([GUDGEON, "-q", "-o", folder, *options, REFERENCES / f"{name}.nml"], capture_output=True, text=True,
                                   check=False)
@@ -250,7 +254,7 @@ class References(unittest.TestCase):
         self.compare("mixed_sim_I", 9.8e-10, 2.2e-6, 2.2e-6)
 
     def test_weighted(self) -> None:
-        """Its five events too."""
+        """The times of the five events too."""
         ours = self.compare("weighted_smooth", 5.3e-9, 9.4e-7, 9.4e-7)
         theirs = list(csv.DictReader((REFERENCES / "weighted_smooth.events.csv").read_text().splitlines()))
         self.assertEqual([row["event"] for row in ours], [row["event"] for row in theirs])
@@ -258,7 +262,7 @@ class References(unittest.TestCase):
             self.assertAlmostEqual(float(one["time[s]"]), float(other["time[s]"]), delta=3.1e-11)
 
     def test_finite_bearing(self) -> None:
-        """The reference's own map of the film is known to 1e-6, 1e-4 and 1e-3."""
+        """The reference's own table of the film has errors of 1e-6, 1e-4 and 1e-3."""
         self.compare("finite_reynolds_engine", 1e-6, 1e-4, 1e-3, "-s", "lubrication.table_points=65", "-s", "lubrication.film_points=128")
 
 

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Case files that are wrong in every way, through a program built with every check of the compiler.
+"""Case files with random errors, read by a program that is built with every check of the compiler.
 
     tests/test_fuzz.py [--files N] [--seed N] [--runs SHARE] [--sanitize] [--jobs N] [--keep DIR]
 
-Each file is a shipped case with one to four mutations. Most are checked (`--check`), a share of them is run for a short span.
-Right is exit status 0 with one line on standard output, or 3 (in a run also 4 or 5) with one clear line on standard error;
-anything else is a failure, and its file is kept. With --sanitize the program is built with the address and undefined
-behaviour sanitizers as well. Ends with the line "N passed, N failed", which counts kinds of mutation: one has passed if every file
-with it has.
+Each file is a shipped case with one to four mutations. Most files are only checked (`--check`), a share of them is run for a short
+time. Allowed are exit status 0 with one line on standard output, or 3 (in a run also 4 or 5) with one clear line on standard error;
+anything else is a failure, and the file is kept. With --sanitize the program is also built with the address and undefined
+behaviour sanitizers. Ends with the line "N passed, N failed", which counts kinds of mutation: a kind has passed if every file
+with such a mutation has.
 """
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ import unicodedata
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-BATCH = 25               # files a process
+BATCH = 25               # files for each process
 LONGEST_MESSAGE = 700    # bytes
-SECONDS_A_FILE = 20      # to run; far more than any needs
+SECONDS_A_FILE = 20      # longest time of a run; far more than any needs
 SHORT_RUN = ("integrator.revolutions=0.0", "integrator.end_time=2e-4", "output.interval=1e-6", "output.start_time=0.0",
              "integrator.max_evaluations=5000")
 NUMBERS = (b"0", b"-0.0", b"1e30", b"-1e30", b"1e-30", b"1e31", b"1d308", b"1e999999999", b"1e-999999999", b"9" * 400, b"nan", b"-Inf",
@@ -38,7 +38,7 @@ BYTES = b"\0\t\n\r !\"'&/=,()*.+-0123456789eEdDaZ_%\x7f\x80\xc3\xe9\xff\xfe"
 
 
 def is_clear(line: str) -> bool:
-    """Whether every character can be seen: no control or format characters, no blanks but the plain one."""
+    """Whether every character is visible: no control or format characters, no white space except the blank."""
     return all(one == " " or unicodedata.category(one) not in ("Cc", "Cf", "Cs", "Zl", "Zp", "Zs") for one in line)
 
 
@@ -66,7 +66,7 @@ def cut(text: bytes, rng: random.Random) -> bytes:
 
 
 def value(text: bytes, rng: random.Random) -> bytes:
-    """Another value for a key: odd, or that of some other key."""
+    """Replace the value of a key: an unusual value, or that of another key."""
     found = items(text, rb"=[ \t]*([^!\n]*)")
     if not found:
         return text
@@ -76,7 +76,7 @@ def value(text: bytes, rng: random.Random) -> bytes:
 
 
 def scale(text: bytes, rng: random.Random) -> bytes:
-    """A number by a power of ten."""
+    """Multiply a number by a power of ten."""
     found = items(text, rb"(?<=[= ,])\d+\.?\d*(?:[ed][-+]?\d+)?")
     if not found:
         return text
@@ -86,7 +86,7 @@ def scale(text: bytes, rng: random.Random) -> bytes:
 
 
 def rename(text: bytes, rng: random.Random) -> bytes:
-    """A key or group misspelt, or called as another one is."""
+    """Misspell a key or group, or give it the name of another."""
     found = items(text, rb"\b[a-z_]+(?= *=)|(?<=&)[a-z]+")
     if not found:
         return text
@@ -97,7 +97,7 @@ def rename(text: bytes, rng: random.Random) -> bytes:
 
 
 def lines(text: bytes, rng: random.Random) -> bytes:
-    """Lines removed, repeated, moved."""
+    """Remove, repeat or move lines."""
     parts = text.splitlines(keepends=True)
     if not parts:
         return text
@@ -109,7 +109,7 @@ def lines(text: bytes, rng: random.Random) -> bytes:
 
 
 def groups(text: bytes, rng: random.Random) -> bytes:
-    """Groups removed, repeated, put in another order."""
+    """Remove or repeat groups, or change their order."""
     parts = re.split(rb"(?m)^(?=&)", text)
     at = rng.randrange(len(parts))
     group = parts[at]
@@ -135,7 +135,7 @@ def encoding(text: bytes, rng: random.Random) -> bytes:
 
 
 def size(text: bytes, rng: random.Random) -> bytes:
-    """Empty, huge, with lines of a million characters, with thousands of groups, keys or values."""
+    """Make the file empty or huge, with lines of a million characters, or with thousands of groups, keys or values."""
     long = rng.choice((10**6 - len(text) - 20, 10**6, 300000))
     at = rng.randint(0, len(text))
     return rng.choice((
@@ -172,7 +172,7 @@ def build(sanitize: bool) -> Path:
 
 
 class Fuzz:
-    """Batches of mutants through one program."""
+    """Gives batches of mutants to one program."""
 
     def __init__(self, program: Path, work: Path, seed: int):
         self.program, self.work, self.seed = program, work, seed
@@ -196,7 +196,7 @@ class Fuzz:
         return run.returncode, run.stdout.decode("utf-8", "surrogateescape"), run.stderr.decode("utf-8", "surrogateescape")
 
     def wrong(self, files: list[Path], is_run: bool) -> tuple[str, dict[str, str]]:
-        """What is wrong with the answer to some files together ('' if nothing), and the outcome of each."""
+        """What is wrong in the output for some files together ('' if nothing), and the outcome of each file."""
         status, out, err = self.start(files, is_run)
         allowed = (0, 3, 4, 5) if is_run else (0, 3)
         if status not in allowed:
@@ -210,9 +210,9 @@ class Fuzz:
             if is_message and any(text in line for text in ("needs 1/", "a build for debugging", "has no effect")):
                 continue   # advice
             if len(names) != 1 or names[0] in outcome:
-                return f"not one line a file: {line[:300]!r}", {}
+                return f"more than one line for a file: {line[:300]!r}", {}
             if len(line.encode("utf-8", "surrogateescape")) > LONGEST_MESSAGE or not is_clear(line):
-                return f"not one clear line: {line[:1000]!r}", {}
+                return f"a line that is not clear: {line[:1000]!r}", {}
             if not is_message:
                 outcome[names[0]] = "correct" if not is_run else "finished"
                 continue
@@ -225,7 +225,7 @@ class Fuzz:
         return "", outcome
 
     def batch(self, number: int, count: int, is_run: bool) -> tuple[list[tuple[str, str]], list[tuple[bytes, str]]]:
-        """(mutations, outcome) of every file of a batch, and the files that fail with what is wrong."""
+        """(mutations, outcome) of every file of a batch; and the files that fail, with the reason."""
         rng = random.Random(f"{self.seed} {number}")
         folder = self.work / f"b{number}"
         folder.mkdir()
@@ -240,20 +240,20 @@ class Fuzz:
         bad = []
         if what:
             outcome = {}
-            for path in files:   # one by one: which of them is it?
+            for path in files:   # repeat one by one to find the file that fails
                 alone, found = self.wrong([path], is_run)
                 outcome.update(found)
                 if alone:
                     bad.append((path.read_bytes(), alone))
                     outcome[path.name] = "FAILED"
             if not bad:
-                bad.append((b"".join(path.read_bytes() for path in files), f"only together: {what}"))
+                bad.append((b"".join(path.read_bytes() for path in files), f"fails only together with the others: {what}"))
         shutil.rmtree(folder)
         return [(kinds[name], found) for name, found in outcome.items()], bad
 
 
 def odd_paths(fuzz: Fuzz) -> list[str]:
-    """What is no plain file: a folder, a pipe, a device, a link to nothing, no file."""
+    """Paths that are not plain files: a folder, a pipe, a device, a link without target, a missing file."""
     work = fuzz.work
     (work / "folder.nml").mkdir()
     (work / "link.nml").symlink_to(work / "nothing")
@@ -271,7 +271,7 @@ def odd_paths(fuzz: Fuzz) -> list[str]:
     os.mkfifo(pipe)
     status, out, err = fuzz.start([pipe], False)
     if status != 3 or err != f"gudgeon: {pipe}: not a regular file\n":
-        failures.append(f"a pipe that nobody writes to: {status} {err[:300]!r}")
+        failures.append(f"a pipe without a writer: {status} {err[:300]!r}")
     return failures
 
 
@@ -279,11 +279,11 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--files", type=int, default=500)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--runs", type=float, default=0.1, help="share of the files that are run, not only checked")
+    parser.add_argument("--runs", type=float, default=0.1, help="share of the files that are run and not only checked")
     parser.add_argument("--sanitize", action="store_true")
-    parser.add_argument("--program", type=Path, help="this program instead of building one")
+    parser.add_argument("--program", type=Path, help="program to test (default: build one)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
-    parser.add_argument("--keep", type=Path, default=ROOT / "results" / "fuzz", help="where files that fail are kept")
+    parser.add_argument("--keep", type=Path, default=ROOT / "results" / "fuzz", help="folder for the files that fail")
     options = parser.parse_args()
     program = options.program or build(options.sanitize)
     counts: collections.Counter = collections.Counter()
@@ -317,7 +317,7 @@ def main() -> int:
         print(f"{how}: {number} {outcome}")
     for kind, found in sorted(by_kind.items()):
         print(f"  {kind}: " + ", ".join(f"{number} {outcome}" for outcome, number in sorted(found.items())))
-    # an assertion for each kind of mutation and one for odd paths, not one for each file
+    # one assertion for each kind of mutation and one for unusual paths, not one for each file
     wrong = max(sum(found["FAILED"] > 0 for found in by_kind.values()) + odd, 1 if failed else 0)
     print(f"{len(by_kind) + 1 - wrong} passed, {wrong} failed")
     return 1 if failed else 0

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""The folders of src are layers: a module uses modules of its own folder and of layers below, never of one beside or above. Lines
-of Fortran have at most 132 characters, comments too.
+"""The folders of src are layers: a module uses only modules of its own folder and of lower layers, never of a folder beside or
+above it. Lines of Fortran, comments included, have at most 132 characters.
 
     tests/test_layers.py
 
-Reads the `use` lines. Ends with `N passed, N failed`; the exit status is 0 if nothing failed.
+The test reads the `use` statements. Ends with `N passed, N failed`; the exit status is 0 if nothing failed.
 """
 
 import re
@@ -13,7 +13,7 @@ from pathlib import Path
 
 SRC = Path(__file__).resolve().parent.parent / "src"
 
-#: From the ground up; folders of one row do not know each other.
+#: The layers from the lowest to the highest; folders in one row must not use each other.
 LAYERS = [
     ["base"],
     ["ode", "model"],
@@ -24,7 +24,7 @@ LAYERS = [
     ["study"],
     ["main"],
 ]
-MOST = 132  # characters of a line
+MOST = 132  # largest number of characters in a line
 
 RANK = {folder: rank for rank, row in enumerate(LAYERS) for folder in row}
 
@@ -45,7 +45,7 @@ def modules(files: list[Path]) -> dict[str, str]:
 
 
 def wrong_arrows(files: list[Path]) -> list[str]:
-    """`use` lines that go up, or sideways to another folder of the same layer."""
+    """`use` statements that refer to a higher layer, or to another folder of the same layer."""
     home = modules(files)
     wrong = []
     for path in files:
@@ -73,11 +73,11 @@ def main() -> int:
     check(f"every folder of src has a layer: {sorted(folders - set(RANK))}", folders <= set(RANK))
     if folders <= set(RANK):
         wrong = wrong_arrows(files)
-        check("no arrow goes up:\n  " + "\n  ".join(wrong), not wrong)
+        check("no module uses a higher layer:\n  " + "\n  ".join(wrong), not wrong)
     for path in files:
         name = path.stem
         check(
-            f"{path.relative_to(SRC.parent)} holds the module of its name, or of that with the prefix gudgeon_",
+            f"{path.relative_to(SRC.parent)} contains the module of its name, or of its name with the prefix gudgeon_",
             name == "main" or re.search(rf"^\s*(module|submodule\s*\(\w+\))\s+(gudgeon_)?{name}\s*$", path.read_text(), re.M | re.I) is not None,
         )
     top = SRC.parent

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The manual and all Markdown pages: links, the description of every result, the build, and the law that the manual adds.
+"""The manual and all Markdown pages: their links, the description of every result, the build, and the law of the page "Adding a
+law".
 
     scripts/setup.sh --manual && tests/test_manual.py [--program PATH]
 
@@ -30,13 +31,13 @@ def pages() -> list[Path]:
 
 
 def anchors(page: Path) -> set[str]:
-    """Of the headings of a page."""
+    """Anchors of the headings of a page."""
     headings = re.findall(r"^#+ (.+)$", page.read_text(encoding="utf-8"), re.MULTILINE)
     return {re.sub(r"[^\w -]", "", heading).strip().lower().replace(" ", "-") for heading in headings}
 
 
 def check_markdown() -> None:
-    """Every link and every path in a page leads to a file that is there."""
+    """Every link and every path in a page refers to a file that exists."""
     for page in pages():
         text = page.read_text(encoding="utf-8")
         name = page.relative_to(ROOT)
@@ -45,16 +46,16 @@ def check_markdown() -> None:
                 continue
             place, _, anchor = link.partition("#")
             target = (page.parent / place).resolve() if place else page
-            check(target.exists(), f"{name}: the link {link} leads to a file")
+            check(target.exists(), f"{name}: the link {link} leads to an existing file")
             if anchor and target.suffix == ".md" and target.exists():
-                check(anchor in anchors(target), f"{name}: the link {link} leads to a heading")
+                check(anchor in anchors(target), f"{name}: the link {link} leads to an existing heading")
         for path in PATH.findall(text):
             found = any(ROOT.glob(path)) if "*" in path else (ROOT / path).exists()
-            check(found or path.endswith("linear_ramp.f90"), f"{name}: the path {path} is there")
+            check(found or path.endswith("linear_ramp.f90"), f"{name}: the path {path} exists")
 
 
 def check_built(program: Path) -> None:
-    """The manual is built without a warning, and the links of its pages lead somewhere."""
+    """The manual is built without a warning, and the links of its pages lead to existing files."""
     done = subprocess.run(["scripts/manual.sh", program], cwd=ROOT, capture_output=True, text=True)
     check(done.returncode == 0 and not done.stderr, "the manual is built without a warning", done.stderr[-500:])
     built = ROOT / "build/manual"
@@ -66,7 +67,7 @@ def check_built(program: Path) -> None:
         for link in HREF.findall(text):
             if "://" in link or link.startswith(("#", "mailto:", "data:", "//")):
                 continue
-            check((page.parent / unquote(link.partition("#")[0])).exists(), f"manual, {page.name}: the link {link} leads to a file")
+            check((page.parent / unquote(link.partition("#")[0])).exists(), f"manual, {page.name}: the link {link} leads to an existing file")
 
 
 def described(program: Path) -> set[tuple[str, str]]:
@@ -76,7 +77,8 @@ def described(program: Path) -> set[tuple[str, str]]:
 
 
 def is_described(name: str, unit: str, known: set[tuple[str, str]]) -> bool:
-    """Whether a column or quantity stands in the reference: by itself, behind the name of a joint, or with a number or word for its capitals."""
+    """Whether the reference has a column or quantity: by its name, without the prefix of a joint, or with capitals in place of a
+    number or word."""
     whole, name = name, re.sub(r"^(crank_pin_|guide_\d_(?!gap|force|friction))", "", name)
     names = [whole, name, re.sub(r"^(rod_mode|rod_axial)_\d$", r"\1_2", name), re.sub(r"^steps_limited_by_\w+$", "steps_limited_by_NAME", name),
              re.sub(r"^(steps_of)_(order_)?\d+", r"\1_\2N", name), re.sub(r"^beyond_\w+_difference$", "beyond_NAME_difference", name),
@@ -107,7 +109,7 @@ def check_reference(program: Path) -> None:
 
 
 def check_study(program: Path) -> None:
-    """The study of the page "Studies" runs, and the page describes every column of its results."""
+    """The study of the page "Studies" can be run, and the page describes every column of its results."""
     page = (ROOT / "data/manual/studies.md").read_text(encoding="utf-8")
     with tempfile.TemporaryDirectory() as folder:
         study = Path(folder) / "study.nml"
@@ -122,7 +124,7 @@ def check_study(program: Path) -> None:
 
 
 def code_after(text: str, words: str) -> str:
-    """The indented block behind these words."""
+    """The indented block after these words."""
     lines: list[str] = []
     for line in text[text.index(words):].splitlines()[1:]:
         if line.startswith("    ") or (not line and lines):
@@ -149,7 +151,7 @@ def check_law() -> None:
         for command in code_after(page, "**3. ").splitlines():
             done = subprocess.run(command, shell=True, cwd=copy, capture_output=True, text=True)
             check(done.returncode == 0, f"adding a law: {command}", (done.stdout + done.stderr)[-800:])
-            check("linear_ramp" in done.stdout or "done" in done.stdout, f"adding a law, what comes out of: {command}", done.stdout[-300:])
+            check("linear_ramp" in done.stdout or "done" in done.stdout, f"adding a law, output of: {command}", done.stdout[-300:])
 
 
 def main() -> int:

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Tests of scripts/measure_models: variants of made cases, its table against runs of the program itself, its answer, bad input.
+"""Tests of scripts/measure_models: the variants of constructed cases, its table against runs of the program, its result, wrong
+input.
 
-    .venv/bin/python tests/test_models.py        (after scripts/setup.sh --python; some 250 short runs)
+    .venv/bin/python tests/test_models.py        (after scripts/setup.sh --python; about 250 short runs)
 
 Ends with the line "N passed, N failed".
 """
@@ -39,36 +40,39 @@ def settings_of(variants: list[Variant]) -> dict[str, tuple[str, ...]]:
 
 
 def variants_of_made_cases(template: dict) -> None:
-    """What is found in a dry joint, in two lubricated ones, and with elastic members."""
+    """The variants of a dry joint, of two lubricated joints, and of a case with elastic members."""
     check(template["contact"]["law"].choices[:2] == ("lankarani_nikravesh", "hertz"), "choices of the template", str(template["contact"]["law"]))
-    check("exponent" in template["contact"] and template["asperities"]["roughness"].value == "0.4e-6", "keys, also of groups in comments")
+    check("exponent" in template["contact"] and template["asperities"]["roughness"].value == "0.4e-6",
+          "keys, including those of groups in comments")
     mechanism = {"gravity": 9.8, "rod_mass": 1.0, "rod_length": 0.2}
     joint = {"kind": "clearance", "clearance": 1e-5, "bearing_radius": 0.01}
     dry = {"mechanism": mechanism, "drive": {"kind": "free"}, "joint": joint, "contact": {"law": "hertz", "geometry": "hertz_sphere"}}
     found = settings_of(variants_of(dry, template))
-    check(found["no contact"] == ("contact=none",), "contact is taken out")
-    check(found["ideal piston pin"] == ("joint.kind=ideal", "contact=none"), "an ideal joint has no laws", str(found["ideal piston pin"]))
-    check(found["crank held at its starting speed"] == ("drive.kind=constant_speed",), "the drive")
-    check(len([label for label in found if label.startswith("contact ") and "geometry" not in label]) == 9, "nine other contact laws")
-    check(found["friction"][0] == "friction.law=ambrosio", "friction is added")
-    check("crank_pin.joint.clearance=1e-05" in found["clearance at the crank pin too"], "the other pin's clearance")
-    check(not any("film" in label or "gas" in label for label in found), "no film where there is none")
+    check(found["no contact"] == ("contact=none",), "the contact can be removed")
+    check(found["ideal piston pin"] == ("joint.kind=ideal", "contact=none"), "a joint that becomes ideal loses its laws",
+          str(found["ideal piston pin"]))
+    check(found["crank held at its starting speed"] == ("drive.kind=constant_speed",), "the crank can be held at its starting speed")
+    check(len([label for label in found if label.startswith("contact ") and "geometry" not in label]) == 9, "there are nine other contact laws")
+    check(found["friction"][0] == "friction.law=ambrosio", "friction can be added")
+    check("crank_pin.joint.clearance=1e-05" in found["clearance at the crank pin too"], "the other pin can have clearance")
+    check(not any("film" in label or "gas" in label for label in found), "a dry case has no variants of film and gas")
     area = float(dict(one.split("=") for one in found["elastic rod"])["elastic_rod.section_area"])
     check(abs(area * 7850 * 0.2 - 1.0) < 1e-3, "the elastic rod has the mass of the rigid one", str(area))
     both = dry | {"crank_pin.joint": joint, "lubrication": {"law": "pinkus_sternlicht", "variant": "closed_form"}, "friction": {"law": "coulomb", "coefficient": 0.1}}
     both |= {"elastic_rod": {"transverse_modes": 2, "axial_shapes": 7}, "mechanism": mechanism | {"gravity": 0.0}, "drive": {"kind": "constant_speed"}}
     found = settings_of(variants_of(both, template))
-    check("no film" in found and "no film at the crank pin" not in found, "a film that both joints have goes from both")
+    check("no film" in found and "no film at the crank pin" not in found, "a film of both joints is removed from both")
     one = settings_of(variants_of(both | {"crank_pin.lubrication": {"law": "pinkus_sternlicht"}}, template))
-    check(one["no film at the crank pin"] == ("crank_pin.lubrication=none",), "one that a joint has alone from that")
-    check(found["no contact, and so no friction"] == ("contact=none", "friction=none"), "friction goes with the contact")
-    check(found["ideal crank pin"] == ("crank_pin.joint.kind=ideal",), "one of two joints")
-    check("elastic_rod=none" in found["ideal twin: no clearance, rigid members"], "the twin is rigid")
-    check(found["rod with 4 modes and 8 axial shapes"][1] == "elastic_rod.axial_shapes=8", "no more shapes than there may be")
-    check("gravity" in found and "no gravity" not in found and "elastic rod" not in found, "what is there is not added")
-    check(not any("held" in label for label in found), "a held crank stays held")
+    check(one["no film at the crank pin"] == ("crank_pin.lubrication=none",), "a film of one joint is removed from that joint")
+    check(found["no contact, and so no friction"] == ("contact=none", "friction=none"), "friction is removed together with the contact")
+    check(found["ideal crank pin"] == ("crank_pin.joint.kind=ideal",), "one of two joints can be ideal")
+    check("elastic_rod=none" in found["ideal twin: no clearance, rigid members"], "the ideal twin has a rigid rod")
+    check(found["rod with 4 modes and 8 axial shapes"][1] == "elastic_rod.axial_shapes=8",
+          "the number of shapes does not exceed the allowed number")
+    check("gravity" in found and "no gravity" not in found and "elastic rod" not in found, "models that the case has are not added")
+    check(not any("held" in label for label in found), "a crank at constant speed stays so")
     parts = (Variant("", "", ("a.law=1", "a.x=2", "b.law=3")), Variant("", "", ("a=none",)), Variant("", "", ("b.law=4",)))
-    check(together(*parts) == ("b.law=4", "a=none"), "settings together", str(together(*parts)))
+    check(together(*parts) == ("b.law=4", "a=none"), "settings of two variants are combined", str(together(*parts)))
 
 
 def what_the_program_misses(template: dict) -> None:
@@ -77,14 +81,15 @@ def what_the_program_misses(template: dict) -> None:
     better = completed(film, "x.nml: &lubrication kinematic_viscosity: required with law = 'oscillating_film' (m^2/s)", case, template)
     value = float(better.settings[1].split("=")[1])
     check(abs(value / 0.1 - 1.38e-5 / 0.0117) < 1e-8, "the kinematic viscosity is that of the case's oil", str(value))
-    check(completed(better, "x.nml: &lubrication kinematic_viscosity: required", case, template) is None, "not twice the same")
+    check(completed(better, "x.nml: &lubrication kinematic_viscosity: required", case, template) is None, "the same key is not completed twice")
     better = completed(film, "x.nml: &joint of crank_pin bearing_length: required with contact geometry = 'johnson' (m)", case, template)
-    check(better is not None and better.settings[1].startswith("crank_pin.joint.bearing_length=0."), "a length of the other pin", str(better))
-    check(completed(film, "x.nml: &output interval = 3: must be > 0", case, template) is None, "what no default mends")
+    check(better is not None and better.settings[1].startswith("crank_pin.joint.bearing_length=0."),
+          "the bearing length of the crank pin is completed", str(better))
+    check(completed(film, "x.nml: &output interval = 3: must be > 0", case, template) is None, "an error that no default value can repair")
 
 
 def changes() -> None:
-    """Changes relative, over the clearance, as they are; what the certificates leave open."""
+    """Changes that are relative, over the clearance, or absolute; and their uncertainty from the certificates."""
     one = Outcome(Variant("", "", ()), clearance=1e-5)
     one.values = {"peak_force": 200.0, "contact_share": 0.5, "min_film": 1e-6, "loss": 4.0}
     one.uncertainty = dict.fromkeys(one.values, 0.0)
@@ -93,15 +98,17 @@ def changes() -> None:
     other.uncertainty = {"peak_force": 20.0, "contact_share": 0.0, "min_film": 0.0}
     check(change("peak_force", one, other) == (-0.05, 0.1), "a relative change and its uncertainty", str(change("peak_force", one, other)))
     check(abs(change("contact_share", one, other)[0] - 0.03) < 1e-12, "a share")
-    check(abs(change("min_film", one, other)[0] + 0.05) < 1e-12, "a film over the clearance")
-    check(change("loss", one, other) is None, "what the other does not have")
-    check(percent((-0.05, 0.1)) == "-5 % ± 1e+01" and percent((1e-9, 0.0)) == "0 %" and percent(None) == "-", "as text", percent((-0.05, 0.1)))
-    check(will_do(["peak_force"], 0.01, one, other), "no closer than the certificates tell")
-    check(not will_do(["contact_share"], 0.01, one, other) and not will_do(["loss"], 0.9, one, other), "too far, or not told")
+    check(abs(change("min_film", one, other)[0] + 0.05) < 1e-12, "a film thickness is divided by the clearance")
+    check(change("loss", one, other) is None, "a quantity that the other run lacks")
+    check(percent((-0.05, 0.1)) == "-5 % ± 1e+01" and percent((1e-9, 0.0)) == "0 %" and percent(None) == "-", "changes as text",
+          percent((-0.05, 0.1)))
+    check(will_do(["peak_force"], 0.01, one, other), "a difference within the uncertainty of the certificates is accepted")
+    check(not will_do(["contact_share"], 0.01, one, other) and not will_do(["loss"], 0.9, one, other),
+          "a difference that is too large, or not known, is not accepted")
 
 
 def run_program(program: Path, folder: Path, words: list[str]) -> dict[str, float]:
-    """Summary of a run of cases/sim_I.nml with these options."""
+    """Summary of a run of cases/sim_I.nml with the given options."""
     subprocess.run([program, "-q", "-o", folder, *words, TOP / "cases" / "sim_I.nml"], check=True, capture_output=True)
     numbers = {}
     for name, (value, _) in read_summary(folder / "sim_I.summary.csv").items():
@@ -111,7 +118,8 @@ def run_program(program: Path, folder: Path, words: list[str]) -> dict[str, floa
 
 
 def whole_table(program: Path, folder: Path) -> None:
-    """A short simulation I: the table's figures are the program's, and the answer holds when its own command is run."""
+    """A short simulation I: the figures in the table are those of the program, and the command of its result gives these
+    figures."""
     wanted = ["peak_force", "min_film", "mean_speed"]
     command = [TOP / "scripts" / "measure_models", TOP / "cases" / "sim_I.nml", "--program", program, "--out", folder, "--within", "0.06"]
     command += ["--quantities", *wanted, "--timeout", "60", *(word for one in SHORT for word in ("--set", one))]
@@ -121,10 +129,10 @@ def whole_table(program: Path, folder: Path) -> None:
         return
     check((folder / "models_sim_I.png").stat().st_size > 10000, "a picture")
     text = (folder / "models_sim_I.md").read_text(encoding="utf-8")
-    check(text in told.stdout, "the table is printed")
+    check(text in told.stdout, "the table that is printed is the one that is written")
     head = text.splitlines()[:5]
-    check(head[2].startswith("    scripts/measure_models cases/sim_I.nml --within 0.06"), "command", str(head))
-    check(re.fullmatch(r"\d{4}-\d\d-\d\d, .* cores, .*\.", head[4]) is not None, "date and machine", head[4])
+    check(head[2].startswith("    scripts/measure_models cases/sim_I.nml --within 0.06"), "the table begins with its command", str(head))
+    check(re.fullmatch(r"\d{4}-\d\d-\d\d, .* cores, .*\.", head[4]) is not None, "the table names date and machine", head[4])
     table = pd.read_csv(folder / "models_sim_I.csv").set_index("scene")
     short = [word for one in ("integrator.method=auto", "output.ideal_twin=F", *SHORT) for word in ("--set", one)]
     for scene in ("the case as it is", "no gravity", "no film", "film finite_bearing"):
@@ -135,12 +143,12 @@ def whole_table(program: Path, folder: Path) -> None:
         for quantity, name in (("peak_force", "max_pin_force"), ("min_film", "min_film_thickness"), ("mean_speed", "mean_crank_speed")):
             check(row[quantity] == summary[name], f"{scene}: {quantity}", f"{row[quantity]}, {summary[name]}")
     ideal = table.loc["ideal piston pin"]
-    check(ideal["loss"] == 0 and pd.isna(ideal["min_film"]), "an ideal joint loses nothing and has no film")
-    check(table.loc["no contact, and so no friction", "peak_force_change"] == 0, "a contact that does not happen changes nothing")
-    check(abs(table.loc["no film", "contact_share"]) > 0.5, "without film the pin touches")
+    check(ideal["loss"] == 0 and pd.isna(ideal["min_film"]), "an ideal joint has no loss and no film")
+    check(table.loc["no contact, and so no friction", "peak_force_change"] == 0, "removing a contact law has no effect if there is no contact")
+    check(abs(table.loc["no film", "contact_share"]) > 0.5, "without the film there is contact")
     check(table["certificate"].dropna().str.contains("digits|none").all(), "each scene has a certificate")
     printed = re.search(r"^    gudgeon \S+ (.*)$", text, re.MULTILINE)
-    check(printed is not None, "the cheapest scene as a command")
+    check(printed is not None, "the command of the cheapest scene is printed")
     parts = table[table["kind"].isin(["added", "refined", "exchanged"])]
     inside = re.search(r"the case with: (.*?)\. It takes", text)[1].split(", ")
     fullest = together(*(Variant("", "", tuple(str(parts.loc[label, "settings"]).split())) for label in inside))
@@ -148,7 +156,7 @@ def whole_table(program: Path, folder: Path) -> None:
     cheap = run_program(program, folder, [*short, *shlex.split(printed[1])])
     for name, scale in (("max_pin_force", top["max_pin_force"]), ("mean_crank_speed", top["mean_crank_speed"]), ("min_film_thickness", 2e-5)):
         check(abs(cheap[name] - top[name]) <= 0.061 * abs(scale), f"the cheapest scene is within the limit: {name}", f"{cheap[name]}, {top[name]}")
-    check(cheap["rhs_evaluations"] <= 1.1 * top["rhs_evaluations"], "and costs no more")
+    check(cheap["rhs_evaluations"] <= 1.1 * top["rhs_evaluations"], "the cheapest scene does not cost more than the most complete one")
 
 
 def bad_input(program: Path, folder: Path) -> None:
@@ -165,7 +173,7 @@ def bad_input(program: Path, folder: Path) -> None:
             [TOP / "scripts" / "measure_models", *words, "--program", program, "--out", folder], capture_output=True, text=True, check=False
         )
         check(told.returncode == status and said in told.stderr, f"refused: {said}", f"{told.returncode} {told.stderr}")
-        check("Traceback" not in told.stderr, f"no trace of the script: {said}")
+        check("Traceback" not in told.stderr, f"no traceback of Python: {said}")
 
 
 def main() -> int:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests of scripts/orders.py: orders of known sums of sines, work of known cycles, losses against the run's own balance of energy.
+"""Tests of scripts/orders.py: orders of known sums of sines, work of known cycles, losses against the energy balance of a run.
 
     .venv/bin/python tests/test_orders.py        (after scripts/setup.sh --python; runs three cases)
 
@@ -36,12 +36,13 @@ TURN = 2 * np.pi
 
 
 def made(columns: dict, case: dict | None = None) -> Run:
-    """A run made by hand."""
+    """A run made from given columns."""
     return Run("made", pd.DataFrame(columns), dict.fromkeys(columns, "-"), pd.DataFrame(), case=case or {})
 
 
 def known_orders(uneven: bool, backwards: bool) -> None:
-    """3 + 2 cos(2 q + 30 deg) + 0.5 sin(5 q), over 10 revolutions, at equal angles or at equal times of a crank that swings in speed."""
+    """3 + 2 cos(2 q + 30 deg) + 0.5 sin(5 q) over 10 revolutions, at equal angles, or at equal times of a crank with varying
+    speed."""
     time = np.linspace(0, 1, 7201)
     angle = TURN * 10 * time
     if uneven:
@@ -51,20 +52,20 @@ def known_orders(uneven: bool, backwards: bool) -> None:
     value = 3 + 2 * np.cos(2 * angle + np.radians(30)) + 0.5 * np.sin(5 * angle)
     cycles = whole_cycles(made({"time": time, "crank_angle": q, "value": value}))
     what = f"{'uneven' if uneven else 'even'} rows{', backwards' if backwards else ''}"
-    check(cycles.number == 5, f"{what}: half of the cycles", str(cycles.number))
+    check(cycles.number == 5, f"{what}: the last half of the cycles is used", str(cycles.number))
     table = orders(cycles, "value").set_index("order")
     for order, amplitude in ((0.0, 3.0), (2.0, 2.0), (5.0, 0.5), (1.0, 0.0), (7.0, 0.0)):
         found = table.loc[order, "amplitude"]
         check(abs(found - amplitude) < 1e-5, f"{what}: amplitude of order {order}", str(found))
     check(abs(table.loc[2.0, "phase_deg"] - 30) < 1e-2, f"{what}: phase", str(table.loc[2.0, "phase_deg"]))
-    check(abs(table.loc[5.0, "phase_deg"] + 90) < 1e-2, f"{what}: phase of a sine", str(table.loc[5.0, "phase_deg"]))
+    check(abs(table.loc[5.0, "phase_deg"] + 90) < 1e-2, f"{what}: phase of the sine", str(table.loc[5.0, "phase_deg"]))
     check(table["scatter"].max() < 1e-4, f"{what}: no scatter")
     parts = np.sum((table["amplitude"].to_numpy()[1:] ** 2) / 2) + table.loc[0.0, "amplitude"] ** 2
     check(abs(parts - np.mean(cycles["value"] ** 2)) < 1e-3, f"{what}: Parseval's sum")
 
 
 def scatter_is_seen() -> None:
-    """Cycles of amplitudes 1 and 2 in turn: mean 1.5, scatter 0.5."""
+    """Cycles with alternating amplitudes 1 and 2: mean 1.5, scatter 0.5."""
     angle = np.linspace(0, TURN * 8, 8 * 360 + 1)
     size = np.where(np.floor(angle / TURN + 1e-9) % 2 == 0, 1.0, 2.0)
     cycles = whole_cycles(made({"time": angle, "crank_angle": angle, "value": size * np.cos(angle)}), settle=0)
@@ -87,7 +88,7 @@ def known_work() -> None:
         "crank_moment": np.full_like(angle, 7.0),
     }
     table = work(whole_cycles(made(columns, {"drive": {"damping": 0.02}}), settle=0)).set_index("quantity")
-    area = 2 * np.pi * 1e5 * 1e-3 * np.sin(np.radians(40))  # two turns round the loop
+    area = 2 * np.pi * 1e5 * 1e-3 * np.sin(np.radians(40))  # the loop is passed twice
     gas = table.loc["gas (p-V)"]
     check(abs(abs(gas["work[J]"]) - area) < 1e-4 * area, "work of the gas", f"{gas['work[J]']}, {area}")
     check(abs(gas["mean_effective_pressure[Pa]"] * 2e-3 - gas["work[J]"]) < 1e-6 * area, "mean effective pressure")
@@ -96,7 +97,7 @@ def known_work() -> None:
 
 
 def runs(folder: Path) -> None:
-    """Whole runs: what the joints take is what drive and damping give, and friction its share; loads are the trace's."""
+    """Whole runs: the joints dissipate the work of drive and damping, of which friction is a part; loads are those of the trace."""
     program = release_program()
 
     def run(case: str, *settings: str) -> Run:
@@ -109,29 +110,30 @@ def runs(folder: Path) -> None:
     cycles = whole_cycles(settled, settle=settled["crank_angle"][-1] / TURN - 2.5)
     table = work(cycles).set_index("quantity")
     check(cycles.number == 2, "two whole cycles", str(cycles.number))
-    check(len(cycles.angle) == 3600, "rows at equal crank angles are taken as they are")
+    check(len(cycles.angle) == 3600, "rows at equal crank angles are used as they are")
     drive, joints = table.loc["drive", "work[J]"], table.loc["joints, all", "work[J]"]
-    check(abs(drive + joints) < 2e-3 * drive, "a held crank gives what the joint takes", f"{drive}, {joints}")
+    check(abs(drive + joints) < 2e-3 * drive, "at constant speed the work of the drive is the loss of the joint", f"{drive}, {joints}")
     friction = table.loc["friction, piston pin", "work[J]"]
-    check(-friction < 1.02 * drive and -friction > 0.5 * drive, "most of it is friction", f"{friction}")
+    check(-friction < 1.02 * drive and -friction > 0.5 * drive, "most of the loss is friction", f"{friction}")
     loads = bearing_loads(cycles)
     dead_centre = int(np.argmin(np.abs(cycles.place)))
     check(loads["piston on the rod, in the rod's frame"][0, 0, dead_centre] > 0, "in the dead centre the piston pulls the rod outwards")
-    check(loads["crank on the rod, in the rod's frame"][0, 0, dead_centre] < 0, "and the crank holds it back")
-    check(loads["crank on the main bearing"][0, 0, dead_centre] > 0, "and is held by its bearing")
+    check(loads["crank on the rod, in the rod's frame"][0, 0, dead_centre] < 0, "at the dead centre the crank pulls the rod inwards")
+    check(loads["crank on the main bearing"][0, 0, dead_centre] > 0, "at the dead centre the crank loads its bearing outwards")
     size = np.hypot(*loads["piston on the rod, in the rod's frame"])
-    check(np.allclose(size, np.hypot(cycles["pin_force_x"], cycles["pin_force_y"])), "a frame changes no size")
+    check(np.allclose(size, np.hypot(cycles["pin_force_x"], cycles["pin_force_y"])), "a rotation of the frame does not change the magnitude")
     fired = run("sim_IV", "run.until=periodic", "output.window=last_period", "integrator.method=auto", *sampled)
     text = page(fired)
     check('<section id="cycles">' in text and text.count("data:image/png") == 2, "the page of a periodic run shows its cycles")
-    check("which is periodic" in text and "crank speed [rad/s]" in text, "and says so")
+    check("which is periodic" in text and "crank speed [rad/s]" in text, "the page of a periodic run says that the run is periodic")
     table = work(whole_cycles(fired)).set_index("quantity")
     gas, damping = table.loc["gas (p-V)", "work[J]"], table.loc["damping", "work[J]"]
-    check(gas > 0 and abs(gas + damping) < 0.05 * gas, "a settled engine: the gas gives what the damping takes, nearly", f"{gas}, {damping}")
+    check(gas > 0 and abs(gas + damping) < 0.05 * gas, "a settled engine: the work of the gas is nearly that of the damping",
+          f"{gas}, {damping}")
     ideal = load_run(folder / "sim_IV.ideal.csv")
     table = work(whole_cycles(ideal, settle=0)).set_index("quantity")
     gas, damping = table.loc["gas (p-V)", "work[J]"], table.loc["damping", "work[J]"]
-    check(abs(gas + damping) < 2e-3 * gas, "without clearance all of it", f"{gas}, {damping}")
+    check(abs(gas + damping) < 2e-3 * gas, "a settled engine without clearance: the work of the gas is that of the damping", f"{gas}, {damping}")
     told = subprocess.run(
         [TOP / "scripts" / "orders.py", folder / "sim_IV.csv", "--settle", "0"], capture_output=True, text=True, check=False
     )
@@ -141,11 +143,13 @@ def runs(folder: Path) -> None:
     told = subprocess.run(
         [TOP / "scripts" / "orders.py", folder / "sim_IV.csv", "--columns", "nonsense"], capture_output=True, text=True, check=False
     )
-    check(told.returncode == 1 and "no column nonsense" in told.stderr and told.stderr.count("\n") == 1, "an unknown column", told.stderr)
+    check(told.returncode == 1 and "no column nonsense" in told.stderr and told.stderr.count("\n") == 1,
+          "an unknown column is refused", told.stderr)
 
 
 def settled(drift: float, revolutions: int = 8) -> Run:
-    """A made run whose crank speed swings by 2 rad/s at order 3, and drifts by so much from revolution to revolution."""
+    """A run from given columns: the crank speed has an amplitude of 2 rad/s at order 3, and drifts by the given amount per
+    revolution."""
     angle = np.linspace(0, revolutions * TURN, revolutions * 360 + 1)
     columns = {name: np.zeros_like(angle) for name in ("crank_moment", "energy", "energy_residual")}
     speed = 100 + 2 * np.cos(3 * angle) + drift * angle / TURN
@@ -153,25 +157,25 @@ def settled(drift: float, revolutions: int = 8) -> Run:
 
 
 def sections_of_pages() -> None:
-    """The page's section on settled cycles, its figures, and where it says why there is none."""
+    """The section on settled cycles in the page: its figures, and the reason if there are none."""
     text = section(settled(0.0))
     check("4 cycles of one revolution" in text and text.count("data:image/png") == 2, "a settled run: cycles and pictures", text[:200])
     check("<td>crank speed</td><td>100</td><td>3: 2</td>" in text, "a settled run: mean and strongest order")
     check("<th>work[J]</th>" in text, "a settled run: work")
-    check("None: the motion has not settled. The mean of crank speed drifts by" in section(settled(1.0)), "a run that drifts")
-    check("data:image/png" in section(settled(1.0), ["crank_speed"]), "a run that drifts, where it is asked for")
-    check("None: no whole cycle" in section(settled(0.0, 1)), "a run too short")
+    check("None: the motion has not settled. The mean of crank speed drifts by" in section(settled(1.0)), "a run that drifts has no section")
+    check("data:image/png" in section(settled(1.0), ["crank_speed"]), "a run that drifts has a section if columns are requested")
+    check("None: no whole cycle" in section(settled(0.0, 1)), "a run that is too short has no section")
     whole = settled(0.0, 2)
     cut = replace(whole, trace=whole.trace.iloc[:-1], case={"output": {"window": "last_period"}})
-    check("2 cycles of one revolution" in section(cut), "a last period whose rows by time end before it does")
+    check("2 cycles of one revolution" in section(cut), "a last period whose last row is before its end")
     portuguese = Language("pt")
     check("Trabalho em um ciclo" in section(settled(0.0), None, portuguese) and portuguese.unknown <= {"made"}, "in Portuguese", str(portuguese.unknown))
-    check("a single whole cycle" in section(settled(0.0, 2)), "a run of one cycle")
+    check("a single whole cycle" in section(settled(0.0, 2)), "a run of one cycle has no section")
     try:
         section(settled(0.0), ["nonsense"])
-        check(False, "a column that is not there")
+        check(False, "a missing column is refused")
     except MissingResult as problem:
-        check("no column nonsense" in str(problem), "a column that is not there", str(problem))
+        check("no column nonsense" in str(problem), "a missing column is refused", str(problem))
 
 
 def refusals() -> None:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests of the figures' table, comparisons, film pressures and trade-off of scripts/gudgeon_plots.
+"""Tests of scripts/gudgeon_plots: table of figures, comparisons, film pressures, trade-off, pages.
 
     .venv/bin/python tests/test_plots.py        (after scripts/setup.sh --python; runs the contact and Flores cases)
 
@@ -43,7 +43,7 @@ from gudgeon_plots.results import (  # noqa: E402
 
 
 def run(columns: dict, case: dict | None = None, events: dict | None = None) -> Run:
-    """A run made by hand."""
+    """A run made from given columns."""
     names = ("time", "crank_angle", "event", "normal_speed", "duration", "max_penetration", "max_normal_force")
     return Run(
         "made",
@@ -54,7 +54,7 @@ def run(columns: dict, case: dict | None = None, events: dict | None = None) -> 
     )
 
 
-#: The print's figures of chapter 6: simulation, its first number, its quantities in the print's order.
+#: The figures of chapter 6 of the dissertation: simulation, number of its first figure, its quantities in the printed order.
 UNFIRED = "crank_speed crank_acceleration rod_acceleration piston_acceleration"
 CHAPTER_6 = (
     ("I", 1, f"{UNFIRED} pin_orbit film_thickness portrait pin_force"),
@@ -65,7 +65,7 @@ CHAPTER_6 = (
     ("VI", 43, f"indicator {UNFIRED} film_thickness pin_orbit portrait pin_force"),
 )
 
-#: The other figures of the print that show results: number, first quantity, cases.
+#: The other printed figures that show results: number, first quantity, cases.
 OTHERS = """
     4.1 contact_loop spheres_hertz
     4.2 contact_loop spheres_hertz spheres_lankarani
@@ -95,7 +95,7 @@ OTHERS = """
     B.21 pin_force lubricated_400cP
 """
 
-#: What a title calls a quantity.
+#: Names of quantities in titles.
 TITLES = {
     "crank_speed": "crank speed",
     "crank_acceleration": "crank angular acceleration",
@@ -112,7 +112,7 @@ TITLES = {
 
 
 def printed_figures() -> dict[str, tuple[str, tuple[str, ...]]]:
-    """Number -> first quantity and cases, as the print has them."""
+    """Number -> first quantity and cases, as in the dissertation."""
     found = {}
     for number, quantity, *cases in (line.split() for line in OTHERS.strip().splitlines()):
         found[number] = (quantity, tuple(cases))
@@ -251,14 +251,14 @@ class Poincare(unittest.TestCase):
         velocity, acceleration = once_a_cycle(run(columns), 0.0)
         np.testing.assert_allclose(velocity, [2 * np.pi, 4 * np.pi])
         np.testing.assert_allclose(acceleration, [4 * np.pi, 8 * np.pi])
-        velocity, _ = once_a_cycle(run(columns | {"gas_force": 0 * angle}), 0.0)  # four strokes: two turns
+        velocity, _ = once_a_cycle(run(columns | {"gas_force": 0 * angle}), 0.0)  # four strokes: two revolutions
         np.testing.assert_allclose(velocity, [4 * np.pi])
         velocity, _ = once_a_cycle(run(columns), 1.0)
         np.testing.assert_allclose(velocity, [1.0, 1 + 2 * np.pi])
 
 
 class Certified(unittest.TestCase):
-    """What a run's certificate does not reach is shaded."""
+    """The part of a run beyond its certified time is shaded."""
 
     def shaded(self, until: str | None, held: bool) -> list[tuple[float, float]]:
         angle = np.linspace(0, 8 * np.pi, 2001)
@@ -287,7 +287,7 @@ class Certified(unittest.TestCase):
 
 
 class FilmPressure(unittest.TestCase):
-    """Resultants against quadratures of another program."""
+    """Forces from the pressures against quadratures of an independent program."""
 
     ANGLES = np.linspace(-np.pi, np.pi, 3600, endpoint=False)
     CLEARANCE, BEARING, WIDTH, VISCOSITY = 1e-4, 1e-2, 2e-2, 0.05
@@ -321,7 +321,7 @@ class FilmPressure(unittest.TestCase):
             (0.9, 1, -0.3, 1.1114, 4.5537),
             (0.99, 1, -0.3, 0.6850, 4.9871),
         ):
-            pin_speed = wedge / (1 - 2 * rod / (eps * self.CLEARANCE))  # the pin's centre moves with the rod's end
+            pin_speed = wedge / (1 - 2 * rod / (eps * self.CLEARANCE))  # the centre of the pin moves with the end of the rod
             made = self.made(
                 eps,
                 self.case({"law": "pinkus_sternlicht"}, rod, 1e-9),
@@ -331,7 +331,7 @@ class FilmPressure(unittest.TestCase):
             np.testing.assert_allclose(self.resultant(made) / unit, [radial, tangential], rtol=2e-3, atol=2e-3)
 
     def test_finite_film_by_its_file(self) -> None:
-        """The page shows the pressures that the program has written, turned to the eccentricity, or none."""
+        """The page shows the pressures in the program's file, rotated to the eccentricity, or none."""
         motion = {"rod_speed": 0.0, "eccentricity_x": 0.5 * self.CLEARANCE, "eccentricity_ratio": 0.5, "film_thickness": 1.0, "phase": 1}
         columns = {name: np.full(5, float(value)) for name, value in motion.items()} | {"time": np.linspace(0.0, 4.0, 5)}
         made = Run("made", pd.DataFrame(columns), {}, pd.DataFrame(), {}, {"lubrication": {"law": "finite_bearing"}})
@@ -350,7 +350,7 @@ class FilmPressure(unittest.TestCase):
             case = self.case(
                 {"law": "oscillating_film", "kinematic_viscosity": speed * (self.CLEARANCE / number) ** 2}, rod, crank
             )
-            unit = self.VISCOSITY * radius**2 / self.CLEARANCE**2 * self.WIDTH  # of a force, over the surface speed
+            unit = self.VISCOSITY * radius**2 / self.CLEARANCE**2 * self.WIDTH  # unit of a force, over the surface speed
             made = self.made(0.5, case, crank_speed=speed)  # U = -R (r/l) w, real
             surface = -radius * crank / rod * speed
             np.testing.assert_allclose(self.resultant(made), [0, -unit * surface * in_phase], rtol=2e-3, atol=1e-6)
@@ -365,7 +365,7 @@ class FilmPressure(unittest.TestCase):
 
 
 class MadeResults:
-    """Runs made by hand for every name that figures ask for; those named in `missing` are not there."""
+    """Runs from given columns for every name that figures need; those named in `missing` do not exist."""
 
     def __init__(self, missing: tuple[str, ...] = (), turns: float = 8, rows: int = 2001) -> None:
         self.missing, self.turns, self.rows = missing, turns, rows
@@ -421,7 +421,7 @@ class MadeResults:
 
 
 def written(drawing: plt.Figure) -> list:
-    """Every text that is drawn: numbers, names, titles, legends."""
+    """Every text in a drawing: numbers, names, titles, legends."""
     found = [text for legend in drawing.legends for text in legend.get_texts()]
     for axes in drawing.axes:
         if axes.axison:
@@ -432,7 +432,7 @@ def written(drawing: plt.Figure) -> list:
 
 
 def overlaps(drawing: plt.Figure) -> list[tuple[str, str]]:
-    """Texts that cover one another or leave the page."""
+    """Texts that overlap each other or leave the page."""
     drawing.canvas.draw()
     width, height = drawing.canvas.get_width_height()
     boxes = [(text.get_text(), text.get_window_extent()) for text in written(drawing)]
@@ -452,7 +452,7 @@ def overlaps(drawing: plt.Figure) -> list[tuple[str, str]]:
 
 
 def empty_panels(drawing: plt.Figure) -> list[str]:
-    """Panels that show no curve and no point, and places of the page where none is."""
+    """Panels without a curve and without a point, and places of the page without a panel."""
     found = []
     for axes in drawing.axes:
         shown = [np.isfinite(np.asarray(line.get_xydata(), dtype=float)).all(axis=1).any() for line in axes.lines if len(line.get_xdata()) > 2]
@@ -466,7 +466,7 @@ def empty_panels(drawing: plt.Figure) -> list[str]:
 
 
 class Drawing(unittest.TestCase):
-    #: One of each kind.
+    #: One figure of each kind.
     KINDS = "6.1 6.2 6.5 6.6 6.7 6.8 6.25 6.32 A.2 B.3 B.5 B.6 B.7 B.9 B.12 B.13 B.21".split()
 
     def test_figures_are_drawn_and_no_text_overlaps(self) -> None:
@@ -520,7 +520,7 @@ class Drawing(unittest.TestCase):
         self.assertIn("| rigid | 0.2000 ms, +2.000 m/s | 0.3000 ms, -0.800 m/s | 11.0 kN | 7 |", elastic_pictures.describe_first_impacts(runs))
 
     def test_members(self) -> None:
-        """A pin force of 3 and 4 kN, a bearing force of 1 kN, a moment of 2 N m that the energy does not keep: 4 pi J a revolution."""
+        """A pin force of 3 and 4 kN, a bearing force of 1 kN, a moment of 2 N m whose work is dissipated: 4 pi J per revolution."""
         time = np.linspace(0, 3, 301)
         ones = np.ones_like(time)
         columns = {"crank_angle": 2 * math.pi * time, "crank_speed": 2 * math.pi * ones, "crank_moment": 2 * ones, "energy": 5 * ones,
@@ -586,7 +586,7 @@ class Drawing(unittest.TestCase):
         drawing, axes = plt.subplots()
         QUANTITIES["crank_speed"].draw_difference(axes, run(columns), ideal, "black")
         np.testing.assert_allclose(axes.lines[1].get_ydata()[200:], time[200:])
-        self.assertLess(axes.get_ylim()[1], 2)  # the start does not set the range
+        self.assertLess(axes.get_ylim()[1], 2)  # the start does not determine the range
         self.assertIn("start cut off", axes.get_title())
         plt.close(drawing)
 
@@ -599,7 +599,7 @@ class Drawing(unittest.TestCase):
     def test_portraits_show_one_cycle_of_both_joints(self) -> None:
         drawing = figures.draw(read_figures()["6.32"], MadeResults())
         lines = {line.get_label(): line for line in drawing.axes[0].lines}
-        for name in ("ideal joint", "Pinkus–Sternlicht film"):  # a cycle of four strokes: two of the eight revolutions
+        for name in ("ideal joint", "Pinkus–Sternlicht film"):  # a four-stroke cycle: two of the eight revolutions
             self.assertEqual(len(lines[name].get_xdata()), 501, name)
         self.assertIn("cycle 4", drawing.axes[0].get_title())
         plt.close(drawing)
@@ -648,9 +648,9 @@ class Drawing(unittest.TestCase):
 
 
 class FromRuns(unittest.TestCase):
-    """What figures 4.1 to 4.5 and those of appendix B show, by the numbers of their runs."""
+    """The results that figures 4.1 to 4.5 and those of appendix B show, by numbers of their runs."""
 
-    MASS, SPEED = 0.01644, 0.05  # reduced, of the two spheres [kg]; of approach [m/s]
+    MASS, SPEED = 0.01644, 0.05  # reduced mass of the two spheres [kg]; speed of approach [m/s]
     RESTITUTION = 0.913176677806  # solution of chi (1 + e) = ln[(1 + chi)/(1 - chi e)], chi = 3 (1 - 0.9^2)/4
 
     @classmethod
@@ -660,7 +660,7 @@ class FromRuns(unittest.TestCase):
         cls.figures = read_figures()
         cls.own = Results(Path(cls.work.name))
         cls.settled = WindowResults(cls.own, (10, 12))
-        cls.long = WindowResults(cls.own, (10, 40))   # of motions that stay chaotic two revolutions say little
+        cls.long = WindowResults(cls.own, (10, 40))   # two revolutions are not enough for chaotic motions
         contact = {name for number, figure in cls.figures.items() if number[0] == "4" for name in figure.runs}
         flores = {name for number, figure in cls.figures.items() if number[0] == "B" for name in figure.needs}
         with contextlib.redirect_stderr(io.StringIO()):
@@ -669,14 +669,14 @@ class FromRuns(unittest.TestCase):
             cls.long.make(flores)
 
     def drawn(self, number: str) -> plt.Figure:
-        """Figure 4.x, its texts tested."""
+        """Draw figure 4.x and check its texts."""
         drawing = figures.draw(self.figures[number], self.own)
         self.addCleanup(plt.close, drawing)
         self.assertEqual(overlaps(drawing), [], number)
         return drawing
 
     def lines(self, number: str) -> dict[str, np.ndarray]:
-        """Its curves by the legend's names."""
+        """The curves of figure 4.x by their names in the legend."""
         return {line.get_label(): line.get_xydata().T for axes in self.drawn(number).axes for line in axes.lines}
 
     def work_of(self, curve: np.ndarray) -> float:
@@ -732,7 +732,7 @@ class FromRuns(unittest.TestCase):
         sliding = np.abs(speed) > 0.05
         np.testing.assert_allclose(ratio[sliding], -np.sign(speed[sliding]), atol=0.04)
         slow = ratio[sliding & (np.abs(speed) < 1)]
-        self.assertAlmostEqual(np.ptp(slow), 2, delta=0.08)  # the whole jump within 1 mm/s of both sides
+        self.assertAlmostEqual(np.ptp(slow), 2, delta=0.08)  # the whole jump is within 1 mm/s on both sides
         sticking = ratio[np.abs(speed) < 1e-6]
         self.assertGreater(len(sticking), 20)
         self.assertLess(np.abs(sticking).max(), 1.04)
@@ -761,12 +761,12 @@ class FromRuns(unittest.TestCase):
         plt.close(drawing)
 
     def roughness(self, results: Results, name: str) -> float:
-        """Deviation of the crank moment from the ideal joint's, over its size."""
+        """Deviation of the crank moment from that of the ideal joint, relative to its size."""
         ideal = results["ideal"]["crank_moment"]
         return float(np.sqrt(np.mean((results[name]["crank_moment"] - ideal) ** 2) / np.mean(ideal**2)))
 
     def unrest(self, name: str) -> float:
-        """By how much the piston velocity of one revolution differs from that of the next [m/s]."""
+        """Largest difference of the piston velocity between two successive revolutions [m/s]."""
         velocity = self.settled[name]["piston_velocity"]
         half = len(velocity) // 2
         return float(np.sqrt(np.mean((velocity[:half] - velocity[half : 2 * half]) ** 2)))
@@ -781,7 +781,7 @@ class FromRuns(unittest.TestCase):
             unrest = [self.unrest(name) for name in names]
             self.assertGreater(unrest[0], 2 * unrest[1])
             self.assertGreater(unrest[1], 100 * unrest[2])
-        for name in ("dry_0010um", "friction_100", "lubricated_400cP"):  # settled: what becomes periodic is
+        for name in ("dry_0010um", "friction_100", "lubricated_400cP"):  # settled: these runs become periodic
             self.assertLess(self.unrest(name), 1e-4, name)
 
     def test_the_start_would_say_the_opposite_of_friction(self) -> None:
@@ -792,7 +792,7 @@ class FromRuns(unittest.TestCase):
 
 
 class Ringing(unittest.TestCase):
-    """Curves that a picture's width cannot show."""
+    """Curves that oscillate faster than the width of a picture can show."""
 
     X = np.linspace(0, 100, 30001)
 
@@ -842,7 +842,7 @@ class Portuguese(unittest.TestCase):
         self.assertEqual(portuguese.unknown, {"a thing nobody knows 1.5"})
 
     def test_other_pictures(self) -> None:
-        """Those of elastic rods, films and trade-offs, and names of the columns that runs are compared by."""
+        """Texts of elastic rods, films and trade-offs, and the names of the columns by which runs are compared."""
         portuguese = language.Language("pt")
         for text in (
             *(name for name, *_ in elastic_pictures.RODS),
@@ -872,7 +872,7 @@ class PrintsNoise(unittest.TestCase):
     """The figures of scripts/show_noise.py."""
 
     def made(self) -> show_noise.Noise:
-        """Noise of 10 % where the pin is nearer to the wall than 0.95 c; the start, where it drops, does not count."""
+        """Noise of 10 % where the eccentricity is larger than 0.95 c; the start, in which the pin falls, is not counted."""
         time = np.linspace(0, 1, 1001)
         ratio = 0.9 + 0.09 * np.sin(20 * time)
         away = np.where(ratio > 0.95, 0.1, 1e-4)
@@ -997,7 +997,7 @@ class Page(unittest.TestCase):
         self.assertEqual(len(report_page.chosen_rows([values[:2000]], 2000)), 2000)
 
     def made(self) -> Run:
-        """A run of contact whose summary knows more than its rows."""
+        """A run with contact whose summary has larger extremes than its rows."""
         found = MadeResults()["sim_I_oscillating"]
         count = len(found["time"])
         trace = found.trace.assign(
@@ -1036,7 +1036,7 @@ class Page(unittest.TestCase):
 
     def test_the_page_opens_where_the_force_is_largest(self) -> None:
         columns = {"time": np.linspace(0, 1, 11), "pin_force": np.array([9.0, 0, 1, 2, 7, 3, 2, 1, 1, 1, 1])}
-        self.assertAlmostEqual(report_page.first_moment(columns), 0.4)  # the drop of the pin at the beginning does not count
+        self.assertAlmostEqual(report_page.first_moment(columns), 0.4)  # the fall of the pin at the beginning is not counted
 
     def test_pages_in_both_languages(self) -> None:
         made, portuguese = self.made(), language.Language("pt")

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Opens pages of scripts/report.py in headless Chromium: they draw, play, scrub, zoom, and the console stays empty.
+"""Opens pages of scripts/report.py in headless Chromium: they are drawn, play, move with the time slider, zoom, and the console has
+no messages.
 
-    tests/test_report.py [PAGE.html...]     default: pages made for the test of one run of each kind
+    tests/test_report.py [PAGE.html...]     default: pages of one run of each kind, made for the test
 
---screenshots DIR keeps pictures of what the browser showed. Needs Debian's packages chromium and chromium-driver, which
-scripts/setup.sh --browser installs; fails without them. Ends with the line "N passed, N failed".
+--screenshots DIR stores pictures of the browser's pages. Needs Debian's packages chromium and chromium-driver, which
+scripts/setup.sh --browser installs; without them the test fails. Ends with the line "N passed, N failed".
 """
 
 import argparse
@@ -24,8 +25,8 @@ from assertions import Assertions
 
 TOP = Path(__file__).resolve().parents[1]
 
-#: A film that stays open, one with contacts and gas, dry contact, a piston that slaps (with a loose pin, with ideal ones), an ideal
-#: joint, dry contact on an elastic rod, clearance at both pins.
+#: A film without contact, a film with contacts and gas, dry contact, a piston with clearance in its bore (with clearance at the
+#: pin, with ideal pins), an ideal joint, dry contact with an elastic rod, clearance at both pins.
 CASES = ("sim_I", "sim_V_oscillating", "dry_0500um", "piston_slap", "slider_clearance", "ideal", "dry_friction", "both_pins")
 
 LARGEST_PAGE = 6_000_000  # bytes
@@ -42,20 +43,20 @@ BROWSER_OPTIONS = (
     "--window-size=1280,1000",
 )
 
-#: Whether anything is drawn on a canvas.
+#: Whether anything has been drawn on a canvas.
 PAINTED = """const c = document.getElementById(arguments[0]), blank = document.createElement('canvas');
 blank.width = c.width; blank.height = c.height; return c.toDataURL() !== blank.toDataURL();"""
 
-#: What is on a canvas.
+#: The image on a canvas.
 IMAGE = "return document.getElementById(arguments[0]).toDataURL()"
 
-#: Moves a range input as a hand would.
+#: Moves a slider as a user would.
 MOVE = """const e = document.getElementById(arguments[0]); e.value = arguments[1];
 e.dispatchEvent(new Event('input', {bubbles: true})); e.dispatchEvent(new Event('change', {bubbles: true}));"""
 
 
 class Browser:
-    """A headless Chromium, spoken to by the WebDriver protocol."""
+    """A headless Chromium, controlled by the WebDriver protocol."""
 
     def __init__(self, chromium: str, driver: str, profile: str) -> None:
         with socket.socket() as probe:
@@ -83,7 +84,7 @@ class Browser:
         raise RuntimeError("chromedriver does not answer")
 
     def call(self, method: str, path: str, body: dict | None = None) -> object:
-        """One command; its value. Raises urllib.error.HTTPError where the browser refuses."""
+        """Execute one command and return its value. Raises urllib.error.HTTPError if the browser refuses it."""
         data = None if body is None else json.dumps(body).encode()
         url = self.base + (f"/session/{self.session}" if self.session else "") + path
         request = urllib.request.Request(url, data, {"Content-Type": "application/json"}, method=method)
@@ -105,7 +106,7 @@ class Browser:
         return False
 
     def messages(self) -> list[str]:
-        """The console's warnings and errors since last asked."""
+        """The warnings and errors of the console since the last call."""
         entries = self.call("POST", "/se/log", {"type": "browser"})
         return [entry["message"] for entry in entries if entry["level"] in ("SEVERE", "WARNING")]
 
@@ -123,16 +124,16 @@ class Browser:
 
 
 def check_page(browser: Browser, page: Path, checks: Assertions, pictures: Path | None) -> None:
-    """One page as a reader meets it."""
+    """Check one page as a reader uses it."""
     name = page.stem
     checks.check(page.stat().st_size < LARGEST_PAGE, f"{name}: {page.stat().st_size} bytes")
     text = page.read_text(encoding="utf-8")
     checks.check(
-        'src="http' not in text and "{{" not in text.split("<script", 1)[0], f"{name}: loads nothing, all filled in"
+        'src="http' not in text and "{{" not in text.split("<script", 1)[0], f"{name}: loads no other file, and all fields are filled in"
     )
     browser.open(page)
-    checks.check(browser.wait("window.gudgeon && window.gudgeon.ready"), f"{name}: gets ready")
-    checks.check(browser.run("return document.getElementById('failure').hidden"), f"{name}: tells no failure")
+    checks.check(browser.wait("window.gudgeon && window.gudgeon.ready"), f"{name}: becomes ready")
+    checks.check(browser.run("return document.getElementById('failure').hidden"), f"{name}: shows no error message")
     clearance = browser.run("return gudgeon.scene.clearance > 0")
     canvases = ["mechanism", "timeline"] + (["joint", "orbit"] if clearance else [])
     canvases += ["bore"] if browser.run("return gudgeon.scene.bore !== null") else []
@@ -146,27 +147,27 @@ def check_page(browser: Browser, page: Path, checks: Assertions, pictures: Path 
         "return gudgeon.charts.filter(c => ![...c.div.querySelectorAll('.scatterlayer path.js-line')]"
         ".some(p => (p.getAttribute('d') || '').length > 20)).map(c => c.div.layout.title.text)"
     )
-    checks.check(not empty, f"{name}: no curve in {empty}")
+    checks.check(not empty, f"{name}: plots without a curve: {empty}")
 
     checks.check(
-        browser.run("return Math.abs(gudgeon.now - gudgeon.scene.start) < 1e-9"), f"{name}: opens where the pin force is largest"
+        browser.run("return Math.abs(gudgeon.now - gudgeon.scene.start) < 1e-9"), f"{name}: opens at the time of the largest pin force"
     )
     checks.check(
         browser.run("return [...document.querySelectorAll('#planes > div')].length") == browser.run("return gudgeon.scene.plots.filter(p => p.square).length"),
-        f"{name}: planes stand apart",
+        f"{name}: plots of planes are in a separate place",
     )
     if clearance and browser.run("return gudgeon.scene.contacts.length"):
         orbit = "gudgeon.charts.find(c => c.div.layout.title.text === gudgeon.scene.plots.find(p => p.circle).title)"
-        checks.check(browser.run(f"return {orbit}.div.data.length") == 2, f"{name}: the orbit tells contact")
+        checks.check(browser.run(f"return {orbit}.div.data.length") == 2, f"{name}: the orbit marks contact")
     before = {canvas: browser.run(IMAGE, canvas) for canvas in canvases}
     browser.run(MOVE, "scrub", 0.37)
-    checks.check(browser.run("return gudgeon.now") > 0, f"{name}: scrubs")
+    checks.check(browser.run("return gudgeon.now") > 0, f"{name}: the time slider moves the mechanism")
     for canvas in canvases:
-        checks.check(browser.run(PAINTED, canvas), f"{name}: {canvas} is painted")
+        checks.check(browser.run(PAINTED, canvas), f"{name}: {canvas} is drawn")
         checks.check(browser.run(IMAGE, canvas) != before[canvas], f"{name}: {canvas} moves")
     if browser.run("return gudgeon.scene.modes"):
         said = browser.run("return document.getElementById('state').textContent")
-        checks.check("rod bent" in said and "drawn ×" in said, f"{name}: says how far the rod is bent: {said}")
+        checks.check("rod bent" in said and "drawn ×" in said, f"{name}: states the deflection of the rod: {said}")
         image = browser.run(IMAGE, "mechanism")
         browser.run("gudgeon.scene.modes = 0; gudgeon.seek(gudgeon.now)")
         checks.check(browser.run(IMAGE, "mechanism") != image, f"{name}: the rod is drawn bent")
@@ -221,7 +222,7 @@ def main() -> int:
     chromium = shutil.which("chromium") or shutil.which("chromium-browser")
     driver = shutil.which("chromedriver")
     if not chromium or not driver:
-        print("no Chromium here: scripts/setup.sh --browser (or apt-get install chromium chromium-driver)\n0 passed, 1 failed")
+        print("Chromium is not installed: scripts/setup.sh --browser (or apt-get install chromium chromium-driver)\n0 passed, 1 failed")
         return 1
     if options.screenshots:
         options.screenshots.mkdir(parents=True, exist_ok=True)

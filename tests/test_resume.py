@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Runs that were stopped and taken up again, by the program: files are those of a run that was not, byte for byte.
+"""Runs that are stopped and resumed by the program: the files are those of an uninterrupted run, byte for byte.
 
     tests/test_resume.py [--kills N] [--seed N] [--program PATH]
 
-Stopped by a limit, by a signal, by kill -9 at random instants; run again with other values, killed and taken up; checkpoints
-damaged, of another case, of another build; results that were changed or removed. Needs a release build (or makes one). Ends with the line "N passed, N failed".
+Runs are stopped by a limit, by a signal, by kill -9 at random times; started again with other values, killed and resumed.
+Checkpoints are damaged, or belong to another case or build; results are changed or removed. Needs a release build (or makes one).
+Ends with the line
+"N passed, N failed".
 """
 from __future__ import annotations
 
@@ -25,7 +27,7 @@ from test_faults import ROOT, Gudgeon, assertions, check, program_built
 CASES = ROOT / "cases"
 SHORT = ("--set", "integrator.revolutions=0.5", "--set", "integrator.method=auto", "--set", "output.ideal_twin=F")
 RESULTS = (".csv", ".events.csv", ".summary.csv", ".resolved.nml", ".ideal.csv", ".ideal.summary.csv")
-FREE = ("wall_time,", "  max_steps =")   # what may differ: a run that is done is left with the limits that it had
+FREE = ("wall_time,", "  max_steps =")   # lines that may differ: a run that is done keeps its limit of steps
 
 
 def contents(path: Path) -> list[bytes]:
@@ -35,7 +37,7 @@ def contents(path: Path) -> list[bytes]:
 
 
 def differing(one: Path, other: Path, name: str) -> str:
-    """Names of the results that differ; empty if none does."""
+    """Names of the results that differ; empty if all are equal."""
     return " ".join(end for end in RESULTS if contents(one / (name + end)) != contents(other / (name + end)))
 
 
@@ -44,39 +46,40 @@ def leftovers(folder: Path) -> list[str]:
 
 
 def stopped_by_limits(gudgeon: Gudgeon, work: Path) -> None:
-    """Every simulation, in a batch, stopped again and again by a limit that rises."""
+    """Every simulation, in a batch, stopped repeatedly by an increasing limit."""
     files = sorted(CASES.glob("sim_*.nml")) + sorted((CASES / "flores").glob("*.nml")) + sorted((CASES / "joints").glob("*.nml"))
     whole, parts = work / "whole", work / "parts"
     status, _, err = gudgeon.run(*SHORT, "-o", whole, *files)
-    check(status == 0, f"whole runs: {status} {err}")
+    check(status == 0, f"uninterrupted runs: {status} {err}")
     for limit in (1, 100, 101, 333, 700):
         status, _, err = gudgeon.run(*SHORT, "--set", f"integrator.max_steps={limit}", "-o", parts, "--resume", *files)
         check("too many steps" in err and status == 4, f"stopped by a limit: {status} {err}")
-        check(limit > 1 or "--resume continues" in err, "and says how to go on")
-        check(all("from the beginning" not in line for line in err.splitlines()) or limit == 1, f"each goes on: {err}")
+        check(limit > 1 or "--resume continues" in err, "the message names --resume")
+        check(all("from the beginning" not in line for line in err.splitlines()) or limit == 1, f"each run is resumed: {err}")
     status, _, err = gudgeon.run(*SHORT, "--set", "integrator.max_evaluations=2000", "-o", parts, "--resume", *files)
-    check(status == 4 and "limit of evaluations reached" in err, "another limit")
+    check(status == 4 and "limit of evaluations reached" in err, "a run stopped by the limit of evaluations")
     status, _, err = gudgeon.run(*SHORT, "-o", parts, "--resume", *files)
-    check(status == 0, f"and to the end: {status} {err}")
+    check(status == 0, f"resumed runs reach the end: {status} {err}")
     for file in files:
         wrong = differing(whole, parts, file.stem)
         check(not wrong, f"{file.name}, stopped by limits: {wrong}")
-    check(not leftovers(parts), f"left behind: {leftovers(parts)}")
+    check(not leftovers(parts), f"files left behind: {leftovers(parts)}")
 
     before = {path: (path.read_bytes(), path.stat().st_mtime_ns) for path in parts.iterdir()}
     status, out, _ = gudgeon.run(*SHORT, "-o", parts, "--resume", *files)
-    check(status == 0 and out.count("done already") == len(files), f"what is done stays: {status} {out}")
-    check(before == {path: (path.read_bytes(), path.stat().st_mtime_ns) for path in parts.iterdir()}, "as it is")
+    check(status == 0 and out.count("done already") == len(files), f"runs that are done are not repeated: {status} {out}")
+    check(before == {path: (path.read_bytes(), path.stat().st_mtime_ns) for path in parts.iterdir()},
+          "files of runs that are done are unchanged")
 
 
 def stopped_by_signals(gudgeon: Gudgeon, work: Path, file: Path, length: str, kills: int, chance: random.Random) -> None:
-    """One long run, killed or asked to stop at random instants until it is done."""
+    """One long run, killed or interrupted at random times until it is done."""
     words = ("--set", f"integrator.revolutions={length}", "--set", "integrator.method=auto", "--set", "output.ideal_twin=F", file)
     whole, parts = work / "whole", work / "parts"
     began = time.monotonic()
     status, _, err = gudgeon.run("-o", whole, *words)
     duration = time.monotonic() - began
-    check(status == 0, f"whole run of {file.name}: {status} {err}")
+    check(status == 0, f"uninterrupted run of {file.name}: {status} {err}")
     done = 0
     for _ in range(10*kills + 10):
         process = gudgeon.start("--checkpoint", 0.02, "--resume", "-o", parts, *words)
@@ -90,33 +93,33 @@ def stopped_by_signals(gudgeon: Gudgeon, work: Path, file: Path, length: str, ki
         process.communicate()
         if process.returncode == 0:
             break
-        check(process.returncode in (4, -sign), f"{file.name}: stopped, exit {process.returncode}")   # -TERM: before it is held
+        check(process.returncode in (4, -sign), f"{file.name}: stopped, exit {process.returncode}")   # -TERM: before signals are handled
     check(process.returncode == 0, f"{file.name}: done after {done} stops")
     check(done >= 3, f"{file.name}: stopped {done} times")
     wrong = differing(whole, parts, file.stem)
     check(not wrong, f"{file.name}, stopped {done} times by signals: {wrong}")
-    check(not leftovers(parts), f"left behind: {leftovers(parts)}")
+    check(not leftovers(parts), f"files left behind: {leftovers(parts)}")
     print(f"{file.name}: stopped {done} times", flush=True)
 
 
 def stopped_by_full_disk(gudgeon: Gudgeon, work: Path) -> None:
-    """A trace that finds no room: the run goes on from its last checkpoint when there is some."""
+    """A trace that finds the disk full: the run continues from its last checkpoint when there is room."""
     words = ("--set", "integrator.revolutions=30", CASES / "flores" / "friction_100.nml")
-    check(gudgeon.run("-o", work / "whole", *words)[0] == 0, "whole run")
+    check(gudgeon.run("-o", work / "whole", *words)[0] == 0, "an uninterrupted run")
 
     def no_room() -> None:
         resource.setrlimit(resource.RLIMIT_FSIZE, (3_000_000, 3_000_000))
     status, _, err = gudgeon.run("--checkpoint", 0.001, "-o", work / "parts", *words, preexec_fn=no_room)
-    check(status == 5 and "File too large" in err, f"no room: {status} {err}")
+    check(status == 5 and "File too large" in err, f"full disk: {status} {err}")
     check("friction_100.checkpoint" in leftovers(work / "parts"), "the checkpoint stays")
     status, _, err = gudgeon.run("--resume", "-o", work / "parts", *words)
-    check(status == 0 and not err, f"goes on when there is room: {status} {err}")
+    check(status == 0 and not err, f"the run continues when there is room: {status} {err}")
     wrong = differing(work / "whole", work / "parts", "friction_100")
     check(not wrong, f"stopped by a full disk: {wrong}")
 
 
 def refusals(gudgeon: Gudgeon, work: Path, chance: random.Random) -> None:
-    """What is not the checkpoint of this case, program and trace is refused in one line, and nothing is touched."""
+    """A checkpoint that does not belong to this case, program or trace is refused with one line, and no file is changed."""
     file = CASES / "flores" / "friction_100.nml"
     words = ("--set", "integrator.method=auto", file)
     stopped = work / "stopped"
@@ -134,7 +137,7 @@ def refusals(gudgeon: Gudgeon, work: Path, chance: random.Random) -> None:
         status, out, err = program.run("--resume", "-o", folder, *extra, *words, **how)
         check(status == 3 and not out and err.count("\n") == 1 and err.startswith("gudgeon: ") and want in err,
               f"{what} is refused in one line: exit {status}, {out}{err}")
-        check(before == {path.name: path.read_bytes() for path in folder.iterdir()}, f"{what}: nothing is touched")
+        check(before == {path.name: path.read_bytes() for path in folder.iterdir()}, f"{what}: no file is changed")
 
     def flipped(place: int):
         return lambda folder: (folder / checkpoint).write_bytes(good[:place] + bytes([good[place] ^ 1 << chance.randrange(8)])
@@ -156,7 +159,7 @@ def refusals(gudgeon: Gudgeon, work: Path, chance: random.Random) -> None:
     refused("events that are missing", change=lambda folder: (folder / events).unlink(), want=events)
     other = work / "other_build"
     program = gudgeon.program.read_bytes()
-    mark = program.find(b"\3\0\0\0GNU\0")   # of the build id, which the linker makes of the whole program
+    mark = program.find(b"\3\0\0\0GNU\0")   # header of the build id, a hash of the whole program by the linker
     check(0 < mark < 4096, "the program has a build id")
     other.write_bytes(program[:mark + 8] + bytes([program[mark + 8] ^ 1]) + program[mark + 9:])
     other.chmod(0o755)
@@ -166,38 +169,38 @@ def refusals(gudgeon: Gudgeon, work: Path, chance: random.Random) -> None:
     gudgeon.run(*words_of, env=plain)
     with_plain = (work / "processor" / trace).read_bytes()
     gudgeon.run(*words_of)
-    if with_plain != (work / "processor" / trace).read_bytes():   # else the processor has no choice, or the library
+    if with_plain != (work / "processor" / trace).read_bytes():   # otherwise the library has no other functions for this processor
         refused("another processor", env=plain, want="another kind of processor")
-    check(gudgeon.run("--resume", "-o", stopped, *words)[0] == 0, "the right one goes on")
+    check(gudgeon.run("--resume", "-o", stopped, *words)[0] == 0, "the correct checkpoint is resumed")
 
 
 def beginnings(gudgeon: Gudgeon, work: Path) -> None:
-    """No checkpoint, none wanted, the ideal twin, and a run begun anew."""
+    """No checkpoint, --checkpoint 0, the ideal twin, and a run that is started again."""
     file = CASES / "sim_I.nml"
     words = ("--set", "integrator.revolutions=0.5", "--set", "integrator.method=auto", file)
     status, _, err = gudgeon.run("--resume", "-o", work / "a", *words)
     check(status == 0 and err.count("\n") == 1 and "starts from the beginning" in err, f"no checkpoint: {status} {err}")
     limit = ("--set", "integrator.max_steps=20")
     gudgeon.run("--checkpoint", 0, *limit, "-o", work / "b", *words)
-    check("sim_I.checkpoint" not in leftovers(work / "b"), "with --checkpoint 0 there is none")
+    check("sim_I.checkpoint" not in leftovers(work / "b"), "with --checkpoint 0 there is no checkpoint")
     gudgeon.run(*limit, "-o", work / "b", *words)
-    check("sim_I.checkpoint" in leftovers(work / "b"), "else there is")
+    check("sim_I.checkpoint" in leftovers(work / "b"), "otherwise there is a checkpoint")
     status, out, _ = gudgeon.run("-o", work / "b", *words)
-    check(status == 0 and not leftovers(work / "b"), "a run that begins anew and is done leaves none")
+    check(status == 0 and not leftovers(work / "b"), "a finished run leaves no checkpoint")
     (work / "b" / "sim_I.ideal.csv").unlink()
     status, out, _ = gudgeon.run("--resume", "-o", work / "b", *words)
-    check(status == 0 and "done already" in out, "a run that is done")
-    check((work / "a" / "sim_I.ideal.csv").read_bytes() == (work / "b" / "sim_I.ideal.csv").read_bytes(), "its twin is run again")
+    check(status == 0 and "done already" in out, "a run that is done is not repeated")
+    check((work / "a" / "sim_I.ideal.csv").read_bytes() == (work / "b" / "sim_I.ideal.csv").read_bytes(), "a missing ideal twin is run again")
     status, _, err = gudgeon.run("--resume", "-o", work / "b", "--set", "joint.clearance=3e-5", *words)
-    check(status == 0 and "starts from the beginning" in err, "another case that is done is not this one")
+    check(status == 0 and "starts from the beginning" in err, "results of another case are not taken for this one")
     for value in ("-1", "ten", "", "1e9", "1.2.3"):
         status, _, err = gudgeon.run("--checkpoint", value, *words)
         check(status == 2 and "--checkpoint" in err, f"--checkpoint {value}: {status} {err}")
 
 
 def rerun_with_other_values(gudgeon: Gudgeon, work: Path, kills: int, chance: random.Random) -> None:
-    """Runs into a folder that holds the results of other values, killed at random instants: nothing of the other values ever stands
-    beside what the new run has written, and --resume ends with the rows of the values that it is given."""
+    """Runs into a folder with results of other values, killed at random times: files of other values are never mixed with those of
+    the new run, and --resume ends with the rows of the values that it is given."""
     name, folder = "sim_III", work / "again"
     always = ("--set", "integrator.method=auto", "--set", "integrator.revolutions=12", "--checkpoint", 0.02, CASES / f"{name}.nml")
     speeds = [1500, 1600, 1700, 1800]
@@ -206,12 +209,12 @@ def rerun_with_other_values(gudgeon: Gudgeon, work: Path, kills: int, chance: ra
         began = time.monotonic()
         status, _, err = gudgeon.run("-o", work / str(speed), "--set", f"initial.crank_speed={speed}", *always)
         duration = max(duration, time.monotonic() - began)
-        check(status == 0, f"whole run at {speed} rad/s: {status} {err}")
+        check(status == 0, f"uninterrupted run at {speed} rad/s: {status} {err}")
         expected[speed] = {end: b"".join(contents(work / str(speed) / (name + end))) for end in RESULTS}
-    check(len({files[".csv"] for files in expected.values()}) == len(speeds), "each speed has its own rows")
+    check(len({files[".csv"] for files in expected.values()}) == len(speeds), "each speed gives different rows")
 
     def foreign(speed: int) -> str:
-        """Results in the folder that are of another speed, where the resolved case says this one."""
+        """Results in the folder that belong to another speed although the resolved case has this one."""
         for end in (".csv", ".events.csv", ".ideal.csv"):
             for path in (folder / (name + end), folder / (name + end + ".part")):
                 rows = path.read_bytes() if path.exists() else b""
@@ -239,17 +242,17 @@ def rerun_with_other_values(gudgeon: Gudgeon, work: Path, kills: int, chance: ra
         early += found != speed
         if found is not None:
             check(not foreign(found), f"kill {i}: {foreign(found)}")
-        wanted = speed if present is None or chance.random() < 0.7 else present   # with the new values, or the old ones again
+        wanted = speed if present is None or chance.random() < 0.7 else present   # with the new values, or again with the old ones
         status, out, err = gudgeon.run("--resume", *words, f"initial.crank_speed={wanted}")
         if status == 3 and wanted != found and "but the stopped run has" in err:   # the checkpoint of other values
             status, out, err = gudgeon.run(*words, f"initial.crank_speed={wanted}")
         done_before += "done already" in out
         wrong = [end for end in RESULTS if b"".join(contents(folder / (name + end))) != expected[wanted][end]]
         check(status == 0 and not wrong, f"kill {i}, then {wanted} rad/s: exit {status}, {err}{wrong} are not its results")
-        check(not leftovers(folder), f"kill {i}: left behind: {leftovers(folder)}")
+        check(not leftovers(folder), f"kill {i}: files left behind: {leftovers(folder)}")
         present = wanted
-    print(f"{name} run again with other values: {killed} kills in {kills} runs, {early} before the new run had its place, "
-          f"{done_before} taken up that were done", flush=True)
+    print(f"{name} run again with other values: {killed} kills in {kills} runs, {early} before the new run wrote a file, "
+          f"{done_before} resumed that were done already", flush=True)
 
 
 def of_speed(resolved: Path, speeds: list[int]) -> int | None:
@@ -262,11 +265,11 @@ def of_speed(resolved: Path, speeds: list[int]) -> int | None:
 
 
 def results_of_others(gudgeon: Gudgeon, work: Path) -> None:
-    """What is done is taken for done only where all of it is there and belongs to this case and program."""
+    """A run counts as done only if all of its results exist and belong to this case and program."""
     file = CASES / "sim_I.nml"
     words = ("--set", "integrator.revolutions=0.5", "--set", "integrator.method=auto", "--set", "output.ideal_twin=T", file)
     whole, folder = work / "whole", work / "folder"
-    check(gudgeon.run("-o", whole, *words)[0] == 0, "whole run")
+    check(gudgeon.run("-o", whole, *words)[0] == 0, "an uninterrupted run")
 
     def taken_up(what: str, name: str, change, twin_only: bool = False) -> None:
         shutil.rmtree(folder, ignore_errors=True)
@@ -274,7 +277,7 @@ def results_of_others(gudgeon: Gudgeon, work: Path) -> None:
         change(folder / name)
         status, out, err = gudgeon.run("--resume", "-o", folder, *words)
         check(status == 0 and ("done already" in out) == twin_only, f"{what}: run again: {status} {out}{err}")
-        check(not differing(whole, folder, "sim_I"), f"{what}: {differing(whole, folder, 'sim_I')} are not whole")
+        check(not differing(whole, folder, "sim_I"), f"{what}: {differing(whole, folder, 'sim_I')} are not those of an uninterrupted run")
 
     for end in RESULTS:
         taken_up(f"without sim_I{end}", f"sim_I{end}", Path.unlink, end.startswith(".ideal"))
@@ -289,35 +292,35 @@ def results_of_others(gudgeon: Gudgeon, work: Path) -> None:
         path.write_text(text[:at] + ("0" if text[at] != "0" else "1") + text[at + 1:])
     for end in (".summary.csv", ".ideal.summary.csv"):
         taken_up(f"sim_I{end} of another run", f"sim_I{end}", of_another, end.startswith(".ideal"))
-    # a scene without contacts and without a twin leaves nothing of the scene that had them
+    # a scene without contacts and without an ideal twin removes the files of a scene that had them
     plain = work / "sim_I.nml"
     shutil.copy(CASES / "flores" / "ideal.nml", plain)
     status, _, err = gudgeon.run("-o", folder, *words[:4], plain)
     check(status == 0, f"a plain scene of the same name: {status} {err}")
     left = sorted(path.name for path in folder.iterdir())
-    check(left == ["sim_I.csv", "sim_I.resolved.nml", "sim_I.summary.csv"], f"what is left: {left}")
-    # another case that happens to have the name of a twin is none
+    check(left == ["sim_I.csv", "sim_I.resolved.nml", "sim_I.summary.csv"], f"remaining files: {left}")
+    # a case that happens to have the name of an ideal twin is not removed
     named = work / "sim_I.ideal.nml"
     shutil.copy(CASES / "flores" / "ideal.nml", named)
     gudgeon.run("-o", folder, "--set", "integrator.revolutions=0.1", named)
     before = (folder / "sim_I.ideal.csv").read_bytes()
     gudgeon.run("-o", folder, *words[:4], "--set", "output.ideal_twin=F", file)
-    check((folder / "sim_I.ideal.csv").read_bytes() == before, "results of a case with the name of a twin stay")
+    check((folder / "sim_I.ideal.csv").read_bytes() == before, "results of a case with the name of an ideal twin are kept")
 
 
 def twin_taken_up(gudgeon: Gudgeon, work: Path) -> None:
-    """An ideal twin that was stopped goes on like any other run."""
+    """An ideal twin that was stopped is resumed like any other run."""
     file = CASES / "sim_I.nml"
     words = ("--set", "integrator.revolutions=4", "--set", "integrator.method=auto", file)
-    check(gudgeon.run("-o", work / "whole", *words)[0] == 0, "whole run")
+    check(gudgeon.run("-o", work / "whole", *words)[0] == 0, "an uninterrupted run")
     for limit in (20, 60, 100, 200):
         status, _, err = gudgeon.run("--resume", "--set", f"integrator.max_steps={limit}", "-o", work / "parts", *words)
         check(status == 4 and err.count("too many steps") == 1, f"stopped after {limit} steps: {status} {err}")
     summary = (work / "parts" / "sim_I.ideal.summary.csv").read_text()
-    check('status,"done"' in summary or 'status,"too many steps' in summary, f"the twin has a summary: {summary[:200]}")
-    check(gudgeon.run("--resume", "-o", work / "parts", *words)[0] == 0, "and to the end")
+    check('status,"done"' in summary or 'status,"too many steps' in summary, f"the ideal twin has a summary: {summary[:200]}")
+    check(gudgeon.run("--resume", "-o", work / "parts", *words)[0] == 0, "an ideal twin is resumed to its end")
     check(not differing(work / "whole", work / "parts", "sim_I"), f"{differing(work / 'whole', work / 'parts', 'sim_I')} differ")
-    check(not leftovers(work / "parts"), f"left behind: {leftovers(work / 'parts')}")
+    check(not leftovers(work / "parts"), f"files left behind: {leftovers(work / 'parts')}")
 
 
 def main() -> int:

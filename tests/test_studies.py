@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests of parameter studies outside the program: chunks merged, sensitivity, pictures' numbers, shipped studies.
+"""Tests of parameter studies outside the program: merged chunks, sensitivity indices, numbers of the pictures, shipped studies.
 
     .venv/bin/python tests/test_studies.py      (after scripts/setup.sh --studies; brings the release build up to date)
 
@@ -40,7 +40,7 @@ SNAKEMAKE = Path(sys.executable).with_name("snakemake")
 
 
 class InDirectory(unittest.TestCase):
-    """A test with a directory of its own."""
+    """A test with a temporary folder."""
 
     def setUp(self) -> None:
         holder = tempfile.TemporaryDirectory()
@@ -149,7 +149,7 @@ def ishigami(x: np.ndarray, a: float = 7.0, b: float = 0.1) -> np.ndarray:
 
 
 class Indices(unittest.TestCase):
-    """The analysis of scripts/sensitivity.py, on functions whose indices are known."""
+    """The analysis of scripts/sensitivity.py, for functions with known indices."""
 
     #: Ishigami's function with a = 7, b = 0.1: V1 = (1 + b pi^4/5)^2 / 2, V2 = a^2/8, V13 = 8 b^2 pi^8 / 225.
     PARTS = np.array([0.5 * (1 + 0.1 * np.pi**4 / 5) ** 2, 49 / 8, 8 * 0.01 * np.pi**8 / 225])
@@ -174,7 +174,7 @@ class Indices(unittest.TestCase):
     def test_failed_runs_leave_out_their_block_only(self) -> None:
         x = sensitivity.sample("sobol", PI, 1024, 1)
         y = ishigami(x)
-        y[[7, 8, 100, 2000]] = np.nan  # rows 7 and 8 are of one block of five
+        y[[7, 8, 100, 2000]] = np.nan  # rows 7 and 8 belong to one block of five
         found = sensitivity.analyse("sobol", PI, x, y, ("y", "m"), 1)
         self.assertEqual((found.points, found.left_out), (1021, 3))
         self.check_ishigami(found)
@@ -223,7 +223,7 @@ class Indices(unittest.TestCase):
 
 
 class Files(InDirectory):
-    """Studies read, results read."""
+    """Reading of studies and results."""
 
     def test_ranges(self) -> None:
         path = self.write(
@@ -338,11 +338,11 @@ class Pictures(InDirectory):
         self.write("r/1.events.csv", "\n".join(rows) + "\n")
         runs = Runs(pd.DataFrame({"run": [1], "contact.restitution": [0.7]}), {})
         found = study_pictures.measured_restitution(self.work / "r", runs, settled_from=6.28).iloc[0]
-        self.assertEqual(found["count"], 2)  # not the first, which is not settled, nor the soft one, nor the last
+        self.assertEqual(found["count"], 2)  # without the first impact, which is not settled, the slow one, and the last
         self.assertAlmostEqual(found["middle"], 0.55)
 
     def test_contact_laws(self) -> None:
-        """Means and scatter over the laws with a restitution, the others by themselves; a failed run takes no part."""
+        """Means and scatter over the laws with a restitution, the other laws separately; a failed run is left out."""
         rows = []
         for law, force in (("hertz", 9e4), ("exact", 2e4), ("flores", 4e4), ("gonthier", 1e6)):
             for restitution in (0.9, 0.5):
@@ -372,7 +372,7 @@ class Pictures(InDirectory):
 
 
 class AnyStudy(InDirectory):
-    """Pictures that every study gets."""
+    """Pictures of any study."""
 
     UNITS = {"joint.clearance": "m", "initial.crank_speed": "rad/s"}
 
@@ -384,7 +384,7 @@ class AnyStudy(InDirectory):
         self.addCleanup(patch.stop)
 
     def grid_runs(self) -> Runs:
-        """Films that fall over three decades on a grid that is even in its logarithm; one run failed; never in contact."""
+        """Film thicknesses over three decades, on a grid with logarithmic spacing; one run failed; no contact."""
         clearance, speed = np.meshgrid(np.geomspace(1e-5, 1e-4, 6), np.geomspace(50, 1000, 5))
         film = 1e-5 * (clearance.ravel() / 1e-5) ** -2 * (speed.ravel() / 50) ** -1
         table = pd.DataFrame({"run": np.arange(1, 31), "joint.clearance": clearance.ravel(), "initial.crank_speed": speed.ravel()})
@@ -396,7 +396,7 @@ class AnyStudy(InDirectory):
         columns = ("min_film_thickness", "contact_time_fraction", "max_pin_force")
         drawing = study_pictures.draw_map(self.grid_runs(), "joint.clearance", "initial.crank_speed", columns, "films")
         panels = [axes for axes in drawing.axes if axes.get_xlabel() == "radial clearance [µm]"]
-        self.assertEqual(len(panels), 2)  # a column that is the same in every run has no panel, but is said
+        self.assertEqual(len(panels), 2)  # a column that is equal in every run is in the title and has no panel
         self.assertEqual(drawing._suptitle.get_text(), "films; 1 of 30 runs failed (×)\ntime in contact: 0 % in every run")
         for axes in panels:
             self.assertEqual((axes.get_xscale(), axes.get_yscale(), axes.get_ylabel()), ("log", "log", "crank speed [rad/s]"))
@@ -448,7 +448,7 @@ class AnyStudy(InDirectory):
 
 
 class Sweeps(InDirectory):
-    """With the program itself."""
+    """Tests that run the program."""
 
     STUDY = """&study
   title = 'small', case = '{case}', settle_cycles = 1, cycles = .true.
@@ -479,14 +479,14 @@ class Sweeps(InDirectory):
         base = TOP / "cases" / "studies" / "base" / "sim_I_driven.nml"
         study_file = self.write("titles.nml", f"&study case = '{base}', table = 'titles.csv' /\n")
         table = pd.DataFrame({"case.title": titles, "integrator.revolutions": 2})
-        # a table is read as results are: what is to begin with an apostrophe before a formula has one more
+        # a table is read like results: a text that is to begin with an apostrophe and a formula character needs one more apostrophe
         table["case.title"] = [f"'{title}" if title.startswith("'") else title for title in titles]
         table.to_csv(self.work / "titles.csv", index=False)
         outcome = self.run_program(self.program, "sweep", "-q", "-o", self.work, study_file)
         self.assertEqual(outcome.returncode, 0, outcome.stderr)
         found = Runs.read(self.work / "titles.runs.csv")
         self.assertEqual([str(title) for title in found["case.title"]], titles)
-        again = self.work / "again.csv"  # the column of the results, as it is, is a table again
+        again = self.work / "again.csv"  # the column of the results can be used as a table
         pd.read_csv(self.work / "titles.runs.csv", dtype=str)[["case.title", "integrator.revolutions"]].to_csv(
             again, index=False
         )
@@ -554,7 +554,7 @@ class Sweeps(InDirectory):
         self.assertEqual(list(thinner["parameter"]), ["joint.clearance", "initial.crank_speed"])
         self.assertTrue(
             (thinner["value"] < -0.1).all(), thinner
-        )  # a film is thinner with more clearance, and with speed
+        )  # the film is thinner with larger clearance and with higher speed
         self.assertIn("impacts, morris (3 trajectories): 0 in every run", outcome.stdout)
         self.assertTrue((self.work / "small.png").stat().st_size > 10_000)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Summaries and events of all shipped cases against their own traces: no row is beyond a peak.
+"""Summaries and events of all shipped cases against their own traces: no row exceeds an extreme of the summary.
 
     tests/test_summaries.py [--program PATH]
 
@@ -16,8 +16,8 @@ from pathlib import Path
 
 from test_faults import ROOT, Gudgeon, assertions, check, program_built
 
-LONG = {"sim_IV", "sim_V"}   # with the method of their files: 4 and 11 million steps
-PREFIXES = {"piston_pin": "", "crank_pin": "crank_pin_"}   # of the names of a joint's columns and quantities
+LONG = {"sim_IV", "sim_V"}   # run with another method than in their files, which need 4 and 11 million steps
+PREFIXES = {"piston_pin": "", "crank_pin": "crank_pin_"}   # prefixes of the names of a joint's columns and quantities
 
 
 def table(path: Path) -> list[dict[str, str]]:
@@ -26,14 +26,14 @@ def table(path: Path) -> list[dict[str, str]]:
 
 
 def force(row: dict[str, str], prefix: str) -> float:
-    """Size of the force on a pin; on a crank pin with clearance of its contact and its film, of which one acts."""
+    """Magnitude of the force on a pin; for a crank pin with clearance that of its contact and its film, only one of which acts."""
     names = [f"{prefix}{name}[N]" for name in (("pin_force_x", "pin_force_y") if not prefix else (
         "normal_force", "friction_force", "film_force_x", "film_force_y"))]
     return math.hypot(*(float(row[name]) for name in names if name in row))
 
 
 def judge(folder: Path, name: str, slack: float) -> None:
-    """One case. `slack` is the rounding of the numbers in the files: of a force, which has two components."""
+    """Check one case. `slack` is the relative rounding, from the numbers in the files, of a force with two components."""
     summary = {row["quantity"]: row["value"] for row in table(folder / f"{name}.summary.csv")}
     rows = table(folder / f"{name}.csv")
     fractions = sum(float(value) for quantity, value in summary.items() if "_time_fraction_with_" in quantity)
@@ -46,7 +46,8 @@ def judge(folder: Path, name: str, slack: float) -> None:
         judge_corner(name, corner, summary, rows, [event for event in events if event["joint"] == corner], slack)
     for joint, prefix in PREFIXES.items():
         has_figures = any(f"{prefix}{quantity}" in summary for quantity in ("contacts", "min_film_thickness", "max_penetration"))
-        check(has_figures == (joint in loose), f"{name}: figures of the {joint} {'missing' if joint in loose else 'of an ideal pin'}")
+        check(has_figures == (joint in loose),
+              f"{name}: figures of the {joint} {'are missing' if joint in loose else 'are there although it is ideal'}")
         if joint == "piston_pin" or joint in loose:
             judge_pin(name, prefix, summary, rows, slack)
         if joint in loose:
@@ -54,20 +55,20 @@ def judge(folder: Path, name: str, slack: float) -> None:
 
 
 def judge_pin(name: str, prefix: str, summary: dict[str, str], rows: list[dict[str, str]], slack: float) -> None:
-    """Its force, which an ideal piston pin has too."""
+    """Check the largest pin force, which an ideal piston pin has too."""
     largest = max(force(row, prefix) for row in rows)
     peak = float(summary[f"{prefix}max_pin_force"])
-    check(peak >= largest * (1 - slack), f"{name}: {prefix}max_pin_force {peak!r} is below a row, {largest!r}")
+    check(peak >= largest * (1 - slack), f"{name}: {prefix}max_pin_force {peak!r} is smaller than in a row, {largest!r}")
 
 
 def judge_contacts(name: str, prefix: str, summary: dict[str, str], rows: list[dict[str, str]], events: list[dict[str, str]]) -> None:
-    """Film thickness and contacts of one joint."""
+    """Check film thickness and contacts of one joint."""
     film = min(float(row[f"{prefix}film_thickness[m]"]) for row in rows)
     thinnest, deepest = float(summary[f"{prefix}min_film_thickness"]), float(summary[f"{prefix}max_penetration"])
-    check(thinnest <= film, f"{name}: {prefix}min_film_thickness {thinnest!r} is above a row, {film!r}")
-    check(deepest >= -film, f"{name}: {prefix}max_penetration {deepest!r} is below a row, {-film!r}")
+    check(thinnest <= film, f"{name}: {prefix}min_film_thickness {thinnest!r} is larger than in a row, {film!r}")
+    check(deepest >= -film, f"{name}: {prefix}max_penetration {deepest!r} is smaller than in a row, {-film!r}")
     begun = sum(event["event"] == "contact_begins" for event in events)
-    check(begun == int(summary[f"{prefix}contacts"]), f"{name}: {prefix}contacts are not the {begun} of the events")
+    check(begun == int(summary[f"{prefix}contacts"]), f"{name}: {prefix}contacts differ from the {begun} in the events file")
     for event in events:
         if event["event"] != "contact_ends":
             continue
@@ -77,25 +78,27 @@ def judge_contacts(name: str, prefix: str, summary: dict[str, str], rows: list[d
             continue
         depth = max(-float(row[f"{prefix}film_thickness[m]"]) for row in inside)
         normal = max(float(row[f"{prefix}normal_force[N]"]) for row in inside)
-        check(float(event["max_penetration[m]"]) >= depth, f"{name}: a {prefix}contact to {end} s is deeper in a row")
-        check(float(event["max_normal_force[N]"]) >= normal, f"{name}: a {prefix}contact to {end} s presses harder in a row")
-        check(float(event["max_penetration[m]"]) <= deepest, f"{name}: a {prefix}contact to {end} s is deeper than the deepest")
+        check(float(event["max_penetration[m]"]) >= depth, f"{name}: penetration of the {prefix}contact that ends at {end} s is larger in a row")
+        check(float(event["max_normal_force[N]"]) >= normal,
+              f"{name}: normal force of the {prefix}contact that ends at {end} s is larger in a row")
+        check(float(event["max_penetration[m]"]) <= deepest,
+              f"{name}: penetration of the {prefix}contact that ends at {end} s exceeds that of the summary")
 
 
 def judge_corner(name: str, corner: str, summary: dict[str, str], rows: list[dict[str, str]], events: list[dict[str, str]],
                  slack: float) -> None:
-    """Contacts of one corner of a piston with clearance in its bore."""
+    """Check the contacts of one corner of a piston with clearance in its bore."""
     begun = sum(event["event"] == "contact_begins" for event in events)
-    check(begun == int(summary[f"{corner}_contacts"]), f"{name}: {corner}_contacts are not the {begun} of the events")
+    check(begun == int(summary[f"{corner}_contacts"]), f"{name}: {corner}_contacts differ from the {begun} in the events file")
     deepest, largest = (float(summary[f"{corner}_{quantity}"]) for quantity in ("max_penetration", "max_force"))
     depth = max(-float(row[f"{corner}_gap[m]"]) for row in rows)
     force_of_rows = max(abs(float(row[f"{corner}_force[N]"])) for row in rows)
-    check(deepest >= depth * (1 - slack), f"{name}: {corner}_max_penetration {deepest!r} is below a row, {depth!r}")
-    check(largest >= force_of_rows * (1 - slack), f"{name}: {corner}_max_force {largest!r} is below a row, {force_of_rows!r}")
+    check(deepest >= depth * (1 - slack), f"{name}: {corner}_max_penetration {deepest!r} is smaller than in a row, {depth!r}")
+    check(largest >= force_of_rows * (1 - slack), f"{name}: {corner}_max_force {largest!r} is smaller than in a row, {force_of_rows!r}")
     for event in events:
         if event["event"] == "contact_ends":
-            check(float(event["max_penetration[m]"]) <= deepest, f"{name}: a contact of {corner} is deeper than the deepest")
-            check(float(event["max_normal_force[N]"]) <= largest, f"{name}: a contact of {corner} presses harder than the largest")
+            check(float(event["max_penetration[m]"]) <= deepest, f"{name}: penetration of a contact of {corner} exceeds that of the summary")
+            check(float(event["max_normal_force[N]"]) <= largest, f"{name}: normal force of a contact of {corner} exceeds that of the summary")
 
 
 def main() -> int:
@@ -107,7 +110,7 @@ def main() -> int:
         for method, slack, options in (("auto", 1e-9, ()), ("auto", 4e-16, ("--set", "output.digits=17")), ("adams", 1e-9, ())):
             chosen = [file for file in files if method == "auto" or file.stem not in LONG]
             status, _, err = gudgeon.run("--set", f"integrator.method={method}", *options, "-o", work, *chosen)
-            check(status == 0, f"cases run: {status} {err}")
+            check(status == 0, f"all cases run: {status} {err}")
             for file in chosen:
                 judge(Path(work), file.stem, slack)
     return assertions.report()
