@@ -1,5 +1,5 @@
 !> A scene with clearance in the coordinates (q, A, x) of its bodies, in which the eccentricity is a difference of numbers that are
-!> ten thousand times larger. The coordinates of scenes are compared with it.
+!> ten thousand times larger. Tests compare the coordinates of scenes with these.
 module absolute_coordinates
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t

@@ -4,7 +4,7 @@
 !>     absolute_run CASE.nml REVOLUTIONS SAMPLES TOLERANCE MAX_STEP
 !>
 !> Prints time [s], crank acceleration [rad/s^2] and eccentricity over clearance as CSV, SAMPLES times in the duration of a
-!> revolution at the starting speed. The right-hand side is that of the program. The pin must not touch the bearing: if it does, the
+!> revolution at the starting speed. The right-hand side is that of the program. If the pin comes into contact with the bearing, the
 !> run ends with exit status 1.
 program absolute_run
   use, intrinsic :: iso_fortran_env, only: error_unit

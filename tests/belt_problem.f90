@@ -13,15 +13,15 @@ module belt_problem
   public :: belt_t, new_belt, mass, spring, draw_speed, load
 
   real(dp), parameter :: mass = 1            !! [kg]
-  real(dp), parameter :: spring = 2          !! its stiffness [N/m]
-  real(dp), parameter :: draw_speed = 0.1_dp !! of the spring's end [m/s]
+  real(dp), parameter :: spring = 2          !! stiffness of the spring [N/m]
+  real(dp), parameter :: draw_speed = 0.1_dp !! speed of the spring's end [m/s]
   real(dp), parameter :: load = 10           !! normal force of the mass on the floor [N]
 
   !> y = (x, x', deflection of the bristles of a law that has them, work of friction).
   type, extends(ode_problem_t) :: belt_t
-    type(clearance_joint_t) :: joint     !! its friction, and whether it sticks
+    type(clearance_joint_t) :: joint     !! friction law, and whether the mass sticks
     integer :: n_changes = 0
-    real(dp) :: change(100) = 0          !! when the mass began to slip or to stick [s]
+    real(dp) :: change(100) = 0          !! times at which the mass began to slip or to stick [s]
   contains
     procedure :: derivatives
     procedure :: events
@@ -30,7 +30,7 @@ module belt_problem
 
 contains
 
-  !> At rest, with the spring at ease.
+  !> The mass at rest, with the spring unloaded.
   subroutine new_belt(law, belt)
     class(friction_law_t), intent(in) :: law
     type(belt_t), intent(out) :: belt

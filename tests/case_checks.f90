@@ -18,7 +18,7 @@ module case_checks
 
 contains
 
-  !> The bodies with these groups are refused with a message that contains `wanted`; where that is empty, they are accepted.
+  !> The bodies with these groups are refused with a message that contains `wanted`, or accepted if `wanted` is empty.
   subroutine expect(check, groups, wanted, name)
     class(checks_t), intent(inout) :: check
     character(len=*), intent(in) :: groups, wanted, name
@@ -26,12 +26,12 @@ contains
     type(case_t) :: case
     type(error_t), allocatable :: error
     call parse_case(bodies//groups, 'x.nml', nothing, case, error)
-    call check%that(allocated(error) .neqv. wanted == '', name//' is judged')
-    if (allocated(error)) call check%that(index(error%message, wanted) > 0, name//' in words: '//error%message)
+    call check%that(allocated(error) .neqv. wanted == '', name//' is accepted or refused as expected')
+    if (allocated(error)) call check%that(index(error%message, wanted) > 0, name//', message: '//error%message)
   end subroutine expect
 
-  !> A case with these settings runs with each method, keeps its energy, and has the same film thickness within 1e-6 of the
-  !> clearance. `trace` is that of the last method.
+  !> A case with these settings runs with each method, its energy residual is small, and the film thickness is the same within 1e-6
+  !> of the clearance. `trace` is that of the last method.
   subroutine methods_agree(check, file, settings, clearance, name, trace)
     class(checks_t), intent(inout) :: check
     character(len=*), intent(in) :: file, settings(:), name
@@ -50,12 +50,12 @@ contains
       call check%that(.not. allocated(trace%error), name//' runs by '//methods(i))
       if (allocated(trace%error)) return
       associate (figures => trace%report%figures)
-        call check%that(figures%max_energy_residual < 1e-8_dp*figures%max_energy, 'and keeps the energy')
+        call check%that(figures%max_energy_residual < 1e-8_dp*figures%max_energy, name//': energy residual')
       end associate
       if (i == 1) first = trace
       at = column(trace, 'film_thickness[m]')
       call check%close_to(maxval(abs(trace%values(at, :) - first%values(at, :))), 0.0_dp, 1e-6_dp*clearance, &
-        'methods agree on the film')
+        name//': all methods give the same film thickness')
     end do
   end subroutine methods_agree
 end module case_checks

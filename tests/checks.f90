@@ -1,7 +1,7 @@
 !> The test harness: named assertions; failures are printed at once.
 !>
-!> An assertion is identified by its suite and its name without digits: an assertion that a loop makes a thousand times, or at
-!> several tolerances, counts once. It has passed if it has passed each time.
+!> An assertion is identified by its suite and its name without digits: an assertion that is made a thousand times in a loop, or at
+!> several tolerances, counts once. It passes if it holds each time.
 module checks
   use, intrinsic :: iso_fortran_env, only: output_unit, int64
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
@@ -10,28 +10,28 @@ module checks
   private
   public :: checks_t, without_figures
 
-  integer, parameter :: most_printed = 5   !! failing turns of one assertion that are printed
+  integer, parameter :: most_printed = 5   !! failures of one assertion that are printed
   character(len=*), parameter :: letters = 'ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz'
 
   !> One assertion, and how often it was made.
   type :: assertion_t
-    character(len=:), allocatable :: name   !! suite: name without figures
+    character(len=:), allocatable :: name   !! suite, and name without numbers
     integer :: turns = 0
-    integer :: failures = 0                 !! of these turns
+    integer :: failures = 0                 !! how often it failed
   end type assertion_t
 
   !> The assertions of one test run. A check prints only when it fails.
   type :: checks_t
-    logical :: is_silent = .false.     !! print nothing: failures are meant
+    logical :: is_silent = .false.     !! print nothing, because failures are intended
     character(len=:), allocatable, private :: suite
     type(assertion_t), allocatable, private :: assertion(:)
-    integer, allocatable, private :: place(:)   !! of assertions by their names' hashes, 0: none; twice as many as assertions
-    integer, private :: n = 0                   !! assertions
+    integer, allocatable, private :: place(:)   !! index of an assertion by the hash of its name, 0: none
+    integer, private :: n = 0                   !! number of assertions
   contains
-    procedure :: begin_suite   !! what follows belongs to this suite
-    procedure :: passed        !! assertions none of whose turns has failed
-    procedure :: failed        !! assertions of which a turn has failed
-    procedure :: say_unprinted !! print how many failing turns were not
+    procedure :: begin_suite   !! the assertions that follow belong to this suite
+    procedure :: passed        !! number of assertions that never failed
+    procedure :: failed        !! number of assertions that failed at least once
+    procedure :: say_unprinted !! print the number of failures that were not printed
     procedure :: that          !! a condition holds
     procedure :: close_to      !! |got - want| <= tolerance
     procedure :: relative      !! |got - want| <= tolerance*|want|
@@ -85,7 +85,7 @@ contains
     character(len=*), intent(in) :: name
     character(len=120) :: figures
     logical :: is_close
-    is_close = .false.   ! comparing a NaN traps where traps are set
+    is_close = .false.   ! comparing a NaN would trap if floating-point traps are set
     if (.not. ieee_is_nan(got - want)) is_close = abs(got - want) <= tolerance
     write (figures, '(a,es23.16,a,es23.16,a,es8.1)') ': got ', got, ', want ', want, ' within ', tolerance
     call self%take(is_close, name, trim(figures))
@@ -104,7 +104,7 @@ contains
     call self%take(got == want .and. len(got) == len(want), name, ': got "'//got//'", want "'//want//'"')
   end subroutine equal_text
 
-  !> One turn of the assertion `name`, with what was found.
+  !> Count the assertion `name` once, with what was found.
   subroutine take(self, condition, name, found)
     class(checks_t), intent(inout) :: self
     logical, intent(in) :: condition
@@ -120,7 +120,7 @@ contains
     end associate
   end subroutine take
 
-  !> The place of an assertion of the present suite, new where it has not been made before.
+  !> The index of an assertion of the present suite; a new index if it has not been made before.
   integer function find(self, name)
     class(checks_t), intent(inout) :: self
     character(len=*), intent(in) :: name
@@ -142,7 +142,7 @@ contains
     self%place(slot) = find
   end function find
 
-  !> Room for one more assertion.
+  !> Make room for one more assertion.
   subroutine make_room(self)
     class(checks_t), intent(inout) :: self
     type(assertion_t), allocatable :: larger(:)
@@ -165,7 +165,7 @@ contains
     end do
   end subroutine make_room
 
-  !> A number that differs for most texts.
+  !> A hash of a text.
   pure integer(int64) function hash(text)
     character(len=*), intent(in) :: text
     integer(int64), parameter :: modulus = 2147483647_int64
@@ -176,8 +176,8 @@ contains
     end do
   end function hash
 
-  !> A name in which every number is '#': a run of digits, points, signs and exponents that begins where a word may begin.
-  !> Digits inside a word, as in `dry_0100um`, stay.
+  !> The name with every number replaced by '#'. A number consists of digits, points, signs and exponents and begins where a word
+  !> may begin. Digits inside a word, as in `dry_0100um`, are kept.
   pure function without_figures(name) result(text)
     character(len=*), intent(in) :: name
     character(len=:), allocatable :: text
@@ -205,7 +205,7 @@ contains
     if (i > 1) begins_word = scan(name(i - 1:i - 1), letters//'_0123456789') == 0
   end function begins_word
 
-  !> Length of the number that a text begins with, 0 if none.
+  !> Length of the number at the beginning of a text, 0 if there is none.
   pure integer function number_length(text)
     character(len=*), intent(in) :: text
     integer :: first

@@ -72,7 +72,7 @@ contains
     do
       read (unit, '(a)', iostat=status) line
       if (status /= 0) exit
-      line = trim(line)//',piston_pin'   ! where the file does not name it
+      line = trim(line)//',piston_pin'   ! if the file has no column for the joint
       read (line, *) trace%event(rows + 1)%time, label, trace%event(rows + 1)%normal_speed, joint
       rows = rows + 1
       trace%event(rows)%kind = merge(1, 2, label == 'contact_begins')
@@ -118,7 +118,7 @@ contains
     end do
   end function split
 
-  !> The position of a named column, 0 where there is none.
+  !> The position of a named column, 0 if it does not exist.
   pure integer function column(trace, name)
     type(trace_t), intent(in) :: trace
     character(len=*), intent(in) :: name

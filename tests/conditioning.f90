@@ -1,4 +1,4 @@
-!> The growth of a change of the initial state in a problem of the standard battery, which limits the accuracy of any integrator.
+!> The growth of a change of the state in a problem of the standard battery; it limits the accuracy of any integrator.
 module conditioning
   use gudgeon_kinds, only: dp
   use adams, only: adams_t
@@ -11,9 +11,9 @@ module conditioning
 
 contains
 
-  !> The condition of problem `number`: the largest factor by which a small change of y at an instant s grows up to a later
-  !> one t. It is the largest row sum of |W(t) dy(t)/dy(s) W(s)^-1|, W = 1/(1 + |y|), by differences, over s and t among 23
-  !> equal parts of the span (no multiple of a period of any problem is near one).
+  !> The condition of problem `number`: the largest factor by which a small change of y at time s has grown at a later time t. It is
+  !> the largest row sum of |W(t) dy(t)/dy(s) W(s)^-1|, W = 1/(1 + |y|), by finite differences. s and t are among 23 equal parts of
+  !> the span; no multiple of a period of any problem is near one of these.
   real(dp) function condition_of(number)
     integer, intent(in) :: number
     integer, parameter :: instants = 23
@@ -42,7 +42,7 @@ contains
     end do
   end function condition_of
 
-  !> Integrate a new problem from 0 to t, past a discontinuity at t itself.
+  !> Integrate a new problem from 0 to t, including a discontinuity at t itself.
   subroutine advance(problem, t, y)
     type(standard_problem_t), intent(inout) :: problem
     real(dp), intent(in) :: t

@@ -17,15 +17,15 @@ module coordinate_errors
   public :: eccentricity_error
   public :: own_coordinates, absolute_by_size, absolute_by_clearance
 
-  !> (q, e); (q, A, x) with tolerances relative to the sizes of q, A and x; (q, A, x) with tolerances of the clearance over the
-  !> lengths that q, A and x move it by.
+  !> (q, e); (q, A, x) with tolerances relative to the magnitudes of q, A and x; (q, A, x) with tolerances for which the errors of
+  !> q, A and x change the eccentricity by equal parts of the clearance.
   integer, parameter :: own_coordinates = 1, absolute_by_size = 2, absolute_by_clearance = 3
 
   integer, parameter :: samples = 100
 
 contains
 
-  !> The largest error of e/c at 100 instants of cases/FILE, over `revolutions`; huge where the run does not reach its end.
+  !> The largest error of e/c at 100 times of cases/FILE, over `revolutions`; huge if the run does not reach its end.
   subroutine eccentricity_error(file, revolutions, way, tolerance, error, evaluations)
     character(len=*), intent(in) :: file
     integer, intent(in) :: way
@@ -61,7 +61,7 @@ contains
     integer :: status, i
     character(len=60) :: overrides(1)
 
-    overrides(1) = 'integrator.relative_tolerance=1e-13'   ! the models' own accuracy is always the same
+    overrides(1) = 'integrator.relative_tolerance=1e-13'   ! tables of models are always equally accurate
     call read_case(file, overrides, case, error)
     if (.not. allocated(error)) call build_scene(case, .false., scene, error)
     if (allocated(error)) error stop 'a case cannot be read'

@@ -21,12 +21,12 @@ module elastic_rod_field
     real(qp) :: phi(nodes + 2, 8) = 0, phi_2(nodes + 2, 8) = 0, psi(nodes + 2, 8) = 0, psi_1(nodes + 2, 8) = 0
     real(qp) :: drawn_back(nodes + 2, 8, 8) = 0    !! sigma = eta . drawn_back eta
     real(qp) :: whole_mass = 0
-    real(qp) :: rest_inertia = 0, rest_across = 0  !! of the rod beyond what these points have
+    real(qp) :: rest_inertia = 0, rest_across = 0  !! part of the rod's inertia and first moment that these points lack
   end type field_t
 
 contains
 
-  !> The field of a rod: shank, lumps on the pins, and what the rod's own inertia and centre of mass have beyond them.
+  !> The field of a rod: shank, point masses at the pins, and the rest of the rod's inertia and centre of mass.
   type(field_t) function new_field(rod, bodies) result(f)
     type(elastic_rod_t), intent(in) :: rod
     type(bodies_t), intent(in) :: bodies
@@ -114,7 +114,7 @@ contains
     end do
   end function kinetic
 
-  !> The same up to the second order of the shapes: a polynomial of degree 4 in their size, less its two highest terms.
+  !> The same up to second order in the shapes: a polynomial of degree 4 in their amplitude without its two highest terms.
   real(qp) function truncated_kinetic(f, x, v) result(t)
     type(field_t), intent(in) :: f
     real(qp), intent(in) :: x(:), v(:)
@@ -130,7 +130,7 @@ contains
     t = value(1) - third - fourth
   end function truncated_kinetic
 
-  !> Energy of bending and stretching, and in gravity.
+  !> Strain energy of bending and stretching, and potential energy of gravity.
   real(qp) function potential(f, x, gravity)
     type(field_t), intent(in) :: f
     real(qp), intent(in) :: x(:), gravity(2)
@@ -149,7 +149,7 @@ contains
     end associate
   end function potential
 
-  !> d/dt dT/dv - d(T - V)/dx along the motion with these coordinates, rates and accelerations: what forces must give.
+  !> d/dt dT/dv - d(T - V)/dx along a motion with these coordinates, rates and accelerations: the generalized forces of the motion.
   function lagrange_residual(f, gravity, x, v, acceleration) result(residual)
     type(field_t), intent(in) :: f
     real(dp), intent(in) :: gravity(2), x(:), v(:), acceleration(:)
@@ -183,7 +183,7 @@ contains
     end function momentum
   end function lagrange_residual
 
-  !> dE/dt [W] of crank, this rod and piston where the coordinates (q, c_x, c_y, e_x, e_y, eta, a) have these values, rates and
+  !> dE/dt [W] of crank, this rod and piston, for coordinates (q, c_x, c_y, e_x, e_y, eta, a) with these values, rates and
   !> accelerations.
   real(dp) function energy_slope_of_field(f, bodies, z, z_rate, z_acceleration) result(slope)
     type(field_t), intent(in) :: f

@@ -8,8 +8,8 @@ module free_impact
 
 contains
 
-  !> Speed after over speed before the impact of a free mass, by the classical Runge-Kutta method of which `steps` make
-  !> four times (m v^2/K)^(1/(n+1))/v, about what the impact takes; `most_steps` at most.
+  !> Speed after over speed before the impact of a free mass, by the classical Runge-Kutta method with `steps` steps in
+  !> 4 (m v^2/K)^(1/(n+1))/v, the approximate duration of the impact; at most `most_steps` steps.
   function speed_given_back(law, stiffness, exponent, speed, steps, most_steps) result(ratio)
     class(contact_law_t), intent(in) :: law
     real(dp), intent(in) :: stiffness, exponent, speed   !! [N/m^exponent], [-], [m/s]
@@ -37,12 +37,12 @@ contains
     end function rate
   end function speed_given_back
 
-  !> What the damping chi gives back: root in (0,1] of chi (1 + x) = ln[(1 + chi)/(1 - chi x)].
+  !> Restitution of an impact with the damping chi: root in (0,1] of chi (1 + x) = ln[(1 + chi)/(1 - chi x)].
   pure real(dp) function exact_restitution(chi) result(root)
     real(dp), intent(in) :: chi
     real(dp) :: low, high
     integer :: i
-    root = 1 - 2*chi/3   ! to first order, where the difference below is rounding
+    root = 1 - 2*chi/3   ! first order, because the difference below would be rounding only
     if (chi < 1e-5_dp) return
     low = 0
     high = min(1.0_dp, 1/chi)

@@ -12,9 +12,9 @@ module impact_problem
   private
   public :: impact_t, run_impact
 
-  !> What became of an impact.
+  !> The result of an impact.
   type :: impact_t
-    real(dp) :: restitution = -1   !! speed after over speed before; -1: the mass did not come back
+    real(dp) :: restitution = -1   !! speed after over speed before; -1: the mass did not leave the wall
     real(dp) :: depth = 0          !! deepest penetration [m]
     real(dp) :: duration = 0       !! [s]
   end type impact_t
@@ -32,7 +32,7 @@ module impact_problem
 
 contains
 
-  !> The impact of a mass [kg] at a speed [m/s], by a method at a relative tolerance. `duration` is about what it takes [s].
+  !> The impact of a mass [kg] at a speed [m/s], by a method at a relative tolerance. `duration` is its approximate duration [s].
   function run_impact(law, mass, speed, duration, method_name, tolerance) result(impact)
     class(contact_law_t), intent(in) :: law
     real(dp), intent(in) :: mass, speed, duration, tolerance
@@ -77,7 +77,7 @@ contains
     dydt(2) = -self%law%normal_force(y(1), y(2), self%speed)/self%mass
   end subroutine derivatives
 
-  !> The mass turns round; it leaves.
+  !> Events: the mass reverses its motion; the mass leaves the wall.
   pure subroutine events(self, t, y, g, g_rate)
     class(impact_problem_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
@@ -101,7 +101,7 @@ contains
     if (index == 1) self%smooth_in_root = .false.
   end subroutine handle_event
 
-  !> The end, which the force approaches like a power of the penetration.
+  !> The end of the contact, where the force varies like a power of the penetration.
   pure real(dp) function rough_time(self, t, y)
     class(impact_problem_t), intent(in) :: self
     real(dp), intent(in) :: t, y(:)

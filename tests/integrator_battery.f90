@@ -1,9 +1,9 @@
 !> Measures the integrator: evaluations, steps and error over tolerance on four scenes and on the standard battery of non-stiff
 !> problems. Run by scripts/compare_adams.sh.
 !>
-!>     integrator_battery reference       prints a reference for every scene; meant for a build in extended precision
-!>     integrator_battery scenes FILE     prints the table, errors against the references in FILE
-!>     integrator_battery coordinates     prints how well the eccentricity is known in (q, e) and in (q, A, x)
+!>     integrator_battery reference       prints a reference for every scene; intended for a build in extended precision
+!>     integrator_battery scenes FILE     prints the table, with errors against the references in FILE
+!>     integrator_battery coordinates     prints the accuracy of the eccentricity in (q, e) and in (q, A, x)
 !>     integrator_battery standard_reference, integrator_battery standard FILE: the same for the standard battery
 program integrator_battery
   use gudgeon_kinds, only: dp
@@ -30,14 +30,14 @@ program integrator_battery
     'revolutions=4', 'revolutions=2']
   character(len=40), parameter :: titles(n_scenes) = [character(len=40) :: 'flores lubricated, 24 ms', &
     'flores dry 0.5 mm, 10 ms', 'simulation I, 4 revolutions', 'simulation IV, 720 degrees']
-  !> What a published Shampine-Gordon code needed at 1e-6, 1e-8, 1e-10 and 1e-12, and its errors; 0: not known (1e-4).
+  !> Evaluations and errors of a published Shampine-Gordon code at 1e-6, 1e-8, 1e-10 and 1e-12; 0: not known (1e-4).
   integer, parameter :: published(0:n_tolerances, n_scenes) = reshape([0, 14261, 15203, 17014, 19569, 0, 3177, 5278, 8291, 12837, &
     0, 284712, 286777, 289212, 310134, 0, 3010000, 3300000, 3320000, 3350000], [n_tolerances + 1, n_scenes])
   real(dp), parameter :: published_error(0:n_tolerances, n_scenes) = reshape([0.0_dp, 4e-8_dp, 1e-9_dp, 2e-11_dp, 5e-13_dp, &
     0.0_dp, 5e-3_dp, 2e-4_dp, 3e-6_dp, 5e-8_dp, 0.0_dp, 1e-6_dp, 6e-10_dp, 2e-10_dp, 3e-12_dp, 0.0_dp, 1e-6_dp, 5e-9_dp, 9e-10_dp, &
     1e-12_dp], [n_tolerances + 1, n_scenes])
 
-  !> What one run leaves.
+  !> Result of one run.
   type :: result_t
     real(dp) :: final(watched) = 0, largest(watched) = 0
     integer :: status = 0
@@ -80,7 +80,7 @@ contains
     integer :: before, after, rate
 
     overrides = [character(len=60) :: 'integrator.relative_tolerance=1e-13', 'integrator.revolutions=0', &
-      'integrator.'//spans(scene_number)]   ! the models' own accuracy is the same at every tolerance
+      'integrator.'//spans(scene_number)]   ! tables of models are equally accurate at every tolerance
     if (index(spans(scene_number), 'revolutions') > 0) overrides(2) = overrides(3)
     call read_case(trim(files(scene_number)), overrides, case, error)
     if (.not. allocated(error)) call build_scene(case, .false., scene, error)
@@ -103,7 +103,8 @@ contains
     got%seconds = real(after - before, dp)/rate
   end subroutine run
 
-  !> Per scene: the final values, their largest, and how far a coarser run of a lower order is from it.
+  !> Print for each scene the final values, their largest magnitudes, and the difference of a run with a larger tolerance and lower
+  !> order.
   subroutine print_references()
     type(result_t) :: best, other
     integer :: i
@@ -143,12 +144,12 @@ contains
         end associate
         if (got%status /= integration_done) print '(a,i0)', '  status ', got%status
       end do
-      print '(a,es8.1)', '  rounding of e/c where it is rebuilt from (q, A, x):', got%rebuilt/clearance
+      print '(a,es8.1)', '  rounding of e/c if it is computed from (q, A, x):', got%rebuilt/clearance
     end do
     close (unit)
   end subroutine print_scenes
 
-  !> One problem of the standard battery before an observer.
+  !> Integrate one problem of the standard battery with an observer.
   subroutine run_standard(number, tolerance, max_order, method, observer, status)
     integer, intent(in) :: number, max_order
     real(dp), intent(in) :: tolerance
@@ -166,7 +167,7 @@ contains
     call integrate(problem, method, t, y, problem%t_end, 1000000, observer, status)
   end subroutine run_standard
 
-  !> The same, sampled at 20 equal distances.
+  !> The same, sampled at 20 equal intervals.
   subroutine sample_standard(number, tolerance, max_order, method, samples, status)
     integer, intent(in) :: number, max_order
     real(dp), intent(in) :: tolerance
@@ -195,10 +196,10 @@ contains
     end do
   end subroutine print_standard_references
 
-  !> Error: the largest |difference|/(1 + |y|) at 20 instants, over the tolerance, and that over the problem's condition (how
-  !> far it carries a change of its state). Local errors: of each step by itself, in the weights and the norm of the control,
-  !> over the tolerance; the largest of a step, the largest over the length of its step, and the part of the steps in
-  !> which it is above 1.
+  !> Error: the largest |difference|/(1 + |y|) at 20 times, divided by the tolerance; and this divided by the problem's condition,
+  !> the growth of a change of its state. Local errors, each of one step, in the weights and the norm of the step control and
+  !> divided by the tolerance: the largest of a step, the largest per unit of time, and the share of the steps in which it is above
+  !> 1.
   subroutine print_standard(reference_file)
     character(len=*), intent(in) :: reference_file
     type(adams_t) :: method
@@ -268,7 +269,7 @@ contains
     slope = sum((x - sum(x)/10)*(y - sum(y)/10))/sum((x - sum(x)/10)**2)
   end function slope
 
-  !> Part of the steps that stability limited.
+  !> Share of the steps that were limited by stability.
   pure real(dp) function bound_fraction(statistics)
     type(step_statistics_t), intent(in) :: statistics
     bound_fraction = real(statistics%limited_by(limit_stability), dp)/max(1, statistics%accepted)

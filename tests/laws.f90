@@ -1,4 +1,4 @@
-!> Laws for tests, made as a case makes them: read, checked and prepared for a bearing.
+!> Laws for tests, built in the same way as from a case file: read, checked and prepared for a bearing.
 module laws
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t
@@ -75,7 +75,7 @@ contains
     call parse_case(bodies//groups, 'x.nml', nothing, case, error)
   end subroutine read_keys
 
-  !> The value of a model's key; huge where it has none of that name.
+  !> The value of a model's key; huge if the model has no such key.
   function parameter_of(model, key) result(values)
     class(has_parameters_t), intent(inout) :: model
     character(len=*), intent(in) :: key

@@ -12,10 +12,10 @@ module local_errors
   !> Errors are in the method's own weights and norm: 1 is the tolerance.
   type, extends(silent_observer_t) :: local_error_watcher_t
     integer :: steps = 0
-    integer :: unsure = 0          !! steps whose local solution is not known well enough to judge them; not counted otherwise
+    integer :: unsure = 0          !! steps whose local solution is too uncertain; not in the other counts
     integer :: deceived = 0        !! steps whose error is above the tolerance
     real(dp) :: largest = 0        !! largest error of a step
-    real(dp) :: largest_per_unit = 0   !! largest error, less the rounding of y, over the length of its step
+    real(dp) :: largest_per_unit = 0   !! largest error minus the rounding of y, divided by the length of the step
   contains
     procedure :: step_taken
   end type local_error_watcher_t
@@ -43,9 +43,9 @@ contains
     self%largest_per_unit = max(self%largest_per_unit, error/(t_to - method%t_old))
   end subroutine step_taken
 
-  !> The solution through (t, y) at t_to by Gragg's extrapolated midpoint rule in several pieces, with an independent variable whose
-  !> rate vanishes at both ends, so that square roots of the time in f at the ends do no harm. `doubt` is the last change of the
-  !> result.
+  !> The solution through (t, y) at t_to by Gragg's extrapolated midpoint rule in several pieces. The independent variable is one
+  !> whose rate vanishes at both ends, so that square roots of the time in f at the ends do not reduce the accuracy. `doubt` is the
+  !> last change of the result.
   subroutine local_solution(problem, t, y, t_to, y_to, doubt)
     class(ode_problem_t), intent(in) :: problem
     real(dp), intent(in) :: t, y(:), t_to

@@ -1,5 +1,5 @@
-!> Runs all tests, or the suites named on the command line, and prints `N passed, N failed` as its last line. N counts different
-!> assertions, not how often they are made.
+!> Runs all tests, or the suites named on the command line, and prints `N passed, N failed` as its last line. N is the number of
+!> different assertions, not the number of times that they are made.
 !>
 !>     fpm test                          every suite
 !>     fpm test -- contact friction      the suites test_contact and test_friction
@@ -71,7 +71,7 @@ program gudgeon_tests
   use test_two_joints, only: run_test_two_joints
   implicit none
   type(checks_t) :: check
-  character(len=80), allocatable :: wanted(:)   !! names of suites, none: all of them
+  character(len=80), allocatable :: wanted(:)   !! names of suites; empty: all suites
   logical, allocatable :: found(:)              !! which of them exist
   integer :: i
 
@@ -148,7 +148,7 @@ program gudgeon_tests
   call check%say_unprinted()
   write (output_unit, '(i0,a,i0,a)') check%passed(), ' passed, ', check%failed(), ' failed'
   do i = 1, size(wanted)
-    if (.not. found(i)) write (error_unit, '(3a)') 'no suite of the name ', trim(wanted(i)), ': see tests/main.f90'
+    if (.not. found(i)) write (error_unit, '(3a)') 'there is no suite ', trim(wanted(i)), ': see tests/main.f90'
   end do
   if (check%failed() > 0 .or. check%passed() == 0 .or. .not. all(found)) error stop 1
 

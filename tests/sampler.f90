@@ -1,4 +1,4 @@
-!> An observer that samples the solution at equal distances through the interpolant.
+!> An observer that samples the solution at equal intervals by the interpolant of the method.
 module sampler
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t

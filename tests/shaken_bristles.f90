@@ -9,8 +9,8 @@ module shaken_bristles
 
   type, extends(ode_problem_t) :: shaken_t
     class(friction_law_t), allocatable :: law
-    real(dp) :: reach = 0      !! of the motion x = reach sin(w t) [m]
-    real(dp) :: frequency = 0  !! w [rad/s]; 0: they slide one way with the speed `reach` [m/s]
+    real(dp) :: reach = 0      !! amplitude of the motion x = reach sin(w t) [m]
+    real(dp) :: frequency = 0  !! w [rad/s]; 0: sliding in one direction with the speed `reach` [m/s]
   contains
     procedure :: derivatives
     procedure :: speed

@@ -21,9 +21,9 @@ module standard_problems
   type, extends(ode_problem_t) :: standard_problem_t
     character(len=9) :: name = ''
     real(dp) :: t_end = 20
-    real(dp) :: max_step = huge(1.0_dp)   !! F4 needs one: its spike at t = 5 is 0.5 wide, its slope constant elsewhere
-    real(dp) :: eccentricity = 0   !! of class D
-    integer :: part = 0            !! discontinuities passed, class F
+    real(dp) :: max_step = huge(1.0_dp)   !! F4 needs it for the spike of width 0.5 at t = 5; f is constant elsewhere
+    real(dp) :: eccentricity = 0   !! eccentricity of the orbit, class D
+    integer :: part = 0            !! number of discontinuities passed, class F
   contains
     procedure :: derivatives
     procedure :: events => discontinuities
@@ -31,7 +31,7 @@ module standard_problems
     procedure :: rough_time => at_infinite_slope
   end type standard_problem_t
 
-  !> Mass of the sun and the inner planets together, and of the outer planets; gravitational constant (C5).
+  !> Mass of the sun and the inner planets together, masses of the outer planets, gravitational constant (C5).
   real(dp), parameter :: gravitation = 2.95912208286_dp, sun = 1.00000597682_dp
   real(dp), parameter :: planet(5) = [0.000954786104043_dp, 0.000285583733151_dp, 0.0000437273164546_dp, &
     0.0000517759138449_dp, 0.00000277777777778_dp]
@@ -325,7 +325,7 @@ contains
     g_rate = 1
   end subroutine discontinuities
 
-  !> F5 goes with the cubic root of the time to its discontinuities.
+  !> The solution of F5 varies with the cubic root of the time to its discontinuities.
   pure real(dp) function at_infinite_slope(self, t, y)
     class(standard_problem_t), intent(in) :: self
     real(dp), intent(in) :: t, y(:)

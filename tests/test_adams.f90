@@ -45,7 +45,7 @@ contains
       13695779093.0_dp/2615348736000.0_dp, 2224234463.0_dp/475517952000.0_dp]
     real(dp) :: got(13)
     got = moulton_constants()
-    call check%close_to(maxval(abs(got/exact - 1)), 0.0_dp, 1e-13_dp, 'Adams-Moulton constants against rationals')
+    call check%close_to(maxval(abs(got/exact - 1)), 0.0_dp, 1e-13_dp, 'Adams-Moulton constants are the exact rational numbers')
   end subroutine constants_are_exact
 
   subroutine tolerance_is_kept(check)
@@ -68,15 +68,15 @@ contains
       call integrate(problem, method, t, y, 6*pi, 0, observer, status)
       error = norm2(y - [0.7_dp, 0.0_dp, 0.0_dp, sqrt(1.3_dp/0.7_dp)])
       write (label, '(a,i0)') ' at 1e-', i
-      call check%that(status == integration_done, 'two bodies are integrated'//trim(label))
-      call check%close_to(error, 0.0_dp, 20*condition*tolerance, 'three orbits close'//trim(label))
-      call check%that(method%statistics%evaluations > previous, 'more accuracy costs more'//trim(label))
+      call check%that(status == integration_done, 'integration of two bodies reaches its end'//trim(label))
+      call check%close_to(error, 0.0_dp, 20*condition*tolerance, 'three orbits end at their start'//trim(label))
+      call check%that(method%statistics%evaluations > previous, 'a smaller tolerance needs more evaluations'//trim(label))
       previous = method%statistics%evaluations
     end do
-    call check%that(previous < 1100, 'three orbits at 1e-12 need fewer than 1100 evaluations')
+    call check%that(previous < 1100, 'three orbits at 1e-12 take less than 1100 evaluations')
   end subroutine tolerance_is_kept
 
-  !> Value and derivative of the interpolant agree across every mesh point, and its error is that of the steps.
+  !> Value and derivative of the interpolant agree on both sides of every mesh point, and its error is that of the steps.
   subroutine interpolant_is_smooth(check)
     class(checks_t), intent(inout) :: check
     type(oscillator_t) :: problem
@@ -107,14 +107,14 @@ contains
       end do
       step_error = max(step_error, abs(method%y(1) - sin(method%t)))
     end do
-    call check%that(status == step_done, 'the oscillator is integrated')
-    call check%close_to(jump, 0.0_dp, 1e-14_dp, 'the interpolant meets the beginning of the step')
-    call check%close_to(slope_jump, 0.0_dp, 1e-7_dp, 'the interpolant has the slope f there')
+    call check%that(status == step_done, 'integration of the oscillator reaches its end')
+    call check%close_to(jump, 0.0_dp, 1e-14_dp, 'the interpolant has the value y at the beginning of the step')
+    call check%close_to(slope_jump, 0.0_dp, 1e-7_dp, 'the interpolant has the slope f at the beginning of the step')
     call check%that(worst <= 1.5_dp*step_error + 1e-9_dp, 'the interpolant is as accurate as the steps')
   end subroutine interpolant_is_smooth
 
-  !> A start at which f is smooth in the square root of the time, as at the beginning of a contact: if the problem says so, the
-  !> method needs a fraction of the evaluations, keeps the tolerance inside its steps, and observes the largest step.
+  !> A start at which f is smooth in the square root of the time, as at the beginning of a contact. If the problem declares this,
+  !> the method needs a fraction of the evaluations, keeps the tolerance inside its steps, and respects the largest step.
   subroutine root_at_start(check)
     class(checks_t), intent(inout) :: check
     type(root_t) :: problem
@@ -142,12 +142,12 @@ contains
         end do
         if (method%t >= 2) exit
       end do
-      call check%that(status == step_done, 'a root at the start is integrated')
-      call check%close_to(worst, 0.0_dp, 1e-8_dp, 'a root at the start keeps the tolerance')
-      call check%that(longest <= 0.1_dp*(1 + 1e-12_dp), 'the longest step is one of time')
+      call check%that(status == step_done, 'integration from a square root reaches its end')
+      call check%close_to(worst, 0.0_dp, 1e-8_dp, 'error after a square root at the start')
+      call check%that(longest <= 0.1_dp*(1 + 1e-12_dp), 'the largest step is measured in time')
       evaluations(i) = method%statistics%evaluations
     end do
-    call check%that(3*evaluations(2) < evaluations(1), 'the clock of square roots saves two evaluations of three')
+    call check%that(3*evaluations(2) < evaluations(1), 'steps in the square root of the time save two evaluations of three')
   end subroutine root_at_start
 
   subroutine ball_impacts(check)
@@ -165,7 +165,7 @@ contains
     t = 0
     y = [1.0_dp, 0.0_dp]
     call integrate(problem, method, t, y, 20.0_dp, 0, observer, status)
-    call check%that(status == integration_done, 'the ball is integrated')
+    call check%that(status == integration_done, 'integration of the ball reaches its end')
     exact = sqrt(2.0_dp)
     worst = 0
     do i = 1, problem%impacts
@@ -173,7 +173,7 @@ contains
       exact = exact + 2*sqrt(2.0_dp)*0.9_dp**i
     end do
     call check%that(exact > 20, 'no impact of the ball is missed')
-    call check%that(problem%impacts == method%statistics%restarts, 'one restart an impact')
+    call check%that(problem%impacts == method%statistics%restarts, 'one restart for each impact')
     call check%close_to(worst, 0.0_dp, 1e-8_dp, 'impact times of the ball')
   end subroutine ball_impacts
 
@@ -192,15 +192,15 @@ contains
     t = 0
     y = [0.0_dp, 1.0_dp]
     call integrate(problem, method, t, y, 40.0_dp, 0, observer, status)
-    call check%that(problem%passages == 7, 'tips above the level for 3 ms in 6 s are all found')
+    call check%that(problem%passages == 7, 'seven intervals of 3 ms above the level are found within 6 s')
     worst = 0
     do i = 1, min(7, problem%passages)
       worst = max(worst, abs(problem%times(i) - (asin(problem%level) + 2*pi*(i - 1))))
     end do
-    call check%close_to(worst, 0.0_dp, 1e-4_dp, 'their times')
+    call check%close_to(worst, 0.0_dp, 1e-4_dp, 'times of the short intervals above the level')
   end subroutine double_passages_are_found
-  !> A start long after t = 0 with a component at zero, whose tolerance is then so small that it moves by it in less than the
-  !> time can resolve: the first step is longer, and the integration continues.
+  !> A start long after t = 0 with a component equal to zero: its tolerance is so small that the component changes by it in less
+  !> than the resolution of the time. The first step must be longer, and the integration must continue.
   subroutine late_start_at_zero(check)
     class(checks_t), intent(inout) :: check
     type(oscillator_t) :: problem
@@ -214,7 +214,7 @@ contains
     t = 1000
     y = [0.0_dp, 1.0_dp]
     call integrate(problem, method, t, y, 1001.0_dp, 0, observer, status)
-    call check%that(status == integration_done, 'a late start at zero goes on')
-    call check%close_to(norm2(y - [sin(1.0_dp), cos(1.0_dp)]), 0.0_dp, 1e-10_dp, 'and keeps the tolerance')
+    call check%that(status == integration_done, 'integration from a late start at zero reaches its end')
+    call check%close_to(norm2(y - [sin(1.0_dp), cos(1.0_dp)]), 0.0_dp, 1e-10_dp, 'error after a late start at zero')
   end subroutine late_start_at_zero
 end module test_adams

@@ -35,19 +35,19 @@ contains
     real(dp) :: worst
     call coefficients%reset()
     call coefficients%update(0.1_dp, 0.0_dp, 1, 0)
-    do i = 2, 12   ! as in an opening, the order rises with every step
+    do i = 2, 12   ! the order rises with every step, as after a start
       call coefficients%update(0.1_dp, 0.1_dp, i, i - 1)
     end do
     call coefficients%update(0.1_dp, 0.1_dp, 12, 12)
     worst = maxval(abs(coefficients%g/exact - 1))
-    call check%close_to(worst, 0.0_dp, 1e-14_dp, 'g at constant step against rationals')
+    call check%close_to(worst, 0.0_dp, 1e-14_dp, 'g at constant step: exact rational numbers')
     worst = maxval(abs(coefficients%alpha*[(i, i=1, 12)] - 1))
     call check%close_to(worst, 0.0_dp, 1e-15_dp, 'alpha at constant step')
     worst = max(maxval(abs(coefficients%beta - 1)), maxval(abs(coefficients%sigma - 1)))
     call check%close_to(worst, 0.0_dp, 1e-15_dp, 'beta and sigma at constant step')
   end subroutine constant_step_coefficients
 
-  !> On an uneven mesh: psi from the mesh, g by integration of the Newton basis, beta and sigma by their products.
+  !> On a mesh with variable steps: psi from the mesh, g by integration of the Newton basis, beta and sigma by their products.
   subroutine variable_step_coefficients(check)
     class(checks_t), intent(inout) :: check
     integer, parameter :: k = 8, steps = 11
@@ -84,7 +84,7 @@ contains
     call check%close_to(worst, 0.0_dp, 1e-12_dp, 'g, beta and sigma on an uneven mesh')
   end subroutine variable_step_coefficients
 
-  !> A step that is tried, taken back and tried again shorter has the coefficients of the shorter step.
+  !> A step that is tried, rejected and repeated with a shorter length has the coefficients of the shorter step.
   subroutine rejected_step_coefficients(check)
     class(checks_t), intent(inout) :: check
     type(adams_coefficients_t) :: rejected, plain
@@ -97,7 +97,7 @@ contains
       worst = 0
       do i = 1, size(h)
         call plain%update(h(i), merge(h(max(1, i - 1)), 0.0_dp, i > 1), min(i, k), min(i - 1, k))
-        do tries = 1, merge(2, 0, i > k)   ! once the full history is there
+        do tries = 1, merge(2, 0, i > k)   ! when the history is complete
           call rejected%update(tries*2*h(i), h(max(1, i - 1)), k, k)
           call rejected%take_back(tries*2*h(i), k)
         end do
@@ -108,11 +108,12 @@ contains
           abs(rejected%sigma_next - plain%sigma_next))
         worst = max(worst, maxval(abs(rejected%psi(:k) - plain%psi(:k))))
       end do
-      call check%close_to(worst, 0.0_dp, 1e-13_dp, 'a rejected step leaves no trace in the coefficients, k = '//trim(digits(k)))
+      call check%close_to(worst, 0.0_dp, 1e-13_dp, 'a rejected step does not change the coefficients, k = '//trim(digits(k)))
     end do
   end subroutine rejected_step_coefficients
 
-  !> Extrapolating and taking back leaves the differences as they were, what was owed included, and the filling at zero.
+  !> Prediction and its withdrawal leave the differences unchanged, including the carried rounding errors and the padding with
+  !> zeros.
   subroutine rejected_step_differences(check)
     class(checks_t), intent(inout) :: check
     integer, parameter :: n = 5, blocks = (n + lanes - 1)/lanes, k = 4, width = lanes*blocks
@@ -133,8 +134,8 @@ contains
       'the prediction is the sum of the differences')
     call restore_differences(width, k, beta, next, phi)
     call check%close_to(maxval(abs(phi(:, :k + 1) + spread(owed, 2, k + 1) - before(:, :k + 1))), 0.0_dp, 1e-14_dp, &
-      'a rejected step leaves no trace in the differences')
-    call check%that(.not. maxval(abs(phi(n + 1:, :))) > 0, 'the filling of the differences stays zero')
+      'a rejected step does not change the differences')
+    call check%that(.not. maxval(abs(phi(n + 1:, :))) > 0, 'the padding of the differences stays zero')
   end subroutine rejected_step_differences
 
   !> The largest error up to t = 4 of y' = y cos t with `n` steps of order k, from an exact history.
@@ -161,7 +162,7 @@ contains
     end do
   end function error_of
 
-  !> With local extrapolation the method of order k converges with the power k+1 of the step.
+  !> With local extrapolation the method of order k converges with the power k+1 of the step length.
   subroutine orders_at_fixed_step(check)
     class(checks_t), intent(inout) :: check
     integer :: k, n
@@ -173,7 +174,7 @@ contains
     end do
   end subroutine orders_at_fixed_step
 
-  !> y' = lambda y with h lambda a little below and above the limit: it dies out, it grows.
+  !> y' = lambda y with h lambda slightly below and above the stability limit: the solution decays, or grows.
   subroutine stability_limits(check)
     class(checks_t), intent(inout) :: check
     integer :: k
@@ -198,7 +199,7 @@ contains
     method%settings%max_order = k
     method%settings%fixed_step = 1
     x = [(real(i - k, dp), i=1, k)]
-    f(1, :) = [(-rate*(-1)**i, i=1, k)]   ! an oscillating history stirs every root
+    f(1, :) = [(-rate*(-1)**i, i=1, k)]   ! an oscillating history excites every root
     call method%start_with_history(problem, x, f, [1.0_dp], 1.0_dp, status)
     do i = 1, 8000
       call method%step(problem, status)

@@ -33,7 +33,7 @@ contains
     call refuses(check)
   end subroutine run_test_asperities
 
-  !> Exact (parabolic cylinder function, 25 digits) and by the fit, with the mean gap and its slope.
+  !> The exact integral (parabolic cylinder function, 25 digits) and its fit, with the mean gap and its slope.
   subroutine integral_of_the_table(check)
     class(checks_t), intent(inout) :: check
     type(asperities_t) :: rough
@@ -58,15 +58,15 @@ contains
     close (unit)
     call check%that(rows >= 8, 'the table was read')
     call check%relative(pressure_integral(-4 - 1e-12_dp, .false.), pressure_integral(-4.0_dp, .false.), 2e-6_dp, &
-      'F52 goes on where its series ends')
+      'F52 is continuous where its series ends')
     got = 0   ! the mean of (u + 10)^2.5 by the trapezoidal rule
     do unit = -1000, 1000
       got = got + 0.01_dp*(10 + 0.01_dp*unit)**2.5_dp*exp(-0.5_dp*(0.01_dp*unit)**2)/sqrt(2*pi)
     end do
-    call check%relative(pressure_integral(-10.0_dp, .false.), got, 1e-9_dp, 'F52 of surfaces pressed deep')
+    call check%relative(pressure_integral(-10.0_dp, .false.), got, 1e-9_dp, 'F52 for deep penetration')
   end subroutine integral_of_the_table
 
-  !> Force on the pin by the fit, and exactly where an arc cut at 4 s loses nothing.
+  !> Force on the pin by the fit; and by the exact integral where cutting the arc at 4 s has no influence.
   subroutine force_of_the_table(check)
     class(checks_t), intent(inout) :: check
     type(asperities_t) :: fit, exact
@@ -84,7 +84,7 @@ contains
       if (by_fit > 1) call check%relative(fit%integrated_force(ratio*c), by_fit, 1e-8_dp, 'force of the fit')
       if (ratio > 0.91_dp) call check%relative(exact%integrated_force(ratio*c), by_exact, 2e-4_dp, 'exact force')
       call exact%mean_gap(c*(1 - ratio), gap, slope)
-      call check%close_to(1 - gap/c, seen, 1e-11_dp, 'eccentricity ratio that the film sees')
+      call check%close_to(1 - gap/c, seen, 1e-11_dp, 'eccentricity ratio used by the film')
       call check%close_to(slope, factor, 1e-11_dp, 'share of the radial rate')
     end do
     close (unit)
@@ -102,13 +102,13 @@ contains
         distance = c - rough%roughness*(7.0_dp - 0.15_dp*i)
         want = rough%integrated_force(distance)
         if (want < 1e-2_dp) cycle
-        call check%relative(rough%force(distance), want, 2e-6_dp, 'the table meets the quadrature')
+        call check%relative(rough%force(distance), want, 2e-6_dp, 'force from the table and by quadrature')
       end do
-      call check%that(abs(rough%force(0.0_dp)) <= 0, 'a centred pin does not touch')
+      call check%that(abs(rough%force(0.0_dp)) <= 0, 'no asperity force on a centred pin')
     end do
   end subroutine table_meets_quadrature
 
-  !> Where the surfaces are far apart the film is the smooth one.
+  !> If the surfaces are far apart, the film is that of smooth surfaces.
   subroutine smooth_where_far(check)
     class(checks_t), intent(inout) :: check
     class(film_law_t), allocatable :: film
@@ -120,10 +120,11 @@ contains
     motion = motion_of([9e-6_dp, -4e-6_dp], [3e-3_dp, 1e-3_dp])
     call film%film_force(motion, smooth, moment)
     call mixed_forces(film, rough, 1e-2_dp, motion, force, moment, pressing, friction)
-    call check%that(norm2(force - smooth) <= 1e-12_dp*norm2(smooth) .and. pressing <= 0, 'far apart the surfaces are smooth')
+    call check%that(norm2(force - smooth) <= 1e-12_dp*norm2(smooth) .and. pressing <= 0, &
+      'film of distant rough surfaces is that of smooth ones')
   end subroutine smooth_where_far
 
-  !> The derivatives for implicit integration against steps of another size, inside and beyond the clearance.
+  !> The derivatives for implicit integration against finite differences with another step, inside and beyond the clearance.
   subroutine derivatives_by_steps(check)
     class(checks_t), intent(inout) :: check
     class(film_law_t), allocatable :: film
@@ -161,7 +162,7 @@ contains
     values(3) = values(3) + 1e-2_dp*friction
   end subroutine whole
 
-  !> Boundary friction is against the sliding of the surfaces and no more than the coefficient allows.
+  !> Boundary friction opposes the sliding of the surfaces and does not exceed coefficient times force.
   subroutine rubs(check)
     class(checks_t), intent(inout) :: check
     class(film_law_t), allocatable :: film
@@ -176,12 +177,12 @@ contains
       motion%pin_speed = way*50.0_dp
       motion%turning_speed = motion%pin_speed
       call mixed_forces(film, rough, 1e-2_dp, motion, force, moment, pressing, friction)
-      call check%that(pressing > 100 .and. way*friction < 0, 'friction is against the sliding')
-      call check%relative(abs(friction), 0.1_dp*pressing, 1e-6_dp, 'and full where that is fast')
+      call check%that(pressing > 100 .and. way*friction < 0, 'boundary friction opposes the sliding')
+      call check%relative(abs(friction), 0.1_dp*pressing, 1e-6_dp, 'boundary friction at high sliding speed')
     end do
   end subroutine rubs
 
-  !> A piston on a thin oil between rough surfaces by each method.
+  !> A piston pin on a thin oil film between rough surfaces, by each method.
   subroutine methods_agree(check)
     class(checks_t), intent(inout) :: check
     character(len=60) :: set(7)
@@ -196,15 +197,18 @@ contains
       trace = run_case('cases/film/sim_IV_mixed.nml', set)
       call check%that(.not. allocated(trace%error), 'mixed lubrication runs by '//methods(i))
       if (allocated(trace%error)) return
-      call check%that(trace%report%figures%max_energy_residual < 1e-8_dp*trace%report%figures%max_energy, 'and keeps the energy')
+      call check%that(trace%report%figures%max_energy_residual < 1e-8_dp*trace%report%figures%max_energy, &
+        'mixed lubrication: energy residual')
       at = column(trace, 'film_thickness[m]')
       if (i == 1) first = trace
-      call check%close_to(maxval(abs(trace%values(at, :) - first%values(at, :))), 0.0_dp, 1e-6_dp*c, 'methods agree on the film')
+      call check%close_to(maxval(abs(trace%values(at, :) - first%values(at, :))), 0.0_dp, 1e-6_dp*c, &
+        'mixed lubrication: all methods give the same film thickness')
     end do
-    call check%that(maxval(trace%values(column(trace, 'asperity_force[N]'), :)) > 100, 'the asperities carry')
+    call check%that(maxval(trace%values(column(trace, 'asperity_force[N]'), :)) > 100, &
+      'mixed lubrication: the asperities carry load')
   end subroutine methods_agree
 
-  !> A pin that starts pressed beyond the clearance is driven back.
+  !> A pin that starts beyond the clearance is pushed back.
   subroutine goes_beyond_the_clearance(check)
     class(checks_t), intent(inout) :: check
     character(len=60) :: set(6)
@@ -214,22 +218,24 @@ contains
       'initial.eccentricity=20.1e-6,0', 'integrator.revolutions=0.05', 'integrator.relative_tolerance=1e-8', &
       'initial.crank_speed=100']
     trace = run_case('cases/film/sim_IV_mixed.nml', set)
-    call check%that(.not. allocated(trace%error), 'a start beyond the clearance')
+    call check%that(.not. allocated(trace%error), 'a start beyond the clearance is integrated')
     if (allocated(trace%error)) return
     at = column(trace, 'film_thickness[m]')
-    call check%that(trace%values(at, 1) < 0 .and. trace%values(at, size(trace%values, 2)) > trace%values(at, 1), 'is driven back')
-    call check%that(trace%report%figures%max_energy_residual < 1e-7_dp*trace%report%figures%max_energy, 'with its energy known')
+    call check%that(trace%values(at, 1) < 0 .and. trace%values(at, size(trace%values, 2)) > trace%values(at, 1), &
+      'a pin that starts beyond the clearance is pushed back')
+    call check%that(trace%report%figures%max_energy_residual < 1e-7_dp*trace%report%figures%max_energy, &
+      'a start beyond the clearance: energy residual')
   end subroutine goes_beyond_the_clearance
 
   subroutine refuses(check)
     class(checks_t), intent(inout) :: check
     call expect(check, "&lubrication viscosity=0.01 / &contact / &asperities roughness=1e-7 /", &
-      '&asperities roughness = 1e-7: cannot be combined with the group contact', 'asperities beside a contact law')
+      '&asperities roughness = 1e-7: cannot be combined with the group contact', 'asperities together with a contact law')
     call expect(check, "&contact / &asperities roughness=1e-7 /", &
       '&asperities roughness = 1e-7: needs the group lubrication', 'asperities without a film')
     call expect(check, "&lubrication viscosity=0.01 / &asperities roughness=1e-5 /", &
       '&asperities roughness = 1e-5: must be <= clearance/8', 'surfaces as rough as the clearance is wide')
-    call expect(check, "&lubrication viscosity=0.01 / &asperities /", '&asperities roughness', 'no roughness')
+    call expect(check, "&lubrication viscosity=0.01 / &asperities /", '&asperities roughness', 'asperities without roughness')
   end subroutine refuses
 
   function rough_bearing(integral, roughness) result(rough)

@@ -74,9 +74,9 @@ contains
     real(dp) :: t, y(2), ratio, rates(1), off(3), work
     integer :: i, j, row, first, status
     call load_table('friction/'//table_name//'.csv', labels, table)
-    call check%that(size(table, 2) == 101, 'the table is whole: '//table_name)
+    call check%that(size(table, 2) == 101, 'the table has all rows: '//table_name)
     do i = 1, size(names)
-      first = 4 + 3*(i - 1)   ! its columns
+      first = 4 + 3*(i - 1)   ! first column of the law
       call check%equal_text(trim(labels(first)), trim(names(i))//' z[m]', 'columns of the table')
       do j = 1, size(methods)
         call make(names(i), law)
@@ -95,13 +95,14 @@ contains
         end do
         off = off/[law%state_scale(), 0.15_dp, maxval(abs(table(first + 2, :)))]
         call check%close_to(maxval(off), 0.0_dp, 2e-8_dp, trim(table_name)//' of '//trim(names(i))//' by '//methods(j))
-        call check%that(work < 0, 'a closed cycle takes work: '//names(i)//table_name)
-        if (abs(cycle_work(i)) > 0) call check%relative(work, cycle_work(i), 1e-4_dp, 'as much as the table says: '//names(i))
+        call check%that(work < 0, 'work of a closed cycle is negative: '//names(i)//table_name)
+        if (abs(cycle_work(i)) > 0) call check%relative(work, cycle_work(i), 1e-4_dp, &
+          'work of a closed cycle is that of the table: '//names(i))
       end do
     end do
   end subroutine against_the_table
 
-  !> Sliding one way from rest over x, z = (c_f/s_0) (1 - exp(-s_0 x/c_f)).
+  !> Sliding in one direction from rest over x: z = (c_f/s_0) (1 - exp(-s_0 x/c_f)).
   subroutine closed_form_of_dahl(check)
     class(checks_t), intent(inout) :: check
     class(friction_law_t), allocatable :: law
@@ -125,7 +126,7 @@ contains
     end do
   end subroutine closed_form_of_dahl
 
-  !> Bristles at rest give the friction of steady sliding, -(g(v) sign(v) + s_2 v).
+  !> Bristles in equilibrium give the friction of steady sliding, -(g(v) sign(v) + s_2 v).
   subroutine steady_sliding(check)
     class(checks_t), intent(inout) :: check
     class(friction_law_t), allocatable :: law
@@ -142,14 +143,14 @@ contains
           viscous = 0.02_dp*v
         end if
         call law%state_friction(v, [-g/1e4_dp], ratio, rates)
-        call check%close_to(rates(1), 0.0_dp, 1e-13_dp*abs(v), 'bristles come to rest at g/s_0: '//names(i))
-        call check%close_to(ratio, g - viscous, 1e-12_dp*(1 + abs(v)), 'with the friction of steady sliding: '//names(i))
-        call check%close_to(law%friction_ratio(v, -1), g - viscous, 1e-15_dp*(1 + abs(v)), 'that without memory: '//names(i))
+        call check%close_to(rates(1), 0.0_dp, 1e-13_dp*abs(v), 'equilibrium deflection of the bristles is g/s_0: '//names(i))
+        call check%close_to(ratio, g - viscous, 1e-12_dp*(1 + abs(v)), 'friction of bristles in equilibrium: '//names(i))
+        call check%close_to(law%friction_ratio(v, -1), g - viscous, 1e-15_dp*(1 + abs(v)), 'friction of steady sliding: '//names(i))
       end do
     end do
   end subroutine steady_sliding
 
-  !> Surfaces that stick are springs of stiffness s_0 F_N, with the damping s_1 F_N; elasto-plastic ones up to the break-away.
+  !> Sticking surfaces are springs of stiffness s_0 F_N with the damping s_1 F_N; elasto-plastic ones up to the break-away.
   subroutine stiffness_in_stick(check)
     class(checks_t), intent(inout) :: check
     class(friction_law_t), allocatable :: law
@@ -160,21 +161,22 @@ contains
       z = 1e-7_dp
       call law%state_friction(0.0_dp, [z], ratio, rates)
       call check%close_to(ratio, -1e4_dp*z, 1e-18_dp, 'a spring: '//names(i))
-      call check%close_to(rates(1), 0.0_dp, 0.0_dp, 'at rest: '//names(i))
+      call check%close_to(rates(1), 0.0_dp, 0.0_dp, 'bristles at rest have no rate: '//names(i))
       call law%state_friction(1e-9_dp, [0.0_dp], ratio, rates)
-      call check%relative(rates(1), 1e-9_dp, 1e-12_dp, 'bristles go along with the surfaces: '//names(i))
-      if (names(i) /= 'dahl') call check%relative(ratio, -0.32e-9_dp, 1e-6_dp, 'and damp them: '//names(i))
+      call check%relative(rates(1), 1e-9_dp, 1e-12_dp, 'bristles follow the surfaces: '//names(i))
+      if (names(i) /= 'dahl') call check%relative(ratio, -0.32e-9_dp, 1e-6_dp, &
+        'bristles damp the motion of the surfaces: '//names(i))
     end do
     call make('elasto_plastic', law)
     call law%state_friction(1e-3_dp, [0.69e-5_dp], ratio, rates)
-    call check%relative(rates(1), 1e-3_dp, 1e-15_dp, 'elastic up to the break-away')
+    call check%relative(rates(1), 1e-3_dp, 1e-15_dp, 'elasto-plastic bristles are elastic up to the break-away')
     call law%state_friction(1e-3_dp, [0.75e-5_dp], ratio, rates)
-    call check%that(rates(1) < 1e-3_dp, 'and giving way beyond')
+    call check%that(rates(1) < 1e-3_dp, 'elasto-plastic bristles slip beyond the break-away')
     call law%state_friction(-1e-3_dp, [0.75e-5_dp], ratio, rates)
-    call check%relative(rates(1), -1e-3_dp, 1e-15_dp, 'but not as they unbend')
+    call check%relative(rates(1), -1e-3_dp, 1e-15_dp, 'elasto-plastic bristles are elastic while they unbend')
   end subroutine stiffness_in_stick
 
-  !> Closed derivatives against central differences.
+  !> Analytical derivatives against central differences.
   subroutine slopes(check)
     class(checks_t), intent(inout) :: check
     class(friction_law_t), allocatable :: law
@@ -196,15 +198,15 @@ contains
           call law%state_friction(v, [z - dz], behind(1), behind(2:))
           wanted(:, 2) = (ahead - behind)/(2*dz)
           call check%close_to(maxval(abs(found(:, 1) - wanted(:, 1))), 0.0_dp, 1e-5_dp*maxval(abs(wanted(:, 1))), &
-            'slopes by the sliding speed: '//names(i))
+            'derivative with respect to the sliding speed: '//names(i))
           call check%close_to(maxval(abs(found(:, 2) - wanted(:, 2))), 0.0_dp, 1e-5_dp*maxval(abs(wanted(:, 2))) + 1e-9_dp, &
-            'slopes by the deflection: '//names(i))
+            'derivative with respect to the deflection: '//names(i))
         end do
       end do
     end do
   end subroutine slopes
 
-  !> At the ends of the ranges: bristles stay within their bounds wherever the surfaces go, and everything is a number.
+  !> At the ends of the ranges: the bristles stay within their bounds for any motion, and all values are finite.
   subroutine extremes(check)
     class(checks_t), intent(inout) :: check
     character(len=200), parameter :: keys(5) = [character(len=200) :: &
@@ -227,11 +229,11 @@ contains
         call law%state_friction(v, [bound], ratio, rates)
         call check%that(rates(1) <= 1e-15_dp*v, 'bristles at their bound do not bend further: '//trim(keys(i)))
         call law%state_friction(-v, [-bound], ratio, rates)
-        call check%that(rates(1) >= -1e-15_dp*v, 'nor the other way')
+        call check%that(rates(1) >= -1e-15_dp*v, 'bristles at their lower bound do not bend further')
         do k = -2, 2
           call law%state_friction(v, [0.5_dp*k*bound], ratio, rates)
           call law%state_slopes(v, [0.5_dp*k*bound], found)
-          call check%that(abs(ratio) < 1e9_dp .and. maxval(abs(found)) < 1e20_dp, 'friction and slopes are numbers')
+          call check%that(abs(ratio) < 1e9_dp .and. maxval(abs(found)) < 1e20_dp, 'friction and its derivatives are finite')
         end do
       end do
     end do

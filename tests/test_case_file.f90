@@ -1,4 +1,4 @@
-!> Case files: what is read, what is refused and with which message, and that the resolved case gives the same case.
+!> Case files: which are accepted, which are refused and with which message, and that a resolved case gives the same case.
 module test_case_file
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, status_case_file
@@ -28,7 +28,7 @@ contains
 
   subroutine run_test_case_file(check)
     class(checks_t), intent(inout) :: check
-    call check%equal_text(shared_keys_differ(), '', 'laws of a group mean the same by a key that they share')
+    call check%equal_text(shared_keys_differ(), '', 'a key has the same meaning in all laws of a group')
     call test_values(check)
     call test_forms(check)
     call test_resolved(check)
@@ -57,7 +57,7 @@ contains
     element = pair(i)
   end function element
 
-  !> Values arrive, defaults fill in, groups left out are absent.
+  !> Values are read, missing keys have their defaults, and groups that are left out are absent.
   subroutine test_values(check)
     class(checks_t), intent(inout) :: check
     type(case_t) :: c
@@ -78,7 +78,8 @@ contains
                                      'friction.coefficient=0.2'], c, error)
     call check%that(.not. allocated(error), 'overrides are taken')
     call check%that(allocated(c%joint%friction), 'an override makes its group present')
-    call check%relative(element(parameter_of(c%joint%friction, 'coefficient'), 1), 0.2_dp, 0.0_dp, 'the last override counts')
+    call check%relative(element(parameter_of(c%joint%friction, 'coefficient'), 1), 0.2_dp, 0.0_dp, &
+      'the last override of a key is used')
     call check%relative(element(parameter_of(c%joint%contact%geometry, 'youngs_modulus'), 2), 2e11_dp, 0.0_dp, &
       'override of an array')
     call check%equal_text(c%title, 'A, b ''c''', 'text of an override without quotes')
@@ -98,14 +99,14 @@ contains
                     'x', none, c, error)
     call check%that(.not. allocated(error), 'forms of namelists')
     if (allocated(error)) call check%equal_text(error%message, '', 'forms')
-    call check%equal_text(c%title, 'it''s "so" ! / &', 'quotes, and what is no comment inside them')
+    call check%equal_text(c%title, 'it''s "so" ! / &', 'quotes, and comment characters inside them')
     call check%relative(element(parameter_of(c%joint%contact%geometry, 'poissons_ratio'), 2), 0.25_dp, 0.0_dp, &
       'repeat count')
     call check%relative(element(parameter_of(c%joint%contact%geometry, 'youngs_modulus'), 1), 207e9_dp, 0.0_dp, &
       'element by default')
     call check%relative(element(parameter_of(c%joint%contact%geometry, 'youngs_modulus'), 2), 1.5e11_dp, 0.0_dp, &
       'element by index')
-    call check%that(c%joint%contact%name() == 'hertz', 'words in any case')
+    call check%that(c%joint%contact%name() == 'hertz', 'words in upper or lower case')
     call check%that(c%output%every_step .and. c%output%ideal_twin, 'logicals')
     call check%equal_text(c%output%columns, 'time,rod_angle', 'list of texts')
     call parse_case(whole//'&case title='''//repeat('x', 3000)//''' /', 'x', none, c, error)
@@ -127,8 +128,9 @@ contains
     call check%equal_text(again, text, 'resolved again')
     call check%that(transfer(back%mechanism%crank_length, 1_8) == transfer(c%mechanism%crank_length, 1_8), 'bits of a length')
     call check%that(transfer(back%joint%clearance, 1_8) == transfer(c%joint%clearance, 1_8), 'bits of the clearance')
-    call check%that(index(text, '&lubrication') == 0 .and. index(text, '&contact') > 0, 'absent groups stay absent')
-    call check%that(index(text, 'max_order = 12') > 0, 'defaults are written')
+    call check%that(index(text, '&lubrication') == 0 .and. index(text, '&contact') > 0, &
+      'absent groups are not in the resolved case')
+    call check%that(index(text, 'max_order = 12') > 0, 'defaults are in the resolved case')
     call parse_case(template(), 'x', none, c, error, text)
     call check%that(.not. allocated(error), 'the template is a case')
     call parse_case(text, 'x', none, back, error, again)
@@ -369,14 +371,14 @@ contains
     call check%that(c%joint%has_clearance() .and. c%crank_pin%has_clearance(), 'both have clearance')
     call check%relative(c%joint%clearance, 5e-4_dp, 0.0_dp, 'clearance of the piston pin')
     call check%relative(c%crank_pin%clearance, 1e-4_dp, 0.0_dp, 'clearance of the crank pin')
-    call check%equal_text(c%crank_pin%contact%name(), 'lankarani_nikravesh', 'a law without a place is every joint''s')
+    call check%equal_text(c%crank_pin%contact%name(), 'lankarani_nikravesh', 'a law without a place holds for every joint')
     call parse_case(text, 'x.nml', none, c, error, again)
     call check%equal_text(again, text, 'two joints resolved again')
     call parse_case(whole//second//'&contact place=''CRANK_PIN'' law=''hertz'' /', 'x.nml', none, c, error, text)
-    call check%that(.not. allocated(error), 'a law of one joint')
+    call check%that(.not. allocated(error), 'a law of one joint is read')
     if (allocated(error)) return
-    call check%equal_text(c%crank_pin%contact%name(), 'hertz', 'is that joint''s')
-    call check%equal_text(c%joint%contact%name(), 'lankarani_nikravesh', 'and not the other''s')
+    call check%equal_text(c%crank_pin%contact%name(), 'hertz', 'a law of the crank pin holds there')
+    call check%equal_text(c%joint%contact%name(), 'lankarani_nikravesh', 'a law of the crank pin does not hold at the piston pin')
     call parse_case(text, 'x.nml', none, c, error, again)
     call check%equal_text(again, text, 'two joints and laws resolved again')
     call parse_case(whole, 'x.nml', [character(len=40) :: 'crank_pin.joint.kind=clearance', &
@@ -385,10 +387,10 @@ contains
     call check%that(.not. allocated(error), 'a second joint by overrides')
     call check%relative(c%crank_pin%clearance, 2e-5_dp, 0.0_dp, 'clearance by an override')
     call parse_case(whole//second, 'x.nml', [character(len=40) :: 'crank_pin.joint=none'], c, error)
-    call check%that(.not. allocated(error) .and. .not. c%crank_pin%has_clearance(), 'the second joint taken out')
+    call check%that(.not. allocated(error) .and. .not. c%crank_pin%has_clearance(), 'the second joint can be removed')
     call check%that(.not. allocated(c%crank_pin%contact), 'an ideal joint has no laws')
     call parse_case(whole//second, 'x.nml', [character(len=40) :: 'joint=none'], c, error)
-    call check%that(.not. allocated(error) .and. .not. allocated(c%joint%contact), 'the crank pin alone')
+    call check%that(.not. allocated(error) .and. .not. allocated(c%joint%contact), 'a case with clearance at the crank pin only')
     call refused(check, whole//second//second, 'x.nml:9: &joint of crank_pin: this group is given twice')
     call refused(check, whole//'&joint place=''piston_pin'' kind=''ideal'' /', 'x.nml:8: &joint: this group is given twice')
     call refused(check, '&joint place=''wrist'' /', 'x.nml:1: &joint place = wrist: must be one of piston_pin, crank_pin')
@@ -438,7 +440,7 @@ contains
                       'for contact_entry = ''step_rejection'' (m)')
   end subroutine test_runs
 
-  !> The last key given for the end of a run counts, also in the resolved case; two such keys in one place are an error.
+  !> The last override of a key for the end of a run is used, also in the resolved case; two such keys in one place are an error.
   subroutine test_ends_of_runs(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: both = 'x.nml: &integrator end_time = 1: must not be given together with revolutions = '
@@ -470,7 +472,7 @@ contains
   subroutine test_periods(check)
     class(checks_t), intent(inout) :: check
     character(len=40), parameter :: until = 'run.until=periodic', window = 'output.window=last_period'
-    call accepted(check, bodies, 'no end but a motion that repeats', [character(len=40) :: until])
+    call accepted(check, bodies, 'a run without another end than a periodic motion', [character(len=40) :: until])
     call refused_on(check, whole, [character(len=40) :: until, 'initial.crank_speed=0'], &
                     'x.nml: &run until = periodic: needs crank_speed other than 0')
     call refused_on(check, whole, [character(len=40) :: window], &
@@ -509,8 +511,8 @@ contains
                     'x.nml: --set output.sampling=angle: &output sampling = angle: must be one of time, crank_angle')
   end subroutine test_sampling
 
-  !> End of a run by turns of the crank: end_time is allowed with crank_revolutions, revolutions is not; an override replaces the
-  !> other end of the file, unless the file gives both.
+  !> End of a run after a number of revolutions: end_time is allowed together with crank_revolutions, revolutions is not. An
+  !> override replaces another end in the file, unless the file gives both.
   subroutine test_turns(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: turned = bodies//'&integrator crank_revolutions=4 /', &
@@ -533,7 +535,7 @@ contains
                     'crank_speed other than 0: the crank is held at rest')
     call refused_on(check, bounded, [character(len=40) :: held, 'initial.crank_speed=-10'], &
                     'x.nml: &integrator end_time = 0.5: must be >= 2.51327 s, when the held crank has made crank_revolutions (s)')
-    call accepted(check, bounded, 'a free crank with the latest end before its turns', [character(len=40) :: &
+    call accepted(check, bounded, 'a free crank with end_time before the end of its revolutions', [character(len=40) :: &
                   'initial.crank_speed=10'])
     call refused_on(check, turned, [character(len=40) :: 'output.interval=1e-20'], 'x.nml: &output interval = 1e-20: asks for '// &
                     'more than 1e9 rows (s)')
@@ -553,7 +555,7 @@ contains
     call check%that(index(resolved, n//'  '//second) > 0, second//' after '//trim(overrides(size(overrides))))
   end subroutine resolves
 
-  !> GROUP=none: as if the file and the overrides before did not have the group; what comes later starts from the beginning.
+  !> GROUP=none: the group is removed as if neither the file nor earlier overrides had it; later overrides begin with its defaults.
   subroutine test_groups_taken_out(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: film = '&lubrication viscosity=0.01 variant=''half_film'' /'//n// &
@@ -565,20 +567,21 @@ contains
     type(error_t), allocatable :: error
     character(len=:), allocatable :: resolved
     call parse_case(whole//film, 'x.nml', [character(len=30) :: 'Lubrication = NONE', 'drive=none'], c, error, resolved)
-    call check%that(.not. allocated(error), 'groups are taken out')
-    call check%that(.not. allocated(c%joint%film), 'the film')
-    call check%that(allocated(c%joint%friction) .and. allocated(c%joint%contact), 'and no other')
-    call check%equal_text(trim(c%drive%kind), 'free', 'a group that is always there goes back to its defaults')
-    call check%that(index(resolved, 'lubrication') == 0, 'nothing of it in the resolved case')
+    call check%that(.not. allocated(error), 'groups can be removed')
+    call check%that(.not. allocated(c%joint%film), 'the film is removed')
+    call check%that(allocated(c%joint%friction) .and. allocated(c%joint%contact), 'no other group is removed')
+    call check%equal_text(trim(c%drive%kind), 'free', 'a group that always exists gets its defaults')
+    call check%that(index(resolved, 'lubrication') == 0, 'a removed group is not in the resolved case')
     call parse_case(whole//film, 'x.nml', [character(len=30) :: long, 'lubrication.variant=as_printed', 'lubrication=none', &
                                            'lubrication.viscosity=0.02'], c, error, resolved)
-    call check%that(.not. allocated(error), 'a later key brings the group back')
-    call check%relative(element(parameter_of(c%joint%film, 'viscosity'), 1), 0.02_dp, 1e-15_dp, 'with that key')
-    call check%that(index(resolved, 'variant = ''closed_form''') > 0, 'and with nothing from before')
+    call check%that(.not. allocated(error), 'a later override creates the group again')
+    call check%relative(element(parameter_of(c%joint%film, 'viscosity'), 1), 0.02_dp, 1e-15_dp, &
+      'a group created again has the value of the override')
+    call check%that(index(resolved, 'variant = ''closed_form''') > 0, 'a group created again has no earlier values')
     call parse_case(whole//film, 'x.nml', [character(len=30) :: 'joint=none', 'contact=none', 'friction=none', &
                                            'lubrication=none'], c, error)
-    call check%that(.not. allocated(error), 'no joint is an ideal one')
-    call check%equal_text(trim(c%joint%kind), 'ideal', 'no joint')
+    call check%that(.not. allocated(error), 'a case without a joint group is read')
+    call check%equal_text(trim(c%joint%kind), 'ideal', 'a case without a joint group has an ideal joint')
     call refused_with(check, 'joint=none', 'x.nml: &joint kind: must be clearance with contact, friction or lubrication: an '// &
                       'ideal joint has no clearance; remove these groups, for example with --set contact=none')
     call refused_with(check, 'contact=none', 'x.nml: &joint kind = clearance: needs contact or lubrication: without '// &
@@ -592,9 +595,9 @@ contains
                       'x.nml: --set contakt=none: &contakt: unknown group; did you mean contact?'//unknown)
     call refused_with(check, 'contact=off', 'x.nml: --set contact=off: must have the form GROUP.KEY=VALUE or GROUP=none')
     call parse_case(whole, 'x.nml', ['contact.law=none'], c, error)
-    call check%that(allocated(error), 'none is no law')
+    call check%that(allocated(error), 'none is not the name of a law')
     if (allocated(error)) call check%that(index(error%message, '; --set contact=none takes the group out') > 0, &
-      'a hint for none as a law')
+      'a hint if none is given as a law')
   end subroutine test_groups_taken_out
 
   !> 0,05 instead of 0.05 is reported as a decimal comma, unless it is a pair of values.
@@ -615,7 +618,8 @@ contains
                                      'contact.poissons_ratio=0,0.05'], c, error)
     call check%that(.not. allocated(error), 'two values with a comma')
     if (allocated(error)) return
-    call check%that(abs(c%mechanism%rod_com(2) - 5) < 1e-15_dp .and. abs(c%mechanism%crank_com(1) - 1) < 1e-15_dp, 'are two')
+    call check%that(abs(c%mechanism%rod_com(2) - 5) < 1e-15_dp .and. abs(c%mechanism%crank_com(1) - 1) < 1e-15_dp, &
+      'two values with a comma are two values')
   end subroutine test_decimal_commas
 
   !> A study file is not a case file; a torque without effect is reported.
@@ -633,7 +637,7 @@ contains
     call check%equal_text(case_warning(c), '', 'no torque on a crank that is held')
   end subroutine test_hints
 
-  !> Files that are none, and one that is.
+  !> Paths that are not case files, and one that is.
   subroutine test_files(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: folder = 'build/test_case_file'
@@ -666,7 +670,7 @@ contains
     call check%that(status == 0, 'scratch folder removed')
   end subroutine test_files
 
-  !> The cases that come with the program are read, and resolved they are the same.
+  !> The shipped cases are read, and their resolved forms give the same cases.
   subroutine test_shipped_cases(check)
     class(checks_t), intent(inout) :: check
     character(len=28), parameter :: names(23) = [character(len=28) :: 'sim_I', 'sim_II', 'sim_III', 'sim_IV', 'sim_V', &
@@ -690,7 +694,7 @@ contains
     end do
   end subroutine test_shipped_cases
 
-  !> Messages are one printable line of bounded length, whatever the file holds.
+  !> Messages are one printable line of limited length, whatever the file contains.
   subroutine test_safe_messages(check)
     class(checks_t), intent(inout) :: check
     type(case_t) :: c
@@ -718,7 +722,7 @@ contains
     call refused_on(check, text, none, message)
   end subroutine refused
 
-  !> The plain case, perhaps with more groups, is refused with one override.
+  !> The plain case, optionally with more groups, is refused with one override.
   subroutine refused_with(check, override, message, more)
     class(checks_t), intent(inout) :: check
     character(len=*), intent(in) :: override, message

@@ -1,4 +1,4 @@
-!> Certificates against runs at 1e-13: they must not claim more accuracy than there is, and not much less.
+!> Certificates against runs at 1e-13: they must not claim more accuracy than there is, nor far less.
 module test_certificate
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t
@@ -30,7 +30,7 @@ contains
     call matches_impacts_of_each_pin(check)
   end subroutine run_test_certificate
 
-  !> The certificate of a case as it is, and the true errors of its run.
+  !> Compare the certificate of a case with the true errors of its run.
   subroutine holds(check, file, method, to_the_end, what)
     class(checks_t), intent(inout) :: check
     character(len=*), intent(in) :: file, method, what
@@ -50,7 +50,7 @@ contains
     run = run_case(file, common)
     truth = run_case(file, [character(len=long) :: common, 'integrator.relative_tolerance=1e-13'])
     call make_certificate(case, run%report, certificate, error)
-    call check%that(.not. allocated(error) .and. certificate%is_made, what//': is made')
+    call check%that(.not. allocated(error) .and. certificate%is_made, what//': a certificate is made')
     if (.not. certificate%is_made) return
     n = min(size(run%values, 2), size(truth%values, 2))
     allocate (errors(n), source=0.0_dp)
@@ -62,16 +62,18 @@ contains
     end do
     true_end = end_of(errors, run%values(1, :n), 1e-3_dp)
     true_decade = end_of(errors, run%values(1, :n), 1e-4_dp)
-    call check%that(certificate%until <= true_end*(1 + 1e-12_dp), what//': no more time than is true')
-    call check%that(certificate%until >= min(0.95_dp*true_end, true_decade)*(1 - 1e-12_dp), what//': not much less')
-    call check%that(certificate%is_whole .eqv. to_the_end, what//': to the end or not')
+    call check%that(certificate%until <= true_end*(1 + 1e-12_dp), what//': the certified time is not too long')
+    call check%that(certificate%until >= min(0.95_dp*true_end, true_decade)*(1 - 1e-12_dp), &
+      what//': the certified time is not far too short')
+    call check%that(certificate%is_whole .eqv. to_the_end, what//': the whole run is certified or not')
     call check%that(certificate%state_error <= 20*maxval(errors, mask=run%values(1, :n) <= certificate%until), &
-      what//': no error far above the true one')
+      what//': the certified error is not far above the true error')
     call check%that(certificate%state_error >= maxval(errors, mask=run%values(1, :n) <= certificate%until), &
-      what//': no smaller error than is true')
+      what//': the certified error is not below the true error')
     call check%that(certificate%impacts == certificate%impacts_matched .and. certificate%impacts == &
-      count(run%event%time <= certificate%until .and. run%event%kind == 1), what//': impacts matched')
-    call check%that((certificate%revolutions_beyond > 0) .eqv. .not. to_the_end, what//': revolutions beyond')
+      count(run%event%time <= certificate%until .and. run%event%kind == 1), what//': number of impacts that match')
+    call check%that((certificate%revolutions_beyond > 0) .eqv. .not. to_the_end, &
+      what//': number of revolutions beyond the certified time')
     call columns_hold(check, run, truth, certificate, what)
     call check%that(index(certificate_clause(certificate), ' digits to ') > 0, what//': '//certificate_clause(certificate))
     call check%that(index(certificate_table(certificate), 'pin_force_x[N],') > 0, what//': table')
@@ -90,19 +92,19 @@ contains
     integer :: i, k, c, n
     n = count(run%values(1, :min(size(run%values, 2), size(truth%values, 2))) <= certificate%until)
     do i = 1, size(names)
-      if (what == 'free crank' .and. i < 3) cycle   ! its forces jump where the film gives way to the contact
+      if (what == 'free crank' .and. i < 3) cycle   ! its forces jump between film and contact
       c = column(run, trim(names(i)))
       largest = maxval(abs(run%values(c, :n) - truth%values(c, :n)))
       do k = 1, size(certificate%list%id)
         if (column_name(certificate%list, k) /= trim(names(i))) cycle
-        call check%that(certificate%error(k) >= 0.5_dp*largest, what//': error of '//trim(names(i)))
-        call check%that(certificate%error(k) <= 20*largest, what//': not far above that of '//trim(names(i)))
+        call check%that(certificate%error(k) >= 0.5_dp*largest, what//': certified error is not too small: '//trim(names(i)))
+        call check%that(certificate%error(k) <= 20*largest, what//': certified error is not far too large: '//trim(names(i)))
       end do
     end do
   end subroutine columns_hold
 
-  !> A piston in its bore: impacts at four edges of the skirt, some at almost the same time. An impact that the closer run does not
-  !> have must not leave those after it unmatched: counted here from the events of both runs.
+  !> A piston in its bore: impacts at four edges of the skirt, some almost at the same time. An impact that the more accurate run
+  !> lacks must not leave later impacts unmatched; the matches are counted here from the events of both runs.
   subroutine matches_impacts_of_each_pin(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: file = 'cases/joints/piston_slap.nml'
@@ -124,8 +126,8 @@ contains
       if (any(truth%event%kind == 1 .and. truth%event%pin == run%event(i)%pin .and. &
               abs(truth%event%time - run%event(i)%time) < 1e-3_dp*run%event(i)%time)) there = there + 1
     end do
-    call check%that(early > 50 .and. certificate%impacts == early, 'piston: impacts up to there')
-    call check%that(abs(certificate%impacts_matched - there) <= 1, 'piston: impacts matched')
+    call check%that(early > 50 .and. certificate%impacts == early, 'piston: number of impacts in the certified time')
+    call check%that(abs(certificate%impacts_matched - there) <= 1, 'piston: number of impacts that match')
   end subroutine matches_impacts_of_each_pin
 
   !> The last time up to which no error exceeds a limit.
@@ -139,7 +141,7 @@ contains
     end do
   end function end_of
 
-  !> No run is closer than one at 1e-13.
+  !> No reference is more accurate than a run at 1e-13.
   subroutine refuses_what_cannot_be_told(check)
     class(checks_t), intent(inout) :: check
     type(certificate_t) :: certificate
@@ -151,8 +153,10 @@ contains
     call read_case('cases/flores/lubricated_400cP.nml', tight, case, error)
     run = run_case('cases/flores/lubricated_400cP.nml', tight)
     call make_certificate(case, run%report, certificate, error)
-    call check%that(.not. (certificate%is_made .or. allocated(error)), 'nothing is closer than 1e-13')
-    call check%that(index(certificate_clause(certificate), 'not certified: ') == 1, 'and the line says so')
-    call check%that(index(certificate_summary(certificate), 'certificate,"not certified: ') == 1, 'and the summary')
+    call check%that(.not. (certificate%is_made .or. allocated(error)), 'no certificate for a run at 1e-13')
+    call check%that(index(certificate_clause(certificate), 'not certified: ') == 1, &
+      'the line of the run says that it is not certified')
+    call check%that(index(certificate_summary(certificate), 'certificate,"not certified: ') == 1, &
+      'the summary says that it is not certified')
   end subroutine refuses_what_cannot_be_told
 end module test_certificate

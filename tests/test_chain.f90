@@ -37,8 +37,8 @@ contains
     call cholesky_solves(check)
   end subroutine run_test_chain
 
-  !> A chain of random size and shape, at a random state under random loads: piece 0 to 3, the sum of 1 for clearance at the crank
-  !> pin and 2 at the piston pin. Loads of ideal pins are 0.
+  !> A chain of random dimensions at a random state under random loads. Piece 0 to 3 is the sum of 1 for clearance at the crank pin
+  !> and 2 for clearance at the piston pin. Loads of ideal pins are 0.
   subroutine draw(random, piece, chain, motion, loads, z, z_rate)
     type(random_numbers_t), intent(inout) :: random
     integer, intent(in) :: piece
@@ -73,7 +73,7 @@ contains
       loads%moment(pin) = merge(1, 0, chain%is_loose(pin))*between(random, -5.0_dp, 5.0_dp)
     end do
     call move(chain, z, z_rate, motion, reachable)
-    if (.not. reachable) error stop 'test_chain: a chain that cannot be'
+    if (.not. reachable) error stop 'test_chain: a chain that cannot be assembled'
   end subroutine draw
 
   real(dp) function between(random, low, high)
@@ -100,7 +100,7 @@ contains
     end associate
   end subroutine move
 
-  !> All accelerations, each by a size that it has in the mechanism.
+  !> All accelerations, each divided by a typical value in the mechanism.
   pure function in_common_units(chain, a) result(values)
     type(chain_t), intent(in) :: chain
     type(accelerations_t), intent(in) :: a
@@ -108,7 +108,7 @@ contains
     values = [a%crank*chain%bodies%crank%length, a%rod*chain%bodies%rod%length, a%piston, a%pin(:, 1), a%pin(:, 2)]
   end function in_common_units
 
-  !> Each closed form against the equations that the bodies' velocity maps give.
+  !> Each closed form against the general equations from the velocity maps of the bodies.
   subroutine pieces_equal_the_assembly(check)
     class(checks_t), intent(inout) :: check
     type(random_numbers_t) :: random
@@ -139,7 +139,7 @@ contains
     end do
   end subroutine pieces_equal_the_assembly
 
-  !> dE/dt along the motion is the power of the drive, the gas and the loose joints.
+  !> dE/dt along the motion is the power of the drive, the gas and the joints with clearance.
   subroutine energy_changes_by_the_power(check)
     class(checks_t), intent(inout) :: check
     type(random_numbers_t) :: random
@@ -172,8 +172,8 @@ contains
     end do
   end subroutine energy_changes_by_the_power
 
-  !> F5 = -F_x, F6 = -F_y, and at a loose crank pin F3 = -J_x, F4 = -J_y; the crank's own balance with F3 and F4; the guide carries
-  !> the piston's weight across the cylinder.
+  !> F5 = -F_x, F6 = -F_y, and with clearance at the crank pin F3 = -J_x, F4 = -J_y; the balance of moments of the crank with F3 and
+  !> F4; the guide carries the piston's weight across the cylinder.
   subroutine reactions_match_the_joints(check)
     class(checks_t), intent(inout) :: check
     type(random_numbers_t) :: random
@@ -208,8 +208,8 @@ contains
       end do
       call check%close_to(worst(1), 0.0_dp, 1e-11_dp, trim(pieces(piece))//': F5 = -F_x and F6 = -F_y')
       if (modulo(piece, 2) == 1) call check%close_to(worst(2), 0.0_dp, 1e-11_dp, trim(pieces(piece))//': F3 = -J_x and F4 = -J_y')
-      call check%close_to(worst(3), 0.0_dp, 1e-11_dp, trim(pieces(piece))//': moments on the crank with F3 and F4')
-      call check%close_to(worst(4), 0.0_dp, 1e-14_dp, trim(pieces(piece))//': the guide carries the piston across')
+      call check%close_to(worst(3), 0.0_dp, 1e-11_dp, trim(pieces(piece))//': balance of moments of the crank with F3 and F4')
+      call check%close_to(worst(4), 0.0_dp, 1e-14_dp, trim(pieces(piece))//': the guide carries the weight across the cylinder')
     end do
   end subroutine reactions_match_the_joints
 
@@ -258,7 +258,7 @@ contains
     end do
   end subroutine loads_respond_linearly
 
-  !> The mechanism of appendix B (Flores), its crank held.
+  !> The mechanism of appendix B (Flores) with constant crank speed.
   pure function flores() result(chain)
     type(chain_t) :: chain
     chain%bodies = new_bodies(crank_t(0.05_dp, 0.30_dp, 1e-5_dp, [0.025_dp, 0.0_dp]), &
@@ -287,7 +287,7 @@ contains
     call check%close_to(moment + same, 0.0_dp, 1e-9_dp, 'crank moment is odd')
     chain%drive = drive_t(.true., moment, 0.0_dp, 0.0_dp)
     call chain%accelerate(ideal_motion(chain%bodies, 34.974_dp*degree, 5000*pi/30), loads, a, same, solvable)
-    call check%close_to(a%crank, 0.0_dp, 1e-8_dp, 'the holding moment holds')
+    call check%close_to(a%crank, 0.0_dp, 1e-8_dp, 'the crank does not accelerate under the moment for constant speed')
 
   contains
 
@@ -300,7 +300,8 @@ contains
     end subroutine accelerate_at
   end subroutine published_values
 
-  !> The force of the ideal piston pin, put on a loose one as a load, gives the same accelerations; so does that of the crank pin.
+  !> The force of the ideal piston pin, applied as a load to a pin with clearance, gives the same accelerations; so does that of the
+  !> crank pin.
   subroutine ideal_is_the_centred_joint(check)
     class(checks_t), intent(inout) :: check
     type(random_numbers_t) :: random
@@ -325,11 +326,11 @@ contains
         worst = max(worst, maxval(abs(in_common_units(chain, a) - in_common_units(chain, b))) &
           /maxval(abs(in_common_units(chain, a))))
       end do
-      call check%close_to(worst, 0.0_dp, 1e-10_dp, trim(pieces(piece))//' under the forces of ideal pins')
+      call check%close_to(worst, 0.0_dp, 1e-10_dp, trim(pieces(piece))//': accelerations under the forces of ideal pins')
     end do
   end subroutine ideal_is_the_centred_joint
 
-  !> The pins' eccentricities, from the places of the bodies.
+  !> The eccentricities of the pins from the positions of the bodies.
   subroutine coordinates_agree(check)
     class(checks_t), intent(inout) :: check
     type(random_numbers_t) :: random
@@ -352,18 +353,18 @@ contains
         worst(2) = max(worst(2), maxval(abs(r*z_rate(1)*[-sin(z(1)), cos(z(1))] - rate - z_rate(2:3))))
       end associate
     end do
-    call check%close_to(worst(1), 0.0_dp, 1e-15_dp, 'crank pin less big end is its eccentricity [m]')
-    call check%close_to(worst(2), 0.0_dp, 1e-13_dp, 'and its rate [m/s]')
+    call check%close_to(worst(1), 0.0_dp, 1e-15_dp, 'eccentricity of the crank pin [m]')
+    call check%close_to(worst(2), 0.0_dp, 1e-13_dp, 'eccentricity rate of the crank pin [m/s]')
     call move(chain, [0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.5_dp], z_rate, motion, reachable)
-    call check%that(.not. reachable, 'a pin farther off than the rod is long is refused')
+    call check%that(.not. reachable, 'a pin farther away than the rod is long is refused')
   end subroutine coordinates_agree
 
-  !> Where journal and bearing turn as one body, a joint's force and moments do no work.
+  !> If journal and bearing rotate as one body, the force and moments of a joint do no work.
   subroutine joints_leave_angular_momentum(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: e(2) = [3e-5_dp, -4e-5_dp], force(2) = [700.0_dp, 300.0_dp], moment = 0.4_dp, spin = 90
     call check%close_to(dot_product(force, spin*[-e(2), e(1)]) + spin*(moment + bearing_moment(e, force, moment)), 0.0_dp, &
-      1e-13_dp, 'a joint does no work on bodies that turn as one [W]')
+      1e-13_dp, 'a joint does no work on bodies that rotate as one [W]')
     ! friction F_T at the contact point, |e| + R_pin from the bearing's centre
     call check%close_to(bearing_moment([2e-4_dp, 0.0_dp], [-800.0_dp, 50.0_dp], 50*0.01_dp), -50*(2e-4_dp + 0.01_dp), 1e-15_dp, &
       'moment of friction on the bearing')
@@ -393,9 +394,9 @@ contains
     call factorise_cholesky(n, factor, definite)
     call check%that(definite, 'A A^T + 0.1 is positive definite')
     call solve_cholesky(n, factor, b)
-    call check%close_to(maxval(abs(b - x)), 0.0_dp, 1e-12_dp, 'and its equations are solved')
+    call check%close_to(maxval(abs(b - x)), 0.0_dp, 1e-12_dp, 'solution of the equations with A A^T + 0.1')
     matrix(n, n) = -1
     call factorise_cholesky(n, matrix, definite)
-    call check%that(.not. definite, 'a matrix with a negative diagonal is not')
+    call check%that(.not. definite, 'a matrix with a negative diagonal is not positive definite')
   end subroutine cholesky_solves
 end module test_chain

@@ -1,4 +1,4 @@
-!> Checkpoints: what is restored, what is refused, detection by the checksum, and the identity of a run.
+!> Checkpoints: what is restored, what is refused, what the checksum detects, and the identity of a run.
 module test_checkpoint
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp
@@ -33,33 +33,33 @@ contains
     call check%that(status == 0, 'nothing is left in the scratch folder')
   end subroutine run_test_checkpoint
 
-  !> Known values of CRC-64, in one piece and in all others.
+  !> Known values of CRC-64, computed in one piece and in every two pieces.
   subroutine test_checksum(check)
     class(checks_t), intent(inout) :: check
     type(checksum_t) :: sum
     character(len=256) :: all_bytes
     integer(int64) :: whole
     integer :: i
-    call check%that(sum%value() == 0, 'of nothing')
+    call check%that(sum%value() == 0, 'checksum of no bytes')
     call sum%add('123456789')
     call check%that(sum%value() == -7395533204333446662_int64 .and. sum%hexadecimal() == '995DC9BBDF1939FA', &
-      'of 123456789: 995DC9BBDF1939FA')
+      'checksum of 123456789: 995DC9BBDF1939FA')
     do i = 1, 256
       all_bytes(i:i) = achar(i - 1)
     end do
     sum = checksum_t()
     call sum%add(all_bytes)
-    call check%that(sum%hexadecimal() == '72414B2F65DB3AB0', 'of all bytes: 72414B2F65DB3AB0')
+    call check%that(sum%hexadecimal() == '72414B2F65DB3AB0', 'checksum of all bytes: 72414B2F65DB3AB0')
     whole = sum%value()
     do i = 1, 255
       sum = checksum_t()
       call sum%add(all_bytes(:i))
       call sum%add(all_bytes(i + 1:))
-      call check%that(sum%value() == whole, 'in two pieces')
+      call check%that(sum%value() == whole, 'checksum in two pieces')
     end do
   end subroutine test_checksum
 
-  !> A mark that moves on in steps is that of the whole; a file too short, or changed, is seen.
+  !> A mark that is advanced in steps equals that of the whole file; a file that is too short, or changed, is detected.
   subroutine test_mark(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: path = folder//'/text'
@@ -69,24 +69,24 @@ contains
     character(len=:), allocatable :: bytes
     call write_file(path, repeat('0123456789'//n, 300000))
     call whole%move_to(path, 3000000_int64, is_there)
-    call check%that(is_there .and. whole%length == 3000000_int64, 'a mark at a place')
+    call check%that(is_there .and. whole%length == 3000000_int64, 'a mark at a position')
     call parts%move_to(path, 17_int64, is_there)
     call parts%move_to(path, 2000001_int64, is_there)
     call parts%move_to(path, 3000000_int64, is_there)
-    call check%that(is_there .and. parts%checksum == whole%checksum, 'reached in steps')
+    call check%that(is_there .and. parts%checksum == whole%checksum, 'a mark reached in steps')
     call parts%move_to(path, 3300000_int64, is_there)
-    call check%that(is_there .and. parts%checksum /= whole%checksum, 'and at the end')
+    call check%that(is_there .and. parts%checksum /= whole%checksum, 'a mark at the end')
     call parts%move_to(path, 3300001_int64, is_there)
-    call check%that(.not. is_there, 'a file that is too short')
+    call check%that(.not. is_there, 'a file that is too short has no mark')
     parts = file_mark_t()
     call parts%move_to(folder//'/none', 5_int64, is_there)
-    call check%that(.not. is_there, 'a file that is not there')
+    call check%that(.not. is_there, 'a file that does not exist has no mark')
     bytes = repeat('0123456789'//n, 50)
     call write_file(path, bytes)
     whole = file_mark_t()
     call whole%move_to(path, 500_int64, is_there)
     same = 0
-    do i = 1, 500   ! each byte changed, each length
+    do i = 1, 500   ! every byte is changed
       call write_file(path, bytes(:i - 1)//'x'//bytes(i + 1:))
       parts = file_mark_t()
       call parts%move_to(path, 500_int64, is_there)
@@ -95,7 +95,7 @@ contains
       call parts%move_to(path, int(i - 1, int64), is_there)
       if (parts%checksum == whole%checksum) same = same + 1
     end do
-    call check%that(is_there .and. same == 0, 'a change is seen')
+    call check%that(is_there .and. same == 0, 'every change of a byte is detected')
     call remove_file(path, status)
   end subroutine test_mark
 
@@ -109,20 +109,20 @@ contains
     call check%that(.not. allocated(error), 'a checkpoint is written')
     loaded%path = saved%path
     call loaded%load(found, error)
-    call check%that(found .and. .not. allocated(error), 'and read')
-    call check%equal_text(loaded%identity, '0123456789ABCDEF', 'the identity')
+    call check%that(found .and. .not. allocated(error), 'a checkpoint is read')
+    call check%equal_text(loaded%identity, '0123456789ABCDEF', 'identity in a checkpoint')
     call check%that(loaded%case_text == saved%case_text .and. loaded%state == saved%state .and. &
       .not. abs(loaded%wall_time - 2.5_dp) > 0 .and. loaded%trace%length == 3_int64 .and. &
-      loaded%event_list%checksum == -7, 'and is the same')
+      loaded%event_list%checksum == -7, 'a checkpoint is restored unchanged')
     call loaded%remove()
     call loaded%load(found, error)
-    call check%that(.not. found .and. .not. allocated(error), 'none is no error')
+    call check%that(.not. found .and. .not. allocated(error), 'a missing checkpoint is not an error')
     saved%path = folder//'/none/a.checkpoint'
     call saved%save(error)
-    call check%that(allocated(error), 'one that cannot be written is')
+    call check%that(allocated(error), 'a checkpoint that cannot be written is an error')
   end subroutine test_round_trip
 
-  !> Every byte changed, every length cut, something behind, and files of other kinds.
+  !> Checkpoints with each byte changed, with each shorter length, with additional bytes, and files of other kinds.
   subroutine test_damage(check)
     class(checks_t), intent(inout) :: check
     type(checkpoint_t) :: saved
@@ -142,18 +142,18 @@ contains
       end do
       call try(bytes(:i - 1))
     end do
-    call check%that(accepted == 0, 'a changed byte or a lost end is refused')
+    call check%that(accepted == 0, 'a checkpoint with a changed byte or a lost end is refused')
     call try(bytes//' ')
     call try(bytes//bytes)
-    call check%that(accepted == 0, 'and something behind the end')
+    call check%that(accepted == 0, 'a checkpoint with additional bytes is refused')
     call try('')
     call try('time[s]'//n)
     call try(repeat(achar(0), 5000))
-    call check%that(accepted == 0, 'and other files')
+    call check%that(accepted == 0, 'other files are refused')
     call try(of_version(2))
-    call check%that(accepted == 0, 'and another version of the format')
+    call check%that(accepted == 0, 'another version of the format is refused')
     call try(of_version(3))
-    call check%that(accepted == 1, 'but not its own')
+    call check%that(accepted == 1, 'the present version of the format is accepted')
     call saved%remove()
 
   contains
@@ -170,7 +170,7 @@ contains
       if (.not. refused(found, error, saved%path)) accepted = accepted + 1
     end subroutine try
 
-    !> The checkpoint with a number of its format, and the right checksum.
+    !> The checkpoint with another number of its format, and the correct checksum.
     function of_version(version) result(text)
       integer, intent(in) :: version
       character(len=:), allocatable :: text
@@ -186,26 +186,27 @@ contains
     end function of_version
   end subroutine test_damage
 
-  !> The same case and program have the same identity, whatever the limits; another value, its ideal twin or a lost line do not.
+  !> The same case and program have the same identity for any limits; another value, the ideal twin or a missing line change it.
   subroutine test_identity(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: case = '&joint'//n//'  clearance = 1'//n//'/'//n//'&integrator'//n
     character(len=16) :: identity, program
     program = program_identity()
-    call check%equal_text(program_identity(), program, 'a program is known')
+    call check%equal_text(program_identity(), program, 'a program has one identity')
     identity = identity_of(case//'  max_steps = 0'//n//'/'//n, program)
     call check%that(verify(identity, '0123456789ABCDEF') == 0, 'an identity is 16 digits')
-    call check%equal_text(identity_of(case//'  max_steps = 700'//n//'/'//n, program), identity, 'a limit does not count')
-    call check%equal_text(identity_of(case//'/'//n, program), identity, 'also where it is left out')
-    call check%that(identity_of(case//'  max_step = 0'//n//'/'//n, program) /= identity, 'another key does')
-    call check%that(twin_identity(identity) /= identity, 'the twin is another run')
+    call check%equal_text(identity_of(case//'  max_steps = 700'//n//'/'//n, program), identity, &
+      'a limit does not change the identity')
+    call check%equal_text(identity_of(case//'/'//n, program), identity, 'a limit that is left out does not change the identity')
+    call check%that(identity_of(case//'  max_step = 0'//n//'/'//n, program) /= identity, 'another key changes the identity')
+    call check%that(twin_identity(identity) /= identity, 'the ideal twin has another identity')
     call check%that(identity_of('&joint'//n//'  clearance = 2'//n//'/'//n//'&integrator'//n//'/'//n, program) /= identity, &
-      'another value')
+      'another value changes the identity')
     program = 'another program '
-    call check%that(identity_of(case//'/'//n, program) /= identity, 'another program')
+    call check%that(identity_of(case//'/'//n, program) /= identity, 'another program changes the identity')
   end subroutine test_identity
 
-  !> Cases are compared without the limits, and a difference is named.
+  !> Cases are compared without the limits, and the message names a difference.
   subroutine test_comparison(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: one = '&joint'//n//'  clearance = 1  ! m'//n//'/'//n//'&integrator'//n//'  max_steps = 0'//n// &
@@ -214,15 +215,15 @@ contains
       '  max_steps = 100'//n//'  max_step = 2'//n//'/'//n
     character(len=:), allocatable :: difference
     call compare_cases(one, one, difference)
-    call check%equal_text(difference, '', 'a case is like itself')
+    call check%equal_text(difference, '', 'a case equals itself')
     call compare_cases(one, other, difference)
     call check%equal_text(difference, '&integrator max_step = 1, but the stopped run has max_step = 2', 'a key differs')
     call compare_cases(one, other(:index(other, '  max_step =') - 1)//'  max_step = 1'//n//'/'//n, difference)
     call check%equal_text(difference, '', 'a limit may differ')
     call compare_cases(one, one//'&output'//n//'/'//n, difference)
-    call check%that(index(difference, '&output') > 0, 'a group more')
+    call check%that(index(difference, '&output') > 0, 'an additional group is a difference')
     call compare_cases('', one, difference)
-    call check%that(difference /= '', 'a case and none')
+    call check%that(difference /= '', 'a case and an empty text differ')
   end subroutine test_comparison
 
   subroutine fill(checkpoint)

@@ -42,9 +42,10 @@ contains
       q = 0.6_dp*i
       call check%close_to(c%volume_slope(q), (c%volume(q + h) - c%volume(q - h))/(2*h), 1e-11_dp, 'dV/dq')
       call check%close_to(c%volume_curvature(q), (c%volume_slope(q + h) - c%volume_slope(q - h))/(2*h), 1e-11_dp, 'd2V/dq2')
-      ! 1.016e-1 m of stroke over 8 stay above the piston, whose pin is at x
+      ! the dead volume has the height 1.016e-1 m/8; the pin is at x
       x = 0.0508_dp*cos(q) + sqrt((0.2032_dp + 0.0508_dp*sin(q))*(0.2032_dp - 0.0508_dp*sin(q)))
-      call check%relative(c%volume(q), pi*0.035_dp**2*(0.0127_dp + (0.254_dp - x)), 1e-13_dp, 'V(q) from where the piston is')
+      call check%relative(c%volume(q), pi*0.035_dp**2*(0.0127_dp + (0.254_dp - x)), 1e-13_dp, &
+        'V(q) from the position of the piston')
     end do
   end subroutine volume_is_consistent
 
@@ -56,11 +57,11 @@ contains
     x = [(0.25_dp*i, i=0, 4)]
     table = new_hermite_table(x**5 - x**3 + 2, 5*x**4 - 3*x**2, 20*x**3 - 6*x)
     do i = -1, 11
-      call check%close_to(table%value(0.1_dp*i), (0.1_dp*i)**5 - (0.1_dp*i)**3 + 2, 1e-13_dp, 'quintic reproduced')
+      call check%close_to(table%value(0.1_dp*i), (0.1_dp*i)**5 - (0.1_dp*i)**3 + 2, 1e-13_dp, 'a quintic polynomial is reproduced')
     end do
   end subroutine table_is_a_quintic
 
-  !> Largest pressure [Pa], its angle [deg] and net work of the closed part [J] by fine sampling, Simpson and parabola.
+  !> Largest pressure [Pa], its angle [deg] and net work of the closed part [J] by fine sampling, Simpson's rule and a parabola.
   subroutine scan(gas, peak, peak_angle, work)
     type(gas_cycle_t), intent(in) :: gas
     real(dp), intent(out) :: peak, peak_angle, work
@@ -104,7 +105,7 @@ contains
     unit = gas%intake_pressure*gas%cylinder%volume(pi)
     gas%release = heat_release_t(20*unit, 5.0_dp, 3.0_dp, (360 + start)*degree, 40*degree)
     call new_gas_cycle(gas, 1e-12_dp, error)
-    call check%that(.not. allocated(error), 'the cycle is integrated')
+    call check%that(.not. allocated(error), 'integration of the cycle')
     call scan(gas, got_peak, got_angle, got_work)
     call check%relative(got_peak/gas%intake_pressure, peak, 1e-7_dp, 'Wiebe reference: peak pressure')
     call check%close_to(got_angle, 360 + angle, 1e-3_dp, 'Wiebe reference: angle of the peak')
@@ -134,7 +135,7 @@ contains
     call check%close_to(got_work, work, 0.01_dp, 'engine: net work of a cycle [J]')
   end subroutine thesis_engine
 
-  !> The parts follow each other in both directions, and the pressure is continuous but for the blow-down.
+  !> The parts of the cycle follow each other in both directions, and the pressure is continuous except at the blow-down.
   subroutine parts_join(check)
     class(checks_t), intent(inout) :: check
     type(gas_cycle_t) :: gas
@@ -147,19 +148,19 @@ contains
     call new_gas_cycle(gas, 1e-10_dp, error)
     do i = 1, 3
       call check%relative(gas%pressure(gas%bound(i), i, 0.0_dp), &
-        gas%pressure(gas%bound(i), i + 1, 0.0_dp), merge(1e-12_dp, 2.0_dp, i < 3), 'parts join')
+        gas%pressure(gas%bound(i), i + 1, 0.0_dp), merge(1e-12_dp, 2.0_dp, i < 3), 'pressure is continuous between the parts')
     end do
     do i = 1, 4
       call gas%part_at(angle(i)*degree, .false., part, start)
-      call check%that(part == i .and. start <= 0 .and. start >= 0, 'forwards a part begins at its first angle')
+      call check%that(part == i .and. start <= 0 .and. start >= 0, 'with forward rotation a part begins at its first angle')
       call gas%part_at(angle(i)*degree, .true., part, start)
-      call check%that(part == merge(4, i - 1, i == 1), 'backwards the one before it')
+      call check%that(part == merge(4, i - 1, i == 1), 'with backward rotation the previous part begins there')
       call gas%part_at(angle(i)*degree + 3*gas%period + 1e-9_dp, .false., part, start)
-      call check%that(part == i .and. nint(start/gas%period) == 3, 'and so in the fourth cycle')
+      call check%that(part == i .and. nint(start/gas%period) == 3, 'a part of the fourth cycle begins at its first angle')
     end do
     call gas%part_at(0.0_dp, .false., part, start)
     call check%that(part == part_open .and. start < 0, 'the cycle at q = 0 is open')
-    call check%relative(gas%pressure(0.0_dp, part, start), 101325.0_dp, 1e-15_dp, 'at intake pressure')
+    call check%relative(gas%pressure(0.0_dp, part, start), 101325.0_dp, 1e-15_dp, 'the open cycle is at intake pressure')
     call working%take_cycle(gas, 101325.0_dp)
     call check%close_to(working%force(201325.0_dp), 1e5_dp*pi*0.07_dp**2/4, 1e-10_dp, 'gas force')
   end subroutine parts_join
@@ -177,7 +178,7 @@ contains
 
     gas = engine(165.0_dp, form)
     call new_gas_cycle(gas, 1e-11_dp, error)
-    call check%that(.not. allocated(error), 'the cycle is integrated')
+    call check%that(.not. allocated(error), 'integration of the cycle')
     call tables_are_accurate(check, gas)
     xi_step = 1.0_dp/n
     work = 0
@@ -195,8 +196,8 @@ contains
     call check%relative(inner + work, 165*(1 - exp(-5.0_dp)), 1e-9_dp, 'first law over the combustion')
   end subroutine energy_of_the_gas
 
-  !> Tables for four tolerances against the most accurate one, at angles at which neither has points; and that one against p
-  !> V^gamma, which is constant without heat release. The tables' own estimate of their error is not used.
+  !> Tables for four tolerances against the most accurate one, at angles between the points of both; and the most accurate table
+  !> against p V^gamma, which is constant without heat release. The tables' own error estimates are not used.
   subroutine tables_are_accurate(check, best)
     class(checks_t), intent(inout) :: check
     type(gas_cycle_t), intent(in) :: best   !! made with a tolerance of 1e-11
@@ -212,7 +213,7 @@ contains
       constancy = max(constancy, abs(best%pressure(q, part_compression, 0.0_dp)/101325 &
         *(best%cylinder%volume(q)/best%cylinder%volume(pi))**1.4_dp - 1))
     end do
-    call check%close_to(constancy, 0.0_dp, 1e-11_dp, 'p V^gamma is constant as the gas is compressed')
+    call check%close_to(constancy, 0.0_dp, 1e-11_dp, 'p V^gamma is constant during compression')
     do k = 3, 9, 2
       gas = best
       call new_gas_cycle(gas, 10.0_dp**(-k), error)
@@ -224,7 +225,7 @@ contains
           worst = max(worst, abs(gas%pressure(q, part, 0.0_dp)/best%pressure(q, part, 0.0_dp) - 1))
         end do
       end do
-      call check%close_to(worst, 0.0_dp, 2*10.0_dp**(-k), 'tables are as accurate as asked')
+      call check%close_to(worst, 0.0_dp, 2*10.0_dp**(-k), 'error of a table is within its tolerance')
     end do
   end subroutine tables_are_accurate
 end module test_combustion

@@ -21,7 +21,8 @@ contains
     call test_presets(check)
   end subroutine run_test_command_line
 
-  !> An accuracy level sets method, entry and tolerance of any case, the tighter the higher; --set wins; no level, no change.
+  !> An accuracy level sets method, contact entry and tolerance of any case; higher levels have smaller tolerances; --set takes
+  !> precedence; without a level nothing changes.
   subroutine test_presets(check)
     class(checks_t), intent(inout) :: check
     type(case_t) :: case
@@ -30,7 +31,7 @@ contains
     call check%equal_text(trim(case%integrator%method), 'auto', 'draft: the method')
     call check%that(case%integrator%relative_tolerance > 9e-5, 'draft: the tolerance')
     case = with_level('standard', ['integrator.method=radau'])
-    call check%equal_text(trim(case%integrator%method), 'radau', 'standard: --set wins')
+    call check%equal_text(trim(case%integrator%method), 'radau', 'standard: --set takes precedence')
     call check%that(abs(case%integrator%relative_tolerance - 1e-6) < 1e-9, 'standard: the tolerance')
     case = with_level('reference', ['integrator.max_order=9'])
     call check%that(case%integrator%relative_tolerance < 2e-10 .and. case%integrator%max_order == 9, 'reference')
@@ -83,13 +84,13 @@ contains
     call check%that(.not. allocated(error) .and. line%template, 'template needs no case')
     call check%that(index(help_text(), '--accuracy LEVEL') > 0, 'help lists options')
     call parse_command_line([character(len=16) :: '-s', 'lubrication=none', 'a.nml'], line, error)
-    call check%that(.not. allocated(error) .and. size(line%overrides) == 1, 'a group taken out')
+    call check%that(.not. allocated(error) .and. size(line%overrides) == 1, 'a removed group')
     call parse_command_line([character(len=16) :: '-q', 'sweep', '-o', 'r', 's.nml'], line, error)
-    call check%that(.not. allocated(error) .and. line%sweep .and. size(line%cases) == 1, 'sweep behind an option')
+    call check%that(.not. allocated(error) .and. line%sweep .and. size(line%cases) == 1, 'sweep after an option')
     call parse_command_line([character(len=16) :: 'sweep', 'sweep'], line, error)
-    call check%that(.not. allocated(error) .and. line%sweep .and. size(line%cases) == 1, 'a study of that name')
+    call check%that(.not. allocated(error) .and. line%sweep .and. size(line%cases) == 1, 'a study named sweep')
     call parse_command_line([character(len=16) :: '--', 'sweep'], line, error)
-    call check%that(.not. (allocated(error) .or. line%sweep) .and. size(line%cases) == 1, 'a case of that name')
+    call check%that(.not. (allocated(error) .or. line%sweep) .and. size(line%cases) == 1, 'a case named sweep')
   end subroutine test_options
 
   subroutine test_refusals(check)

@@ -41,17 +41,17 @@ contains
     call check%relative(hertz_stiffness(10e-3_dp, 0.5e-3_dp, [1e9_dp, 3e9_dp], [0.0_dp, 0.5_dp]), &
       4/(3*(1/1e9_dp + 0.75_dp/3e9_dp))*sqrt(10e-3_dp*9.5e-3_dp/0.5e-3_dp), 1e-14_dp, 'Hertz stiffness of two materials')
     call check%relative(valid_impact_speed([207e9_dp, 100e9_dp], [7850.0_dp, 2500.0_dp]), 0.05135117_dp, 1e-6_dp, &
-      'valid impact speed is the slower material''s')
+      'limit of the impact speed is that of the slower material')
     call check%relative(valid_impact_speed([207e9_dp, 70e9_dp], [7850.0_dp, 8000.0_dp]), 0.0295804_dp, 1e-6_dp, &
-      'valid impact speed is the slower material''s, second')
+      'limit of the impact speed with the materials exchanged')
   end subroutine test_stiffness
 
-  !> A free impact gives back the restitution of the law's exact solution.
+  !> A free impact has the restitution of the exact solution of the law.
   subroutine test_restitution(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: e(4) = [0.9_dp, 0.7_dp, 0.5_dp, 0.3_dp]
     real(dp), parameter :: expected(4) = [0.913176677806_dp, 0.795972595365_dp, 0.725241114010_dp, 0.684224605749_dp]
-    !> Of an independent integration to 13 digits.
+    !> Values from an independent integration with 13 digits.
     real(dp), parameter :: hunt_crossley(4) = [0.9090157413492_dp, 0.76799978907848_dp, 0.66296220000155_dp, 0.58128804180857_dp]
     integer :: i
     real(dp) :: exact
@@ -77,7 +77,7 @@ contains
     chi_of = 0.75_dp*(1 - restitution**2)
   end function chi_of
 
-  !> What a free impact of 0.4 m/s gives back under a law from the factory.
+  !> Restitution of a free impact at 0.4 m/s under a law from the factory.
   function impact_restitution(name, restitution, exponent) result(ratio)
     character(len=*), intent(in) :: name
     real(dp), intent(in) :: restitution, exponent
@@ -104,15 +104,16 @@ contains
     call check%relative(linear%normal_force(1e-6_dp, 0.1_dp, 0.2_dp), 2.0_dp, 1e-14_dp, 'linear force at 1 um')
     do i = 1, size(rates)
       call check%relative(lossless%normal_force(3e-6_dp, rates(i), 0.1_dp), hertz%normal_force(3e-6_dp, rates(i), 0.1_dp), &
-        1e-15_dp, 'e = 1 is Hertz')
+        1e-15_dp, 'Lankarani-Nikravesh with e = 1 is Hertz')
       call check%relative(lossless%normal_force(3e-6_dp, rates(i), 0.0_dp), hertz%normal_force(3e-6_dp, rates(i), 0.0_dp), &
-        1e-15_dp, 'e = 1 is Hertz after a grazing entry')
+        1e-15_dp, 'Lankarani-Nikravesh with e = 1 is Hertz after an impact at zero speed')
     end do
     call check%that(abs(hertz%normal_force(-1e-6_dp, 0.1_dp, 0.2_dp)) <= 0, 'no Hertz force at a distance')
-    call check%that(abs(hertz%normal_force(0.0_dp, 0.1_dp, 0.2_dp)) <= 0, 'no Hertz force on touching')
+    call check%that(abs(hertz%normal_force(0.0_dp, 0.1_dp, 0.2_dp)) <= 0, 'no Hertz force at the beginning of contact')
   end subroutine test_hertz
 
-  !> The law never pulls, gives at least the elastic force on the way in and at most that on the way out.
+  !> The law never pulls; its force is at least the elastic force during compression and at most the elastic force during
+  !> restitution.
   subroutine test_dissipation(check)
     class(checks_t), intent(inout) :: check
     class(contact_law_t), allocatable :: law, elastic
@@ -129,23 +130,25 @@ contains
       do j = -400, 400
         rate = 0.01_dp*j
         force = law%normal_force(2e-6_dp, rate, impact)
-        call check%that(force >= 0, 'the contact never pulls')
+        call check%that(force >= 0, 'the contact force never pulls')
         call check%that((force - reference)*rate >= 0, 'the contact dissipates')
         call check%that(force >= previous, 'the force grows with the rate')
-        call check%that(force <= reference*(1 + ratio_limit), 'the force is bounded')
+        call check%that(force <= reference*(1 + ratio_limit), 'the force has an upper limit')
         previous = force
       end do
-      call check%relative(law%normal_force(2e-6_dp, 0.0_dp, impact), reference, 1e-15_dp, 'elastic at rest')
+      call check%relative(law%normal_force(2e-6_dp, 0.0_dp, impact), reference, 1e-15_dp, &
+        'the force without penetration rate is elastic')
     end do
     call check%relative(law%normal_force(2e-6_dp, 0.03_dp, 0.1_dp), reference*(1 + 0.75_dp*0.91_dp*0.3_dp), 1e-14_dp, &
       'the printed law inside its bounds')
     call check%relative(law%normal_force(2e-6_dp, 0.99_dp*ratio_limit*0.01_dp, 0.01_dp), &
       reference*(1 + 0.75_dp*0.91_dp*0.99_dp*ratio_limit), 1e-14_dp, 'the printed law just inside the limit')
     call check%that(abs(law%normal_force(2e-6_dp, -0.2_dp, 0.1_dp)) <= 0, 'no adhesion')
-    call check%that(abs(law%normal_force(2e-6_dp, -1e-4_dp, 0.0_dp)) <= 0, 'no force on leaving a grazing contact')
+    call check%that(abs(law%normal_force(2e-6_dp, -1e-4_dp, 0.0_dp)) <= 0, &
+      'no force during restitution after an impact at zero speed')
     call check%relative(law%normal_force(2e-6_dp, 0.01_dp, 0.0_dp), reference*(1 + 0.75_dp*0.91_dp*ratio_limit), 1e-14_dp, &
-      'the limit on deepening a grazing contact')
-    call check%that(abs(law%normal_force(0.0_dp, 0.1_dp, 0.1_dp)) <= 0, 'no force on touching')
+      'the limit of the force during compression after an impact at zero speed')
+    call check%that(abs(law%normal_force(0.0_dp, 0.1_dp, 0.1_dp)) <= 0, 'no force at the beginning of contact')
     call check%that(abs(law%normal_force(-1e-6_dp, 0.1_dp, 0.1_dp)) <= 0, 'no force at a distance')
   end subroutine test_dissipation
 
@@ -181,7 +184,7 @@ contains
     call check%that(error%status == status_case_file, 'the refusal is a case file error')
   end subroutine test_factory
 
-  !> One line for each thing that cannot be.
+  !> Each invalid combination is refused with one line.
   subroutine test_refusals(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: joint = "kind='clearance' clearance=20e-6 bearing_radius=10e-3"
@@ -218,7 +221,7 @@ contains
 
   contains
 
-    !> The case is refused with this message, with or without a line in front of it; '': it is not refused.
+    !> The case is refused with this message, with or without a line before it; '': it is accepted.
     subroutine refused(joint_keys, contact_keys, message, line)
       character(len=*), intent(in) :: joint_keys, contact_keys, message
       logical, intent(in), optional :: line

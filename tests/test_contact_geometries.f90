@@ -1,5 +1,5 @@
-!> Contact geometries: forces against tables of an independent implementation (data/contact), derivatives against differences,
-!> energies against closed forms and quadrature, continuity, extreme values, requirements on the bearing.
+!> Contact geometries: forces against tables of an independent implementation (data/contact), derivatives against finite
+!> differences, energies against closed forms and quadrature, continuity, extreme values, requirements on the bearing.
 module test_contact_geometries
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
@@ -48,7 +48,7 @@ contains
     if (allocated(error)) call check%that(.false., 'law '//keys//': '//error%message)
   end subroutine new_law
 
-  !> Forces of four bearings from a ten-thousandth to half of the clearance.
+  !> Forces of four bearings for penetrations from a ten-thousandth to half of the clearance.
   subroutine forces_of_the_table(check)
     class(checks_t), intent(inout) :: check
     class(contact_law_t), allocatable :: sphere, johnson, pereira, winkler
@@ -71,8 +71,8 @@ contains
       call new_law(check, trim(geometries(7)), winkler, bearing)
       call check%relative(sphere%geometry%elastic_force(depth), row(6), 1e-9_dp, 'force of the spheres')
       call check%relative(pereira%geometry%elastic_force(depth), row(8), 1e-9_dp, 'force by Pereira')
-      call check%relative(winkler%geometry%elastic_force(depth), row(11), 1e-9_dp, 'force of the bedding')
-      call check%relative(winkler%geometry%elastic_energy(depth), row(12), 1e-7_dp, 'energy of the bedding')
+      call check%relative(winkler%geometry%elastic_force(depth), row(11), 1e-9_dp, 'force of the Winkler foundation')
+      call check%relative(winkler%geometry%elastic_energy(depth), row(12), 1e-7_dp, 'energy of the Winkler foundation')
       if (depth > 0.3001_dp*row(1)) cycle
       call check%relative(johnson%geometry%elastic_force(depth), row(7), 1e-9_dp, 'force by Johnson')
       call check%relative(johnson%geometry%slope(depth, johnson%geometry%elastic_force(depth)), row(9), 1e-9_dp, &
@@ -104,8 +104,8 @@ contains
     call check%that(rows == 42, 'the table of conformal forces has 42 rows')
   end subroutine conformal_force_of_the_table
 
-  !> Half-angle, force and pressure from 1 to 83 degrees, of a collocation of the exact problem: a penetration with g(x) + W x
-  !> has the load x within the fit, and the columns of the trace have its angle and pressure.
+  !> Half-angle, force and pressure from 1 to 83 degrees from a collocation of the exact problem: a penetration of g(x) + W x has
+  !> the load x within the accuracy of the fit, and the columns of the trace have its angle and pressure.
   subroutine conformal_arc_and_pressure(check)
     class(checks_t), intent(inout) :: check
     class(contact_law_t), allocatable :: law
@@ -132,16 +132,17 @@ contains
       call check%relative(row%values(1), angle*pi/180, 4e-5_dp, 'contact half-angle against the collocation')
       call check%relative(row%values(2), pressure*e_star*c/radius, 6e-5_dp, 'pressure against the collocation')
       call law%geometry%put_columns(depth, 2*force, row)
-      call check%relative(row%values(4), 2*row%values(2), 1e-14_dp, 'the pressure is that of the whole pressing force')
+      call check%relative(row%values(4), 2*row%values(2), 1e-14_dp, 'the pressure belongs to the whole normal force')
     end do
     close (unit)
     call check%that(rows == 21, 'the table of conformal contact has 21 rows')
     call law%geometry%put_columns(0.0_dp, 0.0_dp, row)
-    call check%that(abs(row%values(5)) + abs(row%values(6)) <= 0, 'apart there is neither arc nor pressure')
+    call check%that(abs(row%values(5)) + abs(row%values(6)) <= 0, 'without contact there is neither arc nor pressure')
     call check%that(law%geometry%deepest() > 15*c .and. law%geometry%deepest() < 50*c, 'the fit ends beyond 83 degrees')
   end subroutine conformal_arc_and_pressure
 
-  !> The slope is that of differences, the energy the integral of the force, and a proportional force has a proportional slope.
+  !> The derivative agrees with finite differences, the energy is the integral of the force, and a force multiplied by a factor has
+  !> a derivative multiplied by it.
   subroutine slopes_and_energies(check)
     class(checks_t), intent(inout) :: check
     class(contact_law_t), allocatable :: law
@@ -169,7 +170,7 @@ contains
     end do
   end subroutine slopes_and_energies
 
-  !> Continuous with its slope at 0.3 c, and straight from there on.
+  !> The law is continuous with its derivative at 0.3 c, and linear beyond.
   subroutine johnson_goes_on_straight(check)
     class(checks_t), intent(inout) :: check
     class(contact_law_t), allocatable :: law
@@ -177,15 +178,16 @@ contains
     real(dp) :: below, above
     call new_law(check, "geometry='johnson'", law)
     associate (geometry => law%geometry)
-      call check%relative(geometry%deepest(), last, 1e-15_dp, 'the law is taken up to 0.3 c')
-      call check%relative(geometry%elastic_force(last), 12807.3566219_dp, 1e-11_dp, 'force there')
+      call check%relative(geometry%deepest(), last, 1e-15_dp, 'the law holds up to 0.3 c')
+      call check%relative(geometry%elastic_force(last), 12807.3566219_dp, 1e-11_dp, 'force at the end of the law')
       below = geometry%elastic_force(last*(1 - tiny_step))
       above = geometry%elastic_force(last*(1 + tiny_step))
-      call check%relative(above, below, 4*tiny_step, 'the force is continuous there')
+      call check%relative(above, below, 4*tiny_step, 'the force is continuous at the end of the law')
       call check%relative(geometry%slope(last*(1 + tiny_step), above), geometry%slope(last*(1 - tiny_step), below), &
-        10*tiny_step, 'the slope is continuous there')
-      call check%relative(geometry%slope(last*(1 + tiny_step), above), 3547319823.74_dp, 1e-8_dp, 'slope there')
-      call check%relative(geometry%elastic_force(3*last), 12807.3566219_dp + 2*last*3547319823.74_dp, 1e-10_dp, 'the straight line')
+        10*tiny_step, 'the slope is continuous at the end of the law')
+      call check%relative(geometry%slope(last*(1 + tiny_step), above), 3547319823.74_dp, 1e-8_dp, 'slope at the end of the law')
+      call check%relative(geometry%elastic_force(3*last), 12807.3566219_dp + 2*last*3547319823.74_dp, 1e-10_dp, &
+        'linear force beyond the law')
     end associate
   end subroutine johnson_goes_on_straight
 
@@ -204,7 +206,7 @@ contains
     end do
   end subroutine conformal_meets_johnson
 
-  !> The bedding as the sum of its springs.
+  !> The Winkler foundation as the sum of its springs.
   subroutine winkler_by_quadrature(check)
     class(checks_t), intent(inout) :: check
     class(contact_law_t), allocatable :: law, of_liner
@@ -225,15 +227,15 @@ contains
         energy = energy + k*overlap**2/2
       end do
       call check%relative(law%geometry%elastic_force(depth), force*2*a/strips*10e-3_dp*15e-3_dp, 1e-9_dp, &
-        'force of the bedding, spring by spring')
+        'force of the foundation as a sum of springs')
       call check%relative(law%geometry%elastic_energy(depth), energy*2*a/strips*10e-3_dp*15e-3_dp, 1e-9_dp, &
-        'energy of the bedding, spring by spring')
+        'energy of the foundation as a sum of springs')
     end do
     call new_law(check, trim(geometries(7)), of_liner)
     call check%relative(of_liner%geometry%elastic_force(1e-6_dp)/law%geometry%elastic_force(1e-6_dp), &
-      3e9_dp*0.65_dp/(1.35_dp*0.3_dp*0.5e-3_dp)/k, 1e-14_dp, 'bedding of a liner')
-    call check%relative(of_liner%geometry%deepest(), 0.5e-3_dp, 1e-15_dp, 'a liner is meant for its thickness')
-    call check%that(law%geometry%deepest() > 1e300_dp, 'a bedding has no limit')
+      3e9_dp*0.65_dp/(1.35_dp*0.3_dp*0.5e-3_dp)/k, 1e-14_dp, 'foundation modulus of a liner')
+    call check%relative(of_liner%geometry%deepest(), 0.5e-3_dp, 1e-15_dp, 'the law of a liner holds up to its thickness')
+    call check%that(law%geometry%deepest() > 1e300_dp, 'a foundation has no limit')
   end subroutine winkler_by_quadrature
 
   !> The two branches of the exponent meet at c = 0.34954 mm.
@@ -243,10 +245,10 @@ contains
     call new_law(check, "geometry='pereira'", below, bearing_t(10e-3_dp, 15e-3_dp, 0.349539e-3_dp, 0.2_dp))
     call new_law(check, "geometry='pereira'", above, bearing_t(10e-3_dp, 15e-3_dp, 0.349541e-3_dp, 0.2_dp))
     call check%relative(above%geometry%elastic_force(3e-6_dp), below%geometry%elastic_force(3e-6_dp), 1e-4_dp, &
-      'Pereira''s branches meet')
+      'Pereira''s branches are continuous')
   end subroutine pereira_between_its_branches
 
-  !> Slopes of the whole force under every form of damping, against differences.
+  !> Derivatives of the whole force with every kind of damping, against finite differences.
   subroutine laws_slopes(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: damping(5) = [character(len=50) :: "law='hertz'", "law='flores' restitution=0.6", &
@@ -277,7 +279,7 @@ contains
     end do
   end subroutine laws_slopes
 
-  !> Finite, never negative, for any state that an integrator may try, and for the ends of every parameter.
+  !> The force is finite and never negative, for any state that an integrator may try, and at the ends of every parameter range.
   subroutine extremes(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: keys(14) = [character(len=100) :: "geometry='johnson' youngs_modulus=2*1e6", &
@@ -317,7 +319,7 @@ contains
     end do
   end subroutine extremes
 
-  !> A contact is counted that goes deeper than its geometry is meant for, and once.
+  !> A contact that is deeper than its geometry is valid for is counted once.
   subroutine contacts_beyond_validity_count(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: geometry(4) = [character(len=30) :: 'contact.geometry=johnson', &
@@ -334,7 +336,7 @@ contains
       if (i > 1) deep = 0
       associate (pin => trace%report%figures%pin(piston_pin))
         call check%that(pin%contacts_beyond_validity == deep, 'contacts beyond validity with '//geometry(i))
-        call check%that(pin%contacts > deep, 'and others with '//geometry(i))
+        call check%that(pin%contacts > deep, 'contacts within validity with '//geometry(i))
       end associate
     end do
   end subroutine contacts_beyond_validity_count

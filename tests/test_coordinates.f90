@@ -20,11 +20,11 @@ contains
       call eccentricity_error('cases/sim_II.nml', 0.5_dp, own_coordinates, 10.0_dp**(-i), error(1), evaluations(1))
       call eccentricity_error('cases/sim_II.nml', 0.5_dp, absolute_by_size, 10.0_dp**(-i), error(2), evaluations(2))
       call eccentricity_error('cases/sim_II.nml', 0.5_dp, absolute_by_clearance, 10.0_dp**(-i), error(3), evaluations(3))
-      call check%that(error(1) <= 10.0_dp**(-i), 'the eccentricity is known to the tolerance at '//label)
-      call check%that(error(2) > 1000*error(1), '(q, A, x) with tolerances by size know it a thousand times worse at '//label)
-      call check%that(error(2) > 50*10.0_dp**(-i), 'and far worse than their tolerance at '//label)
-      call check%that(error(3) < 100*error(1), 'tolerances by the clearance give it back at '//label)
-      call check%that(evaluations(1) < evaluations(3), 'for more evaluations at '//label)
+      call check%that(error(1) <= 10.0_dp**(-i), 'error of the eccentricity in (q, e) at '//label)
+      call check%that(error(2) > 1000*error(1), 'error in (q, A, x) is a thousand times larger at '//label)
+      call check%that(error(2) > 50*10.0_dp**(-i), 'error in (q, A, x) is far above the tolerance at '//label)
+      call check%that(error(3) < 100*error(1), 'tolerances from the clearance reduce the error in (q, A, x) at '//label)
+      call check%that(evaluations(1) < evaluations(3), 'tolerances from the clearance need more evaluations at '//label)
     end do
   end subroutine run_test_coordinates
 end module test_coordinates

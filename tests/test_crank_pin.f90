@@ -34,7 +34,8 @@ contains
     call gravity_does_work(check)
   end subroutine run_test_crank_pin
 
-  !> Of the piston pin under plain names, of the crank pin under its own, of an ideal pin not at all.
+  !> The summary has the piston pin under names without prefix, the crank pin under names with its prefix, and no values of an ideal
+  !> pin.
   subroutine summaries_have_each_joint(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -43,34 +44,37 @@ contains
 
     call run_and_summarise(both, trace, case, table)
     associate (pins => trace%report%figures%pin, events => trace%event)
-      call check%that(pins(piston_pin)%contacts > 5 .and. pins(crank_pin)%contacts > 5, 'both pins touch')
+      call check%that(pins(piston_pin)%contacts > 5 .and. pins(crank_pin)%contacts > 5, 'both pins have contacts')
       call check%that(count(events%kind == 1 .and. events%pin == piston_pin) == pins(piston_pin)%contacts, &
         'contacts of the piston pin')
       call check%that(count(events%kind == 1 .and. events%pin == crank_pin) == pins(crank_pin)%contacts, &
         'contacts of the crank pin')
-      call check%relative(value_of('contacts'), real(pins(piston_pin)%contacts, dp), 0.0_dp, 'in the summary')
+      call check%relative(value_of('contacts'), real(pins(piston_pin)%contacts, dp), 0.0_dp, 'contacts in the summary')
       call check%relative(value_of('crank_pin_contacts'), real(pins(crank_pin)%contacts, dp), 0.0_dp, 'both')
-      call check%that(abs(value_of('crank_pin_max_pin_force') - value_of('max_pin_force')) > 1, 'two forces')
+      call check%that(abs(value_of('crank_pin_max_pin_force') - value_of('max_pin_force')) > 1, &
+        'the two pins have different forces')
       call check%relative(value_of('crank_pin_max_penetration'), maxval(events%max_penetration, events%pin == crank_pin), &
         1e-9_dp, 'deepest contact of the crank pin')
       call check%relative(value_of('max_penetration'), maxval(events%max_penetration, events%pin == piston_pin), &
-        1e-9_dp, 'and of the piston pin')
+        1e-9_dp, 'deepest contact of the piston pin')
       call check%relative(value_of('crank_pin_contact_time_fraction')*trace%report%figures%time, contact_time(crank_pin), &
         1e-9_dp, 'time in contact at the crank pin')
       call check%relative(value_of('contact_time_fraction')*trace%report%figures%time, contact_time(piston_pin), 1e-9_dp, &
-        'and at the piston pin')
+        'time in contact at the piston pin')
     end associate
-    call check%that(index(summary_line(case, trace%report, 0.0_dp, 'x'), '; crank pin: ') > 0, 'the line for people has it')
+    call check%that(index(summary_line(case, trace%report, 0.0_dp, 'x'), '; crank pin: ') > 0, &
+      'the line of the run has the crank pin')
 
     call run_and_summarise(alone, trace, case, table)
-    call check%that(all(trace%event%pin == crank_pin), 'events of the crank pin alone')
+    call check%that(all(trace%event%pin == crank_pin), 'all events are those of the crank pin')
     call check%equal_text(summary_value(table, 'contacts')//summary_value(table, 'min_film_thickness')// &
       summary_value(table, 'contact_time_fraction'), '', 'an ideal piston pin has no contacts')
-    call check%that(value_of('max_pin_force') > 100, 'but a force')
-    call check%that(value_of('crank_pin_contacts') > 0, 'the crank pin has both')
+    call check%that(value_of('max_pin_force') > 100, 'an ideal piston pin has a force')
+    call check%that(value_of('crank_pin_contacts') > 0, 'the crank pin has contacts')
     call run_and_summarise('cases/flores/dry_0500um.nml', trace, case, table)
-    call check%that(index(table, 'crank_pin') == 0, 'and an ideal crank pin nothing')
-    call check%that(index(summary_line(case, trace%report, 0.0_dp, 'x'), 'crank pin') == 0, 'in the line neither')
+    call check%that(index(table, 'crank_pin') == 0, 'an ideal crank pin is not in the summary')
+    call check%that(index(summary_line(case, trace%report, 0.0_dp, 'x'), 'crank pin') == 0, &
+      'an ideal crank pin is not in the line of the run')
 
   contains
 
@@ -95,7 +99,7 @@ contains
       if (text /= '') read (text, *) value_of
     end function value_of
 
-    !> Sum over the contacts, the last of which may last to the end.
+    !> Sum over the contacts; the last of them may continue at the end.
     real(dp) function contact_time(pin)
       integer, intent(in) :: pin
       integer :: i
@@ -113,7 +117,7 @@ contains
     end function contact_time
   end subroutine summaries_have_each_joint
 
-  !> Where a run stops, and at which pin the model ends.
+  !> The message of a run that stops names the phase of each pin, and the pin at which the model is not valid.
   subroutine reasons_name_the_joint(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -124,7 +128,7 @@ contains
     call says('phase free flight at the piston pin, contact at the crank pin')
     trace = run_case(alone, ['integrator.max_steps=5'])
     call says('phase free flight at the crank pin')
-    call check%that(index(trace%error%message, 'piston pin') == 0, 'an ideal piston pin has no phase')
+    call check%that(index(trace%error%message, 'piston pin') == 0, 'the message does not name an ideal piston pin')
     trace = run_case(both, [character(len=long) :: 'crank_pin.contact.law=hertz', 'crank_pin.contact.youngs_modulus=1e6,1e6'])
     call says('the state left the range of the model (the crank pin left its bearing or its film)')
     trace = run_case(both, [character(len=long) :: 'contact.youngs_modulus=1e6,1e6', 'crank_pin.contact.law=hertz', &
@@ -134,34 +138,35 @@ contains
       'integrator.max_evaluations=300000'])
     call says('ill-posed: the film at the crank pin has almost no thickness')
     trace = run_case('cases/flores/dry_0500um.nml', ['integrator.max_steps=5'])
-    call check%that(index(trace%error%message, ' at the ') == 0, 'a joint that is alone is not named')
+    call check%that(index(trace%error%message, ' at the ') == 0, 'the message does not name a joint that is the only one')
 
   contains
 
     subroutine says(text)
       character(len=*), intent(in) :: text
-      call check%that(allocated(trace%error), 'a run that stops: '//text)
+      call check%that(allocated(trace%error), 'the run stops: '//text)
       if (.not. allocated(trace%error)) return
-      call check%that(index(trace%error%message, text) > 0, 'it says "'//text//'", not "'//trace%error%message//'"')
+      call check%that(index(trace%error%message, text) > 0, 'the message has "'//text//'", not "'//trace%error%message//'"')
     end subroutine says
   end subroutine reasons_name_the_joint
 
-  !> A start in contact is an event of that pin; one in free flight goes straight to the wall when nothing pulls.
+  !> A start in contact is an event of that pin; a pin that starts in free flight moves straight to the wall if no force acts.
   subroutine starts_anywhere_in_its_bearing(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
     trace = run_case(both, [character(len=long) :: 'initial.crank_pin_eccentricity=1.001e-4,0', 'integrator.revolutions=0.01'])
     call check%that(trace%event(1)%pin == crank_pin .and. .not. trace%event(1)%time > 0, 'a crank pin that starts in contact')
-    call check%relative(trace%values(column(trace, 'crank_pin_film_thickness[m]'), 1), -1e-7_dp, 1e-9_dp, 'as deep as it was put')
+    call check%relative(trace%values(column(trace, 'crank_pin_film_thickness[m]'), 1), -1e-7_dp, 1e-9_dp, &
+      'initial penetration of the crank pin')
     trace = run_case(both, [character(len=long) :: 'initial.crank_speed=0', 'mechanism.gravity=0', 'integrator.revolutions=0', &
       'integrator.end_time=1e-3', 'output.interval=1e-4', 'initial.crank_pin_eccentricity_rate=0.3,0.4'])
-    call check%that(trace%event(1)%pin == crank_pin, 'a crank pin that is thrown')
+    call check%that(trace%event(1)%pin == crank_pin, 'a crank pin in free flight comes into contact')
     call check%relative(trace%event(1)%time, 2e-4_dp, 1e-4_dp, &
-      'comes to its wall when the gap is crossed, but for the turning of the rod')
-    call check%relative(trace%event(1)%normal_speed, 0.5_dp, 2e-4_dp, 'as fast as it was thrown')
+      'time of flight of the crank pin, except for the rotation of the rod')
+    call check%relative(trace%event(1)%normal_speed, 0.5_dp, 2e-4_dp, 'impact speed of the crank pin is its initial speed')
   end subroutine starts_anywhere_in_its_bearing
 
-  !> That of the crank pin alone is the mechanism with ideal pins.
+  !> The ideal twin of a case with clearance at the crank pin only is the mechanism with ideal pins.
   subroutine has_an_ideal_twin(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: twin, ideal
@@ -169,9 +174,9 @@ contains
     ideal = run_case(alone, [character(len=long) :: 'integrator.revolutions=1', 'crank_pin.joint=none', 'contact=none', &
       'friction=none'])
     call check%that(.not. allocated(ideal%error) .and. size(twin%event) == 0, 'a twin')
-    call check%that(all(shape(twin%values) == shape(ideal%values)), 'without columns of a joint')
+    call check%that(all(shape(twin%values) == shape(ideal%values)), 'the ideal twin has no columns of a joint')
     if (all(shape(twin%values) == shape(ideal%values))) &
-      call check%that(all(abs(twin%values - ideal%values) <= 0), 'is the mechanism with ideal pins')
+      call check%that(all(abs(twin%values - ideal%values) <= 0), 'the ideal twin is the mechanism with ideal pins')
   end subroutine has_an_ideal_twin
 
   !> In every row the force at the crank pin that the motion of the rod requires is that of the laws, and the energy is conserved.
@@ -190,14 +195,14 @@ contains
                  contact => hypot(of('crank_pin_normal_force[N]'), of('crank_pin_friction_force[N]')), &
                  film => hypot(of('crank_pin_film_force_x[N]'), of('crank_pin_film_force_y[N]')))
         call check%close_to(maxval(abs(force - contact - film))/maxval(force), 0.0_dp, 1e-11_dp, &
-          trim(files(i))//': F3, F4 are the laws''')
-        call check%that(any(force > 10), 'which press')
+          trim(files(i))//': F3, F4 are the forces of the laws')
+        call check%that(any(force > 10), 'the joint forces are not zero')
       end associate
     end do
 
   contains
 
-    !> A column, 0 where there is none.
+    !> A column; 0 if it does not exist.
     function of(name) result(values)
       character(len=*), intent(in) :: name
       real(dp) :: values(size(trace%values, 2))
@@ -206,7 +211,7 @@ contains
     end function of
   end subroutine energy_and_reactions
 
-  !> With nearly no clearance and increasing contact stiffness without loss the motion converges to that of an ideal crank pin.
+  !> With nearly no clearance, increasing contact stiffness and no loss, the motion converges to that of an ideal crank pin.
   subroutine a_stiff_crank_pin_is_an_ideal_one(check)
     class(checks_t), intent(inout) :: check
     character(len=long), parameter :: common(6) = [character(len=long) :: 'integrator.revolutions=0', 'integrator.end_time=6e-4', &
@@ -217,18 +222,18 @@ contains
     real(dp) :: off(2)
     integer :: i
     ideal = run_case(both, [character(len=long) :: common(:5), 'crank_pin.joint=none'])
-    call check%that(size(ideal%event) > 0 .and. all(ideal%event%pin == piston_pin), 'the piston pin alone')
+    call check%that(size(ideal%event) > 0 .and. all(ideal%event%pin == piston_pin), 'an ideal crank pin has no events')
     do i = 1, size(stiffness)
       loose = run_case(both, [character(len=long) :: common, 'crank_pin.joint.clearance=1e-7', stiffness(i)])
-      call check%that(.not. allocated(loose%error), 'a stiff crank pin')
+      call check%that(.not. allocated(loose%error), 'a run with a stiff crank pin')
       off(i) = maxval(abs(loose%values(column(loose, 'rod_angle[rad]'), :) - ideal%values(column(ideal, 'rod_angle[rad]'), :)))
     end do
-    call check%that(off(2) < 0.3_dp*off(1), 'nearer to the ideal one the stiffer it is')
+    call check%that(off(2) < 0.3_dp*off(1), 'a stiffer crank pin is nearer to the ideal one')
     call check%close_to(off(2), 0.0_dp, 5e-6_dp, 'rod angle with a stiff crank pin [rad]')
   end subroutine a_stiff_crank_pin_is_an_ideal_one
 
-  !> Two dry joints with friction, one, two with films that fail, contact and friction, and two with films that carry: the same by
-  !> each method at two tolerances.
+  !> Two dry joints with friction; one or two with films, contact and friction; and two with films that carry the load: the results
+  !> are the same by each method at two tolerances.
   subroutine methods_agree(check)
     class(checks_t), intent(inout) :: check
     character(len=5), parameter :: methods(3) = [character(len=5) :: 'adams', 'radau', 'auto']
@@ -274,7 +279,7 @@ contains
     end function distance
   end subroutine methods_agree
 
-  !> A crank held at rest: the frame carries the weights, the drive their moment by virtual work, wherever gravity points.
+  !> A crank held at rest: the frame carries the weights and the drive their moment, by virtual work, for any direction of gravity.
   subroutine gravity_holds_still(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: angles(4) = [0.0_dp, 30.0_dp, 90.0_dp, 215.0_dp], r = 0.05_dp, l = 0.12_dp, g = 9.81_dp
@@ -289,8 +294,10 @@ contains
       write (overrides(6), '(a,f0.1)') 'mechanism.gravity_angle_deg=', angles(i)
       trace = run_case('cases/flores/ideal.nml', overrides)
       associate (a => angles(i)*degree)
-        call check%close_to(of('frame_force_x[N]'), sum(mass)*g*cos(a), 1e-12_dp, 'the frame holds the weights along the cylinder')
-        call check%close_to(of('frame_force_y[N]'), sum(mass)*g*sin(a), 1e-12_dp, 'and across it')
+        call check%close_to(of('frame_force_x[N]'), sum(mass)*g*cos(a), 1e-12_dp, &
+          'the frame carries the weights along the cylinder')
+        call check%close_to(of('frame_force_y[N]'), sum(mass)*g*sin(a), 1e-12_dp, &
+          'the frame carries the weights across the cylinder')
         call check%close_to(of('crank_moment[N.m]'), (height(q + h, a) - height(q - h, a))/(2*h), 1e-9_dp, 'moment of the weights')
         call check%close_to(of('energy[J]'), height(q, a), 1e-13_dp, 'energy of the weights')
       end associate
@@ -315,7 +322,7 @@ contains
     end function height
   end subroutine gravity_holds_still
 
-  !> Half a turn of gravity is gravity with the other sign; across the cylinder the energy is kept with any loose pins.
+  !> Gravity turned by 180 degrees is gravity with the opposite sign; with gravity across the cylinder the energy residual is small.
   subroutine gravity_does_work(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: up, turned
@@ -327,9 +334,11 @@ contains
     do i = 1, size(files)
       up = run_case(trim(files(i)), [character(len=long) :: common, 'mechanism.gravity=-300'])
       turned = run_case(trim(files(i)), [character(len=long) :: common, 'mechanism.gravity=300', 'mechanism.gravity_angle_deg=180'])
-      call check%close_to(maxval(abs(up%values(2, :) - turned%values(2, :))), 0.0_dp, 1e-8_dp, trim(files(i))//': half a turn')
+      call check%close_to(maxval(abs(up%values(2, :) - turned%values(2, :))), 0.0_dp, 1e-8_dp, &
+        trim(files(i))//': gravity turned by half a revolution')
       turned = run_case(trim(files(i)), [character(len=long) :: common, 'mechanism.gravity=300', 'mechanism.gravity_angle_deg=90'])
-      call check%that(maxval(abs(up%values(2, :) - turned%values(2, :))) > 1e-4_dp, 'a quarter turn is something else')
+      call check%that(maxval(abs(up%values(2, :) - turned%values(2, :))) > 1e-4_dp, &
+        'gravity turned by a quarter revolution changes the motion')
       call check%close_to(turned%report%figures%max_energy_residual/turned%report%figures%max_energy, 0.0_dp, 1e-10_dp, &
         trim(files(i))//': energy under gravity across the cylinder')
     end do

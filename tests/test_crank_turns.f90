@@ -1,4 +1,5 @@
-!> Runs that end when the crank has made a number of turns: closed forms, all kinds of scenes, cranks that do not reach that number.
+!> Runs that end after a number of revolutions of the crank: closed forms, all kinds of scenes, cranks that do not reach that
+!> number.
 module test_crank_turns
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
@@ -18,16 +19,16 @@ module test_crank_turns
   integer, parameter :: long = 60
   character(len=8), parameter :: methods(3) = [character(len=8) :: 'adams', 'radau', 'auto']
 
-  !> A crank alone, of the inertia 0.02 kg m^2: the piston has next to no mass.
+  !> A crank with the inertia 0.02 kg m^2; the mass of the piston is negligible.
   real(dp), parameter :: inertia = 0.02_dp
   character(len=long), parameter :: crank_alone(9) = [character(len=long) :: 'mechanism.crank_inertia=0.02', &
     'mechanism.crank_mass=0', 'mechanism.rod_mass=0', 'mechanism.rod_inertia=0', 'mechanism.piston_mass=1e-12', &
     'mechanism.gravity=0', 'drive.kind=free', 'output.interval=0.01', 'integrator.relative_tolerance=1e-10']
 
-  !> Stores the messages about the end.
+  !> Stores the reported times of the end.
   type, extends(collecting_sink_t) :: hearing_sink_t
     integer :: reports = 0
-    real(dp) :: earliest = huge(1.0_dp), latest = 0   !! ends that it was to expect, but for the last report
+    real(dp) :: earliest = huge(1.0_dp), latest = 0   !! expected times of the end, without the last report
     real(dp) :: last = 0
   contains
     procedure :: take_progress => hear
@@ -46,8 +47,8 @@ contains
     call the_end_is_expected(check)
   end subroutine run_test_crank_turns
 
-  !> A torque tau: the way is w t + tau t^2/(2 I), forwards, backwards and from rest, once slowing down all the way; a damping D:
-  !> it is w I/D (1 - exp(-D t/I)).
+  !> With a torque tau the angle is w t + tau t^2/(2 I): forwards, backwards, from rest, and with deceleration until the end; with a
+  !> damping D it is w I/D (1 - exp(-D t/I)).
   subroutine cranks_in_closed_form(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: way = 3.25_dp*two_pi
@@ -69,7 +70,7 @@ contains
     end function root
   end subroutine cranks_in_closed_form
 
-  !> Three turns and a quarter from 100 degrees on end at a time, and exactly there.
+  !> Three and a quarter revolutions from 100 degrees end at the given time and exactly at the angle.
   subroutine ends_at(check, method, speed, force, time)
     class(checks_t), intent(inout) :: check
     integer, intent(in) :: method
@@ -84,12 +85,14 @@ contains
       call check%relative(f%time, time, 1e-8_dp, name//': time')
       call check%close_to(abs(f%crank_travel), 3.25_dp*two_pi, 1e-9_dp, name//': way')
       call check%that(trace%values(1, size(trace%values, 2)) <= f%time, name//': no row after the end')
-      call check%that(trace%values(1, size(trace%values, 2)) > f%time - 0.01_dp*(1 + 1e-9_dp), name//': none is missing before')
+      call check%that(trace%values(1, size(trace%values, 2)) > f%time - 0.01_dp*(1 + 1e-9_dp), &
+        name//': no row before the end is missing')
     end associate
   end subroutine ends_at
 
   !> A torque against the rotation turns the crank back after I w^2/(2 tau); a pendulum released at 90 degrees swings to 270;
-  !> damping stops a crank after I w/D, within the tolerance; end_time is reached first; a crank at rest without loads.
+  !> damping stops a crank after I w/D, within the tolerance; end_time may be reached first; and a crank may be at rest without
+  !> loads.
   subroutine cranks_that_do_not_get_there(check)
     class(checks_t), intent(inout) :: check
     integer :: k
@@ -110,8 +113,8 @@ contains
     end do
   end subroutine cranks_that_do_not_get_there
 
-  !> A damping leaves a crank the speed tau/D. The run ends when a turn has taken as long as a hundred at the starting speed; but
-  !> not with a latest end of its own.
+  !> A damping leaves the crank with the speed tau/D. The run ends when a revolution takes as long as a hundred at the starting
+  !> speed, except if it has an end_time.
   subroutine cranks_that_creep(check)
     class(checks_t), intent(inout) :: check
     character(len=long), parameter :: slow(4) = [character(len=long) :: 'initial.crank_speed=30', 'drive.torque=0.001', &
@@ -122,7 +125,7 @@ contains
     real(dp) :: damping, ends
     integer :: k, turns, ending
     do k = 1, size(methods)
-      do turns = 0, 2, 2      ! whole ones, before it creeps
+      do turns = 0, 2, 2      ! whole revolutions before the crank is so slow
         do ending = 1, 2
           end_of_run = merge('integrator.crank_revolutions=1000', 'run.until=periodic               ', ending == 1)
           key = merge(' of 1000 revolutions (&integrator crank_', ' of 1000 revolutions (&run most_revoluti', ending == 1)
@@ -136,26 +139,26 @@ contains
               index(status, trim(key)) > 0, status)
             ends = 100*two_pi/30
             if (turns > 0) ends = ends - inertia/damping*log(1 - turns*two_pi*damping/(30*inertia))
-            call check%relative(t, ends, 5e-3_dp, trim(methods(k))//': when a crank that creeps is given up')
-            call check%close_to(abs(trace%report%figures%crank_travel), way_at(t, damping), 1e-6_dp, 'its way')
+            call check%relative(t, ends, 5e-3_dp, trim(methods(k))//': time at which a run with a creeping crank ends')
+            call check%close_to(abs(trace%report%figures%crank_travel), way_at(t, damping), 1e-6_dp, 'angle of a creeping crank')
           end associate
         end do
       end do
       trace = run_case('cases/flores/ideal.nml', [character(len=long) :: crank_alone(:7), crank_alone(9), slow, &
         'integrator.method='//methods(k), 'drive.damping=0.1', 'integrator.crank_revolutions=2', 'integrator.end_time=40'])
-      call check%relative(trace%report%figures%time, 40.0_dp, 1e-12_dp, 'a crank that creeps has until its latest end')
+      call check%relative(trace%report%figures%time, 40.0_dp, 1e-12_dp, 'a run with a creeping crank continues until end_time')
     end do
 
   contains
 
-    !> Long after the start [rad].
+    !> Angle long after the start [rad].
     pure real(dp) function way_at(t, damping)
       real(dp), intent(in) :: t, damping
       way_at = inertia*(30 - 1e-3_dp/damping)/damping + 1e-3_dp/damping*t
     end function way_at
   end subroutine cranks_that_creep
 
-  !> A run of two turns that ends before, with exit status 4.
+  !> A run of two revolutions that ends earlier, with exit status 4.
   subroutine fails(check, method, overrides, status, way)
     class(checks_t), intent(inout) :: check
     integer, intent(in) :: method
@@ -169,10 +172,11 @@ contains
     call check%that(trace%error%status == status_integration, 'exit status 4: '//status)
     call check%that(index(trace%report%status, status) == 1, trace%report%status//' begins with '//status)
     call check%close_to(abs(trace%report%figures%crank_travel), way, 1e-7_dp, status//': way')
-    call check%that(.not. trace%report%can_go_on .and. size(trace%values, 2) > 0, status//': it cannot go on, its rows stay')
+    call check%that(.not. trace%report%can_go_on .and. size(trace%values, 2) > 0, &
+      status//': the run cannot be resumed and its rows are kept')
   end subroutine fails
 
-  !> Held at its speed a crank makes its turns in the time that `revolutions` takes: the same run.
+  !> At constant speed the crank makes its revolutions in the time given by `revolutions`: both keys give the same run.
   subroutine held_cranks_turn_as_before(check)
     class(checks_t), intent(inout) :: check
     character(len=30), parameter :: files(3) = [character(len=30) :: 'flores/dry_0500um', 'wiebe/wiebe_340', 'flores/ideal']
@@ -185,14 +189,14 @@ contains
         'integrator.crank_revolutions=1.5', 'integrator.end_time=9'])
       call check%that(.not. (allocated(one%error) .or. allocated(other%error)), trim(files(i))//', held: done')
       call check%that(one%report%statistics%evaluations == other%report%statistics%evaluations, &
-        trim(files(i))//', held: the same run')
+        trim(files(i))//', constant speed: the same run')
       call check%that(size(one%values, 2) == size(other%values, 2) .and. size(one%values, 2) > 1000, trim(files(i))//', held: rows')
       call check%close_to(abs(other%report%figures%crank_travel), 1.5_dp*two_pi, 1e-11_dp, trim(files(i))//', held: way')
     end do
   end subroutine held_cranks_turn_as_before
 
-  !> With film, contact, friction and gas, where 720 degrees are also a bound of the gas cycle, and for the ideal twin: the run ends
-  !> exactly at the number of turns, at the time at which a trace has that angle.
+  !> Scenes with film, contact, friction and gas, where 720 degrees is also a boundary of the gas cycle, and the ideal twin: the run
+  !> ends exactly at the number of revolutions, at the time at which the trace has that angle.
   subroutine all_scenes_end_at_their_turns(check)
     class(checks_t), intent(inout) :: check
     character(len=30), parameter :: files(6) = [character(len=30) :: 'sim_I', 'sim_IV', 'sim_II_oscillating', &
@@ -225,14 +229,14 @@ contains
                  speed => trace%values(column(trace, 'crank_speed[rad/s]'), :), t => trace%values(1, :))
         call check%close_to(f%crank_travel, wanted, 1e-10_dp, what//': way')
         last = size(t)
-        before = t(last) + (wanted - (angle(last) - angle(1)))/speed(last)   ! by the tangent of the last row
+        before = t(last) + (wanted - (angle(last) - angle(1)))/speed(last)   ! by the speed in the last row
         call check%close_to(f%time, before, 1e-3_dp*(t(2) - t(1)), what//': time')
         call check%that(t(last) <= f%time .and. f%time < t(last) + (t(2) - t(1))*(1 + 1e-9_dp), what//': rows up to the end')
       end associate
     end subroutine judge
   end subroutine all_scenes_end_at_their_turns
 
-  !> The statistics of a sweep have every revolution, the last one too.
+  !> The statistics of a sweep include every revolution, also the last one.
   subroutine revolutions_are_whole(check)
     class(checks_t), intent(inout) :: check
     character(len=30), parameter :: files(3) = [character(len=30) :: 'sim_I', 'sim_IV_oscillating', 'flores/ideal']
@@ -251,12 +255,13 @@ contains
       allocate (collecting_sink_t :: sink)
       call simulate(case, .false., no_rows, sink, report, error, cycles=watch)
       call check%that(.not. allocated(error) .and. watch%statistics%cycles == 3, trim(files(i))//': three revolutions')
-      call check%relative(watch%statistics%total%duration, report%figures%time, 1e-12_dp, trim(files(i))//': they are all of it')
+      call check%relative(watch%statistics%total%duration, report%figures%time, 1e-12_dp, &
+        trim(files(i))//': revolutions add up to the whole run')
       deallocate (watch, sink)
     end do
   end subroutine revolutions_are_whole
 
-  !> While a crank slows, the end that is expected comes near the end that it has.
+  !> While a crank decelerates, the expected time of the end is near the actual time.
   subroutine the_end_is_expected(check)
     class(checks_t), intent(inout) :: check
     type(case_t) :: case
@@ -269,13 +274,13 @@ contains
       case, error)
     allocate (hearing_sink_t :: sink)
     call simulate(case, .false., no_rows, sink, report, error)
-    call check%that(.not. allocated(error), 'a long run by turns')
+    call check%that(.not. allocated(error), 'a long run of a number of revolutions')
     select type (sink)
     type is (hearing_sink_t)
       associate (time => report%figures%time)
-        call check%that(sink%reports > 5, 'it reports')
-        call check%that(sink%earliest > 0.8_dp*time .and. sink%latest < 1.1_dp*time, 'and the end is expected within 20 %')
-        call check%close_to(sink%last, time, 0.0_dp, 'at last where it is')
+        call check%that(sink%reports > 5, 'the end is reported')
+        call check%that(sink%earliest > 0.8_dp*time .and. sink%latest < 1.1_dp*time, 'expected time of the end is within 20 %')
+        call check%close_to(sink%last, time, 0.0_dp, 'last report has the time of the end')
       end associate
     end select
   end subroutine the_end_is_expected

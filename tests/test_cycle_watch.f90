@@ -29,7 +29,7 @@ contains
     call strobes_are_at_their_angle(check)
   end subroutine run_test_cycle_watch
 
-  !> Run cases/FILE without a row, watched.
+  !> Run cases/FILE without rows, with statistics of revolutions.
   subroutine run_watched(file, overrides, strobe_columns, watch, report)
     character(len=*), intent(in) :: file, overrides(:), strobe_columns
     type(cycle_watch_t), allocatable, intent(inout) :: watch
@@ -54,7 +54,7 @@ contains
     end select
   end subroutine run_watched
 
-  !> With clearance the measures take no part in the control of the step: every figure of the run is the same to the last bit.
+  !> With clearance the statistics do not influence the step size: every figure of the run is the same to the last bit.
   subroutine watching_changes_nothing(check)
     class(checks_t), intent(inout) :: check
     character(len=60), parameter :: files(2) = [character(len=60) :: 'cases/sim_I.nml', 'cases/flores/friction_050.nml']
@@ -93,8 +93,8 @@ contains
       'cases/flores/friction_050.nml']
     character(len=8), parameter :: methods(3) = [character(len=8) :: 'auto', 'radau', 'adams']
     character(len=long), parameter :: tolerances(3) = [character(len=long) :: 'integrator.relative_tolerance=1e-10', &
-      'integrator.relative_tolerance=1e-6', 'integrator.relative_tolerance=1e-6']   ! with contact: chaotic, so that of the run
-    real(dp), parameter :: force_within(3) = [2e-5_dp, 5e-5_dp, 2e-5_dp]   ! the second: 1e-5 to 3e-5 as the chaos goes
+      'integrator.relative_tolerance=1e-6', 'integrator.relative_tolerance=1e-6']   ! chaotic with contact
+    real(dp), parameter :: force_within(3) = [2e-5_dp, 5e-5_dp, 2e-5_dp]   ! the second is chaotic: 1e-5 to 3e-5
     character(len=long) :: overrides(5)
     type(cycle_watch_t), allocatable :: watch
     type(run_report_t) :: report
@@ -117,8 +117,8 @@ contains
       energy(:) = trace%values(4, :)
       force(:) = norm2(trace%values(2:3, :), 1)
       associate (s => watch%statistics)
-        call check%that(s%cycles >= 1, trim(name)//': a revolution was counted')
-        m = count(t <= s%total%duration)   ! the rows of the revolutions counted, the last one cut
+        call check%that(s%cycles >= 1, trim(name)//': at least one revolution')
+        m = count(t <= s%total%duration)   ! the rows of the counted revolutions
         lost = sum(0.5_dp*(force(2:m) + force(:m - 1))*(t(2:m) - t(:m - 1))) + force(m)*(s%total%duration - t(m))
         call check%relative(s%total%pin(piston_pin)%force_integral, lost, force_within(i), trim(name)//': integral of the force')
         lost = energy(1) - energy(m) - (energy(min(n, m + 1)) - energy(m))* &
@@ -133,8 +133,8 @@ contains
     end do
   end subroutine means_are_those_of_the_trace
 
-  !> With the crank held every revolution takes the same time and the last one counts; all of them together have the figures
-  !> of the run. Revolutions at the start can be left out, and a watch can be used again.
+  !> At constant speed every revolution takes the same time, and the last one counts; all of them together have the figures
+  !> of the run. Revolutions at the start can be left out, and a watch can be used for another run.
   subroutine revolutions_follow_the_crank(check)
     class(checks_t), intent(inout) :: check
     type(cycle_watch_t), allocatable :: watch, forwards
@@ -145,10 +145,10 @@ contains
     watch%keeps_cycles = .true.
     call run_watched('cases/flores/dry_0500um.nml', [character(len=long) :: 'integrator.revolutions=3'], '', watch, report)
     associate (s => watch%statistics, f => report%figures)
-      call check%that(s%cycles == 3, 'three revolutions')
+      call check%that(s%cycles == 3, 'constant speed: three revolutions')
       call check%relative(s%total%duration, f%time, 1e-13_dp, 'duration')
       do i = 1, s%cycles
-        call check%relative(watch%cycles(i)%duration, f%time/3, 1e-12_dp, 'duration of each')
+        call check%relative(watch%cycles(i)%duration, f%time/3, 1e-12_dp, 'duration of each revolution')
       end do
       call check%that(s%total%pin(piston_pin)%impacts == f%pin(piston_pin)%contacts, 'contacts')
       call check%relative(s%total%pin(piston_pin)%contact_time, f%pin(piston_pin)%contact_time, 1e-12_dp, 'contact time')
@@ -157,15 +157,16 @@ contains
       call check%relative(s%total%pin(piston_pin)%min_film_thickness, f%pin(piston_pin)%min_film_thickness, 0.0_dp, 'thinnest film')
       call check%relative(s%max_force_mean(piston_pin), sum(watch%cycles(:3)%pin(piston_pin)%max_force)/3, 1e-14_dp, &
         'mean of largest forces')
-      call check%that(s%max_force_mean(piston_pin) < s%total%pin(piston_pin)%max_force, 'the mean is not the largest')
+      call check%that(s%max_force_mean(piston_pin) < s%total%pin(piston_pin)%max_force, &
+        'the mean force is smaller than the largest')
       call check%relative(s%min_film_thickness_mean(piston_pin), sum(watch%cycles(:3)%pin(piston_pin)%min_film_thickness)/3, &
-        1e-14_dp, 'mean film')
+        1e-14_dp, 'mean of smallest film thicknesses')
       late = watch%cycles(3)%pin(piston_pin)%force_integral
     end associate
     watch%settle = 2
     call run_watched('cases/flores/dry_0500um.nml', [character(len=long) :: 'integrator.revolutions=3'], '', watch, report)
     call check%that(watch%statistics%cycles == 1, 'two revolutions are left out')
-    call check%relative(watch%statistics%total%pin(piston_pin)%force_integral, late, 0.0_dp, 'the third is counted')
+    call check%relative(watch%statistics%total%pin(piston_pin)%force_integral, late, 0.0_dp, 'the third revolution is counted')
     watch%settle = 0
     ! the mechanism of simulation I is its own mirror image
     call run_watched('cases/sim_I.nml', [character(len=long) :: 'integrator.revolutions=2.5', 'integrator.method=auto'], '', &
@@ -173,22 +174,22 @@ contains
     travel = report%figures%crank_travel
     call run_watched('cases/sim_I.nml', [character(len=long) :: 'integrator.revolutions=2.5', 'integrator.method=auto', &
       'initial.crank_speed=-250'], '', watch, report)
-    call check%that(watch%statistics%cycles == 2, 'a crank that turns backwards has revolutions too')
-    call check%relative(-report%figures%crank_travel, travel, 1e-6_dp, 'as far as one that turns forwards')
+    call check%that(watch%statistics%cycles == 2, 'revolutions of a crank that turns backwards')
+    call check%relative(-report%figures%crank_travel, travel, 1e-6_dp, 'a crank turns equally far backwards and forwards')
     call check%relative(watch%statistics%total%pin(piston_pin)%force_integral, &
-      forwards%statistics%total%pin(piston_pin)%force_integral, 1e-4_dp, 'with the same force')
+      forwards%statistics%total%pin(piston_pin)%force_integral, 1e-4_dp, 'force is the same backwards and forwards')
     call check%relative(watch%statistics%total%dissipated_energy, forwards%statistics%total%dissipated_energy, 1e-4_dp, &
-      'and the same loss')
+      'loss is the same backwards and forwards')
     call run_watched('cases/flores/ideal.nml', [character(len=long) :: 'integrator.revolutions=2'], '', watch, report)
     call check%that(watch%statistics%cycles == 2, 'ideal joint: two revolutions')
-    call check%that(watch%statistics%total%pin(piston_pin)%impacts == 0, 'and no impact')
+    call check%that(watch%statistics%total%pin(piston_pin)%impacts == 0, 'ideal joint: no impact')
     late = watch%statistics%total%pin(piston_pin)%force_integral
     call run_watched('cases/flores/ideal.nml', [character(len=long) :: 'integrator.revolutions=2', &
       'integrator.relative_tolerance=1e-11'], '', watch, report)
-    call check%relative(late, watch%statistics%total%pin(piston_pin)%force_integral, 2e-5_dp, 'ideal joint: force to the tolerance')
+    call check%relative(late, watch%statistics%total%pin(piston_pin)%force_integral, 2e-5_dp, 'ideal joint: integral of the force')
   end subroutine revolutions_follow_the_crank
 
-  !> The loss of the joint from the work, and integrated separately where a very small damping requires that; and the means at loose
+  !> The loss of the joint from the work; integrated separately if a very small damping requires it; and the means at larger
   !> tolerances, for starting angles at which the force at the ends of revolutions is small or large.
   subroutine losses_are_the_same_however_found(check)
     class(checks_t), intent(inout) :: check
@@ -206,15 +207,15 @@ contains
       loss = watch%statistics%dissipated_energy_mean()
       force = watch%statistics%total%pin(piston_pin)%force_integral
       call run_watched('cases/sim_I.nml', [character(len=long) :: overrides, 'drive.damping=1e-20'], '', watch, report)
-      call check%relative(watch%statistics%dissipated_energy_mean(), loss, 1e-6_dp, 'loss of the joint by itself')
+      call check%relative(watch%statistics%dissipated_energy_mean(), loss, 1e-6_dp, 'loss of the joint integrated separately')
       overrides(3) = 'integrator.relative_tolerance=1e-4'
       call run_watched('cases/sim_I.nml', overrides, '', loose, report)
-      call check%relative(loose%statistics%dissipated_energy_mean(), loss, 1e-4_dp, 'loss at a loose tolerance')
-      call check%relative(loose%statistics%total%pin(piston_pin)%force_integral, force, 1e-4_dp, 'force at a loose tolerance')
+      call check%relative(loose%statistics%dissipated_energy_mean(), loss, 1e-4_dp, 'loss at a large tolerance')
+      call check%relative(loose%statistics%total%pin(piston_pin)%force_integral, force, 1e-4_dp, 'force at a large tolerance')
     end do
   end subroutine losses_are_the_same_however_found
 
-  !> The crank angle of each strobe, and the pin's place against a trace at those instants.
+  !> The crank angle of each strobe, and the pin's position against a trace at the same times.
   subroutine strobes_are_at_their_angle(check)
     class(checks_t), intent(inout) :: check
     type(cycle_watch_t), allocatable :: watch
@@ -232,7 +233,7 @@ contains
     do i = 1, min(3, watch%strobes)
       angle = watch%strobe_values(1, i)
       call check%close_to(angle, (i - 0.75_dp)*two_pi, 1e-8_dp, 'crank angle of a strobe')
-      call check%relative(watch%strobe_values(2, i), trace%values(2, 4*i - 2), 1e-9_dp, 'eccentricity there')
+      call check%relative(watch%strobe_values(2, i), trace%values(2, 4*i - 2), 1e-9_dp, 'eccentricity of a strobe')
     end do
     watch%most_strobes = 1
     watch%settle = 1
@@ -240,6 +241,6 @@ contains
     call run_watched('cases/flores/lubricated_400cP.nml', [character(len=long) :: 'integrator.revolutions=3'], &
       'crank_angle, eccentricity_x', watch, report)
     call check%that(watch%strobes == 1, 'one strobe')
-    call check%close_to(watch%strobe_values(1, 1), 2*two_pi, 1e-8_dp, 'at the end of the second revolution')
+    call check%close_to(watch%strobe_values(1, 1), 2*two_pi, 1e-8_dp, 'strobe at the end of the second revolution')
   end subroutine strobes_are_at_their_angle
 end module test_cycle_watch

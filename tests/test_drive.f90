@@ -1,4 +1,4 @@
-!> Drives that vary: a prescribed speed with run-up, a torque that depends on the speed, a flywheel.
+!> Drives that vary: a prescribed speed with a ramp, a torque that depends on the speed, a flywheel.
 module test_drive
   use gudgeon_kinds, only: dp
   use ode_problem, only: difference_jacobian
@@ -50,18 +50,18 @@ contains
       call check%close_to((drive%turned(t + h) - drive%turned(t - h))/(2*h), drive%speed(t), 1e-5_dp, &
         'the speed is the rate of the angle')
       call check%close_to((drive%speed(t + h) - drive%speed(t - h))/(2*h), drive%acceleration(t), 1e-3_dp, &
-        'the acceleration that of the speed')
+        'the acceleration is the rate of the speed')
     end do
     call check%close_to(drive%speed(0.0_dp), -20.0_dp, 1e-15_dp, 'first speed')
-    call check%close_to(drive%speed(0.2_dp), 140.0_dp, 1e-12_dp, 'half way it is the mean')
+    call check%close_to(drive%speed(0.2_dp), 140.0_dp, 1e-12_dp, 'speed at half of the ramp is the mean')
     call check%close_to(drive%speed(7.0_dp), 300.0_dp, 1e-15_dp, 'last speed')
-    call check%close_to(drive%turned(1.4_dp), 140*0.4_dp + 300, 1e-12_dp, 'angle: the mean speed, and the last one')
+    call check%close_to(drive%turned(1.4_dp), 140*0.4_dp + 300, 1e-12_dp, 'angle after the ramp')
     call check%close_to(drive%acceleration(0.0_dp) + drive%acceleration(0.4_dp) + drive%acceleration(9.0_dp), 0.0_dp, 1e-15_dp, &
       'no acceleration at the ends')
   end subroutine speed_of_a_ramp
 
-  !> A crank, a massless rod and a piston held on a ramp, without gravity: the moment is I q'' + m x'' dx/dq with x(q) and its
-  !> derivatives as the textbook has them.
+  !> A crank, a massless rod and a piston with a ramp of the speed, without gravity: the moment is I q'' + m x'' dx/dq with the
+  !> textbook formulas for x(q) and its derivatives.
   subroutine moment_of_an_ideal_ramp(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -71,7 +71,7 @@ contains
     integer :: i
     real(dp), parameter :: r = 0.0508_dp, l = 0.2032_dp, m = 0.5_dp
     trace = run_case(ramp, [settings, alone], .true.)
-    call check%equal_text(outcome(trace), 'done', 'an ideal mechanism is run up')
+    call check%equal_text(outcome(trace), 'done', 'a ramp of an ideal mechanism')
     if (allocated(trace%error)) return
     inertia = 0.006_dp + 0.03_dp
     do i = 1, size(trace%values, 2)
@@ -85,13 +85,13 @@ contains
       first = -r*sin(q) - r**2*sin(q)*cos(q)/root
       second = -r*cos(q) - r**2*(cos(2*q)/root + (r*sin(q)*cos(q))**2/root**3)
       want = inertia*a + m*(first*a + second*w**2)*first
-      call check%close_to(trace%values(column(trace, 'crank_moment[N.m]'), i), want, 1e-7_dp, 'moment that runs it up')
+      call check%close_to(trace%values(column(trace, 'crank_moment[N.m]'), i), want, 1e-7_dp, 'driving moment of the ramp')
     end do
     call check%that(trace%report%figures%max_energy_residual < 1e-8_dp*trace%report%figures%max_energy, &
-      'its energy is the work done')
+      'energy of the ideal ramp is the work of the drive')
   end subroutine moment_of_an_ideal_ramp
 
-  !> With clearance the work of the driving moment agrees with the energy, in the closed form of each chain.
+  !> With clearance the work of the driving moment agrees with the energy, for the closed form of each chain.
   subroutine ramp_with_play(check, place, kind)
     class(checks_t), intent(inout) :: check
     character(len=10), intent(in) :: place(1)
@@ -109,12 +109,12 @@ contains
     call check%equal_text(outcome(trace), 'done', 'a ramp with clearance: '//place(1))
     if (allocated(trace%error)) return
     call check%that(trace%report%figures%max_energy_residual < 1e-6_dp*trace%report%figures%max_energy, &
-      'its energy is the work done: '//place(1))
-    call check%that(maxval(trace%values(column(trace, 'crank_acceleration[rad/s2]'), :)) > 1e4_dp, 'and it is accelerated')
+      'energy of a ramp is the work of the drive: '//place(1))
+    call check%that(maxval(trace%values(column(trace, 'crank_acceleration[rad/s2]'), :)) > 1e4_dp, 'the crank is accelerated')
   end subroutine ramp_with_play
 
-  !> With an elastic rod, ideal pins and loose ones: the moment accelerates the crank against the force that Newton's law of the rod
-  !> asks for at the crank pin, and it does the work that the energy tells.
+  !> With an elastic rod, with ideal pins and with clearance: the moment accelerates the crank against the force at the crank pin
+  !> that follows from Newton's law of the rod, and its work agrees with the energy.
   subroutine ramp_with_elastic_rod(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: r = 0.05_dp, inertia = 1.0e-5_dp + 0.30_dp*0.025_dp**2
@@ -136,9 +136,9 @@ contains
           + r*(values_of('crankpin_force_y[N]')*cos(q) - values_of('crankpin_force_x[N]')*sin(q))
       end associate
       call check%that(trace%report%figures%max_energy_residual < 1e-6_dp*trace%report%figures%max_energy, &
-        'its energy is the work done: '//trim(files(i)))
-      call check%that(maxval(values_of('crank_acceleration[rad/s2]')) > 1e4_dp, 'and it is accelerated')
-      if (i > 2) cycle   ! at a loose crank pin friction turns the crank too
+        'energy of a ramp is the work of the drive: '//trim(files(i)))
+      call check%that(maxval(values_of('crank_acceleration[rad/s2]')) > 1e4_dp, 'the crank is accelerated')
+      if (i > 2) cycle   ! with clearance at the crank pin friction also acts on the crank
       call check%close_to(maxval(abs(values_of('crank_moment[N.m]') - turning)), 0.0_dp, 1e-9_dp*maxval(abs(turning)), &
         'Euler''s equation of the crank: '//trim(files(i)))
     end do
@@ -152,7 +152,7 @@ contains
     end function values_of
   end subroutine ramp_with_elastic_rod
 
-  !> A pure inertia J on a motor of M = M0 (1 - w/w0): w = w0 (1 - exp(-M0 t/(J w0))).
+  !> An inertia J driven by a motor with M = M0 (1 - w/w0): w = w0 (1 - exp(-M0 t/(J w0))).
   subroutine run_up_on_a_line(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -162,20 +162,20 @@ contains
     integer :: i
     real(dp) :: t
     trace = run_case(motor, [settings, alone], .true.)
-    call check%equal_text(outcome(trace), 'done', 'a motor runs an inertia up')
+    call check%equal_text(outcome(trace), 'done', 'a motor accelerates an inertia')
     if (allocated(trace%error)) return
     do i = 1, size(trace%values, 2)
       t = trace%values(1, i)
       call check%close_to(trace%values(column(trace, 'crank_speed[rad/s]'), i), 200*(1 - exp(-30*t/(0.1_dp*200))), 1e-6_dp, &
-        'exponential run-up')
+        'exponential approach to the final speed')
       call check%close_to(trace%values(column(trace, 'crank_moment[N.m]'), i), 30*exp(-30*t/(0.1_dp*200)), 1e-6_dp, &
         'the motor''s torque')
     end do
     call check%that(trace%report%figures%max_energy_residual < 1e-8_dp*trace%report%figures%max_energy, &
-      'its energy is the work done')
+      'energy of the inertia is the work of the motor')
   end subroutine run_up_on_a_line
 
-  !> The closed form of the Jacobian includes the slope of the torque and the acceleration of a prescribed speed.
+  !> The closed form of the Jacobian includes the derivative of the torque and the acceleration of a prescribed speed.
   subroutine slopes_of_a_torque(check)
     class(checks_t), intent(inout) :: check
     type(case_t) :: case
@@ -200,9 +200,10 @@ contains
       allocate (by_p(n, n), by_v(n, n), want_p(n, n), want_v(n, n), source=0.0_dp)
       call scene%jacobian(0.05_dp, y, by_p, by_v)
       call difference_jacobian(scene, 0.05_dp, y, want_p, want_v)
-      call check%that(maxval(abs(by_v - want_v)) < 1e-4_dp*maxval(abs(want_v)), 'derivatives by the rates')
-      call check%that(maxval(abs(by_p - want_p)) < 1e-4_dp*maxval(abs(want_p)), 'derivatives by the positions')
-      if (i == 1) call check%relative(by_v(1, 1), want_v(1, 1), 1e-4_dp, 'of the crank by its speed')
+      call check%that(maxval(abs(by_v - want_v)) < 1e-4_dp*maxval(abs(want_v)), 'derivatives with respect to the rates')
+      call check%that(maxval(abs(by_p - want_p)) < 1e-4_dp*maxval(abs(want_p)), 'derivatives with respect to the positions')
+      if (i == 1) call check%relative(by_v(1, 1), want_v(1, 1), 1e-4_dp, &
+        'derivative of the crank acceleration with respect to its speed')
       deallocate (by_p, by_v, want_p, want_v)
     end do
   end subroutine slopes_of_a_torque
@@ -221,16 +222,16 @@ contains
     shaft = run_case('cases/flores/ideal.nml', [run, [character(len=long) :: 'drive.kind=free', &
       'crankshaft.flywheel_inertia=2e-3', &
       'crankshaft.torsional_stiffness=1e6', 'crankshaft.torsional_damping=20']])
-    call check%equal_text(outcome(flywheel)//outcome(inertia)//outcome(shaft), 'donedonedone', 'three flywheels')
+    call check%equal_text(outcome(flywheel)//outcome(inertia)//outcome(shaft), 'donedonedone', 'three runs with a flywheel')
     if (allocated(flywheel%error) .or. allocated(inertia%error) .or. allocated(shaft%error)) return
     one = speeds(flywheel)
     two = speeds(inertia)
     call check%that(maxval(abs(one/two - 1)) < 1e-12_dp, 'a flywheel adds its inertia')
     two = speeds(shaft)
-    call check%that(maxval(abs(one/two - 1)) < 1e-3_dp, 'as one on a stiff shaft does')
+    call check%that(maxval(abs(one/two - 1)) < 1e-3_dp, 'a flywheel on a stiff shaft adds its inertia')
   end subroutine a_flywheel_is_inertia
 
-  !> How a run ended, or why it did not begin.
+  !> How a run ended, or the reason why it did not begin.
   function outcome(trace) result(text)
     type(trace_t), intent(in) :: trace
     character(len=:), allocatable :: text
@@ -264,7 +265,7 @@ contains
       type(error_t), allocatable :: error
       call read_case(file, [setting], case, error)
       call check%that(allocated(error), 'refused: '//setting)
-      if (allocated(error)) call check%that(index(error%message, wanted) > 0, 'in these words: '//setting)
+      if (allocated(error)) call check%that(index(error%message, wanted) > 0, 'message for '//setting)
     end subroutine refused
   end subroutine what_does_not_fit
 end module test_drive

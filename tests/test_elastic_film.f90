@@ -42,7 +42,7 @@ contains
     call refuses(check)
   end subroutine run_test_elastic_film
 
-  !> The force at the velocity that is found is against the load and of its size, for every film, place and direction.
+  !> The force at the velocity that is found is opposite to the load and equal in size, for every film, position and direction.
   subroutine inverse_of_the_force(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: keys(6) = [character(len=100) :: "variant='closed_form'", "variant='half_film'", &
@@ -59,7 +59,7 @@ contains
       call film_law_of('viscosity=0.0117 '//trim(keys(i)), 1e-6_dp, film, error)
       call check%that(.not. allocated(error), 'a film of '//keys(i))
       if (allocated(error)) cycle
-      call check%that(film%is_quasi_static(), 'is quasi-static')
+      call check%that(film%is_quasi_static(), 'a film between elastic walls is quasi-static')
       do j = 1, size(ratios)
         worst = 0
         do k = 0, 24
@@ -71,18 +71,19 @@ contains
           motion%turning_speed = 0
           call film%film_force(motion, force, moment)
           worst = max(worst, norm2(force + load)/norm2(load))
-          call check%that(dot_product(velocity, load) >= 0, 'the load drives the pin')
+          call check%that(dot_product(velocity, load) >= 0, 'the pin moves in the direction of the load')
         end do
-        call check%close_to(worst, 0.0_dp, merge(1e-7_dp, 1e-9_dp, ratios(j) > 0.99_dp), 'the force is against the load: '//keys(i))
+        call check%close_to(worst, 0.0_dp, merge(1e-7_dp, 1e-9_dp, ratios(j) > 0.99_dp), &
+          'the force is opposite to the load: '//keys(i))
       end do
     end do
     call film_law_of("viscosity=0.0117 variant='as_printed'", 1e-6_dp, film, error)
-    call check%that(.not. film%is_quasi_static(), 'the misprinted film is not against the motion')
+    call check%that(.not. film%is_quasi_static(), 'the misprinted film is not quasi-static')
     call driven_velocity(film, [0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp], velocity)
     call check%that(all(abs(velocity) <= 0), 'no load, no velocity')
   end subroutine inverse_of_the_force
 
-  !> Half of Sommerfeld's long centred film, 12 pi mu L R^3/c^3, carries it.
+  !> The load is carried by half of Sommerfeld's long centred film, 12 pi mu L R^3/c^3.
   subroutine centred_film(check)
     class(checks_t), intent(inout) :: check
     class(film_law_t), allocatable :: film
@@ -91,11 +92,11 @@ contains
     call film_law_of("viscosity=0.0117 variant='half_film'", 1e-6_dp, film, error)
     call driven_velocity(film, [0.0_dp, 0.0_dp], [300.0_dp, -400.0_dp], velocity)
     call check%relative(norm2(velocity), 500/(6*acos(-1.0_dp)*0.0117_dp*15e-3_dp*(10e-3_dp - c)**3/c**3), 1e-12_dp, &
-      'a centred film')
-    call check%relative(velocity(1)/velocity(2), -0.75_dp, 1e-12_dp, 'lets go along the load')
+      'velocity of a centred film')
+    call check%relative(velocity(1)/velocity(2), -0.75_dp, 1e-12_dp, 'velocity of a centred film is in the direction of the load')
   end subroutine centred_film
 
-  !> The closed-form Jacobian against differences, with the film's moment and an oil that thickens.
+  !> The closed-form Jacobian against finite differences, with the moment of the film and an oil that thickens under pressure.
   subroutine derivatives(check)
     class(checks_t), intent(inout) :: check
     character(len=long) :: set(6)
@@ -118,7 +119,7 @@ contains
       if (allocated(error)) return
       m = scene%n_positions
       k = m + scene%n_states()
-      call check%that(scene%n_states() == 2, 'with two states')
+      call check%that(scene%n_states() == 2, 'an elastic film has two states')
       if (allocated(a_p)) deallocate (a_p, a_v, d_p, d_v)
       allocate (a_p(k, m), a_v(k, k), d_p(k, m), d_v(k, k))
       do i = 1, 4
@@ -129,14 +130,16 @@ contains
           0.9_dp*c*[cos(1.3_dp*i + 0.1_dp), sin(1.3_dp*i + 0.1_dp)]
         call scene%jacobian(0.0_dp, y, a_p, a_v)
         call difference_jacobian(scene, 0.0_dp, y, d_p, d_v)
-        call check%close_to(maxval(abs(a_p(:m, :) - d_p(:m, :))), 0.0_dp, 2e-4_dp*maxval(abs(d_p(:m, :))), 'slopes by positions')
-        call check%close_to(maxval(abs(a_v(:m, :) - d_v(:m, :))), 0.0_dp, 2e-4_dp*maxval(abs(d_v(:m, :))), 'slopes by rates')
+        call check%close_to(maxval(abs(a_p(:m, :) - d_p(:m, :))), 0.0_dp, 2e-4_dp*maxval(abs(d_p(:m, :))), &
+          'derivatives with respect to positions')
+        call check%close_to(maxval(abs(a_v(:m, :) - d_v(:m, :))), 0.0_dp, 2e-4_dp*maxval(abs(d_v(:m, :))), &
+          'derivatives with respect to rates')
         call check%close_to(maxval(abs(a_p(m + 1:, :) - d_p(m + 1:, :))), 0.0_dp, 2e-4_dp*maxval(abs(d_p(m + 1:, :))), &
-          'slopes of the film by positions')
+          'derivatives of the film states with respect to positions')
         call check%close_to(maxval(abs(a_v(m + 1:, m + 1:) - d_v(m + 1:, m + 1:))), 0.0_dp, &
-          2e-4_dp*maxval(abs(d_v(m + 1:, m + 1:))), 'slopes of the film by itself')
+          2e-4_dp*maxval(abs(d_v(m + 1:, m + 1:))), 'derivatives of the film states with respect to themselves')
         call check%close_to(maxval(abs(a_v(m + 1:, :m) - d_v(m + 1:, :m))), 0.0_dp, &
-          1e-3_dp*maxval(abs(d_v(m + 1:, :m))) + 1e-12_dp, 'slopes of the film by rates')
+          1e-3_dp*maxval(abs(d_v(m + 1:, :m))) + 1e-12_dp, 'derivatives of the film states with respect to rates')
       end do
     end do
   end subroutine derivatives
@@ -155,9 +158,10 @@ contains
       'output.samples_per_revolution=40000', 'integrator.relative_tolerance=1e-9', 'output.columns=standard,film_power', &
       'lubrication.pressure_viscosity=2e-8', 'mechanism.gravity=0']
     trace = run_case(file, set)
-    call check%that(.not. allocated(trace%error), 'an undriven run')
+    call check%that(.not. allocated(trace%error), 'a run without drive')
     if (allocated(trace%error)) return
-    call check%that(trace%report%figures%max_energy_residual < 1e-8_dp*trace%report%figures%max_energy, 'keeps the energy')
+    call check%that(trace%report%figures%max_energy_residual < 1e-8_dp*trace%report%figures%max_energy, &
+      'a run without drive: energy residual')
     allocate (t, source=trace%values(column(trace, 'time[s]'), :))
     allocate (power, source=trace%values(column(trace, 'film_power[W]'), :))
     allocate (energy, source=trace%values(column(trace, 'energy[J]'), :))
@@ -168,9 +172,9 @@ contains
       taken = taken + 0.5_dp*(power(i) + power(i - 1))*(t(i) - t(i - 1))
       worst = max(worst, abs(energy(i) - energy(1) + stored(i) - stored(1) + taken))
     end do
-    call check%that(taken > 10*maxval(stored) .and. maxval(stored) > 1e-4_dp, 'film and walls have a part')
-    call check%close_to(worst, 0.0_dp, 2e-4_dp*maxval(stored), 'bodies, walls and film keep the energy')
-    call check%that(all(power >= 0), 'the film never gives')
+    call check%that(taken > 10*maxval(stored) .and. maxval(stored) > 1e-4_dp, 'film and walls have a share of the energy')
+    call check%close_to(worst, 0.0_dp, 2e-4_dp*maxval(stored), 'sum of the energies of bodies, walls and film')
+    call check%that(all(power >= 0), 'the film never supplies energy')
   end subroutine energy_is_known
 
   !> With walls a thousand and a million times stiffer the film converges to that of rigid walls.
@@ -188,12 +192,12 @@ contains
     do i = 1, 2
       set(3) = 'contact.youngs_modulus='//merge('207e12,207e12', '207e15,207e15', i == 1)
       stiff = run_case(file, set)
-      call check%that(.not. (allocated(rigid%error) .or. allocated(stiff%error)), 'rigid and stiff walls')
+      call check%that(.not. (allocated(rigid%error) .or. allocated(stiff%error)), 'runs with rigid and stiff walls')
       if (allocated(rigid%error) .or. allocated(stiff%error)) return
       at = column(rigid, 'film_thickness[m]')
       off(i) = maxval(abs(stiff%values(at, :) - rigid%values(at, :)))
     end do
-    call check%that(off(1) < 1e-2_dp*c .and. off(2) < 2e-5_dp*c, 'stiff walls are rigid')
+    call check%that(off(1) < 1e-2_dp*c .and. off(2) < 2e-5_dp*c, 'stiff walls converge to rigid ones')
   end subroutine stiff_walls_are_rigid
 
   subroutine methods_agree_on_it(check)
@@ -207,7 +211,7 @@ contains
     call methods_agree(check, file, [short, others], c, 'a short elastic film', trace)
   end subroutine methods_agree_on_it
 
-  !> At t = 0 the walls carry what an ideal joint does.
+  !> At t = 0 the walls carry the load of an ideal joint.
   subroutine starts_on_loaded_walls(check)
     class(checks_t), intent(inout) :: check
     type(case_t) :: case
@@ -220,12 +224,12 @@ contains
     call build_scene(case, .true., ideal, error)
     call scene%evaluate(0.0_dp, scene%initial_state(), now, inside)
     call ideal%evaluate(0.0_dp, ideal%initial_state(), then, inside)
-    call check%that(norm2(then%loads%force(:, piston_pin)) > 100, 'there is a load')
+    call check%that(norm2(then%loads%force(:, piston_pin)) > 100, 'an ideal joint has a load')
     call check%close_to(norm2(now%loads%force(:, piston_pin) - then%loads%force(:, piston_pin)), 0.0_dp, &
       1e-6_dp*norm2(then%loads%force(:, piston_pin)), 'walls carry the load of an ideal joint')
   end subroutine starts_on_loaded_walls
 
-  !> At a high speed the pin passes the clearance, and the film stays.
+  !> At a high speed the eccentricity exceeds the clearance, and the film remains.
   subroutine goes_beyond_the_clearance(check)
     class(checks_t), intent(inout) :: check
     character(len=long) :: set(5)
@@ -233,17 +237,17 @@ contains
     set(1:2) = plain
     set(3:5) = [character(len=long) :: 'initial.crank_speed=700', 'joint.clearance=6e-6', 'integrator.revolutions=1']
     trace = run_case(file, set)
-    call check%that(.not. allocated(trace%error), 'a fast run')
+    call check%that(.not. allocated(trace%error), 'a run at high speed')
     if (allocated(trace%error)) return
     call check%that(maxval(trace%values(column(trace, 'eccentricity_ratio[-]'), :)) > 1.05_dp, 'the pin goes beyond the clearance')
-    call check%that(minval(trace%values(column(trace, 'film_thickness[m]'), :)) > 0, 'on a film')
+    call check%that(minval(trace%values(column(trace, 'film_thickness[m]'), :)) > 0, 'a film remains beyond the clearance')
     call check%that(trace%report%figures%pin(piston_pin)%min_film_thickness > 0 .and. &
       trace%report%figures%pin(piston_pin)%min_film_thickness <= minval(trace%values(column(trace, 'film_thickness[m]'), :)), &
-      'whose least thickness the summary has')
+      'smallest film thickness in the summary')
   end subroutine goes_beyond_the_clearance
 
-  !> Under 5 kN on 20 x 15 mm an oil of 2e-8 1/Pa is more viscous by exp(2e-8 * 16.7 MPa) = 1.396, and the film thins more slowly by
-  !> this factor.
+  !> Under 5 kN on 20 x 15 mm an oil with 2e-8 1/Pa is more viscous by exp(2e-8 * 16.7 MPa) = 1.396, and the film becomes thinner
+  !> more slowly by this factor.
   subroutine oil_under_pressure(check)
     class(checks_t), intent(inout) :: check
     type(case_t) :: case
@@ -264,21 +268,21 @@ contains
   subroutine refuses(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: contact = "&contact law='hertz' / "
-    call expect(check, contact//'&lubrication viscosity=0.01 elastic_film=T /', '', 'an elastic film')
+    call expect(check, contact//'&lubrication viscosity=0.01 elastic_film=T /', '', 'an elastic film is accepted')
     call expect(check, '&lubrication viscosity=0.01 elastic_film=T /', &
       '&lubrication elastic_film = T: needs the group contact', 'walls without a stiffness')
     call expect(check, '&contact / &lubrication viscosity=0.01 elastic_film=T /', &
-      '&contact law: must be hertz with elastic_film', 'walls with a loss')
+      '&contact law: must be hertz with elastic_film', 'walls with dissipation')
     call expect(check, contact//"&lubrication viscosity=0.01 law='oscillating_film' kinematic_viscosity=1e-5 elastic_film=T /", &
-      '&lubrication elastic_film = T: is for films of wedge and squeeze', 'a film that knows no velocity')
+      '&lubrication elastic_film = T: is for films of wedge and squeeze', 'a film that does not depend on the velocity')
     call expect(check, contact//"&lubrication viscosity=0.01 variant='as_printed' elastic_film=T /", &
       '&lubrication elastic_film = T: is for films of wedge and squeeze', 'a misprinted film')
     call expect(check, contact//"&friction coefficient=0.1 law='coulomb' / &lubrication viscosity=0.01 elastic_film=T /", &
       '&lubrication elastic_film = T: cannot be combined with the group friction', 'friction on a film')
     call expect(check, contact//"&lubrication viscosity=0.01 elastic_film=T transition='weighted' transition_depth=1e-6 /", &
-      '&lubrication elastic_film = T: cannot be combined with transition', 'a transition beside an elastic film')
+      '&lubrication elastic_film = T: cannot be combined with transition', 'a transition together with an elastic film')
     call expect(check, '&lubrication viscosity=0.01 pressure_viscosity=1e-8 /', &
-      '&lubrication pressure_viscosity = 1e-8: needs elastic_film', 'pressure between rigid walls')
+      '&lubrication pressure_viscosity = 1e-8: needs elastic_film', 'pressure-viscosity between rigid walls')
     call expect(check, contact//'&lubrication viscosity=0.01 elastic_film=T / &asperities roughness=1e-7 /', &
       '&asperities roughness = 1e-7: cannot be combined with the group contact', 'rough elastic walls')
   end subroutine refuses

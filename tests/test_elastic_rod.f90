@@ -1,5 +1,5 @@
-!> The elastic rod alone and in the chain: its equations against sums over its points, closed forms against the assembly, reactions,
-!> natural frequencies and buckling.
+!> The elastic rod alone and in the chain: its equations against sums over its points, closed forms against the general assembly,
+!> reactions, natural frequencies and buckling.
 module test_elastic_rod
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
@@ -38,7 +38,7 @@ contains
   end subroutine run_test_elastic_rod
 
   !> A random chain with an elastic rod of n bending and na axial shapes, with clearance at the pins given by `piece`, in a random
-  !> state under random loads. Coordinates are (q, c, e, eta, a).
+  !> state under random loads. The coordinates are (q, c, e, eta, a).
   subroutine draw(random, piece, n, na, chain, motion, loads, z, z_rate)
     type(random_numbers_t), intent(inout) :: random
     integer, intent(in) :: piece, n, na
@@ -56,7 +56,7 @@ contains
     rod%mass = between(random, 0.2_dp, 2.0_dp)
     rod%com = [between(random, 0.3_dp, 0.7_dp), between(random, -0.02_dp, 0.02_dp)]*rod%length
     shank = between(random, 0.5_dp, 0.9_dp)*largest_shank(rod)
-    ! what shank and lumps have about the centre of mass, and more
+    ! inertia of shank and point masses about the centre of mass, and more
     rod%inertia = (rod%length**2*(rod%mass*rod%com(1)/rod%length - shank/6) - rod%mass*rod%com(1)**2) &
       *between(random, 1.0_dp, 1.3_dp)
     tilt = between(random, -pi, pi)
@@ -100,7 +100,7 @@ contains
     motion%shape(:n + na) = z(6:5 + n + na)
     motion%shape_rate(:n + na) = z_rate(6:5 + n + na)
     call chain%move_rod(motion, reachable)
-    if (.not. reachable) error stop 'test_elastic_rod: a chain that cannot be'
+    if (.not. reachable) error stop 'test_elastic_rod: a chain that cannot be assembled'
     call chain%move_piston(motion)
   end subroutine draw
 
@@ -153,7 +153,7 @@ contains
     call check%close_to(worst, 0.0_dp, 1e-13_dp, 'Lagrange''s equations of the rod''s points')
   end subroutine equations_are_those_of_its_points
 
-  !> dE/dt along the motion, E from the rod's points, is the power of drive, gas, loose joints and damping.
+  !> dE/dt along the motion, with E from the rod's points, is the power of drive, gas, joints with clearance and damping.
   subroutine energy_changes_by_the_power(check)
     class(checks_t), intent(inout) :: check
     type(random_numbers_t) :: random
@@ -191,7 +191,7 @@ contains
     end do
   end subroutine energy_changes_by_the_power
 
-  !> Loose piston pin: shapes eliminated first, and all coordinates at once.
+  !> With clearance at the piston pin: the shapes eliminated first, and all coordinates at once.
   subroutine closed_form_equals_the_assembly(check)
     class(checks_t), intent(inout) :: check
     type(random_numbers_t) :: random
@@ -230,7 +230,7 @@ contains
     end do
   end subroutine closed_form_equals_the_assembly
 
-  !> F5 = -F_x, F6 = -F_y, at a loose crank pin F3 = -J_x and F4 = -J_y; and the crank's own balance.
+  !> F5 = -F_x, F6 = -F_y, with clearance at the crank pin F3 = -J_x and F4 = -J_y; and the balance of moments of the crank.
   subroutine reactions_match_the_joints(check)
     class(checks_t), intent(inout) :: check
     type(random_numbers_t) :: random
@@ -264,11 +264,11 @@ contains
       end do
       call check%close_to(worst(1), 0.0_dp, 1e-10_dp, trim(pieces(piece))//': F5 = -F_x and F6 = -F_y')
       if (modulo(piece, 2) == 1) call check%close_to(worst(2), 0.0_dp, 1e-10_dp, trim(pieces(piece))//': F3 = -J_x and F4 = -J_y')
-      call check%close_to(worst(3), 0.0_dp, 1e-10_dp, trim(pieces(piece))//': moments on the crank with F3 and F4')
+      call check%close_to(worst(3), 0.0_dp, 1e-10_dp, trim(pieces(piece))//': balance of moments of the crank with F3 and F4')
     end do
   end subroutine reactions_match_the_joints
 
-  !> What a further load adds to the accelerations, those of shapes and rod ends too.
+  !> The change of the accelerations by an additional load, including those of shapes and rod ends.
   subroutine loads_respond_linearly(check)
     class(checks_t), intent(inout) :: check
     type(random_numbers_t) :: random
@@ -303,7 +303,7 @@ contains
     end do
   end subroutine loads_respond_linearly
 
-  !> No shapes at all: the accelerations are those of the rigid rod.
+  !> Without shapes the accelerations are those of the rigid rod.
   subroutine without_shapes_it_is_rigid(check)
     class(checks_t), intent(inout) :: check
     type(random_numbers_t) :: random
@@ -339,8 +339,8 @@ contains
     end do
   end subroutine without_shapes_it_is_rigid
 
-  !> Bending on two pins: (k pi/L)^2 sqrt(E I L/m_b). Stretching with a mass m_p at its end: beta tan beta = m_b/m_p, the frequency
-  !> beta sqrt(E A/(m_b L)), which the shapes approach from above.
+  !> Bending on two pins: (k pi/L)^2 sqrt(E I L/m_b). Stretching with a mass m_p at the end: beta tan beta = m_b/m_p, with the
+  !> frequency beta sqrt(E A/(m_b L)), to which the shapes converge from above.
   subroutine it_swings_at_its_frequencies(check)
     class(checks_t), intent(inout) :: check
     type(elastic_rod_t) :: rod
@@ -358,17 +358,17 @@ contains
       call rod%prepare(rod_t(l, m, 2.5e-4_dp, [0.06_dp, 0.0_dp]))
       call check%relative(rod%shank_mass, m, 1e-15_dp, 'the largest shank of a rod with its centre of mass half way')
       call check%relative(rod%natural_frequency(k), (k*pi/l)**2*sqrt(e*i_s*l/m), 1e-14_dp, 'frequency of bending on two pins')
-      call check%that(rod%axial_frequency(piston) > exact, 'shapes are stiffer than the rod')
+      call check%that(rod%axial_frequency(piston) > exact, 'frequency of the shapes is above that of the rod')
       call check%close_to(rod%axial_frequency(piston)/exact - 1, excess(k), 0.15_dp*excess(k), &
         'frequency of stretching with a piston')
     end do
     rod = elastic_rod_t(youngs_modulus=e, section_area=area, section_inertia=i_s, n_bending=2, n_axial=2)
     call rod%prepare(rod_t(0.2032_dp, 1.36_dp, 0.01_dp, [0.0508_dp, 0.0_dp]))
     call check%relative(rod%shank_mass, 0.68_dp, 1e-14_dp, 'the largest shank of the dissertation''s rod')
-    call check%relative(rod%end_mass + 1e-3_dp, 1e-3_dp, 1e-12_dp, 'which leaves no mass on its piston pin')
+    call check%relative(rod%end_mass + 1e-3_dp, 1e-3_dp, 1e-12_dp, 'no mass is left at the piston pin of the dissertation''s rod')
   end subroutine it_swings_at_its_frequencies
 
-  !> Pressed by Euler's load along its chord, nothing pushes the first sine back.
+  !> Under Euler's load along the chord no force acts against the first sine mode.
   subroutine it_buckles_at_eulers_load(check)
     class(checks_t), intent(inout) :: check
     type(random_numbers_t) :: random
@@ -400,7 +400,7 @@ contains
         load(i) = body%load(4)
       end do
     end associate
-    call check%that(reachable .and. load(1) < 0, 'without a load the rod springs back')
+    call check%that(reachable .and. load(1) < 0, 'without a load the rod has a restoring force')
     call check%close_to(load(2)/load(1), 0.0_dp, 1e-14_dp, 'Euler''s load')
   end subroutine it_buckles_at_eulers_load
 end module test_elastic_rod

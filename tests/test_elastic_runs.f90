@@ -33,8 +33,8 @@ contains
     call a_held_flywheel_keeps_its_speed(check)
   end subroutine run_test_elastic_runs
 
-  !> The first two contacts against 24 ANCF cable elements (Exudyn): instants [s] and speeds [m/s]. A rigid rod sends the pin back
-  !> after the first with 1.74 m/s.
+  !> The first two contacts against 24 ANCF cable elements (Exudyn): times [s] and speeds [m/s]. With a rigid rod the pin leaves the
+  !> first contact with 1.74 m/s.
   subroutine impacts_are_those_of_finite_elements(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: instants(4) = [0.2107e-3_dp, 0.3394e-3_dp, 0.6871e-3_dp, 0.8728e-3_dp]
@@ -45,14 +45,14 @@ contains
     call check%that(size(trace%event) == 4, 'two contacts in a millisecond')
     if (size(trace%event) /= 4) return
     do i = 1, 4
-      call check%close_to(trace%event(i)%time, instants(i), 1.5e-6_dp, 'instants of finite elements')
-      call check%close_to(trace%event(i)%normal_speed, speeds(i), 0.035_dp, 'speeds of finite elements')
+      call check%close_to(trace%event(i)%time, instants(i), 1.5e-6_dp, 'times of the contacts of finite elements')
+      call check%close_to(trace%event(i)%normal_speed, speeds(i), 0.035_dp, 'speeds of the contacts of finite elements')
     end do
     trace = run_case(impact, [character(len=long) :: 'elastic_rod=none'])
-    call check%close_to(trace%event(2)%normal_speed, -1.738_dp, 1e-3_dp, 'what a rigid rod makes of the first impact')
+    call check%close_to(trace%event(2)%normal_speed, -1.738_dp, 1e-3_dp, 'speed after the first contact with a rigid rod')
   end subroutine impacts_are_those_of_finite_elements
 
-  !> Ten times Young's modulus brings the first contact ten times nearer to that of the rigid rod.
+  !> With Young's modulus ten times larger the first contact is ten times nearer to that of the rigid rod.
   subroutine a_stiff_rod_is_rigid(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: rigid, elastic
@@ -63,21 +63,22 @@ contains
     overrides = [character(len=long) :: 'integrator.revolutions=0', 'integrator.end_time=3e-4', 'elastic_rod.transverse_modes=1', &
       'elastic_rod.axial_shapes=1', 'integrator.relative_tolerance=1e-9', '', 'elastic_rod=none']
     rigid = run_case(dry, overrides([1, 2, 5, 7]))
-    call check%that(size(rigid%event) >= 2, 'a rigid rod touches')
+    call check%that(size(rigid%event) >= 2, 'a rigid rod has a contact')
     before = 0
     do i = 1, size(moduli)
       overrides(6) = 'elastic_rod.youngs_modulus='//moduli(i)
       elastic = run_case(dry, overrides(:6))
-      call check%that(size(elastic%event) >= 2, 'a stiff rod touches')
+      call check%that(size(elastic%event) >= 2, 'a stiff rod has a contact')
       if (size(elastic%event) < 2) return
       distance = abs(elastic%event(:2)%time - rigid%event(:2)%time)
-      if (i > 1) call check%that(all(distance < before/7 .and. distance > before/14), 'first order in the stiffness')
+      if (i > 1) call check%that(all(distance < before/7 .and. distance > before/14), &
+        'difference is of first order in the compliance')
       before = distance
     end do
-    call check%that(all(before < [1e-9_dp, 2e-8_dp]), 'a stiff rod is rigid')
+    call check%that(all(before < [1e-9_dp, 2e-8_dp]), 'a stiff rod converges to the rigid one')
   end subroutine a_stiff_rod_is_rigid
 
-  !> Undamped contact by Hertz, no damping in the rod, a free crank.
+  !> Undamped Hertz contact, no damping in the rod, a free crank.
   subroutine energy_is_kept(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -85,9 +86,9 @@ contains
       'elastic_rod.damping_ratio=0', 'elastic_rod.axial_damping_ratio=0', 'integrator.relative_tolerance=1e-11', &
       'integrator.revolutions=0', 'integrator.end_time=0.01', 'mechanism.gravity=9.81', 'mechanism.rod_com=0.055,0.003'])
     call check%equal_text(trace%report%status, 'done', 'an undamped rod')
-    call check%that(size(trace%event) > 20, 'with many contacts')
+    call check%that(size(trace%event) > 20, 'an undamped rod has many contacts')
     associate (f => trace%report%figures)
-      call check%close_to(f%max_energy_residual/f%max_energy, 0.0_dp, 1e-10_dp, 'its energy is kept')
+      call check%close_to(f%max_energy_residual/f%max_energy, 0.0_dp, 1e-10_dp, 'an undamped rod: energy residual')
     end associate
   end subroutine energy_is_kept
 
@@ -113,9 +114,9 @@ contains
     end do
   end subroutine methods_agree
 
-  !> At 1e-9 the first waves along the rod of an engine are followed by Adams at less cost than by Radau, later ones a hundred times
-  !> dearer: `auto` tries Radau again before too long. In half a revolution Adams alone takes 256 000 evaluations, Radau 43 000, and
-  !> `auto` took 140 000 when its trials became rarer without limit.
+  !> At 1e-9 Adams follows the first waves along the rod of an engine with fewer evaluations than Radau, but needs a hundred times
+  !> more for later waves; therefore `auto` must try Radau again soon enough. In half a revolution Adams alone takes 256 000
+  !> evaluations, Radau 43 000, and `auto` took 140 000 when its trials became rarer without limit.
   subroutine auto_tries_radau_again(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -125,7 +126,8 @@ contains
     call check%that(trace%report%statistics%evaluations < 70000, 'auto tries Radau again')
   end subroutine auto_tries_radau_again
 
-  !> The elastic rod with ideal pins, with either pin loose and both, with surfaces that stick, with bristles and with films.
+  !> The elastic rod with ideal pins, with clearance at either pin and at both, with sticking surfaces, with bristles and with
+  !> films.
   subroutine every_joint_and_law(check)
     class(checks_t), intent(inout) :: check
     character(len=long), parameter :: span(3) = [character(len=long) :: 'integrator.revolutions=0', 'integrator.end_time=2e-3', &
@@ -161,18 +163,19 @@ contains
       character(len=*), intent(in) :: what, file, overrides(:)
       type(trace_t) :: trace
       trace = run_case(file, overrides)
-      call check%that(.not. allocated(trace%error), 'elastic rod: '//what//' is a scene')
+      call check%that(.not. allocated(trace%error), 'elastic rod: '//what//' can be built')
       if (.not. allocated(trace%names)) return
       call check%equal_text(trace%report%status, 'done', 'elastic rod: '//what)
       associate (f => trace%report%figures)
         call check%close_to(f%max_energy_residual/f%max_energy, 0.0_dp, 1e-8_dp, 'elastic rod: '//what//', energy residual')
-        call check%that(f%elastic%mid_deflection > 0 .and. f%elastic%strain_energy > 0, 'elastic rod: '//what//', it bends')
+        call check%that(f%elastic%mid_deflection > 0 .and. f%elastic%strain_energy > 0, 'elastic rod: '//what//', the rod bends')
       end associate
     end subroutine runs
   end subroutine every_joint_and_law
 
-  !> A piston of ten tonnes on a rod of 1e-5 m^2 presses it to less than the crank's length and folds it over the crank, where the
-  !> coordinates are singular: the run ends before, where the rod has lost half of its length, and keeps its energy until there.
+  !> A piston of ten tonnes on a rod of 1e-5 m^2 compresses the rod to less than the crank's length and folds it over the crank,
+  !> where the coordinates are singular. The run ends before, when the rod has lost half of its length, and its energy residual is
+  !> small until then.
   subroutine a_folded_rod_leaves_the_model(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -183,9 +186,10 @@ contains
         'elastic_rod.axial_shapes=1', 'elastic_rod.damping_ratio=0.999', 'mechanism.piston_mass=1e4', &
         'mechanism.crank_inertia=1e-6', 'initial.crank_angle_deg=90', 'joint.clearance=1.5e-8', 'guide.coefficient=2', &
         'guide.v0=0.001', 'guide.v1=0.98', 'integrator.revolutions=1', 'integrator.method='//merge('radau', 'auto ', i == 1)])
-      call check%that(index(trace%report%status, 'the state left the range of the model') == 1, 'a rod that is pressed together')
+      call check%that(index(trace%report%status, 'the state left the range of the model') == 1, &
+        'a run with a rod that is compressed too far stops')
       associate (f => trace%report%figures)
-        call check%close_to(f%max_energy_residual/f%max_energy, 0.0_dp, 1e-5_dp, 'and keeps its energy')
+        call check%close_to(f%max_energy_residual/f%max_energy, 0.0_dp, 1e-5_dp, 'a rod that is compressed: energy residual')
       end associate
     end do
   end subroutine a_folded_rod_leaves_the_model
@@ -201,16 +205,16 @@ contains
     trace = run_case(dry, span)
     call read_case(dry, span, case, error)
     table = summary_table(case, trace%report, 0.0_dp, '0', 1_int64, 0_int64)
-    call check%equal_text(summary_value(table, 'elastic_members'), 'rod', 'what is elastic')
+    call check%equal_text(summary_value(table, 'elastic_members'), 'rod', 'elastic members in the summary')
     largest = number_of(table, 'max_rod_mid_deflection')
     call check%that(largest >= maxval(abs(trace%values(column(trace, 'rod_mid_deflection[m]'), :)))*(1 - 1e-9_dp), &
-      'no row bends more than the summary says')
+      'largest deflection in the summary')
     call check%relative(number_of(table, 'rod_bending_frequency'), 843.2_dp, 1e-2_dp, 'bending frequency [Hz]')
     table = summary_table(case, trace%report, 0.0_dp, '0', 1_int64, 0_int64, is_twin=.true.)
     call check%equal_text(summary_value(table, 'elastic_members'), 'none: the ideal twin is rigid', &
-      'the twin says that it is rigid')
+      'the summary of the ideal twin says that it is rigid')
     twin = run_case(dry, span, .true.)
-    call check%that(column(twin, 'rod_mode_1[m]') == 0, 'the twin has no column of a mode')
+    call check%that(column(twin, 'rod_mode_1[m]') == 0, 'the ideal twin has no column of a mode')
   end subroutine summary_and_twin
 
   !> The value of a quantity of a summary.
@@ -249,13 +253,13 @@ contains
       call read_case(dry, overrides, case, error)
       call check%that(allocated(error), 'refused: '//override)
       if (.not. allocated(error)) return
-      call check%that(index(error%message, message) > 0, 'in words: '//error%message)
+      call check%that(index(error%message, message) > 0, 'message: '//error%message)
     end subroutine refused
   end subroutine cases_that_cannot_be
 
-  !> A moment tau on the flywheel of a mechanism at rest: the twist is tau/(J_f omega^2) (1 - cos omega t), with
-  !> omega^2 = k (1/J_f + 1/m), m the moment of inertia of the mechanism, at q = 0 that of crank, of a rod that turns about the
-  !> piston pin and of no piston.
+  !> A moment tau on the flywheel of a mechanism at rest: the twist is tau/(J_f omega^2) (1 - cos omega t) with
+  !> omega^2 = k (1/J_f + 1/m). Here m is the moment of inertia of the mechanism, which at q = 0 is that of the crank and of a rod
+  !> that rotates about the piston pin; the piston has no part in it.
   subroutine crankshaft_swings(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: flywheel = 0.02_dp, stiffness = 2e4_dp, tau = 10
@@ -282,7 +286,7 @@ contains
     call check%relative(hertz*8*atan(1.0_dp), omega, 1e-6_dp, 'frequency of a crankshaft')
   end subroutine crankshaft_swings
 
-  !> Without torsion the crank has the flywheel's inertia too.
+  !> In the limit without torsion the inertia of the crank includes that of the flywheel.
   subroutine a_stiff_crankshaft_is_rigid(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: rigid, elastic
@@ -300,7 +304,7 @@ contains
       overrides(8) = 'crankshaft.torsional_stiffness='//stiffness(i)
       elastic = run_case('cases/elastic/engine_rod.nml', [character(len=long) :: overrides, 'joint.kind=ideal', 'contact=none', &
         'friction=none', 'lubrication=none', 'joint.clearance=0'])
-      call check%that(.not. allocated(elastic%error), 'a stiff crankshaft')
+      call check%that(.not. allocated(elastic%error), 'a run with a stiff crankshaft')
       if (.not. allocated(elastic%names)) return
       associate (a => elastic%values(column(elastic, 'crank_angle[rad]'), :), &
                  b => rigid%values(column(rigid, 'crank_angle[rad]'), :))
@@ -309,10 +313,11 @@ contains
       call check%close_to(elastic%report%figures%max_energy_residual/elastic%report%figures%max_energy, 0.0_dp, 1e-8_dp, &
         'energy residual of a crankshaft')
     end do
-    call check%that(distance(1) < 1e-3_dp .and. distance(2) < distance(1)/5, 'a stiff crankshaft is rigid')
+    call check%that(distance(1) < 1e-3_dp .and. distance(2) < distance(1)/5, 'a stiff crankshaft converges to the rigid one')
   end subroutine a_stiff_crankshaft_is_rigid
 
-  !> At constant speed it is the flywheel's; the crank swings, and the moment that holds the flywheel does all the work.
+  !> At constant speed the speed of the flywheel is constant; the crank oscillates, and the moment on the flywheel does all the
+  !> work.
   subroutine a_held_flywheel_keeps_its_speed(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -320,13 +325,13 @@ contains
     trace = run_case('cases/flores/dry_0100um.nml', [character(len=long) :: 'crankshaft.flywheel_inertia=0.02', &
       'crankshaft.torsional_stiffness=2e4', 'crankshaft.torsional_damping=0.01', 'integrator.relative_tolerance=1e-10', &
       'integrator.method=auto'])
-    call check%equal_text(trace%report%status, 'done', 'a held flywheel')
+    call check%equal_text(trace%report%status, 'done', 'a run with constant speed of the flywheel')
     crank = spread_of('crank_speed[rad/s]')
     wheel = spread_of('flywheel_speed[rad/s]')
-    call check%that(wheel(2) - wheel(1) <= 0, 'a held flywheel keeps its speed')
-    call check%that(crank(2) - crank(1) > 1e-2_dp*crank(2), 'its crank does not')
+    call check%that(wheel(2) - wheel(1) <= 0, 'the flywheel''s speed is constant')
+    call check%that(crank(2) - crank(1) > 1e-2_dp*crank(2), 'the crank''s speed is not constant')
     call check%close_to(trace%report%figures%max_energy_residual/trace%report%figures%max_energy, 0.0_dp, 1e-9_dp, &
-      'energy residual with a held flywheel')
+      'energy residual at constant speed of the flywheel')
 
   contains
 

@@ -1,5 +1,5 @@
-!> The energy in long runs, in runs with loose tolerance and in unusual ones: errors that remain in the crank or in the work of the
-!> forces.
+!> The energy in long runs, in runs with large tolerance and in unusual runs: errors that accumulate in the crank or in the work of
+!> the forces.
 module test_energy_kept
   use gudgeon_kinds, only: dp
   use checks, only: checks_t
@@ -15,7 +15,7 @@ module test_energy_kept
 
   integer, parameter :: long = 60
 
-  !> v follows cos t, the faster the farther it is off, and w is the integral of -v': w + v = const, exactly.
+  !> v follows cos t with a rate proportional to its distance, and w is the integral of -v'; w + v is constant exactly.
   type, extends(ode_problem_t) :: stiff_follower_t
   contains
     procedure :: derivatives
@@ -49,11 +49,12 @@ contains
     speed = trace%values(column(trace, 'crank_speed[rad/s]'), :)
     fine_speed = fine%values(column(fine, 'crank_speed[rad/s]'), :)
     call check%that(size(speed) == 201, 'a row each half revolution')
-    call check%that(maxval(abs(speed - fine_speed)/fine_speed) < 3e-5_dp, 'its crank keeps its speed')
+    call check%that(maxval(abs(speed - fine_speed)/fine_speed) < 3e-5_dp, 'crank speed of the ideal twin after 100 revolutions')
   end subroutine a_long_ideal_run_ends_where_it_should
 
-  !> In a bearing with 1.7 mm of clearance the pin falls on its film until that is a millionth of it thick. Steps are cut because
-  !> trial states lie beyond the wall, where there is no film; what is left of them must not be taken for accurate.
+  !> In a bearing with 1.7 mm of clearance the pin falls onto its film until the film thickness is a millionth of the clearance.
+  !> Steps are shortened because trial states lie beyond the wall, where there is no film; the shortened steps must not be taken for
+  !> accurate.
   subroutine a_film_that_collapses(check)
     class(checks_t), intent(inout) :: check
     character(len=long), parameter :: collapse(8) = [character(len=long) :: 'joint.clearance=0.0017', &
@@ -63,10 +64,10 @@ contains
     trace = run_case('cases/sim_V.nml', collapse)
     call check%equal_text(trace%report%status, 'done', 'a film that collapses')
     call check%that(trace%report%figures%max_energy_residual < 3e-3_dp*trace%report%figures%max_energy, &
-      'its energy is that of the work done on it')
+      'energy of a film that collapses is the work done')
   end subroutine a_film_that_collapses
 
-  !> A quadrature must be that of the stages at which Newton's method has ended, not of those one step before.
+  !> A quadrature must use the stages at which Newton's iteration has ended, not those one iteration before.
   subroutine quadratures_belong_to_their_stages(check)
     class(checks_t), intent(inout) :: check
     type(stiff_follower_t) :: problem
@@ -85,8 +86,8 @@ contains
     t = 0
     y = [0.0_dp, 1.0_dp, 0.0_dp]
     call integrate(problem, method, t, y, 20.0_dp, 10000, observer, status)
-    call check%that(status == integration_done, 'a stiff follower is integrated')
-    call check%that(abs(y(3) + y(2) - 1) < 20*tolerance, 'its quadrature belongs to its stages')
+    call check%that(status == integration_done, 'integration of a stiff equation')
+    call check%that(abs(y(3) + y(2) - 1) < 20*tolerance, 'a quadrature uses the final stages')
   end subroutine quadratures_belong_to_their_stages
 
   pure subroutine derivatives(self, t, y, dydt, inside)
@@ -102,8 +103,8 @@ contains
     dydt(3) = -dydt(2)
   end subroutine derivatives
 
-  !> The pin thrown at 0.5 m/s across 0.1 mm, the crank all but at rest: it flies straight and touches after 0.2 ms. The scales
-  !> of its speed and of its energy are its own.
+  !> The pin starts with 0.5 m/s across a clearance of 0.1 mm, and the crank hardly turns: the pin moves straight and comes into
+  !> contact after 0.2 ms. Its speed and energy need scales that do not come from the crank.
   subroutine a_thrown_pin_where_the_crank_hardly_turns(check)
     class(checks_t), intent(inout) :: check
     character(len=long) :: thrown(7)
@@ -119,13 +120,13 @@ contains
         thrown(6) = 'integrator.relative_tolerance='//tolerances(k)
         thrown(7) = 'integrator.method=auto'
         trace = run_case('cases/flores/dry_0100um.nml', thrown)
-        call check%equal_text(trace%report%status, 'done', 'a thrown pin: '//speeds(i)//' rad/s, tolerance '//tolerances(k))
-        if (size(trace%event) > 0) call check%relative(trace%event(1)%time, 2e-4_dp, 1e-5_dp, 'it touches when it should')
+        call check%equal_text(trace%report%status, 'done', 'a pin in free flight: '//speeds(i)//' rad/s, tolerance '//tolerances(k))
+        if (size(trace%event) > 0) call check%relative(trace%event(1)%time, 2e-4_dp, 1e-5_dp, 'time of the contact')
       end do
     end do
   end subroutine a_thrown_pin_where_the_crank_hardly_turns
 
-  !> The first step looks a thousandth of the run ahead, here one revolution, where all forces are the same again.
+  !> The first step examines a thousandth of the run, here one revolution, after which all forces are the same again.
   subroutine no_step_over_revolutions(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -134,7 +135,7 @@ contains
     call check%that(trace%report%statistics%accepted > 10000, 'a thousand revolutions take more than ten steps each')
   end subroutine no_step_over_revolutions
 
-  !> A residual of more than a hundred tolerances, since an absolute tolerance is given that is far looser than the relative one.
+  !> A residual of more than a hundred tolerances, because the given absolute tolerance is far larger than the relative one.
   subroutine poor_energy_is_told(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -143,10 +144,10 @@ contains
     loose = [character(len=long) :: 'integrator.relative_tolerance=1e-7', 'integrator.absolute_tolerance=3e-3']
     trace = run_case('cases/flores/ideal.nml', loose)
     call check%equal_text(trace%report%status, 'done', 'a run with a large residual is done')
-    call check%that(trace%report%energy_is_poor, 'and says that its energy is poor')
+    call check%that(trace%report%energy_is_poor, 'a run with a large residual reports it')
     case%integrator%relative_tolerance = 1e-7_dp
-    call check%that(index(energy_warning(case, trace%report), 'relative tolerances') > 0, 'in words')
+    call check%that(index(energy_warning(case, trace%report), 'relative tolerances') > 0, 'warning of a large residual')
     trace = run_case('cases/flores/ideal.nml', loose(:1))
-    call check%that(.not. trace%report%energy_is_poor, 'a run at its tolerance does not')
+    call check%that(.not. trace%report%energy_is_poor, 'a run at its tolerance reports no large residual')
   end subroutine poor_energy_is_told
 end module test_energy_kept

@@ -37,9 +37,9 @@ contains
     call integrate(problem, method, t, y, problem%t_end, 0, observer, status)
   end subroutine run
 
-  !> No step errs by more than 25 tolerances, fewer than half of a run's by more than one. F5, where f goes with the cubic root of
-  !> the time to and from each of its 19 jumps: 100, with the steps shortened before them (170 without). Not here: D5 at
-  !> 1e-3, which leaves its orbit (143).
+  !> No step has an error above 25 tolerances, and fewer than half of the steps of a run have one above one tolerance. For F5, where
+  !> f varies with the cubic root of the time to and from each of its 19 jumps, the limit is 100, because steps are shortened before
+  !> the jumps (170 without that). D5 at 1e-3, which leaves its orbit (143), is left out.
   subroutine local_errors_keep_the_tolerance(check)
     class(checks_t), intent(inout) :: check
     type(local_error_watcher_t) :: watcher
@@ -54,15 +54,17 @@ contains
         write (label, '(a,i0)') '1e-', j
         watcher = local_error_watcher_t()
         call run(i, 10.0_dp**(-j), watcher, y, status)
-        call check%that(status == integration_done .and. watcher%unsure == 0, trim(names(i))//': every step is judged, '//label)
-        call check%that(watcher%largest <= most, trim(names(i))//': no step errs by far more than the tolerance, '//label)
-        call check%that(2*watcher%deceived <= watcher%steps, trim(names(i))//': most steps are within one tolerance, '//label)
+        call check%that(status == integration_done .and. watcher%unsure == 0, &
+          trim(names(i))//': every local error is known, '//label)
+        call check%that(watcher%largest <= most, trim(names(i))//': no step has an error far above the tolerance, '//label)
+        call check%that(2*watcher%deceived <= watcher%steps, &
+          trim(names(i))//': most steps have an error below one tolerance, '//label)
       end do
     end do
   end subroutine local_errors_keep_the_tolerance
 
-  !> Kepler's problem, eccentricity 0.1 to 0.9, three revolutions: the error at 20 instants, against Kepler's equation, is
-  !> within 10 tolerances times the condition.
+  !> Kepler's problem with eccentricities 0.1 to 0.9 over three revolutions: the error at 20 times, against Kepler's equation, is
+  !> below 10 tolerances times the condition.
   subroutine orbits_keep_their_condition(check)
     class(checks_t), intent(inout) :: check
     type(sampler_t) :: sampler
@@ -85,15 +87,15 @@ contains
         largest = max(largest, ratio)
         log_error(j) = log10(ratio) - j
         write (label, '(a,i0)') '1e-', j
-        call check%that(status == integration_done .and. ratio <= 10, trim(names(i))//': error within its condition at '//label)
+        call check%that(status == integration_done .and. ratio <= 10, trim(names(i))//': error is within the condition at '//label)
       end do
       slope = sum([((7.5_dp - j)*log_error(j), j=3, 12)])/sum([((7.5_dp - j)**2, j=3, 12)])
-      call check%close_to(slope, 1.0_dp, 0.25_dp, trim(names(i))//': the error falls as the tolerance')
+      call check%close_to(slope, 1.0_dp, 0.25_dp, trim(names(i))//': the error is proportional to the tolerance')
     end do
-    call check%that(largest > 0.3_dp, 'the condition is not a loose bound')
+    call check%that(largest > 0.3_dp, 'the condition is a close bound')
   end subroutine orbits_keep_their_condition
 
-  !> State at time t of the orbit that begins at perihelion, semi-axis and period/(2 pi) one.
+  !> State at time t of the orbit that begins at perihelion; semi-axis and period/(2 pi) are one.
   pure function orbit(e, t) result(y)
     real(dp), intent(in) :: e, t
     real(dp) :: y(4), anomaly, axis
@@ -106,7 +108,7 @@ contains
     y = [cos(anomaly) - e, axis*sin(anomaly), -sin(anomaly)/(1 - e*cos(anomaly)), axis*cos(anomaly)/(1 - e*cos(anomaly))]
   end function orbit
 
-  !> The Arenstorf orbit, whose condition is five million, closes.
+  !> The Arenstorf orbit, whose condition is five million, returns to its start.
   subroutine arenstorf_closes(check)
     class(checks_t), intent(inout) :: check
     type(local_error_watcher_t) :: watcher
@@ -122,7 +124,7 @@ contains
       call run(number_of('Arenstorf'), 10.0_dp**(-j), watcher, y, status)
       write (label, '(a,i0)') '1e-', j
       call check%that(maxval(abs(y - start)/(1 + abs(start))) <= 0.1_dp*condition*10.0_dp**(-j), &
-        'the Arenstorf orbit closes within its condition at '//label)
+        'the Arenstorf orbit returns to its start at '//label)
     end do
   end subroutine arenstorf_closes
 end module test_error_growth

@@ -15,8 +15,8 @@ module test_events
 
   integer, parameter :: most = 1000
 
-  !> y = (sin t, cos t) with three events: sin rises through 1/2, sin falls through 1/2, cos rises through 0. Where
-  !> it `refuses`, two of three steps are refused as too deep.
+  !> y = (sin t, cos t) with three events: sin rises through 1/2, sin falls through 1/2, cos rises through 0. If it
+  !> `refuses`, two of three steps are rejected as too deep.
   type, extends(oscillator_t) :: crossings_t
     logical :: refuses = .false.
     integer :: taken = 0, index(most) = 0
@@ -27,7 +27,7 @@ module test_events
     procedure :: judge_step => refuse_long_steps
   end type crossings_t
 
-  !> y' = -1 above zero, 1 below: slides along zero, event after event.
+  !> y' = -1 above zero, 1 below: the solution slides along zero with one event after another.
   type, extends(ode_problem_t) :: chatterer_t
     integer :: side = 1, taken = 0
   contains
@@ -36,8 +36,8 @@ module test_events
     procedure :: handle_event => changes_side
   end type chatterer_t
 
-  !> A ball on a moving floor: y = (height, speed), falling like t^2. Its event is that it leaves a table, and then that it comes
-  !> back; as it leaves, `handle_event` puts it below the table by `sunk`, as an inexact landing does.
+  !> A ball above a moving floor: y = (height, speed). Its events are that it leaves a table, and then that it comes
+  !> back; when it leaves, `handle_event` puts it below the table by `sunk`, as an inexact root does.
   type, extends(ode_problem_t) :: ball_t
     logical :: is_off = .false.
     real(dp) :: sunk = 0
@@ -49,7 +49,7 @@ module test_events
     procedure :: handle_event => leave_or_come
   end type ball_t
 
-  !> Looks at each event root: the function is not negative there, and negative one spacing before.
+  !> Checks each event root: the function is not negative there, and negative one rounding step of the time before.
   type, extends(observer_t) :: root_checker_t
     integer :: loose = 0
     integer :: events = 0
@@ -79,7 +79,7 @@ contains
     method%settings%span = span
   end subroutine prepare
 
-  !> Each event once, in order, at its time; with refused steps too.
+  !> Each event is taken once, in order, at its time; also with rejected steps.
   subroutine several_events(check)
     class(checks_t), intent(inout) :: check
     type(crossings_t) :: problem
@@ -97,21 +97,21 @@ contains
       t = 0.1_dp
       y = [sin(t), cos(t)]
       call integrate(problem, method, t, y, 100*pi, 0, observer, status)
-      call check%that(status == integration_done, 'the circle is integrated')
+      call check%that(status == integration_done, 'integration of the circle')
       call check%that(problem%taken == 150, 'three events in each of 50 revolutions, none twice')
-      call check%that(method%statistics%restarts == problem%taken, 'one restart an event')
+      call check%that(method%statistics%restarts == problem%taken, 'one restart for each event')
       worst = 0
       do i = 1, min(150, problem%taken)
         if (problem%index(i) /= mod(i - 1, 3) + 1) worst = 1
         worst = max(worst, abs(problem%time(i) - first(mod(i - 1, 3) + 1) - 2*pi*((i - 1)/3)))
       end do
       call check%close_to(worst, 0.0_dp, 1e-8_dp, 'times of three kinds of events in order')
-      call check%that(observer%loose == 0, 'every root is between two neighbouring instants')
-      if (way == 2) call check%that(method%statistics%rejected_penetration > 100, 'steps were refused')
+      call check%that(observer%loose == 0, 'every root is between two neighbouring numbers')
+      if (way == 2) call check%that(method%statistics%rejected_penetration > 100, 'steps were rejected')
     end do
   end subroutine several_events
 
-  !> Tips above a level, down to 2e-5 of the period: both passages lie in one step.
+  !> Short intervals above a level, down to 2e-5 of the period: both crossings are in one step.
   subroutine close_passages(check)
     class(checks_t), intent(inout) :: check
     type(hopper_t) :: problem
@@ -134,19 +134,19 @@ contains
     end do
   end subroutine close_passages
 
-  !> A level that is touched to within rounding: found or not, but nothing twice, and the run continues. A little lower every top
-  !> is found, a little higher none.
+  !> A level that is reached within rounding: the event may be found or not, but not twice, and the run continues. With a slightly
+  !> lower level every maximum is found, with a slightly higher one none.
   subroutine grazing(check)
     class(checks_t), intent(inout) :: check
     integer :: i
     do i = -3, 3
       call check%that(passages_of(check, 1 + i*1e-12_dp) <= 7, 'no grazing event is taken twice')
     end do
-    call check%that(passages_of(check, 1 - 1e-6_dp) == 7, 'a little lower every top is a passage')
-    call check%that(passages_of(check, 1 + 1e-6_dp) == 0, 'a little higher none is')
+    call check%that(passages_of(check, 1 - 1e-6_dp) == 7, 'every maximum above a slightly lower level is found')
+    call check%that(passages_of(check, 1 + 1e-6_dp) == 0, 'no maximum reaches a slightly higher level')
   end subroutine grazing
 
-  !> Passages through a level in seven hops of height 1.
+  !> Crossings of a level in seven hops of height 1.
   integer function passages_of(check, level)
     class(checks_t), intent(inout) :: check
     real(dp), intent(in) :: level
@@ -164,8 +164,8 @@ contains
     passages_of = problem%passages
   end function passages_of
 
-  !> A ball thrown upwards from d below a table with the speed v: for d < v^2/(2 g) it rises above the table and returns; otherwise
-  !> it turns below it, and its event occurs again where it turns. It must never be lost below the table.
+  !> A ball that starts upwards at d below a table with the speed v: for d < v^2/(2 g) it rises above the table and returns;
+  !> otherwise it reverses below the table, and its event occurs again there. It must never be lost below the table.
   subroutine turns_before_it_is_out(check)
     class(checks_t), intent(inout) :: check
     type(ball_t) :: problem
@@ -185,9 +185,9 @@ contains
       call check%that(problem%came_back == 1, 'the ball comes back to the table')
       if (sunk(i) < 5e-9_dp) then
         call check%close_to(problem%time_back, sqrt(2 + 1e-8_dp) + sqrt(1e-8_dp - 2*sunk(i)), 1e-7_dp, &
-          'it comes back when it falls')
+          'time at which the ball comes back')
       else
-        call check%close_to(problem%time_back, sqrt(2 + 1e-8_dp), 1e-6_dp, 'or when it turns')
+        call check%close_to(problem%time_back, sqrt(2 + 1e-8_dp), 1e-6_dp, 'time at which the ball reverses below the table')
       end if
     end do
   end subroutine turns_before_it_is_out
@@ -206,7 +206,7 @@ contains
     t = 0
     y = 1
     call integrate(problem, method, t, y, 10.0_dp, 0, observer, status)
-    call check%that(status == chattering, 'chatter is named')
+    call check%that(status == chattering, 'chatter has its own status')
     call check%close_to(t, 1.0_dp, 1e-5_dp, 'chatter ends the run where it begins')
     call check%that(problem%taken <= 110, 'chatter ends after a hundred events')
   end subroutine chatter
@@ -325,7 +325,7 @@ contains
     action = event_continue
   end subroutine changes_side
 
-  !> `t_to` is an event where it is short of the end of the step.
+  !> `t_to` is an event if it is before the end of the step.
   subroutine look_at_root(self, method, problem, t_to)
     class(root_checker_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method

@@ -21,8 +21,8 @@ contains
     call derivatives_of_tables(check, 'none')
   end subroutine run_test_film_derivatives
 
-  !> From near the centre to beyond the last row of the table, approaching and leaving, the pin turning either way, with its moment;
-  !> and where one of the two velocities is 0.
+  !> Motions from near the centre to beyond the last row of the table, approaching and leaving, with the pin rotating in both
+  !> directions, with the moment; and motions in which one of the two velocities is 0.
   subroutine derivatives_of_tables(check, cavitation)
     class(checks_t), intent(inout) :: check
     character(len=*), intent(in) :: cavitation
@@ -41,9 +41,9 @@ contains
       end do
       motion%pin_speed = 0
       motion%eccentricity_rate = -4e-3_dp*motion%eccentricity/c
-      call compare(check, law, motion, cavitation//', leaving straight')
+      call compare(check, law, motion, cavitation//', leaving radially')
       motion%eccentricity_rate = 4e-3_dp*motion%eccentricity/c
-      call compare(check, law, motion, cavitation//', approaching straight')
+      call compare(check, law, motion, cavitation//', approaching radially')
     end do
   end subroutine derivatives_of_tables
 
@@ -59,7 +59,7 @@ contains
     call law%film_force(motion, force, moment)
     gap = 1 - norm2(motion%eccentricity)/c
     speed = norm2(motion%eccentricity_rate) + c*abs(motion%pin_speed)
-    do i = 1, 5   ! of the force over what it takes to change it; differences lose digits
+    do i = 1, 5   ! finite differences of the force lose digits
       size_of = 1e-6_dp*[norm2(force), norm2(force), abs(moment) + c*norm2(force)]
       if (i <= 2) size_of = size_of/(gap*c)
       if (i == 3 .or. i == 4) size_of = size_of/(gap*speed)

@@ -1,5 +1,5 @@
-!> Results of films besides their force: side flow, largest pressure, power, moment. Against tables of an independent solver
-!> (data/film) and of Raimondi and Boyd, scans and quadrature; in whole runs against the energy that the bodies lose.
+!> Results of films besides their force: side flow, largest pressure, power, moment. They are compared with tables of an independent
+!> solver (data/film) and of Raimondi and Boyd, with scans and quadrature, and in whole runs with the energy that the bodies lose.
 module test_film_figures
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi, degree
@@ -16,7 +16,7 @@ module test_film_figures
   private
   public :: run_test_film_figures
 
-  real(dp), parameter :: c = 20e-6_dp   !! of the bearing of `laws` [m]
+  real(dp), parameter :: c = 20e-6_dp   !! clearance of the bearing in `laws` [m]
   character(len=80), parameter :: small(3) = [character(len=60) :: 'lubrication.table_points=33', 'lubrication.film_points=64', &
     'lubrication.cavitation=gumbel']
 
@@ -63,11 +63,11 @@ contains
       end do
       close (unit)
     end do
-    call check%that(rows > 250, 'the tables were read')
+    call check%that(rows > 250, 'the tables have their rows')
   end subroutine tables_of_the_solver
 
-  !> Printed tables of a journal that turns under a steady load (1958): side flow Q_s/(R c N L) and mean pressure over the largest.
-  !> Their film begins where it is thickest, ours where it likes.
+  !> Published tables of a journal that rotates under a steady load (1958): side flow Q_s/(R c N L), and mean pressure over the
+  !> largest. Their film begins at the largest film thickness, ours where its pressure becomes positive.
   subroutine raimondi_and_boyd(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: printed(4, 9) = reshape([ &
@@ -111,18 +111,18 @@ contains
         film%half_length = 0.6_dp
         call film%reduced_peak_and_flow(ratios(i)**2, 3*cos(alpha), 3*sin(alpha), most, flow)
         call check%relative(most, 3*want_most, 1e-6_dp, 'largest pressure of a short bearing')
-        call check%relative(flow, 3*want_flow, 1e-9_dp, 'flow out of a short bearing')
+        call check%relative(flow, 3*want_flow, 1e-9_dp, 'side flow of a short bearing')
         if (ratios(i) > 0.8_dp) cycle
         film%half_length = 0.005_dp
         call film%reduced_peak_and_flow(ratios(i)**2, cos(alpha), sin(alpha), most, flow)
         call solved_film(128, film%half_length, cavitation_gumbel, 1 - ratios(i), alpha, solved)
-        call check%relative(solved%most, most, 2e-3_dp, 'largest pressure solved for')
-        call check%relative(solved%flow, flow, 5e-3_dp, 'flow solved for')
+        call check%relative(solved%most, most, 2e-3_dp, 'largest pressure of the solver')
+        call check%relative(solved%flow, flow, 5e-3_dp, 'side flow of the solver')
       end do
     end do
   end subroutine short_bearing
 
-  !> The same with units: p = 6 mu v*.r (L^2/4 - z^2)/h^3, and what v*.r pushes out of the arc where it is positive, 2 R L |v*|.
+  !> The same with units: p = 6 mu v*.r (L^2/4 - z^2)/h^3, and the flow out of the arc where v*.r is positive, 2 R L |v*|.
   subroutine units(check)
     class(checks_t), intent(inout) :: check
     integer, parameter :: points = 100000
@@ -144,12 +144,12 @@ contains
         end do
       end associate
       call law%peak_and_flow(motion, most, flow)
-      call check%relative(most, want, 1e-5_dp, 'largest pressure in Pa')
-      call check%relative(flow, 2*radius*length*norm2(v), 1e-9_dp, 'flow in m3/s')
+      call check%relative(most, want, 1e-5_dp, 'largest pressure [Pa]')
+      call check%relative(flow, 2*radius*length*norm2(v), 1e-9_dp, 'side flow [m3/s]')
     end do
   end subroutine units
 
-  !> The long film's pressure, scanned closely.
+  !> The pressure of the long film, scanned at close points.
   subroutine long_bearing_by_scan(check)
     class(checks_t), intent(inout) :: check
     integer, parameter :: points = 100000
@@ -168,7 +168,7 @@ contains
         want = max(want, law%pressure(motion, angle), law%pressure(motion, 0.01_dp*angle))
       end do
       call check%relative(most, want, 1e-6_dp, 'largest pressure of a long bearing')
-      call check%that(abs(flow) <= 0, 'which has no ends')
+      call check%that(abs(flow) <= 0, 'a long bearing has no side flow')
     end do
   end subroutine long_bearing_by_scan
 
@@ -189,7 +189,7 @@ contains
     end do
   end subroutine table_meets_solver
 
-  !> With nothing else that takes energy, the bodies lose what the film takes.
+  !> If nothing else dissipates energy, the bodies lose the energy that the film dissipates.
   subroutine energy_lost_by_the_bodies(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -198,20 +198,21 @@ contains
     call check%that(.not. allocated(trace%error), 'a run with the figures of its film')
     if (allocated(trace%error)) return
     associate (energy => trace%values(column(trace, 'energy[J]'), :), figures => trace%report%figures%pin(2))
-      call check%relative(figures%film_energy_lost, energy(1) - energy(size(energy)), 1e-4_dp, 'what the bodies lose')
+      call check%relative(figures%film_energy_lost, energy(1) - energy(size(energy)), 1e-4_dp, &
+        'loss of the film is that of the bodies')
       call check%relative(sum(trace%values(column(trace, 'film_power[W]'), :))*trace%values(1, 2), &
-        figures%film_energy_lost, 2e-2_dp, 'power by its rows')
+        figures%film_energy_lost, 2e-2_dp, 'integral of the power in the rows')
       call check%relative(sum(trace%values(column(trace, 'film_side_flow[m3/s]'), :))*trace%values(1, 2), figures%film_volume, &
-        2e-2_dp, 'flow by its rows')
+        2e-2_dp, 'integral of the flow in the rows')
       call check%that(figures%max_film_pressure >= maxval(trace%values(column(trace, 'max_film_pressure[Pa]'), :)), &
         'no row is above the largest pressure')
       call check%relative(figures%max_film_pressure, maxval(trace%values(column(trace, 'max_film_pressure[Pa]'), :)), 2e-2_dp, &
-        'nor far below')
-      call check%that(minval(trace%values(column(trace, 'film_power[W]'), :)) > 0, 'a film takes power all the time')
+        'a row is near the largest pressure')
+      call check%that(minval(trace%values(column(trace, 'film_power[W]'), :)) > 0, 'the film always dissipates power')
     end associate
   end subroutine energy_lost_by_the_bodies
 
-  !> Without the moment the pressure's work alone is taken from the bodies, but the film's loss has the shear too.
+  !> Without the film moment only the work of the pressure is taken from the bodies; the loss of the film includes the shear.
   subroutine energy_lost_without_moment(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -225,11 +226,11 @@ contains
                power => trace%values(column(trace, 'film_power[W]'), :), &
                rod_speed => trace%values(column(trace, 'rod_speed[rad/s]'), :))
       call check%relative(figures%film_energy_lost - sum(moment*rod_speed)*trace%values(1, 2), energy(1) - energy(size(energy)), &
-        2e-3_dp, 'pressure takes from the bodies what the film loses without its shear')
+        2e-3_dp, 'loss of the bodies is that of the film without shear')
       call check%that(figures%film_energy_lost > 1.01_dp*(energy(1) - energy(size(energy))), &
-        'the shear is worth something')
-      call check%that(minval(power) > 0, 'and the film loses power all the time')
-      call check%that(figures%max_film_pressure > 1e6_dp, 'at some pressure')
+        'the shear has a share of the loss')
+      call check%that(minval(power) > 0, 'the long film always dissipates power')
+      call check%that(figures%max_film_pressure > 1e6_dp, 'the long film has a pressure')
     end associate
   end subroutine energy_lost_without_moment
 
@@ -245,15 +246,16 @@ contains
     call check%that(.not. any(standard%names == 'film_power[W]') .and. any(standard%names == 'film_moment[N.m]'), &
       'power is not a standard column')
     call check%that(size(more%names) == size(standard%names) + 1 .and. &
-      any(more%names == 'film_power[W]'), 'but comes when it is named')
-    call check%that(size(one%names) == 2 .and. any(one%names == 'film_side_flow[m3/s]'), 'or without the standard ones')
+      any(more%names == 'film_power[W]'), 'power is a column if it is named')
+    call check%that(size(one%names) == 2 .and. any(one%names == 'film_side_flow[m3/s]'), &
+      'power can be a column without the standard ones')
     more = run_case('cases/sim_I.nml', [character(len=80) :: 'output.columns=film_side_flow'])
-    call check%that(allocated(more%error), 'a long bearing has no side flow')
+    call check%that(allocated(more%error), 'a side flow of a long bearing is refused')
     more = run_case('cases/sim_I_oscillating.nml', [character(len=80) :: 'output.columns=max_film_pressure'])
-    call check%that(allocated(more%error), 'nor the oscillating film a pressure above that of its ends')
+    call check%that(allocated(more%error), 'a pressure of the oscillating film is refused')
   end subroutine columns_on_request
 
-  !> The film between rough surfaces is that of their mean gap; at a crank pin both bodies turn.
+  !> The film between rough surfaces is that of their mean gap; at a crank pin both bodies rotate.
   subroutine mixed_film_and_crank_pin(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -262,19 +264,20 @@ contains
       'output.columns=standard,film_power,max_film_pressure'])
     call check%that(.not. allocated(trace%error), 'a mixed film with its figures')
     if (allocated(trace%error)) return
-    call check%that(minval(trace%values(column(trace, 'film_power[W]'), :)) > 0, 'a film of rough surfaces takes power')
+    call check%that(minval(trace%values(column(trace, 'film_power[W]'), :)) > 0, 'a film of rough surfaces dissipates power')
     trace = run_case('cases/film/sim_IV_mixed.nml', [character(len=80) :: 'lubrication.report=.true.', &
       'integrator.revolutions=0.01', 'initial.eccentricity=20.1e-6,0', 'lubrication.variant=short'])
     call check%that(.not. allocated(trace%error), 'a mixed film beyond the clearance')
     if (allocated(trace%error)) return
-    call check%that(trace%report%figures%pin(2)%max_film_pressure < 1e12_dp, 'has a bounded pressure')
+    call check%that(trace%report%figures%pin(2)%max_film_pressure < 1e12_dp, &
+      'a mixed film beyond the clearance has a finite pressure')
     trace = run_case('cases/joints/both_pins_lubricated.nml', [character(len=80) :: 'lubrication.report=.true.', &
       'integrator.revolutions=0.3', 'lubrication.film_moment=.true.', 'integrator.method=auto'])
     call check%that(.not. allocated(trace%error), 'two films with their figures')
     if (allocated(trace%error)) return
     associate (energy => trace%values(column(trace, 'energy[J]'), :), pins => trace%report%figures%pin)
       call check%relative(sum(pins%film_energy_lost), energy(1) - energy(size(energy)), 1e-4_dp, &
-        'what the bodies lose in two films')
+        'loss of two films is that of the bodies')
     end associate
   end subroutine mixed_film_and_crank_pin
 

@@ -25,7 +25,7 @@ contains
   end subroutine run_test_film_moment
 
   !> Integral over the pin of R times the stress -(mu U/h + h p'/2), p' = dp/(R dtheta), of the flow u = U y/h + y (y - h) p'/(2
-  !> mu): with the pressure of the law, by differences.
+  !> mu), with the pressure of the law by finite differences.
   subroutine moment_is_the_shear(check)
     class(checks_t), intent(inout) :: check
     integer, parameter :: points = 40000
@@ -52,7 +52,7 @@ contains
     end do
   end subroutine moment_is_the_shear
 
-  !> Those in closed form against differences.
+  !> The derivatives in closed form against finite differences.
   subroutine derivatives(check)
     class(checks_t), intent(inout) :: check
     class(film_law_t), allocatable :: law
@@ -69,7 +69,7 @@ contains
     end do
   end subroutine derivatives
 
-  !> A half film takes energy in every motion if its shear acts; without, it gives some in many.
+  !> A half film dissipates energy in every motion if its shear acts; without the shear it supplies energy in many motions.
   subroutine power_is_lost(check)
     class(checks_t), intent(inout) :: check
     class(film_law_t), allocatable :: law
@@ -85,24 +85,24 @@ contains
       if (dot_product(force, motion%eccentricity_rate) + moment*motion%turning_speed > 0) gains = gains + 1
       if (dot_product(force, motion%eccentricity_rate) > 0) gains_without = gains_without + 1
     end do
-    call check%that(gains == 0, 'a film takes energy')
-    call check%that(gains_without > 20, 'which its force alone does not tell')
+    call check%that(gains == 0, 'a film with shear always dissipates energy')
+    call check%that(gains_without > 20, 'a film without shear may supply energy')
   end subroutine power_is_lost
 
-  !> .true. of finite_bearing, .false. of pinkus_sternlicht; what is given holds for both.
+  !> The default is .true. for finite_bearing and .false. for pinkus_sternlicht; a value in the case holds for both.
   subroutine key_has_a_default_by_law(check)
     class(checks_t), intent(inout) :: check
     class(film_law_t), allocatable :: law
     call new_film(check, '', law)
-    call check%that(.not. law%film_moment, 'a long film has its pressure alone')
+    call check%that(.not. law%film_moment, 'a long film acts by its pressure only')
     call new_film(check, "variant='half_film'", law)
-    call check%that(.not. law%film_moment, 'in every variant')
+    call check%that(.not. law%film_moment, 'a long film acts by its pressure only in every variant')
     call new_film(check, "law='finite_bearing' variant='short'", law)
     call check%that(law%film_moment, 'the shear of a film of finite length acts')
     call new_film(check, "law='finite_bearing' variant='short' film_moment=.false.", law)
-    call check%that(.not. law%film_moment, 'unless the case says otherwise')
+    call check%that(.not. law%film_moment, 'the case can switch off the shear of a film of finite length')
     call new_film(check, 'film_moment=.true.', law)
-    call check%that(law%film_moment, 'of a long film it does if the case says so')
+    call check%that(law%film_moment, 'the case can switch on the shear of a long film')
   end subroutine key_has_a_default_by_law
 
   subroutine new_film(check, keys, law)
@@ -114,7 +114,7 @@ contains
     call check%that(.not. allocated(error), 'a film')
   end subroutine new_film
 
-  !> Eccentricity ratios up to 0.93, rates of half a mm/s, the pin turning either way.
+  !> Eccentricity ratios up to 0.93, rates of half a mm/s, rotation of the pin in both directions.
   pure function random_motion(k) result(motion)
     integer, intent(in) :: k
     type(film_motion_t) :: motion

@@ -24,7 +24,7 @@ module test_film_transition
 
   character(len=*), parameter :: file = 'cases/film/weighted.nml'
   integer, parameter :: long = 60
-  real(dp), parameter :: c = 0.2e-3_dp, q = 0.03_dp, depth = 3e-6_dp   !! of the case
+  real(dp), parameter :: c = 0.2e-3_dp, q = 0.03_dp, depth = 3e-6_dp   !! values of the case
 
 contains
 
@@ -43,7 +43,7 @@ contains
     call refuses(check)
   end subroutine run_test_film_transition
 
-  !> Values and slopes of both shapes, and all for the contact beyond the depth.
+  !> Values and slopes of both shapes; beyond the depth the contact carries the whole load.
   subroutine shares(check)
     class(checks_t), intent(inout) :: check
     type(film_transition_t) :: transition
@@ -57,13 +57,13 @@ contains
     call check%relative(w, 0.15625_dp, 1e-12_dp, 'smooth share')
     call check%relative(slope, 1.125_dp/depth, 1e-12_dp, 'smooth slope')
     call transition%weight(-depth, w, slope)
-    call check%that(abs(w) + abs(slope) <= 0, 'a smooth share is none while apart')
+    call check%that(abs(w) + abs(slope) <= 0, 'the contact has no share without penetration')
     transition%film_is_gone = .true.
     call transition%weight(2*depth, w, slope)
-    call check%that(abs(w - 1) + abs(slope) <= 0, 'deep down the contact has all')
+    call check%that(abs(w - 1) + abs(slope) <= 0, 'the contact has the whole share beyond the depth')
   end subroutine shares
 
-  !> Beyond the eccentricity ratio 1 - q a film is that of 1 - q with the same direction, rate and speeds.
+  !> Beyond the eccentricity ratio 1 - q the film force is that at 1 - q with the same direction, rate and speeds.
   subroutine film_is_held(check)
     class(checks_t), intent(inout) :: check
     class(film_law_t), allocatable :: film
@@ -85,21 +85,21 @@ contains
       motion%eccentricity = (0.95_dp + 0.03_dp*i)*20e-6_dp*n
       transition%film_is_held = .true.
       call transition%film_force(film, motion, force, moment)
-      call check%close_to(norm2(force - want), 0.0_dp, 1e-11_dp*norm2(want), 'a held film')
-      call check%relative(moment, want_moment, 1e-11_dp, 'moment of a held film')
+      call check%close_to(norm2(force - want), 0.0_dp, 1e-11_dp*norm2(want), 'force of a limited film')
+      call check%relative(moment, want_moment, 1e-11_dp, 'moment of a limited film')
     end do
     transition%film_is_held = .false.
     motion%eccentricity = 0.5_dp*20e-6_dp*n
     call film%film_force(motion, want, want_moment)
     call transition%film_force(film, motion, force, moment)
-    call check%that(all(abs(force - want) <= 0), 'a film that is not held is the law''s own')
+    call check%that(all(abs(force - want) <= 0), 'a film that is not limited is that of the law')
   end subroutine film_is_held
 
-  !> On both sides of each kink, and of the clearance, the loads on the pin are the same.
+  !> The loads on the pin are the same on both sides of each kink and of the clearance.
   subroutine forces_have_no_jumps(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: kinks(3) = [c*(1 - q), c, c + depth]
-    character(len=*), parameter :: names(3) = [character(len=20) :: 'where film is held', 'at the clearance', 'where film is gone']
+    character(len=*), parameter :: names(3) = [character(len=20) :: 'at the film limit', 'at the clearance', 'at the end of film']
     character(len=long) :: shape(1)
     real(dp) :: inner(3), outer(3)
     integer :: i, k
@@ -110,9 +110,9 @@ contains
         outer = loads_at(shape, kinks(i)*(1 + 1e-13_dp))
         call check%close_to(norm2(outer - inner), 0.0_dp, 1e-8_dp*norm2(outer), 'no jump '//trim(names(i)))
       end do
-      ! half way the loads are the sum of those weighted in the columns
+      ! at half of the depth the loads are the sum of the weighted loads in the columns
       call check%relative(pressing_at(shape, c + 0.5_dp*depth), 0.5_dp*hertz(0.5_dp*depth), 1e-6_dp, &
-        'half of Hertz''s force half way')
+        'half of Hertz''s force at half of the depth')
     end do
 
   contains
@@ -134,7 +134,7 @@ contains
     loads = [now%loads%force(:, piston_pin), now%loads%moment(piston_pin)]
   end function loads_at
 
-  !> The pressing force at an eccentricity that does not grow [N].
+  !> The normal force at a constant eccentricity [N].
   real(dp) function pressing_at(overrides, distance)
     character(len=*), intent(in) :: overrides(:)
     real(dp), intent(in) :: distance
@@ -157,7 +157,7 @@ contains
     call scene%evaluate(0.0_dp, y, now, inside)
   end subroutine evaluate_at
 
-  !> The scene of the case with its pin in the zone of an eccentricity.
+  !> The scene of the case, with its pin in the zone that belongs to an eccentricity.
   subroutine make_scene(overrides, distance, scene)
     character(len=*), intent(in) :: overrides(:)
     real(dp), intent(in) :: distance
@@ -173,7 +173,7 @@ contains
     call scene%joints(1)%transition%begin(distance, 0.0_dp)
   end subroutine make_scene
 
-  !> The closed-form Jacobian against differences, in each zone, for each film.
+  !> The closed-form Jacobian against finite differences, in each zone, for each film.
   subroutine derivatives(check)
     class(checks_t), intent(inout) :: check
     character(len=long), parameter :: films(4) = [character(len=long) :: 'lubrication.variant=closed_form', &
@@ -203,8 +203,10 @@ contains
         call put_pin(scene, y, distances(j)*[cos(1.3_dp*j), sin(1.3_dp*j)], [0.11_dp, 0.07_dp])
         call scene%jacobian(0.0_dp, y, a_p, a_v)
         call difference_jacobian(scene, 0.0_dp, y, d_p, d_v)
-        call check%close_to(maxval(abs(a_p - d_p)), 0.0_dp, 2e-4_dp*maxval(abs(d_p)), 'slopes by positions: '//films(i))
-        call check%close_to(maxval(abs(a_v - d_v)), 0.0_dp, 2e-4_dp*maxval(abs(d_v)), 'slopes by rates: '//films(i))
+        call check%close_to(maxval(abs(a_p - d_p)), 0.0_dp, 2e-4_dp*maxval(abs(d_p)), &
+          'derivatives with respect to positions: '//films(i))
+        call check%close_to(maxval(abs(a_v - d_v)), 0.0_dp, 2e-4_dp*maxval(abs(d_v)), &
+          'derivatives with respect to rates: '//films(i))
       end do
     end do
   end subroutine derivatives
@@ -219,13 +221,13 @@ contains
     type(trace_t) :: trace
     integer :: i
     trace = run_case(file, [character(len=long) :: 'integrator.relative_tolerance=1e-10', 'integrator.revolutions=1'])
-    call check%that(.not. allocated(trace%error), 'the weighted case runs')
+    call check%that(.not. allocated(trace%error), 'a run with a weighted transition')
     if (allocated(trace%error)) return
     call check%that(size(trace%event) == 5, 'the number of contacts')
     if (size(trace%event) /= 5) return
     do i = 1, 5
-      call check%close_to(trace%event(i)%time, instants(i), 3e-10_dp, 'when a contact begins or ends')
-      call check%relative(trace%event(i)%normal_speed, speeds(i), 1e-6_dp, 'and how fast')
+      call check%close_to(trace%event(i)%time, instants(i), 3e-10_dp, 'time at which a contact begins or ends')
+      call check%relative(trace%event(i)%normal_speed, speeds(i), 1e-6_dp, 'speed at which a contact begins or ends')
     end do
   end subroutine meets_the_reference
 
@@ -243,7 +245,7 @@ contains
     end do
   end subroutine methods_agree_on_it
 
-  !> Rows in which film and contact both bear, with the share that belongs to their depth; and none of the film beyond the depth.
+  !> Rows in which film and contact carry load together have the share of their penetration; rows beyond the depth have no film.
   subroutine share_of_columns(check, trace)
     class(checks_t), intent(inout) :: check
     type(trace_t), intent(in) :: trace
@@ -252,13 +254,13 @@ contains
     penetration = -trace%values(column(trace, 'film_thickness[m]'), :)
     film = abs(trace%values(column(trace, 'film_force_x[N]'), :))
     pressing = trace%values(column(trace, 'normal_force[N]'), :)
-    call check%that(any(w > 0 .and. w < 1 .and. film > 0 .and. pressing > 0), 'film and contact bear together')
-    call check%that(all((w > 0) .eqv. (penetration > 0)), 'the contact has a share where it touches')
-    call check%that(all(film <= 0 .or. penetration < depth), 'no film deep down')
-    call check%that(any(penetration > depth .and. pressing > 0 .and. w >= 1), 'where the contact bears all')
+    call check%that(any(w > 0 .and. w < 1 .and. film > 0 .and. pressing > 0), 'film and contact carry load together')
+    call check%that(all((w > 0) .eqv. (penetration > 0)), 'the contact has a share if there is penetration')
+    call check%that(all(film <= 0 .or. penetration < depth), 'no film beyond the depth')
+    call check%that(any(penetration > depth .and. pressing > 0 .and. w >= 1), 'beyond the depth the contact carries the whole load')
   end subroutine share_of_columns
 
-  !> The film's moment on the pin is that of the held film by its share.
+  !> The moment of the film on the pin is that of the limited film times its share.
   subroutine moment_has_its_share(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -269,14 +271,16 @@ contains
     if (allocated(trace%error)) return
     allocate (w, source=trace%values(column(trace, 'contact_weight[-]'), :))
     allocate (moment, source=abs(trace%values(column(trace, 'film_moment[N.m]'), :)))
-    call check%that(all(moment <= 0 .or. w < 1) .and. any(moment > 0 .and. w > 0.9_dp), 'the moment of a film goes with its share')
-    call check%that(maxval(moment, mask=w <= 0) > maxval(moment, mask=w > 0.5_dp), 'and is greatest without contact')
+    call check%that(all(moment <= 0 .or. w < 1) .and. any(moment > 0 .and. w > 0.9_dp), &
+      'the moment of a film vanishes with its share')
+    call check%that(maxval(moment, mask=w <= 0) > maxval(moment, mask=w > 0.5_dp), &
+      'the moment of a film is largest without contact')
     associate (power => trace%report%figures)
       call check%that(power%max_energy_residual < 1e-6_dp*power%max_energy, 'the work of the moment is in the energy')
     end associate
   end subroutine moment_has_its_share
 
-  !> The pin passes the kink before each touch, that behind the full contact, and back: each is a restart.
+  !> The pin passes the first kink before each contact, the second at full contact, and both on the way back: each is a restart.
   subroutine kinks_are_events(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -284,10 +288,11 @@ contains
       'integrator.revolutions=0.7'])
     call check%that(.not. allocated(trace%error), 'a run')
     if (allocated(trace%error)) return
-    call check%that(trace%report%statistics%restarts >= size(trace%event) + 4, 'kinks are events beside those of the contact')
+    call check%that(trace%report%statistics%restarts >= size(trace%event) + 4, &
+      'kinks are events in addition to those of the contact')
   end subroutine kinks_are_events
 
-  !> In each zone, on each kink, at rest and on the way to either side.
+  !> Starts in each zone, on each kink, at rest and moving to either side.
   subroutine starts_anywhere(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: starts(6) = [0.98_dp*c, 0.97_dp*c, c, c + 0.5_dp*depth, c + depth, c + 2*depth]
@@ -301,16 +306,17 @@ contains
         write (set(4), '(a,es23.16,a)') 'initial.eccentricity=', starts(i), ',0'
         write (set(5), '(a,es23.16,a)') 'initial.eccentricity_rate=', 0.05_dp*j, ',0.01'
         trace = run_case(file, set)
-        call check%that(.not. allocated(trace%error), 'starts at '//set(4)//set(5))
+        call check%that(.not. allocated(trace%error), 'a run that starts at '//set(4)//set(5))
         if (allocated(trace%error)) cycle
         associate (figures => trace%report%figures)
-          call check%that(figures%max_energy_residual < 1e-6_dp*figures%max_energy, 'with its energy known, '//set(4)//set(5))
+          call check%that(figures%max_energy_residual < 1e-6_dp*figures%max_energy, &
+            'energy residual of a start at '//set(4)//set(5))
         end associate
       end do
     end do
   end subroutine starts_anywhere
 
-  !> Set-valued friction holds and slides by the contact's share, and the energy is known.
+  !> Set-valued friction sticks and slides with the contact's share of the load, and the energy residual is small.
   subroutine sticks(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -319,20 +325,22 @@ contains
     call check%that(.not. allocated(trace%error), 'set-valued friction with a weighted transition')
     if (allocated(trace%error)) return
     associate (figures => trace%report%figures)
-      call check%that(figures%max_energy_residual < 1e-6_dp*figures%max_energy, 'keeps the energy')
+      call check%that(figures%max_energy_residual < 1e-6_dp*figures%max_energy, &
+        'set-valued friction with a weighted transition: energy residual')
     end associate
     associate (friction => trace%values(column(trace, 'friction_force[N]'), :), &
                pressing => trace%values(column(trace, 'normal_force[N]'), :))
-      call check%that(maxval(abs(friction) - 0.1_dp*pressing) < 1e-6_dp*maxval(pressing), 'within its limit')
+      call check%that(maxval(abs(friction) - 0.1_dp*pressing) < 1e-6_dp*maxval(pressing), 'set-valued friction is within its limit')
     end associate
   end subroutine sticks
 
   subroutine refuses(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: weighted = "&lubrication viscosity=0.01 transition='weighted' transition_depth=1e-6 / "
-    call expect(check, weighted, '&lubrication transition = weighted: needs the group contact', 'no contact to share with')
+    call expect(check, weighted, '&lubrication transition = weighted: needs the group contact', &
+      'a weighted transition without contact')
     call expect(check, weighted//"&asperities roughness=1e-7 /", &
-      '&lubrication transition = weighted: must be switch with asperities', 'asperities beside a weighted transition')
+      '&lubrication transition = weighted: must be switch with asperities', 'asperities together with a weighted transition')
     call expect(check, "&contact / &lubrication viscosity=0.01 transition='weighted' /", &
       '&lubrication transition_depth: required with transition = ''weighted''', 'a transition without a depth')
     call expect(check, "&contact / &lubrication viscosity=0.01 transition='weighted' transition_depth=1e-3 /", &
@@ -341,7 +349,7 @@ contains
       '&lubrication transition_depth = 1e-6: needs transition = ''weighted''', 'a depth with a switch')
     call expect(check, "&contact / &lubrication viscosity=0.01 transition='weighted' transition_depth=-1e-6 /", &
       '&lubrication transition_depth = -1e-6: must be > 0', 'a negative depth')
-    call expect(check, "&contact / "//weighted//" &friction law='coulomb' coefficient=0.1 /", '', 'a good case')
+    call expect(check, "&contact / "//weighted//" &friction law='coulomb' coefficient=0.1 /", '', 'a valid case')
   end subroutine refuses
 
   function new_transition(shape) result(transition)

@@ -34,7 +34,7 @@ contains
         'integrator.relative_tolerance=1e-8'])
       call check%that(.not. allocated(trace%error), 'Pinkus-Sternlicht '//simulations(i)//' runs')
       call check%that(size(trace%event) == 0 .and. trace%report%figures%pin(piston_pin)%min_film_thickness > 0, &
-        'Pinkus-Sternlicht '//simulations(i)//' never touches')
+        'Pinkus-Sternlicht '//simulations(i)//' has no contact')
       associate (e => trace%values(column(trace, 'energy[J]'), :))
         lost(i) = e(1) - e(size(e))
       end associate
@@ -42,7 +42,7 @@ contains
     call check%that(lost(1) > 0 .and. lost(2) > lost(1), 'dissipation grows from I to II')
   end subroutine the_journal_film_never_touches
 
-  !> With the oscillating film contact in all six, most of the time in III and VI.
+  !> With the oscillating film there is contact in all six simulations, and most of the time in III and VI.
   subroutine the_oscillating_film_touches(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -52,9 +52,9 @@ contains
       trace = run_case('cases/sim_'//trim(simulations(i))//'_oscillating.nml', [character(len=long) :: &
         'integrator.relative_tolerance=1e-9'])
       call check%that(.not. allocated(trace%error), 'oscillating film '//simulations(i)//' runs')
-      call check%that(trace%report%figures%pin(piston_pin)%contacts > 0, 'oscillating film '//simulations(i)//' touches')
+      call check%that(trace%report%figures%pin(piston_pin)%contacts > 0, 'oscillating film '//simulations(i)//' has contacts')
       fraction = trace%report%figures%pin(piston_pin)%contact_time/trace%report%figures%time
-      if (mod(i, 3) == 0) call check%that(fraction > 0.5_dp, 'oscillating film '//simulations(i)//' mostly touches')
+      if (mod(i, 3) == 0) call check%that(fraction > 0.5_dp, 'oscillating film '//simulations(i)//' is in contact most of the time')
       call check%close_to(trace%report%figures%max_energy_residual/trace%report%figures%max_energy, 0.0_dp, 1e-7_dp, &
         'energy residual of the oscillating film '//simulations(i))
     end do

@@ -42,7 +42,7 @@ contains
     call points_by_tolerance(check)
   end subroutine run_test_finite_bearing
 
-  !> Phi of five bearings, with each cavitation, up to the eccentricity ratio 0.9 as a draft solves it.
+  !> Phi of five bearings with each cavitation condition, up to the eccentricity ratio 0.9, at the accuracy level draft.
   subroutine forces_of_the_tables(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: bearings(5) = [character(len=4) :: '0.25', '0.5', '0.75', '1', '2']
@@ -62,15 +62,16 @@ contains
         call solved_force(64, half_length, condition_of(condition), 1 - eps, alpha*degree, got)
         rows = rows + 1
         call check%that(norm2(got - want) <= merge(8e-3_dp, 3e-3_dp, condition == 'reynolds')*norm2(want), &
-          'a force of '//trim(condition)//' film as tabulated')
+          'tabulated force of a '//trim(condition)//' film')
       end do
       close (unit)
     end do
-    call check%that(rows > 400, 'the tables were read')
+    call check%that(rows > 400, 'the tables have their rows')
   end subroutine forces_of_the_tables
 
-  !> Films that are left, which are the hardest, with free edges: four grids apart by a quarter of a node's distance come within
-  !> 3e-4, a single one within 8e-4; and with their pressure cut off, within 2e-5. (scripts/check_films.sh has all rows.)
+  !> Films from which the pin withdraws, the most difficult ones. With Reynolds's condition the mean of four grids shifted by a
+  !> quarter of a node's distance is within 3e-4, a single grid within 8e-4; with Gumbel's condition within 2e-5.
+  !> (scripts/check_films.sh has all rows.)
   subroutine forces_of_the_reference_level(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: rows(3, 5) = reshape([0.25_dp, 0.9_dp, 150.0_dp, 0.25_dp, 0.95_dp, 120.0_dp, &
@@ -128,9 +129,9 @@ contains
     integer :: i
     do i = 1, 3
       call solved_force(128, cases(2, i), cavitation_none, cases(1, i), 0.0_dp, force)
-      call check%relative(force(1), cases(3, i), 2e-4_dp, 'squeeze by modes')
+      call check%relative(force(1), cases(3, i), 2e-4_dp, 'squeeze film by modes')
       call solved_force(128, cases(2, i), cavitation_none, cases(1, i), 0.5_dp*pi, force)
-      call check%relative(force(2), cases(4, i), 2e-4_dp, 'wedge by modes')
+      call check%relative(force(2), cases(4, i), 2e-4_dp, 'wedge film by modes')
     end do
   end subroutine linear_film_by_modes
 
@@ -151,13 +152,13 @@ contains
       if (abs(eps) > 0.905_dp .or. is_misprint(width, eps)) cycle
       call solved_force(64, width, cavitation_reynolds, 1 - abs(eps), merge(0.0_dp, pi, eps >= 0), force)
       rows = rows + 1
-      call check%relative(0.5_dp*norm2(force), printed, 6e-3_dp, 'squeeze film as printed')
+      call check%relative(0.5_dp*norm2(force), printed, 6e-3_dp, 'published squeeze film')
       if (abs(0.5_dp*norm2(force) - printed) < 3.5e-3_dp*printed) cycle
       call solved_force(128, width, cavitation_reynolds, 1 - abs(eps), merge(0.0_dp, pi, eps >= 0), force)
-      call check%relative(0.5_dp*norm2(force), printed, 3.5e-3_dp, 'squeeze film as printed, at the standard level')
+      call check%relative(0.5_dp*norm2(force), printed, 3.5e-3_dp, 'published squeeze film, at the standard level')
     end do
     close (unit)
-    call check%that(rows > 100, 'the printed table was read')
+    call check%that(rows > 100, 'the published table has its rows')
   end subroutine squeeze_of_butenschoen
 
   pure logical function is_misprint(width, eps)
@@ -172,7 +173,7 @@ contains
     near = abs(a - b) < 1e-3_dp
   end function near
 
-  !> Sommerfeld's long bearing and Ocvirk's short one.
+  !> Sommerfeld's long bearing and Ocvirk's short bearing.
   subroutine limits_in_closed_form(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: ratios(4) = [0.1_dp, 0.5_dp, 0.8_dp, 0.95_dp], angles(4) = [0.0_dp, 45.0_dp, 90.0_dp, 120.0_dp]
@@ -194,7 +195,7 @@ contains
     end do
   end subroutine limits_in_closed_form
 
-  !> Its pressure integrated by the trapezoidal rule in the angle, the parabola along the film exactly.
+  !> The pressure of the short bearing, integrated by the trapezoidal rule in the angle and exactly along the film.
   subroutine short_bearing_by_quadrature(check)
     class(checks_t), intent(inout) :: check
     integer, parameter :: points = 200000
@@ -218,8 +219,8 @@ contains
     end do
   end subroutine short_bearing_by_quadrature
 
-  !> The same with 33 digits up to 1 - eps = 1e-13, in every direction: next to the wall a film that is left has a force 1e30 times
-  !> smaller than the integrals that its closed form is made of.
+  !> The same with 33 digits up to 1 - eps = 1e-13, in every direction: near the wall the force of a film from which the pin
+  !> withdraws is 1e30 times smaller than the integrals in its closed form.
   subroutine short_bearing_next_to_wall(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: gaps(7) = [0.5_dp, 0.03_dp, 1e-3_dp, 1e-4_dp, 1e-6_dp, 1e-9_dp, 1e-13_dp]
@@ -241,7 +242,7 @@ contains
   end subroutine short_bearing_next_to_wall
 
   !> The integrals of cos(phi - alpha) cos phi/H^3 and cos(phi - alpha) sin phi/H^3 over the half of the film in which cos(phi -
-  !> alpha) is positive, by Romberg's method on pieces that grow from the thinnest place on.
+  !> alpha) is positive, by Romberg's method on pieces whose length increases with the distance from the smallest film thickness.
   function precise_integrals(square, b, t) result(sums)
     real(dp), intent(in) :: square, b, t   !! eps^2; cos(alpha) and sin(alpha)
     real(dp) :: sums(2)
@@ -251,9 +252,9 @@ contains
     gap = (1 - real(square, long))/(1 + sqrt(real(square, long)))
     alpha = atan2(real(t, long), real(b, long))
     total = 0
-    do side = -1, 1, 2   ! of the thinnest place: from it to pi
+    do side = -1, 1, 2   ! both sides of the smallest film thickness: from there to pi
       ends = acos(-1.0_long)*[-0.5_long, 0.5_long] + side*alpha
-      do k = -1, 1       ! the arc, and the same a turn before and after
+      do k = -1, 1       ! the arc, and the same one revolution before and after
         from = max(ends(1) + 2*k*acos(-1.0_long), 0.0_long)
         do while (from < min(ends(2) + 2*k*acos(-1.0_long), acos(-1.0_long)))
           to = min(from + 0.3_long*max(sqrt(gap), from), ends(2) + 2*k*acos(-1.0_long), acos(-1.0_long))
@@ -285,8 +286,8 @@ contains
     end function weighed
   end function precise_integrals
 
-  !> With Reynolds' condition the force is the gradient of a potential of the velocity: its change along the direction is half of
-  !> that of its product with the velocity. With Gumbel's it is not.
+  !> With Reynolds's condition the force is the gradient of a potential of the velocity: the change of the potential is half of that
+  !> of the product of force and velocity. With Gumbel's condition there is no potential.
   subroutine potential_of_the_velocity(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: step = 0.02_dp
@@ -307,10 +308,10 @@ contains
       end do
     end do
     call check%close_to(worst(cavitation_reynolds), 0.0_dp, 5e-3_dp, 'a ruptured film has a potential')
-    call check%that(worst(cavitation_gumbel) > 0.02_dp, 'half a film has none')
+    call check%that(worst(cavitation_gumbel) > 0.02_dp, 'half a film has no potential')
   end subroutine potential_of_the_velocity
 
-  !> A table of 33 values each way is off by little more than the noise of its solver, and holds beyond its last row.
+  !> The error of a table of 33 values in each direction is little more than that of its solver, also beyond its last row.
   subroutine table_meets_solver(check)
     class(checks_t), intent(inout) :: check
     type(film_map_t) :: map
@@ -322,13 +323,13 @@ contains
       alpha = pi*(2*modulo(0.414_dp*i, 1.0_dp) - 1)
       call solved_force(128, 0.75_dp, cavitation_gumbel, 1 - eps, alpha, want)
       call map%force(eps**2, 3*cos(alpha), 3*sin(alpha), got(1), got(2))
-      call check%that(norm2(got - 3*want) <= 1.2e-2_dp*norm2(3*want), 'the table meets the solver')
+      call check%that(norm2(got - 3*want) <= 1.2e-2_dp*norm2(3*want), 'force from the table and from the solver')
     end do
     call map%force((1 - 1e-7_dp)**2, 1.0_dp, 0.3_dp, got(1), got(2))
-    call check%relative(got(1)*(2e-7_dp)**1.5_dp, -12*pi, 0.02_dp, 'approach next to the wall, as of a long film')
+    call check%relative(got(1)*(2e-7_dp)**1.5_dp, -12*pi, 0.02_dp, 'force of approach next to the wall is that of a long film')
   end subroutine table_meets_solver
 
-  !> A film that pulls: leaving and approaching alike.
+  !> Without cavitation the force of withdrawal is that of approach with the opposite sign.
   subroutine table_without_cavitation(check)
     class(checks_t), intent(inout) :: check
     type(film_map_t) :: map
@@ -362,13 +363,13 @@ contains
       errors(i) = norm2(got - want)/norm2(want)
     end do
     call check%that(maxval(errors) < 2.5_dp*map%largest_error .and. maxval(errors) > 0.2_dp*map%largest_error, &
-      'the largest error of a table, as it says')
+      'stated largest error of a table')
     associate (mean => sqrt(sum(errors**2)/points))
-      call check%that(mean < 2*map%mean_error .and. mean > 0.4_dp*map%mean_error, 'the mean error of a table, as it says')
+      call check%that(mean < 2*map%mean_error .and. mean > 0.4_dp*map%mean_error, 'stated mean error of a table')
     end associate
     call small%build(0.75_dp, cavitation_gumbel, 17, 64)
     call check%that(small%mean_error > 4*map%mean_error .and. small%largest_error > 4*map%largest_error, &
-      'a table of half as many values says that it is worse')
+      'a table of half as many values states a larger error')
   end subroutine table_states_its_error
 
   !> A table that is stored and restored gives identical results and states the same error.
@@ -384,15 +385,16 @@ contains
     call archive%contents(bytes)
     call archive%begin_reading(bytes)
     call again%exchange(archive)
-    call check%that(.not. archive%failed .and. archive%is_at_end(), 'a table goes through an archive')
+    call check%that(.not. archive%failed .and. archive%is_at_end(), 'a table is stored and restored')
     call map%force(0.3_dp, -0.2_dp, 0.9_dp, one(1), one(2))
     call again%force(0.3_dp, -0.2_dp, 0.9_dp, other(1), other(2))
-    call check%that(all(abs(one - other) <= 0), 'and gives the same force')
+    call check%that(all(abs(one - other) <= 0), 'a restored table gives the same force')
     call check%that(map%largest_error > 0 .and. map%mean_error > 0 .and. &
-      all(abs([map%largest_error - again%largest_error, map%mean_error - again%mean_error]) <= 0), 'and says the same of its error')
+      all(abs([map%largest_error - again%largest_error, map%mean_error - again%mean_error]) <= 0), &
+        'a restored table states the same error')
   end subroutine table_goes_through_an_archive
 
-  !> Mirror, size, a centred pin, rest, and the wall.
+  !> Mirror image, proportionality, a centred pin, a pin at rest, and the wall.
   subroutine symmetries_and_extremes(check)
     class(checks_t), intent(inout) :: check
     class(film_law_t), allocatable :: law
@@ -408,23 +410,23 @@ contains
       call check%that(norm2(mirrored - [force(1), -force(2)]) <= 1e-12_dp*norm2(force), 'the mirrored film')
       call check%relative(other_moment, -moment, 1e-12_dp, 'the mirrored moment')
       call law%film_force(motion_of(motion%eccentricity, 7.3_dp*motion%eccentricity_rate, 7.3_dp*omega), larger, moment)
-      call check%that(norm2(larger - 7.3_dp*force) <= 1e-12_dp*norm2(larger), 'force as the velocity')
+      call check%that(norm2(larger - 7.3_dp*force) <= 1e-12_dp*norm2(larger), 'force is proportional to the velocity')
       call law%film_force(motion_of([0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp], 0.0_dp), force, moment)
-      call check%that(norm2(force) <= 0 .and. abs(moment) <= 0, 'no motion, no force')
+      call check%that(norm2(force) <= 0 .and. abs(moment) <= 0, 'no force without motion')
       call law%film_force(motion_of([0.0_dp, 0.0_dp], [1e-3_dp, 0.0_dp], omega), force, moment)
       call law%film_force(motion_of([1e-13_dp, 1e-13_dp], [1e-3_dp, 0.0_dp], omega), mirrored, moment)
-      call check%that(norm2(force - mirrored) <= 1e-6_dp*norm2(force), 'continuous through the centre')
-      call law%film_force(motion_of([8e-6_dp, 0.0_dp], [-0.0_dp, -5e-3_dp], -omega), force, moment)   ! radial speed: a negative 0
+      call check%that(norm2(force - mirrored) <= 1e-6_dp*norm2(force), 'force is continuous at the centre')
+      call law%film_force(motion_of([8e-6_dp, 0.0_dp], [-0.0_dp, -5e-3_dp], -omega), force, moment)   ! the radial speed is -0
       call law%film_force(motion_of([8e-6_dp, 0.0_dp], [1e-16_dp, -5e-3_dp], -omega), mirrored, moment)
-      call check%that(norm2(force - mirrored) <= 1e-6_dp*norm2(force), 'continuous where the radial speed is 0')
+      call check%that(norm2(force - mirrored) <= 1e-6_dp*norm2(force), 'force is continuous where the radial speed is 0')
       call law%film_force(motion_of([c*(1 - 1e-7_dp), 0.0_dp], [1e-6_dp, 1e-4_dp], omega), force, moment)
-      call check%that(all(abs(force) < huge(force)) .and. force(1) < 0, 'finite and outwards bound next to the wall')
+      call check%that(all(abs(force) < huge(force)) .and. force(1) < 0, 'finite and directed outwards next to the wall')
       call law%film_force(motion_of([1.5_dp*c, 0.0_dp], [1e-3_dp, 0.0_dp], omega), force, moment)
-      call check%that(all(abs(force) < huge(force)), 'finite beyond the wall')
+      call check%that(all(abs(force) < huge(force)), 'force is finite beyond the wall')
     end do
   end subroutine symmetries_and_extremes
 
-  !> The film takes energy in every motion: of the force along the pin's way and of the moment along its turning.
+  !> The film dissipates energy in every motion: power of the force along the pin's motion and of the moment along its rotation.
   subroutine power_is_lost(check)
     class(checks_t), intent(inout) :: check
     class(film_law_t), allocatable :: law
@@ -442,7 +444,7 @@ contains
         v = motion%eccentricity_rate - 0.5_dp*motion%pin_speed*[-motion%eccentricity(2), motion%eccentricity(1)]
         shear = 2*pi*0.0117_dp*15e-3_dp*(10e-3_dp - c)**3/c*motion%turning_speed**2 &
           /sqrt(1 - sum(motion%eccentricity**2)/c**2)
-        call check%that(power > 0, 'a film takes energy')
+        call check%that(power > 0, 'a film dissipates energy')
         call check%relative(power, shear - dot_product(force, v), 1e-10_dp, 'power of pressure and shear')
       end do
     end do
@@ -460,8 +462,8 @@ contains
     call check%that(allocated(error), 'a short bearing without cavitation')
   end subroutine refuses
 
-  !> Numbers of table values and of nodes round the film, with which the key of a table ends: for a draft, at the standard and at
-  !> the reference level, and as given.
+  !> Numbers of table values and of nodes around the film, which are at the end of the key of a table: at the levels draft, standard
+  !> and reference, and as given in the case.
   subroutine points_by_tolerance(check)
     class(checks_t), intent(inout) :: check
     call one('', 1e-4_dp, ' 33 64')

@@ -41,11 +41,12 @@ contains
     call check%that(.not. law%set_valued, 'the ramp is single-valued')
     call check%close_to(law%friction_ratio(0.0_dp, 1), 0.0_dp, 0.0_dp, 'no friction at rest')
     call check%close_to(law%friction_ratio(0.9e-3_dp, 1), 0.0_dp, 0.0_dp, 'no friction below v0')
-    call check%close_to(law%friction_ratio(5.5e-3_dp, 1), -0.025_dp, 1e-17_dp, 'half the friction half way')
+    call check%close_to(law%friction_ratio(5.5e-3_dp, 1), -0.025_dp, 1e-17_dp, 'half of the friction at the middle of the ramp')
     call check%close_to(law%friction_ratio(-5.5e-3_dp, 1), 0.025_dp, 1e-17_dp, 'friction opposes sliding')
-    call check%close_to(law%friction_ratio(3.25e-3_dp, -1), -0.0125_dp, 1e-17_dp, 'a quarter, whatever the direction')
+    call check%close_to(law%friction_ratio(3.25e-3_dp, -1), -0.0125_dp, 1e-17_dp, &
+      'a quarter of the friction at a quarter of the ramp')
     call check%close_to(law%friction_ratio(1e-2_dp, 1), -0.05_dp, 0.0_dp, 'full friction at v1')
-    call check%close_to(law%friction_ratio(-1e300_dp, 1), 0.05_dp, 0.0_dp, 'full friction beyond')
+    call check%close_to(law%friction_ratio(-1e300_dp, 1), 0.05_dp, 0.0_dp, 'full friction beyond v1')
     previous = law%friction_ratio(-2e-2_dp, 1)
     do i = -1999, 2000
       speed = 1e-5_dp*i
@@ -79,11 +80,11 @@ contains
       call check%that(law%set_valued, 'Coulomb friction is set-valued')
       call check%close_to(law%friction_ratio(0.2_dp, 1), -0.03_dp, 0.0_dp, 'sliding forwards')
       call check%close_to(law%friction_ratio(-0.2_dp, -1), 0.03_dp, 0.0_dp, 'sliding backwards')
-      call check%close_to(law%friction_ratio(0.0_dp, -1), 0.03_dp, 0.0_dp, 'the direction decides at rest')
+      call check%close_to(law%friction_ratio(0.0_dp, -1), 0.03_dp, 0.0_dp, 'friction at rest has the given direction')
     end do
   end subroutine test_coulomb
 
-  !> The table of an independent implementation (data/README.md), and a few numbers of it, of 12 digits.
+  !> The table of an independent implementation (data/README.md), and some of its numbers with 12 digits.
   subroutine test_curves(check)
     class(checks_t), intent(inout) :: check
     character(len=130), parameter :: keys(5) = [character(len=130) :: "law='coulomb' coefficient=0.08", &
@@ -95,7 +96,7 @@ contains
     real(dp), allocatable :: table(:, :)
     integer :: i, row
     call load_table('friction/curves.csv', names, table)
-    call check%that(size(table, 2) == 27, 'the table of friction curves is whole')
+    call check%that(size(table, 2) == 27, 'the table of friction curves has all rows')
     do i = 1, size(keys)
       call friction_law_of(trim(keys(i)), law, error)
       do row = 1, size(table, 2)
@@ -128,12 +129,12 @@ contains
       if (ratio > peak) at = 1e-6_dp*i
       peak = max(peak, ratio)
     end do
-    call check%that(peak > 0.9994_dp*0.12_dp .and. peak < 0.9998_dp*0.12_dp, 'the peak is the static friction')
-    call check%that(at > 1.001e-2_dp .and. at < 1.016e-2_dp, 'at the transition speed')
-    call check%relative(-law%friction_ratio(10.0_dp, 1), 0.08_dp, 1e-7_dp, 'the sliding friction is left at high speeds')
+    call check%that(peak > 0.9994_dp*0.12_dp .and. peak < 0.9998_dp*0.12_dp, 'largest friction is the static friction')
+    call check%that(at > 1.001e-2_dp .and. at < 1.016e-2_dp, 'largest friction is at the transition speed')
+    call check%relative(-law%friction_ratio(10.0_dp, 1), 0.08_dp, 1e-7_dp, 'friction at high speeds is sliding friction')
   end subroutine test_peaks
 
-  !> The closed slopes against central differences of the ratio.
+  !> The analytical derivatives against central differences.
   subroutine test_slopes(check)
     class(checks_t), intent(inout) :: check
     character(len=130), parameter :: keys(5) = [character(len=130) :: "law='ambrosio' coefficient=0.08 v0=1e-3 v1=1e-2", &
@@ -149,14 +150,14 @@ contains
         v = sign(1e-6_dp*1.5_dp**abs(j), real(j, dp))
         if (j == 0) v = 0
         step = max(1e-5_dp*abs(v), 1e-11_dp)
-        if (j == 0 .and. i == 5) cycle   ! its second derivative has no bound there
+        if (j == 0 .and. i == 5) cycle   ! its second derivative is unbounded there
         call check%close_to(law%friction_ratio_slope(v), (law%friction_ratio(v + step, 1) - law%friction_ratio(v - step, 1)) &
           /(2*step), 1e-5_dp*abs(law%friction_ratio_slope(v)) + 1e-10_dp/step*1e-5_dp, 'slope of '//law%name())
       end do
     end do
   end subroutine test_slopes
 
-  !> At the ends of every range: friction never drives, is odd, and is a number; so is its slope.
+  !> At the ends of every range friction opposes sliding, is an odd function and is finite; so is its derivative.
   subroutine test_extremes(check)
     class(checks_t), intent(inout) :: check
     character(len=130), parameter :: keys(8) = [character(len=130) :: "law='threlfall' coefficient=2 v1=1e-9", &
@@ -177,10 +178,10 @@ contains
         v = 10.0_dp**j
         ratio = law%friction_ratio(v, 1)
         call check%that(ratio <= 0 .and. ratio >= -2 - v, 'friction opposes sliding: '//law%name())
-        call check%that(.not. abs(ratio + law%friction_ratio(-v, -1)) > 0, 'and is odd: '//law%name())
-        call check%that(abs(law%friction_ratio_slope(v)) < 1e12_dp, 'with a slope: '//law%name())
+        call check%that(.not. abs(ratio + law%friction_ratio(-v, -1)) > 0, 'friction is an odd function: '//law%name())
+        call check%that(abs(law%friction_ratio_slope(v)) < 1e12_dp, 'derivative of the friction is finite: '//law%name())
       end do
-      call check%that(.not. abs(law%friction_ratio(0.0_dp, 1)) > 0, 'none at rest: '//law%name())
+      call check%that(.not. abs(law%friction_ratio(0.0_dp, 1)) > 0, 'no friction at rest: '//law%name())
     end do
   end subroutine test_extremes
 
@@ -189,10 +190,10 @@ contains
     class(friction_law_t), allocatable :: law
     type(error_t), allocatable :: error
     call friction_law_of("law='coulomb' coefficient=0.1 static_coefficient=0.15", law, error)
-    call check%close_to(law%friction_ratio(0.2_dp, 1), -0.1_dp, 0.0_dp, 'surfaces slide with the coefficient')
-    call check%close_to(law%holding_ratio(), 0.15_dp, 0.0_dp, 'and are held with the static one')
+    call check%close_to(law%friction_ratio(0.2_dp, 1), -0.1_dp, 0.0_dp, 'coefficient of friction of sliding surfaces')
+    call check%close_to(law%holding_ratio(), 0.15_dp, 0.0_dp, 'coefficient of friction of sticking surfaces')
     call friction_law_of("law='coulomb' coefficient=0.1", law, error)
-    call check%close_to(law%holding_ratio(), 0.1_dp, 0.0_dp, 'which is that of sliding where none is given')
+    call check%close_to(law%holding_ratio(), 0.1_dp, 0.0_dp, 'static friction is sliding friction by default')
   end subroutine test_static_coulomb
 
   subroutine test_conflicts(check)

@@ -32,7 +32,7 @@ contains
     call bristles_at_both_pins(check)
   end subroutine run_test_friction_runs
 
-  !> While the surfaces slide, the friction is that of sliding; while they stick it may be larger, up to that of rest.
+  !> While the surfaces slide, the friction is sliding friction; while they stick it may be larger, up to static friction.
   subroutine surfaces_stick_above_the_sliding_friction(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -54,9 +54,9 @@ contains
         end if
       end do
     end associate
-    call check%that(above > 10, 'surfaces stick by more than the friction of sliding')
+    call check%that(above > 10, 'sticking surfaces have more than sliding friction')
     associate (f => trace%report%figures)
-      call check%close_to(f%max_energy_residual/f%max_energy, 0.0_dp, 1e-7_dp, 'energy with static friction')
+      call check%close_to(f%max_energy_residual/f%max_energy, 0.0_dp, 1e-7_dp, 'energy residual with static friction')
     end associate
   end subroutine surfaces_stick_above_the_sliding_friction
 
@@ -75,13 +75,13 @@ contains
       smooth = run_case(coulomb_static, [character(len=long) :: 'integrator.relative_tolerance=1e-10', &
         'integrator.revolutions=0.7', 'integrator.method=auto', 'friction.law=stribeck', speeds(i), slopes(i)])
       n = min(size(smooth%event), size(coulomb%event), 14)
-      call check%that(n == 14, 'there are contacts')
+      call check%that(n == 14, 'number of contacts')
       error(i) = maxval(abs(smooth%event(:n)%time - coulomb%event(:n)%time))
     end do
     call check%that(error(2) < 0.3_dp*error(1) .and. error(3) < 0.3_dp*error(2), 'Stribeck''s curve converges to static friction')
   end subroutine coulomb_is_the_limit_of_smooth_curves
 
-  !> The closed form of the Jacobian against differences, for every law, crank held and free.
+  !> The closed form of the Jacobian against finite differences, for every law, at constant crank speed and with a free crank.
   subroutine closed_jacobian(check)
     class(checks_t), intent(inout) :: check
     character(len=long), parameter :: laws(3) = [character(len=long) :: 'friction.law=threlfall', 'friction.law=brown_mcphee', &
@@ -128,16 +128,19 @@ contains
       if (scene%n_states() > 0) y(scene%joints(1)%friction_states%first) = 1.4e-6_dp*(2*i - 5)
       call scene%jacobian(1e-3_dp*i, y, a_p, a_v)
       call difference_jacobian(scene, 1e-3_dp*i, y, d_p, d_v)
-      call check%close_to(maxval(abs(a_p - d_p)), 0.0_dp, 1e-5_dp*maxval(abs(d_p)), 'slopes by positions: '//overrides(1))
-      call check%close_to(maxval(abs(a_v - d_v)), 0.0_dp, 1e-5_dp*maxval(abs(d_v)), 'slopes by rates: '//overrides(1))
+      call check%close_to(maxval(abs(a_p - d_p)), 0.0_dp, 1e-5_dp*maxval(abs(d_p)), &
+        'derivatives with respect to positions: '//overrides(1))
+      call check%close_to(maxval(abs(a_v - d_v)), 0.0_dp, 1e-5_dp*maxval(abs(d_v)), &
+        'derivatives with respect to rates: '//overrides(1))
       if (k == m) cycle
       call check%close_to(maxval(abs(a_p(k, :) - d_p(k, :))), 0.0_dp, 1e-5_dp*maxval(abs(d_p(k, :))) + 2e-4_dp, &
-        'slopes of the bristles by positions: '//overrides(1))
+        'derivatives of the bristles with respect to positions: '//overrides(1))
       call check%close_to(maxval(abs(a_v(k, :m) - d_v(k, :m))), 0.0_dp, 1e-5_dp*maxval(abs(d_v(k, :m))), &
-        'slopes of the bristles by rates: '//overrides(1))
-      call check%close_to(a_v(k, k), d_v(k, k), 1e-5_dp*(1 + abs(d_v(k, k))), 'slopes of bristles by themselves: '//overrides(1))
+        'derivatives of the bristles with respect to rates: '//overrides(1))
+      call check%close_to(a_v(k, k), d_v(k, k), 1e-5_dp*(1 + abs(d_v(k, k))), &
+        'derivative of the bristles with respect to themselves: '//overrides(1))
       call check%close_to(maxval(abs(a_v(:m, k) - d_v(:m, k))), 0.0_dp, 1e-5_dp*maxval(abs(d_v(:m, k))), &
-        'slopes by the bristles: '//overrides(1))
+        'derivatives with respect to the bristles: '//overrides(1))
     end do
   end subroutine compare_jacobians
 
@@ -155,24 +158,24 @@ contains
           'integrator.revolutions=0.5'])
         call check%that(.not. allocated(trace(i)%error), 'bristles run with '//methods(i))
         associate (f => trace(i)%report%figures)
-          call check%close_to(f%max_energy_residual/f%max_energy, 0.0_dp, 1e-9_dp, 'energy with bristles')
+          call check%close_to(f%max_energy_residual/f%max_energy, 0.0_dp, 1e-9_dp, 'energy residual with bristles')
         end associate
       end do
       n = size(trace(1)%event)
-      call check%that(n > 8, 'there are contacts')
+      call check%that(n > 8, 'number of contacts with bristles')
       pin = column(trace(1), 'piston_position[m]')
       do i = 2, 3
-        call check%that(size(trace(i)%event) == n, 'as many contacts by '//methods(i))
+        call check%that(size(trace(i)%event) == n, 'number of contacts by '//methods(i))
         if (size(trace(i)%event) /= n) cycle
         call check%close_to(maxval(abs(trace(i)%event%time - trace(1)%event%time)), 0.0_dp, 1e-9_dp, &
-          'contact instants by Adams and by '//methods(i))
+          'contact times by Adams and by '//methods(i))
         call check%close_to(maxval(abs(trace(i)%values(pin, :) - trace(1)%values(pin, :))), 0.0_dp, 1e-10_dp, &
-          'piston by Adams and by '//methods(i))
+          'piston position by Adams and by '//methods(i))
       end do
     end do
   end subroutine methods_agree
 
-  !> Bristles are unbent while the surfaces are apart and when they meet, and never bent by more than static friction bends them.
+  !> The bristle deflection is 0 in free flight and at the beginning of a contact, and never larger than that under static friction.
   subroutine bristles_live_in_contact(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -192,17 +195,17 @@ contains
         end do
         most = max(most, abs(z(i)))
         if (nint(phase(i)) /= phase_contact) then
-          call check%close_to(z(i), 0.0_dp, 0.0_dp, 'no bristle is bent while the surfaces are apart')
+          call check%close_to(z(i), 0.0_dp, 0.0_dp, 'no bristle deflection in free flight')
         else if (t(i) > trace%event(k)%time) then
-          call check%that(abs(z(i)) < 10*(t(i) - trace%event(k)%time), 'bristles begin unbent in every contact')
-          call check%that(abs(friction(i)) <= 0.17_dp*normal(i), 'friction stays within the static one and some damping')
+          call check%that(abs(z(i)) < 10*(t(i) - trace%event(k)%time), 'bristle deflection at the beginning of every contact')
+          call check%that(abs(friction(i)) <= 0.17_dp*normal(i), 'friction does not exceed static friction and damping')
         end if
       end do
     end associate
-    call check%that(most < 0.15_dp/2e4_dp*(1 + 1e-6_dp) .and. most > 0.099_dp/2e4_dp, 'bristles give way at their bound')
+    call check%that(most < 0.15_dp/2e4_dp*(1 + 1e-6_dp) .and. most > 0.099_dp/2e4_dp, 'bristles reach the break-away deflection')
   end subroutine bristles_live_in_contact
 
-  !> The work of friction against Simpson's sum over a fine trace, and what asking for it changes: nothing.
+  !> The work of friction against Simpson's rule over a fine trace; and requesting it does not change a run.
   subroutine work_of_friction(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace, quiet
@@ -225,15 +228,16 @@ contains
           work = work + (t(i + 2) - t(i))*(power(i) + 4*power(i + 1) + power(i + 2))/6
         end do
         if (mod(n, 2) == 0) work = work + (t(n) - t(n - 1))*(power(n) + power(n - 1))/2
-        call check%that(found < -0.1_dp, 'friction takes work: '//laws(k))
-        call check%relative(found, work, 1e-5_dp, 'as much as force times speed: '//laws(k))
+        call check%that(found < -0.1_dp, 'friction dissipates work: '//laws(k))
+        call check%relative(found, work, 1e-5_dp, 'work of friction is the integral of force times speed: '//laws(k))
       end associate
-      call check%that(maxval(abs(trace%values - quiet%values)) <= 0, 'a run is the same whether its friction work is told')
-      call check%that((quiet%report%figures%pin(piston_pin)%friction_work < 0) .eqv. k == 3, 'laws with bristles always tell it')
+      call check%that(maxval(abs(trace%values - quiet%values)) <= 0, 'a request of the friction work does not change a run')
+      call check%that((quiet%report%figures%pin(piston_pin)%friction_work < 0) .eqv. k == 3, &
+        'laws with bristles always have the friction work')
     end do
   end subroutine work_of_friction
 
-  !> Stiff bristles: auto works with Radau in contact, at a small part of what Adams costs.
+  !> Stiff bristles: auto uses Radau in contact, and needs a small part of the evaluations of Adams.
   subroutine stiff_bristles_are_found(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: adams, auto
@@ -241,14 +245,14 @@ contains
     character(len=long), parameter :: stiff = 'friction.bristle_stiffness=1e7'
     adams = run_case(lugre, [character(len=long) :: stiff, 'integrator.revolutions=0.1', 'integrator.method=adams'])
     auto = run_case(lugre, [character(len=long) :: stiff, 'integrator.revolutions=0.1', 'integrator.method=auto'])
-    associate (time => auto%report%time_with(:, 2))   ! in contact
-      call check%that(time(with_radau) > 0.9_dp*sum(time), 'auto takes stiff bristles with Radau')
+    associate (time => auto%report%time_with(:, 2))   ! times by method in contact
+      call check%that(time(with_radau) > 0.9_dp*sum(time), 'auto uses Radau for stiff bristles')
     end associate
     call check%that(auto%report%statistics%evaluations < 0.2_dp*adams%report%statistics%evaluations, &
-      'and needs a small part of the evaluations of Adams')
+      'auto needs a small part of the evaluations of Adams')
   end subroutine stiff_bristles_are_found
 
-  !> Bristles at both pins, a state at each: two methods give the same contacts, and each pin has its own bristles and its own work.
+  !> Bristles at both pins, with a state at each: two methods give the same contacts, and each pin has separate bristles and work.
   subroutine bristles_at_both_pins(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace(2)
@@ -260,19 +264,20 @@ contains
     trace(1) = run_case('cases/joints/both_pins.nml', overrides)
     overrides(8) = 'integrator.method=radau'
     trace(2) = run_case('cases/joints/both_pins.nml', overrides)
-    call check%that(.not. (allocated(trace(1)%error) .or. allocated(trace(2)%error)), 'bristles at both pins run')
+    call check%that(.not. (allocated(trace(1)%error) .or. allocated(trace(2)%error)), 'runs with bristles at both pins')
     if (allocated(trace(1)%error) .or. allocated(trace(2)%error)) return
     n = size(trace(1)%event)
-    call check%that(n > 8 .and. size(trace(2)%event) == n, 'with as many contacts by either method')
+    call check%that(n > 8 .and. size(trace(2)%event) == n, 'bristles at both pins: number of contacts by both methods')
     if (size(trace(2)%event) == n) call check%close_to(maxval(abs(trace(2)%event%time - trace(1)%event%time)), 0.0_dp, 1e-8_dp, &
-      'at the same instants')
+      'bristles at both pins: contact times by both methods')
     do i = 1, 2
       associate (z => trace(i)%values(column(trace(i), 'bristle[m]'), :), &
                  z_crank => trace(i)%values(column(trace(i), 'crank_pin_bristle[m]'), :), f => trace(i)%report%figures)
         call check%that(maxval(abs(z)) > 1e-6_dp .and. maxval(abs(z_crank)) > 1e-6_dp, 'bristles bend at both pins')
-        call check%that(maxval(abs(z - z_crank)) > 1e-6_dp, 'each pin has its own')
-        call check%that(f%pin(piston_pin)%friction_work < 0 .and. f%pin(crank_pin)%friction_work < 0, 'and its own work')
-        call check%close_to(f%max_energy_residual/f%max_energy, 0.0_dp, 1e-8_dp, 'energy with bristles at both pins')
+        call check%that(maxval(abs(z - z_crank)) > 1e-6_dp, 'each pin has separate bristles')
+        call check%that(f%pin(piston_pin)%friction_work < 0 .and. f%pin(crank_pin)%friction_work < 0, &
+          'each pin has its own friction work')
+        call check%close_to(f%max_energy_residual/f%max_energy, 0.0_dp, 1e-8_dp, 'energy residual with bristles at both pins')
       end associate
     end do
   end subroutine bristles_at_both_pins

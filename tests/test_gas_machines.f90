@@ -30,7 +30,7 @@ contains
     call piston_that_swings(check)
   end subroutine run_test_gas_machines
 
-  !> Volume from the geometry of the mechanism, the piston's way from its top [m^3].
+  !> Distance of the piston from its top position, from the geometry of the mechanism, as swept volume [m^3].
   pure real(dp) function volume_at(q, dead)
     real(dp), intent(in) :: q, dead
     volume_at = dead + pi*bore**2/4*(crank + rod - crank*cos(q) - sqrt(rod**2 - (crank*sin(q))**2))
@@ -58,7 +58,8 @@ contains
     end do
   end function work_between
 
-  !> Heat all at once at the dead centre is the Otto cycle: W = Q (1 - r^(1-gamma)), r from the volume at which the ports close.
+  !> If all heat is released at the dead centre, the cycle is the Otto cycle: W = Q (1 - r^(1-gamma)), r from the volume at which
+  !> the ports close.
   subroutine otto_cycle_with_ports(check)
     class(checks_t), intent(inout) :: check
     type(two_stroke_t) :: engine
@@ -71,7 +72,7 @@ contains
     engine%compression_ratio = 9
     engine%heat_capacity_ratio = gamma
     engine%heat = 250
-    engine%efficiency = 100   ! what is not burnt is e^-100
+    engine%efficiency = 100   ! the unburnt share is e^-100
     engine%form = 2
     engine%start_deg = 360 - 0.5_dp*burn
     engine%duration_deg = burn
@@ -87,13 +88,14 @@ contains
     end do
     ratio = volume_at(105*degree, dead)/dead
     call check%relative(work, 250*(1 - ratio**(1 - gamma)), 1e-8_dp, 'Otto cycle of a two-stroke engine: work')
-    call check%that(gas%revolutions() == 1, 'it repeats after a revolution')
-    call check%relative(peak, 101325*ratio**gamma + (gamma - 1)*250/dead, 1e-6_dp, 'its peak pressure')
+    call check%that(gas%revolutions() == 1, 'a two-stroke engine repeats after one revolution')
+    call check%relative(peak, 101325*ratio**gamma + (gamma - 1)*250/dead, 1e-6_dp, &
+      'Otto cycle of a two-stroke engine: peak pressure')
     call gas%start(0.0_dp, 1.0_dp)
     call check%that(gas%pressure(255*degree - two_pi) < 101326, 'ports that close at 255 degrees close at -105 too')
   end subroutine otto_cycle_with_ports
 
-  !> The cycle of 360 degrees, forwards and backwards, open between the ports.
+  !> The cycle of 360 degrees, in both directions of rotation, open between the port angles.
   subroutine two_strokes_repeat(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -112,8 +114,8 @@ contains
     end do
   end subroutine two_strokes_repeat
 
-  !> W = n/(n-1) p1 (V1 - V4) ((p2/p1)^((n-1)/n) - 1), with V4 = V0 (p2/p1)^(1/n) where suction begins; n = 1: p1 (V1 - V4)
-  !> ln(p2/p1). Where the pressure never reaches the discharge's, no gas goes through and the work is 0.
+  !> W = n/(n-1) p1 (V1 - V4) ((p2/p1)^((n-1)/n) - 1), with V4 = V0 (p2/p1)^(1/n) at the beginning of suction; for n = 1: p1 (V1 -
+  !> V4) ln(p2/p1). If the pressure does not reach the discharge pressure, no gas flows and the work is 0.
   subroutine compressor_work(check, discharge, n, dead_space)
     class(checks_t), intent(inout) :: check
     real(dp), intent(in) :: discharge, n, dead_space
@@ -144,7 +146,8 @@ contains
         call gas%start(0.5_dp*(bounds(i - 1) + bounds(i)), way)
         work = work + work_between(gas, bounds(i - 1), bounds(i))
       end do
-      call check%close_to(work/(suction*displacement), want/(suction*displacement), 1e-10_dp, 'work of a compressor over a turn')
+      call check%close_to(work/(suction*displacement), want/(suction*displacement), 1e-10_dp, &
+        'work of a compressor in a revolution')
     end do
 
   contains
@@ -179,7 +182,7 @@ contains
     call machine%prepare(crank, rod, 1e-10_dp, gas, error)
   end function compressor_of
 
-  !> A free crank loses that work in each turn of a run, to 1e-8 of it, forwards and backwards.
+  !> A free crank loses this work in each revolution, within 1e-8 of it, in both directions of rotation.
   subroutine compressor_gives_the_crank_its_work(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -196,15 +199,15 @@ contains
     do i = 1, 2
       if (i == 2) settings(7) = 'initial.crank_speed=-150'
       trace = run_case('cases/gas/compressor.nml', settings, .true.)
-      call check%equal_text(trace%report%status, 'done', 'a compressor with a free crank makes its turns')
+      call check%equal_text(trace%report%status, 'done', 'a compressor with a free crank completes its revolutions')
       energy = values_of(trace, 'energy[J]')
-      call check%relative(energy(1) - energy(size(energy)), 2*want, 1e-8_dp, 'what its crank loses in two turns')
-      call check%that(trace%report%figures%max_energy_residual < 1e-8_dp*want, 'its energy residual')
+      call check%relative(energy(1) - energy(size(energy)), 2*want, 1e-8_dp, 'loss of a crank with a compressor in two revolutions')
+      call check%that(trace%report%figures%max_energy_residual < 1e-8_dp*want, 'a compressor with a free crank: energy residual')
     end do
   end subroutine compressor_gives_the_crank_its_work
 
-  !> A piston that turns back while it discharges leaves what is in the cylinder to expand from there; valves do not care for the
-  !> crank angle.
+  !> If the piston turns back during discharge, the gas in the cylinder expands from there; the valves do not depend on the crank
+  !> angle.
   subroutine piston_that_turns_back(check)
     class(checks_t), intent(inout) :: check
     type(working_gas_t) :: gas
@@ -213,20 +216,20 @@ contains
     gas = compressor_of(5e5_dp, n, 0.05_dp)
     turned = 340*degree
     call gas%start(turned, 1.0_dp)
-    call check%relative(gas%pressure(turned), 5e5_dp, 1e-15_dp, 'it discharges at 340 degrees')
+    call check%relative(gas%pressure(turned), 5e5_dp, 1e-15_dp, 'discharge at 340 degrees')
     call gas%events(turned, -1e-9_dp, g, g_rate)
     call check%that(g(1) < 0 .and. g(2) > 0, 'the crank turns back')
     call gas%pass(2, turned, -1e-9_dp)
-    call check%relative(gas%pressure(turned), 5e5_dp, 1e-12_dp, 'the pressure does not jump')
+    call check%relative(gas%pressure(turned), 5e5_dp, 1e-12_dp, 'the pressure does not jump when the crank turns back')
     call check%relative(gas%pressure(300*degree), 5e5_dp*(volume_at(turned, dead)/volume_at(300*degree, dead))**n, 1e-12_dp, &
-      'what is left expands')
+      'the gas in the cylinder expands')
     call gas%events(turned, -1.0_dp, g, g_rate)
-    call check%that(all(g < 0), 'no valve opens at once')
+    call check%that(all(g < 0), 'no valve opens when the crank turns back')
     call gas%start(200*degree, 0.0_dp)
     call check%relative(gas%pressure(200*degree), 1e5_dp, 1e-15_dp, 'a machine at rest is filled at the suction pressure')
   end subroutine piston_that_turns_back
 
-  !> A crank too slow to reach the discharge pressure swings back: the gas is a spring, and gives back what it took.
+  !> A crank that is too slow to reach the discharge pressure swings back: the gas acts as a spring without loss.
   subroutine piston_that_swings(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -236,14 +239,15 @@ contains
       'integrator.relative_tolerance=1e-10', 'integrator.revolutions=0', 'integrator.end_time=0.5', &
       'initial.crank_angle_deg=180', 'initial.crank_speed=20', 'output.interval=1e-3']
     trace = run_case('cases/gas/compressor.nml', settings, .true.)
-    call check%equal_text(trace%report%status, 'done', 'a crank that swings against the gas')
+    call check%equal_text(trace%report%status, 'done', 'a run with a crank that swings against the gas')
     speed = values_of(trace, 'crank_speed[rad/s]')
     angle = values_of(trace, 'crank_angle[rad]')
     pressure = values_of(trace, 'cylinder_pressure[Pa]')
-    call check%that(minval(speed) < -19 .and. maxval(pressure) < 5e5_dp, 'it turns back before the valve opens')
+    call check%that(minval(speed) < -19 .and. maxval(pressure) < 5e5_dp, 'the crank turns back before the valve opens')
     i = minloc(abs(angle(2:) - pi) + merge(0.0_dp, 9.0_dp, speed(2:) < 0), 1) + 1
-    call check%relative(speed(i), -20.0_dp, 0.02_dp, 'with the speed that it had')
-    call check%that(trace%report%figures%max_energy_residual < 1e-7_dp*trace%report%figures%max_energy, 'no energy is lost')
+    call check%relative(speed(i), -20.0_dp, 0.02_dp, 'the crank returns with its initial speed')
+    call check%that(trace%report%figures%max_energy_residual < 1e-7_dp*trace%report%figures%max_energy, &
+      'a crank that swings against the gas: energy residual')
   end subroutine piston_that_swings
 
   !> A column of a trace.

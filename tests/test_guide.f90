@@ -1,4 +1,4 @@
-!> Runs of a piston whose guide has friction, or with clearance in its bore.
+!> Runs with a piston guide with friction, or with clearance of the piston in its bore.
 module test_guide
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi, degree
@@ -44,8 +44,8 @@ contains
     values = trace%values(column(trace, name), :)
   end function values_of
 
-  !> A rod without mass is a bar with a force S along it, so that with friction mu |N| against the motion, N = S sin A, the piston's
-  !> equation is m x'' = S cos A - mu |S sin A| sign x'. The crank is held, so that x'' is known.
+  !> A rod without mass is a bar with a force S along it. With friction mu |N| against the motion and N = S sin A, the equation of
+  !> the piston is m x'' = S cos A - mu |S sin A| sign x'. The crank speed is constant, so that x'' is known.
   subroutine massless_rod_with_friction(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: r = 0.05_dp, l = 0.12_dp, m = 0.14_dp, speed = 200, mu = 0.3_dp
@@ -68,15 +68,15 @@ contains
       if (abs(x_rate) < 1e-3_dp) cycle
       x_acceleration = -r*cos(q(i))*speed**2 - l*cosine*rate**2 - l*sine*(l*sine*rate**2 - r*sin(q(i))*speed**2)/(l*cosine)
       bar = m*x_acceleration/(cosine - mu*sign(1.0_dp, x_rate)*abs(sine)*sign(1.0_dp, x_acceleration))
-      s_over_n = -sine   ! the rod leans to -y of the piston: it presses it there
+      s_over_n = -sine   ! the rod is inclined towards -y and presses the piston to that side
       worst = max(worst, abs(guide(i) - bar*s_over_n), abs(friction(i) + mu*abs(bar*sine)*sign(1.0_dp, x_rate)))
     end do
-    call check%that(size(q) == 361 .and. maxval(abs(friction)) > 20, 'a massless rod runs, with friction')
+    call check%that(size(q) == 361 .and. maxval(abs(friction)) > 20, 'a run with a massless rod has friction')
     call check%close_to(worst, 0.0_dp, 1e-9_dp, 'normal force and friction of a massless rod [N]')
   end subroutine massless_rod_with_friction
 
-  !> With ideal pins, a free crank, gravity and heavy bodies: the law of friction holds in every row for the guide's force that
-  !> Newton finds, the energy balances, the piston obeys Newton, and friction takes energy.
+  !> With ideal pins, a free crank, gravity and heavy bodies: in every row the friction law holds for the guide force from Newton's
+  !> law, the piston obeys Newton's law, the energy residual is small, and friction dissipates energy.
   subroutine friction_of_an_ideal_guide(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: got, without
@@ -95,7 +95,7 @@ contains
     call check%close_to(maxval(abs(0.14_dp*(values_of(got, 'piston_acceleration[m/s2]') + 50*cos(40*degree)) &
       + values_of(got, 'pin_force_x[N]') - friction)), 0.0_dp, 1e-9_dp, 'Newton along the cylinder [N]')
     call check%close_to(maxval(abs(values_of(got, 'frame_force_x[N]') - values_of(got, 'crank_bearing_force_x[N]') - friction)), &
-      0.0_dp, 1e-9_dp, 'the frame takes the friction [N]')
+      0.0_dp, 1e-9_dp, 'force on the frame includes the friction [N]')
     call check%close_to(got%report%figures%max_energy_residual/got%report%figures%max_energy, 0.0_dp, 1e-10_dp, &
       'energy residual of friction on an ideal guide')
     associate (speed => column(got, 'crank_speed[rad/s]'), last => size(got%values, 2))
@@ -103,8 +103,8 @@ contains
     end associate
   end subroutine friction_of_an_ideal_guide
 
-  !> With clearance at the piston pin the normal force is the pin's across, also where the pin's surfaces stick; where those of the
-  !> crank pin stick, that of an ideal piston pin follows.
+  !> With clearance at the piston pin the normal force is the lateral pin force, also if the surfaces of the pin stick; if those of
+  !> the crank pin stick, it is that of an ideal piston pin.
   subroutine friction_follows_the_law_of_the_pin(check)
     class(checks_t), intent(inout) :: check
     character(len=long), parameter :: settings(8) = [character(len=long) :: 'drive.kind=free', 'mechanism.gravity_angle_deg=70', &
@@ -132,7 +132,7 @@ contains
     end subroutine friction_by_law
   end subroutine friction_follows_the_law_of_the_pin
 
-  !> Corners by turning a rectangle, the gap by their distance from the wall; rates by differences.
+  !> Corners of a rotated rectangle, their gaps from the distance to the wall, and the rates of the gaps by finite differences.
   subroutine corners_are_where_they_are(check)
     class(checks_t), intent(inout) :: check
     type(piston_guide_t) :: guide
@@ -163,8 +163,8 @@ contains
     call check%close_to(maxval(abs((later%depth - now%depth)/dt - now%depth_rate)), 0.0_dp, 1e-5_dp, 'rates of the gaps [m/s]')
   end subroutine corners_are_where_they_are
 
-  !> A corner hits the wall alone, and gives back the coefficient of restitution, the nearer the stiffer it is: the time in
-  !> contact, in which everything else pulls on it, falls with the root of the stiffness.
+  !> A single corner hits the wall with the coefficient of restitution. The error decreases with increasing stiffness: the duration
+  !> of the contact, in which other forces act as well, is inversely proportional to the root of the stiffness.
   subroutine one_impact_gives_back_its_share(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: got
@@ -179,18 +179,18 @@ contains
       do i = 1, size(got%event) - 1
         if (got%event(i)%kind /= 1) cycle
         miss(k) = abs(-got%event(i + 1)%normal_speed/got%event(i)%normal_speed - 0.4_dp)
-        call check%that(got%event(i + 1)%kind == 2 .and. got%event(i + 1)%pin == got%event(i)%pin, 'one corner touches alone')
+        call check%that(got%event(i + 1)%kind == 2 .and. got%event(i + 1)%pin == got%event(i)%pin, 'one corner is in contact alone')
         call check%that(got%event(i)%pin == n_pins + 1, 'the corner at the top, towards +y')
         exit
       end do
     end do
-    call check%that(miss(4) < 1e-3_dp, 'a stiff corner gives back its coefficient of restitution')
+    call check%that(miss(4) < 1e-3_dp, 'restitution of a stiff corner')
     do k = 2, 4
-      call check%relative(miss(k)/miss(k - 1), 0.1_dp, 0.35_dp, 'the miss falls with the root of the stiffness')
+      call check%relative(miss(k)/miss(k - 1), 0.1_dp, 0.35_dp, 'error of the restitution over the root of the stiffness')
     end do
   end subroutine one_impact_gives_back_its_share
 
-  !> Energy with corners that take none: clearance at the piston pin, pin offset, gravity across, hundreds of events.
+  !> Energy with corners without loss: clearance at the piston pin, pin offset, gravity across the cylinder, hundreds of events.
   subroutine energy_of_elastic_corners(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: got
@@ -202,14 +202,15 @@ contains
       got = run_case('cases/joints/piston_slap.nml', [character(len=long) :: tolerance(i), 'contact.law=hertz', &
         'friction=none', 'guide.contact_law=hertz', 'guide.coefficient=0', 'guide.exponent=1.5', 'guide.stiffness=1e10', &
         'integrator.method=adams', 'drive.kind=free', 'guide.viscous=0'])
-      call check%that(size(got%event) > 200, 'elastic corners touch often')
+      call check%that(size(got%event) > 200, 'elastic corners have many contacts')
       drift(i) = got%report%figures%max_energy_residual/got%report%figures%max_energy
     end do
     call check%close_to(drift(1), 0.0_dp, 3e-7_dp, 'energy drift of elastic corners at 1e-8')
     call check%close_to(drift(2), 0.0_dp, 3e-9_dp, 'energy drift of elastic corners at 1e-10')
   end subroutine energy_of_elastic_corners
 
-  !> With friction and losses at the pin and at the corners, and a ring pack: the energy lost is the work of all these forces.
+  !> With friction and losses at the pin and at the corners, and friction of the rings: the energy lost is the work of all these
+  !> forces.
   subroutine energy_with_all_losses(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: got
@@ -220,24 +221,24 @@ contains
       got = run_case('cases/joints/piston_slap.nml', [character(len=long) :: 'integrator.relative_tolerance=1e-11', scenes(i), &
         'drive.kind=free', 'integrator.revolutions=0.5'])
       associate (energy => values_of(got, 'energy[J]'))
-        call check%that(energy(1) - energy(size(energy)) > 0.02_dp*energy(1), 'losses take energy')
+        call check%that(energy(1) - energy(size(energy)) > 0.02_dp*energy(1), 'energy decreases by the losses')
       end associate
       call check%close_to(got%report%figures%max_energy_residual/got%report%figures%max_energy, 0.0_dp, 2e-9_dp, &
         'energy lost is the work of all forces: '//trim(scenes(i)))
     end do
   end subroutine energy_with_all_losses
 
-  !> The same with an elastic rod and an elastic crankshaft: at a loose pin, at ideal pins with clearance in the bore and with
-  !> friction on the guide alone.
+  !> The same with an elastic rod and an elastic crankshaft: with clearance at the pin, with ideal pins and clearance in the bore,
+  !> and with friction on the guide only.
   subroutine energy_with_elastic_members(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: ideal_pin(3) = [character(len=long) :: 'joint=none', 'contact=none', 'friction=none']
     character(len=*), parameter :: elastic(7) = [character(len=long) :: 'elastic_rod.youngs_modulus=207e9', &
       'elastic_rod.section_area=9.6e-5', 'elastic_rod.section_inertia=5.12e-10', 'crankshaft.flywheel_inertia=0.002', &
       'crankshaft.torsional_stiffness=2e4', 'integrator.relative_tolerance=1e-8', 'integrator.revolutions=0.1']
-    call runs([character(len=long) :: elastic, 'drive.kind=free'], 'a loose pin')
+    call runs([character(len=long) :: elastic, 'drive.kind=free'], 'clearance at the pin')
     call runs([character(len=long) :: elastic, ideal_pin], 'ideal pins')
-    call runs([character(len=long) :: elastic, ideal_pin, 'guide.kind=friction'], 'friction alone')
+    call runs([character(len=long) :: elastic, ideal_pin, 'guide.kind=friction'], 'friction only')
 
   contains
 
@@ -245,17 +246,17 @@ contains
       character(len=*), intent(in) :: overrides(:), what
       type(trace_t) :: got
       got = run_case('cases/joints/piston_slap.nml', overrides)
-      call check%that(got%report%status == 'done', 'elastic rod and shaft in a bore run: '//what)
+      call check%that(got%report%status == 'done', 'run with elastic rod and shaft in a bore: '//what)
       call check%close_to(got%report%figures%max_energy_residual/got%report%figures%max_energy, 0.0_dp, 1e-9_dp, &
-        'energy with elastic rod and shaft: '//what)
+        'energy residual with elastic rod and shaft: '//what)
       associate (reached => maxval(abs(values_of(got, 'guide_friction_force[N]'))))
         call check%that(reached > 5, 'the guide has friction: '//what)
       end associate
     end subroutine runs
   end subroutine energy_with_elastic_members
 
-  !> Every row in which a corner is in the wall has a contact there, contacts of each corner begin and end in turn, and they begin
-  !> and end at the wall; corners of both ends that hit it at the same instant are two contacts.
+  !> Every row with a corner in the wall belongs to a contact of this corner, contacts of a corner begin and end alternately, and
+  !> they begin and end at the wall; two corners that hit the wall at the same time have two contacts.
   subroutine no_event_is_lost(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: got
@@ -267,30 +268,33 @@ contains
       kind = 2
       do i = 1, size(got%event)
         if (got%event(i)%pin /= pin) cycle
-        call check%that(got%event(i)%kind /= kind, 'contacts of a corner begin and end in turn')
+        call check%that(got%event(i)%kind /= kind, 'contacts of a corner begin and end alternately')
         kind = got%event(i)%kind
       end do
       write (name, '(a,i0)') 'guide_', pin - n_pins
       associate (gap => values_of(got, name//'_gap[m]'), force => values_of(got, name//'_force[N]'), &
           f => got%report%figures%corner(pin - n_pins))
-        call check%that(.not. any(gap < -1e-9_dp .and. .not. abs(force) > 0), 'a corner in the wall is pressed')
-        call check%that(.not. any(gap > 1e-12_dp .and. abs(force) > 0), 'a corner apart is not')
-        call check%that(count(got%event%pin == pin .and. got%event%kind == 1) == f%contacts, 'contacts are counted')
-        call check%that(f%contacts > 0, 'every corner touches')
-        call check%that(f%max_force >= maxval(force) .and. f%max_penetration >= maxval(-gap), 'no row is above the peaks')
+        call check%that(.not. any(gap < -1e-9_dp .and. .not. abs(force) > 0), 'a corner in the wall has a force')
+        call check%that(.not. any(gap > 1e-12_dp .and. abs(force) > 0), 'a corner apart from the wall has no force')
+        call check%that(count(got%event%pin == pin .and. got%event%kind == 1) == f%contacts, 'number of contacts of a corner')
+        call check%that(f%contacts > 0, 'every corner has contacts')
+        call check%that(f%max_force >= maxval(force) .and. f%max_penetration >= maxval(-gap), 'no row exceeds the extremes')
         call check%relative(f%max_penetration, maxval(got%event%max_penetration, got%event%pin == pin), 1e-12_dp, &
-          'the deepest contact is the run''s')
+          'largest penetration of a corner')
       end associate
     end do
     got = run_case(slap, [character(len=long) :: 'initial.piston_tilt_rate=0', 'integrator.end_time=0.003', &
       'guide.coefficient=0'])
-    call check%that(got%event(1)%pin + got%event(2)%pin == 2*n_pins + 3 .and. all(got%event(:2)%kind == 1), 'both ends touch')
-    call check%close_to(got%event(2)%time - got%event(1)%time, 0.0_dp, 1e-12_dp, 'at the same instant [s]')
-    call check%relative(got%event(3)%max_normal_force, got%event(4)%max_normal_force, 1e-6_dp, 'and with the same force')
-    call check%close_to(got%event(3)%normal_speed/got%event(1)%normal_speed, -0.4_dp, 4e-3_dp, 'and both give back the coefficient')
+    call check%that(got%event(1)%pin + got%event(2)%pin == 2*n_pins + 3 .and. all(got%event(:2)%kind == 1), &
+      'both ends have a contact')
+    call check%close_to(got%event(2)%time - got%event(1)%time, 0.0_dp, 1e-12_dp, 'contacts of both ends begin at the same time [s]')
+    call check%relative(got%event(3)%max_normal_force, got%event(4)%max_normal_force, 1e-6_dp, &
+      'contacts of both ends have the same force')
+    call check%close_to(got%event(3)%normal_speed/got%event(1)%normal_speed, -0.4_dp, 4e-3_dp, &
+      'restitution of simultaneous contacts')
   end subroutine no_event_is_lost
 
-  !> The same motion by both methods, at ideal and at loose pins.
+  !> Both methods give the same motion, with ideal pins and with clearance.
   subroutine methods_agree(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: one, other
@@ -308,7 +312,7 @@ contains
     end do
   end subroutine methods_agree
 
-  !> A bore without room is an ideal guide.
+  !> In the limit of no clearance in the bore the guide is ideal.
   subroutine narrow_bore_is_an_ideal_guide(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: got, want
@@ -329,7 +333,7 @@ contains
   end subroutine narrow_bore_is_an_ideal_guide
 
   !> The benchmark of Flores, Leine and Glocker (2010) against Siconos, whose walls are rigid: the same motion up to the first
-  !> impact, and near to it after that.
+  !> impact, and nearly the same after it.
   subroutine compare_with_siconos(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: got
@@ -341,10 +345,10 @@ contains
     call load_table('siconos_guide_clearance.csv', names, want)
     do i = 1, size(methods)
       got = run_case(slap, [methods(i)])
-      call check%that(size(got%values, 2) == size(want, 2), 'as many rows as Siconos has')
+      call check%that(size(got%values, 2) == size(want, 2), 'number of rows of Siconos')
       before = count(want(1, :) <= got%event(1)%time)
       early = count(want(1, :) <= 0.04_dp)
-      call check%that(before > 12, 'the first impact comes late enough')
+      call check%that(before > 12, 'rows before the first impact')
       associate (across => values_of(got, 'piston_offset[m]')/1e-3_dp, angle => values_of(got, 'rod_angle[rad]'), &
           revolutions => values_of(got, 'crank_angle[rad]')/two_pi)
         call check%close_to(maxval(abs(across(:before) - want(8, :before))), 0.0_dp, 5e-4_dp, 'y/c before the first impact')
@@ -356,12 +360,12 @@ contains
     end do
   end subroutine compare_with_siconos
 
-  !> From Siconos's state just after that impact, where both ends of the slider hit nearly at once, on: nearer to rigid walls with
-  !> the stiffness until both ends hit again, at 26 ms.
+  !> Runs from Siconos's state just after this impact, in which both ends of the slider hit nearly at once: they converge to rigid
+  !> walls with increasing stiffness, until both ends hit again at 26 ms.
   subroutine follow_siconos(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: stiffness(3) = [character(len=5) :: '1e8', '1e9', '1e10']
-    real(dp), parameter :: near(3) = [5e-4_dp, 3e-4_dp, 1e-4_dp]   ! of the clearance, up to 20 ms
+    real(dp), parameter :: near(3) = [5e-4_dp, 3e-4_dp, 1e-4_dp]   ! allowed error up to 20 ms, in clearances
     type(trace_t) :: got
     character(len=40), allocatable :: names(:)
     real(dp), allocatable :: want(:, :)
@@ -373,7 +377,7 @@ contains
       settings = 'integrator.relative_tolerance=1e-9'
       settings(1) = 'guide.stiffness='//stiffness(i)
       got = run_case('cases/joints/slider_after_impact.nml', settings)
-      call check%that(size(got%values, 2) == size(want, 2) - first, 'as many rows as Siconos has from there on')
+      call check%that(size(got%values, 2) == size(want, 2) - first, 'number of rows of Siconos after the first impact')
       associate (across => abs(values_of(got, 'piston_offset[m]')/1e-3_dp - want(8, first + 1:)), &
           turned => abs(values_of(got, 'crank_angle[rad]')/two_pi - want(2, first + 1:)))
         n = count(want(1, first + 1:) < 0.0201_dp)

@@ -1,5 +1,5 @@
-!> The initial guess of the zeros of the half film's pressure: its coefficients are computed again and its error measured; and the
-!> angle between the zeros.
+!> The initial guess of the zeros of the half film's pressure: its coefficients are computed again and its error is measured; and
+!> the angle between the zeros.
 module test_half_film_guess
   use, intrinsic :: iso_fortran_env, only: qp => real128
   use gudgeon_kinds, only: dp
@@ -20,7 +20,7 @@ contains
     call turns_are_right(check)
   end subroutine run_test_half_film_guess
 
-  !> The normal equations, over the disc by Gauss's rule in pieces of the radius and by the middle of equal angles.
+  !> The normal equations over the disc, by Gauss's rule on pieces of the radius and the midpoint rule in the angle.
   subroutine is_the_least_square(check)
     class(checks_t), intent(inout) :: check
     integer, parameter :: pieces = 24, angles = 200
@@ -43,7 +43,8 @@ contains
     end do
     call decompose(matrix, pivot, singular)
     call solve(matrix, pivot, right)
-    call check%that(.not. singular .and. all(abs(first_guess - right) <= 1e-9_dp), 'the guess is the least square')
+    call check%that(.not. singular .and. all(abs(first_guess - right) <= 1e-9_dp), &
+      'coefficients of the guess are the least-squares solution')
   end subroutine is_the_least_square
 
   subroutine is_close_enough(check)
@@ -60,10 +61,10 @@ contains
         end associate
       end do
     end do
-    call check%relative(worst, 3.1e-3_dp, 0.01_dp, 'as far off as it says')
+    call check%relative(worst, 3.1e-3_dp, 0.01_dp, 'error of the guess is the stated one')
   end subroutine is_close_enough
 
-  !> Against the arc tangent in quadruple precision, in every octant and on both sides of where one formula meets the next.
+  !> Against the arc tangent in quadruple precision, in every octant and on both sides of each boundary between two formulas.
   subroutine turns_are_right(check)
     class(checks_t), intent(inout) :: check
     integer, parameter :: parts = 4096, exponents = 300
@@ -87,9 +88,9 @@ contains
       worst = max(worst, off(1.0_dp, 10.0_dp**(-i)), off(10.0_dp**(-i), 1.0_dp), off(-10.0_dp**(-i), -1.0_dp), &
         off(-1.0_dp, 10.0_dp**(-i)), off(-1.0_dp, -10.0_dp**(-i)), off(1.0_dp, -10.0_dp**(-i)))
     end do
-    call check%that(worst <= 4e-16_dp, 'the angle between the zeros, of itself')
+    call check%that(worst <= 4e-16_dp, 'relative error of the angle between the zeros')
     worst = max(off(1.0_dp, 0.0_dp), off(0.0_dp, 1.0_dp), off(-1.0_dp, 0.0_dp), off(0.0_dp, -1.0_dp))
-    call check%that(worst <= 2e-16_dp, 'the angle between the zeros, quarters')
+    call check%that(worst <= 2e-16_dp, 'error of the angle between the zeros in quadrants')
 
   contains
 
@@ -114,7 +115,7 @@ contains
     terms = [y, y*x, y*x**2, y*x**3, y**3, y**3*x]
   end function terms_at
 
-  !> The small root of y + (8 + 4x) t - 6 y t^2 + (8 - 4x) t^3 + y t^4, by halving.
+  !> The small root of y + (8 + 4x) t - 6 y t^2 + (8 - 4x) t^3 + y t^4, by bisection.
   pure real(dp) function root_at(x, y) result(t)
     real(dp), intent(in) :: x, y
     real(dp) :: lower, upper

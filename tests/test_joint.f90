@@ -34,10 +34,10 @@ contains
     joint%bearing_speed = -30
     call find_sliding(0.0099_dp, joint)
     call check%close_to(joint%sliding_speed, 0.2_dp*0.8_dp + 0.1_dp*0.6_dp + 10*0.0099_dp + 30*(0.0099_dp + 5e-5_dp), 1e-15_dp, &
-      'sliding speed where the bearing turns too')
+      'sliding speed with a rotating bearing')
     joint%eccentricity = 0
     call find_polar(1e-4_dp, joint)
-    call check%close_to(norm2(joint%normal), 1.0_dp, 0.0_dp, 'a direction at the centre too')
+    call check%close_to(norm2(joint%normal), 1.0_dp, 0.0_dp, 'the normal is a unit vector at the centre too')
   end subroutine polar_terms
 
   !> Rates of the sliding speed and of the penetration rate, at both pins, against their central differences along a motion.
@@ -76,20 +76,20 @@ contains
     end function joint_after
   end subroutine accelerations_in_the_joint
 
-  !> A free ideal mechanism without losses keeps its energy; the held one's work is that of the moment.
+  !> A free ideal mechanism without losses has constant energy; at constant speed the change of energy is the work of the moment.
   subroutine ideal_scene_runs(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
     trace = run_case('cases/sim_I.nml', [character(len=40) :: 'integrator.relative_tolerance=1e-10'], .true.)
     call check%that(.not. allocated(trace%error), 'the ideal twin of simulation I runs')
     associate (e => trace%values(column(trace, 'energy[J]'), :), r => trace%values(column(trace, 'energy_residual[J]'), :))
-      call check%close_to(maxval(abs(r))/e(1), 0.0_dp, 1e-8_dp, 'its energy is conserved')
+      call check%close_to(maxval(abs(r))/e(1), 0.0_dp, 1e-8_dp, 'energy of the ideal twin is conserved')
     end associate
     call check%that(column(trace, 'film_thickness[m]') == 0, 'an ideal joint has no film column')
     trace = run_case('cases/flores/ideal.nml', [character(len=40) :: ])
     associate (r => trace%values(column(trace, 'energy_residual[J]'), :), e => trace%values(column(trace, 'energy[J]'), :))
-      call check%close_to(maxval(abs(r))/maxval(e), 0.0_dp, 1e-5_dp, 'work of the holding moment')
-      call check%that(maxval(e) - minval(e) > 0.1_dp*maxval(e), 'which is not nothing')
+      call check%close_to(maxval(abs(r))/maxval(e), 0.0_dp, 1e-5_dp, 'work of the moment at constant speed')
+      call check%that(maxval(e) - minval(e) > 0.1_dp*maxval(e), 'energy changes at constant speed')
     end associate
   end subroutine ideal_scene_runs
 end module test_joint

@@ -18,8 +18,8 @@ module test_loose_piston
   public :: run_test_loose_piston
 
   integer, parameter :: trials = 40
-  character(len=28), parameter :: pieces(0:3) = [character(len=28) :: 'ideal pins', 'loose crank pin', 'loose piston pin', &
-    'both pins loose']
+  character(len=28), parameter :: pieces(0:3) = [character(len=28) :: 'ideal pins', 'clearance at the crank pin', &
+    'clearance at the piston pin', 'clearance at both pins']
 
 contains
 
@@ -31,8 +31,8 @@ contains
     call loads_respond_linearly(check)
   end subroutine run_test_loose_piston
 
-  !> A chain of random size and shape, at a random state under random loads: piece 0 to 3, the sum of 1 for clearance at the crank
-  !> pin and 2 at the piston pin.
+  !> A chain of random dimensions at a random state under random loads. Piece 0 to 3 is the sum of 1 for clearance at the crank
+  !> pin and 2 for clearance at the piston pin.
   subroutine draw(random, piece, chain, motion, loads, z, z_rate)
     type(random_numbers_t), intent(inout) :: random
     integer, intent(in) :: piece
@@ -71,7 +71,7 @@ contains
     motion%tilting%tilt_rate = z_rate(7)
     call place_piston(chain%bodies%piston, motion)
     call chain%move_rod(motion, reachable)
-    if (.not. reachable) error stop 'test_loose_piston: a chain that cannot be'
+    if (.not. reachable) error stop 'test_loose_piston: a chain that cannot be assembled'
     call chain%move_piston(motion)
     call move_centre(motion)
 
@@ -82,7 +82,7 @@ contains
     end function u
   end subroutine draw
 
-  !> All accelerations, each by a size that it has in the mechanism.
+  !> All accelerations, each divided by a typical value in the mechanism.
   pure function in_common_units(chain, a) result(values)
     type(chain_t), intent(in) :: chain
     type(accelerations_t), intent(in) :: a
@@ -91,7 +91,7 @@ contains
       0.05_dp*a%tilt]
   end function in_common_units
 
-  !> The pieces of a chain with a loose piston pin against the assembly of all bodies.
+  !> The closed forms of a chain with clearance at the piston pin against the general equations of all bodies.
   subroutine both_ways_agree(check)
     class(checks_t), intent(inout) :: check
     type(random_numbers_t) :: random
@@ -114,11 +114,11 @@ contains
           /maxval(abs(in_common_units(chain, b))))
         worst = max(worst, abs(moment - same)/(abs(same) + maxval(abs(loads%force))*chain%bodies%crank%length))
       end do
-      call check%close_to(worst, 0.0_dp, 3e-12_dp, trim(pieces(piece))//': pieces and the assembly')
+      call check%close_to(worst, 0.0_dp, 3e-12_dp, trim(pieces(piece))//': closed form and general equations')
     end do
   end subroutine both_ways_agree
 
-  !> dE/dt along the motion is the power of the drive, of the gas, of the bore and of loose joints.
+  !> dE/dt along the motion is the power of the drive, of the gas, of the bore and of joints with clearance.
   subroutine energy_changes_by_the_power(check)
     class(checks_t), intent(inout) :: check
     type(random_numbers_t) :: random
@@ -184,11 +184,11 @@ contains
       call check%close_to(worst(1), 0.0_dp, 2e-11_dp, trim(pieces(piece))//': force at the piston pin')
       call check%close_to(worst(2), 0.0_dp, 2e-11_dp, trim(pieces(piece))//': force at the crank pin')
       call check%close_to(worst(3), 0.0_dp, 2e-11_dp, trim(pieces(piece))//': force on the guide')
-      call check%close_to(worst(4), 0.0_dp, 2e-11_dp, trim(pieces(piece))//': moments on the piston')
+      call check%close_to(worst(4), 0.0_dp, 2e-11_dp, trim(pieces(piece))//': balance of moments of the piston')
     end do
   end subroutine newton_and_euler_hold
 
-  !> The response to a load is the difference that it makes.
+  !> The response to a load is the change of the accelerations by it.
   subroutine loads_respond_linearly(check)
     class(checks_t), intent(inout) :: check
     type(random_numbers_t) :: random

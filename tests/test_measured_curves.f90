@@ -1,4 +1,4 @@
-!> Measured curves: the cubics through their points, valid and invalid files, and a run with a measured pressure.
+!> Measured curves: the cubic polynomials through their points, valid and invalid files, and a run with a measured pressure.
 module test_measured_curves
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi, two_pi, degree
@@ -31,7 +31,7 @@ contains
     call table_of_a_cycle(check)
   end subroutine run_test_measured_curves
 
-  !> Steffen's slopes by hand: points (0,0) (1,1) (3,2) (4,2) have 5/6 at 1 and none at 3.
+  !> Steffen's slopes computed by hand: for the points (0,0) (1,1) (3,2) (4,2) they are 5/6 at 1 and 0 at 3.
   subroutine known_cubic(check)
     class(checks_t), intent(inout) :: check
     type(monotone_cubic_t) :: curve
@@ -39,21 +39,21 @@ contains
     integer :: i
     curve = new_monotone_cubic([0.0_dp, 1.0_dp, 3.0_dp, 4.0_dp], [0.0_dp, 1.0_dp, 2.0_dp, 2.0_dp])
     call check%close_to(curve%slope(1.0_dp), 5/6.0_dp, 1e-15_dp, 'slope at a point')
-    call check%close_to(curve%slope(3.0_dp), 0.0_dp, 1e-15_dp, 'no slope at the top')
-    ! half way of the interval from 1 to 3: mean of the values and an eighth of width times difference of the slopes
+    call check%close_to(curve%slope(3.0_dp), 0.0_dp, 1e-15_dp, 'slope at a maximum is 0')
+    ! at the middle of the interval from 1 to 3: mean of the values plus an eighth of width times difference of the slopes
     call check%close_to(curve%value(2.0_dp), 1.5_dp + 2*(5/6.0_dp)/8, 1e-15_dp, 'value between two points')
-    call check%close_to(curve%value(9.0_dp), 2.0_dp, 1e-15_dp, 'constant beyond its points')
-    call check%close_to(curve%value(-9.0_dp), 0.0_dp, 1e-15_dp, 'and before them')
+    call check%close_to(curve%value(9.0_dp), 2.0_dp, 1e-15_dp, 'constant after the last point')
+    call check%close_to(curve%value(-9.0_dp), 0.0_dp, 1e-15_dp, 'constant before the first point')
     do i = 1, 399
       x = 0.01_dp*i
       call check%that(curve%value(x) >= curve%value(x - 0.01_dp) - 1e-15_dp .and. curve%value(x) <= 2, 'monotone, no overshoot')
       if (modulo(i, 100) > 0) call check%close_to(curve%slope(x), (curve%value(x + 1e-6_dp) - curve%value(x - 1e-6_dp))/2e-6_dp, &
-        1e-8_dp, 'slope is the derivative')
+        1e-8_dp, 'slope is the derivative of the value')
     end do
-    call check%close_to(curve%finest(), 1.0_dp, 0.0_dp, 'the closest points')
+    call check%close_to(curve%finest(), 1.0_dp, 0.0_dp, 'smallest distance of two points')
   end subroutine known_cubic
 
-  !> A straight line comes back, whether its points are even or crowded.
+  !> A straight line is reproduced, with points at equal or unequal distances.
   subroutine straight_lines(check)
     class(checks_t), intent(inout) :: check
     type(monotone_cubic_t) :: curve
@@ -70,7 +70,8 @@ contains
     call check%close_to(curve%value(1.25_dp), 4.0_dp, 1e-15_dp, 'two points are a straight line')
   end subroutine straight_lines
 
-  !> Values and slopes continue over the seam, wherever the table begins, and the error falls with their distance.
+  !> Values and slopes are continuous across the end of the period, wherever the table begins, and the error decreases with the
+  !> distance of the points.
   subroutine periodic_cubic(check)
     class(checks_t), intent(inout) :: check
     real(dp) :: errors(2)
@@ -84,10 +85,10 @@ contains
       do i = 1, 5000
         errors(k) = max(errors(k), abs(curve%value(0.01_dp*i - 20) - sin(0.01_dp*i - 20)))
       end do
-      call check%close_to(curve%value(begins - 1e-9_dp), curve%value(begins + 1e-9_dp), 1e-8_dp, 'no jump at the seam')
-      call check%close_to(curve%slope(begins - 1e-9_dp), curve%slope(begins + 1e-9_dp), 1e-6_dp, 'no kink at the seam')
+      call check%close_to(curve%value(begins - 1e-9_dp), curve%value(begins + 1e-9_dp), 1e-8_dp, 'no jump at the end of the period')
+      call check%close_to(curve%slope(begins - 1e-9_dp), curve%slope(begins + 1e-9_dp), 1e-6_dp, 'no kink at the end of the period')
     end do
-    call check%that(errors(1) < 1e-3_dp .and. errors(2) < errors(1)/3, 'the error of a sine falls with the points')
+    call check%that(errors(1) < 1e-3_dp .and. errors(2) < errors(1)/3, 'error of a sine decreases with the number of points')
   end subroutine periodic_cubic
 
   subroutine good_files(check)
@@ -100,13 +101,13 @@ contains
     call parse_curve('# measured'//n//n//'"Crank angle [rad]" , "p [kPa]"'//return//n//' 0, 100'//return//n//n//'1,2e2', &
       crank_angle, pressure, x, y, lines, message, line)
     call check%equal_text(message, '', 'comments, empty lines, quotes, blanks and other ends of lines')
-    call check%that(size(x) == 2 .and. all(lines == [4, 6]), 'where its rows stand')
+    call check%that(size(x) == 2 .and. all(lines == [4, 6]), 'line numbers of the rows')
     call check%relative(x(2), 180/pi, 1e-15_dp, 'an angle in radians')
     call check%relative(y(2), 2e5_dp, 1e-15_dp, 'a pressure in kilopascals')
     call parse_curve('a[deg],b[psi]'//n//'0,1'//n//'1,1', crank_angle, pressure, x, y, lines, message, line)
     call check%relative(y(1), 0.45359237_dp*9.80665_dp/0.0254_dp**2, 1e-14_dp, 'a pound of force on a square inch')
     call parse_curve('theta [°CA],p [bar]'//n//'0,1'//n//'1,1', crank_angle, pressure, x, y, lines, message, line)
-    call check%that(message == '' .and. abs(x(2) - 1) <= 0, 'degrees of crank angle by their sign')
+    call check%that(message == '' .and. abs(x(2) - 1) <= 0, 'degrees of crank angle with the degree sign')
     call parse_curve('n[r/min],M[kN·m]'//n//'0,1'//n//'60,2', turning_speed, torque, x, y, lines, message, line)
     call check%that(message == '', 'revolutions in a minute, kilonewton times metre: '//message)
     call check%relative(x(2), 2*pi, 1e-14_dp, 'revolutions in a minute')
@@ -148,23 +149,23 @@ contains
     end subroutine refused
   end subroutine bad_files
 
-  !> Angles that are no period: too short, too long, with holes, with another pressure at the end.
+  !> Angles that do not cover a period: too short, too long, with gaps, with another pressure at the end.
   subroutine bad_periods(check)
     class(checks_t), intent(inout) :: check
     real(dp) :: even(72)
     integer :: i
     even = [(5.0_dp*i, i=0, 71)]
     call expect(even, 360, '', 72, 'a period')
-    call expect([even, 360.0_dp], 360, '', 72, 'with its first row again')
-    call expect(even - 180, 360, '', 72, 'that begins elsewhere')
+    call expect([even, 360.0_dp], 360, '', 72, 'a table with its first row repeated at the end')
+    call expect(even - 180, 360, '', 72, 'a table that begins at another angle')
     call expect(even, 720, 'no row from 355 to 720 degrees: the table must cover the period of 720 without gaps of more than 30', &
       72, 'half a period')
     call expect([even, 365.0_dp], 360, 'the table spans 365 degrees, more than its period of 360', 73, 'more than a period')
     call expect([even(:30), even(36:)], 360, 'rows are missing from 145 to 175 degrees, more than 4 times as far as those on '// &
-      'both sides', 30, 'a hole')
+      'both sides', 30, 'a gap')
     call expect([even(:30), even(37:)], 360, 'no row from 145 to 180 degrees: the table must cover the period of 360 without '// &
-      'gaps of more than 30', 30, 'a wider hole')
-    call expect(even(:70), 360, '', 70, 'two rows less at the end')
+      'gaps of more than 30', 30, 'a wider gap')
+    call expect(even(:70), 360, '', 70, 'two rows missing at the end')
 
   contains
 
@@ -176,11 +177,11 @@ contains
       integer :: found
       call period_fault(angle, 1 + 0*angle, period, message, found)
       call check%equal_text(message, wanted, name)
-      call check%that(wanted == '' .or. found == at, name//': where')
+      call check%that(wanted == '' .or. found == at, name//': line number')
     end subroutine expect
   end subroutine bad_periods
 
-  !> p = p0 + p1 sin q works pi p1 V_d/2 in a revolution, exactly; a table of it does nearly.
+  !> The work of p = p0 + p1 sin q in a revolution is pi p1 V_d/2 exactly; that of a table of it is nearly the same.
   subroutine work_of_a_sine(check)
     class(checks_t), intent(inout) :: check
     type(measured_pressure_t) :: law
@@ -202,13 +203,13 @@ contains
       work = work + gas%pressure(q)*gas%cylinder%volume_slope(q)*two_pi/steps
     end do
     call check%relative(work, pi*4e5_dp*displacement/2, 2e-6_dp, 'work of a table of a sine')
-    call check%close_to(gas%cylinder%volume(0.0_dp), 0.0_dp, 1e-20_dp, 'the volume is the swept one')
+    call check%close_to(gas%cylinder%volume(0.0_dp), 0.0_dp, 1e-20_dp, 'the volume is the swept volume')
     q = 1.234_dp
     call check%relative(gas%force_slope(q), (gas%force(gas%pressure(q + 1e-6_dp)) - gas%force(gas%pressure(q - 1e-6_dp)))/2e-6_dp, &
       1e-6_dp, 'slope of the force')
   end subroutine work_of_a_sine
 
-  !> The table of simulation IV's cycle drives its twin as the cycle itself does, to the degree between its points.
+  !> A table of simulation IV's cycle, with a point at each degree, drives the ideal twin in the same way as the cycle itself.
   subroutine table_of_a_cycle(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: measured, computed
@@ -221,13 +222,13 @@ contains
     if (allocated(measured%error) .or. allocated(computed%error)) return
     speed = values_of(measured, 'crank_speed[rad/s]')
     other = values_of(computed, 'crank_speed[rad/s]')
-    call check%that(maxval(abs(speed/other - 1)) < 2e-6_dp, 'its crank speed is that of the cycle')
+    call check%that(maxval(abs(speed/other - 1)) < 2e-6_dp, 'crank speed with a measured pressure')
     call check%that(measured%report%figures%max_energy_residual < 1e-8_dp*measured%report%figures%max_energy, &
-      'and its energy is kept')
+      'a run with a measured pressure: energy residual')
     measured = run_case('cases/gas/measured.nml', [character(len=long) :: 'cylinder_pressure.table_digest=0123456789ABCDEF'])
-    call check%that(allocated(measured%error), 'another content than the case asks for is refused')
+    call check%that(allocated(measured%error), 'a table of another quantity is refused')
     measured = run_case('cases/gas/measured.nml', [character(len=long) :: 'cylinder_pressure.period_deg=500'])
-    call check%that(allocated(measured%error), 'and so is a period that there is not')
+    call check%that(allocated(measured%error), 'a period of the wrong length is refused')
   end subroutine table_of_a_cycle
 
   !> A column of a trace.

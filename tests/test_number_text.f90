@@ -1,4 +1,4 @@
-!> Single numbers as text and back: compared with formatted writes and reads of the compiler; long texts of many pieces.
+!> Single numbers as text and back, compared with formatted writes and reads of the compiler; long texts of many pieces.
 module test_number_text
   use gudgeon_kinds, only: dp
   use number_text, only: real_text, exact_text, short_text
@@ -29,7 +29,7 @@ contains
     call check%equal_text(real_text(1.23456789e-5_dp), '1.234567890E-05', 'real')
     call check%equal_text(real_text(-2.0_dp), '-2.000000000E+00', 'negative')
     call check%equal_text(real_text(zero), '0.000000000E+00', 'zero')
-    call check%equal_text(real_text(-zero), '-0.000000000E+00', 'zero from below')
+    call check%equal_text(real_text(-zero), '-0.000000000E+00', 'negative zero')
     call check%equal_text(real_text(1e-120_dp), '1.000000000E-120', 'small')
     call check%equal_text(real_text(-1e150_dp), '-1.000000000E+150', 'large')
     call check%equal_text(short_text(0.5_dp), '0.5', 'short')
@@ -64,12 +64,12 @@ contains
       if (short_text(value) /= short_text(back)) wrong_short = wrong_short + 1
       if (verify(trim(short_text(value)), trim(adjustl(plain))) > 0) wrong_short = wrong_short + 1
     end do
-    call check%that(wrong == 0, 'random numbers as a formatted write')
-    call check%that(wrong_short == 0, 'random numbers in short')
+    call check%that(wrong == 0, 'random numbers are those of a formatted write')
+    call check%that(wrong_short == 0, 'random numbers in short form')
     call check%that(altered == 0, 'exact text reads back')
   end subroutine test_random_texts
 
-  !> The digits of a text, at most 15 and more than that, with and without point and exponent, as a compiler reads them.
+  !> Texts with up to 15 digits and with more, with and without point and exponent, are read as a compiler reads them.
   subroutine test_reading(check)
     class(checks_t), intent(inout) :: check
     character(len=40) :: text
@@ -89,7 +89,7 @@ contains
       call read_real(trim(text), value, wanted)
       if (allocated(wanted) .or. abs(value - expected) > 0) wrong = wrong + 1
     end do
-    call check%that(wrong == 0, 'random numbers as the compiler reads them')
+    call check%that(wrong == 0, 'random texts are read as by the compiler')
     call expect('12', 12.0_dp)
     call expect('-.5', -0.5_dp)
     call expect('+2.', 2.0_dp)
@@ -101,10 +101,10 @@ contains
     call expect('0.0001e-26', 1e-30_dp)
     do i = 1, 11
       call read_real(trim(adjustl(wrong_text(i))), value, wanted)
-      call check%that(allocated(wanted), 'no real, or too large: '//wrong_text(i))
+      call check%that(allocated(wanted), 'not a real number, or too large: '//wrong_text(i))
     end do
     call read_integer('-2147483647', whole, wanted)
-    call check%that(whole == -2147483647 .and. .not. allocated(wanted), 'the least integer')
+    call check%that(whole == -2147483647 .and. .not. allocated(wanted), 'the smallest integer')
     call read_integer('2147483648', whole, wanted)
     call check%that(allocated(wanted), 'an integer that is too large')
 
@@ -129,7 +129,7 @@ contains
   subroutine test_ranges(check)
     class(checks_t), intent(inout) :: check
     call check%that(is_within(0.1_dp, '> 0 and <= 0.1     '), 'the end of a range')
-    call check%that(.not. is_within(nearest(0.1_dp, 1.0_dp), '> 0 and <= 0.1'), 'just outside')
+    call check%that(.not. is_within(nearest(0.1_dp, 1.0_dp), '> 0 and <= 0.1'), 'just outside of a range')
     call check%that(.not. is_within(0.0_dp, '> 0'), 'the open end of a range')
     call check%that(is_within(1e-6_dp, '>= 1e-6 and <= 1e3'), 'the closed end of a range')
   end subroutine test_ranges
@@ -139,7 +139,7 @@ contains
     type(growing_text_t) :: growing
     integer :: i
     call growing%append('')
-    call check%that(growing%used == 0, 'nothing appended')
+    call check%that(growing%used == 0, 'an empty text')
     do i = 1, 3000
       call growing%append(achar(97 + mod(i, 26)))
       call growing%append('')
@@ -151,7 +151,7 @@ contains
     end associate
   end subroutine test_growing
 
-  !> A number of either sign and a size from 1e-20 to 1e20, the same for the same i.
+  !> A number of either sign and a magnitude from 1e-20 to 1e20, always the same for the same i.
   pure real(dp) function random_number_of(i)
     integer, intent(in) :: i
     real(dp), parameter :: golden = 0.6180339887498949_dp, silver = 0.4142135623730951_dp

@@ -1,4 +1,4 @@
-!> Numbers of a table: known texts, and the same digits as a formatted write.
+!> Numbers in a table: known texts, and the digits of a formatted write.
 module test_number_writer
   use, intrinsic :: iso_fortran_env, only: int64
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_positive_inf, ieee_negative_inf
@@ -58,8 +58,7 @@ contains
     call expect(check, 12, ieee_value(zero, ieee_negative_inf), '-Infinity')
   end subroutine test_known
 
-  !> Numbers that fall short of a tie by 1e-11 of the last digit and less, or pass it by as little, which chance hardly
-  !> brings about.
+  !> Numbers that differ from a tie by at most 1e-11 of the last digit, on either side; random numbers are hardly ever so close.
   subroutine test_near_ties(check)
     class(checks_t), intent(inout) :: check
     call expect(check, 17, 3.3973074513043686e-45_dp, '3.3973074513043686E-45')
@@ -89,8 +88,8 @@ contains
     call check%equal_text(line(:used), 'a,'//text, 'number')
   end subroutine expect
 
-  !> A list: what the tables find, between numbers that they do not: a tie, a very small one, none at all. It begins behind
-  !> what is there, and ends with a comma.
+  !> A list in which numbers that the tables cover alternate with others: a tie, a very small number, a NaN. It begins after the
+  !> present text, and ends with a comma.
   subroutine test_list(check)
     class(checks_t), intent(inout) :: check
     type(number_writer_t) :: writer
@@ -106,14 +105,14 @@ contains
       '-1.000000000E-300,-1.000000000E+09,', 'list of numbers')
     length = used
     call writer%append_list(line, used, values(:0))
-    call check%that(used == length, 'nothing of an empty list')
+    call check%that(used == length, 'an empty list adds nothing')
     used = 0
     call writer%prepare(9)
     call writer%append_list(line, used, values(:3))
     call check%equal_text(line(:used), '-2.50000000E-07,1.23456789E+10,0.00000000E+00,', 'list of nine digits')
   end subroutine test_list
 
-  !> Any bits, and ordinary magnitudes. At 17 digits numbers read back as they were.
+  !> Random bit patterns, and ordinary magnitudes. With 17 digits numbers are read back unchanged.
   subroutine test_random(check, writer, digits, random)
     class(checks_t), intent(inout) :: check
     type(number_writer_t), intent(in) :: writer
@@ -137,15 +136,15 @@ contains
       read (line(:used), *) back
       if (transfer(back, random) /= random) altered = altered + 1
     end do
-    call check%that(wrong == 0, 'any bits as a formatted write')
-    call check%that(altered == 0, '17 digits read back')
+    call check%that(wrong == 0, 'random bit patterns are those of a formatted write')
+    call check%that(altered == 0, 'numbers with 17 digits are read back')
     wrong = 0
     do i = 1, n
       call draw(random)
       value = real(random, dp)*2.0_dp**(-63)*10.0_dp**ibits(i, 0, 4)*1e-8_dp
       if (.not. agrees(writer, value, digits)) wrong = wrong + 1
     end do
-    call check%that(wrong == 0, 'ordinary numbers as a formatted write')
+    call check%that(wrong == 0, 'ordinary numbers are those of a formatted write')
   end subroutine test_random
 
   !> Powers of ten, and the numbers below and above them.
@@ -172,8 +171,8 @@ contains
     call check%that(wrong == 0, 'powers of ten and numbers near them')
   end subroutine test_decades
 
-  !> Numbers exactly between two decimals of so many digits, and their neighbours: odd 2**(-p), whose last decimal is
-  !> the digit after the last that is written, and whole numbers with a 5 there and zeros behind.
+  !> Numbers exactly between two decimals of the given length, and their neighbours: odd 2**(-p), whose last decimal is
+  !> the digit after the last that is written, and whole numbers with a 5 at that place and zeros after it.
   subroutine test_ties(check, writer, digits, random)
     class(checks_t), intent(inout) :: check
     type(number_writer_t), intent(in) :: writer
@@ -207,7 +206,7 @@ contains
         call count_around(real(significand, dp)*2.0_dp**p)
       end do
     end do
-    call check%that(wrong == 0 .and. n > 300, 'ties to the even digit')
+    call check%that(wrong == 0 .and. n > 300, 'ties are rounded to the even digit')
 
   contains
 
@@ -251,7 +250,7 @@ contains
     agrees = used == length .and. line(:used) == expected(:length)
   end function agrees
 
-  !> The next of Marsaglia's xorshift numbers.
+  !> The next number of Marsaglia's xorshift generator.
   subroutine draw(random)
     integer(int64), intent(inout) :: random
     random = ieor(random, shiftl(random, 13))

@@ -1,5 +1,5 @@
 !> Viscosity of an oil at a temperature: against values computed with 30 digits from the published equations, and a published
-!> example; in a run; and errors in cases.
+!> example; in runs; and errors in cases.
 module test_oil_viscosity
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp
@@ -46,14 +46,14 @@ contains
     call check%relative(oil%kinematic_viscosity(), 0.50463430301132e-6_dp, 1e-12_dp, 'a fuel at 150 degrees C')
   end subroutine walther
 
-  !> nu = a exp(b/(T - T0)) by hand: b = 884.038700262919 K.
+  !> nu = a exp(b/(T - T0)), computed by hand: b = 884.038700262919 K.
   subroutine vogel(check)
     class(checks_t), intent(inout) :: check
     type(oil_t) :: oil
     oil = new_oil('vogel', 453.15_dp, [105e-6_dp, 14e-6_dp])
     call check%relative(oil%kinematic_viscosity(), 3.74421400399834e-6_dp, 1e-12_dp, 'Vogel''s equation')
     call check%relative(oil%kinematic_viscosity(), 105e-6_dp*exp(884.038700262919_dp*(1/275.0_dp - 1/135.0_dp)), 1e-12_dp, &
-      'Vogel''s equation by its constant')
+      'Vogel''s equation')
   end subroutine vogel
 
   !> A lubricating oil of 880 kg/m^3 at 15 degrees C, and mu = rho nu.
@@ -66,10 +66,10 @@ contains
     oil = new_oil('walther', 353.15_dp, [32e-6_dp, 5.4e-6_dp])
     call check%relative(oil%dynamic_viscosity(), 823.67278491013_dp*8.53321469154105e-6_dp, 1e-12_dp, 'dynamic viscosity')
     oil%temperature = 288.15_dp
-    call check%relative(oil%density_at(), 865.0_dp, 1e-15_dp, 'density where it is known')
+    call check%relative(oil%density_at(), 865.0_dp, 1e-15_dp, 'density at the reference temperature')
   end subroutine density
 
-  !> Both laws give back what they were given, in either order, and less the hotter the oil.
+  !> Both laws reproduce the known points, in either order, and the viscosity decreases with temperature.
   subroutine known_points(check)
     class(checks_t), intent(inout) :: check
     character(len=7), parameter :: laws(2) = [character(len=7) :: 'walther', 'vogel']
@@ -87,7 +87,8 @@ contains
       before = huge(before)
       do k = 0, 50
         oil%temperature = 200 + 10*k
-        call check%that(oil%kinematic_viscosity() > 0 .and. oil%kinematic_viscosity() < before, 'a hotter oil is thinner')
+        call check%that(oil%kinematic_viscosity() > 0 .and. oil%kinematic_viscosity() < before, &
+          'viscosity decreases with temperature')
         before = oil%kinematic_viscosity()
       end do
     end do
@@ -124,23 +125,23 @@ contains
       call check%that(.not. (allocated(by_oil%error) .or. allocated(by_hand%error)), 'runs with an oil: '//films(i))
       if (allocated(by_oil%error) .or. allocated(by_hand%error)) cycle
       call check%close_to(maxval(abs(by_oil%values - by_hand%values)/(1 + abs(by_hand%values))), 0.0_dp, 1e-6_dp, &
-        'an oil is its viscosity: '//films(i))
+        'film thickness with an oil and with its viscosity: '//films(i))
       if (i > 1) cycle
       call read_case('cases/sim_I.nml', oil, case, error)
       table = summary_value(summary_table(case, by_oil%report, 0.0_dp, '0', 1_int64, 1_int64), 'viscosity')
-      call check%equal_text(trim(table), real_text(823.67278491013_dp*8.53321469154105e-6_dp, 10), 'the summary says it')
+      call check%equal_text(trim(table), real_text(823.67278491013_dp*8.53321469154105e-6_dp, 10), 'viscosity in the summary')
       call read_case('cases/sim_I.nml', plain, case, error)
       table = summary_value(summary_table(case, by_hand%report, 0.0_dp, '0', 1_int64, 1_int64), 'viscosity')
-      call check%equal_text(trim(table), '', 'but not what the case says')
+      call check%equal_text(trim(table), '', 'no viscosity in the summary if the case gives it')
     end do
   end subroutine every_film
 
   subroutine refuses(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: warm = " viscosity_law='walther' temperature=353.15 "
-    call expect_oil(check, vg32//warm, '', 'an oil')
+    call expect_oil(check, vg32//warm, '', 'an oil is accepted')
     call expect_oil(check, '', 'viscosity: required (Pa s)', 'no viscosity')
-    call expect_oil(check, 'viscosity=0', 'viscosity = 0: must be > 0 (Pa s)', 'no viscosity at all')
+    call expect_oil(check, 'viscosity=0', 'viscosity = 0: must be > 0 (Pa s)', 'a viscosity of 0')
     call expect_oil(check, "law='oscillating_film' viscosity=1", &
       "kinematic_viscosity: required with law = 'oscillating_film' (m^2/s)", 'no kinematic viscosity')
     call expect_oil(check, vg32//warm//'viscosity=0.01', &
@@ -155,18 +156,18 @@ contains
     call expect_oil(check, warm//'density=865 known_temperatures=313.15,373.15 known_viscosities=1e-5,2e-5', &
       'known_viscosities(1) = 1e-5: must be smaller at the higher temperature', 'an oil that thickens')
     call expect_oil(check, warm//'density=865 known_temperatures=313.15,373.15 known_viscosities=1e-6,1e-7', &
-      'known_viscosities(1) = 1e-6: must be >= 2.1e-7', 'thinner than the standard')
+      'known_viscosities(1) = 1e-6: must be >= 2.1e-7', 'a viscosity below the range of the standard')
     call expect_oil(check, vg32//"viscosity_law='walther' temperature=90", &
-      'temperature = 90: must be >= 200 and <= 700 (K)', 'degrees Celsius')
+      'temperature = 90: must be >= 200 and <= 700 (K)', 'a temperature in degrees Celsius')
     call expect_oil(check, vg32//"viscosity_law='vogel' temperature=353.15 vogel_temperature=310", &
-      'vogel_temperature = 310: must be 10 K or more below', 'a pole next to the points')
+      'vogel_temperature = 310: must be 10 K or more below', 'a pole too near to the points')
     call expect_oil(check, 'viscosity=0.01 temperature=353.15', &
       "temperature = 353.15: needs viscosity_law = 'walther' or 'vogel'", &
       'a temperature without a law')
     call expect_oil(check, warm//"viscosity_law='reynolds'", 'viscosity_law', 'an unknown law')
   end subroutine refuses
 
-  !> A case with these keys of its film is taken, or refused.
+  !> A case with these keys of its film is accepted, or refused.
   subroutine expect_oil(check, keys, wanted, name)
     class(checks_t), intent(inout) :: check
     character(len=*), intent(in) :: keys, wanted, name

@@ -39,7 +39,7 @@ contains
     call test_factory(check)
   end subroutine run_test_oscillating_film
 
-  !> Values from independent sums over the tanh form. Those as printed hold the second acceleration term.
+  !> Values from independent sums over the tanh form. The values as printed include the second acceleration term.
   subroutine test_values(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: wave_numbers(3) = [0.01_dp, 0.170_dp, 1.0_dp]
@@ -60,7 +60,7 @@ contains
     end do
   end subroutine test_values
 
-  !> B against u^2 t/(1 - t) with the intrinsic tangent, and across its two ways of evaluation.
+  !> B against u^2 t/(1 - t) with the intrinsic tangent, and at the boundary of its two ways of evaluation.
   subroutine test_inertia_function(check)
     class(checks_t), intent(inout) :: check
     complex(dp) :: u, t
@@ -73,10 +73,10 @@ contains
     end do
     call check%that(abs(inertia_function(0.5_dp) - inertia_function(0.5_dp + 1e-15_dp)) <= 1e-14_dp, &
       'the inertia function is continuous')
-    call check%that(abs(inertia_function(0.0_dp) - 3) <= 0, 'the inertia function at rest')
+    call check%that(abs(inertia_function(0.0_dp) - 3) <= 0, 'the inertia function at frequency 0')
   end subroutine test_inertia_function
 
-  !> The equations as the theory has them, tanh and all, summed over many points.
+  !> The equations of the theory with tanh, summed over many points.
   subroutine defined_phasors(eps, wave_number, as_printed, phasors)
     real(dp), intent(in) :: eps, wave_number
     logical, intent(in) :: as_printed
@@ -137,7 +137,7 @@ contains
     end do
   end subroutine test_definition
 
-  !> No oscillation: Sommerfeld's full film, for any eccentricity; and slow oscillation tends to it.
+  !> Without oscillation: Sommerfeld's full film for any eccentricity, which is also the limit of slow oscillation.
   subroutine test_sommerfeld_limit(check)
     class(checks_t), intent(inout) :: check
     type(oscillating_response_t) :: response
@@ -151,14 +151,14 @@ contains
       phasors = response%phasors(eps, 0.0_dp)
       call check%relative(real(phasors%pressure), -12*pi*eps/((2 + eps**2)*s), 1e-13_dp, 'Sommerfeld pressure')
       call check%relative(real(phasors%moment), -4*pi*(1 + 2*eps**2)/((2 + eps**2)*s), 1e-13_dp, 'Sommerfeld moment')
-      call check%that(abs(aimag(phasors%pressure)) <= 0, 'in phase')
+      call check%that(abs(aimag(phasors%pressure)) <= 0, 'Sommerfeld pressure is in phase')
       slow = response%phasors(eps, 1e-9_dp)
       call check%that(abs(slow%pressure - phasors%pressure) <= 1e-8_dp*abs(phasors%moment), 'slow oscillation')
       call check%that(abs(slow%moment - phasors%moment) <= 1e-8_dp*abs(phasors%moment), 'slow oscillation, moment')
     end do
   end subroutine test_sommerfeld_limit
 
-  !> The points needed for 1e-10 do not grow with the eccentricity.
+  !> The number of points needed for 1e-10 does not increase with the eccentricity.
   subroutine test_points(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: ratios(5) = [0.5_dp, 0.9_dp, 0.99_dp, 0.999_dp, 0.9999_dp]
@@ -212,8 +212,8 @@ contains
     end do
   end subroutine test_chosen_points
 
-  !> The series in Q against sums over many points, up to its limit in Q, for any eccentricity: to the required accuracy, and to
-  !> rounding. If a number of points is given, sums are used and not the series.
+  !> The series in Q against sums over many points, up to its limit in Q, for any eccentricity: with the required accuracy and with
+  !> rounding accuracy. If the case gives a number of points, sums are used instead of the series.
   subroutine test_series(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: accuracies(4) = [1e-8_dp, 1e-10_dp, 1e-13_dp, epsilon(1.0_dp)]
@@ -232,11 +232,11 @@ contains
             worst = max(worst, distance(series, reference, ratios(j), 2*sqrt(q)))
           end do
         end do
-        call check%that(worst <= max(accuracies(k), 1e-14_dp), 'the series is the sum')
-        call check%that(series%series%limit > 0.4_dp, 'the series serves far beyond the films of engines')
+        call check%that(worst <= max(accuracies(k), 1e-14_dp), 'the series agrees with the sum')
+        call check%that(series%series%limit > 0.4_dp, 'the series holds far beyond the films of engines')
       end do
       call new_oscillating_response(coarse, 1e-15_dp, 4, variant == 2)
-      call check%that(distance(coarse, reference, 0.9_dp, 1.0_dp) > 1e-7_dp, 'points asked for are taken')
+      call check%that(distance(coarse, reference, 0.9_dp, 1.0_dp) > 1e-7_dp, 'a given number of points is used')
     end do
   end subroutine test_series
 
@@ -257,7 +257,8 @@ contains
       pin_speed=55.0_dp, ideal_pin_speed=60.0_dp, ideal_pin_acceleration=7000.0_dp, frequency=frequency)
   end function some_motion
 
-  !> The velocities obey the equation of motion, the walls and continuity; their slope at the pin is the wall shear.
+  !> The velocities obey the equation of motion, the conditions at the walls and continuity; their slope at the pin gives the wall
+  !> shear.
   subroutine test_flow(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: frequencies(4) = [0.0_dp, 250.0_dp, 1e4_dp, 2e6_dp]
@@ -302,13 +303,13 @@ contains
         shear = shear + v(-2)*clearance/speed*cos(theta)*two_pi/angles
       end do
       phasors = film%phasors(motion)
-      call check%that(abs(moment - phasors%moment) <= 1e-4_dp*abs(phasors%moment), 'the slope at the pin: moment')
+      call check%that(abs(moment - phasors%moment) <= 1e-4_dp*abs(phasors%moment), 'moment from the velocity slope at the pin')
       call check%that(abs(shear - phasors%shear) <= 1e-4_dp*(abs(phasors%shear) + abs(phasors%moment)), &
-        'the slope at the pin: shear')
+        'shear from the velocity slope at the pin')
     end do
   end subroutine test_flow
 
-  !> Force and moment from the pressure gradient and the velocities, in x and y: the signs.
+  !> Force and moment from the pressure gradient and the velocities in x and y, which determines the signs.
   subroutine test_force(check)
     class(checks_t), intent(inout) :: check
     integer, parameter :: points = 400
@@ -320,8 +321,8 @@ contains
     call make(film, .false.)
     motion = some_motion(0.7_dp, 250.0_dp)
     call check%relative(real(film%surface_speed(motion)), 60*pin_radius, 1e-14_dp, 'the surface speed')
-    call check%relative(real(i_unit*250*film%surface_speed(motion)), 7000*pin_radius, 1e-14_dp, 'its rate')
-    call check%that(film%needs_ideal_motion, 'the film asks for the ideal motion')
+    call check%relative(real(i_unit*250*film%surface_speed(motion)), 7000*pin_radius, 1e-14_dp, 'rate of the surface speed')
+    call check%that(film%needs_ideal_motion, 'the film needs the motion of the ideal mechanism')
     d = 1e-4_dp
     do k = 0, 1
       film%response%as_printed = k == 1
@@ -357,11 +358,11 @@ contains
     call film%film_force(motion, force, moment)
     call check%that(abs(force(1)) <= 0, 'no force along the line of centres')
     call check%relative(force(2), 12*pi*viscosity*bearing_length*pin_radius**2*(2*pin_radius)*0.5_dp &
-      /(clearance**2*2.25_dp*sqrt(0.75_dp)), 0.5e-2_dp, 'Sommerfeld''s force, up to the shear')
+      /(clearance**2*2.25_dp*sqrt(0.75_dp)), 0.5e-2_dp, 'Sommerfeld''s force, except for the shear')
   end subroutine test_force
 
-  !> The two acceleration terms of (5.4): the second changes the response by about 1 % at L* = 0.17, the first is a radial
-  !> force, the inertia of the oil that the pin displaces.
+  !> The two acceleration terms of (5.4): the second changes the response by about 1 % at L* = 0.17; the first is a radial
+  !> force, the inertia of the oil displaced by the pin.
   subroutine test_as_printed(check)
     class(checks_t), intent(inout) :: check
     type(oscillating_film_t) :: film, printed
@@ -382,7 +383,7 @@ contains
       *250*rod_length*pin_radius*60) <= 1e-12_dp*norm2(two), 'the first acceleration term')
   end subroutine test_as_printed
 
-  !> Towards the wall the force grows like (1 - eps)^-1/2 and is held beyond the largest ratio.
+  !> Near the wall the force grows like (1 - eps)^-1/2; beyond the largest ratio it is constant.
   subroutine test_wall(check)
     class(checks_t), intent(inout) :: check
     type(oscillating_film_t) :: film
@@ -393,15 +394,15 @@ contains
     call film%film_force(some_motion(max_eccentricity_ratio, 250.0_dp), held, at_held)
     do i = 1, size(beyond)
       call film%film_force(some_motion(beyond(i), 250.0_dp), force, moment)
-      call check%that(norm2(force - held) <= 1e-9_dp*norm2(held), 'the force is held at the wall')
-      call check%relative(moment, at_held, 1e-9_dp, 'the moment is held at the wall')
+      call check%that(norm2(force - held) <= 1e-9_dp*norm2(held), 'the force is limited at the wall')
+      call check%relative(moment, at_held, 1e-9_dp, 'the moment is limited at the wall')
     end do
     call film%film_force(some_motion(1 - 1e-5_dp, 250.0_dp), force, moment)
     call film%film_force(some_motion(1 - 4e-5_dp, 250.0_dp), other, moment)
     call check%relative(norm2(force)/norm2(other), 2.0_dp, 1e-3_dp, 'the force near the wall')
   end subroutine test_wall
 
-  !> Beyond the largest ratio the flow, too, is that of the film held there.
+  !> Beyond the largest ratio the flow is also that of the limited film.
   subroutine test_held_flow(check)
     class(checks_t), intent(inout) :: check
     type(oscillating_film_t) :: film
@@ -412,9 +413,9 @@ contains
     inside = some_motion(0.9_dp, 250.0_dp)
     beyond = some_motion(0.95_dp, 250.0_dp)
     call check%that(abs(film%pressure_gradient(beyond, theta)/film%pressure_gradient(inside, theta) - 1) <= 1e-12_dp, &
-      'the held film''s pressure')
+      'pressure of the limited film')
     call check%that(abs(film%velocity(beyond, theta, 0.3_dp)/film%velocity(inside, theta, 0.3_dp) - 1) <= 1e-12_dp, &
-      'the held film''s velocity')
+      'velocity of the limited film')
   end subroutine test_held_flow
 
   subroutine test_extremes(check)
@@ -438,7 +439,7 @@ contains
     motion = some_motion(0.0_dp, 250.0_dp)
     film%arm_length = 0
     call film%film_force(motion, force, moment)
-    call check%that(norm2(force) <= 1e-12_dp .and. moment < 0, 'a centred pin is only slowed')
+    call check%that(norm2(force) <= 1e-12_dp .and. moment < 0, 'only a moment acts on a centred pin')
   end subroutine test_extremes
 
   subroutine test_factory(check)
@@ -453,7 +454,7 @@ contains
       call film_law_of(oil//trim(variants(i)), 1e-6_dp, film, error)
       call check%that(allocated(film) .and. .not. allocated(error), 'a film for '//variants(i))
       if (.not. allocated(film)) cycle
-      call check%that(film%needs_ideal_motion .and. .not. film%singular_at_wall, 'what the film needs')
+      call check%that(film%needs_ideal_motion .and. .not. film%singular_at_wall, 'properties of the film')
       call film%film_force(some_motion(0.5_dp, 250.0_dp), force(:, i), moment)
     end do
     call check%that(norm2(force(:, 1) - force(:, 2)) <= 0, 'the default variant')

@@ -34,8 +34,8 @@ contains
       'drive.flywheel_inertia=0.05', 'initial.crank_speed=150', 'output.sampling=crank_angle'], 'chaos, indicator and motor')
   end subroutine run_test_periodic
 
-  !> The film forgets within a revolution. The run ends where it should, with the rows of one revolution, and the state then
-  !> continues to repeat in a run that does not stop.
+  !> With a film the motion becomes periodic within a revolution. The run ends at the right time with the rows of one revolution,
+  !> and the state continues to repeat in a run that does not stop.
   subroutine held_crank_with_film(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: whole, last, plain
@@ -46,14 +46,15 @@ contains
     last = run_case(film, [character(len=long) :: until, auto, window, 'output.samples_per_revolution=90'])
     associate (a => whole%report%periods, b => last%report%periods)
       call check%that(whole%report%status == 'done' .and. a%period == 1, 'film: period of one revolution')
-      call check%that(a%found_after >= 4 .and. a%found_after <= 6, 'film: found soon')
+      call check%that(a%found_after >= 4 .and. a%found_after <= 6, 'film: the period is found soon')
       call check%close_to(last_row_time(whole), a%found_after*turn, 1e-12_dp, 'film: the run ends at the angle where it began')
-      call check%close_to(whole%report%figures%time, a%found_after*turn, 1e-12_dp, 'film: and so do its figures')
+      call check%close_to(whole%report%figures%time, a%found_after*turn, 1e-12_dp, 'film: the figures end there too')
       call check%relative(a%duration, turn, 1e-10_dp, 'film: duration of the period')
-      call check%that(b%found_after == a%found_after .and. b%window_after == a%found_after, 'film: the window begins there')
-      call check%close_to(last_row_time(last), (a%found_after + 1)*turn, 1e-12_dp, 'film: and is a period')
+      call check%that(b%found_after == a%found_after .and. b%window_after == a%found_after, &
+        'film: the window begins where the period is found')
+      call check%close_to(last_row_time(last), (a%found_after + 1)*turn, 1e-12_dp, 'film: the window is one period')
       call check%that(size(last%values, 2) == 91, 'film: rows of one period')
-      call check%close_to(last%values(1, 1), a%found_after*turn, 1e-12_dp, 'film: from its first instant')
+      call check%close_to(last%values(1, 1), a%found_after*turn, 1e-12_dp, 'film: the window has its first row')
       call closes(check, last, 1, 91, 1e-4_dp, .true., 'film')
       plain = run_case(film, [character(len=long) :: auto, 'integrator.revolutions=20', 'output.samples_per_revolution=90', &
         'integrator.relative_tolerance=1e-9'])
@@ -83,7 +84,7 @@ contains
     call check%that((difference <= tolerance) .eqv. wanted, what//': rows a period apart')
   end subroutine closes
 
-  !> A dry joint of the bifurcation picture: periods of two and three revolutions, no shorter ones, and negative exponents.
+  !> A dry joint from the bifurcation diagram: periods of two and three revolutions, no shorter ones, and negative exponents.
   subroutine long_periods(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: clearances(2) = [character(len=7) :: '55e-6', '52.2e-6']
@@ -96,7 +97,7 @@ contains
       trace = run_case(dry, [character(len=long) :: until, auto, window, 'joint.clearance='//clearances(i), &
         'run.most_revolutions=200', 'output.samples_per_revolution=20', exponent])
       call check%that(trace%report%periods%period == periods(i), what//': period')
-      call check%that(size(trace%values, 2) == 20*periods(i) + 1, what//': rows of a period')
+      call check%that(size(trace%values, 2) == 20*periods(i) + 1, what//': number of rows in a period')
       if (size(trace%values, 2) /= 20*periods(i) + 1) cycle
       call closes(check, trace, 1, 20*periods(i) + 1, 2e-4_dp, .true., what//', a period')
       do k = 1, periods(i) - 1
@@ -106,7 +107,8 @@ contains
     end do
   end subroutine long_periods
 
-  !> 0.5 mm of clearance: it does not repeat, and ends at most_revolutions, with the rows and events of the last of them.
+  !> With 0.5 mm clearance the motion does not repeat; the run ends at most_revolutions, with the rows and events of the last of
+  !> them.
   subroutine chaos(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace, plain
@@ -116,15 +118,16 @@ contains
       'output.samples_per_revolution=20'])
     plain = run_case(dry, [character(len=long) :: auto, 'integrator.revolutions=30', 'output.samples_per_revolution=20'])
     call check%that(trace%report%periods%period == 0 .and. trace%report%status == 'done', 'dry, 0.5 mm: no period')
-    call check%relative(last_row_time(trace), 30*turn, 1e-12_dp, 'dry, 0.5 mm: as many revolutions as allowed')
-    call check%that(size(trace%values, 2) == 41, 'dry, 0.5 mm: rows of the last two')
+    call check%relative(last_row_time(trace), 30*turn, 1e-12_dp, 'dry, 0.5 mm: the run ends at most_revolutions')
+    call check%that(size(trace%values, 2) == 41, 'dry, 0.5 mm: rows of the last two revolutions')
     call check%that(size(trace%event) > 4 .and. all(trace%event%time >= 28*turn) .and. &
-      size(trace%event) == count(plain%event%time >= 28*turn), 'dry, 0.5 mm: events of the last two')
+      size(trace%event) == count(plain%event%time >= 28*turn), 'dry, 0.5 mm: events of the last two revolutions')
     call check%that(trace%report%figures%pin(2)%contacts == plain%report%figures%pin(2)%contacts .or. &
-      trace%report%statistics%evaluations == plain%report%statistics%evaluations, 'dry, 0.5 mm: the run is the plain one')
+      trace%report%statistics%evaluations == plain%report%statistics%evaluations, &
+        'dry, 0.5 mm: the search for a period does not change the run')
   end subroutine chaos
 
-  !> The four-stroke cycle has two revolutions, and no period is shorter, though the dead centres look alike.
+  !> The four-stroke cycle has a period of two revolutions, and no shorter one although the dead centres are similar.
   subroutine gas_takes_two_revolutions(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -133,8 +136,8 @@ contains
     call check%that(trace%report%periods%period == 2, 'gas: period of two revolutions')
   end subroutine gas_takes_two_revolutions
 
-  !> A damped crank driven by the gas reaches a constant mean speed; one without drive and with a film slows down for ever; one that
-  !> stops reports how far it came.
+  !> A damped crank driven by the gas reaches a constant mean speed; a crank without drive and with a film decelerates for ever; for
+  !> one that stops the message states how far it came.
   subroutine free_crank(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -146,17 +149,18 @@ contains
     n = size(trace%values, 2)
     speed = column(trace, 'crank_speed[rad/s]')
     call check%that(n == 9, 'free crank: rows of the period')
-    call check%relative(trace%values(speed, n), trace%values(speed, 1), 1e-4_dp, 'free crank: comes back to its speed')
+    call check%relative(trace%values(speed, n), trace%values(speed, 1), 1e-4_dp, 'free crank: the speed repeats')
     call check%relative(trace%report%periods%duration, trace%values(1, n) - trace%values(1, 1), 1e-3_dp, 'free crank: duration')
     trace = run_case('cases/sim_I.nml', [character(len=long) :: until, auto, 'run.most_revolutions=20', 'output.ideal_twin=F'])
     call check%that(trace%report%periods%period == 0, 'undriven crank: no period')
-    call check%relative(abs(trace%report%figures%crank_travel), 20*two_pi, 1e-9_dp, 'undriven crank: as many as allowed')
+    call check%relative(abs(trace%report%figures%crank_travel), 20*two_pi, 1e-9_dp, &
+      'undriven crank: the run ends at most_revolutions')
     trace = run_case('cases/sim_I.nml', [character(len=long) :: until, auto, 'drive.damping=1', 'output.sampling=crank_angle'])
     call check%that(index(trace%report%status, '&run most_revolutions') > 0, 'a crank that stops: '//trace%report%status)
   end subroutine free_crank
 
   !> A damped crank without clearance: its speed, the only state, converges to its mean at the rate damping over inertia, and so do
-  !> neighbouring motions. Measured from the differences of the speed between revolutions.
+  !> neighbouring motions. The rate is measured from the differences of the speed between revolutions.
   subroutine exponent_is_the_decay(check)
     class(checks_t), intent(inout) :: check
     character(len=long), parameter :: driven(6) = [character(len=long) :: auto, 'drive.damping=0.05', 'drive.torque=10', &
@@ -167,19 +171,19 @@ contains
     real(dp) :: first, second
     integer :: n, speed
     trace = run_case('cases/sim_I.nml', [character(len=long) :: driven, 'integrator.crank_revolutions=40', exponent, ideal])
-    call check%that(.not. allocated(trace%error), 'damped crank: runs')
+    call check%that(.not. allocated(trace%error), 'damped crank: a run')
     speed = column(trace, 'crank_speed[rad/s]')
     n = size(trace%values, 2)
     first = trace%values(speed, 21) - trace%values(speed, 20)
     second = trace%values(speed, 31) - trace%values(speed, 30)
     call check%that(trace%report%exponent%is_known, 'damped crank: an exponent')
     call check%close_to(trace%report%exponent%mean, log(second/first)/10, 0.02_dp*abs(log(second/first)/10), &
-      'damped crank: the exponent is the rate at which the speed settles')
+      'damped crank: the exponent is the rate of convergence of the speed')
   end subroutine exponent_is_the_decay
 
-  !> Films that settle: of a held crank after its run-up, of a compressor, and of a free crank under a measured pressure of two
-  !> revolutions. Neighbouring motions converge at the rate at which the states one period apart do. In the compressor two
-  !> directions of the film shrink by the factors 0.83 and 0.77 in a revolution.
+  !> Settling films: at constant speed after a ramp, in a compressor, and with a free crank under a measured pressure of two
+  !> revolutions. Neighbouring motions converge at the same rate as the states one period apart. In the compressor two directions of
+  !> the film converge by the factors 0.83 and 0.77 in a revolution.
   subroutine exponents_of_machines(check)
     class(checks_t), intent(inout) :: check
     character(len=long), parameter :: short_one(2) = [character(len=long) :: auto, 'run.lyapunov_revolutions=10']
@@ -192,7 +196,7 @@ contains
 
   contains
 
-    !> `column_is`: what is looked at once in a revolution; `period` in revolutions.
+    !> `column_is`: the column that is examined once in a revolution; `period` in revolutions.
     subroutine settles(file, column_is, end_is, rows_are, period, what)
       character(len=*), intent(in) :: file, column_is, end_is, rows_are, what
       integer, intent(in) :: period
@@ -213,16 +217,16 @@ contains
         first = abs(v(n - period) - v(n - 2*period))
         last = abs(v(n) - v(n - period))
         call check%close_to(rate, log(last/first)/period, 0.1_dp*abs(rate), &
-          what//': the exponent is the rate at which the motion settles')
+          what//': the exponent is the rate of convergence of the motion')
       end associate
     end subroutine settles
   end subroutine exponents_of_machines
 
-  !> Two runs at 1e-12 whose pins differ by 1e-12 m: their difference grows according to the exponent, if the motion is not
-  !> periodic. From several initial states, since both are means over a chaotic motion.
+  !> Two runs at 1e-12 whose pins differ by 1e-12 m: their difference grows according to the exponent if the motion is not
+  !> periodic. Several initial states are used, because both are means over a chaotic motion.
   subroutine exponent_is_the_growth(check, machine, what)
     class(checks_t), intent(inout) :: check
-    character(len=*), intent(in) :: machine(:), what   !! what the scene has beside the dry joint
+    character(len=*), intent(in) :: machine(:), what   !! settings in addition to those of the dry joint, and their description
     character(len=long), parameter :: close(4) = [character(len=long) :: auto, 'integrator.relative_tolerance=1e-12', &
       'integrator.crank_revolutions=4', 'output.samples_per_revolution=1']
     real(dp), parameter :: aside = 1e-12_dp, saturated = 1e-2_dp*500e-6_dp

@@ -71,7 +71,7 @@ contains
     real(dp) :: force(2)
     integer :: i
     call make('closed_form', film)
-    call check%that(.not. film%needs_ideal_motion, 'the film asks for no ideal motion')
+    call check%that(.not. film%needs_ideal_motion, 'the film does not need the motion of the ideal mechanism')
     do i = 1, size(states, 2)
       force = reduced_force(film, states(1, i), states(2, i), states(3, i), 0.7_dp, 0.4_dp)
       call check%close_to(force(1), expected(1, i), 0.6e-4_dp, 'closed form, radial')
@@ -79,7 +79,7 @@ contains
     end do
   end subroutine test_table
 
-  !> The formulas as the equations have them, singular where eps or eps_dot is 0.
+  !> The published formulas, which are singular if eps or eps_dot is 0.
   pure function formula(eps, w, eps_dot) result(force)
     real(dp), intent(in) :: eps, w, eps_dot
     real(dp) :: force(2)
@@ -109,7 +109,7 @@ contains
         do k = 1, size(rates)
           want = formula(ratios(i), speeds(j), rates(k))
           got = reduced_force(film, ratios(i), speeds(j), rates(k), -2.0_dp, 3.0_dp)
-          call check%that(norm2(got - want) <= 1e-11_dp*norm2(want), 'the regular form is the formula')
+          call check%that(norm2(got - want) <= 1e-11_dp*norm2(want), 'the regular form agrees with the formula')
         end do
       end do
     end do
@@ -136,7 +136,7 @@ contains
     motion = film_motion_t(eccentricity=0, eccentricity_rate=clearance*[0.3_dp, -2.0_dp], pin_speed=5.0_dp)
     call film%film_force(motion, force, moment)
     call check%that(norm2(force/unit_force + 6*pi*[0.3_dp, -2.0_dp]) <= 1e-13_dp, 'squeeze force at the centre')
-    call check%that(abs(moment) <= 0, 'no moment')
+    call check%that(abs(moment) <= 0, 'no moment without film_moment')
     do i = -300, -9
       eps = 10.0_dp**i
       motion%eccentricity = clearance*eps*[0.6_dp, 0.8_dp]
@@ -149,7 +149,7 @@ contains
     call check%that(norm2(force/unit_force - 3*pi*5*1e-7_dp*[-0.8_dp, 0.6_dp]) <= 1e-12_dp, 'wedge force near the centre')
   end subroutine test_limits
 
-  !> As printed, the radial force of a withdrawing pin has the other sign.
+  !> In the variant as_printed the radial force has the opposite sign when the pin withdraws.
   subroutine test_as_printed(check)
     class(checks_t), intent(inout) :: check
     class(film_law_t), allocatable :: corrected, printed
@@ -276,8 +276,8 @@ contains
     end do
   end function gauss
 
-  !> The half film against its integral in quadruple precision, in every direction of the motion: rounding is all that
-  !> is lost.
+  !> The half film against its integral in quadruple precision, in every direction of the motion: the only error is
+  !> rounding.
   subroutine test_half_film_rounding(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: ratios(9) = [1e-40_dp, 1e-20_dp, 1e-6_dp, 0.01_dp, 0.3_dp, 0.7_dp, 0.95_dp, 0.999_dp, 1 - 1e-6_dp]
@@ -295,12 +295,12 @@ contains
         motion%eccentricity_rate = clearance*35*sin(angle)*[cos(3*angle + 0.02_dp), sin(3*angle + 0.02_dp)]
         call film%film_force(motion, force, moment)
         exact = exact_force(motion)
-        call check%that(norm2(force - exact) <= 3e-15_dp/(1 - ratios(i))*norm2(exact), 'half film, rounding')
+        call check%that(norm2(force - exact) <= 3e-15_dp/(1 - ratios(i))*norm2(exact), 'half film: rounding error')
       end do
     end do
   end subroutine test_half_film_rounding
 
-  !> Booker's integrals (see half_film) between zeros of the pressure that are iterated to the end, for e in units of c.
+  !> Booker's integrals (see half_film) between zeros of the pressure that are iterated to convergence, for e in units of c.
   pure function exact_force(motion) result(force)
     type(film_motion_t), intent(in) :: motion
     real(qp) :: force(2)
@@ -348,12 +348,12 @@ contains
     end do
     motion = film_motion_t(eccentricity=0, eccentricity_rate=clearance*[0.3_dp, -2.0_dp], pin_speed=5.0_dp)
     call film%film_force(motion, force, moment)
-    call check%that(norm2(force/unit_force + 6*pi*[0.3_dp, -2.0_dp]) <= 1e-13_dp, 'half film, squeeze force at the centre')
+    call check%that(norm2(force/unit_force + 6*pi*[0.3_dp, -2.0_dp]) <= 1e-13_dp, 'half film: squeeze force at the centre')
     do i = -100, -9
       eps = 10.0_dp**i
       motion%eccentricity = clearance*eps*[0.6_dp, 0.8_dp]
       call film%film_force(motion, other, moment)
-      call check%that(norm2(other - force) <= 10*eps*norm2(force) + 1e-14_dp*norm2(force), 'half film, the centre')
+      call check%that(norm2(other - force) <= 10*eps*norm2(force) + 1e-14_dp*norm2(force), 'half film: continuous at the centre')
     end do
     motion%eccentricity_rate = 0
     motion%pin_speed = 0
@@ -361,7 +361,7 @@ contains
     call check%that(norm2(force) <= 0 .and. abs(moment) <= 0, 'half film, no force at rest')
   end subroutine test_half_film_limits
 
-  !> The pressure function integrates to the half film's force.
+  !> The integral of the pressure function is the force of the half film.
   subroutine test_pressure(check)
     class(checks_t), intent(inout) :: check
     integer, parameter :: points = 20000
@@ -381,11 +381,11 @@ contains
       total = total - film%pressure(motion, angle - line_of_centres)*[cos(angle), sin(angle)]
     end do
     total = total*2*pi/points*(bearing_radius - clearance)*bearing_length
-    call check%that(norm2(total - force) <= 1e-6_dp*norm2(force), 'the pressure pushes the pin with the force')
+    call check%that(norm2(total - force) <= 1e-6_dp*norm2(force), 'integral of the pressure is the force on the pin')
   end subroutine test_pressure
 
-  !> Turning the whole motion turns the force; mirroring it mirrors the force; the force is linear in the speeds; only W
-  !> counts of the two rotations.
+  !> Rotating the whole motion rotates the force; mirroring it mirrors the force; the force is linear in the speeds; it depends on
+  !> the two rotations only through W.
   subroutine test_invariance(check)
     class(checks_t), intent(inout) :: check
     character(len=11), parameter :: variants(2) = ['closed_form', 'half_film  ']

@@ -18,7 +18,7 @@ module test_problems
     procedure :: derivatives => two_body_derivatives
   end type two_body_t
 
-  !> A ball under g = 1 that rebounds from y = 0 with restitution r; `impacts` counts.
+  !> A ball under g = 1 that rebounds from y = 0 with restitution r; `impacts` is the number of impacts.
   type, extends(ode_problem_t) :: bouncing_ball_t
     real(dp) :: restitution = 0.5_dp
     integer :: impacts = 0
@@ -29,7 +29,7 @@ module test_problems
     procedure :: handle_event => ball_rebounds
   end type bouncing_ball_t
 
-  !> A sine of which only the tips exceed a level: two passages close together inside one step.
+  !> A sine that exceeds a level only near its maxima: two crossings are close together inside one step.
   type, extends(oscillator_t) :: hopper_t
     real(dp) :: level = 0.9999_dp
     integer :: passages = 0
@@ -39,7 +39,7 @@ module test_problems
     procedure :: handle_event => hopper_passes
   end type hopper_t
 
-  !> y' = y cos t, or y' = -decay y where `decay` is not 0.
+  !> y' = y cos t; or y' = -decay y if `decay` is not 0.
   type, extends(ode_problem_t) :: modulated_t
     real(dp) :: decay = 0
   contains

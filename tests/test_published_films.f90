@@ -1,5 +1,5 @@
-!> The film of a journal that turns under a steady load, against published tables: the Sommerfeld number S = mu N L D (R/c)^2/W and
-!> the attitude angle. Their films begin at a groove, so the solver keeps the pressure at 0 there.
+!> The film of a journal that rotates under a steady load, against published tables: the Sommerfeld number S = mu N L D (R/c)^2/W
+!> and the attitude angle. The published films begin at a groove; the solver therefore sets the pressure there to 0.
 module test_published_films
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi, degree
@@ -18,8 +18,8 @@ contains
     call someya(check)
   end subroutine run_test_published_films
 
-  !> Raimondi and Boyd (1958), the film beginning where it is thickest: L/D, eps, S, attitude [deg]. (Their S for L/D 1 and eps 0.4,
-  !> 0.264, is a misprint: Butenschoen has 0.2606.)
+  !> Raimondi and Boyd (1958), whose film begins at the largest film thickness: L/D, eps, S, attitude [deg]. (Their S for L/D 1 and
+  !> eps 0.4, 0.264, is a misprint: Butenschoen has 0.2606.)
   subroutine raimondi_and_boyd(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: printed(4, 8) = reshape([1.0_dp, 0.1_dp, 1.33_dp, 79.50_dp, 1.0_dp, 0.2_dp, 0.631_dp, 74.02_dp, &
@@ -61,8 +61,8 @@ contains
     end do
   end subroutine compare
 
-  !> S and the attitude angle [deg] of a journal whose bearing has grooves of a `width` [rad] at given angles [rad]: measured from
-  !> the thinnest film or, with `from_load`, from the direction of the load, which is found by iteration.
+  !> S and the attitude angle [deg] of a journal whose bearing has grooves of a `width` [rad] at given angles [rad]. These are
+  !> measured from the smallest film thickness or, with `from_load`, from the direction of the load, which is found by iteration.
   subroutine find_journal(half_length, eps, grooves, width, from_load, found)
     real(dp), intent(in) :: half_length, eps, grooves(:), width
     logical, intent(in) :: from_load

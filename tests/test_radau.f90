@@ -66,7 +66,7 @@ contains
     inside = .true.
   end subroutine derivatives
 
-  !> Collocation conditions, the decoupling, stiff accuracy.
+  !> Collocation conditions, decoupling of the stages, stiff accuracy.
   subroutine formulas_are_exact(check)
     class(checks_t), intent(inout) :: check
     type(radau_formula_t) :: f
@@ -100,7 +100,7 @@ contains
       end do
       call check%close_to(maxval(abs(matmul(f%t, f%t_inverse) - unit)), 0.0_dp, 1e-12_dp, 'T and its inverse')
       call check%close_to(maxval(abs(matmul(f%a, matmul(f%t, lambda)) - f%t)), 0.0_dp, 1e-13_dp, 'A T Lambda = T')
-      ! the estimate vanishes for polynomials of degree s: z = c^q, f_0 = 0 but for q = 1
+      ! the estimate vanishes for polynomials of degree s: z = c^q, f_0 = 0 except for q = 1
       worst = abs(1/f%gamma + dot_product(f%e, f%c))
       do q = 2, s
         worst = max(worst, abs(dot_product(f%e, f%c**q)))
@@ -120,7 +120,7 @@ contains
     s%span = span
   end function settings
 
-  !> The oscillator over ten periods: error near the tolerance, far fewer steps as the order rises.
+  !> The oscillator over ten periods: the error is near the tolerance, with far fewer steps for higher orders.
   subroutine order_of_the_formulas(check)
     class(checks_t), intent(inout) :: check
     type(oscillator_t) :: problem
@@ -138,10 +138,10 @@ contains
       y = [0.0_dp, 1.0_dp]
       call integrate(problem, method, t, y, 20*pi, 0, observer, status)
       error = max(abs(y(1) - sin(20*pi)), abs(y(2) - cos(20*pi)))
-      call check%that(status == integration_done, 'the oscillator is integrated')
+      call check%that(status == integration_done, 'integration of the oscillator')
       call check%close_to(error, 0.0_dp, 30*tolerance, 'ten periods of the oscillator')
     end do
-    call check%that(method%statistics%accepted < 200, 'at 1e-12 in fewer than 200 steps')
+    call check%that(method%statistics%accepted < 200, 'ten periods at 1e-12 in fewer than 200 steps')
   end subroutine order_of_the_formulas
 
   !> Hairer & Wanner's reference: y = 1.706167732170483, y' = -0.8928097010248 at t = 2.
@@ -158,14 +158,14 @@ contains
     t = 0
     y = [2.0_dp, -0.66_dp]
     call integrate(problem, method, t, y, 2.0_dp, 0, observer, status)
-    call check%that(status == integration_done, 'van der Pol is integrated')
+    call check%that(status == integration_done, 'integration of van der Pol''s oscillator')
     call check%close_to(y(1), 1.706167732170483_dp, 1e-6_dp, 'van der Pol, y(2)')
     call check%close_to(y(2), -0.8928097010248_dp, 1e-5_dp, "van der Pol, y'(2)")
-    call check%that(method%statistics%evaluations < 10000, 'with few evaluations')
+    call check%that(method%statistics%evaluations < 10000, 'van der Pol''s oscillator needs few evaluations')
   end subroutine van_der_pol_is_cheap
 
-  !> The film's closed form written once more for complex numbers: its imaginary part under an imaginary change of 1e-30
-  !> is the derivative to rounding.
+  !> The film's closed form, written again for complex numbers: its imaginary part for an imaginary change of 1e-30
+  !> is the derivative with rounding accuracy.
   subroutine film_derivatives_by_complex_step(check)
     class(checks_t), intent(inout) :: check
     type(pinkus_sternlicht_t) :: film
@@ -247,7 +247,8 @@ contains
     end function complex_contact
   end subroutine contact_slopes_by_complex_step
 
-  !> The closed-form Jacobian of whole scenes against differences, in film and in contact, crank free and held.
+  !> The closed-form Jacobian of whole scenes against finite differences, in film and in contact, with free crank and constant
+  !> speed.
   subroutine jacobians_of_scenes(check)
     class(checks_t), intent(inout) :: check
     character(len=40), parameter :: files(5) = [character(len=40) :: 'cases/sim_I.nml', 'cases/sim_IV.nml', &
@@ -276,16 +277,16 @@ contains
         call scene%jacobian(1e-3_dp*trial, y, a_p, a_v)
         call difference_jacobian(scene, 1e-3_dp*trial, y, b_p, b_v)
         scale = maxval(abs(b_p))*1e-4_dp + abs(b_p)
-        call check%close_to(maxval(abs(a_p - b_p)/scale), 0.0_dp, 1e-2_dp, 'Jacobian by positions, '//trim(files(i)))
+        call check%close_to(maxval(abs(a_p - b_p)/scale), 0.0_dp, 1e-2_dp, 'Jacobian with respect to positions, '//trim(files(i)))
         scale = maxval(abs(b_v))*1e-4_dp + abs(b_v)
-        call check%close_to(maxval(abs(a_v - b_v)/scale), 0.0_dp, 1e-2_dp, 'Jacobian by rates, '//trim(files(i)))
+        call check%close_to(maxval(abs(a_v - b_v)/scale), 0.0_dp, 1e-2_dp, 'Jacobian with respect to rates, '//trim(files(i)))
       end do
       deallocate (a_p, a_v, b_p, b_v, scale)
     end do
   end subroutine jacobians_of_scenes
 
-  !> Where a film has no force, with the pin on the wall and beyond it, it has no derivatives: zeros, found without a force that
-  !> nobody has set.
+  !> Where a film has no force, with the pin on the wall and beyond it, its derivatives are zero and are computed without the
+  !> undefined force.
   subroutine no_jacobian_outside(check)
     class(checks_t), intent(inout) :: check
     type(case_t) :: case
@@ -306,7 +307,7 @@ contains
     end do
   end subroutine no_jacobian_outside
 
-  !> Two methods that share nothing but the scene.
+  !> Two methods that have only the scene in common.
   subroutine radau_agrees_with_adams(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: one, other
@@ -342,12 +343,12 @@ contains
         overrides(2) = 'integrator.relative_tolerance=1e-2'
         trace = run_case('cases/'//trim(files(i))//'.nml', overrides)
         call check%that(.not. allocated(trace%error), trim(files(i))//' at 1e-2, '//trim(methods(k)))
-        if (i > 7) cycle   ! chaotic: costs differ with the path
-        call check%that(trace%report%figures%pin(piston_pin)%min_film_thickness > 0, 'and the pin stays in its film')
+        if (i > 7) cycle   ! chaotic: the cost depends on the motion
+        call check%that(trace%report%figures%pin(piston_pin)%min_film_thickness > 0, trim(files(i))//': no contact')
         overrides(2) = 'integrator.relative_tolerance=1e-4'
         tighter = run_case('cases/'//trim(files(i))//'.nml', overrides)
         call check%that(trace%report%statistics%evaluations <= tighter%report%statistics%evaluations, &
-          trim(files(i))//': 1e-2 costs no more than 1e-4, '//trim(methods(k)))
+          trim(files(i))//': 1e-2 needs no more evaluations than 1e-4, '//trim(methods(k)))
       end do
     end do
   end subroutine loose_tolerances_survive
@@ -362,12 +363,12 @@ contains
       'integrator.revolutions=1', 'integrator.relative_tolerance=1e-10'])
     n = min(size(one%event), size(other%event))
     call check%that(n > 20 .and. size(one%event) == size(other%event), 'the same contacts with both methods')
-    call check%close_to(maxval(abs(one%event(:n)%time - other%event(:n)%time)), 0.0_dp, 1e-7_dp, 'at the same instants')
+    call check%close_to(maxval(abs(one%event(:n)%time - other%event(:n)%time)), 0.0_dp, 1e-7_dp, 'contact times of both methods')
   end subroutine impacts_with_radau
 
-  !> A piston that sticks in its guide, by friction within 2.4e-7 m/s, until the pin meets the wall: a step goes far beyond it, and
-  !> Newton's method for the part up to the wall does not converge or only seems to. The piston then slid at 1 mm/s as the contact
-  !> began. Expected: the normal speed by Adams, 0.5632487 m/s.
+  !> A piston that sticks in its guide, by friction with a transition speed of 2.4e-7 m/s, until the pin comes into contact. A step
+  !> goes far beyond the wall, and Newton's iteration for the part up to the wall does not converge, or converges only apparently;
+  !> the piston must not slide at the beginning of the contact. The expected normal speed is that of Adams, 0.5632487 m/s.
   subroutine landing_is_exact(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: common(7) = [character(len=long) :: 'integrator.revolutions=0.006', 'guide.kind=friction', &
@@ -380,33 +381,34 @@ contains
     integer :: i
     exact = run_case('cases/sim_V_oscillating.nml', [common, [character(len=long) :: 'integrator.method=adams', &
       'integrator.relative_tolerance=1e-10']])
-    call check%close_to(exact%event(1)%normal_speed, 0.5632487_dp, 1e-6_dp, 'the pin meets the wall')
+    call check%close_to(exact%event(1)%normal_speed, 0.5632487_dp, 1e-6_dp, 'speed of the pin at the wall')
     do i = 1, size(tolerances)
       chosen(1) = 'integrator.method='//methods(i)
       chosen(2) = 'integrator.relative_tolerance='//tolerances(i)
       run = run_case('cases/sim_V_oscillating.nml', [common, chosen])
       call check%close_to(run%event(1)%normal_speed, exact%event(1)%normal_speed, 1e-6_dp, &
-        'Radau lands on the wall: '//trim(methods(i))//' at '//tolerances(i))
+        'Radau finds the speed at the wall: '//trim(methods(i))//' at '//tolerances(i))
     end do
   end subroutine landing_is_exact
 
-  !> Films go to Radau, contact and free flight to Adams, at the cost of the better one.
+  !> `auto` uses Radau in films, and Adams in contact and free flight, at the cost of the better method.
   subroutine auto_chooses(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: auto, radau, adams
     auto = run_case('cases/sim_IV.nml', [character(len=long) :: 'integrator.method=auto'])
     radau = run_case('cases/sim_IV.nml', [character(len=long) :: 'integrator.method=radau'])
     call check%that(auto%report%statistics%evaluations < 1.1_dp*radau%report%statistics%evaluations + 200, &
-      'a film costs what Radau costs')
-    call check%that(sum(auto%report%time_with(2, :)) > 0.9_dp*auto%report%figures%time, 'and is given to it')
+      'evaluations of auto in a film')
+    call check%that(sum(auto%report%time_with(2, :)) > 0.9_dp*auto%report%figures%time, 'auto uses Radau in a film')
     auto = run_case('cases/flores/friction_050.nml', [character(len=long) :: 'integrator.method=auto'])
     adams = run_case('cases/flores/friction_050.nml', [character(len=long) :: 'integrator.method=adams'])
     call check%that(auto%report%statistics%evaluations < 1.1_dp*adams%report%statistics%evaluations, &
-      'a dry joint costs what Adams costs')
-    call check%that(sum(auto%report%time_with(1, :)) > 0.9_dp*auto%report%figures%time, 'and is given to it')
+      'evaluations of auto in a dry joint')
+    call check%that(sum(auto%report%time_with(1, :)) > 0.9_dp*auto%report%figures%time, 'auto uses Adams in a dry joint')
   end subroutine auto_chooses
 
-  !> A Jacobian from inside the step: with that of its beginning they took 5478 and 3978 evaluations, now 3545 and 2655.
+  !> The Jacobian is that inside the step: with that at the beginning of the step the runs took 5478 and 3978 evaluations, now 3545
+  !> and 2655.
   subroutine films_are_cheap(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: run
@@ -417,7 +419,7 @@ contains
     do i = 1, size(files)
       run = run_case('cases/'//trim(files(i))//'.nml', [character(len=long) :: 'integrator.method=radau', spans(i), &
         'integrator.relative_tolerance=1e-6'])
-      call check%that(run%report%statistics%evaluations <= most(i), trim(files(i))//': Newton''s method takes few iterations')
+      call check%that(run%report%statistics%evaluations <= most(i), trim(files(i))//': Newton''s method needs few iterations')
     end do
   end subroutine films_are_cheap
 end module test_radau

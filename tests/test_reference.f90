@@ -40,7 +40,7 @@ contains
     call compare_events(check, 'cases/flores/friction_100.nml', 'flores_friction_100', '1e-10', 100, 1e-6_dp)
   end subroutine run_test_reference
 
-  !> Simulation I is bound by the method's stability; the integral of the spectral radius of its numerical Jacobian, 8000
+  !> The steps of simulation I are limited by stability; the integral of the spectral radius of its numerical Jacobian, from 8000
   !> points in 80 bits, is 2.14e5.
   subroutine stiffness_is_recognised(check)
     class(checks_t), intent(inout) :: check
@@ -58,7 +58,7 @@ contains
     end do
   end subroutine stiffness_is_recognised
 
-  !> Every state over the whole span of the reference, relative to the largest value that it takes.
+  !> Every state over the whole span of the reference, relative to its largest value.
   subroutine compare_states(check, file, name, tolerance, allowed)
     class(checks_t), intent(inout) :: check
     character(len=*), intent(in) :: file, name, tolerance
@@ -88,11 +88,11 @@ contains
       name//' energy residual')
   end subroutine compare_states
 
-  !> Every column of a reference, relative to the largest value that it takes.
+  !> Every column of a reference, relative to its largest value.
   subroutine compare_columns(check, file, name, in_states, in_others)
     class(checks_t), intent(inout) :: check
     character(len=*), intent(in) :: file, name
-    real(dp), intent(in) :: in_states, in_others   !! allowed
+    real(dp), intent(in) :: in_states, in_others   !! allowed errors
     type(trace_t) :: want, got
     real(dp) :: error, size_of
     character(len=60) :: overrides(4)
@@ -116,7 +116,7 @@ contains
     end do
   end subroutine compare_columns
 
-  !> The first contact instants of the reference, at most `most` of them.
+  !> The first contact times of the reference, at most `most` of them.
   subroutine compare_events(check, file, name, tolerance, most, allowed)
     class(checks_t), intent(inout) :: check
     character(len=*), intent(in) :: file, name, tolerance
@@ -136,6 +136,6 @@ contains
     call check%that(all(got%event(:n)%kind == want%event(:n)%kind), name//' has events of the same kinds')
     call check%that(all(got%event(:n)%pin == want%event(:n)%pin), name//' has events of the same joints')
     call check%close_to(maxval(abs(got%event(:n)%time - want%event(:n)%time)), 0.0_dp, allowed, &
-      name//' contact instants [s]')
+      name//' contact times [s]')
   end subroutine compare_events
 end module test_reference

@@ -1,4 +1,4 @@
-!> The restitution of contact laws: free impacts by the program's integrators, under every law in every geometry, against tables of
+!> The restitution of contact laws: free impacts, integrated by the program, under every law in every geometry, against tables of
 !> an independent implementation (data/contact) and closed forms.
 module test_restitution
   use gudgeon_kinds, only: dp
@@ -44,7 +44,7 @@ contains
     if (allocated(error)) call check%that(.false., 'law '//keys//': '//error%message)
   end subroutine new_law
 
-  !> chi and what comes back, for e from 0.1 to 0.99, whatever the geometry.
+  !> chi and the restitution of an impact, for e from 0.1 to 0.99, in any geometry.
   subroutine restitution_by_the_table(check)
     class(checks_t), intent(inout) :: check
     class(contact_law_t), allocatable :: law
@@ -62,7 +62,7 @@ contains
       read (unit, *, iostat=status) name, e, chi, back, depth, force, duration
       if (status /= 0) exit
       rows = rows + 1
-      if (name == 'carvalho_martins' .and. e < 1/3.0_dp) cycle   ! there the table has the formula all the same
+      if (name == 'carvalho_martins' .and. e < 1/3.0_dp) cycle   ! there the table has the formula nevertheless
       write (loss, '(3a,f5.3)') "law='", trim(name), "' restitution=", e
       do i = 1, size(geometries)
         call new_law(check, trim(loss)//' '//trim(geometries(i)), law)
@@ -114,7 +114,7 @@ contains
     call check%that(rows == 12, 'the table of impacts has twelve rows')
   end subroutine impacts_by_the_table
 
-  !> Law `exact` from a hundredth to next to 1, by the identity of a free impact, where the series of chi takes over too.
+  !> Law `exact` from 0.01 to nearly 1, by the closed form of a free impact; includes the range in which the series of chi is used.
   subroutine exact_gives_back_what_it_says(check)
     class(checks_t), intent(inout) :: check
     class(contact_law_t), allocatable :: law
@@ -134,9 +134,9 @@ contains
     call new_law(check, "law='carvalho_martins' restitution=0.2", law)
     call check%relative(law%damping, 4.8_dp, 1e-14_dp, 'chi of Carvalho and Martins below a third is that of Gonthier')
     call new_law(check, "law='carvalho_martins' restitution=0.33333333333", law)
-    call check%relative(law%damping, 8/3.0_dp, 1e-9_dp, 'chi of Carvalho and Martins where Gonthier takes over')
+    call check%relative(law%damping, 8/3.0_dp, 1e-9_dp, 'chi of Carvalho and Martins at the boundary')
     call new_law(check, "law='carvalho_martins' restitution=0.33333333334", law)
-    call check%relative(law%damping, 8/3.0_dp, 1e-9_dp, 'chi of Carvalho and Martins above that')
+    call check%relative(law%damping, 8/3.0_dp, 1e-9_dp, 'chi of Carvalho and Martins above the boundary')
   end subroutine exact_gives_back_what_it_says
 
   !> U(delta_max) = m v^2 J, J = 1/chi - ln(1 + chi)/chi^2, in every geometry.
@@ -160,7 +160,7 @@ contains
     end do
   end subroutine energy_at_the_deepest_point
 
-  !> f (1 + a rate): a free impact at v is that of chi = a v, whatever the law and however slow.
+  !> f (1 + a rate): a free impact at v is that of chi = a v, for any law and any speed.
   subroutine dissipation_in_place_of_restitution(check)
     class(checks_t), intent(inout) :: check
     class(contact_law_t), allocatable :: law
@@ -173,8 +173,8 @@ contains
       call check%close_to(impact%restitution, restitution_of(1.25_dp*speeds(i)), 1e-8_dp, 'restitution of a dissipation')
     end do
     call check%relative(law%normal_force(1e-6_dp, -0.4_dp, 0.0_dp), 0.5_dp*law%geometry%elastic_force(1e-6_dp), 1e-15_dp, &
-      'a dissipation knows no impact speed')
-    call check%that(abs(law%normal_force(1e-6_dp, -0.9_dp, 0.0_dp)) <= 0, 'a dissipation does not pull')
+      'the force with a dissipation does not depend on the impact speed')
+    call check%that(abs(law%normal_force(1e-6_dp, -0.9_dp, 0.0_dp)) <= 0, 'the force with a dissipation never pulls')
   end subroutine dissipation_in_place_of_restitution
 
   !> F = max(0, f + c step(delta) rate).
@@ -187,24 +187,24 @@ contains
     call new_law(check, "law='impact' damping=200 full_damping_depth=4e-6 stiffness=1e8 exponent=1", law)
     elastic = 1e8_dp*1e-6_dp
     call check%relative(law%normal_force(1e-6_dp, 0.5_dp, 0.1_dp), elastic + 200*(3/16.0_dp - 2/64.0_dp)*0.5_dp, 1e-14_dp, &
-      'a quarter of the way to full damping')
+      'damping at a quarter of the depth of full damping')
     call check%relative(law%normal_force(4e-6_dp, 0.5_dp, 0.1_dp), 4*elastic + 100, 1e-14_dp, 'full damping')
-    call check%relative(law%normal_force(8e-6_dp, 0.5_dp, 0.1_dp), 8*elastic + 100, 1e-14_dp, 'full damping beyond')
-    call check%that(abs(law%normal_force(4e-6_dp, -3.0_dp, 0.1_dp)) <= 0, 'it does not pull')
-    ! With the damping in full at once and a linear spring: a damped oscillator, released where the force is 0.
+    call check%relative(law%normal_force(8e-6_dp, 0.5_dp, 0.1_dp), 8*elastic + 100, 1e-14_dp, 'full damping beyond its depth')
+    call check%that(abs(law%normal_force(4e-6_dp, -3.0_dp, 0.1_dp)) <= 0, 'the force of law impact never pulls')
+    ! With full damping from the beginning and a linear spring: a damped oscillator, released where the force is 0.
     call new_law(check, "law='impact' damping=400 full_damping_depth=1e-12 stiffness=1e8 exponent=1", law)
     impact = run_impact(law, mass, speed, 1e-4_dp, 'radau', 1e-10_dp)
     call check%close_to(impact%restitution, oscillator(400.0_dp, 1e8_dp), 1e-6_dp, 'a damped oscillator')
     previous = 1
     do i = 1, 5
       impact = run_impact(law, mass*3.0_dp**(2 - i), speed, 1e-4_dp, 'auto', 1e-9_dp)
-      call check%that(impact%restitution > 0 .and. impact%restitution < previous, 'the lighter the mass, the less comes back')
+      call check%that(impact%restitution > 0 .and. impact%restitution < previous, 'restitution decreases with the mass')
       previous = impact%restitution
     end do
 
   contains
 
-    !> exp(-zeta t*) of the damped oscillator whose force has become 0: the mass then flies on.
+    !> exp(-zeta t*) of the damped oscillator at the time at which its force becomes 0; the mass then moves freely.
     real(dp) function oscillator(c, k) result(back)
       real(dp), intent(in) :: c, k
       real(dp) :: decay, w, angle

@@ -60,8 +60,8 @@ contains
     call read_back(folder//'/a.csv', text, status)
     call check%that(status == error_no_entry, 'no file under the final name before it is closed')
     call read_back(folder//'/a.csv.part', text, status)
-    call check%that(status == 0 .and. len(text) > 0, 'rows go out when the buffer is full')
-    call check%that(mod(len(text), 11) == 0, 'only whole rows go out')
+    call check%that(status == 0 .and. len(text) > 0, 'rows are written when the buffer is full')
+    call check%that(mod(len(text), 11) == 0, 'only complete rows are written')
     call file%put(repeat('x', 300000)//n)
     call file%close(error)
     call check%that(.not. allocated(error), 'a result is closed')
@@ -69,7 +69,7 @@ contains
     call check%that(status == 0, 'the file has its final name')
     call check%that(text == repeat('0123456789'//n, 40000)//repeat('x', 300000)//n, 'all rows are there in order')
     call read_back(folder//'/a.csv.part', text, status)
-    call check%that(status == error_no_entry, 'the first name is gone')
+    call check%that(status == error_no_entry, 'the temporary name is removed')
     call file%open(folder//'/a.csv', error)
     call file%put('new'//n)
     call file%close(error)
@@ -79,7 +79,7 @@ contains
     call file%put('newer'//n)
     call file%abandon()
     call read_back(folder//'/a.csv', text, status)
-    call check%equal_text(text, 'new'//n, 'an abandoned file leaves the old one')
+    call check%equal_text(text, 'new'//n, 'an abandoned file does not replace the old one')
     call remove_file(folder//'/a.csv', status)
   end subroutine test_writing
 
@@ -98,24 +98,24 @@ contains
     call file%open(folder//'/full.csv', error)
     call check%that(status == 0 .and. .not. allocated(error), 'a full disk opens')
     call file%put('whole row'//n//'row that does not fit'//n)
-    call check%that(.not. file%has_failed(), 'a full disk goes unseen while rows wait')
+    call check%that(.not. file%has_failed(), 'a full disk is not detected while rows are in the buffer')
     call file%flush()
-    call check%that(file%has_failed(), 'a full disk is seen')
+    call check%that(file%has_failed(), 'a full disk is detected')
     call file%close(error)
     call limit_files(-1, status)
     call expect(check, error, folder//'/full.csv: File too large')
     call read_back(folder//'/full.csv', text, status)
-    call check%equal_text(text, 'whole row'//n, 'whole rows stay')
+    call check%equal_text(text, 'whole row'//n, 'complete rows are kept')
     call remove_file(folder//'/full.csv', status)
-    call check%equal_text(error_text(error_no_space), 'No space left on device', 'words of the system')
+    call check%equal_text(error_text(error_no_space), 'No space left on device', 'error text of the system')
     call make_directory('/dev/null/x', status)
     call check%that(status /= 0, 'no folder under a file')
     call make_directory('/dev/null', status)
     call check%that(status /= 0, 'a file is no folder')
   end subroutine test_failures
 
-  !> What somebody else has put where a file is to be written: links are neither followed nor emptied, and nothing waits for the
-  !> other end of a pipe.
+  !> Links and pipes in the place of a file to be written: links are neither followed nor emptied, and the program does not wait for
+  !> the other end of a pipe.
   subroutine test_planted(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: victim = folder//'/victim', link = folder//'/link', pipe = folder//'/pipe'
@@ -129,47 +129,47 @@ contains
     call file%close(error)
     call execute_command_line('ln -s victim '//link//' && ln -s victim '//folder//'/a.csv.part && mkfifo '//pipe// &
                               ' && ln -s nowhere '//folder//'/lost', exitstat=status)
-    call check%that(status == 0, 'links and a pipe')
+    call check%that(status == 0, 'links and a pipe are made')
     call file%open(folder//'/a.csv', error)
     call file%put('mine'//n)
     call file%close(error)
     call read_back(folder//'/a.csv', text, status)
     call check%equal_text(text, 'mine'//n, 'a link under the temporary name is replaced')
     call open_for_appending(link, descriptor, status)
-    call check%that(status == error_is_link, 'nothing is added through a link: '//error_text(status))
+    call check%that(status == error_is_link, 'a link is not opened to add rows: '//error_text(status))
     call open_to_lock(link, descriptor, status)
-    call check%that(status == error_is_link, 'nothing is locked through a link: '//error_text(status))
+    call check%that(status == error_is_link, 'a link is not locked: '//error_text(status))
     call open_to_lock(folder//'/lost', descriptor, status)
-    call check%that(status == error_is_link, 'nor made: '//error_text(status))
-    call check%that(file_length(folder//'/nowhere') < 0, 'nothing was made')
+    call check%that(status == error_is_link, 'a file is not made through a link: '//error_text(status))
+    call check%that(file_length(folder//'/nowhere') < 0, 'the target of a link was not made')
     call open_for_reading(pipe, descriptor, status)
     call check%that(status == error_not_regular, 'a pipe is not read: '//error_text(status))
     call open_for_appending(pipe, descriptor, status)
-    call check%that(status /= 0, 'and not added to: '//error_text(status))
+    call check%that(status /= 0, 'a pipe is not opened to add rows: '//error_text(status))
     call open_to_lock(pipe, descriptor, status)
-    call check%that(status == error_not_regular, 'and not locked: '//error_text(status))
+    call check%that(status == error_not_regular, 'a pipe is not locked: '//error_text(status))
     call open_for_reading(folder, descriptor, status)
     call check%that(status == error_is_directory, 'a folder is not read: '//error_text(status))
     call open_for_reading(link, descriptor, status)
     call check%that(status == 0, 'reading follows a link')
     if (status == 0) call close_file(descriptor, status)
     call read_back(victim, text, status)
-    call check%equal_text(text, 'kept'//n, 'what the links lead to stays')
+    call check%equal_text(text, 'kept'//n, 'the targets of the links are unchanged')
     call synchronise_folder(victim, status)
-    call check%that(status == 0, 'a folder is brought to the disk: '//error_text(status))
+    call check%that(status == 0, 'a folder is flushed to the disk: '//error_text(status))
     was_there = .false.
     call remove_result(folder//'/none', was_there, status)
-    call check%that(status == 0 .and. .not. was_there, 'nothing to remove')
+    call check%that(status == 0 .and. .not. was_there, 'a file that does not exist need not be removed')
     call remove_result(folder//'/a.csv', was_there, status)
     call check%that(file_length(folder//'/a.csv') < 0, 'a result is removed')
-    call check%that(status == 0 .and. was_there, 'and that is told')
+    call check%that(status == 0 .and. was_there, 'the removal of a result is reported')
     call remove_file(victim, status)
     call remove_file(link, status)
     call remove_file(pipe, status)
     call remove_file(folder//'/lost', status)
   end subroutine test_planted
 
-  !> From here on no file may grow beyond so many bytes; below 0: beyond what was allowed at first.
+  !> From here on no file may be longer than the given number of bytes; below 0: than was allowed at first.
   subroutine limit_files(bytes, status)
     integer, intent(in) :: bytes
     integer, intent(out) :: status
@@ -192,7 +192,7 @@ contains
     call check%that(error%status == status_output, 'status of '//message)
   end subroutine expect
 
-  !> All of a file, or the error number.
+  !> The content of a file, or the error number.
   subroutine read_back(path, text, status)
     character(len=*), intent(in) :: path
     character(len=:), allocatable, intent(out) :: text

@@ -17,7 +17,7 @@ module test_resume
 
   integer, parameter :: long = 60, most_pieces = 5000
 
-  !> Keeps the last state that it was given, and how much it had taken by then.
+  !> Keeps the last state that it was given, and the number of rows at that time.
   type, extends(collecting_sink_t) :: keeping_sink_t
     character(len=:), allocatable :: state
     integer :: rows_then = 0, events_then = 0
@@ -67,7 +67,7 @@ contains
     call split(check, 'cases/flores/ideal.nml', 'revolutions=4', 'adams', 'integrator.max_evaluations_per_revolution=200', .true.)
   end subroutine run_test_resume
 
-  !> One scene: whole, stopped and read back after every step, and after every few.
+  !> One scene: uninterrupted, stopped and continued after every step, and after every few steps.
   subroutine split(check, file, revolutions, method, change, ideal_joint, from_rest)
     class(checks_t), intent(inout) :: check
     character(len=*), intent(in) :: file, revolutions, method, change
@@ -98,14 +98,14 @@ contains
     call check%that(report%status == 'done' .and. pieces == 1, what//report%status)
     do stride = 1, 23, 11
       call run_in_parts(case, ideal, list, stride, parts, other, pieces)
-      call check%that(pieces >= report%statistics%accepted/stride, what//'as many parts as steps')
+      call check%that(pieces >= report%statistics%accepted/stride, what//'one part for each step')
       call check%that(same_rows(whole, parts) .and. same_events(whole, parts) .and. text_of(report) == text_of(other), &
-        what//'a run in parts is not the whole run, bit for bit: some component that outlives a step is missing in the '// &
-        '`exchange` of its type (ode_problem_t, ode_method_t, event_watch_t, observer_t and what extends or is part of them)')
+        what//'a run in parts is not the uninterrupted run, bit for bit: a component that is kept between steps is missing in '// &
+        'the `exchange` of its type (ode_problem_t, ode_method_t, event_watch_t, observer_t and types that extend them)')
     end do
   end subroutine split
 
-  !> Run a case, stopping after every `stride` steps (0: never) to continue with everything made again but the sink.
+  !> Run a case, stopping after every `stride` steps (0: never) and continuing with new objects, except for the sink.
   subroutine run_in_parts(case, ideal, list, stride, kept, report, pieces)
     type(case_t), intent(in) :: case
     logical, intent(in) :: ideal
@@ -147,8 +147,8 @@ contains
     end select
   end subroutine run_in_parts
 
-  !> Fill what the heap has to give with numbers of no meaning: an array that is allocated again but not given back its
-  !> values must not find the old ones in its place.
+  !> Fill free memory of the heap with arbitrary numbers: an array that is allocated again but not restored
+  !> must not have its old values by accident.
   subroutine soil_memory()
     integer, parameter :: blocks = 12, largest = 400
     type :: block_t
@@ -235,9 +235,9 @@ contains
     call exchange_everything()
     call check%that(archive%is_at_end() .and. .not. archive%failed, 'an archive is read to its end')
     call check%that(.not. abs(number - 0.1_dp) > 0 .and. all(wholes == [huge(1), -huge(1)]) .and. whole == -7 .and. truth &
-      .and. long_number == 2_int64**40 .and. all(truths .eqv. [.false., .true.]) .and. text == '', 'and gives back its values')
+      .and. long_number == 2_int64**40 .and. all(truths .eqv. [.false., .true.]) .and. text == '', 'an archive restores its values')
     call check%that(all(transfer(numbers, [0_int64]) == transfer([-0.0_dp, tiny(1.0_dp)/8, huge(1.0_dp)], [0_int64])) &
-      .and. .not. abs(matrix(2, 1) - 2) > 0, 'to the last bit')
+      .and. .not. abs(matrix(2, 1) - 2) > 0, 'an archive restores numbers to the last bit')
 
   contains
 
@@ -270,14 +270,14 @@ contains
     call check%that(archive%failed .and. whole == 5, 'a number of another kind is refused')
     call archive%begin_reading(bytes)
     call archive%exchange(numbers(:2))
-    call check%that(archive%failed, 'and another number of them')
+    call check%that(archive%failed, 'another number of values is refused')
     call archive%begin_reading(bytes(:len(bytes) - 1))
     call archive%exchange(numbers)
-    call check%that(archive%failed, 'and an end too early')
+    call check%that(archive%failed, 'an archive that ends too early is refused')
     call archive%begin_reading(bytes)
     call archive%exchange_text(text)
-    call check%that(archive%failed, 'and numbers for a text')
+    call check%that(archive%failed, 'numbers in place of a text are refused')
     call archive%begin_reading(bytes)
-    call check%that(.not. archive%is_at_end(), 'and what is left over is seen')
+    call check%that(.not. archive%is_at_end(), 'values left over in an archive are detected')
   end subroutine archives_refuse_what_does_not_fit
 end module test_resume

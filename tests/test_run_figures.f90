@@ -34,8 +34,8 @@ contains
     call revolutions_have_their_peaks(check)
   end subroutine run_test_run_figures
 
-  !> Steps are cut by contacts, by bounds of the gas cycle and by the end of the run: the times by method, and those by what
-  !> limited the steps of Adams, sum to the time simulated, which is that of so many revolutions.
+  !> Steps are shortened by contacts, by boundaries of the gas cycle and by the end of the run: the times by method, and those by
+  !> the limit of the Adams steps, add up to the simulated time, which is that of the given number of revolutions.
   subroutine all_time_is_counted_once(check, file, revolutions)
     class(checks_t), intent(inout) :: check
     character(len=*), intent(in) :: file, revolutions
@@ -47,16 +47,17 @@ contains
       call check%that(s%restarts > 0, file//': some steps are cut by events')
       call check%relative(sum(trace%report%time_with), time, rounding, file//': times by method and phase')
       call check%that(sum(trace%report%time_with/time) <= 1 + rounding, file//': their fractions sum to no more than 1')
-      call check%that(all(trace%report%time_with >= 0), file//': and none is negative')
+      call check%that(all(trace%report%time_with >= 0), file//': no time by method is negative')
     end associate
-    if (index(file, 'sim_IV.nml') > 0) return   ! 10^6 steps of Adams
+    if (index(file, 'sim_IV.nml') > 0) return   ! 10^6 Adams steps
     trace = run_case(file, [character(len=long) :: 'integrator.method=adams', 'integrator.revolutions='//revolutions])
     associate (s => trace%report%statistics, time => trace%report%figures%time)
       call check%relative(sum(s%time_limited_by), time, rounding, file//': times by what limited the steps')
     end associate
   end subroutine all_time_is_counted_once
 
-  !> Curves with known peaks: smooth, asymmetric, with a kink, close to an end; found with the required accuracy and few
+  !> Curves with known maxima: smooth, asymmetric, with a kink, near an end; each is found with the required accuracy and few
+  !> evaluations.
   !> evaluations.
   subroutine peaks_of_curves(check)
     class(checks_t), intent(inout) :: check
@@ -78,8 +79,8 @@ contains
         call check%that(t > 0 .and. t < 1, trim(names(i))//': inside')
         call search%take(t, curve(t))
       end do
-      call check%close_to(search%value(1), 2.0_dp, within(i), trim(names(i))//': the peak')
-      call check%that(values <= most(i), trim(names(i))//': few values')
+      call check%close_to(search%value(1), 2.0_dp, within(i), trim(names(i))//': largest value')
+      call check%that(values <= most(i), trim(names(i))//': number of evaluations')
     end do
 
   contains
@@ -90,7 +91,7 @@ contains
       sample = sample_t(t, curve(t), (curve(t + h) - curve(t - h))/(2*h))
     end function sample
 
-    !> All of them have the peak 2.
+    !> All curves have the maximum 2.
     real(dp) function curve(t)
       real(dp), intent(in) :: t
       select case (i)
@@ -110,8 +111,8 @@ contains
     end function curve
   end subroutine peaks_of_curves
 
-  !> A pin that flies freely along the cylinder with the crank held in its dead centre: only the piston's mass takes part, and
-  !> nothing else acts. With the force K delta^1.5 the energy m v^2/2 = 2/5 K delta^2.5 gives the deepest penetration.
+  !> A pin that moves freely along the cylinder, with the crank at rest in its dead centre: only the piston's mass takes part, and
+  !> no other force acts. With the force K delta^1.5 the energy m v^2/2 = 2/5 K delta^2.5 gives the largest penetration.
   subroutine hertz_in_closed_form(check)
     class(checks_t), intent(inout) :: check
     character(len=6) :: speeds(5)
@@ -134,15 +135,15 @@ contains
         ! 1e-4 m of flight, then 2.95 depth/speed of contact
         write (overrides(13)(21:), '(es12.5)') (1.5e-4_dp + 3.2_dp*depth)/abs(speed)
         trace = run_case('cases/flores/dry_0100um.nml', overrides)
-        call check%that(.not. allocated(trace%error), 'a free impact runs')
+        call check%that(.not. allocated(trace%error), 'a run with a free impact')
         if (size(trace%event) < 2) then
-          call check%that(.false., 'a free impact touches and leaves')
+          call check%that(.false., 'a free impact has one contact')
           cycle
         end if
         associate (figures => trace%report%figures, contact => trace%event(2))
           call check%relative(figures%pin(piston_pin)%max_penetration, depth, within, &
             'deepest penetration at '//speeds(i)//methods(k))
-          call check%relative(contact%max_penetration, depth, within, 'that of the contact at '//speeds(i)//methods(k))
+          call check%relative(contact%max_penetration, depth, within, 'penetration of the contact at '//speeds(i)//methods(k))
           call check%relative(-figures%pin(piston_pin)%min_film_thickness, depth, within, &
             'film thickness at '//speeds(i)//methods(k))
           call check%relative(contact%max_normal_force, stiffness*depth*sqrt(depth), 1.5_dp*within, &
@@ -154,8 +155,8 @@ contains
     end do
   end subroutine hertz_in_closed_form
 
-  !> A contact that ends at once, with the crank at 60 degrees: the force of the film decreases from the first instant. Its value
-  !> there is the linear extrapolation of the rows back to that instant.
+  !> A contact that ends at once, with the crank at 60 degrees: the force of the film decreases from its beginning. Its first
+  !> value is the linear extrapolation of the rows to that time.
   subroutine a_film_begins_at_its_highest(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: interval = 1e-9_dp
@@ -166,13 +167,14 @@ contains
       'integrator.end_time=2e-5', 'output.interval=1e-9', 'output.ideal_twin=F'])
     call check%that(size(trace%event) == 2 .and. trace%event(2)%time < interval, 'a contact that ends at once')
     force = hypot(trace%values(column(trace, 'pin_force_x[N]'), 2:3), trace%values(column(trace, 'pin_force_y[N]'), 2:3))
-    call check%that(force(2) > force(3), 'the force of the film falls')
+    call check%that(force(2) > force(3), 'the force of the film decreases')
     first = force(2) + (force(2) - force(3))*(interval - trace%event(2)%time)/interval
-    call check%relative(trace%report%figures%pin(piston_pin)%max_force, first, 1e-9_dp, 'largest force, where the film begins')
+    call check%relative(trace%report%figures%pin(piston_pin)%max_force, first, 1e-9_dp, &
+      'largest force at the beginning of the film')
   end subroutine a_film_begins_at_its_highest
 
-  !> Between the rows too: figures and contacts of a run with next to no rows against close rows of another one with the same
-  !> steps. No row may be higher, and the parabola through the three highest is as high to a `resolution`.
+  !> Figures and contacts include times between rows: those of a run with few rows are compared with close rows of another run with
+  !> the same steps. No row may be larger, and the parabola through the three largest must agree within a `resolution`.
   subroutine no_row_is_above_a_peak(check)
     class(checks_t), intent(inout) :: check
     character(len=30), parameter :: files(11) = [character(len=30) :: 'flores/ideal', 'flores/dry_0500um', 'flores/friction_100', &
@@ -206,7 +208,7 @@ contains
             call check_contacts()
           end do
           call check%that(100*figures%peak_evaluations <= 3*(plain%report%statistics%evaluations + 720) .or. i == 5, &
-            name//': peaks cost less than 3 % of the evaluations')
+            name//': extremes need less than 3 % of the evaluations')
         end associate
       end do
     end do
@@ -219,7 +221,7 @@ contains
       if (column(rows, prefix//'normal_force[N]') == 0) return
       call check%that(size(plain%event) == size(rows%event), name//': the same contacts')
       call check%that(count(plain%event%kind == 1 .and. plain%event%pin == pin) == plain%report%figures%pin(pin)%contacts, &
-        name//prefix//': as many as are counted')
+        name//prefix//': number of contacts')
       do j = 1, min(size(plain%event), size(rows%event))
         associate (t => rows%values(1, :), e => plain%event(j))
           if (e%pin /= pin .or. e%kind /= 2) cycle
@@ -233,7 +235,7 @@ contains
     end subroutine check_contacts
   end subroutine no_row_is_above_a_peak
 
-  !> Size of the force on a pin in each row; on a crank pin with clearance from its contact and its film.
+  !> Magnitude of the force on a pin in each row; for a crank pin with clearance that of its contact and its film.
   function force_in_rows(rows, pin) result(force)
     type(trace_t), intent(in) :: rows
     integer, intent(in) :: pin
@@ -248,7 +250,7 @@ contains
       'crank_pin_film_force_x[N]'), :), rows%values(column(rows, 'crank_pin_film_force_y[N]'), :)))
   end function force_in_rows
 
-  !> The same of each revolution, by the crank angle, of a run without any rows.
+  !> The same for each revolution, by the crank angle, in a run without rows.
   subroutine revolutions_have_their_peaks(check)
     class(checks_t), intent(inout) :: check
     character(len=30), parameter :: files(6) = [character(len=30) :: 'flores/ideal', 'flores/dry_0500um', 'sim_I', &
@@ -280,7 +282,7 @@ contains
       allocate (turned(size(rows%values, 2)))
       turned(:) = (rows%values(2, :) - rows%values(2, 1))/two_pi
       rounding = 1e-12_dp
-      if (case%joint%kind == 'ideal') rounding = 1e-6_dp   ! the measures of an ideal joint make its steps others
+      if (case%joint%kind == 'ideal') rounding = 1e-6_dp   ! the statistics of an ideal joint change its steps
       do k = 1, watch%statistics%cycles
         do pin = 1, n_pins
           if (pin == crank_pin .and. column(rows, 'crank_pin_phase[-]') == 0) cycle
@@ -299,7 +301,7 @@ contains
     end do
   end subroutine revolutions_have_their_peaks
 
-  !> A peak is above all close rows but for rounding, and as high as the parabola through the three highest.
+  !> An extreme is not below any of the close rows, except for rounding, and agrees with the parabola through the three largest.
   subroutine is_peak_of(check, peak, rows, rounding, what)
     class(checks_t), intent(inout) :: check
     real(dp), intent(in) :: peak, rows(:), rounding
@@ -313,7 +315,7 @@ contains
       if (2*rows(i) > rows(i - 1) + rows(i + 1)) &
         top = rows(i) + (rows(i + 1) - rows(i - 1))**2/(8*(2*rows(i) - rows(i - 1) - rows(i + 1)))
     end if
-    call check%that(peak >= rows(i) - rounding*abs(rows(i)), what//': no row is above it')
+    call check%that(peak >= rows(i) - rounding*abs(rows(i)), what//': no row is larger')
     call check%relative(peak, top, resolution, what)
   end subroutine is_peak_of
 end module test_run_figures

@@ -1,4 +1,4 @@
-!> Contact and friction in whole scenes: contact entry by step rejection, sticking, energy, components that a run does not need.
+!> Contact and friction in whole scenes: contact entry by step rejection, sticking, energy, columns and components as needed.
 module test_scenes
   use gudgeon_kinds, only: dp
   use chain_motion, only: piston_pin
@@ -34,7 +34,8 @@ contains
     call event_at_the_end(check)
   end subroutine run_test_scenes
 
-  !> Entry no deeper than allowed, no impact missed, and the instants converge to those of the root with the depth.
+  !> The entry is no deeper than allowed, no impact is missed, and the times converge to those by roots as the allowed depth
+  !> decreases.
   subroutine step_rejection_limits_entry(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: root, coarse, fine
@@ -47,22 +48,22 @@ contains
       'integrator.contact_entry=step_rejection', 'integrator.max_penetration=1e-8'])
     fine = run_case('cases/flores/dry_0100um.nml', [character(len=long) :: common, &
       'integrator.contact_entry=step_rejection', 'integrator.max_penetration=1e-10'])
-    call check%that(size(root%event) >= 20, 'there are contacts')
+    call check%that(size(root%event) >= 20, 'number of contacts')
     call check%that(root%report%figures%pin(piston_pin)%max_entry_penetration < 1e-14_dp, 'a root enters without penetration')
     call check%that(coarse%report%figures%pin(piston_pin)%max_entry_penetration <= 1e-8_dp, 'entry within 1e-8 m')
     call check%that(fine%report%figures%pin(piston_pin)%max_entry_penetration <= 1e-10_dp, 'entry within 1e-10 m')
     call check%that(coarse%report%statistics%rejected_penetration > 0, 'steps were rejected for their depth')
-    call check%that(root%report%statistics%rejected_penetration == 0, 'with roots none is')
+    call check%that(root%report%statistics%rejected_penetration == 0, 'no step is rejected for its depth with roots')
     call check%that(size(coarse%event) == size(root%event) .and. size(fine%event) == size(root%event), &
       'step rejection misses no contact')
     if (size(coarse%event) /= size(root%event) .or. size(fine%event) /= size(root%event)) return
     error(1) = maxval(abs(coarse%event(:10)%time - root%event(:10)%time))
     error(2) = maxval(abs(fine%event(:10)%time - root%event(:10)%time))
-    call check%that(error(1) < 1e-6_dp .and. error(2) < 0.05_dp*error(1), 'instants converge with the depth')
+    call check%that(error(1) < 1e-6_dp .and. error(2) < 0.05_dp*error(1), 'contact times converge with the allowed depth')
   end subroutine step_rejection_limits_entry
 
-  !> Hundreds of steps are rejected, by the error and for their depth; contacts and peaks are those of the accepted ones: every
-  !> accepted step is a row, every contact begins and ends once, and peaks are those of rows so close that none is missed.
+  !> Hundreds of steps are rejected, by the error and for their depth. Contacts and extremes are those of the accepted steps: every
+  !> accepted step is a row, every contact begins and ends once, and extremes are those of rows so close that none is missed.
   subroutine rejected_steps_are_not_counted(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace, fine
@@ -82,21 +83,21 @@ contains
         if (e(i)%kind == event_contact_begins) begun = begun + 1
       end do
       call check%that(wrong == 0 .and. begun == figures%pin(piston_pin)%contacts, &
-        'contacts begin and end in turn, each counted once')
-      call check%that(s%restarts == size(e), 'one restart an event')
+        'contacts begin and end alternately, each counted once')
+      call check%that(s%restarts == size(e), 'one restart for each event')
       call check%that(size(trace%values, 2) - s%accepted >= 1 .and. size(trace%values, 2) - s%accepted <= 1 + size(e), &
         'a row for every accepted step, none for the others')
       call check%that(figures%evaluations == size(trace%values, 2) + size(e) + figures%peak_evaluations, &
-        'one evaluation serves the row and the figures; each event takes one, and so do peaks')
+        'number of evaluations for rows, figures, events and extremes')
       call check%relative(figures%pin(piston_pin)%max_penetration, maxval(-fine%values(column(fine, 'film_thickness[m]'), :)), &
         1e-6_dp, &
-        'the deepest penetration is that of the accepted steps')
+        'the largest penetration is that of the accepted steps')
       call check%relative(figures%pin(piston_pin)%max_force, maxval(hypot(fine%values(column(fine, 'pin_force_x[N]'), :), &
-        fine%values(column(fine, 'pin_force_y[N]'), :))), 1e-6_dp, 'and so is the largest force')
+        fine%values(column(fine, 'pin_force_y[N]'), :))), 1e-6_dp, 'the largest force is that of the accepted steps')
     end associate
   end subroutine rejected_steps_are_not_counted
 
-  !> Coulomb friction with sticking resolved by events against Ambrosio's ramps as they steepen.
+  !> Coulomb friction with sticking found by events, against Ambrosio's ramps of increasing slope.
   subroutine sticking_is_the_limit_of_ramps(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: coulomb, ramp
@@ -109,20 +110,20 @@ contains
     common = [character(len=long) :: 'integrator.relative_tolerance=1e-9', 'integrator.revolutions=0.5']
     coulomb = run_case('cases/flores/friction_100.nml', [character(len=long) :: common, 'friction.law=coulomb', &
       'friction.v0=0', 'friction.v1=0'])
-    call check%that(.not. allocated(coulomb%error), 'Coulomb friction runs')
+    call check%that(.not. allocated(coulomb%error), 'a run with Coulomb friction')
     do i = 1, 3
       ramp = run_case('cases/flores/friction_100.nml', [character(len=long) :: common, 'friction.v0=0', speeds(i)])
       n = min(size(ramp%event), size(coulomb%event), 10)
-      call check%that(n == 10, 'there are contacts')
+      call check%that(n == 10, 'number of contacts with Coulomb friction')
       error(i) = maxval(abs(ramp%event(:n)%time - coulomb%event(:n)%time))
     end do
     call check%that(error(2) < 0.3_dp*error(1) .and. error(3) < 0.3_dp*error(2), 'ramps converge to Coulomb friction')
     call check%close_to(coulomb%report%figures%max_energy_residual/coulomb%report%figures%max_energy, 0.0_dp, 1e-7_dp, &
-      'energy with Coulomb friction')
+      'energy residual with Coulomb friction')
   end subroutine sticking_is_the_limit_of_ramps
 
-  !> With the friction force of a pin that sticks, the sliding speed does not change along the motion: central differences
-  !> of it along the right-hand side, crank held and free.
+  !> With the friction force of a sticking pin the sliding speed does not change along the motion: central differences
+  !> along the right-hand side, at constant crank speed and with a free crank.
   subroutine sticking_keeps_the_sliding_speed(check)
     class(checks_t), intent(inout) :: check
     type(case_t) :: case
@@ -154,14 +155,14 @@ contains
       call scene%evaluate(t, y, now, inside)
       call scene%evaluate(t + dt, y + dt*f(:scene%n), ahead, inside)
       call scene%evaluate(t - dt, y - dt*f(:scene%n), behind, inside)
-      call check%that(abs(now%joint(1)%friction_force) > 1, 'it takes a force to stick')
+      call check%that(abs(now%joint(1)%friction_force) > 1, 'a sticking pin has a friction force')
       call check%close_to((ahead%relative(1)%sliding_speed - behind%relative(1)%sliding_speed)/(2*dt), 0.0_dp, 1e-2_dp, &
-        'the sliding speed of a pin that sticks does not change [m/s2]')
+        'rate of the sliding speed of a sticking pin [m/s2]')
       deallocate (y, f)
     end do
   end subroutine sticking_keeps_the_sliding_speed
 
-  !> Where a film is not defined an evaluation still gives the crank angle and the position of the pin; also where the rod is too
+  !> Where a film is not defined, an evaluation still gives the crank angle and the position of the pin; also if the rod is too
   !> short.
   subroutine outside_the_pin_is_known(check)
     class(checks_t), intent(inout) :: check
@@ -179,16 +180,17 @@ contains
     call put_pin(scene, y, [3e-5_dp, 4e-5_dp], [0.3_dp, 0.4_dp])
     call scene%evaluate(0.0_dp, y, now, inside)
     call check%that(.not. inside, 'the film is not defined beyond the wall')
-    call check%relative(now%motion%crank_angle, 0.4_dp, 1e-15_dp, 'but the crank angle is')
-    call check%relative(now%relative(1)%penetration, 5e-5_dp - case%joint%clearance, 1e-12_dp, 'and the penetration')
-    call check%relative(now%relative(1)%penetration_rate, 0.5_dp, 1e-12_dp, 'and its rate')
+    call check%relative(now%motion%crank_angle, 0.4_dp, 1e-15_dp, 'the crank angle is known beyond the wall')
+    call check%relative(now%relative(1)%penetration, 5e-5_dp - case%joint%clearance, 1e-12_dp, &
+      'the penetration is known beyond the wall')
+    call check%relative(now%relative(1)%penetration_rate, 0.5_dp, 1e-12_dp, 'the penetration rate is known beyond the wall')
     call put_pin(scene, y, [0.0_dp, -1.0_dp], [0.0_dp, 0.0_dp])
     call scene%evaluate(0.0_dp, y, now, inside)
-    call check%that(.not. inside, 'the rod cannot reach')
-    call check%relative(now%motion%crank_angle, 0.4_dp, 1e-15_dp, 'but the crank angle is known')
+    call check%that(.not. inside, 'the state is not defined if the rod is too short')
+    call check%relative(now%motion%crank_angle, 0.4_dp, 1e-15_dp, 'the crank angle is known if the rod is too short')
   end subroutine outside_the_pin_is_known
 
-  !> Energy residual relative to the peak energy.
+  !> Energy residual relative to the largest energy.
   subroutine energy_is_accounted_for(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -202,7 +204,7 @@ contains
         'energy residual of '//trim(files(i)))
       associate (r => trace%values(column(trace, 'energy_residual[J]'), :))
         call check%that(maxval(abs(r)) <= trace%report%figures%max_energy_residual*(1 + 1e-6_dp) + 1e-9_dp, &
-          'rows show no more than the accepted points')
+          'rows do not exceed the extremes of the steps')
       end associate
     end do
   end subroutine energy_is_accounted_for
@@ -217,14 +219,14 @@ contains
       'integrator.revolutions=1'])
     contact_time = 0
     do i = 1, size(trace%event)
-      call check%that(trace%event(i)%kind == merge(1, 2, mod(i, 2) == 1), 'begins and ends take turns')
-      if (i > 1) call check%that(trace%event(i)%time > trace%event(i - 1)%time, 'and follow in time')
+      call check%that(trace%event(i)%kind == merge(1, 2, mod(i, 2) == 1), 'contacts begin and end alternately')
+      if (i > 1) call check%that(trace%event(i)%time > trace%event(i - 1)%time, 'events are in the order of time')
       if (trace%event(i)%kind == 1) then
-        call check%that(trace%event(i)%normal_speed > 0, 'the pin moves outwards where contact begins')
+        call check%that(trace%event(i)%normal_speed > 0, 'the pin moves outwards at the beginning of a contact')
       else
-        call check%that(trace%event(i)%normal_speed < 0, 'inwards where it ends')
+        call check%that(trace%event(i)%normal_speed < 0, 'the pin moves inwards at the end of a contact')
         call check%relative(trace%event(i)%duration, trace%event(i)%time - trace%event(i - 1)%time, 1e-12_dp, 'duration')
-        call check%that(trace%event(i)%max_penetration > 0 .and. trace%event(i)%max_normal_force > 0, 'peaks of a contact')
+        call check%that(trace%event(i)%max_penetration > 0 .and. trace%event(i)%max_normal_force > 0, 'largest values of a contact')
         contact_time = contact_time + trace%event(i)%duration
       end if
     end do
@@ -234,8 +236,8 @@ contains
     call check%relative(total, contact_time, 1e-9_dp, 'contact time')
     call check%that(trace%report%figures%pin(piston_pin)%max_entry_penetration < 1e-14_dp, 'contact begins at zero penetration')
     associate (f => trace%values(column(trace, 'normal_force[N]'), :), h => trace%values(column(trace, 'film_thickness[m]'), :))
-      call check%that(all(f >= 0), 'the contact never pulls')
-      call check%that(all(f > 0 .eqv. h < -1e-15_dp), 'and presses exactly where there is penetration')
+      call check%that(all(f >= 0), 'the contact force never pulls')
+      call check%that(all(f > 0 .eqv. h < -1e-15_dp), 'there is a contact force exactly where there is penetration')
     end associate
     associate (fx => trace%values(column(trace, 'pin_force_x[N]'), :), &
                ax => trace%values(column(trace, 'piston_acceleration[m/s2]'), :))
@@ -249,9 +251,9 @@ contains
     trace = run_case('cases/flores/dry_0500um.nml', [character(len=long) :: 'integrator.revolutions=0.1', &
       'output.columns=time, phase, crank_angle', 'output.samples_per_revolution=100'])
     call check%that(size(trace%names) == 3 .and. size(trace%values, 2) == 11, 'three columns, eleven rows')
-    call check%that(trace%names(2) == 'crank_angle[rad]', 'in the order of the interface')
+    call check%that(trace%names(2) == 'crank_angle[rad]', 'columns have a fixed order')
     trace = run_case('cases/flores/dry_0500um.nml', [character(len=long) :: 'output.columns=time, cylinder_pressure'])
-    call check%that(allocated(trace%error), 'a column that the scene does not have is refused')
+    call check%that(allocated(trace%error), 'a column that the scene lacks is refused')
     trace = run_case('cases/sim_IV.nml', [character(len=long) :: 'integrator.revolutions=0.02'])
     associate (v => trace%values(column(trace, 'cylinder_volume[m3]'), :))
       call check%that(abs(v(1)*8/(0.07_dp**2*atan(1.0_dp)*0.1016_dp) - 1) < 1e-12_dp .and. v(size(v)) > v(1), &
@@ -269,13 +271,13 @@ contains
     call check%that(allocated(trace%error), 'too many steps end a run')
     if (.not. allocated(trace%error)) return
     call check%that(index(trace%error%message, 'max_steps') > 0 .and. index(trace%error%message, 'crank angle') > 0 &
-      .and. index(trace%error%message, 'phase film') > 0, 'with the reason and the place')
-    call check%that(size(trace%values, 2) > 1 .and. trace%report%statistics%accepted == 1000, 'and keep their rows')
+      .and. index(trace%error%message, 'phase film') > 0, 'the message names the reason, the angle and the phase')
+    call check%that(size(trace%values, 2) > 1 .and. trace%report%statistics%accepted == 1000, 'rows of a run that stops are kept')
     trace = run_case('cases/flores/dry_0100um.nml', [character(len=long) :: 'contact.youngs_modulus=1e6, 1e6'])
-    call check%that(allocated(trace%error), 'a pin that goes through its bearing ends a run')
+    call check%that(allocated(trace%error), 'a pin that leaves its bearing ends a run')
     if (.not. allocated(trace%error)) return
     call check%that(index(trace%error%message, 'left the range of the model') > 0 .and. index(trace%error%message, 'contact') > 0, &
-      'and says that it left the model')
+      'the message says that the state left the model')
     trace = run_case('cases/sim_I.nml', [character(len=long) :: 'integrator.relative_tolerance=1e-16'])
     call check%that(allocated(trace%error), 'a tolerance below rounding is refused')
     call ends_with(check, 'cases/sim_I_oscillating.nml', [character(len=long) :: 'integrator.relative_tolerance=1e-15', &
@@ -285,7 +287,7 @@ contains
     call small_steps_have_causes(check)
   end subroutine failures_name_their_place
 
-  !> A pin pressed deep into its bearing: late in a run the rounding of the time alone moves it by more than a tolerance.
+  !> A pin pressed deep into its bearing: late in a run the rounding of the time alone changes the state by more than a tolerance.
   subroutine small_steps_have_causes(check)
     class(checks_t), intent(inout) :: check
     type(case_t) :: case
@@ -300,8 +302,9 @@ contains
     allocate (y(scene%n))
     y = scene%initial_state()
     call check%equal_text(reason(step_too_small, scene, settings, 1e3_dp, y), &
-      'too stiff: in the smallest representable time step the state changes by more than the tolerance', 'late')
-    call check%equal_text(reason(step_too_small, scene, settings, 1e-6_dp, y), 'the step size became too small', 'early')
+      'too stiff: in the smallest representable time step the state changes by more than the tolerance', 'reason late in the run')
+    call check%equal_text(reason(step_too_small, scene, settings, 1e-6_dp, y), 'the step size became too small', &
+      'reason early in the run')
   end subroutine small_steps_have_causes
 
   !> A run ends with a reason.
@@ -315,13 +318,13 @@ contains
       'reason')
   end subroutine ends_with
 
-  !> The cylinder opens at the very end of the run, but for rounding: no step fits between.
+  !> The cylinder opens at the end of the run within rounding: no step fits between.
   subroutine event_at_the_end(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
     trace = run_case('cases/sim_V.nml', [character(len=long) :: 'initial.crank_angle_deg=180', 'drive.kind=constant_speed', &
       'integrator.revolutions=1', 'integrator.method=radau'])
     call check%that(.not. allocated(trace%error), 'an event at the end of a run is its end')
-    call check%that(size(trace%values, 2) == 721, 'with all rows')
+    call check%that(size(trace%values, 2) == 721, 'a run with an event at its end has all rows')
   end subroutine event_at_the_end
 end module test_scenes

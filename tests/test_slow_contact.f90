@@ -1,4 +1,4 @@
-!> Contacts that begin slowly or exist at the start: the restitution of very slow impacts, a pin at rest on its bearing, the start
+!> Contacts that begin slowly or exist at the start: the restitution of very slow impacts, a pin at rest in its bearing, the start
 !> in contact and exactly at the wall.
 module test_slow_contact
   use gudgeon_kinds, only: dp
@@ -18,7 +18,7 @@ module test_slow_contact
   integer, parameter :: long = 60
   character(len=*), parameter :: dry = 'cases/flores/dry_0100um.nml'
 
-  !> The crank hangs at rest, and the piston rests on the pin.
+  !> The crank hangs at rest, and the pin carries the piston.
   character(len=long), parameter :: hanging(6) = [character(len=long) :: 'initial.crank_angle_deg=180', &
     'initial.crank_speed=0', 'integrator.revolutions=0', 'output.interval=1e-3', 'mechanism.gravity=9.80665', 'drive.kind=free']
 
@@ -34,8 +34,8 @@ contains
     call revolution_has_a_budget(check)
   end subroutine run_test_slow_contact
 
-  !> From 1e-3 to 1e-15 m/s the restitution of a free impact is that of the law's exact solution for chi v/least_impact_speed: never
-  !> above 1, and larger for slower impacts.
+  !> From 1e-3 to 1e-15 m/s the restitution of a free impact is that of the exact solution of the law for chi v/least_impact_speed:
+  !> never above 1, and larger for slower impacts.
   subroutine slow_impacts_lose_less(check)
     class(checks_t), intent(inout) :: check
     class(contact_law_t), allocatable :: law
@@ -51,18 +51,18 @@ contains
       do power = 3, 15
         speed = 10.0_dp**(-power)
         back = speed_given_back(law, 1e9_dp, 1.5_dp, speed, 4000, 40000)
-        call check%that(back > 0 .and. back <= 1 + 1e-9_dp, 'a slow impact gives back no more than it had')
-        call check%that(back >= previous - 1e-7_dp, 'the slower, the more')
+        call check%that(back > 0 .and. back <= 1 + 1e-9_dp, 'restitution of a slow impact is at most 1')
+        call check%that(back >= previous - 1e-7_dp, 'restitution is larger for slower impacts')
         call check%close_to(back, exact_restitution(law%damping*min(1.0_dp, speed/law%least_impact_speed)), 1e-6_dp, &
           'slow free impact')
         previous = back
       end do
-      call check%close_to(previous, 1.0_dp, 1e-6_dp, 'in the end all')
+      call check%close_to(previous, 1.0_dp, 1e-6_dp, 'restitution of the slowest impact')
     end do
   end subroutine slow_impacts_lose_less
 
-  !> Dropped from the centre the pin bounces, settles and carries the piston: K delta^1.5 = m g; with every restitution and
-  !> method, in a number of contacts that does not grow without bound.
+  !> Released in the centre the pin bounces, settles and carries the piston: K delta^1.5 = m g; for every restitution and
+  !> method, with a limited number of contacts.
   subroutine pin_comes_to_rest(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -78,9 +78,10 @@ contains
       if (allocated(trace%error)) cycle
       depth = resting_depth()
       call check%relative(-last(trace, 'film_thickness[m]'), depth, 1e-4_dp, &
-        'the pin rests where the elastic force carries the piston')
-      call check%that(trace%report%figures%pin(piston_pin)%contacts < 60, 'after a number of bounces')
-      call check%that(trace%report%figures%max_energy_residual < 1e-6_dp*trace%report%figures%max_energy, 'and keeps its energy')
+        'penetration of the pin at rest')
+      call check%that(trace%report%figures%pin(piston_pin)%contacts < 60, 'number of bounces')
+      call check%that(trace%report%figures%max_energy_residual < 1e-6_dp*trace%report%figures%max_energy, &
+        'a pin that settles: energy residual')
     end do
   end subroutine pin_comes_to_rest
 
@@ -97,12 +98,12 @@ contains
     last = trace%values(column(trace, name), size(trace%values, 2))
   end function last
 
-  !> Depth at which the elastic force carries the piston of the dry case [m].
+  !> Penetration at which the elastic force carries the piston of the dry case [m].
   real(dp) function resting_depth()
     resting_depth = (0.14_dp*9.80665_dp/hertz_stiffness(0.010_dp, 1e-4_dp, [207e9_dp, 207e9_dp], [0.3_dp, 0.3_dp]))**(2/3.0_dp)
   end function resting_depth
 
-  !> Started at rest with a larger penetration than in equilibrium, the pin remains in contact and reaches the equilibrium.
+  !> A pin that starts at rest with a larger penetration than in equilibrium remains in contact and reaches the equilibrium.
   subroutine start_in_contact(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -111,31 +112,32 @@ contains
     call check%that(.not. allocated(trace%error), 'a start in contact is simulated')
     if (allocated(trace%error)) return
     call check%relative(-first(trace, 'film_thickness[m]'), 1e-7_dp, 1e-6_dp, 'the first row is the start')
-    call check%that(nint(first(trace, 'phase[-]')) == 2, 'in contact')
-    call check%relative(-last(trace, 'film_thickness[m]'), resting_depth(), 1e-4_dp, 'the end is at rest')
-    call check%that(size(trace%event) == 1, 'one contact, which does not end')
+    call check%that(nint(first(trace, 'phase[-]')) == 2, 'phase at a start in contact')
+    call check%relative(-last(trace, 'film_thickness[m]'), resting_depth(), 1e-4_dp, 'penetration at the end is that at rest')
+    call check%that(size(trace%event) == 1, 'a start in contact has one contact, which does not end')
     if (size(trace%event) == 0) return
-    call check%that(trace%event(1)%kind == event_contact_begins .and. trace%event(1)%time <= 0, 'told of at the start')
+    call check%that(trace%event(1)%kind == event_contact_begins .and. trace%event(1)%time <= 0, 'the contact begins at the start')
   end subroutine start_in_contact
 
-  !> Exactly at the clearance and at rest: where gravity presses the pin on it touches, where gravity lifts it off it flies.
+  !> Start exactly at the clearance and at rest: if gravity presses the pin to the wall there is contact, otherwise free flight.
   subroutine start_on_the_wall(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
     trace = run_case(dry, [character(len=long) :: hanging, 'integrator.end_time=0.05', 'initial.eccentricity=1e-4,0'])
-    call check%that(size(trace%event) == 1, 'pressed on, it stays')
-    call check%relative(-last(trace, 'film_thickness[m]'), resting_depth(), 1e-3_dp, 'and rests')
+    call check%that(size(trace%event) == 1, 'a pin pressed to the wall stays there')
+    call check%relative(-last(trace, 'film_thickness[m]'), resting_depth(), 1e-3_dp, 'a pin pressed to the wall comes to rest')
     trace = run_case(dry, [character(len=long) :: hanging, 'integrator.end_time=1e-3', 'initial.eccentricity=-1e-4,0'])
-    call check%that(size(trace%event) == 0, 'lifted off, it flies')
-    call check%relative(last(trace, 'film_thickness[m]'), 0.5_dp*9.80665_dp*1e-6_dp, 1e-3_dp, 'falling freely')
+    call check%that(size(trace%event) == 0, 'a pin that gravity lifts off has no contact')
+    call check%relative(last(trace, 'film_thickness[m]'), 0.5_dp*9.80665_dp*1e-6_dp, 1e-3_dp, &
+      'a pin that gravity lifts off falls freely')
     trace = run_case(dry, [character(len=long) :: hanging, 'integrator.end_time=1e-3', 'initial.eccentricity=0,1e-4', &
       'initial.eccentricity_rate=0,0.1'])
-    call check%that(size(trace%event) >= 1, 'driven on, it touches')
+    call check%that(size(trace%event) >= 1, 'a pin that moves towards the wall has a contact')
     if (size(trace%event) == 0) return
-    call check%relative(trace%event(1)%normal_speed, 0.1_dp, 1e-12_dp, 'with the speed that it was given')
+    call check%relative(trace%event(1)%normal_speed, 0.1_dp, 1e-12_dp, 'impact speed is the initial speed')
   end subroutine start_on_the_wall
 
-  !> Free flight with a start in eccentricity and rate, no gravity: a straight line to the wall.
+  !> Free flight without gravity from an initial eccentricity and rate: a straight line to the wall.
   subroutine start_off_centre(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
@@ -143,23 +145,24 @@ contains
       'initial.eccentricity=3e-5,0', 'initial.eccentricity_rate=0.5,0'])
     call check%that(size(trace%event) > 0, 'the pin reaches the wall')
     if (size(trace%event) == 0) return
-    call check%relative(trace%event(1)%time, 7e-5_dp/0.5_dp, 1e-9_dp, 'when it should')
-    call check%relative(trace%event(1)%normal_speed, 0.5_dp, 1e-9_dp, 'as fast as it was')
+    call check%relative(trace%event(1)%time, 7e-5_dp/0.5_dp, 1e-9_dp, 'time of the contact after free flight')
+    call check%relative(trace%event(1)%normal_speed, 0.5_dp, 1e-9_dp, 'impact speed after free flight')
   end subroutine start_off_centre
 
-  !> A limit of evaluations per revolution stops a run that the limit for the whole run would let continue, and the message gives
+  !> The limit of evaluations per revolution stops a run that the limit for the whole run would allow, and the message names
   !> the place.
   subroutine revolution_has_a_budget(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
     trace = run_case(dry, [character(len=long) :: 'integrator.max_evaluations_per_revolution=1000'])
-    call check%that(allocated(trace%error), 'the run stops')
+    call check%that(allocated(trace%error), 'the limit per revolution stops a run')
     if (allocated(trace%error)) &
-      call check%that(index(trace%error%message, 'limit of evaluations in one revolution reached') == 1, 'by name')
+      call check%that(index(trace%error%message, 'limit of evaluations in one revolution reached') == 1, &
+        'message about the limit per revolution')
     call check%that(trace%report%statistics%evaluations >= 1000 .and. trace%report%statistics%evaluations < 1100, 'soon')
     trace = run_case(dry, [character(len=long) :: 'integrator.max_evaluations_per_revolution=8000', &
       'integrator.revolutions=6'])
-    call check%that(.not. allocated(trace%error), 'a budget that each revolution keeps is no limit')
-    call check%that(trace%report%statistics%evaluations > 8000, 'on the whole')
+    call check%that(.not. allocated(trace%error), 'a run within the limit per revolution is finished')
+    call check%that(trace%report%statistics%evaluations > 8000, 'the run exceeds the limit per revolution as a whole')
   end subroutine revolution_has_a_budget
 end module test_slow_contact

@@ -16,7 +16,7 @@ contains
     call finds_singular_matrices(check)
   end subroutine run_test_small_lu
 
-  !> Every row exchange there can be: permutations of the rows of a matrix that is strong on its diagonal, of each order to 5.
+  !> All possible row exchanges: permutations of the rows of a diagonally dominant matrix, for each order up to 5.
   subroutine solves_random_systems(check)
     class(checks_t), intent(inout) :: check
     integer, parameter :: n = 5
@@ -37,7 +37,7 @@ contains
     do code = 0, 119
       k = code
       order = [(i, i=1, n)]
-      do i = n, 2, -1   ! the permutation of this number, by Fisher and Yates
+      do i = n, 2, -1   ! the permutation with this number, by Fisher and Yates
         j = mod(k, i) + 1
         k = k/i
         order([i, j]) = order([j, i])

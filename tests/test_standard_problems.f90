@@ -1,5 +1,6 @@
-!> Some problems of the standard battery: the error at the end follows the tolerance; runs in threads give identical results;
-!> refused steps change nothing; the interpolant is as accurate as the steps. (The whole battery: scripts/compare_adams.sh.)
+!> Some problems of the standard battery: the error at the end is proportional to the tolerance; runs in threads give identical
+!> results; rejected steps change nothing; the interpolant is as accurate as the steps. (The whole battery:
+!> scripts/compare_adams.sh.)
 module test_standard_problems
   use gudgeon_kinds, only: dp
   use checks, only: checks_t
@@ -12,7 +13,7 @@ module test_standard_problems
   private
   public :: run_test_standard_problems
 
-  !> Like its parent, but two of three steps longer than a thousandth of the span are refused.
+  !> Like its parent, but two of three steps longer than a thousandth of the span are rejected.
   type, extends(standard_problem_t) :: refusing_problem_t
   contains
     procedure :: judge_step => refuse
@@ -28,7 +29,8 @@ contains
     call interpolants(check)
   end subroutine run_test_standard_problems
 
-  !> The end of a problem, integrated in 80 bits (scripts/compare_adams.sh); B5, E2, E3, F1 and F2 agree with DETEST's own.
+  !> The solution at the end of a problem, integrated in 80 bits (scripts/compare_adams.sh); B5, E2, E3, F1 and F2 agree with
+  !> DETEST.
   pure function end_of(name) result(y)
     character(len=*), intent(in) :: name
     real(dp), allocatable :: y(:)
@@ -90,15 +92,15 @@ contains
         call run(problem, y, tolerance, 12, method, status)
         ratio = maxval(abs(y - end_of(chosen(i)))/(1 + abs(y)))/tolerance
         write (label, '(a,i0)') '1e-', j
-        call check%that(status == integration_done, chosen(i)//' is integrated at '//label)
+        call check%that(status == integration_done, chosen(i)//' reaches its end at '//label)
         call check%that(ratio <= 100, chosen(i)//': error within 100 tolerances at '//label)
         log_error(j) = log10(max(ratio*tolerance, 1e-16_dp))
         if (index('A3 B5 E1 E3 F2 F3', chosen(i)) > 0) call check%that(method%statistics%limited_by(limit_stability) <= &
-          0.07_dp*method%statistics%accepted, chosen(i)//' is not taken for stiff at '//label)
+          0.07_dp*method%statistics%accepted, chosen(i)//' is not regarded as stiff at '//label)
         evaluations = evaluations + method%statistics%evaluations
       end do
       mean = sum([((7.5_dp - j)*log_error(j), j=3, 12)])/sum([((7.5_dp - j)**2, j=3, 12)])
-      call check%close_to(mean, 1.0_dp, 0.25_dp, chosen(i)//': the error falls as the tolerance')
+      call check%close_to(mean, 1.0_dp, 0.25_dp, chosen(i)//': the error is proportional to the tolerance')
     end do
     call check%that(evaluations < 65000, 'evaluations of the chosen problems at ten tolerances')
   end subroutine errors_follow_tolerances
@@ -144,12 +146,12 @@ contains
     problem%standard_problem_t = plain
     call run(problem, y, 1e-9_dp, 12, method, status)
     associate (s => method%statistics)
-      call check%that(s%rejected_penetration > s%accepted/4, 'many steps are refused')
-      call check%close_to(maxval(abs(y - end_of('B5'))), 0.0_dp, 1e-7_dp, 'refused steps leave no trace in the solution')
+      call check%that(s%rejected_penetration > s%accepted/4, 'many steps are rejected')
+      call check%close_to(maxval(abs(y - end_of('B5'))), 0.0_dp, 1e-7_dp, 'rejected steps do not change the solution')
       call check%that(sum(s%limited_by) == s%accepted .and. sum(s%order_count) == s%accepted, 'every step is counted once')
       call check%that(s%evaluations == 2 + 2*s%accepted + s%rejected_error + s%rejected_penetration, &
-        'two evaluations an accepted step, one a rejected one, two at the start')
-      call check%close_to(sum(s%time_limited_by), problem%t_end, 1e-12_dp, 'the times by limit sum to the whole')
+        'number of evaluations with rejected steps')
+      call check%close_to(sum(s%time_limited_by), problem%t_end, 1e-12_dp, 'times by limit add up to the whole')
     end associate
   end subroutine refused_steps_leave_no_trace
 
@@ -165,8 +167,8 @@ contains
     if (t - t_old > 1e-3_dp*self%t_end .and. mod(int(1e5_dp*t), 3) > 0) verdict = step_too_deep
   end subroutine refuse
 
-  !> On A3: the error inside the steps is no worse than that at their ends, and the interpolant meets y and f at both
-  !> ends, at several tolerances and orders, also through a start and rejected steps.
+  !> For A3: the error inside the steps is no larger than at their ends, and the interpolant agrees with y and f at both
+  !> ends, at several tolerances and orders, also during the start and after rejected steps.
   subroutine interpolants(check)
     class(checks_t), intent(inout) :: check
     integer, parameter :: orders(4) = [2, 5, 8, 12]
@@ -211,7 +213,7 @@ contains
         write (label, '(a,i0,a,i0)') ' order ', orders(j), ', 1e-', i
         call check%that(inner <= 1.5_dp*outer + 3*tolerance, 'error of the interpolant,'//trim(label))
         call check%close_to(jump, 0.0_dp, 1e-13_dp, 'the interpolant is continuous,'//trim(label))
-        call check%that(kink <= 1, 'its derivative is f at the beginning of the step,'//trim(label))
+        call check%that(kink <= 1, 'derivative of the interpolant at the beginning of the step,'//trim(label))
       end do
     end do
   end subroutine interpolants

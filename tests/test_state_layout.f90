@@ -9,8 +9,8 @@ module test_state_layout
 
 contains
 
-  !> Two owners of positions, one of states, two of quadratures, the last after all else has settled: no two share a component, and
-  !> every component has the scale that its owner gave it.
+  !> Two owners of positions, one of states, two of quadratures, and one quadrature claimed after the layout is complete: no two
+  !> share a component, and every component has the scale that its owner gave it.
   subroutine run_test_state_layout(check)
     class(checks_t), intent(inout) :: check
     type(layout_t) :: layout
@@ -32,9 +32,9 @@ contains
       == [1, 2, 4, 5, 7, 9, 10, 10]), 'positions, their rates, states, quadratures')
     call layout%claim_quadratures(1, 0.0_dp, late)
     call layout%settle(late)
-    call check%that(late%first == 11 .and. late%last == 11 .and. layout%n() == 11, 'one more quadrature comes last')
+    call check%that(late%first == 11 .and. late%last == 11 .and. layout%n() == 11, 'a later quadrature comes last')
     call layout%natural_scales(scale, grows)
-    call check%that(all(nint(scale) == [1, 3, 3, 2, 4, 4, 7, 7, 7, 5, 0]), 'natural sizes')
-    call check%that(all(grows .eqv. [.true., spread(.false., 1, 8), .true., .true.]), 'an angle and quadratures grow')
+    call check%that(all(nint(scale) == [1, 3, 3, 2, 4, 4, 7, 7, 7, 5, 0]), 'scales of the components')
+    call check%that(all(grows .eqv. [.true., spread(.false., 1, 8), .true., .true.]), 'an angle and quadratures grow without bound')
   end subroutine run_test_state_layout
 end module test_state_layout

@@ -1,4 +1,4 @@
-!> First-order states in addition to positions, with all methods.
+!> First-order states in addition to positions, with all integrators.
 module test_states
   use gudgeon_kinds, only: dp
   use checks, only: checks_t
@@ -21,7 +21,7 @@ module test_states
     procedure :: derivatives
   end type maxwell_t
 
-  !> Stops after every step, and keeps the state.
+  !> Stops after every step and stores the state.
   type, extends(silent_observer_t) :: stopper_t
     character(len=:), allocatable :: state
   contains
@@ -99,7 +99,7 @@ contains
     call check%that(problem%n_states() == 1, 'one state is neither position, rate nor quadrature')
   end subroutine states_are_counted
 
-  !> Three methods, three dashpots: of the spring's own time, stiff, and overdamped near the limit; three tolerances.
+  !> Three methods, three tolerances, and three dashpots: with the time scale of the spring, stiff, and nearly critically damped.
   subroutine closed_form(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: tau(3) = [1.0_dp, 1e-3_dp, 0.4_dp]
@@ -120,14 +120,15 @@ contains
           y = [0.0_dp, 1.0_dp, 0.0_dp, 0.0_dp]
           call integrate(problem, method, t, y, t_end, 0, observer, status)
           call check%that(status == integration_done, 'a Maxwell element by '//names(i))
-          call check%that(maxval(abs(y - exact(tau(j), t_end))) < 100*tolerance, 'against its closed form: '//names(i))
-          if (i == 3 .and. j == 2) call check%that(method%statistics%accepted < 400, 'the stiff one takes few steps by auto')
+          call check%that(maxval(abs(y - exact(tau(j), t_end))) < 100*tolerance, 'closed form of a Maxwell element: '//names(i))
+          if (i == 3 .and. j == 2) call check%that(method%statistics%accepted < 400, &
+            'a stiff Maxwell element needs few steps by auto')
         end do
       end do
     end do
   end subroutine closed_form
 
-  !> At a fixed step the error of order k falls by 2^(k+1) with half the step: the formula is extrapolated.
+  !> With fixed steps the error of order k decreases by 2^(k+1) if the step is halved, because of local extrapolation.
   subroutine order_of_adams(check)
     class(checks_t), intent(inout) :: check
     type(adams_t) :: method
@@ -147,11 +148,11 @@ contains
         error(half) = maxval(abs(y - exact(1.0_dp, t_end)))
       end do
       order = log(error(1)/error(2))/log(2.0_dp)
-      call check%that(order > min(k + 1, 3) - 0.3_dp, 'the order of Adams with states')
+      call check%that(order > min(k + 1, 3) - 0.3_dp, 'order of Adams with states')
     end do
   end subroutine order_of_adams
 
-  !> Radau chooses its steps: their number must grow with the power of the tolerance that its order 9 promises, not faster.
+  !> Radau chooses its steps: their number must increase with the tolerance as its order 9 requires, and not faster.
   subroutine order_of_radau(check)
     class(checks_t), intent(inout) :: check
     class(ode_method_t), allocatable :: method
@@ -173,7 +174,7 @@ contains
     call check%that(power < 0.2_dp, 'the steps of Radau with states grow with a tenth to a fifth power of the accuracy')
   end subroutine order_of_radau
 
-  !> Stopped after every step and read back with everything made again: bit for bit the same.
+  !> Stopped after every step and continued with new objects: the results are the same bit for bit.
   subroutine resumed(check)
     class(checks_t), intent(inout) :: check
     class(ode_method_t), allocatable :: method
@@ -202,7 +203,8 @@ contains
           pieces = pieces + 1
         end do
         call check%that(status == integration_done .and. pieces > 5, 'a Maxwell element in pieces: '//names(i))
-        call check%that(all(transfer(y, [0]) == transfer(whole, [0])), 'bit for bit as in one piece: '//names(i))
+        call check%that(all(transfer(y, [0]) == transfer(whole, [0])), &
+          'a Maxwell element in pieces is bit for bit that in one piece: '//names(i))
       end do
     end do
 

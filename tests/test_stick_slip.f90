@@ -17,8 +17,8 @@ module test_stick_slip
 
   real(dp), parameter :: sliding = 0.10_dp, static = 0.15_dp   !! coefficients of friction
   character(len=*), parameter :: bristles = ' bristle_stiffness=1e4 stribeck_speed=1e-3'
-  real(dp), parameter :: bristle_damping = sqrt(1e5_dp)/load   !! [s/m]: a case would refuse it, with damping_speed 0
-  real(dp), parameter :: speed_scale = 0.467423461_dp          !! fastest of Coulomb's friction [m/s]
+  real(dp), parameter :: bristle_damping = sqrt(1e5_dp)/load   !! [s/m], with damping_speed 0; a case would be refused with it
+  real(dp), parameter :: speed_scale = 0.467423461_dp          !! largest speed with Coulomb friction [m/s]
 
 contains
 
@@ -57,8 +57,8 @@ contains
     method%settings%span = 40
   end subroutine prepare
 
-  !> With D = (mu_s - mu_d) N/k and w = sqrt(k/m) the first slip is at mu_s N/(k V), a slip lasts (2/w) (pi - atan(w D/V)), the mass
-  !> then sticks for 2 D/V; a slip dissipates mu_d N times its length.
+  !> With D = (mu_s - mu_d) N/k and w = sqrt(k/m), the first slip begins at mu_s N/(k V), a slip lasts (2/w) (pi - atan(w D/V)), and
+  !> the mass then sticks for 2 D/V; a slip dissipates mu_d N times its length.
   subroutine coulomb_by_its_closed_form(check)
     class(checks_t), intent(inout) :: check
     character(len=5), parameter :: methods(3) = ['adams', 'radau', 'auto ']
@@ -71,7 +71,7 @@ contains
     w = sqrt(spring/mass)
     slip = 2/w*(4*atan(1.0_dp) - atan(w*d/draw_speed))
     stick = 2*d/draw_speed
-    call check%relative(slip, 2.6112592541_dp, 1e-10_dp, 'the slip lasts')
+    call check%relative(slip, 2.6112592541_dp, 1e-10_dp, 'duration of a slip')
     do i = 1, size(methods)
       call prepare("law='coulomb'", trim(methods(i)), 1e-12_dp, belt, method)
       t = 0
@@ -82,19 +82,20 @@ contains
       if (belt%n_changes /= 9) cycle
       do k = 0, 4
         start = static*load/(spring*draw_speed) + k*(slip + stick)
-        call check%close_to(belt%change(2*k + 1), start, 1e-9_dp*start, 'the mass slips by '//methods(i))
-        if (k < 4) call check%close_to(belt%change(2*k + 2), start + slip, 1e-9_dp*start, 'and sticks again by '//methods(i))
+        call check%close_to(belt%change(2*k + 1), start, 1e-9_dp*start, 'time at which the mass slips by '//methods(i))
+        if (k < 4) call check%close_to(belt%change(2*k + 2), start + slip, 1e-9_dp*start, &
+          'time at which the mass sticks again by '//methods(i))
       end do
       call prepare("law='coulomb'", trim(methods(i)), 1e-12_dp, belt, method)
       t = 0
       y = 0
       call integrate(belt, method, t, y, 33.0_dp, 0, observer, status)
-      call check%relative(y(1), 4*(draw_speed*slip + 2*d), 1e-9_dp, 'the way of four slips by '//methods(i))
-      call check%relative(y(3), -sliding*load*y(1), 1e-9_dp, 'and what they dissipate by '//methods(i))
+      call check%relative(y(1), 4*(draw_speed*slip + 2*d), 1e-9_dp, 'length of four slips by '//methods(i))
+      call check%relative(y(3), -sliding*load*y(1), 1e-9_dp, 'dissipation of four slips by '//methods(i))
     end do
   end subroutine coulomb_by_its_closed_form
 
-  !> States every tenth of a second up to 40 s: equal to 1e-6 of their size they have the same periods to 1e-6.
+  !> States every tenth of a second up to 40 s: states that agree within 1e-6 have the same periods within 1e-6.
   subroutine against_the_table(check, keys, name, method_name, allowed)
     class(checks_t), intent(inout) :: check
     character(len=*), intent(in) :: keys, name, method_name
@@ -122,13 +123,13 @@ contains
       if (at(' friction work[J]') > 0) work = max(work, abs(y(belt%n) - table(at(' friction work[J]'), row)))
     end do
     call check%that(status == integration_done .and. row == 402, name//' on the belt by '//method_name)
-    call check%close_to(far, 0.0_dp, allowed*maxval(table(at(' x[m]'), :)), 'where the mass is: '//name//' by '//method_name)
-    call check%close_to(fast, 0.0_dp, allowed*speed_scale, 'how fast it is: '//name//' by '//method_name)
-    call check%close_to(work, 0.0_dp, allowed*4, 'what friction takes: '//name//' by '//method_name)
+    call check%close_to(far, 0.0_dp, allowed*maxval(table(at(' x[m]'), :)), 'position of the mass: '//name//' by '//method_name)
+    call check%close_to(fast, 0.0_dp, allowed*speed_scale, 'speed of the mass: '//name//' by '//method_name)
+    call check%close_to(work, 0.0_dp, allowed*4, 'work of friction: '//name//' by '//method_name)
 
   contains
 
-    !> Column of the law.
+    !> Column of the law in the table.
     integer function at(quantity)
       character(len=*), intent(in) :: quantity
       integer :: i

@@ -40,7 +40,7 @@ contains
     call test_row_file(check)
   end subroutine run_test_study
 
-  !> The first numbers from the state 12345 of all six, and the sum of 10,000, made with whole numbers of any length.
+  !> The first numbers of all six components from the state 12345, and the sum of 10,000, from integer arithmetic of any length.
   subroutine test_random_numbers(check)
     class(checks_t), intent(inout) :: check
     type(random_numbers_t) :: random, other
@@ -67,11 +67,11 @@ contains
       call random%below(3, number)
       covers(number) = .true.
     end do
-    call check%that(differs, 'seeds differ')
+    call check%that(differs, 'seeds give different numbers')
     call check%that(all(covers), 'whole numbers below 3')
   end subroutine test_random_numbers
 
-  !> Points 12345 and 54321 in all dimensions, times 2^16, as scipy.stats.qmc.Sobol gives them.
+  !> Points 12345 and 54321 in all dimensions, times 2^16, from scipy.stats.qmc.Sobol.
   subroutine test_sobol(check)
     class(checks_t), intent(inout) :: check
     integer, parameter :: late(most_dimensions) = [38013, 38699, 48017, 12657, 26599, 37447, 44907, 29445, 62121, 32337, 5347, &
@@ -89,7 +89,7 @@ contains
     end do
   end subroutine test_sobol
 
-  !> A study of this text, and its design; the study must be correct.
+  !> The design of a study with this text; the study must be correct.
   subroutine design_of(text, design)
     character(len=*), intent(in) :: text
     type(study_design_t), intent(out) :: design
@@ -131,7 +131,7 @@ contains
     call remove_study()
   end subroutine test_grid
 
-  !> In every dimension every one of the equal parts has one point; seeds differ and repeat.
+  !> In every dimension each of the equal parts has one point; another seed gives other points, the same seed the same.
   subroutine test_hypercube(check)
     class(checks_t), intent(inout) :: check
     type(study_design_t) :: design, other, same
@@ -157,13 +157,13 @@ contains
       product = product + abs(value_of(design, run, 1) - value_of(other, run, 1))/64
     end do
     call check%that(all(part == 1), 'one run in each part of each range')
-    call check%that(all(listed == 16), 'a list has each value as often')
-    call check%that(.not. apart > 0, 'a seed repeats its runs')
+    call check%that(all(listed == 16), 'each value of a list is used equally often')
+    call check%that(.not. apart > 0, 'the same seed gives the same runs')
     call check%that(product > 0.2_dp, 'another seed gives other runs')
     call remove_study()
   end subroutine test_hypercube
 
-  !> The points as they are without a seed; with one they are shifted, and still one to each part.
+  !> Without a seed the points of the sequence; with a seed they are shifted, and each part still has one point.
   subroutine test_sobol_design(check)
     class(checks_t), intent(inout) :: check
     type(study_design_t) :: design, shifted
@@ -180,7 +180,7 @@ contains
       part(k) = part(k) + 1
     end do
     call check%that(all(part == 1), 'a shifted sequence has one point in each part')
-    call check%that(abs(value_of(shifted, 1, 2) - value_of(design, 1, 2)) > 1e-6_dp, 'it is shifted')
+    call check%that(abs(value_of(shifted, 1, 2) - value_of(design, 1, 2)) > 1e-6_dp, 'a seed shifts the sequence')
     call remove_study()
   end subroutine test_sobol_design
 
@@ -198,7 +198,7 @@ contains
     text = char(239)//char(187)//char(191)//'A.b,'//q//'c.d'//q//cr//n//cr//n//' 1e-5 ,'//q//'2,'//q//q//n//'3'//q// &
       cr//n//',4'
     call parse_table(text, 't.csv', table, error)
-    call check%that(.not. allocated(error), 'mark, CR LF, quotes, an empty line, no end of line')
+    call check%that(.not. allocated(error), 'byte order mark, CR LF, quotes, an empty line, no last end of line')
     if (allocated(error)) return
     call check%that(table%rows == 2, 'rows')
     call check%equal_text(trim(table%keys(1))//' '//trim(table%keys(2)), 'a.b c.d', 'keys')
@@ -206,15 +206,15 @@ contains
     call check%equal_text(trim(table%field(2, 1)), '2,'//q//n//'3', 'a quoted field')
     call check%equal_text(trim(table%field(1, 2)), '', 'an empty field')
     call check%equal_text(trim(table%field(2, 2)), '4', 'the last field')
-    call check%that(all(table%lines(1:2) == [3, 5]), 'lines of the file')
+    call check%that(all(table%lines(1:2) == [3, 5]), 'line numbers of the rows')
     text = "a.b"//n//"'=1+1"//n//q//"'-2,x"//q//n//"'''-a"//n//"'a'"//n//"'"//n//'-1'//n
     call parse_table(text, 't.csv', table, error)
     call check%that(table%rows == 6 .and. .not. allocated(error), 'a table of texts')
-    call check%equal_text(trim(table%field(1, 1)), '=1+1', 'an apostrophe taken away')
-    call check%equal_text(trim(table%field(1, 2)), '-2,x', 'one in quotes')
-    call check%equal_text(trim(table%field(1, 3)), "''-a", 'one of three')
-    call check%equal_text(trim(table%field(1, 4)), "'a'", 'apostrophes that stay')
-    call check%equal_text(trim(table%field(1, 5)), "'", 'an apostrophe alone')
+    call check%equal_text(trim(table%field(1, 1)), '=1+1', 'an apostrophe before a formula is removed')
+    call check%equal_text(trim(table%field(1, 2)), '-2,x', 'an apostrophe in quotes is removed')
+    call check%equal_text(trim(table%field(1, 3)), "''-a", 'one of three apostrophes is removed')
+    call check%equal_text(trim(table%field(1, 4)), "'a'", 'apostrophes that are kept')
+    call check%equal_text(trim(table%field(1, 5)), "'", 'a single apostrophe')
     call check%equal_text(trim(table%field(1, 6)), '-1', 'a number')
     text = 'a.b,c.d'//n
     do i = 1, 1000
@@ -223,7 +223,8 @@ contains
     call parse_table(text, 't.csv', table, error)
     call check%that(table%rows == 1000 .and. table%longest == 20000, 'a table with one long field')
     call check%that(table%field(1, 499) == repeat('x', 10) .and. table%field(2, 500) == repeat('y', 20000) .and. &
-                    table%field(1, 1000) == repeat('x', 30) .and. table%field(2, 1000) == 'y', 'its fields')
+                    table%field(1, 1000) == repeat('x', 30) .and. table%field(2, 1000) == 'y', &
+                      'fields of a table with one long field')
     call refused(check, '', 't.csv: the table is empty; it needs a header of GROUP.KEY and a row for each run')
     call refused(check, 'a.b'//n, 't.csv: the table has a header but no run')
     call refused(check, 'a.b,c.d'//n//'1,2'//n//'3'//n, 't.csv:3: column 1: the header has 2 fields, this row fewer')
@@ -236,7 +237,7 @@ contains
     call refused(check, 'a.b,A.B'//n//'1,2'//n, 't.csv:1: column 2: a.b is given twice')
   end subroutine test_tables
 
-  !> The time for a table of 50,000 rows is no more than 40 times that for one of 5,000, and some tenths of a second.
+  !> The time for a table of 50,000 rows is at most 40 times that for one of 5,000, plus half a second.
   subroutine a_long_table_takes_time_as_its_length(check)
     class(checks_t), intent(inout) :: check
     type(study_table_t) :: table
@@ -251,7 +252,7 @@ contains
       call cpu_time(times(i))
     end do
     call check%that(.not. allocated(error) .and. table%rows == 50000, 'a long table')
-    call check%that(times(2) - times(1) < 40*(times(1) - times(0)) + 0.5_dp, 'takes time as its length')
+    call check%that(times(2) - times(1) < 40*(times(1) - times(0)) + 0.5_dp, 'time for a long table is proportional to its length')
   end subroutine a_long_table_takes_time_as_its_length
 
   subroutine refused(check, text, message)
@@ -290,7 +291,7 @@ contains
     call row%add_text("'a=b'")
     call row%add_text("'")
     call check%equal_text(row%text(:row%used), "'=1+1,'+a,"//q//"'-2,x"//q//",'@a,'"//achar(9)//"a,'''-a,-1.5e-5,'a=b','", &
-      'texts that begin as formulas')
+      'texts that begin like formulas')
   end subroutine test_row_text
 
   !> Rows in any order are sorted by run, incomplete rows and those of excluded runs are removed, and the counts agree.
@@ -304,47 +305,48 @@ contains
     call remove_file(path, ignored)
     call first%prepare(path, header, 3, 6, none)
     call first%take_up(error)
-    call check%that(.not. allocated(error), 'no file is none to take up')
+    call check%that(.not. allocated(error), 'a missing file has no rows to continue')
     call first%begin(error)
-    call check%that(.not. allocated(error), 'rows are begun')
+    call check%that(.not. allocated(error), 'a file of rows is begun')
     call check%equal_text(content(path), header, 'a new file has its header')
     call first%append(6, '6,a,1'//n//'6,b,2'//n)
     call first%append(4, '4,"c,,""",7'//n)
-    call check%equal_text(content(path), header, 'rows wait')
-    call check%that(first%bytes_waiting() == 24, 'how many bytes wait')
+    call check%equal_text(content(path), header, 'rows are kept in memory at first')
+    call check%that(first%bytes_waiting() == 24, 'number of bytes in memory')
     call first%write(error)
     call first%synchronise(error)
     call check%that(.not. allocated(error), 'rows are written')
-    call check%equal_text(content(path), header//'6,a,1'//n//'6,b,2'//n//'4,"c,,""",7'//n, 'rows as they came')
-    call check%that(first%bytes_waiting() == 0, 'none waits')
+    call check%equal_text(content(path), header//'6,a,1'//n//'6,b,2'//n//'4,"c,,""",7'//n, &
+      'rows are in the order in which they came')
+    call check%that(first%bytes_waiting() == 0, 'no bytes are left in memory')
     call first%finish(.false., error)
     call again%prepare(path, header, 3, 6, [3, 2])
     open (newunit=unit, file=path, position='append', access='stream', form='unformatted')
     write (unit) '5,d,5'//n//'3,e'//n//'3,'//achar(0)//',1'//n//achar(0)//achar(0)//n//'3,torn'
     close (unit)
     call again%take_up(error)
-    call check%that(again%has(6) .and. again%has(5) .and. again%has(4) .and. .not. again%has(3), 'what is taken up')
-    call check%that(again%rows(6) == 2 .and. again%rows(5) == 1 .and. again%rows(3) == 0, 'rows of a run')
-    call check%that(again%numbers(1, 4) == 7 .and. again%numbers(2, 4) == 0 .and. again%numbers(1, 6) == 2, 'their numbers')
+    call check%that(again%has(6) .and. again%has(5) .and. again%has(4) .and. .not. again%has(3), 'runs found in an earlier file')
+    call check%that(again%rows(6) == 2 .and. again%rows(5) == 1 .and. again%rows(3) == 0, 'number of rows of a run')
+    call check%that(again%numbers(1, 4) == 7 .and. again%numbers(2, 4) == 0 .and. again%numbers(1, 6) == 2, 'numbers in the rows')
     call again%drop(4)
     call again%begin(error)
-    call check%equal_text(content(path), header//'5,d,5'//n//'6,a,1'//n//'6,b,2'//n, 'what does not fit is gone')
+    call check%equal_text(content(path), header//'5,d,5'//n//'6,a,1'//n//'6,b,2'//n, 'incomplete rows are removed')
     call again%append(4, '4,f,'//n)
     call again%append(3, '3,g,'//n)
     call again%write(error)
     call again%finish(.true., error)
     call check%that(.not. allocated(error), 'rows are finished')
-    call check%equal_text(content(path), header//'3,g,'//n//'4,f,'//n//'5,d,5'//n//'6,a,1'//n//'6,b,2'//n, 'rows in order')
+    call check%equal_text(content(path), header//'3,g,'//n//'4,f,'//n//'5,d,5'//n//'6,a,1'//n//'6,b,2'//n, 'rows are sorted by run')
     call renamed%prepare(path, 'run,x,z'//n, 3, 6, none)
     call renamed%take_up(error)
     call check%that(allocated(error), 'another header is refused')
     call shorter%prepare(path, header, 3, 5, none)
     call shorter%take_up(error)
-    call check%that(allocated(error), 'a run that there is not is refused')
+    call check%that(allocated(error), 'a row of a run that does not exist is refused')
     call remove_file(path, ignored)
   end subroutine test_row_file
 
-  !> All of a file.
+  !> The content of a file.
   function content(path) result(text)
     character(len=*), intent(in) :: path
     character(len=:), allocatable :: text

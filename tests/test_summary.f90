@@ -23,7 +23,7 @@ contains
     call slow_builds_are_told(check)
   end subroutine run_test_summary
 
-  !> As RFC 4180 wants it: marks within a field twice.
+  !> As in RFC 4180, quotes within a field are doubled.
   subroutine a_status_is_one_field(check, status, field)
     class(checks_t), intent(inout) :: check
     character(len=*), intent(in) :: status, field
@@ -34,14 +34,14 @@ contains
     case%output%digits = 10
     table = summary_table(case, report, 0.0_dp, 'abc', 7000000000_int64, 0_int64)
     call check%that(index(table, achar(10)//'status,'//field//','//achar(10)) > 0, 'a status in a table: '//status)
-    call check%equal_text(summary_value(table, 'status'), field, 'and back')
+    call check%equal_text(summary_value(table, 'status'), field, 'a status is read back')
     call check%equal_text(summary_value(table, 'identity'), 'abc', 'the identity of the run')
     call check%equal_text(summary_value(table, 'trace_bytes'), '7000000000', 'the length of the trace')
-    call check%equal_text(summary_value(table, 'events_bytes'), '', 'no length of a file that is not there')
-    call check%equal_text(summary_value('', 'status'), '', 'no table')
+    call check%equal_text(summary_value(table, 'events_bytes'), '', 'no length of a file that does not exist')
+    call check%equal_text(summary_value('', 'status'), '', 'an empty table has no status')
   end subroutine a_status_is_one_field
 
-  !> A tenth of the time in a film with Radau, the rest in contact with Adams; with two joints, both phases.
+  !> A tenth of the time is spent in a film with Radau, the rest in contact with Adams; with two joints, the phases of both.
   subroutine times_by_method_stand_under_their_phases(check)
     class(checks_t), intent(inout) :: check
     type(case_t) :: case
@@ -77,21 +77,22 @@ contains
       table = summary_table(case, report, 0.0_dp, '0', 0_int64, 0_int64)
       call check%that(index(table, achar(10)//row//achar(10)) > 0, 'a time by method: '//row)
       call check%that(index(table(index(table, row) + len(row):), '_time_fraction_with_') == 0 .or. &
-        index(row, 'film_') == 1, 'and no other')
+        index(row, 'film_') == 1, 'no other times by method')
     end subroutine has
   end subroutine times_by_method_stand_under_their_phases
 
-  !> The line about a build for debugging: only after a while, only where the compiler has not optimised.
+  !> The line about a debug build is printed only after some time, and only if the compiler has not optimised.
   subroutine slow_builds_are_told(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: debug = '-g -fcheck=bounds -fbacktrace -J build/-O3/x'
     call check%that(index(build_advice(debug, 2.5_dp), 'scripts/install.sh') > 0, 'a long run of a debug build')
     call check%equal_text(build_advice(debug, 1.9_dp), '', 'a short run of a debug build')
-    call check%that(index(build_advice('-O1 -g', 60.0_dp), 'install.sh') > 0, 'hardly optimised')
+    call check%that(index(build_advice('-O1 -g', 60.0_dp), 'install.sh') > 0, 'a build with little optimisation')
     call check%equal_text(build_advice('-g -O2 -fPIC', 60.0_dp), '', 'an optimised build')
     call check%equal_text(build_advice('-mtune=generic -O3 -funroll-loops', 60.0_dp), '', 'the release build')
-    call check%equal_text(build_advice('-Ofast', 60.0_dp), '', 'faster still')
+    call check%equal_text(build_advice('-Ofast', 60.0_dp), '', 'a build with -Ofast')
     call check%equal_text(integer_text(0)//integer_text(-7)//integer_text(1203), '0-71203', 'whole numbers')
-    call check%equal_text(integer_text(huge(1))//integer_text(-huge(1)), '2147483647-2147483647', 'the largest and the least')
+    call check%equal_text(integer_text(huge(1))//integer_text(-huge(1)), '2147483647-2147483647', &
+      'largest and smallest whole number')
   end subroutine slow_builds_are_told
 end module test_summary

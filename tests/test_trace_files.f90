@@ -81,10 +81,10 @@ contains
       wrong = wrong + count(transfer(back, [0_int64]) /= transfer(values(:, i), [0_int64]))
     end do
     close (unit)
-    call check%that(wrong == 0, 'a trace of 17 digits reads back')
+    call check%that(wrong == 0, 'a trace with 17 digits is read back')
   end subroutine test_exact
 
-  !> A line of a file is this.
+  !> A line of a file is the given one.
   subroutine expect_line(check, name, number, line)
     class(checks_t), intent(inout) :: check
     character(len=*), intent(in) :: name, line

@@ -34,7 +34,7 @@ contains
     call one_of_each_at_either_pin(check)
   end subroutine run_test_two_joints
 
-  !> The scene of a case with its joint at these pins: the same bearing and laws at each.
+  !> The scene of a case with its joint at the given pins, with the same bearing and laws at each.
   subroutine make(file, overrides, places, case, scene)
     character(len=*), intent(in) :: file, overrides(:)
     integer, intent(in) :: places(:)
@@ -79,7 +79,7 @@ contains
     call integrate(scene, method, t, y, t_end, 1000000, watcher, status)
   end subroutine run
 
-  !> Energy less the start's and less the work of the forces, over the energy.
+  !> Energy minus its initial value minus the work of the forces, divided by the energy.
   real(dp) function energy_residual(scene, t, y)
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
@@ -103,14 +103,14 @@ contains
       'mechanism.crank_com=0.01,-0.006'], [piston_pin, crank_pin], case, scene)
     allocate (y(scene%n))
     call run(case, scene, 'adams', 0.012_dp, y, watcher, status)
-    call check%that(status == integration_done, 'two dry joints run')
-    call check%that(watcher%begun(1) > 4 .and. watcher%begun(2) > 4, 'both pins touch')
-    call check%that(all(abs(watcher%begun - watcher%ended) <= 1), 'contacts begin and end in turn')
-    call check%that(scene%work(y) < -0.1_dp, 'and take energy')
+    call check%that(status == integration_done, 'a run with two dry joints')
+    call check%that(watcher%begun(1) > 4 .and. watcher%begun(2) > 4, 'both pins have contacts')
+    call check%that(all(abs(watcher%begun - watcher%ended) <= 1), 'contacts begin and end alternately')
+    call check%that(scene%work(y) < -0.1_dp, 'two dry joints dissipate energy')
     call check%close_to(energy_residual(scene, 0.012_dp, y), 0.0_dp, 1e-11_dp, 'energy residual of two dry joints')
   end subroutine energy_of_two_dry_joints
 
-  !> At the end of a run with two joints: forces at the pins from the bodies' accelerations are those of the laws.
+  !> At the end of a run with two joints, the forces at the pins from the bodies' accelerations are those of the laws.
   subroutine reactions_are_the_laws_forces(check)
     class(checks_t), intent(inout) :: check
     type(case_t) :: case
@@ -132,7 +132,8 @@ contains
       end associate
     end do
     call scene%evaluate(1e-3_dp, y, now, inside)
-    call check%that(inside .and. now%joint(1)%normal_force > 10 .and. now%joint(2)%normal_force > 10, 'both pins press')
+    call check%that(inside .and. now%joint(1)%normal_force > 10 .and. now%joint(2)%normal_force > 10, &
+      'both pins have a normal force')
     r = scene%chain%reactions(now%motion, now%accelerations, now%loads)
     call check%close_to(maxval(abs(r%pin + now%joint(1)%contact))/norm2(r%pin), 0.0_dp, 1e-10_dp, 'F5, F6 with two joints')
     call check%close_to(maxval(abs(r%crankpin + now%joint(2)%contact))/norm2(r%crankpin), 0.0_dp, 1e-10_dp, &
@@ -141,11 +142,11 @@ contains
       call check%relative(j%power, dot_product(j%contact, m%eccentricity_rate) + j%moment*now%motion%crank_speed &
         - bearing_moment(m%eccentricity, j%contact, j%moment)*now%motion%rod_speed, 1e-14_dp, 'power of the crank pin')
       call check%relative(j%power, j%friction_force*m%sliding_speed - j%normal_force*m%penetration_rate, 1e-12_dp, &
-        'which is that of friction and of the contact')
+        'power of friction and contact at the crank pin')
     end associate
   end subroutine reactions_are_the_laws_forces
 
-  !> Adams and Radau, whose Jacobian is by differences here.
+  !> Adams, and Radau, whose Jacobian is computed by finite differences here.
   subroutine methods_agree(check)
     class(checks_t), intent(inout) :: check
     type(case_t) :: case
@@ -158,7 +159,7 @@ contains
       [piston_pin, crank_pin], case, scene)
     allocate (one(scene%n), other(scene%n), automatic(scene%n))
     call run(case, scene, 'adams', t_end, one, watcher, status(1))
-    call check%that(minval(watcher%begun) > 0, 'both pins have touched')
+    call check%that(minval(watcher%begun) > 0, 'both pins have contacts')
     call make('cases/flores/friction_050.nml', [character(len=long) :: 'integrator.relative_tolerance=1e-10'], &
       [piston_pin, crank_pin], case, scene)
     call run(case, scene, 'radau', t_end, other, watcher, status(2))
@@ -171,7 +172,7 @@ contains
       'eccentricities, auto and Adams')
   end subroutine methods_agree
 
-  !> With set-valued friction that holds both pins, neither sliding speed changes along the motion; crank free and held.
+  !> If set-valued friction holds both pins, neither sliding speed changes along the motion; with free crank and constant speed.
   subroutine both_surfaces_stick(check)
     class(checks_t), intent(inout) :: check
     type(case_t) :: case
@@ -203,17 +204,17 @@ contains
       call scene%evaluate(1e-3_dp + dt, y + dt*f, ahead, inside)
       call scene%evaluate(1e-3_dp - dt, y - dt*f, behind, inside)
       worst = maxval(abs(ahead%relative%sliding_speed - behind%relative%sliding_speed))/(2*dt)
-      call check%that(minval(abs(now%joint%friction_force)) > 1, 'it takes forces to hold both pins')
+      call check%that(minval(abs(now%joint%friction_force)) > 1, 'both sticking pins have friction forces')
       call check%close_to(worst, 0.0_dp, 1e-2_dp, 'both pins stick: change of the sliding speeds [m/s2]')
       call check%relative(f(scene%work_at), now%power, 1e-14_dp, 'the power is that of the evaluation')
       call check%relative(now%power, sum(now%joint%power) + now%crank_moment*now%motion%crank_speed, 1e-12_dp, &
-        'power of held pins and of the drive')
+        'power of sticking pins and of the drive')
       deallocate (f)
     end do
   end subroutine both_surfaces_stick
 
-  !> Crank at rest along the cylinder, rod thrown along it: both pins reach their walls at the same instant, and neither contact is
-  !> lost, nor its end.
+  !> The crank is at rest along the cylinder and the rod moves along it: both pins reach their walls at the same time, and neither
+  !> contact nor its end is lost.
   subroutine both_touch_at_once(check)
     class(checks_t), intent(inout) :: check
     type(case_t) :: case
@@ -229,12 +230,12 @@ contains
       scene%joints(2)%start_rate = [-0.5_dp, 0.0_dp]
       allocate (y(scene%n))
       call run(case, scene, trim(methods(i)), 4e-4_dp, y, watcher, status)
-      call check%that(status == integration_done, 'both at once: '//methods(i))
-      call check%that(all(watcher%begun >= 1), 'both contacts are seen')
-      call check%that(all(watcher%begun == watcher%ended), 'and both ends')
-      call check%close_to(watcher%first_begin(1), watcher%first_begin(2), 1e-14_dp, 'at one instant [s]')
-      call check%relative(watcher%first_begin(1), case%joint%clearance/0.5_dp, 1e-9_dp, 'when the gap is crossed')
-      call check%close_to(energy_residual(scene, 4e-4_dp, y), 0.0_dp, 1e-8_dp, 'both at once: energy')
+      call check%that(status == integration_done, 'contacts at both pins at once: '//methods(i))
+      call check%that(all(watcher%begun >= 1), 'both contacts are found')
+      call check%that(all(watcher%begun == watcher%ended), 'the ends of both contacts are found')
+      call check%close_to(watcher%first_begin(1), watcher%first_begin(2), 1e-14_dp, 'both contacts begin at the same time [s]')
+      call check%relative(watcher%first_begin(1), case%joint%clearance/0.5_dp, 1e-9_dp, 'time of both contacts')
+      call check%close_to(energy_residual(scene, 4e-4_dp, y), 0.0_dp, 1e-8_dp, 'contacts at both pins at once: energy residual')
       deallocate (y)
     end do
   end subroutine both_touch_at_once
@@ -252,7 +253,7 @@ contains
       'integrator.relative_tolerance=1e-11', 'mechanism.rod_com=0.05,0.004'], [crank_pin], case, scene)
     allocate (y(scene%n))
     call run(case, scene, 'adams', 0.012_dp, y, watcher, status)
-    call check%that(status == integration_done .and. watcher%begun(1) > 4, 'clearance at the crank pin alone')
-    call check%close_to(energy_residual(scene, 0.012_dp, y), 0.0_dp, 1e-11_dp, 'its energy residual')
+    call check%that(status == integration_done .and. watcher%begun(1) > 4, 'clearance at the crank pin only')
+    call check%close_to(energy_residual(scene, 0.012_dp, y), 0.0_dp, 1e-11_dp, 'clearance at the crank pin only: energy residual')
   end subroutine one_of_each_at_either_pin
 end module test_two_joints
