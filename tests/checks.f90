@@ -36,6 +36,7 @@ module checks
     procedure :: close_to      !! |got - want| <= tolerance
     procedure :: relative      !! |got - want| <= tolerance*|want|
     procedure :: equal_text    !! two texts are the same
+    procedure :: begins_with
     procedure, private :: take
     procedure, private :: find
     procedure, private :: make_room
@@ -103,6 +104,13 @@ contains
     character(len=*), intent(in) :: got, want, name
     call self%take(got == want .and. len(got) == len(want), name, ': got "'//got//'", want "'//want//'"')
   end subroutine equal_text
+
+  !> Text that begins with another, such as a list of names that may become longer.
+  subroutine begins_with(self, got, want, name)
+    class(checks_t), intent(inout) :: self
+    character(len=*), intent(in) :: got, want, name
+    call self%take(index(got, want) == 1, name, ': got "'//got//'", want "'//want//'..."')
+  end subroutine begins_with
 
   !> Count the assertion `name` once, with what was found.
   subroutine take(self, condition, name, found)

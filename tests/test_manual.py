@@ -134,14 +134,20 @@ def code_after(text: str, words: str) -> str:
     return "\n".join(lines).strip() + "\n"
 
 
+def run_in(folder: Path, command: str) -> subprocess.CompletedProcess:
+    return subprocess.run(command, shell=True, cwd=folder, capture_output=True, text=True)
+
+
 def check_law() -> None:
-    """The law of the page "Adding a law" is added to a copy of the sources, as the page says, built and run."""
+    """The law of the page "Adding a law" is added to a copy of the sources, as the page says, built, run and tested. A law with the wrong
+    sign is found by that test."""
     page = (ROOT / "data/manual/adding_a_law.md").read_text(encoding="utf-8")
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder)
-        for name in ("src", "cases", "fpm.toml", "fpm.rsp", "tests"):
+        for name in ("src", "cases", "data", "fpm.toml", "fpm.rsp", "tests", "scripts"):
             (shutil.copytree if (ROOT / name).is_dir() else shutil.copy)(ROOT / name, copy / name)
-        (copy / "src/friction/linear_ramp.f90").write_text(code_after(page, "**1. "), encoding="utf-8")
+        law = copy / "src/friction/linear_ramp.f90"
+        law.write_text(code_after(page, "**1. "), encoding="utf-8")
         use, _, line = code_after(page, "**2. ").partition("...")
         registry = copy / "src/friction/friction_law_list.f90"
         text = registry.read_text(encoding="utf-8")
@@ -149,9 +155,23 @@ def check_law() -> None:
         text = text.replace("    call list%law(elasto_plastic_t())\n", f"    call list%law(elasto_plastic_t())\n    {line.strip()}\n", 1)
         registry.write_text(text, encoding="utf-8")
         for command in code_after(page, "**3. ").splitlines():
-            done = subprocess.run(command, shell=True, cwd=copy, capture_output=True, text=True)
+            done = run_in(copy, command)
             check(done.returncode == 0, f"adding a law: {command}", (done.stdout + done.stderr)[-800:])
             check("linear_ramp" in done.stdout or "done" in done.stdout, f"adding a law, output of: {command}", done.stdout[-300:])
+        suite = copy / "tests/test_friction.f90"
+        text = suite.read_text(encoding="utf-8")
+        text = text.replace("  end subroutine run_test_friction\n", f"    {code_after(page, 'and call it in').strip()}\n  end subroutine run_test_friction\n")
+        text = text.replace("end module test_friction", code_after(page, "Put this procedure into") + "end module test_friction")
+        suite.write_text(text, encoding="utf-8")
+        command = code_after(page, "Then run this suite alone").strip()
+        done = run_in(copy, command)
+        check(done.returncode == 0 and re.search(r"^\d+ passed, 0 failed$", done.stdout, re.MULTILINE), f"adding a law: {command}",
+              (done.stdout + done.stderr)[-800:])
+        text = law.read_text(encoding="utf-8")
+        law.write_text(text.replace("ratio = -self%coefficient", "ratio = self%coefficient"), encoding="utf-8")
+        done = run_in(copy, command)
+        check(done.returncode != 0 and "linear_ramp: friction opposes sliding" in done.stdout, "adding a law: its test finds a wrong sign",
+              (done.stdout + done.stderr)[-800:])
 
 
 def main() -> int:

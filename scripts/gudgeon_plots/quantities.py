@@ -79,7 +79,7 @@ def penetration(axis: Axes, run: Run, _colour: str) -> None:
     axis.set_ylim(bottom=0)
     if start_is_cut(run, depth):
         axis.set_ylim(0, 1.06 * depth[after_start(run)].max())
-        axis.set_title(f"start to {depth.max():.3g} cut off", color=GREY)
+        axis.set_title(f"start to {max(depth.max(), -least_film_thickness(run)):.3g} cut off", color=GREY)
     mark_abscissa(axis, run)
 
 
@@ -87,9 +87,14 @@ def touches(run: Run) -> bool:
     return bool((run["film_thickness"] < 0).any())
 
 
+def least_film_thickness(run: Run) -> float:
+    """The run's smallest film thickness [um], of all steps if the summary has it."""
+    return 1e6 * float(run.summary.get("min_film_thickness", (run["film_thickness"].min(), ""))[0])
+
+
 def least_film(run: Run) -> str:
-    """The run's smallest film thickness or largest penetration, from the summary (over all steps) if it is there."""
-    least = 1e6 * float(run.summary.get("min_film_thickness", (run["film_thickness"].min(), ""))[0])
+    """The run's smallest film thickness or largest penetration."""
+    least = least_film_thickness(run)
     return f"smallest film thickness {least:.3g} µm" if least >= 0 else f"deepest penetration {-least:.3g} µm"
 
 
@@ -209,7 +214,7 @@ QUANTITIES: dict[str, Quantity] = {
     "piston_velocity": series("piston velocity\n[m/s]", column("piston_velocity")),
     "piston_acceleration": series("piston acceleration\n[10³ m/s²]", column("piston_acceleration", 1e-3)),
     "crank_moment": series("crank moment\n[N m]", column("crank_moment")),
-    "pin_force": series("pin reaction\n[kN]", pin_force, contact_peaks),
+    "pin_force": series("pin force\n[kN]", pin_force, contact_peaks),
     "film_thickness": Quantity(
         "film thickness [µm]",
         None,

@@ -65,7 +65,7 @@ MOTION = (
 #: Plots over time: column, title, unit shown, factor; with the curve of the ideal joint if there is such a run.
 OVER_TIME = (
     ("film_thickness", "Film thickness (below 0: penetration)", "µm", 1e6),
-    ("pin_force", "Pin reaction", "kN", 1e-3),
+    ("pin_force", "Pin force", "kN", 1e-3),
     ("normal_force", "Contact force", "kN", 1e-3),
     ("crank_pin_film_thickness", "Crank pin: film thickness (below 0: penetration)", "µm", 1e6),
     ("crank_pin_normal_force", "Crank pin: contact force", "kN", 1e-3),
@@ -480,7 +480,7 @@ def time_line(columns: dict[str, np.ndarray], run: Run) -> dict:
     largest = max(float(columns["pin_force"].max()), of_summary("max_pin_force", 0.0))
     return {
         "column": "pin_force",
-        "title": "pin reaction",
+        "title": "pin force",
         "unit": "kN",
         "factor": 1e-3,
         "range": [0.0, largest],

@@ -21,13 +21,15 @@ SHOWN_OSCILLATIONS = 12
 
 @dataclass(frozen=True)
 class Envelope:
-    """Smallest, largest and mean value of a curve in stretches of the abscissa of equal length, and how often it turns in each."""
+    """Smallest, largest and mean value of a curve in stretches of the abscissa of equal length, how often it turns in each, and its
+    ripple: its range about the line through the means, which is small for a steep curve that does not ring."""
 
     x: np.ndarray
     low: np.ndarray
     high: np.ndarray
     mean: np.ndarray
     turns: np.ndarray
+    ripple: np.ndarray
 
     @property
     def rings(self) -> np.ndarray:
@@ -35,23 +37,31 @@ class Envelope:
         span = np.nanmax(self.high) - np.nanmin(self.low)
         # a far peak elsewhere must not hide ringing, so the median width of a stretch is used as well
         usual = np.nanmedian(self.high) - np.nanmedian(self.low)
-        return (self.turns >= LEAST_TURNS) & (self.high - self.low > LEAST_SHARE * min(span, 10 * max(usual, span / 10)))
+        return (self.turns >= LEAST_TURNS) & (self.ripple > LEAST_SHARE * min(span, 10 * max(usual, span / 10)))
 
 
 def envelope(x: np.ndarray, y: np.ndarray, stretches: int = STRETCHES) -> Envelope:
     """The mean is over x, by the trapezoidal rule, so that a stretch with many close rows has no more weight than others."""
     bounds = np.linspace(x[0], x[-1], stretches + 1)
     place = np.clip(np.searchsorted(bounds, x, side="right") - 1, 0, stretches - 1)
-    low, high = np.full(stretches, np.inf), np.full(stretches, -np.inf)
-    np.minimum.at(low, place, y)
-    np.maximum.at(high, place, y)
+    low, high = range_of(place, y, stretches)
     area = np.concatenate([[0.0], np.cumsum(0.5 * (y[1:] + y[:-1]) * np.diff(x))])
     mean = np.diff(np.interp(bounds, x, area)) / np.diff(bounds)
     turn = np.flatnonzero(np.diff(np.sign(np.diff(y))) != 0) + 1
     turns = np.bincount(place[turn], minlength=stretches)
     empty = ~np.isfinite(low)
     low[empty], high[empty] = mean[empty], mean[empty]
-    return Envelope(0.5 * (bounds[1:] + bounds[:-1]), low, high, mean, turns)
+    middle = 0.5 * (bounds[1:] + bounds[:-1])
+    below, above = range_of(place, y - np.interp(x, middle, mean), stretches)
+    return Envelope(middle, low, high, mean, turns, np.where(empty, 0.0, above - below))
+
+
+def range_of(place: np.ndarray, y: np.ndarray, stretches: int) -> tuple[np.ndarray, np.ndarray]:
+    """Least and largest value in each stretch, infinite where it has none; `place` has the stretch of each value."""
+    low, high = np.full(stretches, np.inf), np.full(stretches, -np.inf)
+    np.minimum.at(low, place, y)
+    np.maximum.at(high, place, y)
+    return low, high
 
 
 def rings(x: np.ndarray, y: np.ndarray) -> bool:
@@ -73,9 +83,9 @@ def zoom_window(x: np.ndarray, y: np.ndarray, reference: np.ndarray, after: floa
     after."""
     found = envelope(x, y)
     later = found.x > after
-    width = np.where(later & found.rings, found.high - found.low, 0.0)
+    width = np.where(later & found.rings, found.ripple, 0.0)
     if not width.any():
-        width = np.where(later, found.high - found.low, 0.0)
+        width = np.where(later, found.ripple, 0.0)
     middle = found.x[int(np.argmax(width))]
     step = found.x[1] - found.x[0]
     near = (x > middle - 2 * step) & (x < middle + 2 * step)
