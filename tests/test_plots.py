@@ -103,7 +103,7 @@ TITLES = {
     "piston_velocity": "piston velocity",
     "piston_acceleration": "piston acceleration",
     "crank_moment": "crank moment",
-    "pin_force": "pin reaction",
+    "pin_force": "pin force",
     "film_thickness": "minimum film thickness",
     "pin_orbit": "pin orbit",
     "portrait": "Poincaré map",

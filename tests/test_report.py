@@ -148,6 +148,11 @@ def check_page(browser: Browser, page: Path, checks: Assertions, pictures: Path 
         ".some(p => (p.getAttribute('d') || '').length > 20)).map(c => c.div.layout.title.text)"
     )
     checks.check(not empty, f"{name}: plots without a curve: {empty}")
+    covered = browser.run(
+        "return gudgeon.charts.filter(c => { const box = s => c.div.querySelector(s).getBoundingClientRect();"
+        " return box('.gtitle').right > box('.modebar-group').left; }).map(c => c.div.layout.title.text)"
+    )
+    checks.check(not covered, f"{name}: titles that the tool bar covers: {covered}")
 
     checks.check(
         browser.run("return Math.abs(gudgeon.now - gudgeon.scene.start) < 1e-9"), f"{name}: opens at the time of the largest pin force"

@@ -197,7 +197,7 @@ def section(axis: Axes, run: Run, ideal: Run | None, colour: str) -> None:
     axis.margins(0.12)
     axis.set_xlim(widened(axis.get_xlim(), LEAST_SHARE * np.ptp(run["piston_velocity"])))
     axis.set_ylim(widened(axis.get_ylim(), 1e-3 * LEAST_SHARE * np.ptp(run["piston_acceleration"])))
-    axis.xaxis.set_major_locator(MaxNLocator(3))
+    axis.xaxis.set_major_locator(MaxNLocator(2, steps=[1, 2, 5, 10]))
     axis.yaxis.set_major_locator(MaxNLocator(5))
 
 

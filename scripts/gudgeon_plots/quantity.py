@@ -9,7 +9,7 @@ from matplotlib.ticker import MaxNLocator
 
 from .certified import shade_uncertified
 from .results import Run
-from .ringing import draw_envelope, rings, zoom_window
+from .ringing import RINGING_SHARE, draw_envelope, rings, zoom_window
 from .style import BLACK, BLUE, GREY, VERMILION
 
 #: From this ratio of the run's range to that of the ideal joint on, the figure also has a detail of the smaller range.
@@ -18,6 +18,8 @@ FAR_LARGER = 3.0
 #: Share of a run during which a pin that is released in the centre falls onto its bearing or film.
 STARTING_SHARE = 0.02
 
+#: A curve of two revolutions at constant speed is drawn as its range if more than this share of its stretches ring.
+MOST_OF_THE_TIME = 0.5
 
 #: The start is cut off if the rest of the run covers less than this share of the whole range.
 START_CUT = 0.7
@@ -132,9 +134,11 @@ def start_note(values: Callable[[Run], np.ndarray]) -> Callable[[Run], str]:
 
 def is_band(run: Run, y: np.ndarray) -> bool:
     """Whether a curve over time oscillates faster than a picture can show. At constant speed a picture has two revolutions, in
-    which single impacts can be distinguished; the start, which is cut off, is not taken into account."""
+    which single impacts can be distinguished unless the curve rings most of the time; the start, which is cut off, is not taken into
+    account."""
     counted = after_start(run)
-    return not held_speed(run) and rings(abscissa(run)[0][counted], y[counted])
+    share = MOST_OF_THE_TIME if held_speed(run) else RINGING_SHARE
+    return rings(abscissa(run)[0][counted], y[counted], share)
 
 
 def plot_curve(axis: Axes, run: Run, y: np.ndarray, colour: str) -> None:

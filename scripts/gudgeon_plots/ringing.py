@@ -64,11 +64,11 @@ def range_of(place: np.ndarray, y: np.ndarray, stretches: int) -> tuple[np.ndarr
     return low, high
 
 
-def rings(x: np.ndarray, y: np.ndarray) -> bool:
-    """Whether a picture of the whole curve would show a filled band."""
+def rings(x: np.ndarray, y: np.ndarray, share: float = RINGING_SHARE) -> bool:
+    """Whether a picture of the whole curve would be a filled band: more than a share of its stretches ring."""
     if len(x) < 4 * STRETCHES:
         return False
-    return bool(np.mean(envelope(x, y).rings) > RINGING_SHARE)
+    return bool(np.mean(envelope(x, y).rings) > share)
 
 
 def draw_envelope(axis: Axes, x: np.ndarray, y: np.ndarray, colour: str) -> None:
