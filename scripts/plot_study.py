@@ -105,7 +105,7 @@ def any_study(path: Path, columns: list[str]) -> dict[str, figures.Drawing]:
     stem = path.name.removesuffix(".runs.csv")
     study = path.with_name(f"{stem}.study.nml")
     settings = f90nml.read(study)["study"] if study.exists() else {}
-    title = str(settings.get("title") or stem)
+    title = language.current.keep(str(settings.get("title") or stem))
     if len(parameters) == 1:
         found = {stem: study_pictures.draw_curves(runs, *parameters, columns, title)}
     elif len(parameters) == 2 and study_pictures.is_grid(runs, *parameters):

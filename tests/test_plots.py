@@ -32,6 +32,7 @@ from gudgeon_plots import compare, elastic_pictures, figures, film_pictures, fil
 from gudgeon_plots.figure_map import read_figures  # noqa: E402
 from gudgeon_plots.quantities import QUANTITIES, once_a_cycle  # noqa: E402
 from gudgeon_plots.results import (  # noqa: E402
+    FineResults,
     MissingResult,
     Results,
     Run,
@@ -566,6 +567,25 @@ class Drawing(unittest.TestCase):
         plt.close(drawing)
         with self.assertRaises(MissingResult):
             figures.draw(figure, MadeResults(figure.runs))
+
+    def test_ringing_is_told_from_a_steep_curve(self) -> None:
+        x = np.linspace(0, 100, 20001)
+        steep = 50 * np.sin(2 * np.pi * x / 25)
+        self.assertFalse(ringing.rings(x, steep + 0.01 * np.sin(2 * np.pi * x / 0.2)), "a steep curve with a little noise")
+        self.assertTrue(ringing.rings(x, steep + 20 * np.sin(2 * np.pi * x / 0.2)))
+        self.assertFalse(ringing.rings(x, np.where(x < 30, 20 * np.sin(2 * np.pi * x / 0.2), 0.0), 0.5), "most of the time")
+
+    def test_films_are_drawn_with_a_small_tolerance(self) -> None:
+        """Runs with contact are made again with more rows, runs of a film alone with a smaller tolerance, others are the cases' own."""
+        fine = FineResults(Results(Path("nowhere")))
+        fine.own = MadeResults()
+        fine.own.has = lambda name: True
+        fine.touches = lambda name: "oscillating" in name
+        self.assertTrue(fine.is_made("sim_I") and fine.is_made("sim_I_oscillating"))
+        self.assertFalse(fine.is_made("friction_050"), "neither contact nor film")
+        self.assertIn("integrator.relative_tolerance=1e-09", fine.settings(["sim_I"]))
+        self.assertIn("output.samples_per_revolution=7200", fine.settings(["sim_I_oscillating"]))
+        self.assertFalse(fine.is_made("sim_I.ideal"))
 
     def test_details_show_the_ideal_joint(self) -> None:
         table, results = read_figures(), MadeResults()

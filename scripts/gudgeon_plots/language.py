@@ -28,6 +28,7 @@ class Language:
     def __init__(self, name: str = "en") -> None:
         self.name = name
         self.unknown: set[str] = set()
+        self.names: set[str] = set()
         found = TEXTS if name == "pt" else {}
         self.exact = {text: said for text, said in found.items() if "{}" not in text}
         self.templates = [
@@ -35,6 +36,11 @@ class Language:
             for text, said in sorted(found.items(), key=lambda item: -len(item[0].replace("{}", "")))
             if "{}" in text
         ]
+
+    def keep(self, name: str) -> str:
+        """Take a text as a name that the user gave, which is not translated; the text itself."""
+        self.names.add(name)
+        return name
 
     @property
     def is_english(self) -> bool:
@@ -57,6 +63,8 @@ class Language:
             return figure[1] + self._line(figure[2])
         if text in self.exact:
             return self.exact[text]
+        if text in self.names:
+            return text
         for pattern, said in self.templates:
             if match := pattern.match(text):
                 for part in match.groups():

@@ -2,6 +2,7 @@
 
 import re
 import subprocess
+import sys
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -83,10 +84,11 @@ def plain_unit(unit: str) -> str:
 
 @lru_cache
 def key_units() -> dict[str, str]:
-    """The unit of every key of a case, from the program's template; empty if there is no program."""
+    """The unit of every key of a case, from the program's template; empty, with a line on standard error, if the program cannot be built or run."""
     try:
         text = subprocess.run([release_program(), "--template"], capture_output=True, text=True, check=True).stdout
-    except (MissingResult, OSError, subprocess.CalledProcessError):
+    except (MissingResult, OSError, subprocess.CalledProcessError) as problem:
+        print(f"parameters of studies are drawn without units: {problem}", file=sys.stderr)
         return {}
     units, group = {}, ""
     for line in text.splitlines():

@@ -164,7 +164,7 @@ TEXTS = {
     "contact geometry": "geometria do contato",
     "speed after / before": "velocidade depois / antes",
     "the law, impact alone": "a lei, só o impacto",
-    "{}, its logarithm: {}": "{}, logaritmo: {}",
+    "{}, its logarithm": "{}, logaritmo",
     "smallest film thickness: {}": "menor espessura do filme: {}",
     "time in contact: {}": "tempo em contato: {}",
     "µ*: mean size of the effect": "µ*: tamanho médio do efeito",
@@ -172,7 +172,7 @@ TEXTS = {
     "decades": "décadas",
     "total index": "índice total",
     "first-order index": "índice de primeira ordem",
-    "share of the variance; bars of error: 95 %": "parcela da variância; barras de erro: 95 %",
+    "share of the variance; error bars: 95 %": "parcela da variância; barras de erro: 95 %",
     # the noise of the print
     "{}: crank acceleration": "{}: aceleração da manivela",
     "(q, A, x), error {}": "(q, A, x), erro {}",

@@ -9,7 +9,7 @@ from matplotlib.ticker import MaxNLocator
 
 from .certified import shade_uncertified
 from .results import Run
-from .ringing import RINGING_SHARE, draw_envelope, rings, zoom_window
+from .ringing import draw_envelope, rings, zoom_window
 from .style import BLACK, BLUE, GREY, VERMILION
 
 #: From this ratio of the run's range to that of the ideal joint on, the figure also has a detail of the smaller range.
@@ -18,7 +18,7 @@ FAR_LARGER = 3.0
 #: Share of a run during which a pin that is released in the centre falls onto its bearing or film.
 STARTING_SHARE = 0.02
 
-#: A curve of two revolutions at constant speed is drawn as its range if more than this share of its stretches ring.
+#: A difference at constant speed is drawn as its range if more than this share of its stretches ring.
 MOST_OF_THE_TIME = 0.5
 
 #: The start is cut off if the rest of the run covers less than this share of the whole range.
@@ -90,7 +90,7 @@ class Quantity:
             return
         difference = self.values(run) - np.interp(run["time"], ideal["time"], self.values(ideal))
         axis.axhline(0, color=BLACK, linewidth=0.7)
-        plot_curve(axis, run, difference, colour)
+        plot_curve(axis, run, difference, colour, rings(abscissa(run)[0], difference, MOST_OF_THE_TIME))
         cut = cut_start(axis, run, difference)
         axis.set_title(f"run − ideal joint, at the same time{', start cut off' if cut else ''}", color=GREY)
         mark_abscissa(axis, run)
@@ -134,17 +134,15 @@ def start_note(values: Callable[[Run], np.ndarray]) -> Callable[[Run], str]:
 
 def is_band(run: Run, y: np.ndarray) -> bool:
     """Whether a curve over time oscillates faster than a picture can show. At constant speed a picture has two revolutions, in
-    which single impacts can be distinguished unless the curve rings most of the time; the start, which is cut off, is not taken into
-    account."""
+    which single impacts can be distinguished; the start, which is cut off, is not taken into account."""
     counted = after_start(run)
-    share = MOST_OF_THE_TIME if held_speed(run) else RINGING_SHARE
-    return rings(abscissa(run)[0][counted], y[counted], share)
+    return not held_speed(run) and rings(abscissa(run)[0][counted], y[counted])
 
 
-def plot_curve(axis: Axes, run: Run, y: np.ndarray, colour: str) -> None:
-    """Draw a curve over time or crank angle, or its envelope if it oscillates faster than a picture can show."""
+def plot_curve(axis: Axes, run: Run, y: np.ndarray, colour: str, as_band: bool = False) -> None:
+    """A curve over time or crank angle; its envelope where it oscillates faster than a picture can show."""
     x = abscissa(run)[0]
-    if is_band(run, y):
+    if as_band or is_band(run, y):
         draw_envelope(axis, x, y, colour)
     else:
         axis.plot(x, y, color=colour, label=curve_name(run))

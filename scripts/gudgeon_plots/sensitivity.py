@@ -225,7 +225,7 @@ def output_name(found: Indices) -> str:
 def draw_panel(axis: plt.Axes, found: Indices, parameters: Sequence[Parameter]) -> None:
     """Morris: standard deviation of a parameter's effects over their mean magnitude, one mark for each parameter. Sobol: a light
     bar for its total index, and within it a dark bar for its first-order index."""
-    axis.set_title(f"{output_name(found)}: {'Morris' if found.method == 'morris' else 'Sobol'}")
+    axis.set_title(f"{'Morris' if found.method == 'morris' else 'Sobol'}:\n{output_name(found)}")
     if found.constant:
         text = "no value" if np.isnan(found.mean) else f"{found.mean:.3g} in every run"
         axis.text(0.5, 0.5, text, transform=axis.transAxes, ha="center", va="center", color=GREY)
@@ -271,4 +271,4 @@ def draw_sobol(axis: plt.Axes, found: Indices, names: Sequence[str]) -> None:
     axis.set_ylim(len(names) - 0.4, -0.6)
     axis.grid(axis="y", visible=False)
     axis.axvline(0, color=GREY, linewidth=0.6)
-    axis.set_xlabel("share of the variance; bars of error: 95 %")
+    axis.set_xlabel("share of the variance; error bars: 95 %")
