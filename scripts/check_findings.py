@@ -61,10 +61,15 @@ class Run:
         return float(self.summary[quantity])
 
     def deviation(self, column: str) -> np.ndarray:
-        """|run - ideal| at equal crank angles, over the largest ideal value, without the start of the run."""
+        """|run - ideal| at equal crank angles, over the largest ideal value, without the start of the run, and without rows at which the
+        cylinder opens if the run has the pressure before and the ideal joint that after, or the reverse."""
         run, ideal = self.rows[column], self.ideal[column]
         n = min(len(run), len(ideal))
-        return np.abs(run[:n] - ideal[:n])[int(START * n):] / np.max(np.abs(ideal))
+        found = np.abs(run[:n] - ideal[:n])
+        if "cylinder_pressure" in self.rows:
+            one, other = self.rows["cylinder_pressure"][:n], self.ideal["cylinder_pressure"][:n]
+            found = np.where(np.abs(one - other) < 1e-3 * other, found, 0.0)
+        return found[int(START * n):] / np.max(np.abs(ideal))
 
     def lag(self) -> float:
         """Angle in degrees by which the crank is behind that of the ideal joint at the end of the run."""
