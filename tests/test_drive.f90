@@ -29,6 +29,8 @@ contains
     call ramp_with_play(check, ['crank_pin '], 1)
     call ramp_with_play(check, ['both      '], 2)
     call ramp_with_elastic_rod(check)
+    call ramp_with_crankshaft(check)
+    call loose_joints_on_a_ramp_of_the_shaft(check)
     call run_up_on_a_line(check)
     call slopes_of_a_torque(check)
     call a_flywheel_is_inertia(check)
@@ -151,6 +153,84 @@ contains
       values = trace%values(column(trace, name), :)
     end function values_of
   end subroutine ramp_with_elastic_rod
+
+  !> An inertia I on an elastic shaft whose other end is run up: I q'' = k (q_f - q) + c (q_f' - q'), solved here by the classical
+  !> Runge-Kutta method with the angle of the ramp as a polynomial; the drive moves the flywheel too.
+  subroutine ramp_with_crankshaft(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: inertia = 0.02_dp, flywheel = 0.05_dp, k = 2.0e3_dp, c = 0.5_dp, duration = 0.03_dp, low = 20, high = 120
+    integer, parameter :: steps = 20000
+    character(len=long), parameter :: settings(16) = [character(len=long) :: 'drive.kind=constant_speed', 'drive.ramp_time=0.03', &
+      'drive.ramp_from=20', 'drive.damping=0', 'initial.crank_speed=120', 'initial.crank_angle_deg=0', 'mechanism.rod_mass=0', &
+      'mechanism.rod_inertia=0', 'mechanism.gravity=0', 'mechanism.piston_mass=1e-12', 'mechanism.crank_mass=0', &
+      'mechanism.crank_inertia=0.02', 'crankshaft.flywheel_inertia=0.05', 'crankshaft.torsional_stiffness=2e3', &
+      'crankshaft.torsional_damping=0.5', 'integrator.relative_tolerance=1e-10']
+    character(len=long), parameter :: span(3) = [character(len=long) :: 'integrator.revolutions=0', 'integrator.end_time=0.05', &
+      'output.interval=0.01']
+    type(trace_t) :: trace
+    real(dp) :: y(2), a(2), b(2), d(2), e(2), h, t, s
+    integer :: i, row
+    trace = run_case('cases/flores/ideal.nml', [settings, span])
+    call check%equal_text(outcome(trace), 'done', 'an elastic crankshaft is run up')
+    if (allocated(trace%error)) return
+    y = [0.0_dp, low]
+    h = 0.05_dp/steps
+    row = 1
+    do i = 0, steps
+      t = i*h
+      if (modulo(i, steps/5) == 0) then
+        s = min(t/duration, 1.0_dp)
+        call check%close_to(value('crank_speed[rad/s]'), y(2), 1e-7_dp*high, 'the crank swings behind the ramp')
+        call check%close_to(value('flywheel_speed[rad/s]'), low + (high - low)*s**3*(10 - 15*s + 6*s**2), 1e-9_dp, &
+          'the flywheel follows the ramp')
+        call check%close_to(value('crank_moment[N.m]') - value('crankshaft_moment[N.m]'), &
+          flywheel*(high - low)/duration*30*(s*(1 - s))**2, 1e-6_dp, 'the drive accelerates the flywheel too')
+        row = row + 1
+      end if
+      a = rate(t, y)
+      b = rate(t + h/2, y + h/2*a)
+      d = rate(t + h/2, y + h/2*b)
+      e = rate(t + h, y + h*d)
+      y = y + h/6*(a + 2*b + 2*d + e)
+    end do
+    call check%that(trace%report%figures%max_energy_residual < 1e-8_dp*trace%report%figures%max_energy, &
+      'the energy is the work of the drive')
+
+  contains
+
+    real(dp) function value(name)
+      character(len=*), intent(in) :: name
+      value = trace%values(column(trace, name), row)
+    end function value
+
+    function rate(time, state) result(f)
+      real(dp), intent(in) :: time, state(2)
+      real(dp) :: f(2), x, angle, speed
+      x = min(time/duration, 1.0_dp)
+      angle = low*time + (high - low)*(duration*(2.5_dp*x**4 - 3*x**5 + x**6) + max(time - duration, 0.0_dp))
+      speed = low + (high - low)*(10*x**3 - 15*x**4 + 6*x**5)
+      f = [state(2), (k*(angle - state(1)) + c*(speed - state(2)))/inertia]
+    end function rate
+  end subroutine ramp_with_crankshaft
+
+  !> The same with loose joints: the energy is the work of the drive.
+  subroutine loose_joints_on_a_ramp_of_the_shaft(check)
+    class(checks_t), intent(inout) :: check
+    character(len=long), parameter :: settings(7) = [character(len=long) :: 'drive.kind=constant_speed', 'drive.ramp_time=4e-3', &
+      'drive.ramp_from=20', 'integrator.relative_tolerance=1e-8', 'integrator.revolutions=0.4', &
+      'crankshaft.flywheel_inertia=1e-3', 'crankshaft.torsional_stiffness=500']
+    character(len=*), parameter :: files(2) = [character(len=32) :: 'cases/flores/dry_0500um.nml', 'cases/joints/both_pins.nml']
+    type(trace_t) :: trace
+    integer :: i
+    do i = 1, size(files)
+      trace = run_case(trim(files(i)), settings)
+      call check%equal_text(outcome(trace), 'done', 'a run-up of an elastic crankshaft: '//trim(files(i)))
+      if (allocated(trace%error)) cycle
+      call check%that(trace%report%figures%max_energy_residual < 1e-6_dp*trace%report%figures%max_energy, &
+        'the energy is the work of the drive: '//trim(files(i)))
+      call check%close_to(trace%values(column(trace, 'crank_speed[rad/s]'), 1), 20.0_dp, 1e-12_dp, 'the crank starts with the ramp')
+    end do
+  end subroutine loose_joints_on_a_ramp_of_the_shaft
 
   !> An inertia J driven by a motor with M = M0 (1 - w/w0): w = w0 (1 - exp(-M0 t/(J w0))).
   subroutine run_up_on_a_line(check)

@@ -68,8 +68,8 @@ contains
       drive_moment = drive%torque
       acceleration = (drive%torque - against)/self%flywheel_inertia
     else
-      drive_moment = against
-      acceleration = 0
+      drive_moment = against + self%flywheel_inertia*drive%acceleration
+      acceleration = drive%acceleration
     end if
   end subroutine accelerate_flywheel
 

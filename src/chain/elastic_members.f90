@@ -6,6 +6,7 @@ module elastic_members
   use chain_bodies, only: bodies_t
   use elastic_rod, only: elastic_rod_t
   use elastic_crankshaft, only: elastic_crankshaft_t
+  use varying_drive, only: varying_drive_t
   implicit none
   private
   public :: elastic_members_t
@@ -17,6 +18,7 @@ module elastic_members
     type(coordinates_t) :: shapes(most_shapes)  !! index of each shape of the rod in the state
     type(coordinates_t) :: flywheel             !! index of the flywheel's angle, unless its speed is prescribed
     logical :: holds_flywheel = .false.         !! the speed of the flywheel is prescribed
+    type(varying_drive_t), allocatable :: run_up   !! this speed with a run-up; not allocated: it is constant
     real(dp) :: start_angle = 0                 !! initial angle of the flywheel [rad]
     real(dp) :: start_speed = 0                 !! [rad/s]
   contains
@@ -93,7 +95,11 @@ contains
       motion%shape_rate(i) = y(self%shapes(i)%rate)
     end do
     if (.not. allocated(self%crankshaft)) return
-    if (self%holds_flywheel) then
+    if (allocated(self%run_up)) then
+      motion%flywheel_angle = self%start_angle + self%run_up%turned(t)
+      motion%flywheel_speed = self%run_up%speed(t)
+      motion%held_acceleration = self%run_up%acceleration(t)
+    else if (self%holds_flywheel) then
       motion%flywheel_angle = self%start_angle + self%start_speed*t
       motion%flywheel_speed = self%start_speed
     else

@@ -396,8 +396,6 @@ contains
       else if (abs(drive%ramp_from) > 0 .and. .not. drive%ramp_time > 0) then
         call values%refuse('drive', &
           'ramp_from', 'needs ramp_time, the time in which the speed rises from here to crank_speed', error)
-      else if (drive%ramp_time > 0 .and. allocated(c%crankshaft)) then
-        call values%refuse('drive', 'ramp_time', 'cannot be combined with the group crankshaft', error)
       else if (drive%ramp_time > 0 .and. c%integrator%crank_revolutions > 0) then
         call values%refuse('drive', 'ramp_time', 'needs revolutions or end_time instead of crank_revolutions', error)
       else if (drive%flywheel_inertia > 0 .and. allocated(c%crankshaft)) then

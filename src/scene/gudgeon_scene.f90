@@ -496,6 +496,7 @@ contains
     if (self%crank_moves) then
       y(self%crank%position) = self%start_angle
       y(self%crank%rate) = self%start_speed
+      if (self%runs_up) y(self%crank%rate) = self%chain%varying%first_speed   ! on a shaft whose other end is run up
     end if
     do i = 1, self%n_joints
       call self%joints(i)%put_start(y)

@@ -181,6 +181,7 @@ contains
       elastic%start_angle = self%start_angle
       elastic%start_speed = self%start_speed
       elastic%holds_flywheel = .not. self%chain%drive%free_crank
+      if (self%runs_up .and. self%chain%has_crankshaft()) allocate (elastic%run_up, source=self%chain%varying)
       call elastic%claim(self%layout, self%chain%bodies, self%speed_scale(self%span), own_speed)
     end associate
   end procedure claim_elastic
