@@ -35,6 +35,7 @@ contains
     call without_shapes_it_is_rigid(check)
     call it_swings_at_its_frequencies(check)
     call it_buckles_at_eulers_load(check)
+    call its_middle_is_where_the_sines_put_it(check)
   end subroutine run_test_elastic_rod
 
   !> A random chain with an elastic rod of n bending and na axial shapes, with clearance at the pins given by `piece`, in a random
@@ -367,6 +368,21 @@ contains
     call check%relative(rod%shank_mass, 0.68_dp, 1e-14_dp, 'the largest shank of the dissertation''s rod')
     call check%relative(rod%end_mass + 1e-3_dp, 1e-3_dp, 1e-12_dp, 'no mass is left at the piston pin of the dissertation''s rod')
   end subroutine it_swings_at_its_frequencies
+
+  !> Deflection half way between the pins: the sum of the sines there.
+  subroutine its_middle_is_where_the_sines_put_it(check)
+    class(checks_t), intent(inout) :: check
+    type(elastic_rod_t) :: rod
+    type(motion_t) :: motion
+    real(dp), parameter :: amplitude(6) = [1e-4_dp, 3e-5_dp, 2e-5_dp, -4e-5_dp, 7e-6_dp, 5e-6_dp]
+    integer :: k
+    rod = elastic_rod_t(youngs_modulus=207e9_dp, section_area=9.6e-5_dp, section_inertia=5.12e-10_dp, n_bending=6, n_axial=1)
+    call rod%prepare(rod_t(0.12_dp, 0.21_dp, 2.5e-4_dp, [0.06_dp, 0.0_dp]))
+    motion%shape = 0
+    motion%shape(:6) = amplitude
+    call check%close_to(rod%mid_deflection(motion), sum(amplitude*[(sin(0.5_dp*k*pi), k=1, 6)]), 1e-18_dp, &
+      'deflection of the rod''s middle [m]')
+  end subroutine its_middle_is_where_the_sines_put_it
 
   !> Under Euler's load along the chord no force acts against the first sine mode.
   subroutine it_buckles_at_eulers_load(check)

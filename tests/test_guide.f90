@@ -8,7 +8,11 @@ module test_guide
   use case_file, only: read_case
   use collecting_sink, only: trace_t, run_case, load_table, column
   use chain_motion, only: n_pins, tilting_t
-  use piston_guide, only: piston_guide_t, corner_t, n_corners
+  use chain_motion, only: motion_t, accelerations_t
+  use chain_loads, only: loads_t, unloaded
+  use guide_events, only: inward_acceleration
+  use piston_guide, only: piston_guide_t, guide_loads_t, corner_t, n_corners
+  use laws, only: contact_law_of, friction_law_of
   implicit none
   private
   public :: run_test_guide
@@ -24,6 +28,8 @@ contains
     call friction_of_an_ideal_guide(check)
     call friction_follows_the_law_of_the_pin(check)
     call corners_are_where_they_are(check)
+    call forces_turn_the_piston(check)
+    call corners_accelerate(check)
     call one_impact_gives_back_its_share(check)
     call energy_of_elastic_corners(check)
     call energy_with_all_losses(check)
@@ -162,6 +168,87 @@ contains
     call guide%place_corners(at, later)
     call check%close_to(maxval(abs((later%depth - now%depth)/dt - now%depth_rate)), 0.0_dp, 1e-5_dp, 'rates of the gaps [m/s]')
   end subroutine corners_are_where_they_are
+
+  !> Forces at the corners of a tilted piston, all in the wall: their sum along and across the bore, and their moment about the
+  !> centre of mass as the cross product of each corner's place with its force. Friction is mu N against the velocity of each
+  !> corner; here the corners of one side move the other way than those of the other side.
+  subroutine forces_turn_the_piston(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: tilt = 0.02_dp, h(4) = [0.05_dp, -0.04_dp, 0.05_dp, -0.04_dp], mu = 0.3_dp, c = 7
+    real(dp), parameter :: b(4) = [0.025_dp, 0.025_dp, -0.025_dp, -0.025_dp]
+    type(piston_guide_t) :: guide
+    type(guide_loads_t) :: own
+    type(motion_t) :: motion
+    type(loads_t) :: all
+    type(error_t), allocatable :: error
+    real(dp) :: place(2), force(2), total(2), moment
+    integer :: i
+    call contact_law_of('law = ''lankarani_nikravesh''', guide%contact, error)
+    if (.not. allocated(error)) &
+      call friction_law_of('law = ''ambrosio'', coefficient = 0.3, v0 = 0, v1 = 1e-9', guide%friction, error)
+    call check%that(.not. allocated(error), 'laws of a corner')
+    if (allocated(error)) return
+    guide%clearance = -2e-3_dp   ! in a bore too narrow for it every corner is in the wall
+    guide%radius = 0.025_dp
+    guide%height = h(:2)
+    guide%viscous = c
+    guide%touches = .true.
+    guide%impact_speed = 1
+    motion%tilting%offset = 1e-4_dp
+    motion%tilting%offset_rate = 0
+    motion%tilting%tilt = tilt
+    motion%tilting%tilt_rate = 40
+    motion%tilting%com_velocity = 0.3_dp
+    all = unloaded
+    call guide%slide(motion, own, all)
+    total = [-c*0.3_dp, 0.0_dp]
+    moment = 0
+    do i = 1, 4
+      place = [h(i)*cos(tilt) - b(i)*sin(tilt), h(i)*sin(tilt) + b(i)*cos(tilt)]
+      force = own%corner(i)%normal_force*[-mu*sign(1.0_dp, 0.3_dp - 40*place(2)), -sign(1.0_dp, b(i))]
+      call check%that(own%corner(i)%normal_force > 0, 'a corner in the wall is pressed')
+      total = total + force
+      moment = moment + place(1)*force(2) - place(2)*force(1)
+    end do
+    call check%close_to(-all%axial_force, total(1), 1e-12_dp*norm2(total), 'friction of four corners and of the rings [N]')
+    call check%close_to(all%bore_force, total(2), 1e-12_dp*norm2(total), 'force of the bore across it [N]')
+    call check%close_to(all%bore_moment, moment, 1e-12_dp*norm2(total), 'its moment about the centre of mass [N m]')
+  end subroutine forces_turn_the_piston
+
+  !> Second derivative of the penetration of every corner, by differences of its rate along a motion with constant accelerations.
+  subroutine corners_accelerate(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: dt = 1e-6_dp
+    type(piston_guide_t) :: guide
+    type(corner_t) :: before(n_corners), now(n_corners), after(n_corners)
+    type(motion_t) :: motion
+    type(accelerations_t) :: accelerations
+    integer :: i
+    guide%clearance = 1e-3_dp
+    guide%radius = 0.025_dp
+    guide%height = [0.05_dp, -0.04_dp]
+    accelerations%offset = 300
+    accelerations%tilt = -2000
+    call place(-dt, before)
+    call place(dt, after)
+    call place(0.0_dp, now)
+    do i = 1, n_corners
+      call check%close_to(inward_acceleration(i, now(i), motion, accelerations), &
+        (after(i)%depth_rate - before(i)%depth_rate)/(2*dt), 1e-5_dp, 'acceleration of a corner into the wall [m/s^2]')
+    end do
+
+  contains
+
+    subroutine place(t, corners)
+      real(dp), intent(in) :: t
+      type(corner_t), intent(inout) :: corners(n_corners)
+      motion%tilting%offset = 2e-4_dp + 0.7_dp*t + 150*t**2
+      motion%tilting%offset_rate = 0.7_dp + 300*t
+      motion%tilting%tilt = 0.3_dp - 60*t - 1000*t**2
+      motion%tilting%tilt_rate = -60 - 2000*t
+      call guide%place_corners(motion%tilting, corners)
+    end subroutine place
+  end subroutine corners_accelerate
 
   !> A single corner hits the wall with the coefficient of restitution. The error decreases with increasing stiffness: the duration
   !> of the contact, in which other forces act as well, is inversely proportional to the root of the stiffness.
