@@ -63,9 +63,11 @@ contains
     character(len=:), allocatable, intent(out) :: key, wanted
     character(len=4) :: least
     key = ''
+    wanted = ''
+    if (self%restitution >= self%least_restitution() .or. self%dissipation > 0) return
+    key = 'restitution'
     write (least, '(f4.2)') self%least_restitution()
     wanted = 'must be >= '//least//' with law = '''//self%name()//''''
-    if (self%restitution < self%least_restitution() .and. .not. self%dissipation > 0) key = 'restitution'
   end subroutine conflict
 
   pure real(dp) function zero()

@@ -10,7 +10,7 @@ module case_curves
   use text_tools, only: printable, integer_text
   use text_file, only: read_text_file
   use case_definition, only: case_t
-  use case_schema, only: find_key, shown_group
+  use case_schema, only: shown_group
   use case_values, only: case_values_t
   use curve_file, only: parse_curve, quantity_t, crank_angle, pressure, turning_speed, torque
   implicit none
@@ -84,9 +84,9 @@ contains
       call values%refuse(group, key//'_digest', printable(path, 200)//' has other content: its digest is '//curve%found, error)
       return
     end if
-    place = find_key(values%keys, group, key)
+    place = values%place_of(group, key)
     values%values(place)%text = curve%path
-    place = find_key(values%keys, group, key//'_digest')
+    place = values%place_of(group, key//'_digest')
     values%values(place)%text = curve%found
   end subroutine provide
 

@@ -107,7 +107,7 @@ contains
     class(law_t), intent(in) :: law
     character(len=:), allocatable :: key, wanted
     integer :: variant
-    if (.not. (self%sets .and. self%is_present)) return
+    if (.not. (self%sets .and. self%is_present) .or. allocated(self%chosen)) return
     if (law%name() /= self%law_name) return
     variant = self%place_of('variant')
     if (variant > 0) then

@@ -5,7 +5,7 @@ module case_rules
   use gudgeon_errors, only: error_t
   use number_text, only: short_text
   use case_definition, only: case_t, joint_case_t, piston_pin_place, crank_pin_place
-  use case_schema, only: find_group, find_key
+  use case_schema, only: find_group
   use measured_pressure, only: measured_pressure_periods
   use case_values, only: case_values_t
   use film_snapshots, only: read_times
@@ -158,7 +158,7 @@ contains
     integer :: i, place
     logical :: is_said
     do i = 1, size(names)
-      place = find_key(values%keys, group, trim(names(i)))
+      place = values%place_of(group, trim(names(i)))
       is_said = values%is_said(place)
       if (joint%oil%is_known() .and. is_said) then
         call values%refuse(group, trim(names(i)), 'must not be given: viscosity_law = '''//joint%oil%law//''' computes it', error)
@@ -245,7 +245,7 @@ contains
     type(case_values_t), intent(in) :: values
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: key, wanted
-    if (values%is_said(find_key(values%keys, contact_group, 'dissipation'))) then
+    if (values%is_said(values%place_of(contact_group, 'dissipation'))) then
       call values%check_family(contact_group, 'dissipation', error)
       if (allocated(error)) return
     end if

@@ -3,7 +3,7 @@
 module case_values
   use gudgeon_errors, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text, nearest_word
-  use case_schema, only: key_t, group_definition_t, find_key, find_group, is_listed, shown_group, &
+  use case_schema, only: key_t, group_definition_t, find_group, is_named, is_listed, shown_group, &
     real_kind, integer_kind
   use namelist_reader, only: token_t
   use case_value, only: value_t, set_to_default, convert, find_decimal_comma, is_default, element_is_within, unit_of, most_reals
@@ -19,7 +19,8 @@ module case_values
     type(value_t), allocatable :: values(:)        !! for each key
   contains
     procedure :: set_defaults
-    procedure :: find         !! index of a key
+    procedure :: find         !! index of a key, or an error
+    procedure :: place_of     !! index of a key
     procedure :: assign       !! give a key its values as written
     procedure :: take_out     !! remove a group, as if the file did not contain it
     procedure :: prefer_overrides   !! to other keys of the same family
@@ -100,17 +101,21 @@ contains
     character(len=*), intent(in) :: group, name
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: others, earlier
-    integer :: place, i, k
+    integer :: place, i, k, first, last
     logical :: is_ended
-    place = find_key(self%keys, group, name)
+    place = self%place_of(group, name)
     is_ended = .false.
     others = 'this'
-    do i = 1, size(self%keys)
+    associate (range => self%groups(find_group(self%groups, group)))
+      first = range%first
+      last = range%last
+    end associate
+    do i = first, last
       if (.not. is_relative(self%keys(i), self%keys(place))) cycle
       if (i /= place) others = others//' or '//trim(self%keys(i)%name)
       if (.not. self%is_said(i)) cycle
       is_ended = .true.
-      do k = 1, i - 1
+      do k = first, i - 1
         if (.not. is_relative(self%keys(k), self%keys(i)) .or. may_stand_beside(self%keys(k), self%keys(i))) cycle
         if (.not. self%is_said(k)) cycle
         earlier = trim(self%keys(k)%name)
@@ -152,6 +157,21 @@ contains
     if (is_said) is_said = .not. is_default(self%keys(place), self%values(place), 1)
   end function is_said
 
+  !> Index of a key in the table; 0 if there is none. Only the keys of its group are searched.
+  pure integer function place_of(self, group, key)
+    class(case_values_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+    integer :: at
+    at = find_group(self%groups, group)
+    if (at > 0 .and. len(key) > 0) then
+      do place_of = self%groups(at)%first, self%groups(at)%last
+        if (self%keys(place_of)%name(1:1) /= key(1:1)) cycle   ! a fast test that excludes most of them
+        if (is_named(self%keys(place_of)%name, key)) return
+      end do
+    end if
+    place_of = 0
+  end function place_of
+
   !> The index of a key, or an error that lists what exists instead. `at` names file and line.
   subroutine find(self, group, key, at, place, error)
     class(case_values_t), intent(in) :: self
@@ -160,7 +180,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: text
     integer :: i
-    place = find_key(self%keys, group, key)
+    place = self%place_of(group, key)
     if (place > 0) return
     if (find_group(self%groups, group) == 0) then
       text = '&'//printable(group, 40)//': unknown group'
@@ -285,7 +305,7 @@ contains
     integer, intent(in) :: place
     type(error_t), allocatable, intent(out) :: error
     if (.not. self%is_said(place)) return
-    associate (key => self%keys(place), choice => find_key(self%keys, self%keys(place)%group, self%keys(place)%choice))
+    associate (key => self%keys(place), choice => self%place_of(trim(self%keys(place)%group), self%keys(place)%choice))
       call self%refuse(trim(key%group), trim(key%name), 'is for '//key%choice//' = '''//key%laws//''' alone and must not be '// &
         'given with '''//self%values(choice)%text//'''', error)
     end associate
@@ -297,7 +317,7 @@ contains
     integer, intent(in) :: place
     is_used = .true.
     associate (key => self%keys(place))
-      if (allocated(key%laws)) is_used = is_listed(self%values(find_key(self%keys, key%group, key%choice))%text, key%laws)
+      if (allocated(key%laws)) is_used = is_listed(self%values(self%place_of(trim(key%group), key%choice))%text, key%laws)
     end associate
   end function is_used
 
@@ -308,7 +328,7 @@ contains
     character(len=:), allocatable :: text
     text = ''
     if (.not. allocated(key%laws)) return
-    associate (choice => find_key(self%keys, key%group, key%choice))
+    associate (choice => self%place_of(trim(key%group), key%choice))
       if (key%laws /= self%keys(choice)%words) text = ' with '//key%choice//' = '''//self%values(choice)%text//''''
     end associate
   end function by_law
@@ -350,7 +370,7 @@ contains
     integer, intent(in), optional :: element
     character(len=:), allocatable :: text
     integer :: place, shown
-    place = find_key(self%keys, group, name)
+    place = self%place_of(group, name)
     shown = 1
     if (present(element)) shown = element
     text = self%file//': '//shown_group(group)//' '//name
@@ -363,6 +383,6 @@ contains
   pure logical function is_given(self, group, name) result(given)
     class(case_values_t), intent(in) :: self
     character(len=*), intent(in) :: group, name
-    given = self%values(find_key(self%keys, group, name))%given(1)
+    given = self%values(self%place_of(group, name))%given(1)
   end function is_given
 end module case_values

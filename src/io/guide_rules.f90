@@ -6,7 +6,6 @@ module guide_rules
   use number_text, only: short_text
   use case_definition, only: case_t
   use case_values, only: case_values_t
-  use case_schema, only: find_key
   use ambrosio, only: ambrosio_t
   use piston_guide, only: piston_guide_t, corner_t, n_corners
   use chain_motion, only: tilting_t
@@ -51,7 +50,7 @@ contains
       'piston_radius', 'piston_inertia', 'stiffness']
     integer :: i
     do i = 1, size(needed)
-      if (values%is_said(find_key(values%keys, 'guide', trim(needed(i))))) cycle
+      if (values%is_said(values%place_of('guide', trim(needed(i))))) cycle
       if (values%is_given('guide', trim(needed(i)))) then
         call values%refuse('guide', trim(needed(i)), 'must be > 0', error)
       else
@@ -59,7 +58,7 @@ contains
       end if
       return
     end do
-    if (values%is_said(find_key(values%keys, 'guide', 'dissipation'))) call values%check_family('guide', 'dissipation', error)
+    if (values%is_said(values%place_of('guide', 'dissipation'))) call values%check_family('guide', 'dissipation', error)
   end subroutine check_clearance
 
   !> Check that a piston without clearance starts on the cylinder's axis.
@@ -71,12 +70,12 @@ contains
       'piston_tilt_rate']
     integer :: i
     do i = 1, size(keys)
-      if (.not. values%is_said(find_key(values%keys, 'initial', trim(keys(i))))) cycle
+      if (.not. values%is_said(values%place_of('initial', trim(keys(i))))) cycle
       call values%refuse('initial', trim(keys(i)), 'must be 0 without clearance in the bore (&guide kind = ''clearance'')', error)
       return
     end do
     if (.not. allocated(c%guide)) return
-    if (values%is_said(find_key(values%keys, 'guide', 'bore_clearance')) .and. .not. values%is_given('guide', 'kind')) &
+    if (values%is_said(values%place_of('guide', 'bore_clearance')) .and. .not. values%is_given('guide', 'kind')) &
       call values%refuse('guide', 'bore_clearance', 'needs kind = ''clearance''; the default is friction', error)
   end subroutine check_on_axis
 

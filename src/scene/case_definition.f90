@@ -212,8 +212,8 @@ contains
     call list%group('initial', &
       'Initial state. Velocities are those of the mechanism with ideal joints, plus the rates given here', .false.)
     call case%initial%parameters(list)
-    call visit_joint(case%joint, piston_pin_place, list)
-    call visit_joint(case%crank_pin, crank_pin_place, list)
+    call visit_joint(case%joint, piston_pin_place, .false., list)
+    call visit_joint(case%crank_pin, crank_pin_place, case%joint%has_clearance(), list)
     if (list%sets) then
       call drop_laws(case%joint, case%crank_pin)
       call drop_laws(case%crank_pin, case%joint)
@@ -232,13 +232,15 @@ contains
     call case%output%parameters(list)
   end subroutine visit_case
 
-  !> Visit the groups of one joint and of its laws.
-  subroutine visit_joint(joint, place, list)
+  !> Visit the groups of one joint and of its laws. If another joint has clearance, the laws of an ideal joint are not set.
+  subroutine visit_joint(joint, place, another_has_clearance, list)
     type(joint_case_t), intent(inout) :: joint
     character(len=*), intent(in) :: place
+    logical, intent(in) :: another_has_clearance
     class(parameter_list_t), intent(inout) :: list
     call list%group('joint', 'Joint of rod and piston (piston pin)', .false., place)
     call joint%parameters(list)
+    if (list%sets .and. another_has_clearance .and. .not. joint%has_clearance()) return
     call visit_contact(joint%contact, place, list)
     call visit_friction(joint%friction, joint%reports_friction_work, place, list)
     call visit_film(joint%film, joint%transition, joint%oil, joint%elastic, joint%reports_film, place, list)

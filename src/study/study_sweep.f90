@@ -9,7 +9,6 @@ module study_sweep
   use case_definition, only: case_t
   use case_file, only: read_case_values
   use case_values, only: case_values_t
-  use case_schema, only: find_key
   use accuracy_presets, only: with_preset
   use command_line, only: command_line_t
   use gudgeon_progress, only: progress_t
@@ -71,7 +70,7 @@ contains
       sweep%last = study%runs
       sweep%is_drawn = options%check .and. study%design == 'latin_hypercube' .and. study%runs > most_checked
       if (sweep%is_drawn) study%runs = most_checked
-      call new_design(study, values%values(find_key(values%keys, 'output', 'digits'))%whole, design, error)
+      call new_design(study, values%values(values%place_of('output', 'digits'))%whole, design, error)
       if (allocated(error)) return
       at = printable(path, 200)//': '
       if (study%table /= '') at = printable(study%table, 200)//':1: '
