@@ -10,7 +10,7 @@ module gudgeon_events
   use ode_problem, only: ode_problem_t, max_events
   use ode_method, only: ode_method_t
   use gudgeon_archive, only: archive_t
-  use gudgeon_roots, only: bracket_t, next_abscissa, narrow
+  use gudgeon_roots, only: bracket_t, next_abscissa, narrow, abscissa_by_rates
   implicit none
   private
   public :: event_watch_t
@@ -187,6 +187,11 @@ contains
       found = .true.
       return
     end if
+    if (low .and. rises_once(before, here)) then
+      found = .true.
+      t_found = passage(self, method, problem, index, before, here)
+      return
+    end if
     pieces = method%order + 2
     left = before
     do i = 1, pieces
@@ -212,6 +217,17 @@ contains
     bend = max(abs(inner_left - third*(2*left + right)), abs(inner_right - third*(left + 2*right)))
     stays_negative = max(inner_left, inner_right) + bend < 0
   end function stays_negative
+
+  !> Whether a function that is negative at the left and not negative at the right passes zero once between them: the cubic in
+  !> Bernstein form, with twice its deviation from the straight line, rises.
+  pure logical function rises_once(left, right)
+    type(sample_t), intent(in) :: left, right
+    real(dp) :: slope
+    rises_once = left%g < 0 .and. right%g >= 0
+    if (.not. rises_once) return
+    slope = (right%g - left%g)/(right%t - left%t)
+    rises_once = abs(left%rate - slope) + abs(right%rate - slope) < 0.5_dp*slope
+  end function rises_once
 
   !> Search between two samples. `low` says whether the function has been negative before, and is updated.
   subroutine search_piece(self, method, problem, index, left, right, low, found, t_found)
@@ -257,11 +273,26 @@ contains
     class(ode_problem_t), intent(in) :: problem
     integer, intent(in) :: index
     type(sample_t), intent(in) :: left, right
+    integer, parameter :: most_by_rates = 8   !! evaluations before a method that needs no rates takes over
     type(bracket_t) :: bracket
-    type(sample_t) :: here
+    type(sample_t) :: a, b, here
     real(dp) :: t
+    integer :: i
 
-    bracket = bracket_t(left%t, right%t, left%g, right%g, 0, abs(right%t - left%t))
+    a = left
+    b = right
+    do i = 1, most_by_rates
+      if (.not. (a%rate > 0 .and. b%rate > 0)) exit
+      t = abscissa_by_rates(a%t, b%t, a%g, b%g, a%rate, b%rate)
+      if (.not. (t > a%t .and. t < b%t)) exit
+      here = sample(self, method, problem, index, t)
+      if (here%g < 0) then
+        a = here
+      else
+        b = here
+      end if
+    end do
+    bracket = bracket_t(a%t, b%t, a%g, b%g, 0, abs(b%t - a%t))
     do
       t = next_abscissa(bracket)
       if (.not. (t > bracket%a .and. t < bracket%b)) exit

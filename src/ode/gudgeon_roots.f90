@@ -3,7 +3,7 @@ module gudgeon_roots
   use gudgeon_kinds, only: dp
   implicit none
   private
-  public :: bracket_t, next_abscissa, narrow
+  public :: bracket_t, next_abscissa, narrow, abscissa_by_rates
 
   !> A sign change from negative (at a) to non-negative (at b), reduced by the ITP method (Oliveira & Takahashi 2020): at most one
   !> evaluation more than bisection, and superlinear for smooth functions. a < b or a > b.
@@ -40,6 +40,19 @@ contains
       end if
     end associate
   end function next_abscissa
+
+  !> Estimate of the root between a < b, where the function is negative at a, not negative at b, and rises at both with known rates:
+  !> the cubic through both ends that gives the abscissa as a function of the value. The estimate is at least one spacing of numbers
+  !> inside the interval, so that evaluations on both sides of the root soon enclose it.
+  pure real(dp) function abscissa_by_rates(a, b, fa, fb, rate_a, rate_b) result(x)
+    real(dp), intent(in) :: a, b, fa, fb, rate_a, rate_b
+    real(dp) :: share, rest, resolution
+    share = fa/(fa - fb)
+    rest = 1 - share
+    x = a + share*((fb - fa)*rest*(rest/rate_a - share/rate_b) + (b - a)*share*(3 - 2*share))
+    resolution = spacing(max(abs(a), abs(b)))
+    x = max(a + resolution, min(b - resolution, x))
+  end function abscissa_by_rates
 
   !> Replace the end of the bracket at which the sign is that of the value at x.
   pure subroutine narrow(bracket, x, value)
