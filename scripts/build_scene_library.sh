@@ -7,6 +7,9 @@ cd "$(dirname "$0")/.." || exit 1
 folder=build/scene_library
 flags="-O3 -flto=auto -fno-ipa-modref -fno-tree-vectorize --param max-inline-insns-auto=150 -fPIC"
 mkdir -p "$folder" || exit 1
+if [ "$(cat "$folder/flags" 2>/dev/null)" != "$flags" ]; then   # objects made with other flags must not be linked too
+  rm -rf "$folder/build" && printf '%s\n' "$flags" >"$folder/flags" || exit 1
+fi
 ln -sfn ../../src "$folder/src"
 cat >"$folder/fpm.toml" <<'TOML'
 name = "gudgeon"

@@ -104,16 +104,14 @@ contains
     logical, intent(in) :: stiff, first
     real(dp), intent(in) :: t, y(:)
     integer, intent(out) :: status
-    type(step_statistics_t) :: so_far
 
-    so_far = self%totals()
+    if (stiff .and. .not. self%stiff) self%radau%statistics = self%adams%statistics
+    if (self%stiff .and. .not. stiff) self%adams%statistics = self%radau%statistics
     self%stiff = stiff
     self%bound = 0
     if (stiff) then
-      self%radau%statistics = so_far
       call self%radau%start(problem, t, y, first, status)
     else
-      self%adams%statistics = so_far
       call self%adams%start(problem, t, y, first, status)
     end if
     self%t = t
@@ -126,7 +124,7 @@ contains
     class(auto_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
     integer, intent(out) :: status
-    integer :: bound_before, evaluations_before
+    integer :: evaluations_before
 
     status = step_done
     associate (mode => self%mode)
@@ -148,15 +146,11 @@ contains
         return
       end if
     end associate
-    bound_before = self%adams%statistics%limited_by(limit_stability)
     self%adams%rough_time = self%rough_time
     call self%adams%step(problem, status)
-    if (status == step_done) call take_over(self, self%adams)
-    if (self%adams%statistics%limited_by(limit_stability) > bound_before) then
-      self%bound = self%bound + 1
-    else
-      self%bound = max(0, self%bound - 1)
-    end if
+    if (status /= step_done) return
+    call take_over(self, self%adams)
+    self%bound = merge(self%bound + 1, max(0, self%bound - 1), self%adams%limit_done == limit_stability)
   end subroutine step
 
   !> Continue with the other method from the present point.
@@ -190,11 +184,23 @@ contains
     self%t = method%t
     self%t_old = method%t_old
     self%order = method%order
-    self%y(:) = method%y   ! same size, so that no reallocation is checked
-    self%y_old(:) = method%y_old
+    call copy_states(size(self%y), method%y, method%y_old, self%y, self%y_old)
     self%statistics%accepted = method%statistics%accepted
     self%statistics%evaluations = method%statistics%evaluations
   end subroutine take_over
+
+  !> Copy y and y_old in one loop: with plain arrays, since this is done in every step.
+  pure subroutine copy_states(n, from_y, from_y_old, y, y_old)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: from_y(n), from_y_old(n)
+    real(dp), intent(out) :: y(n), y_old(n)
+    integer :: i
+    !GCC$ novector
+    do i = 1, n
+      y(i) = from_y(i)
+      y_old(i) = from_y_old(i)
+    end do
+  end subroutine copy_states
 
   pure subroutine interpolate(self, t, y)
     class(auto_t), intent(inout) :: self
