@@ -8,6 +8,7 @@ module test_events
   use ode_method, only: ode_method_t
   use adams, only: adams_t
   use gudgeon_solver, only: integrate, observer_t, silent_observer_t, integration_done, chattering
+  use gudgeon_roots, only: abscissa_by_rates
   use test_problems, only: hopper_t
   implicit none
   private
@@ -16,9 +17,10 @@ module test_events
   integer, parameter :: most = 1000
 
   !> y = (sin t, cos t) with three events: sin rises through 1/2, sin falls through 1/2, cos rises through 0. If it
-  !> `refuses`, two of three steps are rejected as too deep.
+  !> `refuses`, two of three steps are rejected as too deep. Its rates are `rate_factor` times the right ones.
   type, extends(oscillator_t) :: crossings_t
     logical :: refuses = .false.
+    real(dp) :: rate_factor = 1
     integer :: taken = 0, index(most) = 0
     real(dp) :: time(most) = 0
   contains
@@ -49,6 +51,15 @@ module test_events
     procedure :: handle_event => leave_or_come
   end type ball_t
 
+  !> Nothing moves, and the function of its event is (t - 1)(t - 2.1)(t - 5.9): it passes zero three times.
+  type, extends(ode_problem_t) :: triple_t
+    real(dp) :: first = -1   !! time of the first event
+  contains
+    procedure :: derivatives => stays
+    procedure :: events => passes_thrice
+    procedure :: handle_event => notes_first
+  end type triple_t
+
   !> Checks each event root: the function is not negative there, and negative one rounding step of the time before.
   type, extends(observer_t) :: root_checker_t
     integer :: loose = 0
@@ -63,7 +74,9 @@ contains
   subroutine run_test_events(check)
     class(checks_t), intent(inout) :: check
     call several_events(check)
+    call roots_by_rates(check)
     call close_passages(check)
+    call first_of_three(check)
     call grazing(check)
     call turns_before_it_is_out(check)
     call chatter(check)
@@ -89,8 +102,9 @@ contains
     integer :: status, i, way
     real(dp), parameter :: first(3) = [pi/6, 5*pi/6, 3*pi/2]
 
-    do way = 1, 2
+    do way = 1, 4   ! as it is; with refused steps; with rates that are too small or too large
       problem = crossings_t(n=2, n_events=3, refuses=way == 2)
+      if (way > 2) problem%rate_factor = merge(0.6_dp, 1.5_dp, way == 3)
       method = adams_t()
       call prepare(method, 2, 1e-11_dp, 100*pi)
       observer%loose = 0
@@ -110,6 +124,93 @@ contains
       if (way == 2) call check%that(method%statistics%rejected_penetration > 100, 'steps were rejected')
     end do
   end subroutine several_events
+
+  !> The estimate of a root from values and rates at both ends: exact where the abscissa is a cubic of the value, always inside, and
+  !> for log(x) in four evaluations between two neighbouring numbers.
+  subroutine roots_by_rates(check)
+    class(checks_t), intent(inout) :: check
+    real(dp) :: a, b, x
+    integer :: i
+    call check%close_to(abscissa_by_rates(abscissa(-0.2_dp), abscissa(0.7_dp), -0.2_dp, 0.7_dp, rate(-0.2_dp), rate(0.7_dp)), &
+      abscissa(0.0_dp), 2e-15_dp, 'the abscissa is a cubic of the value')
+    call check%that(abscissa_by_rates(1.0_dp, 2.0_dp, -1.0_dp, 0.0_dp, 1.0_dp, 1.0_dp) < 2, 'a root at the end: one spacing inside')
+    call check%that(abscissa_by_rates(1.0_dp, 2.0_dp, -1.0_dp, 1.0_dp, 1e-9_dp, 9.0_dp) < 2, 'useless rates: inside all the same')
+    a = 0.9_dp
+    b = 1.2_dp
+    do i = 1, 5
+      x = abscissa_by_rates(a, b, log(a), log(b), 1/a, 1/b)
+      if (.not. (x > a .and. x < b)) exit
+      if (log(x) < 0) then
+        a = x
+      else
+        b = x
+      end if
+    end do
+    call check%that(a < 1 .and. b >= 1 .and. b - a <= 2*epsilon(1.0_dp), 'log(x) = 0 is enclosed in five evaluations')
+
+  contains
+
+    pure real(dp) function abscissa(value)
+      real(dp), intent(in) :: value
+      abscissa = 3 + value*(1 + value*(0.3_dp + 0.1_dp*value))
+    end function abscissa
+
+    pure real(dp) function rate(value)
+      real(dp), intent(in) :: value
+      rate = 1/(1 + value*(0.6_dp + 0.3_dp*value))
+    end function rate
+  end subroutine roots_by_rates
+
+  !> Of three passages in one step the first one is the event, although a short way to the last one leads from the ends of the step.
+  subroutine first_of_three(check)
+    class(checks_t), intent(inout) :: check
+    type(triple_t) :: problem
+    type(adams_t) :: method
+    type(silent_observer_t) :: observer
+    real(dp) :: y(1), t
+    integer :: status
+    problem%n = 1
+    problem%n_events = 1
+    call prepare(method, 1, 1e-6_dp, 6.0_dp)
+    method%settings%fixed_step = 6
+    t = 0
+    y = 1
+    call integrate(problem, method, t, y, 6.0_dp, 0, observer, status)
+    call check%close_to(problem%first, 1.0_dp, 1e-14_dp, 'the first of three passages in one step')
+  end subroutine first_of_three
+
+  pure subroutine stays(self, t, y, dydt, inside)
+    class(triple_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: dydt(self%n)
+    logical, intent(out) :: inside
+    associate (unused_t => t, unused_y => y)
+    end associate
+    dydt = 0
+    inside = .true.
+  end subroutine stays
+
+  pure subroutine passes_thrice(self, t, y, g, g_rate)
+    class(triple_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
+    associate (unused_y => y)
+    end associate
+    g = (t - 1)*(t - 2.1_dp)*(t - 5.9_dp)
+    g_rate = (t - 2.1_dp)*(t - 5.9_dp) + (t - 1)*(t - 5.9_dp) + (t - 1)*(t - 2.1_dp)
+  end subroutine passes_thrice
+
+  subroutine notes_first(self, index, t, y, action)
+    class(triple_t), intent(inout) :: self
+    integer, intent(in) :: index
+    real(dp), intent(in) :: t
+    real(dp), intent(inout) :: y(:)
+    integer, intent(out) :: action
+    associate (unused_index => index, unused_y => y)
+    end associate
+    if (self%first < 0) self%first = t
+    action = event_continue
+  end subroutine notes_first
 
   !> Short intervals above a level, down to 2e-5 of the period: both crossings are in one step.
   subroutine close_passages(check)
@@ -215,10 +316,10 @@ contains
     class(crossings_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
-    associate (unused_self => self, unused_t => t)
+    associate (unused_t => t)
     end associate
     g = [y(1) - 0.5_dp, 0.5_dp - y(1), y(2)]
-    g_rate = [y(2), -y(2), -y(1)]
+    g_rate = self%rate_factor*[y(2), -y(2), -y(1)]
   end subroutine three_events
 
   subroutine note_event(self, index, t, y, action)
