@@ -1,6 +1,6 @@
-# Checks of the program from the shell, for tests that source this from the top of the checkout. They count in $passed and
-# $failed as tests/checks.f90 does: a name without figures is one assertion, which has passed if every turn of it has. $work is
-# a folder that goes with them; $subcommand is what `refused` asks the program for.
+# Checks of the program for shell tests, which source this file from the top of the checkout. They are counted in $passed and
+# $failed in the same way as in tests/checks.f90: a name without its numbers is one assertion, which has passed if it holds each
+# time. $work is a temporary folder that is removed at the end; $subcommand is the subcommand with which `refused` runs the program.
 subcommand=
 passed=0
 failed=0
@@ -8,7 +8,7 @@ work=$(mktemp -d)
 trap 'chmod -R u+w "$work" 2>/dev/null; rm -rf "$work"' EXIT
 gudgeon=$(scripts/build.sh) || { echo "0 passed, 1 failed"; exit 1; }
 
-check() {   # check NAME CONDITION...: a test command
+check() {   # check NAME COMMAND...: the command must succeed
   name=$1
   shift
   if "$@"; then turn=passed; else turn=failed; echo "FAILED: $name"; fi
@@ -24,7 +24,7 @@ run() {   # run ARGUMENTS...: sets status, $work/out and $work/err
   status=$?
 }
 
-refused() {   # refused NAME STATUS PATTERN ARGUMENTS...: one line on standard error, nothing written
+refused() {   # refused NAME STATUS PATTERN ARGUMENTS...: one line on standard error that matches the pattern, no files
   name=$1
   want=$2
   pattern=$3

@@ -1,19 +1,19 @@
 #!/bin/sh
-# scripts/build.sh with sources that move, and after a build that fails on what an earlier one has left: in a small project of
-# its own. Run from the top of the checkout; ends with the line "N passed, N failed".
+# Tests of scripts/build.sh: source files that are moved, and objects of an earlier build that make the build fail. The test uses a
+# small separate project. Run from the top of the checkout; ends with the line "N passed, N failed".
 . scripts/setup.sh || { echo "0 passed, 1 failed"; exit 1; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 passed=0
 failed=0
 
-check() {   # check NAME CONDITION...: a test command
+check() {   # check NAME COMMAND...: the command must succeed
   name=$1
   shift
   if "$@"; then passed=$((passed + 1)); else failed=$((failed + 1)); echo "FAILED: $name"; fi
 }
 
-source_with() {   # source_with FOLDER NUMBER: the module's file stands in this folder alone, with this number
+source_with() {   # source_with FOLDER NUMBER: put the module's file, with this number, into this folder only
   rm -rf "$work/src/one" "$work/src/other"
   mkdir -p "$work/src/$1"
   printf 'module shown\n  implicit none\n  integer, parameter :: number = %s\nend module shown\n' "$2" >"$work/src/$1/shown.f90"
@@ -28,15 +28,15 @@ printf 'program main\n  use shown, only: number\n  implicit none\n  print "(i0)"
 
 source_with one 1
 program=$(cd "$work" && scripts/build.sh)
-check "a program, $program" [ "$("$work/$program")" = 1 ]
+check "a program is built, $program" [ "$("$work/$program")" = 1 ]
 source_with other 2
 program=$(cd "$work" && scripts/build.sh)
-check "a file moved and changed" [ "$("$work/$program")" = 2 ]
+check "a source file moved and changed" [ "$("$work/$program")" = 2 ]
 source_with one 1
 program=$(cd "$work" && scripts/build.sh)
-check "and moved back as it was" [ "$("$work/$program")" = 1 ]
+check "a source file moved back unchanged" [ "$("$work/$program")" = 1 ]
 
-# an fpm that fails while what an earlier build has left is there
+# an fpm that fails while objects of an earlier build exist
 mkdir "$work/bin"
 cat >"$work/bin/fpm" <<'END'
 #!/bin/sh
@@ -49,12 +49,12 @@ END
 chmod +x "$work/bin/fpm"
 mkdir "$work/build/gfortran_left"
 program=$(cd "$work" && PATH="$work/bin:$PATH" scripts/build.sh)
-check "built once more, $program" [ "$program" = build/gfortran_new/app/gudgeon ]
-check "in two calls" [ "$(wc -l <"$work/calls")" = 2 ]
+check "a build that failed is repeated, $program" [ "$program" = build/gfortran_new/app/gudgeon ]
+check "a build that failed is repeated once" [ "$(wc -l <"$work/calls")" = 2 ]
 sed -i 's/\[ -e build.gfortran_left \]/true/' "$work/bin/fpm"
 program=$(cd "$work" && PATH="$work/bin:$PATH" scripts/build.sh 2>"$work/err")
-check "what cannot be built is not tried for ever" [ "$program" = "" -a "$(wc -l <"$work/calls")" = 4 ]
-check "and said" grep -q "build: cannot build gudgeon" "$work/err"
+check "a build that fails again is not repeated" [ "$program" = "" -a "$(wc -l <"$work/calls")" = 4 ]
+check "a build that fails has a message" grep -q "build: cannot build gudgeon" "$work/err"
 
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]

@@ -1,6 +1,6 @@
 #!/bin/sh
-# The program as a user meets it: messages, exit statuses, files. Run from the top of the checkout, after a release
-# build; ends with the line "N passed, N failed".
+# Tests of the program as a user runs it: messages, exit statuses, files. Run from the top of the checkout; ends with the line
+# "N passed, N failed".
 . tests/program_checks.sh
 
 edit() { sed "$1" cases/sim_I.nml >"$work/case.nml"; }   # edit SED: a changed simulation I
@@ -26,16 +26,16 @@ refused "rod shorter than crank" 3 "rod_length" "$work/case.nml"
 edit 's/clearance = 20.0e-6/clearance = NaN/'
 refused "NaN" 3 "&joint clearance" "$work/case.nml"
 edit 's/samples_per_revolution = 720/columns = "time, cylinder_pressure"/'
-refused "a column that the scene does not have" 3 "cylinder_pressure" "$work/case.nml"
+refused "a column that the scene lacks" 3 "cylinder_pressure" "$work/case.nml"
 refused "a folder for a case" 3 "." cases
 
 # a table that results would replace
 mkdir "$work/motor"
 cp cases/drive/motor.nml cases/drive/motor.csv "$work/motor"
 refused "a table with the name of a result" 2 "motor.nml: &drive torque_table: .*/motor.csv would be replaced by the results" -o "$work/motor" "$work/motor/motor.nml"
-check "it is still there" cmp cases/drive/motor.csv "$work/motor/motor.csv"
+check "the table is unchanged" cmp cases/drive/motor.csv "$work/motor/motor.csv"
 run -q -o "$work/motor/results" -s integrator.end_time=0.01 "$work/motor/motor.nml"
-check "another folder will do, status $status" [ "$status" = 0 ]
+check "another folder is accepted, status $status" [ "$status" = 0 ]
 
 # bad command lines
 refused "no case" 2 "no case"
@@ -46,13 +46,13 @@ refused "override without value" 2 "GROUP.KEY=VALUE" --set joint.clearance cases
 refused "a study without sweep" 3 "map_I.nml:[0-9]*: &study: .*gudgeon sweep cases/studies/map_I.nml" cases/studies/map_I.nml
 refused "two ends of a run" 3 "end_time = 1: .*integrator.revolutions=0" -s integrator.revolutions=3 -s integrator.end_time=1 cases/sim_I.nml
 refused "decimal comma" 3 "0,05 has a decimal comma" -s joint.clearance=0,05 cases/sim_I.nml
-refused "an unknown group taken out" 3 "lubricaton: unknown group; did you mean lubrication" -s lubricaton=none cases/sim_I.nml
+refused "an unknown group to be removed" 3 "lubricaton: unknown group; did you mean lubrication" -s lubricaton=none cases/sim_I.nml
 run --check -s drive.torque=1 cases/wiebe/wiebe_320.nml
-check "a torque that does nothing is told" [ "$status" = 0 -a "$(grep -c 'wiebe_320.nml: &drive torque has no effect' "$work/err")" = 1 ]
+check "a torque without effect is reported" [ "$status" = 0 -a "$(grep -c 'wiebe_320.nml: &drive torque has no effect' "$work/err")" = 1 ]
 run -q --check -s drive.torque=1 cases/wiebe/wiebe_320.nml
-check "not when quiet" [ "$status" = 0 -a ! -s "$work/err" ]
+check "a torque without effect is not reported with --quiet" [ "$status" = 0 -a ! -s "$work/err" ]
 
-# what it tells
+# help, version, template
 run --help
 check "help" [ "$status" = 0 -a "$(grep -c -- --template "$work/out")" = 1 ]
 run --version
@@ -66,9 +66,9 @@ check "all cases are correct" [ "$status" = 0 -a ! -e "$work/refused" ]
 
 # results
 run -o "$work/r" -s integrator.revolutions=0.1 -s integrator.method=auto cases/sim_I.nml cases/flores/dry_0500um.nml cases/flores/ideal.nml
-check "three cases side by side" [ "$status" = 0 -a "$(wc -l <"$work/out")" = 3 -a ! -s "$work/err" ]
+check "three cases in parallel" [ "$status" = 0 -a "$(wc -l <"$work/out")" = 3 -a ! -s "$work/err" ]
 for file in sim_I.csv sim_I.events.csv sim_I.summary.csv sim_I.resolved.nml sim_I.ideal.csv dry_0500um.csv ideal.csv; do
-  check "$file is there" [ -s "$work/r/$file" ]
+  check "$file exists" [ -s "$work/r/$file" ]
 done
 check "no file under a temporary name" [ -z "$(find "$work/r" -name '*.part')" ]
 check "rows: 72 samples and the first, and the header" [ "$(wc -l <"$work/r/sim_I.csv")" = 74 ]
@@ -82,29 +82,29 @@ for jobs in 1 4; do
     cases/flores/dry_0500um.nml cases/flores/dry_0100um.nml cases/flores/friction_100.nml
 done
 for file in sim_I sim_II sim_III dry_0500um dry_0100um friction_100 sim_I.ideal dry_0100um.events; do
-  check "side by side gives the same bytes: $file" cmp -s "$work/j1/$file.csv" "$work/j4/$file.csv"
+  check "runs in parallel give the same bytes: $file" cmp -s "$work/j1/$file.csv" "$work/j4/$file.csv"
 done
 twin="-s integrator.revolutions=0.1 -s integrator.method=auto -s output.samples_per_revolution=30000"
 for jobs in 1 2; do
   run -j $jobs -o "$work/twin$jobs" $twin cases/sim_IV.nml
 done
-# on one core the twin's thread mostly comes too late to be the one that runs it
+# on one core the thread of the ideal twin usually starts too late to run the twin
 mine=$(taskset -cp $$ 2>/dev/null | sed 's/.*: //')
 [ -n "$mine" ] && taskset -cp "${mine%%[-,]*}" $$ >/dev/null
 run -j 2 -o "$work/twin3" $twin cases/sim_IV.nml
 [ -n "$mine" ] && taskset -cp "$mine" $$ >/dev/null
 for file in sim_IV sim_IV.ideal sim_IV.events; do
-  check "the twin beside its case gives the same bytes: $file" cmp -s "$work/twin1/$file.csv" "$work/twin2/$file.csv"
-  check "the twin beside its case on one core: $file" cmp -s "$work/twin1/$file.csv" "$work/twin3/$file.csv"
+  check "an ideal twin in parallel gives the same bytes: $file" cmp -s "$work/twin1/$file.csv" "$work/twin2/$file.csv"
+  check "an ideal twin in parallel on one core: $file" cmp -s "$work/twin1/$file.csv" "$work/twin3/$file.csv"
 done
 run -q -o "$work/r" -s integrator.revolutions=0.1 cases/flores/ideal.nml
-check "quiet" [ "$status" = 0 -a ! -s "$work/out" -a ! -s "$work/err" ]
+check "no output with --quiet" [ "$status" = 0 -a ! -s "$work/out" -a ! -s "$work/err" ]
 
 run -o "$work/r" -s integrator.revolutions=1 cases/sim_I.nml
-check "a stability-bound run says what auto would save" grep -q "method = 'auto' needs 1/[0-9]* of the evaluations" "$work/err"
+check "a run limited by stability reports the savings by auto" grep -q "method = 'auto' needs 1/[0-9]* of the evaluations" "$work/err"
 
-# a long run is told so while it goes, in its first second where the machine has nothing else to do
-advised() {   # advised ARGUMENTS...: whether the run says within 20 s that it is bound by stability; it is then ended
+# a long run reports this while it runs, within its first second if no other program is running
+advised() {   # advised ARGUMENTS...: whether the run reports within 20 s that it is limited by stability; the run is then stopped
   : >"$work/err"
   "$gudgeon" -o "$work/r" -s output.ideal_twin=F "$@" >"$work/out" 2>"$work/err" &
   pid=$!
@@ -117,35 +117,35 @@ advised() {   # advised ARGUMENTS...: whether the run says within 20 s that it i
   wait $pid
   grep -q "sim_I.nml: about .* left; the stability of Adams.*method = 'auto' needs 1/[0-9]* of the evaluations so far" "$work/err"
 }
-check "a long run bound by stability says so while it goes" advised -s integrator.revolutions=4000 cases/sim_I.nml
-check "once" [ "$(grep -c "needs 1/" "$work/err")" = 1 ]
-check "long before its end" awk -F, '$1 == "simulated_time" { exit !($2 < 60) }' "$work/r/sim_I.summary.csv"   # of 100 s
+check "a long run reports that it is limited by stability while it runs" advised -s integrator.revolutions=4000 cases/sim_I.nml
+check "a long run reports it once" [ "$(grep -c "needs 1/" "$work/err")" = 1 ]
+check "a long run reports it long before its end" awk -F, '$1 == "simulated_time" { exit !($2 < 60) }' "$work/r/sim_I.summary.csv"   # of 100 s
 run -o "$work/r" -s integrator.revolutions=200 -s output.ideal_twin=F cases/sim_I.nml
-check "a shorter one, once" [ "$(grep -c "needs 1/[0-9]* of the evaluations" "$work/err")" = 1 -a "$(wc -l <"$work/err")" = 1 ]
+check "a shorter run reports it once" [ "$(grep -c "needs 1/[0-9]* of the evaluations" "$work/err")" = 1 -a "$(wc -l <"$work/err")" = 1 ]
 
-# a group taken out, one end of the run for another: the resolved case shows what ran
+# a group is removed, one end of the run replaces another: the resolved case shows what was run
 run -o "$work/n" -s lubrication=none -s integrator.end_time=1e-3 -s output.ideal_twin=F cases/sim_I.nml
-check "without its film" [ "$status" = 0 -a "$(grep -c lubrication "$work/n/sim_I.resolved.nml")" = 0 ]
-check "to its end time" grep -q '^  revolutions = 0.0' "$work/n/sim_I.resolved.nml"
+check "the film is removed" [ "$status" = 0 -a "$(grep -c lubrication "$work/n/sim_I.resolved.nml")" = 0 ]
+check "the end time replaces the revolutions" grep -q '^  revolutions = 0.0' "$work/n/sim_I.resolved.nml"
 
-# failures keep what there is
+# failures keep the results so far
 run -o "$work/f" -s integrator.max_steps=2000 cases/sim_I.nml
-check "a run that cannot go on has exit status 4, got $status" [ "$status" = 4 ]
-check "and says why and where" grep -q "max_steps.*t = .*crank angle.*phase film" "$work/err"
-check "and keeps its rows" [ "$(wc -l <"$work/f/sim_I.csv")" -gt 2 ]
-check "and its summary" grep -q '^status,"too many steps' "$work/f/sim_I.summary.csv"
+check "a run that cannot continue has exit status 4, got $status" [ "$status" = 4 ]
+check "a run that cannot continue states reason and place" grep -q "max_steps.*t = .*crank angle.*phase film" "$work/err"
+check "a run that cannot continue keeps its rows" [ "$(wc -l <"$work/f/sim_I.csv")" -gt 2 ]
+check "a run that cannot continue has a summary" grep -q '^status,"too many steps' "$work/f/sim_I.summary.csv"
 for method in adams radau auto; do
   run -o "$work/f" -s integrator.max_evaluations=2000 -s integrator.method=$method cases/sim_I.nml
-  check "$method: too much work is a named reason, status $status" [ "$status" = 4 ]
-  check "$method: with its place" grep -q 'limit of evaluations reached.*max_evaluations.*t = .*crank angle' "$work/err"
-  check "$method: and ends soon after" awk -F, '$1 == "rhs_evaluations" { exit $2 < 2000 || $2 > 2200 }' "$work/f/sim_I.summary.csv"
+  check "$method: the limit of evaluations has its own reason, status $status" [ "$status" = 4 ]
+  check "$method: the message about the limit names the place" grep -q 'limit of evaluations reached.*max_evaluations.*t = .*crank angle' "$work/err"
+  check "$method: the run ends soon after the limit" awk -F, '$1 == "rhs_evaluations" { exit $2 < 2000 || $2 > 2200 }' "$work/f/sim_I.summary.csv"
 done
 run -o "$work/f" -s integrator.relative_tolerance=1e-9 -s integrator.absolute_tolerance=0.1 cases/flores/dry_0100um.nml
-check "a run that does not keep its energy is not done, status $status" [ "$status" = 4 -a "$(wc -l <"$work/err")" = 1 ]
-check "and says so" grep -q 'energy not kept.*t = .*crank angle' "$work/err"
-check "also in its summary" grep -q '^status,"energy not kept' "$work/f/dry_0100um.summary.csv"
+check "a run with a large energy residual is not done, status $status" [ "$status" = 4 -a "$(wc -l <"$work/err")" = 1 ]
+check "a run with a large energy residual states this" grep -q 'energy not kept.*t = .*crank angle' "$work/err"
+check "the summary states the large energy residual" grep -q '^status,"energy not kept' "$work/f/dry_0100um.summary.csv"
 run -o "$work/m" -s integrator.revolutions=0.1 "$work/none.nml" cases/flores/ideal.nml
-check "one wrong case of two: the other runs" [ "$status" = 3 -a -s "$work/m/ideal.csv" ]
+check "one wrong case of two: the other is run" [ "$status" = 3 -a -s "$work/m/ideal.csv" ]
 : >"$work/file"
 run -o "$work/file" cases/flores/ideal.nml
 check "a results folder that is a file: exit status 5, got $status" [ "$status" = 5 -a "$(wc -l <"$work/err")" = 1 ]
@@ -156,34 +156,34 @@ kill -TERM $pid   # a shell starts background commands with SIGINT ignored
 wait $pid
 status=$?
 check "an interrupted run has exit status 4, got $status" [ "$status" = 4 ]
-check "and says so" grep -q "interrupted at t = " "$work/err"
-check "and keeps whole rows" [ "$(awk -F, '{print NF}' "$work/i/sim_I.csv" | sort -u | wc -l)" = 1 -a \
+check "an interrupted run states this" grep -q "interrupted at t = " "$work/err"
+check "an interrupted run keeps complete rows" [ "$(awk -F, '{print NF}' "$work/i/sim_I.csv" | sort -u | wc -l)" = 1 -a \
   "$(wc -l <"$work/i/sim_I.csv")" -gt 100 ]
 
-# a full disk: whole rows, the right status
+# a full disk: complete rows, the right exit status
 if (ulimit -f 400) 2>/dev/null; then
   (ulimit -f 400; exec "$gudgeon" -o "$work/d" -s integrator.method=auto -s output.ideal_twin=F cases/sim_I.nml) \
     >"$work/out" 2>"$work/err"
   status=$?
-  check "no room for the trace: exit status 5, got $status" [ "$status" = 5 ]
-  check "one line says which file and why: $(cat "$work/err")" grep -q "sim_I.csv: File too large" "$work/err"
-  check "whole rows" [ "$(awk -F, '{print NF}' "$work/d/sim_I.csv" | sort -u | wc -l)" = 1 ]
-  check "and the summary says so" grep -q '^status,"stopped: ' "$work/d/sim_I.summary.csv"
+  check "full disk: exit status 5, got $status" [ "$status" = 5 ]
+  check "full disk: one line names file and reason: $(cat "$work/err")" grep -q "sim_I.csv: File too large" "$work/err"
+  check "full disk: complete rows" [ "$(awk -F, '{print NF}' "$work/d/sim_I.csv" | sort -u | wc -l)" = 1 ]
+  check "full disk: the summary states it" grep -q '^status,"stopped: ' "$work/d/sim_I.summary.csv"
 fi
 
 # certificates
 run -o "$work/certified" --certify -s integrator.method=auto -s output.ideal_twin=F cases/flores/lubricated_400cP.nml
 check "a run is certified, status $status" [ "$status" = 0 ]
-check "its line says so" grep -q 'done; [0-9.]* digits to the end; ' "$work/out"
-check "its summary too" grep -q '^certified_until,2.4.*E-02,s$' "$work/certified/lubricated_400cP.summary.csv"
-check "every column has its error" [ "$(wc -l <"$work/certified/lubricated_400cP.certificate.csv")" = \
+check "the line of a certified run states the digits" grep -q 'done; [0-9.]* digits to the end; ' "$work/out"
+check "the summary of a certified run has the certified time" grep -q '^certified_until,2.4.*E-02,s$' "$work/certified/lubricated_400cP.summary.csv"
+check "the certificate has the error of every column" [ "$(wc -l <"$work/certified/lubricated_400cP.certificate.csv")" = \
   "$(head -n 1 "$work/certified/lubricated_400cP.csv" | tr , '\n' | grep -vc phase | awk '{ print $1 + 1 }')" ]
 run -o "$work/plain" -s integrator.method=auto -s output.ideal_twin=F cases/flores/lubricated_400cP.nml
-check "the run is the same" cmp -s "$work/plain/lubricated_400cP.csv" "$work/certified/lubricated_400cP.csv"
+check "a certificate does not change the run" cmp -s "$work/plain/lubricated_400cP.csv" "$work/certified/lubricated_400cP.csv"
 run -q -o "$work/certified" -s integrator.method=adams -s output.ideal_twin=F cases/flores/lubricated_400cP.nml
-check "another run takes its certificate away" [ ! -e "$work/certified/lubricated_400cP.certificate.csv" ]
+check "another run removes the certificate" [ ! -e "$work/certified/lubricated_400cP.certificate.csv" ]
 run sweep --certify cases/studies/map_I.nml
-check "no certificates of sweeps, status $status" [ "$status" = 2 ]
+check "--certify is refused for sweeps, status $status" [ "$status" = 2 ]
 
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Parameter studies as a user meets them: results the same for any number of threads, for chunks, after a kill and a resume;
-# failed runs; messages. Run from the top of the checkout; ends with the line "N passed, N failed".
+# Tests of parameter studies as a user runs them: equal results for any number of threads, in chunks, and after a kill; failed runs;
+# messages. Run from the top of the checkout; ends with the line "N passed, N failed".
 . tests/program_checks.sh
 subcommand=sweep
 
@@ -10,28 +10,28 @@ cp cases/sim_I.nml "$work/base.nml"
 sed -i "s/'adams', revolutions = 4.0, relative_tolerance = 1.0e-6/'auto', revolutions = 3.0, relative_tolerance = 1.0e-4/" \
   "$work/base.nml"
 
-# a grid, its rows against single cases
+# a grid, and its rows against single cases
 study grid <<'END'
 &study case = 'base.nml', cycles = T, strobe_columns = 'crank_angle, eccentricity_x', strobe_angle_deg = 90 /
 &parameter key = 'joint.clearance', from = 1e-5, to = 4e-5, count = 4, scale = 'log' /
 &parameter key = 'initial.crank_speed', values = 100, 200, 3e2 /
 END
 run sweep -j 1 -o "$work/one" "$work/grid.nml"
-check "a grid runs, status $status" [ "$status" = 0 -a "$(wc -l <"$work/out")" = 1 -a ! -s "$work/err" ]
+check "a grid is run, status $status" [ "$status" = 0 -a "$(wc -l <"$work/out")" = 1 -a ! -s "$work/err" ]
 check "a row for each run" [ "$(wc -l <"$work/one/grid.runs.csv")" = 13 ]
-check "the last parameter goes fastest" [ "$(awk -F, 'NR == 3 { print $2, $3 }' "$work/one/grid.runs.csv")" = "1.000000000E-05 200" ]
+check "the last parameter varies fastest" [ "$(awk -F, 'NR == 3 { print $2, $3 }' "$work/one/grid.runs.csv")" = "1.000000000E-05 200" ]
 check "every row has every column" [ "$(awk -F, '{print NF}' "$work/one/grid.runs.csv" | sort -u)" = 19 ]
-check "strobes" [ "$(grep -c '^7,' "$work/one/grid.strobe.csv")" = "$(awk -F, '$1 == 7 { print $19 }' "$work/one/grid.runs.csv")" ]
-check "revolutions" [ "$(grep -c '^7,' "$work/one/grid.cycles.csv")" = "$(awk -F, '$1 == 7 { print $5 }' "$work/one/grid.runs.csv")" ]
+check "number of strobes" [ "$(grep -c '^7,' "$work/one/grid.strobe.csv")" = "$(awk -F, '$1 == 7 { print $19 }' "$work/one/grid.runs.csv")" ]
+check "number of revolutions" [ "$(grep -c '^7,' "$work/one/grid.cycles.csv")" = "$(awk -F, '$1 == 7 { print $5 }' "$work/one/grid.runs.csv")" ]
 check "no file under a temporary name" [ -z "$(find "$work/one" -name '*.part')" ]
 run -o "$work/single" -s joint.clearance=1.000000000E-05 -s initial.crank_speed=200 "$work/base.nml"
 field() { awk -F, -v name="$2" '$1 == name { print $2 }' "$1"; }
-check "a row is the case with its values: largest residual" [ "$(field "$work/single/base.summary.csv" max_energy_residual_relative)" = \
+check "a row has the results of the case: largest residual" [ "$(field "$work/single/base.summary.csv" max_energy_residual_relative)" = \
   "$(awk -F, '$1 == 2 { print $16 }' "$work/one/grid.runs.csv")" ]
-check "a row is the case with its values: evaluations" [ "$(field "$work/single/base.summary.csv" rhs_evaluations)" = \
+check "a row has the results of the case: evaluations" [ "$(field "$work/single/base.summary.csv" rhs_evaluations)" = \
   "$(awk -F, '$1 == 2 { print $17 }' "$work/one/grid.runs.csv")" ]
 
-same() {   # same NAME FOLDER: all of the grid's files are as one thread wrote them
+same() {   # same NAME FOLDER: all files of the grid are those of one thread
   for kind in runs cycles strobe; do
     check "$1: $kind" cmp -s "$work/one/grid.$kind.csv" "$2/grid.$kind.csv"
   done
@@ -48,27 +48,27 @@ for kind in runs cycles strobe; do
 done
 same "chunks" "$work/chunks"
 
-# the crank pin: its columns behind those of every study, empty where it is ideal
+# the crank pin: its columns come after those of every study and are empty if it is ideal
 cp cases/joints/both_pins.nml "$work/both.nml"
 study pins <<'END'
 &study case = 'both.nml', cycles = T /
 &parameter key = 'crank_pin.joint.clearance', values = 5e-5, 1e-4 /
 END
 run sweep -j 1 -o "$work/pins" "$work/pins.nml"
-check "a study of the crank pin runs, status $status" [ "$status" = 0 ]
-check "every row of it has every column" [ "$(awk -F, '{print NF}' "$work/pins/pins.runs.csv" | sort -u)" = 25 ]
-check "and every revolution" [ "$(awk -F, '{print NF}' "$work/pins/pins.cycles.csv" | sort -u)" = 17 ]
+check "a study of the crank pin is run, status $status" [ "$status" = 0 ]
+check "every row with a crank pin has every column" [ "$(awk -F, '{print NF}' "$work/pins/pins.runs.csv" | sort -u)" = 25 ]
+check "every revolution with a crank pin has every column" [ "$(awk -F, '{print NF}' "$work/pins/pins.cycles.csv" | sort -u)" = 17 ]
 run -q -o "$work/single" -s crank_pin.joint.clearance=1e-4 "$work/both.nml"
 named() { awk -F, -v row="$2" -v name="$3" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) k = i } NR == row + 1 { print $k }' "$1"; }
 for quantity in 'min_film_thickness m' 'max_penetration m' 'max_pin_force N'; do
   for pin in '' crank_pin_; do
-    check "the run is the case: $pin${quantity% *}" [ "$(named "$work/pins/pins.runs.csv" 2 "$pin${quantity% *}[${quantity#* }]")" = \
+    check "a run has the results of the case: $pin${quantity% *}" [ "$(named "$work/pins/pins.runs.csv" 2 "$pin${quantity% *}[${quantity#* }]")" = \
       "$(field "$work/single/both.summary.csv" "$pin${quantity% *}")" ]
   done
 done
-check "two pins, two forces" [ "$(named "$work/pins/pins.runs.csv" 2 'mean_pin_force[N]')" != \
+check "the two pins have different forces" [ "$(named "$work/pins/pins.runs.csv" 2 'mean_pin_force[N]')" != \
   "$(named "$work/pins/pins.runs.csv" 2 'crank_pin_mean_pin_force[N]')" ]
-# the integral of the force against the trace, whose rows are close where the pins rest
+# the integral of the force against a trace with close rows
 close() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a - b < 0.02 * b && b - a < 0.02 * b) }'; }
 run -q -o "$work/fine" -s crank_pin.joint.clearance=1e-4 -s output.samples_per_revolution=100000 "$work/both.nml"
 for names in 'pin_force_x[N] pin_force_y[N] mean_pin_force[N]' \
@@ -76,16 +76,16 @@ for names in 'pin_force_x[N] pin_force_y[N] mean_pin_force[N]' \
   set -- $names
   mean=$(awk -F, -v x="$1" -v y="$2" 'NR == 1 { for (i = 1; i <= NF; i++) { if ($i == x) a = i; if ($i == y) b = i }; next }
     { sum += sqrt($a * $a + $b * $b) } END { print sum / (NR - 1) }' "$work/fine/both.csv")
-  check "$3: rows of the trace say $mean" close "$mean" "$(named "$work/pins/pins.runs.csv" 2 "$3")"
+  check "$3: mean of the rows of the trace is $mean" close "$mean" "$(named "$work/pins/pins.runs.csv" 2 "$3")"
 done
 study pins <<'END'
 &study case = 'both.nml', cycles = T /
 &parameter key = 'crank_pin.joint.kind', values = 'clearance', 'ideal' /
 END
 run sweep -j 1 -o "$work/ideal" "$work/pins.nml"
-check "an ideal crank pin among them, status $status" [ "$status" = 0 ]
-check "has no figures" [ -z "$(named "$work/ideal/pins.runs.csv" 2 'crank_pin_max_pin_force[N]')" ]
-check "the piston pin has" [ -n "$(named "$work/ideal/pins.runs.csv" 2 'max_penetration[m]')" ]
+check "a study with an ideal crank pin, status $status" [ "$status" = 0 ]
+check "an ideal crank pin has no results" [ -z "$(named "$work/ideal/pins.runs.csv" 2 'crank_pin_max_pin_force[N]')" ]
+check "the piston pin beside an ideal crank pin has results" [ -n "$(named "$work/ideal/pins.runs.csv" 2 'max_penetration[m]')" ]
 
 # the piston in its bore
 cp cases/joints/piston_slap.nml "$work/slap.nml"
@@ -96,10 +96,10 @@ study bore <<'END'
 &parameter key = 'initial.piston_offset', values = 0, 2e-5 /
 END
 run sweep -j 2 -o "$work/bore" "$work/bore.nml"
-check "a study of the bore runs, status $status" [ "$status" = 0 ]
+check "a study of the bore is run, status $status" [ "$status" = 0 ]
 run -q -o "$work/single" -s guide.bore_clearance=2e-4 -s guide.restitution=0.3 -s initial.piston_offset=2e-5 "$work/slap.nml"
 for names in 'energy_residual[-] max_energy_residual_relative' 'rhs_evaluations[-] rhs_evaluations' 'max_pin_force[N] max_pin_force'; do
-  check "the run is the case: $names" [ "$(named "$work/bore/bore.runs.csv" 6 "${names% *}")" = "$(field "$work/single/slap.summary.csv" "${names#* }")" ]
+  check "a run has the results of the case: $names" [ "$(named "$work/bore/bore.runs.csv" 6 "${names% *}")" = "$(field "$work/single/slap.summary.csv" "${names#* }")" ]
 done
 # statistics of the skirt's corners, against the case's own events and summary
 study skirt <<'END'
@@ -108,38 +108,38 @@ study skirt <<'END'
 &parameter key = 'guide.kind', values = 'clearance', 'friction' /
 END
 run sweep -j 1 -o "$work/skirt" -s drive.kind=constant_speed "$work/skirt.nml"
-check "a study with and without clearance in the bore runs, status $status" [ "$status" = 0 ]
+check "a study with and without clearance in the bore is run, status $status" [ "$status" = 0 ]
 run -q -o "$work/single" -s drive.kind=constant_speed -s guide.bore_clearance=2e-4 "$work/slap.nml"
 largest() { awk -F, -v name="$1" '$1 ~ "^guide_[1-4]_" name "$" && $2 + 0 >= most + 0 { most = $2 } END { print most }' "$work/single/slap.summary.csv"; }
-check "the deepest corner" [ "$(named "$work/skirt/skirt.runs.csv" 1 'guide_max_penetration[m]')" = "$(largest max_penetration)" ]
-check "the hardest pressed corner" [ "$(named "$work/skirt/skirt.runs.csv" 1 'guide_max_force[N]')" = "$(largest max_force)" ]
-check "slaps a revolution" [ "$(awk -F, '/contact_begins.*guide_/ { n++ } END { printf "%.9E", n / 2 }' "$work/single/slap.events.csv")" = \
+check "largest penetration of the corners" [ "$(named "$work/skirt/skirt.runs.csv" 1 'guide_max_penetration[m]')" = "$(largest max_penetration)" ]
+check "largest force of the corners" [ "$(named "$work/skirt/skirt.runs.csv" 1 'guide_max_force[N]')" = "$(largest max_force)" ]
+check "contacts of the corners per revolution" [ "$(awk -F, '/contact_begins.*guide_/ { n++ } END { printf "%.9E", n / 2 }' "$work/single/slap.events.csv")" = \
   "$(named "$work/skirt/skirt.runs.csv" 1 'guide_impacts[-]')" ]
-check "slaps of each revolution" [ "$(awk -F, '/contact_begins.*guide_/ { n++ } END { print n }' "$work/single/slap.events.csv")" = "$((
+check "contacts of the corners in each revolution" [ "$(awk -F, '/contact_begins.*guide_/ { n++ } END { print n }' "$work/single/slap.events.csv")" = "$((
   $(named "$work/skirt/skirt.cycles.csv" 1 'guide_impacts[-]') + $(named "$work/skirt/skirt.cycles.csv" 2 'guide_impacts[-]')))" ]
-check "one of its revolutions has the hardest" [ "$(for i in 1 2; do named "$work/skirt/skirt.cycles.csv" $i 'guide_max_force[N]'; done | sort -g | tail -n 1)" = "$(largest max_force)" ]
-check "a corner touches for a part of the time" awk -v a="$(named "$work/skirt/skirt.runs.csv" 1 'guide_contact_time_fraction[-]')" \
+check "one of the revolutions has the largest force" [ "$(for i in 1 2; do named "$work/skirt/skirt.cycles.csv" $i 'guide_max_force[N]'; done | sort -g | tail -n 1)" = "$(largest max_force)" ]
+check "share of the time with a corner in contact" awk -v a="$(named "$work/skirt/skirt.runs.csv" 1 'guide_contact_time_fraction[-]')" \
   -v b="$(largest contact_time_fraction)" 'BEGIN { exit !(a >= b && a < 1) }'
-check "an ideal bore has none of it" [ -z "$(named "$work/skirt/skirt.runs.csv" 2 'guide_impacts[-]')" ]
+check "an ideal guide has no results of corners" [ -z "$(named "$work/skirt/skirt.runs.csv" 2 'guide_impacts[-]')" ]
 study kinds <<'END'
 &study case = 'slap.nml' /
 &parameter key = 'guide.kind', values = 'clearance', 'friction' /
 &parameter key = 'guide.viscous', values = 0, 10 /
 END
 run sweep -j 1 -o "$work/kinds" "$work/kinds.nml"
-check "a study of kinds of guide runs, status $status" [ "$status" = 0 ]
-check "all of its runs differ" [ "$(awk -F, 'NR > 1' "$work/kinds/kinds.runs.csv" | cut -d, -f5- | sort -u | wc -l)" = 4 ]
+check "a study of kinds of guide is run, status $status" [ "$status" = 0 ]
+check "all runs with different guides differ" [ "$(awk -F, 'NR > 1' "$work/kinds/kinds.runs.csv" | cut -d, -f5- | sort -u | wc -l)" = 4 ]
 
-# every key of loose joints and elastic members: the study takes it, and it changes the run
+# every key of joints with clearance and elastic members can vary in a study and changes the run
 run -q -o "$work/all" -s integrator.revolutions=0.1 -s crank_pin.joint.kind=clearance -s crank_pin.joint.clearance=1e-4 \
   -s crank_pin.joint.bearing_radius=0.012 -s guide.law=stribeck -s guide.coefficient=0.05 -s guide.static_coefficient=0.08 \
   -s guide.transition_speed=0.5 -s guide.stribeck_speed=0.1 -s elastic_rod.section_area=9.6e-5 -s elastic_rod.section_inertia=5.12e-10 \
   -s crankshaft.flywheel_inertia=0.02 -s crankshaft.torsional_stiffness=2e4 "$work/slap.nml"
-check "a scene with everything loose and elastic, status $status" [ "$status" = 0 ]
+check "a scene with all clearances and elastic members, status $status" [ "$status" = 0 ]
 awk -v q="'" '/^&/ { group = substr($1, 2) } $1 == "place" { group = substr($3, 2, length($3) - 2) "." group }
   group ~ /^(guide|elastic_rod|crankshaft|crank_pin.joint)$/ && $3 ~ /^[-0-9.]/ && !/,.*!/ && $1 != "bearing_length" { print group "." $1, $3 + 0 }
   group == "initial" && $1 ~ /^piston_/ { print group "." $1, $3 + 0 }' "$work/all/slap.resolved.nml" >"$work/keys"
-check "they have keys" [ "$(wc -l <"$work/keys")" -ge 34 ]
+check "number of keys of these groups" [ "$(wc -l <"$work/keys")" -ge 34 ]
 stuck=
 while read -r key value; do
   case $key in
@@ -155,8 +155,8 @@ while read -r key value; do
     "$work/key.nml"
   [ "$status" = 0 ] && [ "$(awk -F, 'NR > 1' "$work/key/key.runs.csv" | cut -d, -f4- | sort -u | wc -l)" = 2 ] || stuck="$stuck $key"
 done <"$work/keys"
-check "each of them in a study, without effect or refused:$stuck" [ -z "$stuck" ]
-# tables: a key beside one, the table itself, each run as a single one
+check "keys without effect in a study, or refused:$stuck" [ -z "$stuck" ]
+# tables: a key together with a table, and the table itself as a parameter; each run against a single one
 cp cases/gas/measured.nml cases/gas/indicator.csv cases/drive/motor.nml cases/drive/motor.csv "$work"
 sed 's/^0,30$/0,20/' "$work/motor.csv" >"$work/weak.csv"
 study gas <<'END'
@@ -171,17 +171,17 @@ run sweep -j 1 -o "$work/tables" -s integrator.method=auto "$work/gas.nml"
 check "a study with a table of pressures, status $status" [ "$status" = 0 ]
 run -q -o "$work/tables" -s integrator.method=auto -s cylinder_pressure.offset_deg=5 "$work/measured.nml"
 for names in 'rhs_evaluations[-] rhs_evaluations' 'max_pin_force[N] max_pin_force'; do
-  check "a run with a table is the case: $names" [ "$(named "$work/tables/gas.runs.csv" 3 "${names% *}")" = "$(field "$work/tables/measured.summary.csv" "${names#* }")" ]
+  check "a run with a table has the results of the case: $names" [ "$(named "$work/tables/gas.runs.csv" 3 "${names% *}")" = "$(field "$work/tables/measured.summary.csv" "${names#* }")" ]
 done
 run sweep -j 1 -o "$work/tables" -s integrator.method=auto "$work/motors.nml"
-check "a study over tables says which is missing, status $status" [ "$status" = 4 ]
-check "in its row" grep -q '^3,.*none.csv: No such file' "$work/tables/motors.runs.csv"
+check "a study over tables with a missing one, status $status" [ "$status" = 4 ]
+check "the row of a missing table names it" grep -q '^3,.*none.csv: No such file' "$work/tables/motors.runs.csv"
 run -q -o "$work/tables" -s integrator.method=auto -s drive.torque_table=weak.csv "$work/motor.nml"
-check "a run over tables is the case" [ "$(named "$work/tables/motors.runs.csv" 2 'rhs_evaluations[-]')" = "$(field "$work/tables/motor.summary.csv" rhs_evaluations)" ]
-check "its motor is weaker" awk -v a="$(named "$work/tables/motors.runs.csv" 1 'mean_crank_speed[rad/s]')" \
+check "a run over tables has the results of the case" [ "$(named "$work/tables/motors.runs.csv" 2 'rhs_evaluations[-]')" = "$(field "$work/tables/motor.summary.csv" rhs_evaluations)" ]
+check "the weaker motor gives a lower speed" awk -v a="$(named "$work/tables/motors.runs.csv" 1 'mean_crank_speed[rad/s]')" \
   -v b="$(named "$work/tables/motors.runs.csv" 2 'mean_crank_speed[rad/s]')" 'BEGIN { exit !(b < 0.95*a) }'
 
-# runs until the motion repeats: its period, its exponent, the statistics of the last period alone
+# runs until the motion is periodic: period, exponent, statistics of the last period only
 cp cases/flores/lubricated_400cP.nml "$work/film.nml"
 study periods <<'END'
 &study case = 'film.nml', cycles = T /
@@ -189,17 +189,17 @@ study periods <<'END'
 END
 run sweep -j 1 -o "$work/periods" -s run.until=periodic -s output.window=last_period -s run.lyapunov_revolutions=5 \
   -s integrator.method=auto "$work/periods.nml"
-check "runs until they repeat, status $status" [ "$status" = 0 ]
+check "runs until the motion is periodic, status $status" [ "$status" = 0 ]
 check "every row has every column" [ "$(awk -F, '{print NF}' "$work/periods/periods.runs.csv" | sort -u)" = 20 ]
 for row in 1 2; do
-  check "run $row repeats every revolution" [ "$(named "$work/periods/periods.runs.csv" $row 'period_revolutions[-]')" = 1 ]
-  check "run $row: neighbours come together" awk -v a="$(named "$work/periods/periods.runs.csv" $row 'lyapunov_exponent[1/revolution]')" \
+  check "run $row: period of one revolution" [ "$(named "$work/periods/periods.runs.csv" $row 'period_revolutions[-]')" = 1 ]
+  check "run $row: negative Lyapunov exponent" awk -v a="$(named "$work/periods/periods.runs.csv" $row 'lyapunov_exponent[1/revolution]')" \
     'BEGIN { exit !(a < -5 && a > -15) }'
-  check "run $row: one revolution counts" [ "$(named "$work/periods/periods.runs.csv" $row 'cycles[-]')" = 1 ]
+  check "run $row: statistics of one revolution" [ "$(named "$work/periods/periods.runs.csv" $row 'cycles[-]')" = 1 ]
 done
-check "by its number" [ "$(awk -F, 'NR > 1 && $2 < 5' "$work/periods/periods.cycles.csv" | wc -l)" = 0 ]
+check "the revolution of the statistics has its number" [ "$(awk -F, 'NR > 1 && $2 < 5' "$work/periods/periods.cycles.csv" | wc -l)" = 0 ]
 
-# what a killed program leaves: whole rows in any order, a torn one, revolutions of a run that has no row
+# files left by a program that was killed: complete rows in any order, an incomplete row, revolutions of a run that has no row
 mkdir "$work/torn"
 cp "$work/one/grid.study.nml" "$work/torn"
 { head -n 1 "$work/one/grid.runs.csv"; grep -e '^9,' -e '^4,' "$work/one/grid.runs.csv"; printf '5,1.58740'; } \
@@ -208,66 +208,66 @@ cp "$work/one/grid.study.nml" "$work/torn"
   grep '^4,' "$work/one/grid.cycles.csv"; printf '5,1'; } >"$work/torn/grid.cycles.csv"
 { head -n 1 "$work/one/grid.strobe.csv"; grep -e '^4,' -e '^9,' "$work/one/grid.strobe.csv"; } >"$work/torn/grid.strobe.csv"
 run sweep -o "$work/torn" "$work/grid.nml"
-check "a torn sweep is taken up" grep -q '12 runs, 2 of them already done' "$work/out"
-same "taken up" "$work/torn"
+check "a killed sweep is continued" grep -q '12 runs, 2 of them already done' "$work/out"
+same "continued" "$work/torn"
 run sweep -o "$work/torn" "$work/grid.nml"
 check "nothing is run twice" grep -q '12 runs, 12 of them already done; [^;]*csv$' "$work/out"
 same "run again" "$work/torn"
 run sweep -o "$work/torn" -a standard "$work/grid.nml"
-check "another base case is not mixed in, status $status" [ "$status" = 5 ]
-check "and the way out is named" grep -q 'grid.runs.csv: belongs to another study.*--fresh' "$work/err"
+check "results of another base case are refused, status $status" [ "$status" = 5 ]
+check "the message about another base case names --fresh" grep -q 'grid.runs.csv: belongs to another study.*--fresh' "$work/err"
 run sweep -o "$work/torn" -s initial.crank_angle_deg=10 --fresh "$work/grid.nml"
-check "--fresh begins anew, status $status" [ "$status" = 0 ]
-check "with other results" [ "$(cmp -s "$work/torn/grid.runs.csv" "$work/one/grid.runs.csv"; echo $?)" = 1 ]
+check "--fresh discards earlier runs, status $status" [ "$status" = 0 ]
+check "--fresh with another base case gives other results" [ "$(cmp -s "$work/torn/grid.runs.csv" "$work/one/grid.runs.csv"; echo $?)" = 1 ]
 
-# links under the temporary names are replaced, and what they point at stays
+# links with the temporary names are replaced, and their targets are unchanged
 mkdir "$work/linked"
 for kind in runs.csv cycles.csv strobe.csv study.nml; do
   echo precious >"$work/precious.$kind"
   ln -s "../precious.$kind" "$work/linked/grid.$kind.part"
 done
 run sweep -o "$work/linked" "$work/grid.nml"
-check "a sweep among links, status $status" [ "$status" = 0 ]
-same "among links" "$work/linked"
+check "a sweep in a folder with links, status $status" [ "$status" = 0 ]
+same "in a folder with links" "$work/linked"
 for kind in runs.csv cycles.csv strobe.csv study.nml; do
-  check "what a link at grid.$kind.part points at stays" [ "$(cat "$work/precious.$kind")" = precious ]
-  check "grid.$kind is no link" [ ! -L "$work/linked/grid.$kind" ]
+  check "target of a link at grid.$kind.part is unchanged" [ "$(cat "$work/precious.$kind")" = precious ]
+  check "grid.$kind is not a link" [ ! -L "$work/linked/grid.$kind" ]
 done
 mkdir -p "$work/folder/grid.runs.csv.part"
 run sweep -o "$work/folder" "$work/grid.nml"
-check "a folder under a temporary name: status 5, got $status" [ "$status" = 5 ]
-check "and it is named" grep -q 'grid.runs.csv: Is a directory' "$work/err"
+check "a folder with a temporary name: status 5, got $status" [ "$status" = 5 ]
+check "the message names a folder with a temporary name" grep -q 'grid.runs.csv: Is a directory' "$work/err"
 
-# files that do not fit together: what is missing is run again
-fits() {   # fits NAME RUNS: the sweep in $work/broken runs that many again, and is as the whole one then
+# files that do not fit together: runs with missing results are run again
+fits() {   # fits NAME RUNS: the sweep in $work/broken repeats so many runs, and then has the files of an uninterrupted sweep
   run sweep -o "$work/broken" "$work/grid.nml"
   check "$1: $2 run again, got $(cat "$work/out")" grep -q " $2 incomplete and run again;" "$work/out"
   same "$1" "$work/broken"
 }
 cp -R "$work/one" "$work/broken"
 head -c 700 "$work/one/grid.cycles.csv" >"$work/broken/grid.cycles.csv"
-fits "revolutions cut" 11
+fits "incomplete revolutions" 11
 tail -n 1 "$work/one/grid.strobe.csv" | cmp -s - "$work/one/grid.strobe.csv" && check "the last strobe is one of several" false
 head -n -1 "$work/one/grid.strobe.csv" >"$work/broken/grid.strobe.csv"
-fits "the last strobe cut" 1
+fits "incomplete strobes" 1
 rm "$work/broken/grid.strobe.csv"
 fits "no strobes" 12
 sed '/^3,/{s/,done,.*//;q}' "$work/one/grid.runs.csv" >"$work/broken/grid.runs.csv"
 tail -n +5 "$work/one/grid.runs.csv" >>"$work/broken/grid.runs.csv"
 run sweep -o "$work/broken" "$work/grid.nml"
-check "a row cut is run again, got $(cat "$work/out")" grep -q '12 runs, 11 of them already done;' "$work/out"
-same "a row cut" "$work/broken"
+check "the run of an incomplete row is repeated, got $(cat "$work/out")" grep -q '12 runs, 11 of them already done;' "$work/out"
+same "an incomplete row" "$work/broken"
 printf '4,\0\0\0\0\n' >>"$work/broken/grid.runs.csv"
 run sweep -o "$work/broken" "$work/grid.nml"
-same "zeros behind the rows" "$work/broken"
+same "zeros after the rows" "$work/broken"
 sed "s/cycles = T/traces = 'all'/" "$work/grid.nml" >"$work/traced.nml"
 run sweep -o "$work/broken" "$work/traced.nml"
 rm "$work/broken/traced/5.csv"
 run sweep -o "$work/broken" "$work/traced.nml"
-check "a trace that has gone is written again" [ -s "$work/broken/traced/5.csv" ]
-check "and only its run is run" grep -q '11 of them already done, 1 incomplete' "$work/out"
+check "a missing trace is written again" [ -s "$work/broken/traced/5.csv" ]
+check "only the run of a missing trace is repeated" grep -q '11 of them already done, 1 incomplete' "$work/out"
 
-# a real kill, and an interrupt
+# a real kill, and a termination signal
 study long <<'END'
 &study case = 'base.nml', design = 'latin_hypercube', runs = 3000, seed = 3, cycles = T, strobe_columns = 'pin_force_x' /
 &parameter key = 'joint.clearance', from = 1e-5, to = 4e-5 /
@@ -286,17 +286,17 @@ for signal in KILL TERM; do
   wait $pid 2>/dev/null
   status=$?
   rows=$(wc -l <"$work/$signal/long.runs.csv")
-  check "$signal: stopped half way, $rows rows" [ "$rows" -ge 20 -a "$rows" -lt 3000 ]
+  check "$signal: stopped before the end, $rows rows" [ "$rows" -ge 20 -a "$rows" -lt 3000 ]
   [ "$signal" = TERM ] && check "interrupted: exit status 4, got $status" [ "$status" = 4 ]
-  [ "$signal" = TERM ] && check "interrupted: says how to go on" grep -q 'interrupted after .* of 3000 runs; the same command' "$work/err"
+  [ "$signal" = TERM ] && check "interrupted: the message names the command that continues" grep -q 'interrupted after .* of 3000 runs; the same command' "$work/err"
   run sweep -o "$work/$signal" "$work/long.nml"
-  check "$signal: taken up" grep -q 'of them already done' "$work/out"
+  check "$signal: continued" grep -q 'of them already done' "$work/out"
   check "$signal: the same runs" cmp -s "$work/whole/long.runs.csv" "$work/$signal/long.runs.csv"
   check "$signal: the same revolutions" cmp -s "$work/whole/long.cycles.csv" "$work/$signal/long.cycles.csv"
 done
 
-# power cuts: the program ends at the call of fsync number POWER_CUT, as if it had not happened; of every file only what was
-# brought down to the disk before is left, by its number and length in POWER_CUT_LOG, but of the rows of runs all that was written
+# power cuts: the program ends at call number POWER_CUT of fsync, before that call. Of every file only the part that was flushed to
+# the disk is kept, by its inode and length in POWER_CUT_LOG; of the rows of runs everything that was written is kept.
 cat >"$work/power_cut.c" <<'END'
 #define _GNU_SOURCE
 #include <fcntl.h>
@@ -337,7 +337,7 @@ if gcc -shared -fPIC -O1 -o "$work/power_cut.so" "$work/power_cut.c"; then
     done
     rows=$(cat "$work/power/long.runs.csv" 2>/dev/null | wc -l)
     run sweep -o "$work/power" "$work/long.nml"
-    check "cut at call $cut, $rows rows: taken up, status $status" [ "$status" = 0 ]
+    check "cut at call $cut, $rows rows: continued, status $status" [ "$status" = 0 ]
     check "cut at call $cut: every row has its revolutions and strobes, $(cat "$work/out")" \
       [ "$(grep -c 'incomplete and run again' "$work/out")" = 0 ]
     for kind in runs cycles strobe; do
@@ -347,12 +347,12 @@ if gcc -shared -fPIC -O1 -o "$work/power_cut.so" "$work/power_cut.c"; then
     [ "$rows" = 3001 ] && break
     cut=$((cut + 3))
   done
-  check "cuts while the sweep was going on, $cut calls" [ "$cut" -gt 12 ]
+  check "power cuts during the sweep, $cut calls" [ "$cut" -gt 12 ]
 else
-  check "a compiler for power_cut.c" false
+  check "power_cut.c is compiled" false
 fi
 
-# a large study: checked in no time, and no signal waits for it
+# a large study is checked quickly, and a signal ends the program at once
 study large <<'END'
 &study case = 'base.nml', design = 'latin_hypercube', runs = 10000000 /
 &parameter key = 'joint.clearance', from = 1e-5, to = 4e-5 /
@@ -372,7 +372,7 @@ study large_grid <<'END'
 &parameter key = 'lubrication.viscosity', from = 0.005, to = -1e-9, count = 3000 /
 END
 timeout -s KILL 10 "$gudgeon" sweep --check "$work/large_grid.nml" >"$work/out" 2>"$work/err"
-check "a large grid whose last value is wrong, status $?" grep -q 'run 3000: .*viscosity = -1.000000000E-09: must be > 0' "$work/err"
+check "a large grid with a wrong last value, status $?" grep -q 'run 3000: .*viscosity = -1.000000000E-09: must be > 0' "$work/err"
 for signal in INT TERM; do
   timeout -k 10 -s $signal 0.3 "$gudgeon" sweep -o "$work/large" "$work/large.nml" 2>/dev/null
   check "$signal at the start of a large sweep, status $?" [ $? != 137 ]
@@ -387,7 +387,7 @@ END
 ( ulimit -v 1000000; "$gudgeon" sweep --check "$work/wide.nml" 2>"$work/err" )
 check "a table with one long field, status $?: $(cat "$work/err")" grep -q 'wide.csv:20001: column 1, .*must be at most 4000 bytes' "$work/err"
 
-# long titles, one after the other
+# several long titles
 awk 'BEGIN { print "case.title,joint.clearance"; for (i = 0; i < 3; i++) { for (k = 0; k < 400; k++) printf "0123456789"; print ",2e-5" } }' \
   >"$work/long_titles.csv"
 study long_titles <<'END'
@@ -396,20 +396,20 @@ END
 run sweep --check "$work/long_titles.nml"
 check "titles of 4000 bytes, status $status: $(cat "$work/err")" [ "$status" = 0 ]
 
-# titles: what looks like done or like a formula
+# titles that contain the word done, or begin like a formula
 printf 'case.title,joint.clearance,rod_com\n"a,done,b",-1e-5\n"=1+1, x",2e-5\n-a,2e-5\n-5,3e-5\n"\047=1",2e-5\n' | sed 's/,rod_com//' >"$work/titles.csv"
 study titles <<'END'
 &study case = 'base.nml', table = 'titles.csv' /
 END
 for time in first second; do
   run sweep -o "$work/titles" "$work/titles.nml"
-  check "a title that holds done, $time time: status 4, got $status" [ "$status" = 4 ]
-  check "a title that holds done, $time time" grep -q 'titles.nml: 1 of 5 runs failed' "$work/err"
+  check "a title that contains done, $time time: status 4, got $status" [ "$status" = 4 ]
+  check "a title that contains done, $time time: one run failed" grep -q 'titles.nml: 1 of 5 runs failed' "$work/err"
 done
-check "titles that begin as formulas" [ "$(tail -n +3 "$work/titles/titles.runs.csv" | sed 's/,[23]e-5,done.*//')" = \
+check "titles that begin like formulas" [ "$(tail -n +3 "$work/titles/titles.runs.csv" | sed 's/,[23]e-5,done.*//')" = \
   "$(printf '2,"\047=1+1, x"\n3,\047-a\n4,-5\n5,\047=1')" ]
 
-# a table; runs that fail keep their reason and harm no other
+# a table; runs that fail keep the reason and do not stop others
 printf '\357\273\277joint.clearance,lubrication.law,lubrication.kinematic_viscosity,"integrator.max_evaluations"\r\n2e-5,pinkus_sternlicht,0,100000\r\n-1e-5,pinkus_sternlicht,0,100000\r\n2e-5,oscillating_film,1.38e-5,"100000"\r\n2e-5,oscillating_film,0,100000\r\n2e-5,pinkus_sternlicht,0,500\r\n' >"$work/table.csv"
 study table <<'END'
 &study case = 'base.nml', table = 'table.csv', traces = 'failed' /
@@ -419,13 +419,13 @@ check "failed runs: exit status 4, got $status" [ "$status" = 4 ]
 check "failed runs are counted" grep -q 'table.nml: 3 of 5 runs failed' "$work/err"
 row() { sed -n "$(($1 + 1))p" "$work/t/table.runs.csv"; }
 check "run 1 is done: $(row 1)" [ "$(row 1 | cut -d, -f 6)" = done ]
-check "run 2 says why: $(row 2)" [ "$(row 2 | cut -d, -f 6)" = '&joint clearance = -1e-5: must be > 0 (m)' ]
+check "run 2 states the reason: $(row 2)" [ "$(row 2 | cut -d, -f 6)" = '&joint clearance = -1e-5: must be > 0 (m)' ]
 check "run 3 is done: $(row 3)" [ "$(row 3 | cut -d, -f 6)" = done ]
-check "run 4 says why: $(row 4)" [ "$(row 4 | cut -d, -f 6 | cut -c 1-35)" = '&lubrication kinematic_viscosity = ' ]
-check "run 5 says why: $(row 5)" [ "$(row 5 | grep -c 'max_evaluations) at t = ')" = 1 ]
-check "the run that failed on its way has a trace" [ -s "$work/t/table/5.csv" -a "$(ls "$work/t/table" | wc -l)" = 2 ]
+check "run 4 states the reason: $(row 4)" [ "$(row 4 | cut -d, -f 6 | cut -c 1-35)" = '&lubrication kinematic_viscosity = ' ]
+check "run 5 states the reason: $(row 5)" [ "$(row 5 | grep -c 'max_evaluations) at t = ')" = 1 ]
+check "a run that failed after its start has a trace" [ -s "$work/t/table/5.csv" -a "$(ls "$work/t/table" | wc -l)" = 2 ]
 run sweep -o "$work/t" "$work/table.nml"
-check "failed runs are not repeated, and still are failures" [ "$status" = 4 ]
+check "failed runs are not repeated and still count as failed" [ "$status" = 4 ]
 
 # messages
 study bad <<'END'
@@ -463,20 +463,20 @@ study ends <<'END'
 &parameter key = 'integrator.end_time', values = 0.035, 0.065 /
 END
 run -q sweep -o "$work/ends" -s integrator.revolutions=1 "$work/ends.nml"
-check "a parameter that ends the run takes the revolutions of the case away, status $status" [ "$status" = 0 ]
-check "and so the runs end" [ "$(awk -F, 'NR > 1 { printf "%s ", $4 }' "$work/ends/ends.runs.csv")" = "1 2 " ]
+check "a parameter for the end of the run replaces the revolutions of the case, status $status" [ "$status" = 0 ]
+check "the runs end at the values of the parameter" [ "$(awk -F, 'NR > 1 { printf "%s ", $4 }' "$work/ends/ends.runs.csv")" = "1 2 " ]
 run sweep -q -o "$work/dry" -s lubrication=none -s integrator.revolutions=2 -s contact.restitution=0.5 "$work/grid.nml"
-check "a sweep without its film has impacts" [ "$(awk -F, 'NR > 1 && $8 > 0' "$work/dry/grid.runs.csv" | wc -l)" -gt 6 ]
+check "a sweep with the film removed has impacts" [ "$(awk -F, 'NR > 1 && $8 > 0' "$work/dry/grid.runs.csv" | wc -l)" -gt 6 ]
 run --fresh cases/sim_I.nml
-check "--fresh is for studies" [ "$status" = 2 ]
+check "--fresh is refused for cases" [ "$status" = 2 ]
 refused "rows beyond the study" 3 "the study has 12 runs" --rows 5:20 "$work/grid.nml"
 refused "rows backwards" 2 "A:B" --rows 5:4 "$work/grid.nml"
 run sweep --check "$work/grid.nml"
 check "--check counts the runs" [ "$status" = 0 -a "$(cat "$work/out")" = "$work/grid.nml: correct, 12 runs" ]
 run sweep --check "$work/table.nml"
-check "--check foretells the exit status, got $status" [ "$status" = 4 ]
+check "--check has the exit status of the sweep, got $status" [ "$status" = 4 ]
 check "--check counts the runs that would fail" [ "$(cat "$work/out")" = "$work/table.nml: 5 runs, 2 would fail" ]
-check "--check finds the run that cannot be" grep -q 'table.nml: run 2: .*clearance = -1e-5: must be > 0' "$work/err"
+check "--check finds the invalid run" grep -q 'table.nml: run 2: .*clearance = -1e-5: must be > 0' "$work/err"
 run sweep --template
 cp "$work/out" "$work/template.nml"
 cp "$work/base.nml" "$work/sim_I.nml"
