@@ -258,7 +258,7 @@ LIARS = [
     ("wrong gravity", "film", "mechanism.gravity", "9.8", "Newton, piston"),
     ("a larger tolerance than stated, in contact", "contact", "integrator.relative_tolerance", "1e-4", "grown tolerances from"),
     ("a larger tolerance than stated, in a film", "short", "integrator.relative_tolerance", "1e-3", "grown tolerances from"),
-    ("wrong piston mass with one of the methods only", "dry", "mechanism.piston_mass", "0.25", "beyond the horizon"),
+    ("wrong piston mass in one method alone", "dry", "mechanism.piston_mass", "0.25", "beyond the horizon"),
 ]
 
 #: (wrong line, file, text of the line, its text in the mutant, scene, text that the verdict must contain)
@@ -411,7 +411,7 @@ def lied(program: Path, folder: Path, number: int) -> list[Finding]:
     name, settings = SCENES[scene]
     case = ROOT / "cases" / f"{name}.nml"
     said = run_case(program, case, {**settings, "output.ideal_twin": ".false."}).number(key)
-    lies = liar(folder / f"liar{number}", program, key, value, said, once="tolerance" in what or "alone" in what)
+    lies = liar(folder / f"liar{number}", program, key, value, said, once="tolerance" in what or "method alone" in what)
     verdict = judge_scene(lies, case, settings)
     return [(any(says in fault for fault in verdict.faults), f"a program with {what}: found by the judge", "; ".join(summary_of(verdict)))]
 
