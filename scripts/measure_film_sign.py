@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Which sign the radial force (5.36) of the Pinkus-Sternlicht film must have, written to data/measured/film_sign.md.
+"""Determines the sign of the radial force (5.36) of the Pinkus-Sternlicht film, and writes data/measured/film_sign.md.
 
     scripts/measure_film_sign.py
 
@@ -22,12 +22,12 @@ it; the sign follows from the integral."""
 
 
 def integrated(eps: float, rate: float) -> tuple[float, float]:
-    """Force of the positive pressure, by the midpoint rule over Sommerfeld's angle, in which a thin film is resolved."""
+    """Force of the positive pressure, by the midpoint rule over Sommerfeld's angle, which resolves a thin film."""
     radial = tangential = 0.0
     step = 2 * math.pi / POINTS
     for k in range(POINTS):
         angle = (k + 0.5) * step
-        cosine = (math.cos(angle) - eps) / (1 - eps * math.cos(angle))   # of the angle from the thickest film
+        cosine = (math.cos(angle) - eps) / (1 - eps * math.cos(angle))   # of the angle from the largest film thickness
         sine = math.sqrt(1 - eps * eps) * math.sin(angle) / (1 - eps * math.cos(angle))
         thickness = 1 + eps * cosine
         bracket = WEDGE * eps * sine * (2 + eps * cosine) - rate * (4 * cosine + eps * (2 * cosine * cosine - 1))
@@ -40,7 +40,7 @@ def integrated(eps: float, rate: float) -> tuple[float, float]:
 
 
 def closed_form(eps: float, rate: float) -> tuple[float, float]:
-    """(5.36), (5.37), the radial part with the corrected sign."""
+    """(5.36) and (5.37), with the corrected sign of the radial part."""
     k = math.sqrt((1 - eps * eps) * ((WEDGE / (2 * rate)) ** 2 + 1 / (eps * eps)))
     common = 6 * rate / ((2 + eps * eps) * (1 - eps * eps) ** 1.5)
     tangential = 6 * math.pi * eps * WEDGE / ((2 + eps * eps) * math.sqrt(1 - eps * eps))

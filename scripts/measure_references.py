@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""How far the program agrees with the reference curves in data/, written to data/measured/references.md.
+"""Measures how closely the program agrees with the reference curves in data/, and writes data/measured/references.md.
 
     scripts/measure_references.py [--program FILE]
 
-data/references.csv lists the references: the case of each, up to when it is trusted, and how far its own two runs agree. Each case is run up to
-there with a relative tolerance of 1e-11 and the rows of its reference. Exit status 1 if a run fails or has other rows or events.
+data/references.csv lists the references: the case of each, the time up to which it is valid, and how closely its own two runs
+agree. Each case is run up to this time with a relative tolerance of 1e-11 and the rows of its reference. Exit status 1 if a run
+fails or has other rows or events.
 """
 from __future__ import annotations
 
@@ -20,7 +21,7 @@ from gudgeon_plots.measured import write_table
 
 TOP = Path(__file__).resolve().parent.parent
 STATES = ("crank_angle", "rod_angle", "piston_position", "crank_speed", "rod_speed", "piston_velocity")
-OTHER_NAMES = {"normal_force[N]": "asperity_force[N]"}   # of mixed_sim_I, whose reference calls it so
+OTHER_NAMES = {"normal_force[N]": "asperity_force[N]"}   # another name in the reference of mixed_sim_I
 NOTE = """Each case of `data/references.csv`, with a relative tolerance of 1e-11, against its reference: the largest difference of crank angle, rod
 angle, piston position and their rates ("states") and of all other columns, over the largest value of the column, and the largest difference of the
 instants of contacts. Beside each stands how far two runs of the reference, at two tolerances, agree with each other: it cannot be known
@@ -34,7 +35,7 @@ class Reference:
     name: str
     case: Path
     events: str
-    own: tuple[str, str, str]   # how far its two runs agree: states, other columns, times of events
+    own: tuple[str, str, str]   # differences of its two runs: states, other columns, times of events
 
 
 def number(text: str, digits: str = ".1e") -> str:
@@ -62,7 +63,8 @@ def events(path: Path) -> list[dict[str, str]]:
 
 
 def compare(program: Path, reference: Reference) -> tuple[float, float, float, int]:
-    """Largest differences of the states and of the other columns, relative, and of the events [s]; how many events were compared."""
+    """Largest relative differences of the states and of the other columns, and of the event times [s]; number of events
+    compared."""
     theirs = columns(TOP / f"data/{reference.name}.csv")
     times = theirs["time[s]"]
     with tempfile.TemporaryDirectory() as folder:
@@ -93,7 +95,7 @@ def compare(program: Path, reference: Reference) -> tuple[float, float, float, i
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", type=Path, help="this program instead of a release build")
+    parser.add_argument("--program", type=Path, help="program to run (default: the release build)")
     options = parser.parse_args()
     program = options.program.resolve() if options.program else None
     if program is None:

@@ -221,8 +221,8 @@ contains
 
   contains
 
-    !> The case is refused with this message; '': it is not refused. `is_list`: the message has a line number, and ends with a list of names
-    !> that may be longer.
+    !> The case is refused with this message; '': it is accepted. `is_list`: the message has a line number and ends with a list of
+    !> names that may be longer.
     subroutine refused(joint_keys, contact_keys, message, is_list)
       character(len=*), intent(in) :: joint_keys, contact_keys, message
       logical, intent(in), optional :: is_list

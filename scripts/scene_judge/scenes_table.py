@@ -9,7 +9,7 @@ from collections.abc import Callable
 from .verdict import Verdict
 
 SHARES = (0.5, 0.75, 0.9, 0.99, 1.0)
-LONGEST = 400   # characters of a reason that are shown
+LONGEST = 400   # largest number of characters of a reason that are shown
 
 FIGURES: dict[str, Callable[[Verdict], float | None]] = {
     "energy missing, relative": lambda v: v.energy.plain if v.energy else None,
@@ -21,35 +21,35 @@ FIGURES: dict[str, Callable[[Verdict], float | None]] = {
 
 @dataclasses.dataclass
 class Result:
-    """What became of one scene."""
+    """The result of one scene."""
 
     number: int
     axes: str
     case: str
     outcome: str
     reason: str
-    residual: float | None   # largest relative energy residual, where the run has one
+    residual: float | None   # largest relative energy residual, if the run has one
 
     @property
     def row(self) -> str:
-        """Row of the table that counts it: combinations share one."""
+        """The row of the table in which it is counted: all combinations share one."""
         return "combinations" if " + " in self.axes else self.axes
 
 
 def percentiles(values: list[float]) -> list[str]:
-    """What each of the SHARES of the values does not exceed."""
+    """For each of the SHARES, the value that this share of the values does not exceed."""
     values = sorted(values)
     return [f"{values[min(int(share * len(values)), len(values) - 1)]:.2g}" for share in SHARES]
 
 
 def figures_of(verdicts: list[Verdict]) -> dict[str, list[float]]:
-    """By name of a measured error, its values in the judged scenes; only those that have any."""
+    """The values of each measured error in the judged scenes, by its name; errors without values are left out."""
     found = {name: [value for value in map(figure, verdicts) if value is not None] for name, figure in FIGURES.items()}
     return {name: values for name, values in found.items() if values}
 
 
 def counts_of(results: list[Result]) -> dict[str, collections.Counter]:
-    """By axis, and for all, how many scenes have each outcome."""
+    """The number of scenes with each outcome, for each axis and for all."""
     counts: dict[str, collections.Counter] = collections.defaultdict(collections.Counter)
     for one in results:
         counts[one.row][one.outcome] += 1
@@ -58,7 +58,7 @@ def counts_of(results: list[Result]) -> dict[str, collections.Counter]:
 
 
 def judged_text(verdicts: list[Verdict], scenes: int) -> str:
-    """How many scenes were judged, and by what."""
+    """The number of judged scenes, and by which checks they were judged."""
     return (f"judged independently: {sum(bool(one.checks) for one in verdicts)} of {scenes} scenes, "
             f"integrals in {sum(one.energy is not None for one in verdicts)}, "
             f"states by the other method in {sum(one.states is not None and not one.states.unjudged for one in verdicts)}, "
