@@ -213,7 +213,7 @@ contains
     end function rate
   end subroutine ramp_with_crankshaft
 
-  !> The same with loose joints: the energy is the work of the drive.
+  !> The same with clearance at the joints: the energy is the work of the drive.
   subroutine loose_joints_on_a_ramp_of_the_shaft(check)
     class(checks_t), intent(inout) :: check
     character(len=long), parameter :: settings(7) = [character(len=long) :: 'drive.kind=constant_speed', 'drive.ramp_time=4e-3', &

@@ -141,8 +141,8 @@ contains
       'contact=none', 'friction=none']
     call runs('ideal pins', dry, [span, ideal])
     call runs('ideal pins, free crank', dry, [character(len=long) :: span, ideal, 'drive.kind=free'])
-    call runs('both pins loose', dry, [span, crank_pin])
-    call runs('crank pin loose', dry, [character(len=long) :: span, crank_pin, 'joint.kind=ideal', 'joint.clearance=0'])
+    call runs('clearance at both pins', dry, [span, crank_pin])
+    call runs('clearance at the crank pin', dry, [character(len=long) :: span, crank_pin, 'joint.kind=ideal', 'joint.clearance=0'])
     call runs('surfaces that stick', dry, [character(len=long) :: span, crank_pin, 'friction.law=coulomb', 'friction.v0=0', &
       'friction.v1=0', 'friction.coefficient=0.3', 'initial.crank_speed=50', 'mechanism.gravity=9.81'])
     call runs('bristles', dry, [character(len=long) :: span, 'friction.law=lugre', 'friction.stribeck_speed=0.01', &
