@@ -568,6 +568,14 @@ class Drawing(unittest.TestCase):
         with self.assertRaises(MissingResult):
             figures.draw(figure, MadeResults(figure.runs))
 
+    def test_long_titles_are_fitted(self) -> None:
+        drawing = figures.draw(read_figures()["B.10"], MadeResults())
+        drawing._suptitle.set_text(2 * drawing._suptitle.get_text())
+        self.assertTrue(any("the margin" in pair for pair in overlaps(drawing)))
+        figures.fit_title(drawing)
+        self.assertFalse(any("the margin" in pair for pair in overlaps(drawing)), overlaps(drawing))
+        plt.close(drawing)
+
     def test_ringing_is_told_from_a_steep_curve(self) -> None:
         x = np.linspace(0, 100, 20001)
         steep = 50 * np.sin(2 * np.pi * x / 25)

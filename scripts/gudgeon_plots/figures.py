@@ -186,9 +186,22 @@ def add_legend(drawing: Drawing, axes: Iterable[Axes], markerscale: float = 1.0)
         )
 
 
+def fit_title(drawing: Drawing) -> None:
+    """Print the title of a drawing smaller if it is wider than the drawing: those in other languages can be."""
+    title = drawing._suptitle
+    if title is None:
+        return
+    drawing.canvas.draw()
+    box, width = title.get_window_extent(), drawing.canvas.get_width_height()[0]
+    room = width - max(box.x0, 0.0) if title.get_horizontalalignment() == "left" else width
+    if box.width > room:
+        title.set_fontsize(title.get_fontsize() * 0.98 * room / box.width)
+
+
 def save(drawing: Drawing, directory: Path, stem: str, formats: Iterable[str]) -> list[Path]:
     """Write a drawing in each format, in the language of the script. Dates are left out, so that equal results give equal files."""
     language.current.localise(drawing)
+    fit_title(drawing)
     directory.mkdir(parents=True, exist_ok=True)
     paths = []
     for form in formats:

@@ -56,7 +56,7 @@ class Language:
             return text
         if text.strip() in self.exact:  # a translation of the whole text, with its lines
             return self.exact[text.strip()]
-        return "\n".join(self._line(line) for line in text.split("\n"))
+        return "\n".join(self._line(line) for line in text.split("\n")).replace("[deg]", "[graus]")
 
     def _line(self, text: str) -> str:
         if figure := re.match(r"([0-9A-Z]\.[0-9]+  )(.*)", text):  # numbers of figures keep the decimal point
