@@ -358,7 +358,10 @@ class RowChecks:
         along, across = rate(2)   # nearly zero, apart from the rotation with the pin, if the walls hardly deform
         given = math.hypot(along, across - turn * size / 2) / (math.hypot(along, across) or 1.0)
         between = max(MOVING[0], MOVING[1] * self.run.number("integrator.relative_tolerance")) / min(max(given, 1e-12), 1.0)
-        self.take("film law", miss, (between + law.margin) * load + 3 * blur + row.law_noise, row.get["time"])
+        # the force is that of the walls, whose deflection is known to the tolerance of the eccentricity
+        deflection = abs(row.get["wall_deflection"])
+        walls = min(1.0, self.run.number("integrator.relative_tolerance") * c / deflection) if deflection > 0 else 1.0
+        self.take("film law", miss, (between + law.margin + walls) * load + 3 * blur + row.law_noise, row.get["time"])
 
     def check_gas(self, row: Row, i: int, t: float) -> None:
         get, gas = row.get, self.gas
