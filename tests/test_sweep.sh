@@ -455,7 +455,7 @@ study bad <<'END'
 &study case = 'none.nml' /
 &parameter key = 'joint.clearance', values = 1e-5 /
 END
-refused "no base case" 3 "none.nml: No such file" "$work/bad.nml"
+refused "no base case" 3 "bad.nml: &study case: .*none.nml: No such file" "$work/bad.nml"
 refused "no study" 2 "no study file"
 refused "a case for a study" 3 "sim_I.nml:[0-9]*: &case: .*run it with gudgeon cases/sim_I.nml, without sweep" cases/sim_I.nml
 study ends <<'END'

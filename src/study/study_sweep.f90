@@ -64,7 +64,10 @@ contains
     call read_study(path, sweep%study, error)
     if (allocated(error)) return
     call read_case_values(sweep%study%case, with_preset(options%accuracy, options%overrides), values, error)
-    if (allocated(error)) return
+    if (allocated(error)) then
+      error%message = printable(path, 200)//': &study case: '//error%message
+      return
+    end if
     sweep%path = options%out//'/'//sweep%study%name
     associate (study => sweep%study, design => sweep%design)
       sweep%last = study%runs
