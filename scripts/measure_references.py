@@ -24,8 +24,8 @@ STATES = ("crank_angle", "rod_angle", "piston_position", "crank_speed", "rod_spe
 OTHER_NAMES = {"normal_force[N]": "asperity_force[N]"}   # another name in the reference of mixed_sim_I
 NOTE = """Each case of `data/references.csv`, with a relative tolerance of 1e-11, against its reference: the largest difference of crank angle, rod
 angle, piston position and their rates ("states") and of all other columns, over the largest value of the column, and the largest difference of the
-instants of contacts. Beside each stands how far two runs of the reference, at two tolerances, agree with each other: it cannot be known
-better than this. "Compared" counts the events up to the end, of which the reference has more where its two runs part before its end."""
+instants of contacts. Beside each difference stands that of two runs of the reference with different tolerances: the uncertainty of the
+reference. "Compared" is the number of events that are compared; the reference has more where its two runs differ before its end."""
 
 
 @dataclass
