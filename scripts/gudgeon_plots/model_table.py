@@ -6,9 +6,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
 from .model_effects import QUANTITIES, Outcome, Search, change, largest_change, percent, scale_of
-from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION, WIDTH
+from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION, WIDTH, mark_decades
 
 COLOURS = {"taken out": VERMILION, "exchanged": BLUE, "refined": GREEN, "added": ORANGE, "fullest": PURPLE, "cheapest": PURPLE}
+LABELS: dict[str, str | None] = {"fullest": "F most complete, C cheapest", "cheapest": None}  # in the legend, where not the kind itself
 SMALLEST = 1e-3  # smallest change that the picture shows [%]
 
 
@@ -119,28 +120,50 @@ def cost(outcome: Outcome, given: Outcome) -> str:
     return f"{ratio(outcome.evaluations, given.evaluations)} times the evaluations and {ratio(outcome.seconds, given.seconds)} times the time"
 
 
-def draw_largest(axis: Axes, points: list[tuple[str, str, Outcome]], shown: list[str], given: Outcome, limit: float) -> None:
-    """The largest change of all quantities against the evaluations."""
-    for number, kind, outcome in points:
-        largest = largest_change(shown, given, outcome)
-        if largest < float("inf"):
-            draw_point(axis, number, kind, outcome.evaluations / given.evaluations, largest)
-    finish(axis, "largest of these", limit)
+Point = tuple[str, str, float, float]  # number, kind, cost, change as a fraction
 
 
-def draw_point(axis: Axes, number: str, kind: str, cost: float, change: float, label: str | None = None) -> None:
-    """A scene with its number; `change` as a fraction."""
-    where = (cost, max(SMALLEST, 100 * change))
-    axis.plot(*where, "o", color=COLOURS.get(kind, GREY), markersize=3, label=label)
-    axis.annotate(number, where, xytext=(2, 2), textcoords="offset points", fontsize=5)
-
-
-def finish(axis: Axes, title: str, limit: float) -> None:
+def draw_points(axis: Axes, points: list[Point], limits: tuple[float, float], title: str, limit: float) -> None:
+    """Change against cost between two costs. Scenes that lie close together share a label; scenes without a change have none."""
+    for _, kind, cost, change in points:
+        axis.plot(cost, max(SMALLEST, 100 * change), "o", color=COLOURS.get(kind, GREY), markersize=3, label=LABELS.get(kind, kind))
     axis.axhline(100 * limit, color=GREY, linestyle="--", linewidth=0.6)
     axis.set_xscale("log")
     axis.set_yscale("log")
+    axis.set_xlim(*limits)
+    mark_decades(axis.xaxis)
+    mark_decades(axis.yaxis)
+    axis.autoscale_view()
     axis.set_title(title)
     axis.set_ylabel("change [%]")
+    for numbers, cost, change in clusters(axis, points):
+        axis.annotate(", ".join(numbers), (cost, change), xytext=(2, 2), textcoords="offset points", fontsize=5)
+
+
+def clusters(axis: Axes, points: list[Point]) -> list[tuple[list[str], float, float]]:
+    """Numbers of the scenes whose points or labels would overlap, and the place of their common label: beside the rightmost point."""
+    shown = [(number, cost, 100 * change) for number, _, cost, change in points if 100 * change > SMALLEST]
+    scale = axis.transAxes.inverted()
+    placed = [(*scale.transform(axis.transData.transform(place)), number, *place) for number, *place in shown]
+    groups: list[list[tuple[float, float, str, float, float]]] = []
+    for point in sorted(placed):
+        for group in groups:
+            height = sum(other[1] for other in group) / len(group)
+            if point[0] - group[-1][0] < 0.03 + 0.03 * len(group) and abs(point[1] - height) < 0.035:
+                group.append(point)
+                break
+        else:
+            groups.append([point])
+    return [
+        (sorted((one[2] for one in group), key=lambda number: (len(number), number)), max(one[3] for one in group), group[-1][4])
+        for group in groups
+    ]
+
+
+def wider(costs: list[float]) -> tuple[float, float]:
+    """Limits of an axis that shows all costs, with room for the labels."""
+    room = (max(costs) / min(costs)) ** 0.06
+    return min(costs) / room, max(costs) * room
 
 
 def draw(name: str, outcomes: list[Outcome], search: Search, names: list[str], limit: float) -> Drawing:
@@ -151,25 +174,20 @@ def draw(name: str, outcomes: list[Outcome], search: Search, names: list[str], l
     idle = idle_scenes(outcomes)
     points = [(str(n), one.variant.kind, one) for n, one in enumerate(outcomes) if n and one.is_there and n not in idle]
     points += [("F", "fullest", search.fullest), ("C", "cheapest", search.cheapest)]
-    kinds = []
+    seconds = [outcome.seconds / given.seconds for *_, outcome in points]
     for axis, quantity in zip(axes.flat, shown):
-        for number, kind, outcome in points:
-            found = change(quantity, given, outcome)
-            if found is None:
-                continue
-            first = kind not in kinds and kind != "cheapest"
-            if first:
-                kinds.append(kind)
-            label = {"fullest": "F most complete, C cheapest"}.get(kind, kind) if first else None
-            draw_point(axis, number, kind, outcome.seconds / given.seconds, abs(found[0]), label)
-        finish(axis, QUANTITIES[quantity].label, limit)
+        changes = [(number, kind, outcome, change(quantity, given, outcome)) for number, kind, outcome in points]
+        found = [(number, kind, outcome.seconds / given.seconds, abs(one[0])) for number, kind, outcome, one in changes if one]
+        draw_points(axis, found, wider(seconds), QUANTITIES[quantity].label, limit)
     for axis in list(axes.flat)[len(shown) :]:  # where no quantity is drawn
-        draw_largest(axis, points, shown, given, limit)
+        largest = [(number, kind, outcome.evaluations / given.evaluations, largest_change(shown, given, outcome)) for number, kind, outcome in points]
+        largest = [point for point in largest if point[3] < float("inf")]
+        draw_points(axis, largest, wider([cost for *_, cost, _ in largest]), "largest of these", limit)
     for axis in axes.flat[: len(shown)]:
         axis.set_xlabel("processor time over that of the case")
     for axis in axes.flat[len(shown) :]:
         axis.set_xlabel("evaluations over those of the case")
     handles = {label: handle for axis in axes.flat for handle, label in zip(*axis.get_legend_handles_labels())}
     drawing.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=5)
-    drawing.suptitle(f"{name}: what each model costs and changes (no change: at {SMALLEST:g} %)")
+    drawing.suptitle(f"{name}: what each model costs and changes (no change: at {SMALLEST:g} %, without a number)")
     return drawing
