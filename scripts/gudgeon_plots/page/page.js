@@ -219,8 +219,7 @@
     const { g, width, height } = prepare("bore");
     const n = inBore(bore.radius), tall = bore.top + bore.bottom;
     const scale = Math.min(0.8 * height / tall, 0.36 * width / (bore.radius + n * bore.clearance)), wall = scale * (bore.radius + n * bore.clearance);
-    const cx = width / 2, cy = height / 2, sine = n * at("piston_tilt");   // gaps are magnified n times,
-    and so is the change of the gaps by the tilt
+    const cx = width / 2, cy = height / 2, sine = n * at("piston_tilt");   // all gaps are magnified n times
     const Y = (h) => cy - scale * (h - (bore.top - bore.bottom) / 2);
     const X = (h, side) => cx + scale * (side * bore.radius + n * at("piston_offset") + (h - bore.along) * sine);
     g.strokeStyle = COLOUR.ink; g.lineWidth = 2.5;
