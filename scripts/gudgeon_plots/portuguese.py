@@ -262,7 +262,7 @@ TEXTS = {
     "top, -y": "topo, -y",
     "bottom, -y": "base, -y",
     "Pin orbit over the clearance": "Órbita do pino sobre a folga",
-    "Crank-pin orbit over its clearance": "Órbita do moente sobre sua folga",
+    "Orbit of the crank pin": "Órbita do pino da manivela",
     "Piston: velocity and acceleration": "Pistão: velocidade e aceleração",
     "velocity": "velocidade",
     "acceleration": "aceleração",

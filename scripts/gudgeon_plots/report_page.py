@@ -195,7 +195,7 @@ def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
     if crank_pin := float(run.parameter("crank_pin.joint", "clearance", 0.0)) if "crank_pin_phase" in columns else 0.0:
         found.append(
             plane(
-                "Crank-pin orbit over its clearance",
+                "Orbit of the crank pin",
                 *ECCENTRICITIES,
                 ("crank_pin_eccentricity_y", "crank_pin_eccentricity_x"),
                 (1 / crank_pin,) * 2,
