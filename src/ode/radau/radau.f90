@@ -129,11 +129,13 @@ module radau
       class(radau_t), intent(in) :: self
     end function newton_goal
 
-    !> (I - h/gamma J)^-1 (h/gamma f_0 + sum e_i z_i), the filtered difference from an embedded formula of order s. After a start or
-    !> a rejection it is filtered once more if it is too large.
-    module subroutine estimate_error(self, problem, error)
+    !> Norm of (I - h/gamma J)^-1 (h/gamma f_0 + sum e_i z_i), the filtered difference between a trial from (t, y) and an embedded
+    !> formula of order s, relative to the tolerance. If it is too large and `may_repeat`, it is filtered once more.
+    module subroutine estimate_error(self, problem, t, y, f, may_repeat, error)
       class(radau_t), intent(inout) :: self
       class(ode_problem_t), intent(in) :: problem
+      real(dp), intent(in) :: t, y(:), f(:)   !! beginning of the trial, and the right-hand side there
+      logical, intent(in) :: may_repeat
       real(dp), intent(out) :: error
     end subroutine estimate_error
 
@@ -247,7 +249,7 @@ contains
     call collect(self)
     if (outcome /= try_accepted) return
     self%y_new = self%y + self%stages%z_new(:, self%stages%stages())
-    call estimate_error(self, problem, error)
+    call estimate_error(self, problem, self%t, self%y, self%f, self%first .or. self%failed, error)
     if (.not. error < 1) then
       outcome = try_error
       return

@@ -66,40 +66,22 @@ contains
     self%statistics%jacobians = self%statistics%jacobians + 1
   end subroutine renew_jacobian
 
-  !> Whether the stages of a trial that ends at t solve the equations, and its error estimate, filtered once more if necessary, is
-  !> within the tolerance.
+  !> Whether the stages of a trial that ends at t solve the equations, and its error estimate is within the tolerance.
   subroutine check_landing(self, problem, t, landed)
     class(radau_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
     real(dp), intent(in) :: t
     logical, intent(out) :: landed
-    real(dp) :: size
-    logical :: inside
-    landed = .false.
+    real(dp) :: error
     self%y_try = self%y_old + self%stages%z_new(:, self%stages%stages())
-    call evaluate(t)
-    if (.not. inside) return
-    if (.not. solves_equations(self)) return
+    self%statistics%evaluations = self%statistics%evaluations + 1
+    call problem%derivatives(t, self%y_try, self%f_new, landed)
+    if (landed) landed = solves_equations(self)
+    if (.not. landed) return
     call self%stages%settle_quadratures(problem, self%f_new)
     call collect(self)
-    call self%stages%filtered_error(self%f_old, self%error)
-    size = scaled_norm(self, self%error)
-    landed = size < 1
-    if (landed .or. .not. size < 1e30_dp) return
-    self%y_try = self%y_old + self%error
-    call evaluate(self%t_old)
-    if (.not. inside) return
-    call self%stages%filtered_error(self%f_new, self%error)
-    landed = scaled_norm(self, self%error) < 1
-
-  contains
-
-    !> The right-hand side at self%y_try.
-    subroutine evaluate(at)
-      real(dp), intent(in) :: at
-      self%statistics%evaluations = self%statistics%evaluations + 1
-      call problem%derivatives(at, self%y_try, self%f_new, inside)
-    end subroutine evaluate
+    call estimate_error(self, problem, self%t_old, self%y_old, self%f_old, .true., error)
+    landed = error < 1
   end subroutine check_landing
 
   module procedure solves_equations
