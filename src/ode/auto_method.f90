@@ -20,11 +20,6 @@ module auto_method
                                                !! Adams follows at less cost may be stiff later
   real(dp), parameter :: adams_price = 1.3_dp  !! evaluations of Adams limited by stability, per 1/rate of the fastest mode
   real(dp), parameter :: step_overhead = 5     !! cost of Jacobian and linear algebra of a Radau step, in evaluations
-  !> Largest number of additional evaluations by Radau in a mode before Adams takes over again. It is larger at tolerances below
-  !> `tight_tolerance`, where the steps of Radau's highest formula grow slowly after a start (measured on all cases at 1e-9, 1e-10
-  !> and 1e-12: 4 to 7 % fewer evaluations than with 80; elastic engines 11 %).
-  real(dp), parameter :: most_loss_else = 80, most_loss_if_tight = 320
-  real(dp), parameter :: tight_tolerance = 5e-9_dp
 
   type, extends(ode_method_t) :: auto_t
     private
@@ -33,7 +28,6 @@ module auto_method
     logical :: stiff = .false.            !! Radau is in use
     logical, allocatable :: stiff_in(:)   !! the last phase of this mode ended with Radau, (0:highest mode)
     integer :: mode = 0                   !! mode of the present phase
-    real(dp) :: most_loss = most_loss_else !! see above
     integer :: bound = 0                  !! excess of Adams steps limited by stability over other steps
     integer, allocatable :: patience(:)   !! number of such steps required, for each mode
     real(dp), allocatable :: loss(:)      !! evaluations by Radau minus those that Adams would have needed, for each mode
@@ -59,7 +53,6 @@ contains
 
     if (first) then
       self%statistics = step_statistics_t()
-      call choose_most_loss(self)
       call forget_modes(self, problem%highest_mode)
       self%stiff = .false.
       self%adams%settings = self%settings
@@ -71,10 +64,14 @@ contains
     call begin_with(self, problem, self%stiff_in(self%mode), t, y, first, status)
   end subroutine start
 
-  pure subroutine choose_most_loss(self)
-    class(auto_t), intent(inout) :: self
-    self%most_loss = merge(most_loss_if_tight, most_loss_else, self%nominal_tolerance() < tight_tolerance)
-  end subroutine choose_most_loss
+  !> Largest number of additional evaluations by Radau in a mode before Adams takes over again. It is larger at tight tolerances,
+  !> where the steps of Radau's highest formula grow slowly after a start (measured on all cases at 1e-9, 1e-10 and 1e-12: 4 to 7 %
+  !> fewer evaluations than with 80; elastic engines 11 %).
+  pure real(dp) function most_loss(self)
+    class(auto_t), intent(in) :: self
+    real(dp), parameter :: tight = 5e-9_dp   !! relative tolerance
+    most_loss = merge(320, 80, self%nominal_tolerance() < tight)
+  end function most_loss
 
   !> Discard what is known about the modes.
   pure subroutine forget_modes(self, highest)
@@ -94,7 +91,6 @@ contains
     type(archive_t), intent(inout) :: archive
     self%adams%settings = self%settings
     self%radau%settings = self%settings
-    call choose_most_loss(self)
     if (archive%is_reading) call forget_modes(self, problem%highest_mode)
     call self%exchange_solution(problem, archive)
     call self%adams%exchange(problem, archive)
@@ -139,7 +135,7 @@ contains
 
     status = step_done
     associate (mode => self%mode)
-      if (self%stiff .and. self%loss(mode) > self%most_loss) then
+      if (self%stiff .and. self%loss(mode) > most_loss(self)) then
         self%patience(mode) = min(4*self%patience(mode), most_patience)
         call change_over(self, problem, .false., status)
       else if (.not. self%stiff .and. self%bound >= self%patience(mode)) then
