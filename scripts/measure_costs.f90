@@ -17,9 +17,8 @@ program measure_costs
   use gudgeon_scene, only: scene_t, evaluation_t, phase_contact
   use scene_builder, only: build_scene, settings_for, simulated_time
   use gudgeon_columns, only: column_list_t, choose_columns, row_values
-  use ode_method, only: ode_method_t, step_done
+  use ode_method, only: step_done
   use gudgeon_events, only: event_watch_t
-  use gudgeon_methods, only: new_method
   use gudgeon_recorder, only: recorder_t
   use trace_sink, only: trace_sink_t
   use silent_sink, only: silent_sink_t
