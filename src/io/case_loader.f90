@@ -4,7 +4,7 @@ module case_loader
   use gudgeon_errors, only: error_t
   use gudgeon_parameters, only: parameter_list_t, has_parameters_t, law_t, key_t, word_kind
   use case_definition, only: case_t, visit_case
-  use case_schema, only: find_group, is_listed, is_named
+  use case_schema, only: find_group, find_key, is_listed
   use case_value, only: set_to_default
   use case_values, only: case_values_t
   use case_curves, only: provide_curves
@@ -125,13 +125,7 @@ contains
   pure integer function place_of(self, key)
     class(loader_t), intent(in) :: self
     character(len=*), intent(in) :: key
-    associate (group => self%values%groups(self%at))
-      do place_of = group%first, group%last
-        if (self%values%keys(place_of)%name(1:1) /= key(1:1)) cycle
-        if (is_named(self%values%keys(place_of)%name, key)) return
-      end do
-    end associate
-    place_of = 0
+    place_of = find_key(self%values%keys, self%values%groups(self%at), key)
   end function place_of
 
   !> Set one parameter. A word, text or switch that is not given takes the default of the law, which is put into the values too.

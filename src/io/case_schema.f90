@@ -7,7 +7,7 @@ module case_schema
   use case_definition, only: case_t, visit_case, piston_pin_place
   implicit none
   private
-  public :: key_t, group_definition_t, schema_t, case_schema_of, find_key, find_group, is_named, is_listed, is_group_of_cases
+  public :: key_t, group_definition_t, schema_t, case_schema_of, find_key, find_group, is_listed, is_group_of_cases
   public :: shown_group, real_kind, integer_kind, logical_kind, word_kind, text_kind, shared_keys_differ
 
   !> A group. The group of an optional model may be missing in a case; its model is then absent from the scene.
@@ -184,7 +184,7 @@ contains
     integer :: place
     associate (unused => present(reals) .or. present(whole) .or. present(switch) .or. present(text))
     end associate
-    place = find_key(self%keys(:self%n_keys), trim(self%groups(self%n_groups)%name), trim(key%name))
+    place = find_key(self%keys, self%groups(self%n_groups), trim(key%name))
     if (place == 0) then
       if (self%n_keys == size(self%keys)) call make_room(self%keys)
       self%n_keys = self%n_keys + 1
@@ -251,16 +251,18 @@ contains
     is_listed = word /= '' .and. scan(word, ' ,') == 0 .and. index(', '//list//',', ', '//word//',') > 0
   end function is_listed
 
-  !> Index of a key in the table; 0 if there is none.
+  !> Index of a key of a group in the table; 0 if there is none.
   pure integer function find_key(keys, group, name) result(place)
     type(key_t), intent(in) :: keys(:)
-    character(len=*), intent(in) :: group, name
+    type(group_definition_t), intent(in) :: group
+    character(len=*), intent(in) :: name
     character(len=1) :: letter
     letter = name
-    do place = size(keys), 1, -1
-      if (keys(place)%name(1:1) /= letter) cycle   ! a fast test that excludes nearly all of them
-      if (is_named(keys(place)%name, name) .and. is_named(keys(place)%group, group)) return
+    do place = group%first, group%last
+      if (keys(place)%name(1:1) /= letter) cycle   ! a fast test that excludes most of them
+      if (is_named(keys(place)%name, name)) return
     end do
+    place = 0
   end function find_key
 
   !> Index of a group in the table; 0 if there is none.

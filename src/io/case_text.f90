@@ -35,16 +35,17 @@ contains
         'in a second group of this name: '//trim(merge('the joint of crank and rod', 'laws for that joint alone ', &
         groups(group)%place /= ''))//newline
       do i = 1, size(keys)
-        if (keys(i)%group == groups(group)%name) text = text//out//template_line(keys, keys(i))//newline
+        if (keys(i)%group == groups(group)%name) text = text//out//template_line(keys, groups(group), keys(i))//newline
       end do
       text = text//out//'/'//newline
     end do
   end function template_text
 
   !> `  key = value   ! unit, range, default: description`
-  function template_line(keys, key) result(line)
+  function template_line(keys, group, key) result(line)
     type(key_t), intent(in) :: keys(:)   !! of the schema
-    type(key_t), intent(in) :: key       !! one of them
+    type(group_definition_t), intent(in) :: group
+    type(key_t), intent(in) :: key       !! one of its keys
     character(len=:), allocatable :: line, value, note
     value = trim(key%default)
     if (key%example /= '') value = trim(key%example)
@@ -61,7 +62,7 @@ contains
     if (note /= '') line = line//note(3:)//': '
     line = line//trim(key%description)
     if (.not. allocated(key%laws)) return
-    associate (all_laws => keys(find_key(keys, trim(key%group), key%choice))%words)
+    associate (all_laws => keys(find_key(keys, group, key%choice))%words)
       if (key%laws /= all_laws) line = line//' ('//shorter(key%laws, others(all_laws, key%laws))//')'
     end associate
   end function template_line

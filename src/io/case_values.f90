@@ -3,7 +3,7 @@
 module case_values
   use gudgeon_errors, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text, nearest_word
-  use case_schema, only: key_t, group_definition_t, find_group, is_named, is_listed, shown_group, &
+  use case_schema, only: key_t, group_definition_t, find_group, find_key, is_listed, shown_group, &
     real_kind, integer_kind
   use namelist_reader, only: token_t
   use case_value, only: value_t, set_to_default, convert, find_decimal_comma, is_default, element_is_within, unit_of, most_reals
@@ -157,19 +157,14 @@ contains
     if (is_said) is_said = .not. is_default(self%keys(place), self%values(place), 1)
   end function is_said
 
-  !> Index of a key in the table; 0 if there is none. Only the keys of its group are searched.
+  !> Index of a key in the table; 0 if there is none.
   pure integer function place_of(self, group, key)
     class(case_values_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
     integer :: at
     at = find_group(self%groups, group)
-    if (at > 0 .and. len(key) > 0) then
-      do place_of = self%groups(at)%first, self%groups(at)%last
-        if (self%keys(place_of)%name(1:1) /= key(1:1)) cycle   ! a fast test that excludes most of them
-        if (is_named(self%keys(place_of)%name, key)) return
-      end do
-    end if
     place_of = 0
+    if (at > 0) place_of = find_key(self%keys, self%groups(at), key)
   end function place_of
 
   !> The index of a key, or an error that lists what exists instead. `at` names file and line.

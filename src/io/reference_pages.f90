@@ -47,15 +47,16 @@ contains
         text = text//'`place = ''crank_pin''` in a second group of this name makes it that of the crank pin.'//newline
       text = text//newline//'| key | unit | limits | default | meaning |'//newline//'|---|---|---|---|---|'//newline
       do i = 1, size(keys)
-        if (keys(i)%group == groups(group)%name) text = text//key_row(keys, keys(i))//newline
+        if (keys(i)%group == groups(group)%name) text = text//key_row(keys, groups(group), keys(i))//newline
       end do
       text = text//newline
     end do
   end function keys_reference
 
-  function key_row(keys, key) result(row)
+  function key_row(keys, group, key) result(row)
     type(key_t), intent(in) :: keys(:)   !! of the schema
-    type(key_t), intent(in) :: key       !! one of them
+    type(group_definition_t), intent(in) :: group
+    type(key_t), intent(in) :: key       !! one of its keys
     character(len=:), allocatable :: row, default, meaning
     default = trim(key%default)
     if (key%required) then
@@ -68,7 +69,7 @@ contains
     meaning = sentence(trim(key%description))
     if (allocated(key%words)) meaning = meaning//' One of `'//replaced(key%words, ', ', '`, `')//'`.'
     if (allocated(key%laws)) then
-      associate (all_laws => keys(find_key(keys, trim(key%group), key%choice))%words)
+      associate (all_laws => keys(find_key(keys, group, key%choice))%words)
         if (key%laws /= all_laws) meaning = meaning//' Only with `'//key%choice//'` '//replaced(key%laws, ', ', ', ')//'.'
       end associate
     end if

@@ -6,7 +6,7 @@ module study_file
   use gudgeon_posix, only: absolute_path
   use namelist_reader, only: namelist_t, entry_t, token_t, read_namelist
   use case_values, only: case_values_t
-  use case_schema, only: key_t, group_definition_t, find_key, is_group_of_cases
+  use case_schema, only: key_t, group_definition_t, is_group_of_cases
   use case_loader, only: load_model
   use case_text, only: resolved_text, template_text
   use reference_pages, only: keys_reference
@@ -163,10 +163,14 @@ contains
       character(len=*), intent(in) :: case, table, title
       character(len=:), allocatable :: resolved_with
       type(case_values_t) :: changed
+      integer :: place
       changed = values
-      changed%values(find_key(values%keys, 'study', 'case'))%text = case
-      changed%values(find_key(values%keys, 'study', 'table'))%text = table
-      changed%values(find_key(values%keys, 'study', 'title'))%text = title
+      place = values%place_of('study', 'case')
+      changed%values(place)%text = case
+      place = values%place_of('study', 'table')
+      changed%values(place)%text = table
+      place = values%place_of('study', 'title')
+      changed%values(place)%text = title
       resolved_with = resolved_text(changed)
     end function resolved_with
   end subroutine take_study
