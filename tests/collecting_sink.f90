@@ -6,8 +6,8 @@ module collecting_sink
   use case_file, only: read_case
   use gudgeon_columns, only: column_list_t, choose_columns, column_name
   use gudgeon_simulation, only: simulate, run_report_t
-  use row_store, only: row_store_t, take_store
-  use trace_sink, only: trace_sink_t, trace_event_t
+  use row_store, only: row_store_t
+  use trace_sink, only: trace_event_t
   use chain_motion, only: crank_pin, piston_pin
   implicit none
   private
@@ -34,7 +34,7 @@ contains
     type(trace_t) :: trace
     type(case_t) :: case
     type(column_list_t) :: list
-    class(trace_sink_t), allocatable :: sink
+    type(collecting_sink_t) :: sink
     type(error_t), allocatable :: error
     logical :: ideal
     integer :: i
@@ -47,13 +47,12 @@ contains
       call move_alloc(error, trace%error)
       return
     end if
-    allocate (collecting_sink_t :: sink)
     call simulate(case, ideal, list, sink, trace%report, trace%error)
     allocate (trace%names(size(list%id)))
     do i = 1, size(list%id)
       trace%names(i) = column_name(list, i)
     end do
-    call take_store(sink, size(list%id), trace%values, trace%event)
+    call sink%hand_over(size(list%id), trace%values, trace%event)
   end function run_case
 
   !> Read a reference curve and its events.

@@ -10,7 +10,6 @@ module test_crank_turns
   use cycle_watch, only: cycle_watch_t
   use gudgeon_errors, only: error_t, status_integration
   use gudgeon_simulation, only: simulate, run_report_t
-  use trace_sink, only: trace_sink_t
   use collecting_sink, only: collecting_sink_t, trace_t, run_case, column
   implicit none
   private
@@ -243,7 +242,7 @@ contains
     type(cycle_watch_t), allocatable :: watch
     type(case_t) :: case
     type(column_list_t) :: no_rows
-    class(trace_sink_t), allocatable :: sink
+    type(collecting_sink_t) :: sink
     type(run_report_t) :: report
     type(error_t), allocatable :: error
     integer :: i
@@ -252,12 +251,11 @@ contains
       call read_case('cases/'//trim(files(i))//'.nml', [character(len=long) :: 'integrator.crank_revolutions=3', &
         'integrator.method=auto', 'drive.kind=free'], case, error)
       allocate (watch)
-      allocate (collecting_sink_t :: sink)
       call simulate(case, .false., no_rows, sink, report, error, cycles=watch)
       call check%that(.not. allocated(error) .and. watch%statistics%cycles == 3, trim(files(i))//': three revolutions')
       call check%relative(watch%statistics%total%duration, report%figures%time, 1e-12_dp, &
         trim(files(i))//': revolutions add up to the whole run')
-      deallocate (watch, sink)
+      deallocate (watch)
     end do
   end subroutine revolutions_are_whole
 
@@ -266,23 +264,19 @@ contains
     class(checks_t), intent(inout) :: check
     type(case_t) :: case
     type(column_list_t) :: no_rows
-    class(trace_sink_t), allocatable :: sink
+    type(hearing_sink_t) :: sink
     type(run_report_t) :: report
     type(error_t), allocatable :: error
     allocate (no_rows%id(0))
     call read_case('cases/sim_I.nml', [character(len=long) :: 'integrator.crank_revolutions=0.7', 'integrator.method=adams'], &
       case, error)
-    allocate (hearing_sink_t :: sink)
     call simulate(case, .false., no_rows, sink, report, error)
     call check%that(.not. allocated(error), 'a long run of a number of revolutions')
-    select type (sink)
-    type is (hearing_sink_t)
-      associate (time => report%figures%time)
-        call check%that(sink%reports > 5, 'the end is reported')
-        call check%that(sink%earliest > 0.8_dp*time .and. sink%latest < 1.1_dp*time, 'expected time of the end is within 20 %')
-        call check%close_to(sink%last, time, 0.0_dp, 'last report has the time of the end')
-      end associate
-    end select
+    associate (time => report%figures%time)
+      call check%that(sink%reports > 5, 'the end is reported')
+      call check%that(sink%earliest > 0.8_dp*time .and. sink%latest < 1.1_dp*time, 'expected time of the end is within 20 %')
+      call check%close_to(sink%last, time, 0.0_dp, 'last report has the time of the end')
+    end associate
   end subroutine the_end_is_expected
 
   subroutine hear(self, time)

@@ -8,7 +8,6 @@ module test_resume
   use case_file, only: read_case
   use gudgeon_columns, only: column_list_t, choose_columns
   use gudgeon_simulation, only: simulate, run_report_t
-  use trace_sink, only: trace_sink_t
   use collecting_sink, only: collecting_sink_t
   use checks, only: checks_t
   implicit none
@@ -114,37 +113,26 @@ contains
     type(keeping_sink_t), intent(out) :: kept
     type(run_report_t), intent(out) :: report
     integer, intent(out) :: pieces
-    class(trace_sink_t), allocatable :: sink
-    type(keeping_sink_t), allocatable :: empty
     type(error_t), allocatable :: error
     type(archive_t) :: archive
     type(case_t) :: limited
 
     limited = case
-    allocate (empty)
-    call move_alloc(empty, sink)
-    sink%keeps_archives = stride > 0
-    sink%wants_to_stop = stride == 1   ! after one step
+    kept%keeps_archives = stride > 0
+    kept%wants_to_stop = stride == 1   ! after one step
     if (stride > 1) limited%integrator%max_steps = stride
-    call simulate(limited, ideal, list, sink, report, error)
+    call simulate(limited, ideal, list, kept, report, error)
     pieces = 1
     do while (index(report%status, trim(merge('interrupted   ', 'too many steps', stride == 1))) == 1 .and. pieces < most_pieces)
-      select type (sink)
-      type is (keeping_sink_t)
-        if (.not. allocated(sink%state)) exit
-        sink%rows = sink%rows_then
-        sink%events = sink%events_then
-        call archive%begin_reading(sink%state)
-      end select
+      if (.not. allocated(kept%state)) exit
+      kept%rows = kept%rows_then
+      kept%events = kept%events_then
+      call archive%begin_reading(kept%state)
       if (stride > 1) limited%integrator%max_steps = limited%integrator%max_steps + stride
       call soil_memory()
-      call simulate(limited, ideal, list, sink, report, error, archive)
+      call simulate(limited, ideal, list, kept, report, error, archive)
       pieces = pieces + 1
     end do
-    select type (sink)
-    type is (keeping_sink_t)
-      kept = sink
-    end select
   end subroutine run_in_parts
 
   !> Fill free memory of the heap with arbitrary numbers: an array that is allocated again but not restored

@@ -11,7 +11,6 @@ module test_run_figures
   use gudgeon_errors, only: error_t
   use peak_search, only: peak_search_t, sample_t
   use gudgeon_simulation, only: simulate, run_report_t
-  use trace_sink, only: trace_sink_t
   use collecting_sink, only: collecting_sink_t, trace_t, run_case, column
   implicit none
   private
@@ -261,7 +260,7 @@ contains
     type(trace_t) :: rows
     type(case_t) :: case
     type(column_list_t) :: no_rows
-    class(trace_sink_t), allocatable :: sink
+    type(collecting_sink_t) :: sink
     type(run_report_t) :: report
     type(error_t), allocatable :: error
     real(dp), allocatable :: turned(:)
@@ -276,7 +275,6 @@ contains
       call read_case('cases/'//trim(files(i))//'.nml', common, case, error)
       allocate (watch)
       watch%keeps_cycles = .true.
-      allocate (collecting_sink_t :: sink)
       call simulate(case, .false., no_rows, sink, report, error, cycles=watch)
       call check%that(watch%statistics%cycles >= 2, trim(files(i))//': revolutions')
       allocate (turned(size(rows%values, 2)))
@@ -297,7 +295,7 @@ contains
           end associate
         end do
       end do
-      deallocate (watch, sink, turned)
+      deallocate (watch, turned)
     end do
   end subroutine revolutions_have_their_peaks
 

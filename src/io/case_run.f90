@@ -6,7 +6,6 @@ module case_run
   use gudgeon_columns, only: column_list_t
   use film_tables, only: provide_tables
   use gudgeon_simulation, only: simulate, run_report_t
-  use trace_sink, only: trace_sink_t
   use trace_files, only: trace_files_t
   use result_file, only: result_file_t, remove_result
   use continuation, only: continuation_t
@@ -137,8 +136,7 @@ contains
   !> names without a summary that says so, whatever happens.
   subroutine go(self)
     class(case_run_t), intent(inout) :: self
-    class(trace_sink_t), allocatable :: sink
-    type(trace_files_t), allocatable :: files
+    type(trace_files_t) :: files
     type(archive_t) :: archive
 
     if (self%start%is_done .or. allocated(self%error)) return
@@ -146,12 +144,11 @@ contains
     call self%open_files(files)
     !$omp end critical (texts)
     if (allocated(self%error)) return
-    call move_alloc(files, sink)
     if (self%start%goes_on) then
       call archive%begin_reading(self%start%checkpoint%state)
-      call simulate(self%case, self%is_twin, self%list, sink, self%report, self%error, archive)
+      call simulate(self%case, self%is_twin, self%list, files, self%report, self%error, archive)
     else
-      call simulate(self%case, self%is_twin, self%list, sink, self%report, self%error)
+      call simulate(self%case, self%is_twin, self%list, files, self%report, self%error)
     end if
     if (.not. allocated(self%report%status)) self%report%status = self%error%message
     if (self%certifies .and. self%report%status == 'done') then
@@ -159,17 +156,13 @@ contains
       call make_certificate(self%case, self%report, self%certificate, self%error)
       if (allocated(self%error)) self%certificate%reason = self%error%message
     end if
-    select type (sink)
-    type is (trace_files_t)
-      call close_files(self, sink)
-    end select
+    call close_files(self, files)
   end subroutine go
 
   !> Open the summary, with space reserved on the disk, and the traces.
   subroutine open_files(self, files)
     class(case_run_t), intent(inout) :: self
-    type(trace_files_t), allocatable, intent(out) :: files
-    allocate (files)
+    type(trace_files_t), intent(out) :: files
     associate (case => self%case, start => self%start, base => self%base, list => self%list)
       call self%summary%open(base//'.summary.csv', self%error)
       if (.not. allocated(self%error)) call self%summary%reserve(room_for_summary, self%error)

@@ -1,38 +1,39 @@
-!> A sink that stores rows and events in memory, and ends the run when the user interrupts.
+!> Sinks that end the run when the user interrupts: one that ignores its results, and one that stores them in memory.
 module row_store
   use gudgeon_kinds, only: dp
   use trace_sink, only: trace_sink_t, trace_event_t
   use gudgeon_posix, only: interrupted
   implicit none
   private
-  public :: row_store_t, take_store
+  public :: patient_sink_t, row_store_t
 
-  type, extends(trace_sink_t) :: row_store_t
+  type, extends(trace_sink_t) :: patient_sink_t
+  contains
+    procedure :: take_progress
+  end type patient_sink_t
+
+  type, extends(patient_sink_t) :: row_store_t
     integer :: rows = 0, events = 0
     real(dp), allocatable :: values(:, :)           !! (columns, rows), larger than necessary
     type(trace_event_t), allocatable :: event(:)    !! larger than necessary
   contains
+    procedure :: hand_over
     procedure :: take_row
     procedure :: take_event
-    procedure :: take_progress
   end type row_store_t
 
 contains
 
-  !> Take the rows and events from a sink of this type, without the unused memory.
-  subroutine take_store(sink, columns, values, event)
-    class(trace_sink_t), allocatable, intent(inout) :: sink
+  !> The rows and events without the unused memory.
+  subroutine hand_over(self, columns, values, event)
+    class(row_store_t), intent(in) :: self
     integer, intent(in) :: columns                               !! number of columns
     real(dp), allocatable, intent(out) :: values(:, :)           !! (columns, rows)
     type(trace_event_t), allocatable, intent(out) :: event(:)
     allocate (values(columns, 0), event(0))
-    select type (sink)
-    class is (row_store_t)
-      if (allocated(sink%values)) values = sink%values(:, :sink%rows)
-      if (allocated(sink%event)) event = sink%event(:sink%events)
-    end select
-    deallocate (sink)
-  end subroutine take_store
+    if (allocated(self%values)) values = self%values(:, :self%rows)
+    if (allocated(self%event)) event = self%event(:self%events)
+  end subroutine hand_over
 
   subroutine take_row(self, values)
     class(row_store_t), intent(inout) :: self
@@ -63,7 +64,7 @@ contains
   end subroutine take_event
 
   subroutine take_progress(self, time)
-    class(row_store_t), intent(inout) :: self
+    class(patient_sink_t), intent(inout) :: self
     real(dp), intent(in) :: time
     associate (unused => time)
     end associate

@@ -10,9 +10,9 @@ module run_witness
   use gudgeon_columns, only: column_list_t
   use gudgeon_scene, only: event_contact_begins
   use gudgeon_simulation, only: simulate, run_report_t
-  use row_store, only: row_store_t, take_store
+  use row_store, only: row_store_t
   use run_figures, only: run_figures_t
-  use trace_sink, only: trace_sink_t, trace_event_t
+  use trace_sink, only: trace_event_t
   implicit none
   private
   public :: witness_t, run, has_coarse_table, keep_own_tables, means_of, figures_of, n_statistics, statistic_names, &
@@ -49,14 +49,12 @@ contains
     type(error_t), allocatable :: failure
     type(run_report_t) :: report
     type(case_t) :: limited
-    class(trace_sink_t), allocatable :: sink
+    type(row_store_t) :: sink
     type(trace_event_t), allocatable :: event(:)
-    logical :: was_interrupted
     limited = case
     if (most_evaluations > 0) limited%integrator%max_evaluations = min(limited%integrator%max_evaluations, most_evaluations)
     call provide_tables(limited, .false., error)
     if (allocated(error)) return
-    allocate (row_store_t :: sink)
     if (case%has_play()) then   ! without clearance the integrals of the joint would change the steps
       allocate (witness%cycles)
       witness%cycles%keeps_cycles = .true.
@@ -66,10 +64,9 @@ contains
     end if
     witness%is_done = .not. allocated(failure)
     witness%figures = report%figures
-    was_interrupted = sink%wants_to_stop
-    call take_store(sink, size(list%id), witness%values, event)
+    call sink%hand_over(size(list%id), witness%values, event)
     witness%impact = pack(event, event%kind == event_contact_begins)
-    if (.not. was_interrupted) return
+    if (.not. sink%wants_to_stop) return
     !$omp critical (texts)
     call fail(error, 'interrupted before it was certified', status_integration)
     !$omp end critical (texts)

@@ -31,7 +31,7 @@ module gudgeon_recorder
     type(column_list_t) :: list       !! columns of a row; empty: no rows are written
     type(run_figures_t) :: figures
     type(film_snapshots_t), allocatable :: films   !! pressure fields, if they are requested
-    class(trace_sink_t), allocatable :: sink
+    class(trace_sink_t), pointer :: sink => null()
     type(cycle_watch_t), allocatable :: cycles   !! results of each revolution, if they are requested
     type(period_watch_t) :: periods   !! search for a periodic motion that ends the run
     type(scene_t), allocatable :: scene_at_end   !! the scene at the end of that period

@@ -42,15 +42,15 @@ module gudgeon_simulation
 
 contains
 
-  !> Run a case, or its ideal twin. The sink is moved into the run and returned at the end. So is `cycles`, the count of the
-  !> revolutions of the crank; if it is present, the impulse and the loss of the joint are integrated too. Errors: the scene cannot
-  !> be built (status_case_file); the integration failed (status_integration; `report` and the sink then hold the results up to that
+  !> Run a case, or its ideal twin. `cycles`, the count of the revolutions of the crank, is moved into the run and returned at the
+  !> end; if it is present, the impulse and the loss of the joint are integrated too. Errors: the scene cannot be built
+  !> (status_case_file); the integration failed (status_integration; `report` and the sink then hold the results up to that
   !> instant). With an `archive` that an earlier run of the same case gave to its sink, that run is continued.
   subroutine simulate(case, ideal_joint, list, sink, report, error, archive, cycles)
     type(case_t), intent(in) :: case
     logical, intent(in) :: ideal_joint
     type(column_list_t), intent(in) :: list
-    class(trace_sink_t), allocatable, intent(inout) :: sink
+    class(trace_sink_t), target, intent(inout) :: sink
     type(run_report_t), intent(out) :: report
     type(error_t), allocatable, intent(out) :: error
     type(archive_t), intent(inout), optional :: archive
@@ -85,7 +85,7 @@ contains
     recorder%every_step = case%output%every_step
     recorder%max_evaluations_per_revolution = case%integrator%max_evaluations_per_revolution
     recorder%revolution_time = two_pi/scene%speed_scale(recorder%expected_end)
-    call move_alloc(sink, recorder%sink)
+    recorder%sink => sink
     if (present(cycles)) then
       call scene%measure_joint()
       call move_alloc(cycles, recorder%cycles)
@@ -118,10 +118,9 @@ contains
     report%periods = recorder%periods
     has_come_to_its_end = status == integration_done
     if (status == integration_done .and. case%run%lyapunov_revolutions > 0 .and. .not. ideal_joint) then
-      call measure_exponent(case, scene, t, y, report%periods%period, recorder%sink, report%exponent)
-      if (.not. report%exponent%is_known .and. recorder%sink%wants_to_stop) status = integration_interrupted
+      call measure_exponent(case, scene, t, y, report%periods%period, sink, report%exponent)
+      if (.not. report%exponent%is_known .and. sink%wants_to_stop) status = integration_interrupted
     end if
-    call move_alloc(recorder%sink, sink)
     if (present(cycles)) call move_alloc(recorder%cycles, cycles)
     report%statistics = method%totals()
     if (allocated(method%time_with)) report%time_with = method%time_with

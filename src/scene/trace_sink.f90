@@ -1,4 +1,4 @@
-!> Receiver of the results of a run. It is implemented by the code that writes files, and by tests.
+!> Receiver of the results of a run. The code that writes files and tests extend it by what they need of the results.
 module trace_sink
   use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
@@ -26,41 +26,19 @@ module trace_sink
     procedure :: exchange
   end type trace_event_t
 
-  !> Takes rows and events in the order of time.
-  type, abstract :: trace_sink_t
+  !> Takes rows and events in the order of time. This type itself ignores them.
+  type :: trace_sink_t
     logical :: wants_to_stop = .false.   !! set by the sink if the run should end (interrupted, or files cannot be written)
     logical :: wants_archive = .false.   !! set by the sink if it wants the state of the run
     logical :: keeps_archives = .false.  !! the sink also wants the state of the run if the run stops early
     real(dp) :: expected_end = 1         !! expected end of the run, set before `take_progress` is called [s]
   contains
-    procedure :: take_archive => ignore_archive
-    procedure :: take_cost => ignore_cost
-    procedure(take_row), deferred :: take_row
-    procedure(take_event), deferred :: take_event
-    procedure(take_progress), deferred :: take_progress
+    procedure :: take_row
+    procedure :: take_event
+    procedure :: take_progress
+    procedure :: take_archive
+    procedure :: take_cost
   end type trace_sink_t
-
-  abstract interface
-    !> Take one row of the trace, with values in the order of its columns.
-    subroutine take_row(self, values)
-      import :: trace_sink_t, dp
-      class(trace_sink_t), intent(inout) :: self
-      real(dp), intent(in), contiguous :: values(:)
-    end subroutine take_row
-
-    subroutine take_event(self, event)
-      import :: trace_sink_t, trace_event_t
-      class(trace_sink_t), intent(inout) :: self
-      type(trace_event_t), intent(in) :: event
-    end subroutine take_event
-
-    !> Called at intervals with the time simulated so far [s].
-    subroutine take_progress(self, time)
-      import :: trace_sink_t, dp
-      class(trace_sink_t), intent(inout) :: self
-      real(dp), intent(in) :: time
-    end subroutine take_progress
-  end interface
 
 contains
 
@@ -78,22 +56,44 @@ contains
     call archive%exchange(self%pin)
   end subroutine exchange
 
-  !> Called at intervals while the steps of the Adams method were limited by stability for most of the time simulated so far. The
-  !> default does nothing.
-  subroutine ignore_cost(self, time, statistics)
+  !> Take one row of the trace, with values in the order of its columns.
+  subroutine take_row(self, values)
+    class(trace_sink_t), intent(inout) :: self
+    real(dp), intent(in), contiguous :: values(:)
+    associate (unused_self => self, unused_values => values)
+    end associate
+  end subroutine take_row
+
+  subroutine take_event(self, event)
+    class(trace_sink_t), intent(inout) :: self
+    type(trace_event_t), intent(in) :: event
+    associate (unused_self => self, unused_event => event)
+    end associate
+  end subroutine take_event
+
+  !> Called at intervals with the time simulated so far [s].
+  subroutine take_progress(self, time)
+    class(trace_sink_t), intent(inout) :: self
+    real(dp), intent(in) :: time
+    associate (unused_self => self, unused_time => time)
+    end associate
+  end subroutine take_progress
+
+  !> Called at intervals while the steps of the Adams method were limited by stability for most of the time simulated so far.
+  subroutine take_cost(self, time, statistics)
     class(trace_sink_t), intent(inout) :: self
     real(dp), intent(in) :: time                        !! simulated so far [s]
     type(step_statistics_t), intent(in) :: statistics   !! so far
     associate (unused_self => self, unused_time => time, unused_statistics => statistics)
     end associate
-  end subroutine ignore_cost
+  end subroutine take_cost
 
-  !> Take the state of the run after the rows and events taken so far. The default is for sinks that do not store it.
-  subroutine ignore_archive(self, archive)
+  !> Take the state of the run after the rows and events taken so far.
+  subroutine take_archive(self, archive)
     class(trace_sink_t), intent(inout) :: self
     type(archive_t), intent(in) :: archive
     associate (unused => archive)
     end associate
     self%wants_archive = .false.
-  end subroutine ignore_archive
+  end subroutine take_archive
 end module trace_sink

@@ -7,10 +7,8 @@ module study_worker
   use cycle_watch, only: cycle_watch_t
   use film_tables, only: provide_tables
   use gudgeon_simulation, only: simulate, run_report_t, interrupted_text
-  use trace_sink, only: trace_sink_t, trace_event_t
+  use row_store, only: patient_sink_t
   use trace_files, only: trace_files_t
-  use gudgeon_posix, only: interrupted
-  use gudgeon_kinds, only: dp
   use study_definition, only: study_t
   use study_design, only: study_design_t
   use study_case, only: study_case_t
@@ -19,14 +17,6 @@ module study_worker
   private
   public :: study_worker_t
 
-  !> A sink that ignores the results, and ends the run when the user interrupts.
-  type, extends(trace_sink_t) :: patient_sink_t
-  contains
-    procedure :: take_row
-    procedure :: take_event
-    procedure :: take_progress
-  end type patient_sink_t
-
   type :: study_worker_t
     type(study_row_t) :: run_row, cycle_rows, strobe_rows  !! rows of the last run
     logical :: is_done = .false.                           !! the last run reached its end
@@ -34,7 +24,6 @@ module study_worker
     type(error_t), allocatable :: output_error             !! reason why its trace could not be written
     type(study_case_t), private :: base
     type(cycle_watch_t), allocatable, private :: watch
-    class(trace_sink_t), allocatable, private :: sink
     type(column_list_t), private :: no_columns
     character(len=:), allocatable, private :: values(:)
     character(len=:), allocatable, private :: trace_folder
@@ -70,7 +59,6 @@ contains
     self%watch%strobe_list = strobe_list
     self%watch%strobe_angle = study%strobe_angle_deg*degree
     self%watch%most_strobes = study%strobe_cycles
-    allocate (patient_sink_t :: self%sink)
     allocate (self%no_columns%id(0))
     allocate (character(len=design%text_length) :: self%values(size(design%keys)))
   end subroutine prepare
@@ -82,6 +70,7 @@ contains
     integer, intent(in) :: number
     type(run_report_t) :: report
     type(error_t), allocatable :: error
+    type(patient_sink_t) :: sink
     logical :: has_begun
 
     self%is_done = .false.
@@ -97,8 +86,8 @@ contains
       if (self%traces_all) then
         call self%run_with_trace(number, report, error)
       else
-        call simulate(self%base%case, .false., self%no_columns, self%sink, report, error, cycles=self%watch)
-        self%was_interrupted = self%sink%wants_to_stop
+        call simulate(self%base%case, .false., self%no_columns, sink, report, error, cycles=self%watch)
+        self%was_interrupted = sink%wants_to_stop
         if (allocated(error) .and. self%traces_failed .and. .not. self%was_interrupted) &
           call self%run_with_trace(number, report, error)
       end if
@@ -127,27 +116,21 @@ contains
     integer, intent(in) :: number
     type(run_report_t), intent(out) :: report
     type(error_t), allocatable, intent(out) :: error
-    type(trace_files_t), allocatable :: files
-    class(trace_sink_t), allocatable :: sink
+    type(trace_files_t) :: files
     type(column_list_t) :: list
     character(len=12) :: name
     write (name, '(i0)') number
     !$omp critical (texts)
-    allocate (files)
     call choose_columns(self%base%case, .false., list, error)
     if (.not. allocated(error)) call files%open(self%trace_folder//'/'//trim(name), list, self%base%case%output%digits, &
       self%base%case%has_contact(), self%output_error)
     !$omp end critical (texts)
     if (allocated(error) .or. allocated(self%output_error)) return
-    call move_alloc(files, sink)
-    call simulate(self%base%case, .false., list, sink, report, error, cycles=self%watch)
-    select type (sink)
-    type is (trace_files_t)
-      call sink%synchronise()   ! before the row that reports the run as done
-      !$omp critical (texts)
-      call sink%close(self%output_error)
-      !$omp end critical (texts)
-    end select
+    call simulate(self%base%case, .false., list, files, report, error, cycles=self%watch)
+    call files%synchronise()   ! before the row that reports the run as done
+    !$omp critical (texts)
+    call files%close(self%output_error)
+    !$omp end critical (texts)
     if (allocated(error)) self%was_interrupted = index(error%message, interrupted_text) == 1
   end subroutine run_with_trace
 
@@ -158,26 +141,4 @@ contains
     reason = message
     if (index(message, ': &') > 0) reason = message(index(message, ': &') + 2:)
   end function reason_of
-
-  subroutine take_row(self, values)
-    class(patient_sink_t), intent(inout) :: self
-    real(dp), intent(in), contiguous :: values(:)
-    associate (unused_self => self, unused_values => values)
-    end associate
-  end subroutine take_row
-
-  subroutine take_event(self, event)
-    class(patient_sink_t), intent(inout) :: self
-    type(trace_event_t), intent(in) :: event
-    associate (unused_self => self, unused_event => event)
-    end associate
-  end subroutine take_event
-
-  subroutine take_progress(self, time)
-    class(patient_sink_t), intent(inout) :: self
-    real(dp), intent(in) :: time
-    associate (unused_time => time)
-    end associate
-    if (interrupted()) self%wants_to_stop = .true.
-  end subroutine take_progress
 end module study_worker
