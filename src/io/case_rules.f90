@@ -19,38 +19,6 @@ module case_rules
 
 contains
 
-  !> Report an error for a case of which no scene can be built; `values` tells which keys the user has set.
-  subroutine check_rules(c, values, error)
-    type(case_t), intent(in) :: c
-    type(case_values_t), intent(in) :: values
-    type(error_t), allocatable, intent(out) :: error
-    call check_bodies(c, values, error)
-    if (allocated(error)) return
-    call check_joint(c%joint, 'joint', piston_pin_place, values, error)
-    if (allocated(error)) return
-    call check_joint(c%crank_pin, crank_pin_place//'.joint', crank_pin_place, values, error)
-    if (allocated(error)) return
-    call check_friction(c, c%joint, piston_pin_place, values, error)
-    if (allocated(error)) return
-    call check_friction(c, c%crank_pin, crank_pin_place, values, error)
-    if (allocated(error)) return
-    call check_guide(c, values, error)
-    if (allocated(error)) return
-    call check_start(c, values, error)
-    if (allocated(error)) return
-    call check_elastic(c, values, error)
-    if (allocated(error)) return
-    call check_gas(c, values, error)
-    if (allocated(error)) return
-    call check_drive(c, values, error)
-    if (allocated(error)) return
-    call check_periods(c, values, error)
-    if (allocated(error)) return
-    call check_run(c, values, error)
-    if (allocated(error)) return
-    call check_output(c, values, error)
-  end subroutine check_rules
-
   !> A warning for the user of a valid case, or an empty text.
   pure function case_warning(c) result(text)
     type(case_t), intent(in) :: c
@@ -60,445 +28,409 @@ contains
       '''constant_speed'': the drive supplies the moment that holds the speed (crank_moment); with kind = ''free'' the torque acts'
   end function case_warning
 
-  !> Check that the rod is long enough, and that the mass matrix of crank and rod is positive definite at every crank angle. With A
-  !> = I_c + m_c |com_c|^2 and B = I_r + m_r |com_r|^2 its smallest determinant is A B + m_r R^2 I_r.
-  subroutine check_bodies(c, values, error)
+  !> Report an error for a case of which no scene can be built; `values` tells which keys the user has set.
+  subroutine check_rules(c, values, error)
     type(case_t), intent(in) :: c
     type(case_values_t), intent(in) :: values
     type(error_t), allocatable, intent(out) :: error
-    real(dp) :: reach, crank, rod
-    associate (m => c%mechanism)
-      reach = m%crank_length
-      if (c%joint%has_clearance()) reach = reach + c%joint%clearance
-      if (c%crank_pin%has_clearance()) reach = reach + c%crank_pin%clearance
-      reach = reach + bore_reach(c)
-      if (m%rod_length <= reach) then
-        if (reach > m%crank_length) then
-          call values%refuse('mechanism', 'rod_length', 'must be > crank_length + clearance', error)
-        else
-          call values%refuse('mechanism', 'rod_length', 'must be > crank_length', error)
+    logical :: turns   ! the crank turns at the start
+    turns = abs(c%initial%crank_speed) > 0
+    call check_bodies()
+    if (.not. allocated(error)) call check_joint(c%joint, 'joint', piston_pin_place)
+    if (.not. allocated(error)) call check_joint(c%crank_pin, crank_pin_place//'.joint', crank_pin_place)
+    if (.not. allocated(error)) call check_friction(c%joint, piston_pin_place)
+    if (.not. allocated(error)) call check_friction(c%crank_pin, crank_pin_place)
+    if (.not. allocated(error)) call check_guide(c, values, error)
+    if (.not. allocated(error)) call check_start()
+    if (.not. allocated(error)) call check_elastic(c, values, error)
+    if (.not. allocated(error)) call check_gas()
+    if (.not. allocated(error)) call check_drive()
+    if (.not. allocated(error)) call check_periods()
+    if (.not. allocated(error)) call check_run()
+    if (.not. allocated(error)) call check_output()
+
+  contains
+
+    !> The error for a value of the case.
+    subroutine refuse(group, name, wanted)
+      character(len=*), intent(in) :: group, name, wanted
+      call values%refuse(group, name, wanted, error)
+    end subroutine refuse
+
+    !> Check that the rod is long enough, and that the mass matrix of crank and rod is positive definite at every crank angle. With
+    !> A = I_c + m_c |com_c|^2 and B = I_r + m_r |com_r|^2 its smallest determinant is A B + m_r R^2 I_r.
+    subroutine check_bodies()
+      real(dp) :: reach, crank, rod
+      associate (m => c%mechanism)
+        reach = m%crank_length
+        if (c%joint%has_clearance()) reach = reach + c%joint%clearance
+        if (c%crank_pin%has_clearance()) reach = reach + c%crank_pin%clearance
+        reach = reach + bore_reach(c)
+        if (m%rod_length <= reach) then
+          call refuse('mechanism', 'rod_length', 'must be > crank_length'//trim(merge(' + clearance', '            ', &
+            reach > m%crank_length)))
+          return
         end if
-        return
-      end if
-      crank = m%crank_inertia + c%drive%flywheel_inertia + m%crank_mass*sum(m%crank_com**2)
-      rod = m%rod_inertia + m%rod_mass*sum(m%rod_com**2)
-      if (c%crank_pin%has_clearance()) then
-        if (crank <= 0) then
-          call values%refuse('mechanism', 'crank_inertia', 'must be > 0 unless crank_mass is > 0 away from the axis', error)
-        else if (m%rod_mass <= 0) then
-          call values%refuse('mechanism', 'rod_mass', 'must be > 0 with clearance at the crank pin', error)
-        else if (m%rod_inertia <= 0) then
-          call values%refuse('mechanism', 'rod_inertia', 'must be > 0 with clearance at the crank pin', error)
+        crank = m%crank_inertia + c%drive%flywheel_inertia + m%crank_mass*sum(m%crank_com**2)
+        rod = m%rod_inertia + m%rod_mass*sum(m%rod_com**2)
+        if (c%crank_pin%has_clearance()) then
+          if (crank <= 0) then
+            call refuse('mechanism', 'crank_inertia', 'must be > 0 unless crank_mass is > 0 away from the axis')
+          else if (m%rod_mass <= 0) then
+            call refuse('mechanism', 'rod_mass', 'must be > 0 with clearance at the crank pin')
+          else if (m%rod_inertia <= 0) then
+            call refuse('mechanism', 'rod_inertia', 'must be > 0 with clearance at the crank pin')
+          end if
+        else if (c%joint%has_clearance()) then
+          if (rod <= 0) then
+            call refuse('mechanism', 'rod_inertia', 'must be > 0 unless rod_mass is > 0 away from the crank pin')
+          else if (crank*rod + m%rod_mass*m%crank_length**2*m%rod_inertia <= 0) then
+            call refuse('mechanism', 'crank_inertia', 'must be > 0 unless crank_mass is > 0 away from the axis, '// &
+                               'or rod_mass and rod_inertia are')
+          end if
+        else if (crank + m%rod_inertia <= 0) then
+          call refuse('mechanism', 'crank_inertia', 'must be > 0 unless crank_mass is > 0 away from the axis, or rod_inertia is')
         end if
-      else if (c%joint%has_clearance()) then
-        if (rod <= 0) then
-          call values%refuse('mechanism', 'rod_inertia', 'must be > 0 unless rod_mass is > 0 away from the crank pin', error)
-        else if (crank*rod + m%rod_mass*m%crank_length**2*m%rod_inertia <= 0) then
-          call values%refuse('mechanism', 'crank_inertia', 'must be > 0 unless crank_mass is > 0 away from the axis, '// &
-                             'or rod_mass and rod_inertia are', error)
-        end if
-      else if (crank + m%rod_inertia <= 0) then
-        call values%refuse('mechanism', 'crank_inertia', 'must be > 0 unless crank_mass is > 0 away from the axis, '// &
-                           'or rod_inertia is', error)
-      end if
-    end associate
-  end subroutine check_bodies
+      end associate
+    end subroutine check_bodies
 
-  !> Check that an ideal joint has neither contact nor film, and that a joint with clearance has at least one of them.
-  subroutine check_joint(joint, group, place, values, error)
-    type(joint_case_t), intent(in) :: joint
-    character(len=*), intent(in) :: group   !! group of the joint
-    character(len=*), intent(in) :: place
-    type(case_values_t), intent(in) :: values
-    type(error_t), allocatable, intent(out) :: error
-    if (.not. joint%has_clearance()) then
-      if (allocated(joint%contact) .or. allocated(joint%friction) .or. allocated(joint%film) .or. allocated(joint%asperities) &
-          .or. has_own_law(values, place)) then
-        call values%refuse(group, 'kind', 'must be clearance with contact, friction or lubrication: an ideal joint '// &
-                           'has no clearance; remove these groups, for example with --set contact=none', error)
-      else if (joint%clearance > 0 .and. .not. values%is_given(group, 'kind')) then
-        call values%refuse(group, 'clearance', 'needs kind = ''clearance''; the default is ideal', error)
-      end if
-      return
-    end if
-    if (allocated(joint%film)) call check_oil(joint, law_group(values, 'lubrication', place), values, error)
-    if (allocated(error)) return
-    if (joint%clearance <= 0) then
-      call values%refuse(group, 'clearance', needed(group, 'clearance', values, 'with kind = ''clearance'''), error)
-    else if (joint%bearing_radius <= 0) then
-      call values%refuse(group, 'bearing_radius', needed(group, 'bearing_radius', values, 'with kind = ''clearance'''), error)
-    else if (joint%bearing_radius <= joint%clearance) then
-      call values%refuse(group, 'bearing_radius', 'must be > clearance: the pin''s radius is the difference', error)
-    else if (allocated(joint%film) .and. joint%bearing_length <= 0) then
-      call values%refuse(group, 'bearing_length', needed(group, 'bearing_length', values, 'with lubrication'), error)
-    else if (.not. allocated(joint%contact) .and. .not. allocated(joint%film)) then
-      call values%refuse(group, 'kind', 'needs contact or lubrication: without them no force would act on the pin', error)
-    else if (allocated(joint%friction) .and. .not. allocated(joint%contact)) then
-      call values%refuse(law_group(values, 'friction', place), 'law', &
-                         'needs the group contact: dry friction follows the normal force', error)
-    else if (allocated(joint%asperities)) then
-      call check_asperities(joint, law_group(values, 'asperities', place), values, error)
-    else if (allocated(joint%contact)) then
-      call check_contact(joint, group, law_group(values, 'contact', place), values, error)
-    end if
-    if (allocated(error) .or. .not. allocated(joint%film)) return
-    call check_transition(joint, law_group(values, 'lubrication', place), values, error)
-    if (.not. allocated(error)) &
-      call check_elastic_film(joint, law_group(values, 'lubrication', place), law_group(values, 'contact', place), values, error)
-  end subroutine check_joint
-
-  !> Check that the viscosity of the film is given by one source.
-  subroutine check_oil(joint, group, values, error)
-    type(joint_case_t), intent(in) :: joint
-    character(len=*), intent(in) :: group   !! group of the film
-    type(case_values_t), intent(in) :: values
-    type(error_t), allocatable, intent(out) :: error
-    character(len=*), parameter :: names(2) = [character(len=19) :: 'viscosity', 'kinematic_viscosity']
-    character(len=:), allocatable :: key, wanted
-    integer :: i, place
-    logical :: is_said
-    do i = 1, size(names)
-      place = values%place_of(group, trim(names(i)))
-      is_said = values%is_said(place)
-      if (joint%oil%is_known() .and. is_said) then
-        call values%refuse(group, trim(names(i)), 'must not be given: viscosity_law = '''//joint%oil%law//''' computes it', error)
-      else if (.not. joint%oil%is_known() .and. values%is_used(place) .and. .not. is_said) then
-        call values%refuse(group, trim(names(i)), needed(group, trim(names(i)), values, &
-          adjustl(values%by_law(values%keys(place)))), error)
-      end if
-      if (allocated(error)) return
-    end do
-    if (joint%oil%is_known()) then
-      call joint%oil%conflict(key, wanted)
-      if (key /= '') call values%refuse(group, key, wanted, error)
-    else if (joint%oil%temperature > 0 .and. .not. values%is_given(group, 'viscosity_law')) then
-      call values%refuse(group, 'temperature', 'needs viscosity_law = ''walther'' or ''vogel''; the default is given', error)
-    end if
-  end subroutine check_oil
-
-  !> Check that a film and a contact that share the load both exist, and share it over a range of penetrations.
-  subroutine check_transition(joint, own, values, error)
-    type(joint_case_t), intent(in) :: joint
-    character(len=*), intent(in) :: own   !! group of the film
-    type(case_values_t), intent(in) :: values
-    type(error_t), allocatable, intent(out) :: error
-    if (.not. joint%transition%is_weighted()) then
-      if (joint%transition%depth > 0 .and. .not. values%is_given(own, 'transition')) &
-        call values%refuse(own, 'transition_depth', 'needs transition = ''weighted''; the default is switch', error)
-    else if (allocated(joint%asperities)) then
-      call values%refuse(own, 'transition', 'must be switch with asperities: they carry with the film at every depth', error)
-    else if (.not. allocated(joint%contact)) then
-      call values%refuse(own, 'transition', 'needs the group contact: film and contact share the load', error)
-    else if (.not. joint%transition%depth > 0) then
-      call values%refuse(own, 'transition_depth', needed(own, 'transition_depth', values, 'with transition = ''weighted'''), error)
-    else if (joint%transition%depth > joint%clearance) then
-      call values%refuse(own, 'transition_depth', 'must be <= clearance', error)
-    end if
-  end subroutine check_transition
-
-  !> Check that elastic walls have a stiffness and no loss, that the law of the film between them gives a velocity for a load, and
-  !> that no contact law acts.
-  subroutine check_elastic_film(joint, own, contact, values, error)
-    type(joint_case_t), intent(in) :: joint
-    character(len=*), intent(in) :: own, contact   !! groups of the film and of the contact
-    type(case_values_t), intent(in) :: values
-    type(error_t), allocatable, intent(out) :: error
-    if (.not. joint%elastic%is_wanted) then
-      if (joint%elastic%pressure_viscosity > 0) call values%refuse(own, 'pressure_viscosity', &
-        'needs elastic_film = .true.: the pressures between rigid walls are not realistic', error)
-    else if (.not. allocated(joint%contact)) then
-      call values%refuse(own, 'elastic_film', 'needs the group contact, whose geometry is the stiffness of the walls', error)
-    else if (joint%contact%name() /= 'hertz') then
-      call values%refuse(contact, 'law', 'must be hertz with elastic_film: the film dissipates, the walls do not', error)
-    else if (allocated(joint%friction)) then
-      call values%refuse(own, 'elastic_film', 'cannot be combined with the group friction: the surfaces never touch', error)
-    else if (joint%transition%is_weighted()) then
-      call values%refuse(own, 'elastic_film', &
-        'cannot be combined with transition = ''weighted'': the film carries at every depth', error)
-    else if (.not. joint%film%is_quasi_static()) then
-      call values%refuse(own, 'elastic_film', 'is for films of wedge and squeeze: finite_bearing, '// &
-        'and closed_form and half_film of pinkus_sternlicht', error)
-    end if
-  end subroutine check_elastic_film
-
-  !> Check that asperities are combined with a film and not with a contact law.
-  subroutine check_asperities(joint, group, values, error)
-    type(joint_case_t), intent(in) :: joint
-    character(len=*), intent(in) :: group   !! group of the asperities
-    type(case_values_t), intent(in) :: values
-    type(error_t), allocatable, intent(out) :: error
-    real(dp), parameter :: roughest = 0.125_dp   !! largest roughness over clearance
-    if (.not. allocated(joint%film)) then
-      call values%refuse(group, 'roughness', 'needs the group lubrication: asperities touch through a film', error)
-    else if (allocated(joint%contact)) then
-      call values%refuse(group, 'roughness', &
-        'cannot be combined with the group contact: asperities are the contact of rough surfaces', error)
-    else if (joint%asperities%roughness > roughest*joint%clearance) then
-      call values%refuse(group, 'roughness', 'must be <= clearance/8: a centred pin may not touch', error)
-    end if
-  end subroutine check_asperities
-
-  !> Check that the loss of a contact is given by one key, and that its geometry is possible in its bearing.
-  subroutine check_contact(joint, group, contact_group, values, error)
-    type(joint_case_t), intent(in) :: joint
-    character(len=*), intent(in) :: group, contact_group   !! groups of the joint and of its contact
-    type(case_values_t), intent(in) :: values
-    type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: key, wanted
-    if (values%is_said(values%place_of(contact_group, 'dissipation'))) then
-      call values%check_family(contact_group, 'dissipation', error)
-      if (allocated(error)) return
-    end if
-    associate (geometry => joint%contact%geometry)
-      if (geometry%needs_length() .and. joint%bearing_length <= 0) then
-        call values%refuse(group, 'bearing_length', needed(group, 'bearing_length', values, 'with contact geometry = '''// &
-          geometry%name()//''''), error)
-        return
-      end if
-      call geometry%bearing_conflict(joint%bearing(rod_length=0.0_dp), key, wanted)
-      if (key /= '') call values%refuse(group, key, wanted, error)
-    end associate
-  end subroutine check_contact
-
-  !> Check that at the beginning of a contact friction does not exceed static friction at the sliding speeds of an ideal joint.
-  !> These are at most the crank speed times the ratio of crank to rod length times the pin radius; at the crank pin the crank speed
-  !> times the pin radius is added.
-  subroutine check_friction(c, joint, place, values, error)
-    type(case_t), intent(in) :: c
-    type(joint_case_t), intent(in) :: joint
-    character(len=*), intent(in) :: place
-    type(case_values_t), intent(in) :: values
-    type(error_t), allocatable, intent(out) :: error
-    real(dp) :: speed, limit
-    if (.not. (joint%has_clearance() .and. allocated(joint%friction))) return
-    associate (m => c%mechanism, bearing => joint%bearing(c%mechanism%rod_length))
-      speed = m%crank_length/m%rod_length
-      if (place == crank_pin_place) speed = 1 + speed
-      speed = speed*abs(c%initial%crank_speed)*bearing%pin_radius()
-    end associate
-    limit = joint%friction%touch_down_limit()
-    if (speed > limit) call values%refuse(law_group(values, 'friction', place), 'damping_speed', 'a constant bristle_damping '// &
-      'gives more than the static friction at touch-down from '//short_text(limit)//' m/s on, and this joint slides with '// &
-      short_text(speed)//' m/s: must be > 0', error)
-  end subroutine check_friction
-
-  !> Whether the case has a law for the joint at this place alone.
-  logical function has_own_law(values, place)
-    type(case_values_t), intent(in) :: values
-    character(len=*), intent(in) :: place
-    has_own_law = any(values%is_present .and. index(values%groups%name, place//'.') == 1 .and. &
-                      values%groups%name /= place//'.joint')
-  end function has_own_law
-
-  !> Name of the group in which the law of a joint is given.
-  function law_group(values, name, place) result(group)
-    type(case_values_t), intent(in) :: values
-    character(len=*), intent(in) :: name, place
-    character(len=:), allocatable :: group
-    group = place//'.'//name
-    if (.not. values%is_present(find_group(values%groups, group))) group = name
-  end function law_group
-
-  !> Check that the initial positions of the pins are admissible.
-  subroutine check_start(c, values, error)
-    type(case_t), intent(in) :: c
-    type(case_values_t), intent(in) :: values
-    type(error_t), allocatable, intent(out) :: error
-    call check_pin(c%joint, '', c%initial%eccentricity, c%initial%eccentricity_rate, values, error)
-    if (.not. allocated(error)) call check_pin(c%crank_pin, crank_pin_place//'_', c%initial%crank_pin_eccentricity, &
-      c%initial%crank_pin_eccentricity_rate, values, error)
-    if (allocated(error)) return
-    associate (distance => norm2(c%initial%eccentricity), other => norm2(c%initial%crank_pin_eccentricity), m => c%mechanism)
-      if (distance + other < m%rod_length - m%crank_length) return
-      if (distance > 0) then
-        call values%refuse('initial', 'eccentricity', 'must be shorter than rod_length - crank_length', error)
-      else
-        call values%refuse('initial', 'crank_pin_eccentricity', 'must be shorter than rod_length - crank_length', error)
-      end if
-    end associate
-  end subroutine check_start
-
-  !> Check that a pin starts inside its bearing, or, with a contact law, in its wall but not beyond it.
-  subroutine check_pin(joint, prefix, eccentricity, rate, values, error)
-    type(joint_case_t), intent(in) :: joint
-    character(len=*), intent(in) :: prefix   !! prefix of the keys
-    real(dp), intent(in) :: eccentricity(2), rate(2)
-    type(case_values_t), intent(in) :: values
-    type(error_t), allocatable, intent(out) :: error
-    associate (distance => norm2(eccentricity), key => prefix//'eccentricity')
+    !> Check that an ideal joint has neither contact nor film, and that a joint with clearance has at least one of them.
+    subroutine check_joint(joint, group, place)
+      type(joint_case_t), intent(in) :: joint
+      character(len=*), intent(in) :: group   !! group of the joint
+      character(len=*), intent(in) :: place
       if (.not. joint%has_clearance()) then
-        if (distance > 0) then
-          call values%refuse('initial', key, 'must be 0 in an ideal joint', error)
-        else if (norm2(rate) > 0) then
-          call values%refuse('initial', key//'_rate', 'must be 0 in an ideal joint', error)
+        if (allocated(joint%contact) .or. allocated(joint%friction) .or. allocated(joint%film) .or. allocated(joint%asperities) &
+            .or. has_own_law(place)) then
+          call refuse(group, 'kind', 'must be clearance with contact, friction or lubrication: an ideal joint '// &
+                             'has no clearance; remove these groups, for example with --set contact=none')
+        else if (joint%clearance > 0 .and. .not. values%is_given(group, 'kind')) then
+          call refuse(group, 'clearance', 'needs kind = ''clearance''; the default is ideal')
         end if
-      else if (.not. (joint%can_touch() .or. allocated(joint%asperities)) .and. distance >= joint%clearance) then
-        call values%refuse('initial', key, 'must be shorter than the clearance where there is no contact', error)
-      else if (distance >= joint%bearing_radius) then
-        call values%refuse('initial', key, 'must be shorter than bearing_radius: the pin would leave its bearing', error)
+        return
       end if
-    end associate
-  end subroutine check_pin
-
-  !> Check that pressure fields are requested only of films with a pressure.
-  subroutine check_film_times(c, values, error)
-    type(case_t), intent(in) :: c
-    type(case_values_t), intent(in) :: values
-    type(error_t), allocatable, intent(out) :: error
-    real(dp), allocatable :: times(:)
-    logical :: has_film
-    if (c%output%film_times == '') return
-    call read_times(c%output%film_times, times)
-    has_film = .false.
-    if (allocated(c%joint%film)) has_film = c%joint%film%gives_pressure()
-    if (allocated(c%crank_pin%film)) has_film = has_film .or. c%crank_pin%film%gives_pressure()
-    if (.not. allocated(times)) then
-      call values%refuse('output', 'film_times', 'must be times >= 0 in rising order with commas, or from:to:count', error)
-    else if (.not. has_film) then
-      call values%refuse('output', 'film_times', 'needs a film with a pressure: pinkus_sternlicht or finite_bearing', error)
-    end if
-  end subroutine check_film_times
-
-  !> Text for a length of the joint that is missing or given as 0.
-  function needed(group, name, values, why) result(wanted)
-    character(len=*), intent(in) :: group, name, why
-    type(case_values_t), intent(in) :: values
-    character(len=:), allocatable :: wanted
-    wanted = trim('required '//why)
-    if (values%is_given(group, name)) wanted = 'must be > 0'
-  end function needed
-
-  !> Check that there is one gas model at most, with an allowed period.
-  subroutine check_gas(c, values, error)
-    type(case_t), intent(in) :: c
-    type(case_values_t), intent(in) :: values
-    type(error_t), allocatable, intent(out) :: error
-    if (.not. allocated(c%measured)) return
-    if (allocated(c%combustion)) then
-      call values%refuse('cylinder_pressure', &
-        'table', 'cannot be combined with the group combustion: one pressure acts on the piston', error)
-    else if (all(c%measured%period_deg /= measured_pressure_periods)) then
-      call values%refuse('cylinder_pressure', 'period_deg', 'must be 360 or 720', error)
-    end if
-  end subroutine check_gas
-
-  !> Check that the keys of a variable drive match its kind, and that there is one flywheel at most.
-  subroutine check_drive(c, values, error)
-    type(case_t), intent(in) :: c
-    type(case_values_t), intent(in) :: values
-    type(error_t), allocatable, intent(out) :: error
-    associate (drive => c%drive)
-      if (drive%table%is_wanted() .and. drive%kind /= 'free') then
-        call values%refuse('drive', &
-          'torque_table', 'needs kind = ''free'': at constant speed the drive supplies whatever torque is needed', error)
-      else if (drive%ramp_time > 0 .and. drive%kind /= 'constant_speed') then
-        call values%refuse('drive', 'ramp_time', 'needs kind = ''constant_speed'': the loads make the speed of a free crank', error)
-      else if (abs(drive%ramp_from) > 0 .and. .not. drive%ramp_time > 0) then
-        call values%refuse('drive', &
-          'ramp_from', 'needs ramp_time, the time in which the speed rises from here to crank_speed', error)
-      else if (drive%ramp_time > 0 .and. c%integrator%crank_revolutions > 0) then
-        call values%refuse('drive', 'ramp_time', 'needs revolutions or end_time instead of crank_revolutions', error)
-      else if (drive%flywheel_inertia > 0 .and. allocated(c%crankshaft)) then
-        call values%refuse('drive', 'flywheel_inertia', 'must be 0 with the group crankshaft, which has its own flywheel_inertia', &
-          error)
-      end if
-    end associate
-  end subroutine check_drive
-
-  !> Check that the end of the run is given once and is reached.
-  subroutine check_run(c, values, error)
-    type(case_t), intent(in) :: c
-    type(case_values_t), intent(in) :: values
-    type(error_t), allocatable, intent(out) :: error
-    associate (run => c%integrator)
-      if (.not. c%run%is_until_periodic()) call values%check_family('integrator', 'revolutions', error)
+      if (allocated(joint%film)) call check_oil(joint, law_group('lubrication', place))
       if (allocated(error)) return
-      if (run%revolutions > 0 .and. .not. turns(c)) then
-        call values%refuse('integrator', 'revolutions', 'needs crank_speed other than 0; give end_time', error)
-      else if (run%crank_revolutions > 0 .and. .not. turns(c) .and. c%drive%kind == 'constant_speed') then
-        call values%refuse('integrator', 'crank_revolutions', 'needs crank_speed other than 0: the crank is held at rest', error)
-      else if (run%crank_revolutions > 0 .and. .not. turns(c) .and. run%end_time <= 0) then
-        call values%refuse('integrator', 'crank_revolutions', 'needs end_time beside it with crank_speed = 0: the latest '// &
-                           'end, should the crank not make them', error)
-      else if (c%drive%kind == 'constant_speed' .and. run%end_time > 0 .and. &
-               run%end_time < run%crank_revolutions*two_pi/max(abs(c%initial%crank_speed), tiny(1.0_dp))) then
-        call values%refuse('integrator', 'end_time', 'must be >= '//short_text(run%crank_revolutions*two_pi/ &
-                           abs(c%initial%crank_speed))//' s, when the held crank has made crank_revolutions', error)
-      else if (run%contact_entry == 'step_rejection' .and. run%max_penetration <= 0) then
-        call values%refuse('integrator', 'max_penetration', 'must be > 0 for contact_entry = ''step_rejection''', error)
+      if (joint%clearance <= 0) then
+        call refuse(group, 'clearance', needed(group, 'clearance', 'with kind = ''clearance'''))
+      else if (joint%bearing_radius <= 0) then
+        call refuse(group, 'bearing_radius', needed(group, 'bearing_radius', 'with kind = ''clearance'''))
+      else if (joint%bearing_radius <= joint%clearance) then
+        call refuse(group, 'bearing_radius', 'must be > clearance: the pin''s radius is the difference')
+      else if (allocated(joint%film) .and. joint%bearing_length <= 0) then
+        call refuse(group, 'bearing_length', needed(group, 'bearing_length', 'with lubrication'))
+      else if (.not. allocated(joint%contact) .and. .not. allocated(joint%film)) then
+        call refuse(group, 'kind', 'needs contact or lubrication: without them no force would act on the pin')
+      else if (allocated(joint%friction) .and. .not. allocated(joint%contact)) then
+        call refuse(law_group('friction', place), 'law', 'needs the group contact: dry friction follows the normal force')
+      else if (allocated(joint%asperities)) then
+        call check_asperities(joint, law_group('asperities', place))
+      else if (allocated(joint%contact)) then
+        call check_contact(joint, group, law_group('contact', place))
       end if
-    end associate
-  end subroutine check_run
+      if (allocated(error) .or. .not. allocated(joint%film)) return
+      call check_transition(joint, law_group('lubrication', place))
+      if (.not. allocated(error)) call check_elastic_film(joint, law_group('lubrication', place), law_group('contact', place))
+    end subroutine check_joint
 
-  !> Check that in a run until the motion is periodic the crank turns, and that enough revolutions are allowed.
-  subroutine check_periods(c, values, error)
-    type(case_t), intent(in) :: c
-    type(case_values_t), intent(in) :: values
-    type(error_t), allocatable, intent(out) :: error
-    if (c%run%lyapunov_revolutions > 0) then
-      if (.not. (turns(c) .and. (c%has_play() .or. c%drive%kind == 'free'))) call values%refuse('run', 'lyapunov_revolutions', &
-        'needs crank_speed other than 0, and clearance at a joint or a free crank', error)
+    !> Check that the viscosity of the film is given by one source.
+    subroutine check_oil(joint, group)
+      type(joint_case_t), intent(in) :: joint
+      character(len=*), intent(in) :: group   !! group of the film
+      character(len=*), parameter :: names(2) = [character(len=19) :: 'viscosity', 'kinematic_viscosity']
+      character(len=:), allocatable :: key, wanted
+      integer :: i, place
+      logical :: is_said
+      do i = 1, size(names)
+        place = values%place_of(group, trim(names(i)))
+        is_said = values%is_said(place)
+        if (joint%oil%is_known() .and. is_said) then
+          call refuse(group, trim(names(i)), 'must not be given: viscosity_law = '''//joint%oil%law//''' computes it')
+        else if (.not. joint%oil%is_known() .and. values%is_used(place) .and. .not. is_said) then
+          call refuse(group, trim(names(i)), needed(group, trim(names(i)), adjustl(values%by_law(values%keys(place)))))
+        end if
+        if (allocated(error)) return
+      end do
+      if (joint%oil%is_known()) then
+        call joint%oil%conflict(key, wanted)
+        if (key /= '') call refuse(group, key, wanted)
+      else if (joint%oil%temperature > 0 .and. .not. values%is_given(group, 'viscosity_law')) then
+        call refuse(group, 'temperature', 'needs viscosity_law = ''walther'' or ''vogel''; the default is given')
+      end if
+    end subroutine check_oil
+
+    !> Check that a film and a contact that share the load both exist, and share it over a range of penetrations.
+    subroutine check_transition(joint, own)
+      type(joint_case_t), intent(in) :: joint
+      character(len=*), intent(in) :: own   !! group of the film
+      if (.not. joint%transition%is_weighted()) then
+        if (joint%transition%depth > 0 .and. .not. values%is_given(own, 'transition')) &
+          call refuse(own, 'transition_depth', 'needs transition = ''weighted''; the default is switch')
+      else if (allocated(joint%asperities)) then
+        call refuse(own, 'transition', 'must be switch with asperities: they carry with the film at every depth')
+      else if (.not. allocated(joint%contact)) then
+        call refuse(own, 'transition', 'needs the group contact: film and contact share the load')
+      else if (.not. joint%transition%depth > 0) then
+        call refuse(own, 'transition_depth', needed(own, 'transition_depth', 'with transition = ''weighted'''))
+      else if (joint%transition%depth > joint%clearance) then
+        call refuse(own, 'transition_depth', 'must be <= clearance')
+      end if
+    end subroutine check_transition
+
+    !> Check that elastic walls have a stiffness and no loss, that the law of the film between them gives a velocity for a load, and
+    !> that no contact law acts.
+    subroutine check_elastic_film(joint, own, contact)
+      type(joint_case_t), intent(in) :: joint
+      character(len=*), intent(in) :: own, contact   !! groups of the film and of the contact
+      if (.not. joint%elastic%is_wanted) then
+        if (joint%elastic%pressure_viscosity > 0) call refuse(own, 'pressure_viscosity', &
+          'needs elastic_film = .true.: the pressures between rigid walls are not realistic')
+      else if (.not. allocated(joint%contact)) then
+        call refuse(own, 'elastic_film', 'needs the group contact, whose geometry is the stiffness of the walls')
+      else if (joint%contact%name() /= 'hertz') then
+        call refuse(contact, 'law', 'must be hertz with elastic_film: the film dissipates, the walls do not')
+      else if (allocated(joint%friction)) then
+        call refuse(own, 'elastic_film', 'cannot be combined with the group friction: the surfaces never touch')
+      else if (joint%transition%is_weighted()) then
+        call refuse(own, 'elastic_film', 'cannot be combined with transition = ''weighted'': the film carries at every depth')
+      else if (.not. joint%film%is_quasi_static()) then
+        call refuse(own, 'elastic_film', 'is for films of wedge and squeeze: finite_bearing, '// &
+          'and closed_form and half_film of pinkus_sternlicht')
+      end if
+    end subroutine check_elastic_film
+
+    !> Check that asperities are combined with a film and not with a contact law.
+    subroutine check_asperities(joint, group)
+      type(joint_case_t), intent(in) :: joint
+      character(len=*), intent(in) :: group   !! group of the asperities
+      real(dp), parameter :: roughest = 0.125_dp   !! largest roughness over clearance
+      if (.not. allocated(joint%film)) then
+        call refuse(group, 'roughness', 'needs the group lubrication: asperities touch through a film')
+      else if (allocated(joint%contact)) then
+        call refuse(group, 'roughness', 'cannot be combined with the group contact: asperities are the contact of rough surfaces')
+      else if (joint%asperities%roughness > roughest*joint%clearance) then
+        call refuse(group, 'roughness', 'must be <= clearance/8: a centred pin may not touch')
+      end if
+    end subroutine check_asperities
+
+    !> Check that the loss of a contact is given by one key, and that its geometry is possible in its bearing.
+    subroutine check_contact(joint, group, contact_group)
+      type(joint_case_t), intent(in) :: joint
+      character(len=*), intent(in) :: group, contact_group   !! groups of the joint and of its contact
+      character(len=:), allocatable :: key, wanted
+      if (values%is_said(values%place_of(contact_group, 'dissipation'))) then
+        call values%check_family(contact_group, 'dissipation', error)
+        if (allocated(error)) return
+      end if
+      associate (geometry => joint%contact%geometry)
+        if (geometry%needs_length() .and. joint%bearing_length <= 0) then
+          call refuse(group, 'bearing_length', needed(group, 'bearing_length', 'with contact geometry = '''//geometry%name()//''''))
+          return
+        end if
+        call geometry%bearing_conflict(joint%bearing(rod_length=0.0_dp), key, wanted)
+        if (key /= '') call refuse(group, key, wanted)
+      end associate
+    end subroutine check_contact
+
+    !> Check that at the beginning of a contact friction does not exceed static friction at the sliding speeds of an ideal joint.
+    !> These are at most the crank speed times the ratio of crank to rod length times the pin radius; at the crank pin the crank
+    !> speed times the pin radius is added.
+    subroutine check_friction(joint, place)
+      type(joint_case_t), intent(in) :: joint
+      character(len=*), intent(in) :: place
+      real(dp) :: speed, limit
+      if (.not. (joint%has_clearance() .and. allocated(joint%friction))) return
+      associate (m => c%mechanism, bearing => joint%bearing(c%mechanism%rod_length))
+        speed = m%crank_length/m%rod_length
+        if (place == crank_pin_place) speed = 1 + speed
+        speed = speed*abs(c%initial%crank_speed)*bearing%pin_radius()
+      end associate
+      limit = joint%friction%touch_down_limit()
+      if (speed > limit) call refuse(law_group('friction', place), 'damping_speed', 'a constant bristle_damping '// &
+        'gives more than the static friction at touch-down from '//short_text(limit)//' m/s on, and this joint slides with '// &
+        short_text(speed)//' m/s: must be > 0')
+    end subroutine check_friction
+
+    !> Whether the case has a law for the joint at this place alone.
+    logical function has_own_law(place)
+      character(len=*), intent(in) :: place
+      has_own_law = any(values%is_present .and. index(values%groups%name, place//'.') == 1 .and. &
+                        values%groups%name /= place//'.joint')
+    end function has_own_law
+
+    !> Name of the group in which the law of a joint is given.
+    function law_group(name, place) result(group)
+      character(len=*), intent(in) :: name, place
+      character(len=:), allocatable :: group
+      group = place//'.'//name
+      if (.not. values%is_present(find_group(values%groups, group))) group = name
+    end function law_group
+
+    !> Check that the initial positions of the pins are admissible.
+    subroutine check_start()
+      call check_pin(c%joint, '', c%initial%eccentricity, c%initial%eccentricity_rate)
+      if (.not. allocated(error)) call check_pin(c%crank_pin, crank_pin_place//'_', c%initial%crank_pin_eccentricity, &
+        c%initial%crank_pin_eccentricity_rate)
       if (allocated(error)) return
-    end if
-    if (.not. c%run%is_until_periodic()) then
-      if (c%output%window == 'last_period') call values%refuse('output', 'window', 'is for &run until = ''periodic'' alone', error)
-    else if (.not. turns(c)) then
-      call values%refuse('run', 'until', 'needs crank_speed other than 0', error)
-    else if (c%run%period_revolutions < c%gas_revolutions()) then
-      call values%refuse('run', 'period_revolutions', 'must be >= 2, what the gas takes to repeat', error)
-    else if (c%output%window == 'last_period' .and. c%output%start_time > 0) then
-      call values%refuse('output', 'start_time', 'must be 0 with window = ''last_period''', error)
-    else if (c%output%window == 'last_period' .and. c%run%most_revolutions <= c%run%period_revolutions) then
-      call values%refuse('run', 'most_revolutions', 'must be > period_revolutions with window = ''last_period''', error)
-    end if
-  end subroutine check_periods
+      associate (distance => norm2(c%initial%eccentricity), other => norm2(c%initial%crank_pin_eccentricity), m => c%mechanism)
+        if (distance + other < m%rod_length - m%crank_length) return
+        call refuse('initial', trim(merge('eccentricity          ', 'crank_pin_eccentricity', distance > 0)), &
+          'must be shorter than rod_length - crank_length')
+      end associate
+    end subroutine check_start
 
-  !> Check that the spacing of the rows is given, and that there are not too many rows.
-  subroutine check_output(c, values, error)
-    type(case_t), intent(in) :: c
-    type(case_values_t), intent(in) :: values
-    type(error_t), allocatable, intent(out) :: error
-    real(dp) :: samples, speed, end_time
-    character(len=*), parameter :: letters = 'abcdefghijklmnopqrstuvwxyz0123456789_, '
-    if (c%output%sampling == 'crank_angle') then
+    !> Check that a pin starts inside its bearing, or, with a contact law, in its wall but not beyond it.
+    subroutine check_pin(joint, prefix, eccentricity, rate)
+      type(joint_case_t), intent(in) :: joint
+      character(len=*), intent(in) :: prefix   !! prefix of the keys
+      real(dp), intent(in) :: eccentricity(2), rate(2)
+      associate (distance => norm2(eccentricity), key => prefix//'eccentricity')
+        if (.not. joint%has_clearance()) then
+          if (distance > 0) then
+            call refuse('initial', key, 'must be 0 in an ideal joint')
+          else if (norm2(rate) > 0) then
+            call refuse('initial', key//'_rate', 'must be 0 in an ideal joint')
+          end if
+        else if (.not. (joint%can_touch() .or. allocated(joint%asperities)) .and. distance >= joint%clearance) then
+          call refuse('initial', key, 'must be shorter than the clearance where there is no contact')
+        else if (distance >= joint%bearing_radius) then
+          call refuse('initial', key, 'must be shorter than bearing_radius: the pin would leave its bearing')
+        end if
+      end associate
+    end subroutine check_pin
+
+    !> Check that pressure fields are requested only of films with a pressure.
+    subroutine check_film_times()
+      real(dp), allocatable :: times(:)
+      logical :: has_film
+      if (c%output%film_times == '') return
+      call read_times(c%output%film_times, times)
+      has_film = .false.
+      if (allocated(c%joint%film)) has_film = c%joint%film%gives_pressure()
+      if (allocated(c%crank_pin%film)) has_film = has_film .or. c%crank_pin%film%gives_pressure()
+      if (.not. allocated(times)) then
+        call refuse('output', 'film_times', 'must be times >= 0 in rising order with commas, or from:to:count')
+      else if (.not. has_film) then
+        call refuse('output', 'film_times', 'needs a film with a pressure: pinkus_sternlicht or finite_bearing')
+      end if
+    end subroutine check_film_times
+
+    !> Text for a length of the joint that is missing or given as 0.
+    function needed(group, name, why) result(wanted)
+      character(len=*), intent(in) :: group, name, why
+      character(len=:), allocatable :: wanted
+      wanted = trim('required '//why)
+      if (values%is_given(group, name)) wanted = 'must be > 0'
+    end function needed
+
+    !> Check that there is one gas model at most, with an allowed period.
+    subroutine check_gas()
+      if (.not. allocated(c%measured)) return
+      if (allocated(c%combustion)) then
+        call refuse('cylinder_pressure', 'table', 'cannot be combined with the group combustion: one pressure acts on the piston')
+      else if (all(c%measured%period_deg /= measured_pressure_periods)) then
+        call refuse('cylinder_pressure', 'period_deg', 'must be 360 or 720')
+      end if
+    end subroutine check_gas
+
+    !> Check that the keys of a variable drive match its kind, and that there is one flywheel at most.
+    subroutine check_drive()
+      associate (drive => c%drive)
+        if (drive%table%is_wanted() .and. drive%kind /= 'free') then
+          call refuse('drive', &
+            'torque_table', 'needs kind = ''free'': at constant speed the drive supplies whatever torque is needed')
+        else if (drive%ramp_time > 0 .and. drive%kind /= 'constant_speed') then
+          call refuse('drive', 'ramp_time', 'needs kind = ''constant_speed'': the loads make the speed of a free crank')
+        else if (abs(drive%ramp_from) > 0 .and. .not. drive%ramp_time > 0) then
+          call refuse('drive', 'ramp_from', 'needs ramp_time, the time in which the speed rises from here to crank_speed')
+        else if (drive%ramp_time > 0 .and. c%integrator%crank_revolutions > 0) then
+          call refuse('drive', 'ramp_time', 'needs revolutions or end_time instead of crank_revolutions')
+        else if (drive%flywheel_inertia > 0 .and. allocated(c%crankshaft)) then
+          call refuse('drive', 'flywheel_inertia', 'must be 0 with the group crankshaft, which has its own flywheel_inertia')
+        end if
+      end associate
+    end subroutine check_drive
+
+    !> Check that the end of the run is given once and is reached.
+    subroutine check_run()
+      associate (run => c%integrator)
+        if (.not. c%run%is_until_periodic()) call values%check_family('integrator', 'revolutions', error)
+        if (allocated(error)) return
+        if (run%revolutions > 0 .and. .not. turns) then
+          call refuse('integrator', 'revolutions', 'needs crank_speed other than 0; give end_time')
+        else if (run%crank_revolutions > 0 .and. .not. turns .and. c%drive%kind == 'constant_speed') then
+          call refuse('integrator', 'crank_revolutions', 'needs crank_speed other than 0: the crank is held at rest')
+        else if (run%crank_revolutions > 0 .and. .not. turns .and. run%end_time <= 0) then
+          call refuse('integrator', 'crank_revolutions', 'needs end_time beside it with crank_speed = 0: the latest '// &
+                             'end, should the crank not make them')
+        else if (c%drive%kind == 'constant_speed' .and. run%end_time > 0 .and. &
+                 run%end_time < run%crank_revolutions*two_pi/max(abs(c%initial%crank_speed), tiny(1.0_dp))) then
+          call refuse('integrator', 'end_time', 'must be >= '//short_text(run%crank_revolutions*two_pi/ &
+                             abs(c%initial%crank_speed))//' s, when the held crank has made crank_revolutions')
+        else if (run%contact_entry == 'step_rejection' .and. run%max_penetration <= 0) then
+          call refuse('integrator', 'max_penetration', 'must be > 0 for contact_entry = ''step_rejection''')
+        end if
+      end associate
+    end subroutine check_run
+
+    !> Check that in a run until the motion is periodic the crank turns, and that enough revolutions are allowed.
+    subroutine check_periods()
+      if (c%run%lyapunov_revolutions > 0) then
+        if (.not. (turns .and. (c%has_play() .or. c%drive%kind == 'free'))) call refuse('run', 'lyapunov_revolutions', &
+          'needs crank_speed other than 0, and clearance at a joint or a free crank')
+        if (allocated(error)) return
+      end if
+      if (.not. c%run%is_until_periodic()) then
+        if (c%output%window == 'last_period') call refuse('output', 'window', 'is for &run until = ''periodic'' alone')
+      else if (.not. turns) then
+        call refuse('run', 'until', 'needs crank_speed other than 0')
+      else if (c%run%period_revolutions < c%gas_revolutions()) then
+        call refuse('run', 'period_revolutions', 'must be >= 2, what the gas takes to repeat')
+      else if (c%output%window == 'last_period' .and. c%output%start_time > 0) then
+        call refuse('output', 'start_time', 'must be 0 with window = ''last_period''')
+      else if (c%output%window == 'last_period' .and. c%run%most_revolutions <= c%run%period_revolutions) then
+        call refuse('run', 'most_revolutions', 'must be > period_revolutions with window = ''last_period''')
+      end if
+    end subroutine check_periods
+
+    !> Check that the spacing of the rows is given, and that there are not too many rows.
+    subroutine check_output()
+      real(dp) :: samples, speed, end_time
+      character(len=*), parameter :: letters = 'abcdefghijklmnopqrstuvwxyz0123456789_, '
+      if (c%output%sampling == 'crank_angle') then
+        if (c%output%interval > 0) then
+          call refuse('output', 'interval', 'must not be given with sampling = ''crank_angle''')
+        else if (c%output%every_step) then
+          call refuse('output', 'every_step', 'must be .false. with sampling = ''crank_angle''')
+        end if
+      else if (abs(c%output%angle_origin_deg) > 0) then
+        call refuse('output', 'angle_origin_deg', 'is for sampling = ''crank_angle'' alone')
+      else if (c%output%interval <= 0 .and. .not. turns) then
+        call refuse('output', 'interval', 'required with crank_speed = 0')
+      end if
+      if (allocated(error)) return
+      if (c%integrator%end_time > 0 .and. c%output%start_time >= c%integrator%end_time .and. .not. c%run%is_until_periodic()) then
+        call refuse('output', 'start_time', 'must be < end_time')
+        return
+      end if
+      if (verify(c%output%columns, letters) > 0 .or. c%output%columns == '') then
+        call refuse('output', 'columns', 'must be ''standard'' or names of columns without their units')
+        return
+      end if
+      call check_film_times()
+      if (allocated(error)) return
+      speed = abs(c%initial%crank_speed)
+      end_time = c%integrator%end_time
+      if (turns) end_time = max(end_time, max(c%integrator%revolutions, c%integrator%crank_revolutions)*two_pi/speed)
+      if (c%run%is_until_periodic()) end_time = c%run%most_revolutions*two_pi/speed
+      if (c%output%window == 'last_period') end_time = c%run%period_revolutions*two_pi/speed
       if (c%output%interval > 0) then
-        call values%refuse('output', 'interval', 'must not be given with sampling = ''crank_angle''', error)
-      else if (c%output%every_step) then
-        call values%refuse('output', 'every_step', 'must be .false. with sampling = ''crank_angle''', error)
+        samples = end_time/c%output%interval
+        if (samples > most_samples) call refuse('output', 'interval', 'asks for more than 1e9 rows')
+      else
+        samples = end_time*speed/two_pi*c%output%samples_per_revolution
+        if (samples > most_samples) call refuse('output', 'samples_per_revolution', 'asks for more than 1e9 rows')
       end if
-    else if (abs(c%output%angle_origin_deg) > 0) then
-      call values%refuse('output', 'angle_origin_deg', 'is for sampling = ''crank_angle'' alone', error)
-    else if (c%output%interval <= 0 .and. .not. turns(c)) then
-      call values%refuse('output', 'interval', 'required with crank_speed = 0', error)
-    end if
-    if (allocated(error)) return
-    if (c%integrator%end_time > 0 .and. c%output%start_time >= c%integrator%end_time .and. .not. c%run%is_until_periodic()) then
-      call values%refuse('output', 'start_time', 'must be < end_time', error)
-      return
-    end if
-    if (verify(c%output%columns, letters) > 0 .or. c%output%columns == '') then
-      call values%refuse('output', 'columns', 'must be ''standard'' or names of columns without their units', error)
-      return
-    end if
-    call check_film_times(c, values, error)
-    if (allocated(error)) return
-    speed = abs(c%initial%crank_speed)
-    end_time = c%integrator%end_time
-    if (turns(c)) end_time = max(end_time, max(c%integrator%revolutions, c%integrator%crank_revolutions)*two_pi/speed)
-    if (c%run%is_until_periodic()) end_time = c%run%most_revolutions*two_pi/speed
-    if (c%output%window == 'last_period') end_time = c%run%period_revolutions*two_pi/speed
-    if (c%output%interval > 0) then
-      samples = end_time/c%output%interval
-      if (samples > most_samples) call values%refuse('output', 'interval', 'asks for more than 1e9 rows', error)
-    else
-      samples = end_time*speed/two_pi*c%output%samples_per_revolution
-      if (samples > most_samples) call values%refuse('output', 'samples_per_revolution', 'asks for more than 1e9 rows', error)
-    end if
-  end subroutine check_output
-
-  !> Whether the crank turns at the start.
-  pure logical function turns(c) result(answer)
-    type(case_t), intent(in) :: c
-    answer = abs(c%initial%crank_speed) > 0
-  end function turns
+    end subroutine check_output
+  end subroutine check_rules
 end module case_rules
