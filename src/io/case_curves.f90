@@ -7,7 +7,7 @@ module case_curves
   use measured_curve, only: measured_curve_t
   use measured_pressure, only: measured_pressure_periods
   use number_text, only: short_text
-  use text_tools, only: printable, integer_text
+  use text_tools, only: printable, integer_text, path_beside
   use text_file, only: read_text_file
   use case_definition, only: case_t
   use case_schema, only: shown_group
@@ -59,7 +59,7 @@ contains
       call values%refuse(group, key, 'must be the name of a file', error)
       return
     end if
-    path = path_of(case_file, curve%file)
+    path = path_beside(case_file, curve%file)
     is_there = .false.
     if (allocated(curve%path)) is_there = curve%path == path
     head = values%file//': '//shown_group(group)//' '//key//': '
@@ -89,16 +89,6 @@ contains
     place = values%place_of(group, key//'_digest')
     values%values(place)%text = curve%found
   end subroutine provide
-
-  !> The path of a file that a case names. It is relative to the folder of the case file, or to the current folder if the case comes
-  !> from standard input.
-  pure function path_of(case_file, name) result(path)
-    character(len=*), intent(in) :: case_file, name
-    character(len=:), allocatable :: path
-    path = name
-    if (index(name, '/') == 1 .or. case_file == '/dev/stdin') return
-    path = case_file(:index(case_file, '/', back=.true.))//name
-  end function path_of
 
   !> Check a measured pressure over one period and remove a last point that repeats the first one. If it is wrong, `message` says
   !> what is wrong and `line` where.

@@ -3,7 +3,7 @@
 module curve_file
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
-  use text_tools, only: printable, integer_text
+  use text_tools, only: printable, integer_text, replaced, next_line
   use value_reader, only: read_real
   implicit none
   private
@@ -60,6 +60,8 @@ contains
     has_header = .false.
     do while (at <= len(text) .and. message == '')
       call next_line(text, at, row)
+      if (index(row, achar(13), back=.true.) == len(row)) row = row(:len(row) - 1)
+      row = trim(adjustl(row))
       line = line + 1
       if (row == '' .or. index(row, '#') == 1) cycle
       if (.not. has_header) then
@@ -80,22 +82,6 @@ contains
     y = y(:n)
     lines = lines(:n)
   end subroutine parse_curve
-
-  !> The line at position `at` without leading and trailing blanks; `at` is moved behind it.
-  subroutine next_line(text, at, row)
-    character(len=*), intent(in) :: text
-    integer, intent(inout) :: at
-    character(len=:), allocatable, intent(out) :: row
-    integer :: length
-    length = index(text(at:), achar(10)) - 1
-    if (length < 0) length = len(text) - at + 1
-    row = text(at:at + length - 1)
-    at = at + length + 1
-    if (len(row) > 0) then
-      if (row(len(row):) == achar(13)) row = row(:len(row) - 1)
-    end if
-    row = trim(adjustl(row))
-  end subroutine next_line
 
   !> Split a row into two fields at the comma, without surrounding blanks and quotes.
   subroutine split(row, fields, message)
@@ -148,7 +134,7 @@ contains
       end do
     end if
     message = printable(name, 40)//': the header must name this column with its unit, the '//trim(quantity%name)// &
-      ' in one of '//unit_list(quantity)//', as in '//underscored(trim(quantity%name))//'['//trim(quantity%units(1)%name)//']'
+      ' in one of '//unit_list(quantity)//', as in '//replaced(trim(quantity%name), ' ', '_')//'['//trim(quantity%units(1)%name)//']'
   end subroutine read_unit
 
   !> A unit without blanks and signs of multiplication, so that N.m, N m, N*m and Nm are the same, and with deg for the degree sign.
@@ -156,32 +142,9 @@ contains
     character(len=*), intent(in) :: unit
     character(len=:), allocatable :: plain
     character(len=*), parameter :: degree_sign = char(194)//char(176), raised_dot = char(194)//char(183)
-    integer :: i
-    plain = ''
-    i = 1
-    do while (i <= len(unit))
-      if (index(unit(i:), degree_sign) == 1) then
-        plain = plain//'deg'
-        i = i + 1
-      else if (index(unit(i:), raised_dot) == 1) then
-        i = i + 1
-      else if (index(' .*', unit(i:i)) == 0) then
-        plain = plain//unit(i:i)
-      end if
-      i = i + 1
-    end do
+    plain = replaced(replaced(unit, degree_sign, 'deg'), raised_dot, '')
+    plain = replaced(replaced(replaced(plain, ' ', ''), '.', ''), '*', '')
   end function plain
-
-  !> The text with blanks replaced by underscores.
-  pure function underscored(name) result(text)
-    character(len=*), intent(in) :: name
-    character(len=len(name)) :: text
-    integer :: i
-    text = name
-    do i = 1, len(name)
-      if (name(i:i) == ' ') text(i:i) = '_'
-    end do
-  end function underscored
 
   pure function unit_list(quantity) result(list)
     type(quantity_t), intent(in) :: quantity

@@ -16,6 +16,7 @@ module film_tables
   use posix_signals, only: interrupted
   use gudgeon_progress, only: progress_t
   use result_file, only: write_text
+  use text_tools, only: path_beside
   use text_file, only: read_whole
   implicit none
   private
@@ -64,7 +65,7 @@ contains
       is_named = .false.
       if (allocated(joint%film%table_file)) is_named = joint%film%table_file /= ''
       if (is_named) then
-        path = beside(case%file, joint%film%table_file)
+        path = path_beside(case%file, joint%film%table_file)
       else
         path = path_for(key)
       end if
@@ -89,14 +90,6 @@ contains
     call self%progress%update_share(real(done, dp)/rows)
     self%wants_to_stop = interrupted()
   end subroutine row_done
-
-  !> The path of a file given relative to the folder of a case.
-  pure function beside(case_file, name) result(path)
-    character(len=*), intent(in) :: case_file, name
-    character(len=:), allocatable :: path
-    path = case_file(:index(case_file, '/', back=.true.))//name
-    if (name(1:1) == '/') path = name
-  end function beside
 
   !> Path of a stored table; empty if there is no cache folder.
   function path_for(key) result(path)

@@ -8,6 +8,7 @@ module reference_pages
   use case_file, only: parse_case, template
   use gudgeon_columns, only: choose_columns
   use trace_row, only: column_list_t, name_length
+  use text_tools, only: replaced
   use summary_quantities, only: quantity_t, quantities_of_runs, event_columns
   implicit none
   private
@@ -70,7 +71,7 @@ contains
     if (allocated(key%words)) meaning = meaning//' One of `'//replaced(key%words, ', ', '`, `')//'`.'
     if (allocated(key%laws)) then
       associate (all_laws => keys(find_key(keys, group, key%choice))%words)
-        if (key%laws /= all_laws) meaning = meaning//' Only with `'//key%choice//'` '//replaced(key%laws, ', ', ', ')//'.'
+        if (key%laws /= all_laws) meaning = meaning//' Only with `'//key%choice//'` '//key%laws//'.'
       end associate
     end if
     row = '| `'//trim(key%name)//'` | '//trim(key%unit)//' | '//trim(key%range)//' | '//default//' | '//escaped(meaning)//' |'
@@ -214,19 +215,4 @@ contains
     character(len=:), allocatable :: safe
     safe = replaced(replaced(replaced(text, '|', '\|'), '<', '&lt;'), '*', '\*')
   end function escaped
-
-  pure function replaced(text, old, new) result(out)
-    character(len=*), intent(in) :: text, old, new
-    character(len=:), allocatable :: out, rest
-    integer :: at
-    out = ''
-    rest = text
-    do
-      at = index(rest, old)
-      if (at == 0) exit
-      out = out//rest(:at - 1)//new
-      rest = rest(at + len(old):)
-    end do
-    out = out//rest
-  end function replaced
 end module reference_pages

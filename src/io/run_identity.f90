@@ -6,6 +6,7 @@ module run_identity
   use gudgeon_checksum, only: checksum_t
   use gudgeon_posix, only: open_for_reading, read_at, close_file
   use text_file, only: read_whole
+  use text_tools, only: next_line
   use gudgeon_version, only: program_version
   implicit none
   private
@@ -43,7 +44,7 @@ contains
     call sum%add(program)
     at = 1
     do while (at <= len(case_text))
-      call next_line(case_text, at, line)
+      call next_fixed_line(case_text, at, line)
       call sum%add(line//newline)
     end do
     identity = sum%hexadecimal()
@@ -108,8 +109,8 @@ contains
     at = 1
     other_at = 1
     do while (difference == '' .and. (at <= len(case_text) .or. other_at <= len(earlier)))
-      call next_line(case_text, at, line)
-      call next_line(earlier, other_at, other)
+      call next_fixed_line(case_text, at, line)
+      call next_fixed_line(earlier, other_at, other)
       if (line == other) then
         if (index(line, '&') == 1) group = line
       else
@@ -120,20 +121,15 @@ contains
   end subroutine compare_cases
 
   !> The next line from position `at` on that does not belong to a key that may change; `at` is moved behind it.
-  subroutine next_line(text, at, line)
+  subroutine next_fixed_line(text, at, line)
     character(len=*), intent(in) :: text
     integer, intent(inout) :: at
     character(len=:), allocatable, intent(out) :: line
     character(len=len(free_keys)) :: key
-    integer :: first, length
     do
-      first = min(at, len(text) + 1)
-      length = index(text(first:), newline) - 1
-      if (length < 0) length = len(text) - first + 1
-      line = text(first:first + length - 1)
-      at = first + length + 1
+      call next_line(text, at, line)
       key = adjustl(line(:index(line, ' =')))
       if (key == '' .or. all(free_keys /= key)) return
     end do
-  end subroutine next_line
+  end subroutine next_fixed_line
 end module run_identity

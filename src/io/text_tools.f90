@@ -3,7 +3,8 @@ module text_tools
   use, intrinsic :: iso_fortran_env, only: int64
   implicit none
   private
-  public :: lowercase, printable, is_clean, integer_text, whole_number, quoted, nearest_word, base_name, case_name
+  public :: lowercase, printable, is_clean, integer_text, whole_number, quoted, nearest_word, case_name, &
+    path_beside, replaced, next_line
 
 contains
 
@@ -49,16 +50,7 @@ contains
     character(len=*), intent(in) :: text
     character(len=1), intent(in) :: mark
     character(len=:), allocatable :: string
-    integer :: from, length
-    string = mark
-    from = 1
-    do
-      length = index(text(from:), mark)
-      if (length == 0) exit
-      string = string//text(from:from + length - 1)//mark
-      from = from + length
-    end do
-    string = string//text(from:)//mark
+    string = mark//replaced(text, mark, mark//mark)//mark
   end function quoted
 
   !> The text as one safe line: control characters, invisible characters, characters that change the direction of writing, and bytes
@@ -185,19 +177,51 @@ contains
     distance = row(len(b))
   end function edits
 
-  !> A path without its folders.
-  pure function base_name(path) result(name)
-    character(len=*), intent(in) :: path
-    character(len=:), allocatable :: name
-    name = path(index(path, '/', back=.true.) + 1:)
-  end function base_name
-
   !> The NAME of a case: the name of its file without folder and .nml.
   pure function case_name(path) result(name)
     character(len=*), intent(in) :: path
     character(len=:), allocatable :: name
-    name = base_name(path)
+    name = path(index(path, '/', back=.true.) + 1:)
     if (len(name) < 4) return
     if (lowercase(name(len(name) - 3:)) == '.nml') name = name(:len(name) - 4)
   end function case_name
+
+  !> The path of a file that another file names. It is relative to the folder of that file, or to the current folder if that is
+  !> standard input; empty for an empty name.
+  pure function path_beside(file, name) result(path)
+    character(len=*), intent(in) :: file, name
+    character(len=:), allocatable :: path
+    path = name
+    if (name == '' .or. index(name, '/') == 1 .or. file == '/dev/stdin') return
+    path = file(:index(file, '/', back=.true.))//name
+  end function path_beside
+
+  !> The text with every `old` replaced by `new`.
+  pure function replaced(text, old, new) result(out)
+    character(len=*), intent(in) :: text, old, new
+    character(len=:), allocatable :: out
+    integer :: from, length
+    out = ''
+    from = 1
+    do
+      length = index(text(from:), old) - 1
+      if (length < 0) exit
+      out = out//text(from:from + length - 1)//new
+      from = from + length + len(old)
+    end do
+    out = out//text(from:)
+  end function replaced
+
+  !> The line at position `at` of a text; `at` is moved behind it.
+  pure subroutine next_line(text, at, line)
+    character(len=*), intent(in) :: text
+    integer, intent(inout) :: at
+    character(len=:), allocatable, intent(out) :: line
+    integer :: first, length
+    first = min(at, len(text) + 1)
+    length = index(text(first:), achar(10)) - 1
+    if (length < 0) length = len(text) - first + 1
+    line = text(first:first + length - 1)
+    at = first + length + 1
+  end subroutine next_line
 end module text_tools

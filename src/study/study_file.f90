@@ -1,7 +1,7 @@
 !> Reads study files and checks their values. Errors have the form of those of case files.
 module study_file
   use gudgeon_errors, only: error_t, fail, status_case_file
-  use text_tools, only: printable, integer_text, case_name, lowercase
+  use text_tools, only: printable, integer_text, case_name, lowercase, path_beside
   use text_file, only: read_text_file
   use gudgeon_posix, only: absolute_path
   use namelist_reader, only: namelist_t, entry_t, token_t, read_namelist
@@ -148,11 +148,9 @@ contains
   subroutine take_study(values, study)
     type(case_values_t), intent(inout) :: values
     type(study_t), intent(inout) :: study
-    character(len=:), allocatable :: folder
-    folder = study%file(:index(study%file, '/', back=.true.))
     call load_model(values, 'study', study)
-    study%case = path_from(folder, study%case)
-    study%table = path_from(folder, study%table)
+    study%case = path_beside(study%file, study%case)
+    study%table = path_beside(study%file, study%table)
     study%resolved = resolved_with(absolute_path(study%case), absolute_path(study%table), study%title)
     study%identity = resolved_with('', '', '')
 
@@ -174,15 +172,6 @@ contains
       resolved_with = resolved_text(changed)
     end function resolved_with
   end subroutine take_study
-
-  !> A path relative to a folder, unless it is absolute or empty.
-  pure function path_from(folder, path) result(whole)
-    character(len=*), intent(in) :: folder, path
-    character(len=:), allocatable :: whole
-    whole = path
-    if (path == '') return
-    if (path(1:1) /= '/') whole = folder//path
-  end function path_from
 
   !> Check that the values of &study fit together and fit the number of parameters.
   subroutine check_study(values, study, n_parameters, error)
