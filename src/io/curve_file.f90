@@ -134,7 +134,8 @@ contains
       end do
     end if
     message = printable(name, 40)//': the header must name this column with its unit, the '//trim(quantity%name)// &
-      ' in one of '//unit_list(quantity)//', as in '//replaced(trim(quantity%name), ' ', '_')//'['//trim(quantity%units(1)%name)//']'
+      ' in one of '//unit_list(quantity)//', as in '//replaced(trim(quantity%name), ' ', '_')//'['// &
+      trim(quantity%units(1)%name)//']'
   end subroutine read_unit
 
   !> A unit without blanks and signs of multiplication, so that N.m, N m, N*m and Nm are the same, and with deg for the degree sign.
