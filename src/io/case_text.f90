@@ -1,7 +1,8 @@
 !> Cases as text: the template with every key and its default, and the resolved case.
 module case_text
   use text_tools, only: integer_text, quoted
-  use number_text, only: exact_text
+  use number_text, only: real_text
+  use number_writer, only: most_digits
   use gudgeon_parameters, only: key_t, real_kind, integer_kind, logical_kind
   use case_schema, only: group_definition_t, find_key, is_listed
   use case_values, only: case_values_t, value_t
@@ -118,9 +119,9 @@ contains
     line = '  '//trim(key%name)//' = '
     select case (key%kind)
     case (real_kind)
-      line = line//exact_text(value%reals(1))
+      line = line//real_text(value%reals(1), most_digits)
       do element = 2, key%count
-        line = line//', '//exact_text(value%reals(element))
+        line = line//', '//real_text(value%reals(element), most_digits)
       end do
     case (integer_kind)
       line = line//integer_text(value%whole)

@@ -87,7 +87,7 @@ contains
   subroutine row_done(self, done, rows)
     class(progress_watch_t), intent(inout) :: self
     integer, intent(in) :: done, rows
-    call self%progress%update_share(real(done, dp)/rows)
+    call self%progress%update(real(done, dp)/rows)
     self%wants_to_stop = interrupted()
   end subroutine row_done
 

@@ -25,7 +25,6 @@ module gudgeon_progress
     procedure :: start
     procedure :: update
     procedure :: update_runs
-    procedure :: update_share
     procedure :: finish
     procedure :: tell => tell_above
   end type progress_t
@@ -52,19 +51,20 @@ contains
     self%shown = self%began
   end subroutine start
 
-  !> Report that a `fraction` of the run is done, at the simulated time `time` [s]. May be called as often as desired.
+  !> Report that a `fraction` of the run, or of other work without a `time`, is done. May be called as often as desired.
   subroutine update(self, fraction, time)
     class(progress_t), intent(inout) :: self
-    real(dp), intent(in) :: fraction, time
+    real(dp), intent(in) :: fraction
+    real(dp), intent(in), optional :: time   !! simulated time [s]
     real(dp) :: elapsed
     logical :: is_due
     character(len=:), allocatable :: line
     call look_at_clock(self, elapsed, is_due)
     if (.not. is_due) return
-    line = self%name//': '//integer_text(int(100*min(1.0_dp, max(0.0_dp, fraction))))//' %, t = '//short_text(time)//' s'
+    line = self%name//': '//integer_text(int(100*min(1.0_dp, max(0.0_dp, fraction))))//' %'
+    if (present(time)) line = line//', t = '//short_text(time)//' s'
     if (fraction > 1e-6_dp) line = line//', '//duration_text(elapsed*max(0.0_dp, 1/fraction - 1))//' left'
-    call show(self%rewrites, line)
-    self%has_shown = .true.
+    call show(self, line)
   end subroutine update
 
   !> Report that `done` of `total` runs have ended, `began` of them before this program was started. May be called as often as
@@ -80,22 +80,8 @@ contains
     speed = (done - began)/elapsed
     line = self%name//': '//integer_text(done)//' of '//integer_text(total)//' runs'
     if (done > began) line = line//', '//rate_text(speed)//', '//duration_text((total - done)/speed)//' left'
-    call show(self%rewrites, line)
-    self%has_shown = .true.
+    call show(self, line)
   end subroutine update_runs
-
-  !> Report that a `fraction` of work other than a run is done. May be called as often as desired.
-  subroutine update_share(self, fraction)
-    class(progress_t), intent(inout) :: self
-    real(dp), intent(in) :: fraction
-    real(dp) :: elapsed
-    logical :: is_due
-    call look_at_clock(self, elapsed, is_due)
-    if (.not. is_due) return
-    call show(self%rewrites, self%name//': '//integer_text(int(100*fraction))//' %, '// &
-      duration_text(elapsed*(1/fraction - 1))//' left')
-    self%has_shown = .true.
-  end subroutine update_share
 
   !> Whether a line is due, and the time since the beginning [s].
   subroutine look_at_clock(self, elapsed, is_due)
@@ -113,10 +99,10 @@ contains
     elapsed = real(now - self%began, dp)/real(rate, dp)
   end subroutine look_at_clock
 
-  !> Clear the line, if one is shown.
+  !> End the reports, and clear the line, if one is shown.
   subroutine finish(self)
     class(progress_t), intent(inout) :: self
-    if (self%has_shown .and. self%rewrites) call show(.true., '')
+    call clear_line(self)
     self%is_on = .false.
     self%has_shown = .false.
   end subroutine finish
@@ -125,7 +111,7 @@ contains
   subroutine tell_above(self, line)
     class(progress_t), intent(inout) :: self
     character(len=*), intent(in) :: line
-    if (self%has_shown .and. self%rewrites) call show(.true., '')
+    call clear_line(self)
     call tell(line)
   end subroutine tell_above
 
@@ -136,12 +122,18 @@ contains
     call write_bytes(standard_error, 'gudgeon: '//line//achar(10), done, ignored)
   end subroutine tell
 
+  subroutine clear_line(self)
+    class(progress_t), intent(inout) :: self
+    if (self%has_shown .and. self%rewrites) call show(self, '')
+  end subroutine clear_line
+
   !> Replace the line on a terminal, or add a line to a file.
-  subroutine show(rewrites, line)
-    logical, intent(in) :: rewrites
+  subroutine show(self, line)
+    class(progress_t), intent(inout) :: self
     character(len=*), intent(in) :: line
     integer :: done, ignored
-    if (rewrites) then
+    self%has_shown = .true.
+    if (self%rewrites) then
       call write_bytes(standard_error, achar(13)//line//achar(27)//'[K', done, ignored)
     else
       call write_bytes(standard_error, line//achar(10), done, ignored)

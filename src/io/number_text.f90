@@ -6,27 +6,26 @@ module number_text
   use text_tools, only: whole_number
   implicit none
   private
-  public :: real_text, exact_text, short_text
+  public :: real_text, short_text
 
 contains
 
-  !> A real for a summary: `digits` significant digits (default 10), as 1.234567890E-05.
+  !> A real with `digits` significant digits (default 10, as in a summary), as 1.234567890E-05; with 17 it reads back as the same
+  !> bits.
   pure function real_text(value, digits) result(text)
     real(dp), intent(in) :: value
     integer, intent(in), optional :: digits
     character(len=:), allocatable :: text
-    integer :: wanted
+    character(len=longest_number) :: line
+    integer :: wanted, used
     wanted = 10
     if (present(digits)) wanted = digits
-    text = scientific(value, wanted)
+    used = 0
+    call append_formatted(line, used, value, wanted)
+    text = line(:used)
+    if (ieee_is_nan(value)) text = 'nan'
+    if (abs(value) > huge(value)) text = trim(merge('-inf', 'inf ', value < 0))
   end function real_text
-
-  !> A real with 17 significant digits, which reads back as the same bits.
-  pure function exact_text(value) result(text)
-    real(dp), intent(in) :: value
-    character(len=:), allocatable :: text
-    text = scientific(value, 17)
-  end function exact_text
 
   !> A real for messages: 6 significant digits without trailing zeros, as 0.0125 or 36000.5 if that is short.
   pure function short_text(value) result(text)
@@ -34,7 +33,7 @@ contains
     character(len=:), allocatable :: text
     character(len=:), allocatable :: digits
     integer :: first, exponent, power
-    text = scientific(value, 6)
+    text = real_text(value, 6)
     exponent = index(text, 'E')
     if (exponent == 0) return
     power = int(whole_number(text(exponent + 1:)))
@@ -60,17 +59,4 @@ contains
     if (number(last:last) == '.') last = last - 1
     text = number(:last)
   end function without_zeros
-
-  pure function scientific(value, digits) result(text)
-    real(dp), intent(in) :: value
-    integer, intent(in) :: digits   !! number of significant digits
-    character(len=:), allocatable :: text
-    character(len=longest_number) :: line
-    integer :: used
-    used = 0
-    call append_formatted(line, used, value, digits)
-    text = line(:used)
-    if (ieee_is_nan(value)) text = 'nan'
-    if (abs(value) > huge(value)) text = trim(merge('-inf', 'inf ', value < 0))
-  end function scientific
 end module number_text

@@ -96,8 +96,8 @@ contains
       end if
       call add_columns(kinds(i)%title, list, seen, text)
     end do
-    text = text//'## Columns of NAME.events.csv'//newline//newline//quantity_table(event_columns())//newline// &
-      '## Quantities of NAME.summary.csv'//newline//newline//quantity_table(quantities_of_runs())
+    text = text//'## Columns of NAME.events.csv'//newline//newline//quantity_table(event_columns)//newline// &
+      '## Quantities of NAME.summary.csv'//newline//newline//quantity_table(quantities_of_runs)
   end function results_reference
 
   !> The columns of a kind of scene.

@@ -13,142 +13,127 @@ module summary_quantities
     character(len=170) :: meaning = ''
   end type quantity_t
 
-contains
+  type(quantity_t), parameter :: of_integration(*) = [ &
+    quantity_t('status', '', '`done`, or the reason why the run ended early'), &
+    quantity_t('simulated_time', 's', 'time that was simulated'), &
+    quantity_t('wall_time', 's', 'time that the run took by the clock'), &
+    quantity_t('method', '', 'integration method of the case: auto, adams or radau'), &
+    quantity_t('steps_accepted', '1', 'accepted steps of the integrator'), &
+    quantity_t('steps_rejected_error', '1', 'steps rejected because their estimated error was above the tolerance'), &
+    quantity_t('steps_rejected_penetration', '1', &
+      'steps rejected because they entered contact deeper than `max_penetration` (step_rejection only)'), &
+    quantity_t('steps_rejected_domain', '1', 'steps rejected because a film would have had no thickness'), &
+    quantity_t('rhs_evaluations', '1', 'evaluations of the right-hand side by the integrator'), &
+    quantity_t('trace_evaluations', '1', 'further evaluations, for rows of the trace and for peaks'), &
+    quantity_t('restarts', '1', 'restarts of the integrator, at contacts and other discontinuities of the force'), &
+    quantity_t('smallest_step', 's', 'smallest accepted step'), &
+    quantity_t('steps_of_order_N', '1', 'accepted steps of the Adams method of order N'), &
+    quantity_t('step_limited_by', '', 'what limited the largest number of steps'), &
+    quantity_t('stability_bound_fraction', '1', 'share of the steps that were limited by the stability of the method'), &
+    quantity_t('steps_limited_by_NAME', '1', &
+      'accepted steps limited by NAME: error (estimate), stability, max_step, start (restart), refusal (trial rejected)'), &
+    quantity_t('stiffness_integral', '1', &
+      'integral over time of the rate of the fastest mode; large values call for an implicit method'), &
+    quantity_t('method_switches', '1', 'changes between Adams and Radau (method auto)'), &
+    quantity_t('PHASE_time_fraction_with_NAME', '1', &
+      'share of the time in this phase (free, film or contact) integrated by this method (method auto)'), &
+    quantity_t('jacobians', '1', 'Jacobian matrices that Radau evaluated'), &
+    quantity_t('steps_rejected_convergence', '1', 'steps rejected because the Newton iteration of Radau did not converge'), &
+    quantity_t('steps_of_N_stages', '1', 'accepted steps of Radau with N stages'), &
+    quantity_t('evaluations_over_those_of_auto', '1', &
+      'evaluations of this run over those that `method = ''auto''` would need; written where auto needs fewer')]
+
+  type(quantity_t), parameter :: of_motion(*) = [ &
+    quantity_t('max_pin_force', 'N', 'largest force at the pin'), &
+    quantity_t('crank_revolutions', '1', 'angle that the crank has turned through, in revolutions'), &
+    quantity_t('mean_crank_speed', 'rad/s', 'that angle over the simulated time'), &
+    quantity_t('motion', '', '`periodic` or `not_periodic` (`until = ''periodic''`)'), &
+    quantity_t('period_revolutions', '1', 'period of the motion in revolutions of the crank; 0: not periodic'), &
+    quantity_t('periodic_after', '1', 'revolutions after which the period was found'), &
+    quantity_t('period', 's', 'duration of one period'), &
+    quantity_t('periodic_difference', '1', &
+      'largest difference of the state after one period, over the range of each component'), &
+    quantity_t('window_start', 's', 'time of the first row with `window = ''last_period''`'), &
+    quantity_t('lyapunov_exponent', '1/revolution', &
+      'largest Lyapunov exponent: growth rate of the distance of neighbouring motions'), &
+    quantity_t('lyapunov_exponent_error', '1/revolution', 'its standard error'), &
+    quantity_t('lyapunov_revolutions', '1', 'revolutions over which it was measured'), &
+    quantity_t('lyapunov_warning', '', 'why there is no exponent'), &
+    quantity_t('max_energy_residual', 'J', 'largest size of the energy residual'), &
+    quantity_t('max_energy_residual_relative', '1', 'the same over the largest energy: a measure of the integration error'), &
+    quantity_t('energy_warning', '', 'written where that is larger than the tolerance explains')]
+
+  type(quantity_t), parameter :: of_joints(*) = [ &
+    quantity_t('viscosity', 'Pa s', 'dynamic viscosity of the oil at the temperature of the film'), &
+    quantity_t('film_table_error', '1', &
+      'largest relative error of the force in the table of the film, measured when it was made'), &
+    quantity_t('film_table_mean_error', '1', 'root mean square of the same'), &
+    quantity_t('min_film_thickness', 'm', 'smallest film thickness; negative: deepest penetration'), &
+    quantity_t('film_table_error', '1', 'largest relative error of the force in the table of the film, measured at its making'), &
+    quantity_t('film_table_mean_error', '1', 'root mean square of that error'), &
+    quantity_t('contacts', '1', 'contacts that began'), &
+    quantity_t('contact_time_fraction', '1', 'share of the simulated time in contact'), &
+    quantity_t('max_penetration', 'm', 'deepest penetration; 0 without contact'), &
+    quantity_t('max_entry_penetration', 'm', 'deepest penetration at the instant that counts as the beginning of a contact'), &
+    quantity_t('impacts_beyond_validity', '1', &
+      'contacts that began faster than 1e-5 sqrt(E/rho), the limit of the contact theory'), &
+    quantity_t('contacts_beyond_validity', '1', &
+      'contacts that at some instant were deeper than their elastic force is valid for'), &
+    quantity_t('friction_work', 'J', 'work of the friction on the bodies; negative: energy lost'), &
+    quantity_t('film_energy_lost', 'J', &
+      'energy that the film took from the bodies; negative: it gave energy, as an oscillating film may'), &
+    quantity_t('max_film_pressure', 'Pa', 'largest pressure in the film'), &
+    quantity_t('mean_film_side_flow', 'm3/s', 'mean oil flow out of both ends of the bearing'), &
+    quantity_t('max_force', 'N', 'largest contact force of this corner of the skirt'), &
+    quantity_t('elastic_members', '', 'which bodies are elastic'), &
+    quantity_t('rod_bending_frequency', 'Hz', 'lowest natural frequency of the rod in bending'), &
+    quantity_t('rod_axial_frequency', 'Hz', &
+      'lowest natural frequency of the rod along its axis, with the piston, crank pin at rest'), &
+    quantity_t('max_rod_mid_deflection', 'm', 'largest bending deflection midway between the pins'), &
+    quantity_t('max_rod_stretch', 'm', 'largest elongation or shortening'), &
+    quantity_t('max_rod_strain_energy', 'J', 'largest elastic energy in the rod'), &
+    quantity_t('crankshaft_frequency', 'Hz', 'natural frequency of the crank and the flywheel on the elastic shaft'), &
+    quantity_t('max_crankshaft_twist', 'rad', 'largest twist'), &
+    quantity_t('trace_bytes', 'B', 'length of NAME.csv'), &
+    quantity_t('events_bytes', 'B', 'length of NAME.events.csv'), &
+    quantity_t('identity', '', 'digest of the resolved case and of the program'), &
+    quantity_t('version', '', 'version of the program'), &
+    quantity_t('compiler', '', 'compiler of the program'), &
+    quantity_t('compiler_options', '', 'its options')]
+
+  type(quantity_t), parameter :: of_certificates(*) = [ &
+    quantity_t('certificate', '', 'why there is no certificate (`--certify`)'), &
+    quantity_t('certified_until', 's', 'up to here no coordinate or speed is off by more than 1e-3 of its range'), &
+    quantity_t('certified_digits', '1', 'correct digits of the state up to there, median over time'), &
+    quantity_t('state_error', '1', 'largest error of the state up to there, over the range of each component'), &
+    quantity_t('certified_impacts', '1', 'impacts up to there'), &
+    quantity_t('certified_impacts_matched', '1', 'those that the closer run has at the same times'), &
+    quantity_t('certified_with_other_method', '', 'whether the run with another method could be compared: yes or no'), &
+    quantity_t('max_pin_force_difference', 'N', 'largest difference of `max_pin_force` in the two closer runs'), &
+    quantity_t('contact_time_fraction_difference', '1', 'the same of `contact_time_fraction`'), &
+    quantity_t('min_film_thickness_difference', 'm', 'the same of `min_film_thickness`'), &
+    quantity_t('mean_crank_speed_difference', 'rad/s', 'the same of `mean_crank_speed`'), &
+    quantity_t('loss_per_revolution', 'J', 'energy lost at the joints in a revolution, mean of the whole revolutions'), &
+    quantity_t('loss_per_revolution_difference', 'J', 'its largest difference in the two closer runs'), &
+    quantity_t('beyond_revolutions', '1', 'whole revolutions after `certified_until`'), &
+    quantity_t('beyond_mean_pin_force', 'N', 'mean force at the piston pin in these revolutions'), &
+    quantity_t('beyond_contact_time_fraction', '1', 'share of the time in contact in these revolutions'), &
+    quantity_t('beyond_impacts_per_revolution', '1', 'impacts in a revolution'), &
+    quantity_t('beyond_loss_per_revolution', 'J', 'energy lost at the joints in a revolution'), &
+    quantity_t('beyond_NAME_difference', '1', 'largest relative difference of this statistic in the two closer runs')]
 
   !> Quantities of a summary, in their order.
-  function quantities_of_runs() result(list)
-    type(quantity_t), allocatable :: list(:)
-    list = [quantities_of_integration(), quantities_of_motion(), quantities_of_joints(), quantities_of_certificates()]
-  end function quantities_of_runs
-
-  function quantities_of_integration() result(list)
-    type(quantity_t), allocatable :: list(:)
-    list = [quantity_t('status', '', '`done`, or the reason why the run ended early'), &
-      quantity_t('simulated_time', 's', 'time that was simulated'), &
-      quantity_t('wall_time', 's', 'time that the run took by the clock'), &
-      quantity_t('method', '', 'integration method of the case: auto, adams or radau'), &
-      quantity_t('steps_accepted', '1', 'accepted steps of the integrator'), &
-      quantity_t('steps_rejected_error', '1', 'steps rejected because their estimated error was above the tolerance'), &
-      quantity_t('steps_rejected_penetration', '1', &
-        'steps rejected because they entered contact deeper than `max_penetration` (step_rejection only)'), &
-      quantity_t('steps_rejected_domain', '1', 'steps rejected because a film would have had no thickness'), &
-      quantity_t('rhs_evaluations', '1', 'evaluations of the right-hand side by the integrator'), &
-      quantity_t('trace_evaluations', '1', 'further evaluations, for rows of the trace and for peaks'), &
-      quantity_t('restarts', '1', 'restarts of the integrator, at contacts and other discontinuities of the force'), &
-      quantity_t('smallest_step', 's', 'smallest accepted step'), &
-      quantity_t('steps_of_order_N', '1', 'accepted steps of the Adams method of order N'), &
-      quantity_t('step_limited_by', '', 'what limited the largest number of steps'), &
-      quantity_t('stability_bound_fraction', '1', 'share of the steps that were limited by the stability of the method'), &
-      quantity_t('steps_limited_by_NAME', '1', &
-        'accepted steps limited by NAME: error (estimate), stability, max_step, start (restart), refusal (trial rejected)'), &
-      quantity_t('stiffness_integral', '1', &
-        'integral over time of the rate of the fastest mode; large values call for an implicit method'), &
-      quantity_t('method_switches', '1', 'changes between Adams and Radau (method auto)'), &
-      quantity_t('PHASE_time_fraction_with_NAME', '1', &
-        'share of the time in this phase (free, film or contact) integrated by this method (method auto)'), &
-      quantity_t('jacobians', '1', 'Jacobian matrices that Radau evaluated'), &
-      quantity_t('steps_rejected_convergence', '1', 'steps rejected because the Newton iteration of Radau did not converge'), &
-      quantity_t('steps_of_N_stages', '1', 'accepted steps of Radau with N stages'), &
-      quantity_t('evaluations_over_those_of_auto', '1', &
-        'evaluations of this run over those that `method = ''auto''` would need; written where auto needs fewer')]
-  end function quantities_of_integration
-
-  function quantities_of_motion() result(list)
-    type(quantity_t), allocatable :: list(:)
-    list = [quantity_t('max_pin_force', 'N', 'largest force at the pin'), &
-      quantity_t('crank_revolutions', '1', 'angle that the crank has turned through, in revolutions'), &
-      quantity_t('mean_crank_speed', 'rad/s', 'that angle over the simulated time'), &
-      quantity_t('motion', '', '`periodic` or `not_periodic` (`until = ''periodic''`)'), &
-      quantity_t('period_revolutions', '1', 'period of the motion in revolutions of the crank; 0: not periodic'), &
-      quantity_t('periodic_after', '1', 'revolutions after which the period was found'), &
-      quantity_t('period', 's', 'duration of one period'), &
-      quantity_t('periodic_difference', '1', &
-        'largest difference of the state after one period, over the range of each component'), &
-      quantity_t('window_start', 's', 'time of the first row with `window = ''last_period''`'), &
-      quantity_t('lyapunov_exponent', '1/revolution', &
-        'largest Lyapunov exponent: growth rate of the distance of neighbouring motions'), &
-      quantity_t('lyapunov_exponent_error', '1/revolution', 'its standard error'), &
-      quantity_t('lyapunov_revolutions', '1', 'revolutions over which it was measured'), &
-      quantity_t('lyapunov_warning', '', 'why there is no exponent'), &
-      quantity_t('max_energy_residual', 'J', 'largest size of the energy residual'), &
-      quantity_t('max_energy_residual_relative', '1', 'the same over the largest energy: a measure of the integration error'), &
-      quantity_t('energy_warning', '', 'written where that is larger than the tolerance explains')]
-  end function quantities_of_motion
-
-  function quantities_of_joints() result(list)
-    type(quantity_t), allocatable :: list(:)
-    list = [quantity_t('viscosity', 'Pa s', 'dynamic viscosity of the oil at the temperature of the film'), &
-      quantity_t('film_table_error', '1', &
-        'largest relative error of the force in the table of the film, measured when it was made'), &
-      quantity_t('film_table_mean_error', '1', 'root mean square of the same'), &
-      quantity_t('min_film_thickness', 'm', 'smallest film thickness; negative: deepest penetration'), &
-      quantity_t('film_table_error', '1', 'largest relative error of the force in the table of the film, measured at its making'), &
-      quantity_t('film_table_mean_error', '1', 'root mean square of that error'), &
-      quantity_t('contacts', '1', 'contacts that began'), &
-      quantity_t('contact_time_fraction', '1', 'share of the simulated time in contact'), &
-      quantity_t('max_penetration', 'm', 'deepest penetration; 0 without contact'), &
-      quantity_t('max_entry_penetration', 'm', 'deepest penetration at the instant that counts as the beginning of a contact'), &
-      quantity_t('impacts_beyond_validity', '1', &
-        'contacts that began faster than 1e-5 sqrt(E/rho), the limit of the contact theory'), &
-      quantity_t('contacts_beyond_validity', '1', &
-        'contacts that at some instant were deeper than their elastic force is valid for'), &
-      quantity_t('friction_work', 'J', 'work of the friction on the bodies; negative: energy lost'), &
-      quantity_t('film_energy_lost', 'J', &
-        'energy that the film took from the bodies; negative: it gave energy, as an oscillating film may'), &
-      quantity_t('max_film_pressure', 'Pa', 'largest pressure in the film'), &
-      quantity_t('mean_film_side_flow', 'm3/s', 'mean oil flow out of both ends of the bearing'), &
-      quantity_t('max_force', 'N', 'largest contact force of this corner of the skirt'), &
-      quantity_t('elastic_members', '', 'which bodies are elastic'), &
-      quantity_t('rod_bending_frequency', 'Hz', 'lowest natural frequency of the rod in bending'), &
-      quantity_t('rod_axial_frequency', 'Hz', &
-        'lowest natural frequency of the rod along its axis, with the piston, crank pin at rest'), &
-      quantity_t('max_rod_mid_deflection', 'm', 'largest bending deflection midway between the pins'), &
-      quantity_t('max_rod_stretch', 'm', 'largest elongation or shortening'), &
-      quantity_t('max_rod_strain_energy', 'J', 'largest elastic energy in the rod'), &
-      quantity_t('crankshaft_frequency', 'Hz', 'natural frequency of the crank and the flywheel on the elastic shaft'), &
-      quantity_t('max_crankshaft_twist', 'rad', 'largest twist'), &
-      quantity_t('trace_bytes', 'B', 'length of NAME.csv'), &
-      quantity_t('events_bytes', 'B', 'length of NAME.events.csv'), &
-      quantity_t('identity', '', 'digest of the resolved case and of the program'), &
-      quantity_t('version', '', 'version of the program'), &
-      quantity_t('compiler', '', 'compiler of the program'), &
-      quantity_t('compiler_options', '', 'its options')]
-  end function quantities_of_joints
-
-  function quantities_of_certificates() result(list)
-    type(quantity_t), allocatable :: list(:)
-    list = [quantity_t('certificate', '', 'why there is no certificate (`--certify`)'), &
-      quantity_t('certified_until', 's', 'up to here no coordinate or speed is off by more than 1e-3 of its range'), &
-      quantity_t('certified_digits', '1', 'correct digits of the state up to there, median over time'), &
-      quantity_t('state_error', '1', 'largest error of the state up to there, over the range of each component'), &
-      quantity_t('certified_impacts', '1', 'impacts up to there'), &
-      quantity_t('certified_impacts_matched', '1', 'those that the closer run has at the same times'), &
-      quantity_t('certified_with_other_method', '', 'whether the run with another method could be compared: yes or no'), &
-      quantity_t('max_pin_force_difference', 'N', 'largest difference of `max_pin_force` in the two closer runs'), &
-      quantity_t('contact_time_fraction_difference', '1', 'the same of `contact_time_fraction`'), &
-      quantity_t('min_film_thickness_difference', 'm', 'the same of `min_film_thickness`'), &
-      quantity_t('mean_crank_speed_difference', 'rad/s', 'the same of `mean_crank_speed`'), &
-      quantity_t('loss_per_revolution', 'J', 'energy lost at the joints in a revolution, mean of the whole revolutions'), &
-      quantity_t('loss_per_revolution_difference', 'J', 'its largest difference in the two closer runs'), &
-      quantity_t('beyond_revolutions', '1', 'whole revolutions after `certified_until`'), &
-      quantity_t('beyond_mean_pin_force', 'N', 'mean force at the piston pin in these revolutions'), &
-      quantity_t('beyond_contact_time_fraction', '1', 'share of the time in contact in these revolutions'), &
-      quantity_t('beyond_impacts_per_revolution', '1', 'impacts in a revolution'), &
-      quantity_t('beyond_loss_per_revolution', 'J', 'energy lost at the joints in a revolution'), &
-      quantity_t('beyond_NAME_difference', '1', 'largest relative difference of this statistic in the two closer runs')]
-  end function quantities_of_certificates
+  type(quantity_t), parameter :: quantities_of_runs(*) = [of_integration, of_motion, of_joints, of_certificates]
 
   !> Columns of NAME.events.csv, in their order.
-  function event_columns() result(list)
-    type(quantity_t), allocatable :: list(:)
-    list = [quantity_t('time', 's', 'instant of the event'), &
-      quantity_t('crank_angle', 'rad', 'crank angle then'), &
-      quantity_t('event', '', '`contact_begins` or `contact_ends`'), &
-      quantity_t('normal_speed', 'm/s', &
-        'normal speed d|e|/dt at the event: positive when a contact begins, negative when it ends'), &
-      quantity_t('duration', 's', 'duration of the contact (contact_ends only)'), &
-      quantity_t('max_penetration', 'm', 'its deepest penetration (contact_ends only)'), &
-      quantity_t('max_normal_force', 'N', 'its largest contact force (contact_ends only)'), &
-      quantity_t('joint', '', '`piston_pin`, `crank_pin` or a corner of the skirt, `guide_1` to `guide_4`')]
-  end function event_columns
+  type(quantity_t), parameter :: event_columns(*) = [ &
+    quantity_t('time', 's', 'instant of the event'), &
+    quantity_t('crank_angle', 'rad', 'crank angle then'), &
+    quantity_t('event', '', '`contact_begins` or `contact_ends`'), &
+    quantity_t('normal_speed', 'm/s', &
+      'normal speed d|e|/dt at the event: positive when a contact begins, negative when it ends'), &
+    quantity_t('duration', 's', 'duration of the contact (contact_ends only)'), &
+    quantity_t('max_penetration', 'm', 'its deepest penetration (contact_ends only)'), &
+    quantity_t('max_normal_force', 'N', 'its largest contact force (contact_ends only)'), &
+    quantity_t('joint', '', '`piston_pin`, `crank_pin` or a corner of the skirt, `guide_1` to `guide_4`')]
 end module summary_quantities
