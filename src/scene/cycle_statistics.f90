@@ -43,7 +43,6 @@ module cycle_statistics
     procedure :: min_film_thickness_mean
     procedure :: max_force_mean
     procedure :: skirt_force_mean
-    procedure :: impacts_mean
     procedure :: dissipated_energy_mean
   end type cycle_statistics_t
 
@@ -95,13 +94,6 @@ contains
     class(cycle_statistics_t), intent(in) :: self
     skirt_force_mean = self%skirt_force_sum/self%cycles
   end function skirt_force_mean
-
-  !> Mean number of contacts at a pin that begin in one revolution.
-  pure real(dp) function impacts_mean(self, pin)
-    class(cycle_statistics_t), intent(in) :: self
-    integer, intent(in) :: pin
-    impacts_mean = real(self%total%pin(pin)%impacts, dp)/self%cycles
-  end function impacts_mean
 
   !> Mean energy lost in one revolution [J].
   pure real(dp) function dissipated_energy_mean(self)

@@ -62,33 +62,18 @@ contains
     end if
   end subroutine put_whole
 
-  !> Choose the columns that not all studies have: see the following functions.
+  !> Choose the columns that not all studies have: those of strobes, and those that the base case has or a parameter may add.
   pure subroutine choose(self, keys, base, has_strobes)
     class(study_row_t), intent(inout) :: self
     character(len=*), intent(in) :: keys(:)   !! keys of the parameters
     type(case_t), intent(in) :: base
     logical, intent(in) :: has_strobes
     self%has_strobes = has_strobes
-    self%has_crank_pin = may_have_crank_pin(keys, base)
+    self%has_crank_pin = base%crank_pin%has_clearance() .or. any(index(keys, crank_pin_place//'.') == 1)
     self%has_guide = base%has_loose_guide() .or. any(keys == 'guide.kind')
-    self%has_motion = looks_at_motion(keys, base)
-  end subroutine choose
-
-  !> Whether runs of a study may have clearance at the crank pin, and therefore its columns: the base case has it, or a parameter
-  !> belongs to that joint.
-  pure logical function may_have_crank_pin(keys, base)
-    character(len=*), intent(in) :: keys(:)   !! keys of the parameters
-    type(case_t), intent(in) :: base
-    may_have_crank_pin = base%crank_pin%has_clearance() .or. any(index(keys, crank_pin_place//'.') == 1)
-  end function may_have_crank_pin
-
-  !> Whether runs of a study may end when the motion is periodic, or measure its Lyapunov exponent.
-  pure logical function looks_at_motion(keys, base)
-    character(len=*), intent(in) :: keys(:)   !! keys of the parameters
-    type(case_t), intent(in) :: base
-    looks_at_motion = base%run%is_until_periodic() .or. base%run%lyapunov_revolutions > 0 .or. &
+    self%has_motion = base%run%is_until_periodic() .or. base%run%lyapunov_revolutions > 0 .or. &
       any(keys == 'run.until') .or. any(keys == 'run.lyapunov_revolutions')
-  end function looks_at_motion
+  end subroutine choose
 
   !> Header of NAME.runs.csv.
   function run_header(keys, base, has_strobes) result(text)
@@ -168,52 +153,18 @@ contains
     end do
     call row%add_text(outcome)
     call row%put('cycles[-]', s%cycles, is_done)
-    call put_pin('', piston_pin, is_done .and. case%joint%has_clearance(), is_done)
-    call row%put('mean_crank_speed[rad/s]', watch%direction*two_pi*s%cycles/s%total%duration, is_done)
-    call row%put('dissipated_energy[J]', s%dissipated_energy_mean(), is_done .and. case%has_play())
+    call put_motion(row, s, watch%direction, case, is_done, .true.)
     call row%put('energy_residual[-]', relative_residual(report), has_begun)
     call row%put('rhs_evaluations[-]', report%statistics%evaluations, has_begun)
     call row%put('simulated_time[s]', report%figures%time, has_begun)
     if (row%has_strobes) call row%put('strobes[-]', watch%strobes, is_done)
-    associate (has_clearance => is_done .and. case%crank_pin%has_clearance())
-      if (row%has_crank_pin) call put_pin(crank_pin_prefix, crank_pin, has_clearance, has_clearance)
-    end associate
-    if (row%has_guide) call put_skirt(is_done .and. case%has_loose_guide())
+    call put_further_joints(row, s, case, is_done, .true.)
     if (row%has_motion) then
       call row%put('period_revolutions[-]', report%periods%period, is_done .and. report%periods%is_on)
       call row%put('lyapunov_exponent[1/revolution]', report%exponent%mean, is_done .and. report%exponent%is_known)
       call row%put('lyapunov_exponent_error[1/revolution]', report%exponent%error, is_done .and. report%exponent%is_known)
     end if
     call row%end_row()
-
-  contains
-
-    subroutine put_pin(prefix, pin, has_clearance, has_force)
-      character(len=*), intent(in) :: prefix
-      integer, intent(in) :: pin
-      logical, intent(in) :: has_clearance, has_force
-      associate (total => s%total%pin(pin), duration => s%total%duration)
-        call row%put(prefix//'min_film_thickness[m]', total%min_film_thickness, has_clearance)
-        call row%put(prefix//'min_film_thickness_mean[m]', s%min_film_thickness_mean(pin), has_clearance)
-        call row%put(prefix//'contact_time_fraction[-]', total%contact_time/duration, has_clearance)
-        call row%put(prefix//'impacts[-]', s%impacts_mean(pin), has_clearance)
-        call row%put(prefix//'max_penetration[m]', total%max_penetration, has_clearance)
-        call row%put(prefix//'max_pin_force[N]', total%max_force, has_force)
-        call row%put(prefix//'max_pin_force_mean[N]', s%max_force_mean(pin), has_force)
-        call row%put(prefix//'mean_pin_force[N]', total%force_integral/duration, has_force)
-      end associate
-    end subroutine put_pin
-
-    subroutine put_skirt(is_there)
-      logical, intent(in) :: is_there
-      associate (total => s%total%skirt)
-        call row%put('guide_contact_time_fraction[-]', total%contact_time/s%total%duration, is_there)
-        call row%put('guide_impacts[-]', real(total%impacts, dp)/s%cycles, is_there)
-        call row%put('guide_max_penetration[m]', total%max_penetration, is_there)
-        call row%put('guide_max_force[N]', total%max_force, is_there)
-        call row%put('guide_max_force_mean[N]', s%skirt_force_mean(), is_there)
-      end associate
-    end subroutine put_skirt
   end subroutine put_run
 
   !> Append a row for each revolution counted.
@@ -236,41 +187,75 @@ contains
     type(cycle_t), intent(in) :: cycle
     real(dp), intent(in) :: direction   !! sense in which the crank turns: 1 or -1
     type(case_t), intent(in) :: case
+    type(cycle_statistics_t) :: s
+    call s%add(cycle)
     call row%put('run', run, .true.)
     call row%put('cycle', number, .true.)
     call row%put('duration[s]', cycle%duration, .true.)
-    call put_pin('', piston_pin, case%joint%has_clearance(), .true.)
-    call row%put('mean_crank_speed[rad/s]', direction*two_pi/cycle%duration, .true.)
-    call row%put('dissipated_energy[J]', cycle%dissipated_energy, case%has_play())
-    associate (has_clearance => case%crank_pin%has_clearance())
-      if (row%has_crank_pin) call put_pin(crank_pin_prefix, crank_pin, has_clearance, has_clearance)
-    end associate
-    if (row%has_guide) then
-      associate (c => cycle%skirt, is_there => case%has_loose_guide())
-        call row%put('guide_contact_time_fraction[-]', c%contact_time/cycle%duration, is_there)
-        call row%put('guide_impacts[-]', c%impacts, is_there)
-        call row%put('guide_max_penetration[m]', c%max_penetration, is_there)
-        call row%put('guide_max_force[N]', c%max_force, is_there)
-      end associate
-    end if
+    call put_motion(row, s, direction, case, .true., .false.)
+    call put_further_joints(row, s, case, .true., .false.)
     call row%end_row()
-
-  contains
-
-    subroutine put_pin(prefix, pin, has_clearance, has_force)
-      character(len=*), intent(in) :: prefix
-      integer, intent(in) :: pin
-      logical, intent(in) :: has_clearance, has_force
-      associate (c => cycle%pin(pin))
-        call row%put(prefix//'min_film_thickness[m]', c%min_film_thickness, has_clearance)
-        call row%put(prefix//'contact_time_fraction[-]', c%contact_time/cycle%duration, has_clearance)
-        call row%put(prefix//'impacts[-]', c%impacts, has_clearance)
-        call row%put(prefix//'max_penetration[m]', c%max_penetration, has_clearance)
-        call row%put(prefix//'max_pin_force[N]', c%max_force, has_force)
-        call row%put(prefix//'mean_pin_force[N]', c%force_integral/cycle%duration, has_force)
-      end associate
-    end subroutine put_pin
   end subroutine put_cycle
+
+  !> Append the columns of the piston pin and the motion that all studies have.
+  subroutine put_motion(row, s, direction, case, is_there, with_means)
+    class(study_row_t), intent(inout) :: row
+    type(cycle_statistics_t), intent(in) :: s   !! of all revolutions of a run, or of one
+    real(dp), intent(in) :: direction           !! sense in which the crank turns: 1 or -1
+    type(case_t), intent(in) :: case
+    logical, intent(in) :: is_there, with_means   !! the revolutions were made; means over several revolutions are wanted
+    call put_pin(row, s, '', piston_pin, is_there .and. case%joint%has_clearance(), is_there, with_means)
+    call row%put('mean_crank_speed[rad/s]', direction*two_pi*s%cycles/s%total%duration, is_there)
+    call row%put('dissipated_energy[J]', s%dissipated_energy_mean(), is_there .and. case%has_play())
+  end subroutine put_motion
+
+  !> Append the columns of the crank pin and the piston in its bore, if the study has them.
+  subroutine put_further_joints(row, s, case, is_there, with_means)
+    class(study_row_t), intent(inout) :: row
+    type(cycle_statistics_t), intent(in) :: s
+    type(case_t), intent(in) :: case
+    logical, intent(in) :: is_there, with_means   !! see `put_motion`
+    logical :: is_loose
+    is_loose = is_there .and. case%crank_pin%has_clearance()
+    if (row%has_crank_pin) call put_pin(row, s, crank_pin_prefix, crank_pin, is_loose, is_loose, with_means)
+    if (.not. row%has_guide) return
+    is_loose = is_there .and. case%has_loose_guide()
+    associate (total => s%total%skirt)
+      call row%put('guide_contact_time_fraction[-]', total%contact_time/s%total%duration, is_loose)
+      call put_impacts(row, 'guide_', total%impacts, s%cycles, is_loose, with_means)
+      call row%put('guide_max_penetration[m]', total%max_penetration, is_loose)
+      call row%put('guide_max_force[N]', total%max_force, is_loose)
+      if (with_means) call row%put('guide_max_force_mean[N]', s%skirt_force_mean(), is_loose)
+    end associate
+  end subroutine put_further_joints
+
+  subroutine put_pin(row, s, prefix, pin, has_clearance, has_force, with_means)
+    class(study_row_t), intent(inout) :: row
+    type(cycle_statistics_t), intent(in) :: s
+    character(len=*), intent(in) :: prefix
+    integer, intent(in) :: pin
+    logical, intent(in) :: has_clearance, has_force, with_means
+    associate (total => s%total%pin(pin), duration => s%total%duration)
+      call row%put(prefix//'min_film_thickness[m]', total%min_film_thickness, has_clearance)
+      if (with_means) call row%put(prefix//'min_film_thickness_mean[m]', s%min_film_thickness_mean(pin), has_clearance)
+      call row%put(prefix//'contact_time_fraction[-]', total%contact_time/duration, has_clearance)
+      call put_impacts(row, prefix, total%impacts, s%cycles, has_clearance, with_means)
+      call row%put(prefix//'max_penetration[m]', total%max_penetration, has_clearance)
+      call row%put(prefix//'max_pin_force[N]', total%max_force, has_force)
+      if (with_means) call row%put(prefix//'max_pin_force_mean[N]', s%max_force_mean(pin), has_force)
+      call row%put(prefix//'mean_pin_force[N]', total%force_integral/duration, has_force)
+    end associate
+  end subroutine put_pin
+
+  !> Append the number of impacts: the mean over the revolutions, or that of one revolution.
+  subroutine put_impacts(row, prefix, impacts, cycles, is_there, as_mean)
+    class(study_row_t), intent(inout) :: row
+    character(len=*), intent(in) :: prefix
+    integer, intent(in) :: impacts, cycles
+    logical, intent(in) :: is_there, as_mean
+    if (as_mean) call row%put(prefix//'impacts[-]', real(impacts, dp)/cycles, is_there)
+    if (.not. as_mean) call row%put(prefix//'impacts[-]', impacts, is_there)
+  end subroutine put_impacts
 
   !> Append a row for each strobe.
   subroutine put_strobes(rows, run, watch)
