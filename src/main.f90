@@ -28,7 +28,7 @@ program gudgeon
   call ignore_write_signals()
   call parse_command_line(program_arguments(), options, error)
   if (allocated(error)) then
-    call complain(error)
+    call tell(error%message)
     status = error%status
   else if (options%help) then
     call say(help_text(), status)
@@ -115,7 +115,7 @@ contains
       end if
       if (line /= '' .and. .not. options%quiet) call say(line, status)
       if (.not. allocated(error)) cycle
-      call complain(error)
+      call tell(error%message)
       status = max(status, error%status)
     end do
   end subroutine run_studies
@@ -130,7 +130,7 @@ contains
     !$omp critical (messages)
     call case%tell_outcome(line, notice, error)
     if (allocated(error)) then
-      call complain(error)
+      call tell(error%message)
       status = max(status, error%status)
     else if (.not. options%quiet) then
       call say(line, status)
@@ -157,9 +157,4 @@ contains
     call tell('standard output: '//error_text(problem))
     status = max(status, status_output)
   end subroutine say
-
-  subroutine complain(error)
-    type(error_t), intent(in) :: error
-    call tell(error%message)
-  end subroutine complain
 end program gudgeon

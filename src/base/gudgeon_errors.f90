@@ -2,7 +2,7 @@
 module gudgeon_errors
   implicit none
   private
-  public :: error_t, fail
+  public :: error_t, fail, keep_first
   public :: status_ok, status_internal, status_command_line, status_case_file, status_integration, status_output
 
   !> Exit statuses of the program.
@@ -30,4 +30,10 @@ contains
     error%message = message
     error%status = status
   end subroutine fail
+
+  !> Keep an error unless an earlier one is kept already.
+  pure subroutine keep_first(error, kept)
+    type(error_t), allocatable, intent(inout) :: error, kept
+    if (allocated(error) .and. .not. allocated(kept)) call move_alloc(error, kept)
+  end subroutine keep_first
 end module gudgeon_errors

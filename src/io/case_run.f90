@@ -1,13 +1,13 @@
 !> One run of a case with its result files: of the scene itself, or of its ideal twin.
 module case_run
   use, intrinsic :: iso_fortran_env, only: int64
-  use gudgeon_errors, only: error_t, fail, status_output
+  use gudgeon_errors, only: error_t, fail, keep_first, status_output
   use case_definition, only: case_t
   use gudgeon_columns, only: column_list_t
   use film_tables, only: provide_tables
   use gudgeon_simulation, only: simulate, run_report_t
   use trace_files, only: trace_files_t
-  use result_file, only: result_file_t, remove_result
+  use result_file, only: result_file_t, remove_result, write_text
   use continuation, only: continuation_t
   use run_identity, only: identity_length
   use certificate, only: certificate_t, make_certificate
@@ -100,8 +100,8 @@ contains
     logical, intent(inout) :: was_there   !! becomes true if something was removed
     integer, intent(inout) :: status      !! set to the number of the first error
     if (self%start%goes_on) return
-    if (.not. self%start%is_done) call remove(self%base//'.summary.csv', was_there, status)
-    call remove(self%base//'.checkpoint', was_there, status)
+    if (.not. self%start%is_done) call remove_result(self%base//'.summary.csv', was_there, status)
+    call remove_result(self%base//'.checkpoint', was_there, status)
   end subroutine disown
 
   !> Unless the run continues or is done, remove the other files of earlier results.
@@ -110,26 +110,18 @@ contains
     logical, intent(inout) :: was_there
     integer, intent(inout) :: status
     if (self%start%goes_on .or. self%start%is_done) return
-    call remove(self%base//'.csv', was_there, status)
-    call remove(self%base//'.events.csv', was_there, status)
-    call remove(self%base//'.film.csv', was_there, status)
-    call remove(self%base//'.certificate.csv', was_there, status)
-    if (.not. self%is_twin) call remove(self%base//'.resolved.nml', was_there, status)
+    call remove_result(self%base//'.csv', was_there, status)
+    call remove_result(self%base//'.events.csv', was_there, status)
+    call remove_result(self%base//'.film.csv', was_there, status)
+    call remove_result(self%base//'.certificate.csv', was_there, status)
+    if (.not. self%is_twin) call remove_result(self%base//'.resolved.nml', was_there, status)
   end subroutine clear
-
-  subroutine remove(path, was_there, status)
-    character(len=*), intent(in) :: path
-    logical, intent(inout) :: was_there
-    integer, intent(inout) :: status
-    integer :: failed
-    call remove_result(path, was_there, failed)
-    if (status == 0) status = failed
-  end subroutine remove
 
   !> Compute the film tables of the scene, while no other run needs the processors. Error in `error`: the user interrupted.
   subroutine make_ready(self)
     class(case_run_t), intent(inout) :: self
     call provide_tables(self%case, self%show_progress, self%error)
+    if (allocated(self%error)) call name_file(self%case%file, self%error)
   end subroutine make_ready
 
   !> Integrate, and write the results and the summary to the disk. The order is such that incomplete results never have their final
@@ -164,7 +156,7 @@ contains
     class(case_run_t), intent(inout) :: self
     type(trace_files_t), intent(out) :: files
     associate (case => self%case, start => self%start, base => self%base, list => self%list)
-      call self%summary%open(base//'.summary.csv', self%error)
+      call self%summary%open(base//'.summary.csv', self%error, whole_only=.true.)
       if (.not. allocated(self%error)) call self%summary%reserve(room_for_summary, self%error)
       if (allocated(self%error)) then
         continue
@@ -198,12 +190,12 @@ contains
     !$omp critical (texts)
     if (allocated(self%report%films)) then
       call write_film_file(self%base//'.film.csv', self%report%films, film_error)
-      if (allocated(film_error) .and. .not. allocated(self%error)) call move_alloc(film_error, self%error)
+      call keep_first(film_error, self%error)
     end if
     call self%put_summary(files)
     !$omp end critical (texts)
     call self%summary%synchronise()
-    call self%summary%conclude(whole_only=.true.)
+    call self%summary%conclude()
     if (self%summary%has_failed()) call files%leave()   ! no effect on files that have their final names
     call files%conclude()
     call synchronise_folder(self%base, folder_status)
@@ -212,34 +204,24 @@ contains
     !$omp end critical (texts)
   end subroutine close_files
 
-  !> Write NAME.certificate.csv.
-  subroutine write_certificate(self)
-    class(case_run_t), intent(inout) :: self
-    type(result_file_t) :: table
-    type(error_t), allocatable :: error
-    call table%open(self%base//'.certificate.csv', error)
-    if (.not. allocated(error)) then
-      call table%put(certificate_table(self%certificate))
-      call table%close(error)
-    end if
-    if (allocated(error) .and. .not. allocated(self%error)) call move_alloc(error, self%error)
-  end subroutine write_certificate
-
   !> Write the summary into its file, and its lines for the user into `line` and `notice`.
   subroutine put_summary(self, files)
     class(case_run_t), intent(inout) :: self
     type(trace_files_t), intent(inout) :: files
-    type(error_t), allocatable :: trace_error
+    type(error_t), allocatable :: error
     type(case_t) :: case
     character(len=:), allocatable :: remark
-    call files%tell_error(trace_error)
-    if (allocated(trace_error)) self%report%status = 'stopped: '//trace_error%message
+    call files%tell_error(error)
+    if (allocated(error)) self%report%status = 'stopped: '//error%message
     case = self%case
     if (self%is_twin) case%joint%kind = 'ideal'
     if (self%is_twin) case%crank_pin%kind = 'ideal'
     remark = ''
     if (allocated(self%certificate)) then
-      if (self%certificate%is_made) call write_certificate(self)
+      if (self%certificate%is_made) then
+        call write_text(self%base//'.certificate.csv', certificate_table(self%certificate), error)
+        call keep_first(error, self%error)
+      end if
       remark = certificate_clause(self%certificate)
     end if
     self%line = summary_line(case, self%report, files%wall_time(), self%base, remark)
@@ -263,8 +245,8 @@ contains
       call name_file(self%case%file, self%error)
     end if
     call files%close(output_error)
-    call self%summary%close(summary_error, whole_only=.true.)
-    if (.not. allocated(output_error)) call move_alloc(summary_error, output_error)
+    call self%summary%close(summary_error)
+    call keep_first(summary_error, output_error)
     if (folder_status /= 0 .and. .not. allocated(output_error)) &
       call fail(output_error, printable(self%base, 200)//'.csv: '//error_text(folder_status), status_output)
     if (.not. (self%report%can_go_on .or. allocated(output_error))) call files%checkpoint%remove()

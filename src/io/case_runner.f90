@@ -1,6 +1,6 @@
 !> Runs a case from its file to its results: the scene and, if requested, its ideal twin.
 module case_runner
-  use gudgeon_errors, only: error_t, fail, status_command_line, status_output, status_integration
+  use gudgeon_errors, only: error_t, fail, keep_first, status_command_line, status_output, status_integration
   use case_definition, only: case_t
   use accuracy_presets, only: with_preset
   use case_file, only: read_case_values, complete_case
@@ -92,9 +92,7 @@ contains
   !> Compute film tables, which uses all processors. Call it after `prepare` for cases that are to be run.
   subroutine make_ready(self)
     class(case_job_t), intent(inout) :: self
-    if (allocated(self%error) .or. allocated(self%run%error)) return
-    call self%run%make_ready()
-    if (allocated(self%run%error)) call name_file(self%path, self%run%error)
+    if (.not. allocated(self%error)) call self%run%make_ready()
   end subroutine make_ready
 
   !> Check that the results do not replace a table that the case reads, such as motor.csv beside motor.nml.
@@ -195,7 +193,7 @@ contains
     end if
     if (.not. allocated(self%error)) call self%make_room()
     if (allocated(self%error) .or. self%run%start%is_done) return
-    call self%resolved%open(self%run%base//'.resolved.nml', self%error)
+    call self%resolved%open(self%run%base//'.resolved.nml', self%error, whole_only=.true.)
     call self%resolved%put(self%run%start%checkpoint%case_text)
   end subroutine take_place
 
@@ -206,7 +204,7 @@ contains
     integer :: ignored
     if (self%has_removed) call synchronise_folder(self%run%base, ignored)
     call self%resolved%synchronise()
-    call self%resolved%conclude(whole_only=.true.)
+    call self%resolved%conclude()
     !$omp critical (texts)
     if (self%resolved%has_failed()) call self%resolved%tell_error(self%error)
     is_secure = .not. allocated(self%error)
@@ -231,22 +229,16 @@ contains
                                error_text(status), status_output)
   end subroutine make_room
 
-  !> After both runs, or after a check: the texts for the user. The error is the first of the two.
+  !> After both runs, or after a check: the texts for the user, or the first error.
   subroutine tell_outcome(self, line, notice, error)
     class(case_job_t), intent(inout) :: self
     character(len=:), allocatable, intent(out) :: line, notice
     type(error_t), allocatable, intent(out) :: error
-    line = ''
-    notice = ''
-    if (allocated(self%error)) then
-      call move_alloc(self%error, error)
-    else if (allocated(self%run%error)) then
-      call move_alloc(self%run%error, error)
-    else if (allocated(self%twin%error)) then
-      call move_alloc(self%twin%error, error)
-    else
-      line = self%run%line
-      notice = self%run%notice
-    end if
+    call keep_first(self%error, error)
+    call keep_first(self%run%error, error)
+    call keep_first(self%twin%error, error)
+    if (allocated(error)) return
+    line = self%run%line
+    notice = self%run%notice
   end subroutine tell_outcome
 end module case_runner

@@ -22,6 +22,7 @@ module result_file
     character(len=:), allocatable, private :: path      !! final name
     integer, private :: descriptor = -1
     integer(c_long), private :: written = 0             !! number of bytes of whole rows in the file
+    logical, private :: whole_only = .false.            !! a part of the file is useless
     logical, private :: is_reserved = .false.           !! more disk space has been reserved than the file has bytes
     integer, private :: status = 0                      !! error number of the first write that failed
   contains
@@ -43,12 +44,15 @@ module result_file
 
 contains
 
-  !> Begin a file with the final name `path`.
-  subroutine open_result(self, path, error)
+  !> Begin a file with the final name `path`. With `whole_only` a part of it is useless, and is removed after a failure.
+  subroutine open_result(self, path, error, whole_only)
     class(result_file_t), intent(inout) :: self
     character(len=*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
+    logical, intent(in), optional :: whole_only
     integer :: status
+    self%whole_only = .false.
+    if (present(whole_only)) self%whole_only = whole_only
     self%path = path
     self%used = 0
     self%written = 0
@@ -161,35 +165,29 @@ contains
   end subroutine tell_error
 
   !> Write the remaining rows and give the file its final name. After a failed write the file keeps its complete rows; it is removed
-  !> if it has none, or if `whole_only` says that a part of it is useless. `close` reports the failure. No text function is used
-  !> here.
-  subroutine conclude(self, whole_only)
+  !> if it has none, or if a part of it is useless. `close` reports the failure. No text function is used here.
+  subroutine conclude(self)
     class(result_file_t), intent(inout) :: self
-    logical, intent(in), optional :: whole_only
     integer :: status, ignored
-    logical :: needs_all
-    needs_all = .false.
-    if (present(whole_only)) needs_all = whole_only
     if (self%descriptor < 0) return
     call self%flush()
     call close_file(self%descriptor, status)
     self%descriptor = -1
     if (self%status == 0 .and. status /= error_interrupted) self%status = status
-    if (self%status == 0 .or. self%written > 0 .and. .not. needs_all) then
+    if (self%status == 0 .or. self%written > 0 .and. .not. self%whole_only) then
       call rename_file(self%path//'.part', self%path, status)
       if (self%status == 0) self%status = status
-      if (status /= 0 .and. needs_all) call remove_file(self%path//'.part', ignored)
+      if (status /= 0 .and. self%whole_only) call remove_file(self%path//'.part', ignored)
     else
       call remove_file(self%path//'.part', ignored)
     end if
   end subroutine conclude
 
   !> Conclude the file unless that has been done; `error` contains its name and the cause of a failure.
-  subroutine close_result(self, error, whole_only)
+  subroutine close_result(self, error)
     class(result_file_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
-    logical, intent(in), optional :: whole_only
-    call self%conclude(whole_only)
+    call self%conclude()
     call self%tell_error(error)
   end subroutine close_result
 
@@ -207,12 +205,9 @@ contains
   !> Remove the file.
   subroutine abandon(self)
     class(result_file_t), intent(inout) :: self
-    integer :: ignored
-    if (self%descriptor < 0) return
-    call close_file(self%descriptor, ignored)
-    call remove_file(self%path//'.part', ignored)
-    self%descriptor = -1
     self%used = 0
+    self%written = 0
+    call self%leave()
   end subroutine abandon
 
   !> Write a small file to the disk, completely or not at all.
@@ -220,24 +215,24 @@ contains
     character(len=*), intent(in) :: path, text
     type(error_t), allocatable, intent(out) :: error
     type(result_file_t) :: file
-    call file%open(path, error)
+    call file%open(path, error, whole_only=.true.)
     if (allocated(error)) return
     call write_rows(file, text)
     call file%synchronise()
-    call file%close(error, whole_only=.true.)
+    call file%close(error)
   end subroutine write_text
 
-  !> Remove a result file and its temporary file. `status` is 0, also if there is no such file or if it is a folder; otherwise it is
-  !> the error number. `was_there` becomes true if something was removed. No text function is used here.
+  !> Remove a result file and its temporary file. `status` is set to the error number if it is the first, but not if there is no
+  !> such file or if it is a folder. `was_there` becomes true if something was removed. No text function is used here.
   subroutine remove_result(path, was_there, status)
     character(len=*), intent(in) :: path
     logical, intent(inout) :: was_there
-    integer, intent(out) :: status
-    integer :: ignored
-    call remove_file(path//'.part', ignored)
-    call remove_file(path, status)
-    if (status == 0) was_there = .true.
-    if (status == error_no_entry .or. status == error_is_directory) status = 0
+    integer, intent(inout) :: status
+    integer :: failed
+    call remove_file(path//'.part', failed)
+    call remove_file(path, failed)
+    if (failed == 0) was_there = .true.
+    if (status == 0 .and. failed /= error_no_entry .and. failed /= error_is_directory) status = failed
   end subroutine remove_result
 
   !> Write all of `text`, in as many calls as necessary. After a failure the file is truncated to whole rows.

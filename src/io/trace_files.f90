@@ -5,7 +5,7 @@
 module trace_files
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, fail, status_case_file, status_output
+  use gudgeon_errors, only: error_t, fail, keep_first, status_case_file, status_output
   use gudgeon_archive, only: archive_t
   use gudgeon_columns, only: column_list_t, column_name
   use gudgeon_scene, only: event_contact_begins
@@ -238,7 +238,7 @@ contains
     call self%progress%finish()
     call self%trace%close(error)
     call self%event_list%close(second)
-    if (.not. allocated(error)) call move_alloc(second, error)
+    call keep_first(second, error)
   end subroutine close
 
   subroutine take_row(self, values)

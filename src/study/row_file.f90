@@ -296,7 +296,7 @@ contains
     descriptor = -1
     status = 0
     if (any(self%length > 0)) call open_for_reading(self%path, descriptor, status)
-    if (status == 0) call file%open(self%path, error)
+    if (status == 0) call file%open(self%path, error, whole_only=.true.)
     if (status /= 0) call fail_with_file(self%path, status, error)
     if (.not. allocated(error)) call file%put(self%header)
     at = len(self%header)
@@ -323,7 +323,7 @@ contains
       call file%abandon()
     else
       call file%synchronise()
-      call file%close(error, whole_only=.true.)
+      call file%close(error)
       call synchronise_folder(self%path, status)
       if (status /= 0 .and. .not. allocated(error)) call fail_with_file(self%path, status, error)
     end if

@@ -3,7 +3,7 @@ module study_runner
   use, intrinsic :: iso_fortran_env, only: int64
   use omp_lib, only: omp_get_num_procs
   use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, fail, status_output, status_integration
+  use gudgeon_errors, only: error_t, fail, keep_first, status_output, status_integration
   use text_tools, only: printable, integer_text
   use number_text, only: short_text
   use result_file, only: write_text, fail_with_file
@@ -255,11 +255,6 @@ contains
       call keep_first(error, sweep%error)
     end do
   end subroutine close_files
-
-  subroutine keep_first(error, kept)
-    type(error_t), allocatable, intent(inout) :: error, kept
-    if (allocated(error) .and. .not. allocated(kept)) call move_alloc(error, kept)
-  end subroutine keep_first
 
   !> The line for the user and the error at the end of a study.
   subroutine conclude(sweep, wall_time, line, error)
