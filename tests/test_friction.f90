@@ -102,14 +102,15 @@ contains
       do row = 1, size(table, 2)
         associate (v => table(1, row))
           if (law%set_valued .and. .not. abs(v) > 0) cycle
-          call check%close_to(law%friction_ratio(v, nint(sign(1.0_dp, v))), table(i + 1, row), 2e-12_dp, 'curve of '//law%name())
+          call check%close_to(law%friction_ratio(v, nint(sign(1.0_dp, v))), table(i + 1, row), 2e-12_dp, &
+            'curve of '//trim(law%name))
         end associate
       end do
-      if (law%name() == 'threlfall') call check%relative(law%friction_ratio(5e-3_dp, 1), -0.0621495871881_dp, 1e-11_dp, &
+      if (law%name == 'threlfall') call check%relative(law%friction_ratio(5e-3_dp, 1), -0.0621495871881_dp, 1e-11_dp, &
         'threlfall at half v1')
-      if (law%name() == 'brown_mcphee') call check%relative(law%friction_ratio(-0.05_dp, 1), 0.0841816326531_dp, 1e-11_dp, &
+      if (law%name == 'brown_mcphee') call check%relative(law%friction_ratio(-0.05_dp, 1), 0.0841816326531_dp, 1e-11_dp, &
         'brown_mcphee at five transition speeds')
-      if (law%name() == 'stribeck') call check%relative(law%friction_ratio(0.01_dp, 1), -0.111172030865_dp, 1e-11_dp, &
+      if (law%name == 'stribeck') call check%relative(law%friction_ratio(0.01_dp, 1), -0.111172030865_dp, 1e-11_dp, &
         'stribeck at half the Stribeck speed')
     end do
   end subroutine test_curves
@@ -152,7 +153,7 @@ contains
         step = max(1e-5_dp*abs(v), 1e-11_dp)
         if (j == 0 .and. i == 5) cycle   ! its second derivative is unbounded there
         call check%close_to(law%friction_ratio_slope(v), (law%friction_ratio(v + step, 1) - law%friction_ratio(v - step, 1)) &
-          /(2*step), 1e-5_dp*abs(law%friction_ratio_slope(v)) + 1e-10_dp/step*1e-5_dp, 'slope of '//law%name())
+          /(2*step), 1e-5_dp*abs(law%friction_ratio_slope(v)) + 1e-10_dp/step*1e-5_dp, 'slope of '//trim(law%name))
       end do
     end do
   end subroutine test_slopes
@@ -177,11 +178,11 @@ contains
       do j = -30, 12
         v = 10.0_dp**j
         ratio = law%friction_ratio(v, 1)
-        call check%that(ratio <= 0 .and. ratio >= -2 - v, 'friction opposes sliding: '//law%name())
-        call check%that(.not. abs(ratio + law%friction_ratio(-v, -1)) > 0, 'friction is an odd function: '//law%name())
-        call check%that(abs(law%friction_ratio_slope(v)) < 1e12_dp, 'derivative of the friction is finite: '//law%name())
+        call check%that(ratio <= 0 .and. ratio >= -2 - v, 'friction opposes sliding: '//trim(law%name))
+        call check%that(.not. abs(ratio + law%friction_ratio(-v, -1)) > 0, 'friction is an odd function: '//trim(law%name))
+        call check%that(abs(law%friction_ratio_slope(v)) < 1e12_dp, 'derivative of the friction is finite: '//trim(law%name))
       end do
-      call check%that(.not. abs(law%friction_ratio(0.0_dp, 1)) > 0, 'no friction at rest: '//law%name())
+      call check%that(.not. abs(law%friction_ratio(0.0_dp, 1)) > 0, 'no friction at rest: '//trim(law%name))
     end do
   end subroutine test_extremes
 

@@ -226,10 +226,11 @@ def check_law() -> None:
         law = copy / "src/friction/linear_ramp.f90"
         law.write_text(code_after(page, "**1. "), encoding="utf-8")
         use, _, line = code_after(page, "**2. ").partition("...")
-        registry = copy / "src/friction/friction_law_list.f90"
+        registry = copy / "src/friction/friction_laws.f90"
         text = registry.read_text(encoding="utf-8")
         text = text.replace("  implicit none\n", f"  {use.strip()}\n  implicit none\n", 1)
-        text = text.replace("    call list%law(elasto_plastic_t())\n", f"    call list%law(elasto_plastic_t())\n    {line.strip()}\n", 1)
+        last = "    call list%law('elasto_plastic', elasto_plastic_t())\n"
+        text = text.replace(last, f"{last}    {line.strip()}\n", 1)
         registry.write_text(text, encoding="utf-8")
         for command in code_after(page, "**3. ").splitlines():
             done = run_in(copy, command)

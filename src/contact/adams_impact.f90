@@ -15,7 +15,6 @@ module adams_impact
     real(dp) :: full_damping = 0        !! c [N s/m], >= 0
     real(dp) :: full_damping_depth = 1  !! d [m], > 0
   contains
-    procedure, nopass :: name
     procedure :: parameters
     procedure :: prepare
     procedure :: damped_force
@@ -23,11 +22,6 @@ module adams_impact
   end type adams_impact_t
 
 contains
-
-  pure function name()
-    character(len=:), allocatable :: name
-    name = 'impact'
-  end function name
 
   subroutine parameters(self, list)
     class(adams_impact_t), intent(inout) :: self

@@ -24,7 +24,6 @@ module conformal
     real(dp) :: modulus = 0      !! pi E* L [N/m]
     real(dp) :: area = 1         !! L Rb [m^2]
   contains
-    procedure, nopass :: name
     procedure :: parameters
     procedure :: prepare
     procedure :: elastic_force
@@ -40,11 +39,6 @@ module conformal
   real(dp), parameter :: widest = 0.892534_dp   !! b at the largest angle of the fit, tan(83.5 degrees/2)
 
 contains
-
-  pure function name()
-    character(len=:), allocatable :: name
-    name = 'conformal'
-  end function name
 
   subroutine parameters(self, list)
     class(conformal_t), intent(inout) :: self

@@ -9,17 +9,11 @@ module exact_restitution
   !> chi is the root of chi (1 + e) = ln[(1 + chi)/(1 - chi e)]; the restitution of a free impact is then e (Zhang and Sharf 2009).
   type, extends(restitution_law_t) :: exact_restitution_t
   contains
-    procedure, nopass :: name
     procedure, nopass :: damping_for
     procedure, nopass :: least_restitution => one_percent
   end type exact_restitution_t
 
 contains
-
-  pure function name()
-    character(len=:), allocatable :: name
-    name = 'exact'
-  end function name
 
   !> With d = chi e and y = -ln(1 - d) the equation is d (1 + 1/e) - ln(1 + d/e) - y = 0, which is solved by bisection. For e near
   !> 1, where its terms cancel, two terms of the series of chi are more accurate.

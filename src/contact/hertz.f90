@@ -9,16 +9,10 @@ module hertz
   !> The elastic force alone, independent of all speeds.
   type, extends(contact_law_t) :: hertz_t
   contains
-    procedure, nopass :: name
     procedure :: parameters
   end type hertz_t
 
 contains
-
-  pure function name()
-    character(len=:), allocatable :: name
-    name = 'hertz'
-  end function name
 
   subroutine parameters(self, list)
     class(hertz_t), intent(inout) :: self

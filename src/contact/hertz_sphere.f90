@@ -15,7 +15,6 @@ module hertz_sphere
     real(dp) :: exponent = 1.5_dp     !! n [-], >= 1
     real(dp) :: given_stiffness = 0   !! stiffness given in the case [N/m^n]; 0: Hertz's, from the materials and the bearing
   contains
-    procedure, nopass :: name
     procedure :: parameters
     procedure :: prepare
     procedure :: elastic_force
@@ -25,11 +24,6 @@ module hertz_sphere
   end type hertz_sphere_t
 
 contains
-
-  pure function name()
-    character(len=:), allocatable :: name
-    name = 'hertz_sphere'
-  end function name
 
   subroutine parameters(self, list)
     class(hertz_sphere_t), intent(inout) :: self

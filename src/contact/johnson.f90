@@ -19,7 +19,6 @@ module johnson
     real(dp) :: modulus = 0      !! pi E* L [N/m]
     real(dp) :: last_v = 2       !! v (see below) at the largest penetration of the law
   contains
-    procedure, nopass :: name
     procedure :: parameters
     procedure :: prepare
     procedure :: elastic_force
@@ -31,11 +30,6 @@ module johnson
   real(dp), parameter :: last = 0.3_dp   !! largest D for which the law is used
 
 contains
-
-  pure function name()
-    character(len=:), allocatable :: name
-    name = 'johnson'
-  end function name
 
   subroutine parameters(self, list)
     class(johnson_t), intent(inout) :: self

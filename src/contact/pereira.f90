@@ -16,7 +16,6 @@ module pereira
     real(dp) :: stiffness = 0   !! [N/m^n]
     real(dp) :: exponent = 1    !! n [-]
   contains
-    procedure, nopass :: name
     procedure :: parameters
     procedure :: bearing_conflict
     procedure :: prepare
@@ -30,11 +29,6 @@ module pereira
 
 contains
 
-  pure function name()
-    character(len=:), allocatable :: name
-    name = 'pereira'
-  end function name
-
   subroutine parameters(self, list)
     class(pereira_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
@@ -47,7 +41,7 @@ contains
     type(bearing_t), intent(in) :: bearing
     character(len=:), allocatable, intent(out) :: key, wanted
     key = ''
-    wanted = 'must be >= 5e-6 and <= 1e-2 with contact geometry = '''//self%name()//''''
+    wanted = 'must be >= 5e-6 and <= 1e-2 with contact geometry = '''//trim(self%name)//''''
     if (bearing%clearance < 5e-6_dp .or. bearing%clearance > 1e-2_dp) key = 'clearance'
   end subroutine bearing_conflict
 

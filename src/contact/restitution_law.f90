@@ -67,7 +67,7 @@ contains
     if (self%restitution >= self%least_restitution() .or. self%dissipation > 0) return
     key = 'restitution'
     write (least, '(f4.2)') self%least_restitution()
-    wanted = 'must be >= '//least//' with law = '''//self%name()//''''
+    wanted = 'must be >= '//least//' with law = '''//trim(self%name)//''''
   end subroutine conflict
 
   pure real(dp) function zero()

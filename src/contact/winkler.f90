@@ -17,7 +17,6 @@ module winkler
     real(dp) :: clearance = 1       !! c [m]
     real(dp) :: bedding = 0         !! k Rb L [N/m^2]
   contains
-    procedure, nopass :: name
     procedure :: parameters
     procedure :: conflict
     procedure :: prepare
@@ -28,11 +27,6 @@ module winkler
   end type winkler_t
 
 contains
-
-  pure function name()
-    character(len=:), allocatable :: name
-    name = 'winkler'
-  end function name
 
   subroutine parameters(self, list)
     class(winkler_t), intent(inout) :: self

@@ -29,7 +29,6 @@ module finite_bearing
     real(dp) :: pin_radius = 0       !! R [m]
     integer :: condition = 0         !! the cavitation condition, one of the constants of finite_film
   contains
-    procedure, nopass :: name
     procedure :: serves
     procedure :: conflict
     procedure :: parameters
@@ -50,11 +49,6 @@ module finite_bearing
   end type finite_bearing_t
 
 contains
-
-  pure function name()
-    character(len=:), allocatable :: name
-    name = 'finite_bearing'
-  end function name
 
   !> True for all variants except the short bearing, which is short_bearing_t.
   pure logical function serves(self, variant)

@@ -32,7 +32,6 @@ module oscillating_film
     real(dp) :: force_scale = 0           !! mu w_b R/c [Pa s]
     real(dp) :: arm_length = 0            !! L of (5.4), the rod length [m], if the acceleration term is included; otherwise 0
   contains
-    procedure, nopass :: name
     procedure :: parameters
     procedure :: prepare
     procedure :: take_oil
@@ -44,11 +43,6 @@ module oscillating_film
   end type oscillating_film_t
 
 contains
-
-  pure function name()
-    character(len=:), allocatable :: name
-    name = 'oscillating_film'
-  end function name
 
   subroutine parameters(self, list)
     class(oscillating_film_t), intent(inout) :: self

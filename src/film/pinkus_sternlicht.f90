@@ -29,7 +29,6 @@ module pinkus_sternlicht
     real(dp) :: force_scale = 0      !! mu w R^3/c^2 [N s]
     real(dp) :: withdrawal_sign = 1  !! factor of the radial force for eps_dot < 0: 1 corrected, -1 as printed
   contains
-    procedure, nopass :: name
     procedure :: serves
     procedure :: parameters
     procedure :: prepare
@@ -43,11 +42,6 @@ module pinkus_sternlicht
   end type pinkus_sternlicht_t
 
 contains
-
-  pure function name()
-    character(len=:), allocatable :: name
-    name = 'pinkus_sternlicht'
-  end function name
 
   !> True for all variants except the half film, which is half_film_t.
   pure logical function serves(self, variant)

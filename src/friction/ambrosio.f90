@@ -13,7 +13,6 @@ module ambrosio
     real(dp) :: v0 = 0            !! largest sliding speed without friction [m/s], >= 0
     real(dp) :: v1 = 0            !! smallest sliding speed with full friction [m/s], >= v0
   contains
-    procedure, nopass :: name
     procedure :: parameters
     procedure :: conflict
     procedure :: prepare
@@ -22,11 +21,6 @@ module ambrosio
   end type ambrosio_t
 
 contains
-
-  pure function name()
-    character(len=:), allocatable :: name
-    name = 'ambrosio'
-  end function name
 
   subroutine parameters(self, list)
     class(ambrosio_t), intent(inout) :: self

@@ -12,18 +12,12 @@ module brown_mcphee
   type, extends(static_friction_t) :: brown_mcphee_t
     real(dp) :: transition_speed = 0     !! v_t, sliding speed of the largest friction [m/s], > 0
   contains
-    procedure, nopass :: name
     procedure :: parameters
     procedure :: friction_ratio
     procedure :: friction_ratio_slope
   end type brown_mcphee_t
 
 contains
-
-  pure function name()
-    character(len=:), allocatable :: name
-    name = 'brown_mcphee'
-  end function name
 
   subroutine parameters(self, list)
     class(brown_mcphee_t), intent(inout) :: self

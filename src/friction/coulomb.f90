@@ -10,7 +10,6 @@ module coulomb
   !> F_T = -c_f F_N sign(v_T), set-valued at v_T = 0: surfaces stick while |F_T| <= c_s F_N.
   type, extends(static_friction_t) :: coulomb_t
   contains
-    procedure, nopass :: name
     procedure :: parameters
     procedure :: prepare
     procedure :: friction_ratio
@@ -18,11 +17,6 @@ module coulomb
   end type coulomb_t
 
 contains
-
-  pure function name()
-    character(len=:), allocatable :: name
-    name = 'coulomb'
-  end function name
 
   subroutine parameters(self, list)
     class(coulomb_t), intent(inout) :: self

@@ -10,16 +10,10 @@ module dahl
   !> direction, from z = 0, z = (c_f/s_0) (1 - exp(-s_0 x/c_f)).
   type, extends(lugre_t) :: dahl_t
   contains
-    procedure, nopass :: name
     procedure :: parameters
   end type dahl_t
 
 contains
-
-  pure function name()
-    character(len=:), allocatable :: name
-    name = 'dahl'
-  end function name
 
   subroutine parameters(self, list)
     class(dahl_t), intent(inout) :: self

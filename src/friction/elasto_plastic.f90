@@ -14,18 +14,12 @@ module elasto_plastic
   type, extends(bristle_law_t) :: elasto_plastic_t
     real(dp) :: breakaway_ratio = 0.7_dp   !! k [-], 0 to less than 1
   contains
-    procedure, nopass :: name
     procedure :: parameters
     procedure :: bristle_rate
     procedure :: rate_slopes
   end type elasto_plastic_t
 
 contains
-
-  pure function name()
-    character(len=:), allocatable :: name
-    name = 'elasto_plastic'
-  end function name
 
   subroutine parameters(self, list)
     class(elasto_plastic_t), intent(inout) :: self

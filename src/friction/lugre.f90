@@ -11,18 +11,12 @@ module lugre
   !> surfaces drift; with `elasto_plastic` they do not.
   type, extends(bristle_law_t) :: lugre_t
   contains
-    procedure, nopass :: name
     procedure :: parameters
     procedure :: bristle_rate
     procedure :: rate_slopes
   end type lugre_t
 
 contains
-
-  pure function name()
-    character(len=:), allocatable :: name
-    name = 'lugre'
-  end function name
 
   subroutine parameters(self, list)
     class(lugre_t), intent(inout) :: self

@@ -15,18 +15,12 @@ module stribeck
     real(dp) :: stribeck_exponent = 2    !! p [-], 0.1 to 10
     real(dp) :: transition_speed = 0     !! v_t, speed scale of the transition through zero [m/s], > 0
   contains
-    procedure, nopass :: name
     procedure :: parameters
     procedure :: friction_ratio
     procedure :: friction_ratio_slope
   end type stribeck_t
 
 contains
-
-  pure function name()
-    character(len=:), allocatable :: name
-    name = 'stribeck'
-  end function name
 
   subroutine parameters(self, list)
     class(stribeck_t), intent(inout) :: self

@@ -11,7 +11,6 @@ module threlfall
   type, extends(friction_law_t) :: threlfall_t
     real(dp) :: v1 = 0            !! sliding speed up to which the friction grows [m/s], > 0
   contains
-    procedure, nopass :: name
     procedure :: parameters
     procedure :: conflict
     procedure :: friction_ratio
@@ -19,11 +18,6 @@ module threlfall
   end type threlfall_t
 
 contains
-
-  pure function name()
-    character(len=:), allocatable :: name
-    name = 'threlfall'
-  end function name
 
   subroutine parameters(self, list)
     class(threlfall_t), intent(inout) :: self

@@ -18,18 +18,12 @@ module compressor
     real(dp) :: discharge_pressure = 0     !! [Pa]
     real(dp) :: polytropic_exponent = 0    !! n in p V^n = const [-]
   contains
-    procedure, nopass :: name
     procedure :: parameters
     procedure :: conflict
     procedure :: prepare
   end type compressor_t
 
 contains
-
-  pure function name()
-    character(len=:), allocatable :: name
-    name = 'compressor'
-  end function name
 
   subroutine parameters(self, list)
     class(compressor_t), intent(inout) :: self

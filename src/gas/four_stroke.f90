@@ -10,7 +10,6 @@ module four_stroke
 
   type, extends(wiebe_law_t) :: four_stroke_t
   contains
-    procedure, nopass :: name
     procedure :: parameters
     procedure :: conflict
     procedure :: closes
@@ -19,11 +18,6 @@ module four_stroke
   end type four_stroke_t
 
 contains
-
-  pure function name()
-    character(len=:), allocatable :: name
-    name = 'four_stroke'
-  end function name
 
   subroutine parameters(self, list)
     class(four_stroke_t), intent(inout) :: self

@@ -21,18 +21,12 @@ module measured_pressure
     real(dp) :: offset_deg = 0               !! crank angle for angle 0 of the table [degrees]
     real(dp) :: compression_ratio = 0        !! ratio of largest to smallest volume; 0: unknown
   contains
-    procedure, nopass :: name
     procedure :: parameters
     procedure :: prepare
     procedure :: revolutions
   end type measured_pressure_t
 
 contains
-
-  pure function name()
-    character(len=:), allocatable :: name
-    name = 'measured'
-  end function name
 
   subroutine parameters(self, list)
     class(measured_pressure_t), intent(inout) :: self

@@ -12,7 +12,6 @@ module two_stroke
   type, extends(wiebe_law_t) :: two_stroke_t
     real(dp) :: port_opens_deg = 0   !! from the firing dead centre [degrees]
   contains
-    procedure, nopass :: name
     procedure :: parameters
     procedure :: conflict
     procedure :: closes
@@ -21,11 +20,6 @@ module two_stroke
   end type two_stroke_t
 
 contains
-
-  pure function name()
-    character(len=:), allocatable :: name
-    name = 'two_stroke'
-  end function name
 
   subroutine parameters(self, list)
     class(two_stroke_t), intent(inout) :: self

@@ -102,18 +102,20 @@ contains
   end subroutine load_choice
 
   !> Allocate a law if the case names it.
-  subroutine load_law(self, law)
+  subroutine load_law(self, name, law)
     class(loader_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
     class(law_t), intent(in) :: law
     character(len=:), allocatable :: key, wanted
     integer :: variant
     if (.not. (self%sets .and. self%is_present) .or. allocated(self%chosen)) return
-    if (law%name() /= self%law_name) return
+    if (name /= self%law_name) return
     variant = self%place_of('variant')
     if (variant > 0) then
       if (.not. law%serves(self%values%values(variant)%text)) return
     end if
     allocate (self%chosen, source=law)
+    self%chosen%name = name
     self%is_loading_law = .true.
     call self%chosen%parameters(self)
     self%is_loading_law = .false.

@@ -187,7 +187,7 @@ contains
           'needs elastic_film = .true.: the pressures between rigid walls are not realistic')
       else if (.not. allocated(joint%contact)) then
         call refuse(own, 'elastic_film', 'needs the group contact, whose geometry is the stiffness of the walls')
-      else if (joint%contact%name() /= 'hertz') then
+      else if (joint%contact%name /= 'hertz') then
         call refuse(contact, 'law', 'must be hertz with elastic_film: the film dissipates, the walls do not')
       else if (allocated(joint%friction)) then
         call refuse(own, 'elastic_film', 'cannot be combined with the group friction: the surfaces never touch')
@@ -224,7 +224,7 @@ contains
       end if
       associate (geometry => joint%contact%geometry)
         if (geometry%needs_length() .and. joint%bearing_length <= 0) then
-          call refuse(group, 'bearing_length', needed(group, 'bearing_length', 'with contact geometry = '''//geometry%name()//''''))
+          call refuse(group, 'bearing_length', needed(group, 'bearing_length', 'with contact geometry = '''//trim(geometry%name)//''''))
           return
         end if
         call geometry%bearing_conflict(joint%bearing(rod_length=0.0_dp), key, wanted)

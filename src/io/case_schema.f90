@@ -163,11 +163,12 @@ contains
   end subroutine collect_choice
 
   !> Add the name of a law to the words of its choice, and collect its keys.
-  subroutine collect_law(self, law)
+  subroutine collect_law(self, name, law)
     class(schema_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
     class(law_t), intent(in) :: law
     class(law_t), allocatable :: copy
-    self%law_name = law%name()
+    self%law_name = name
     call add_word(self%keys(self%present_choice)%words, self%law_name)
     allocate (copy, source=law)
     call copy%parameters(self)

@@ -60,8 +60,8 @@ module gudgeon_parameters
 
   !> A law: a member of a family of which a case names one.
   type, abstract, extends(has_parameters_t) :: law_t
+    character(len=24) :: name = ''   !! in a case; set when a case selects the law
   contains
-    procedure(name_of), deferred, nopass :: name
     procedure :: serves => serves_every_variant
     procedure :: conflict => no_conflict
   end type law_t
@@ -73,11 +73,6 @@ module gudgeon_parameters
       class(has_parameters_t), intent(inout) :: self
       class(parameter_list_t), intent(inout) :: list
     end subroutine parameters_of
-
-    !> The name of the law in a case.
-    pure function name_of() result(name)
-      character(len=:), allocatable :: name
-    end function name_of
 
     !> Visit a parameter; of the optional arguments the component of its kind is present.
     subroutine visit_parameter(self, key, reals, whole, switch, text)
@@ -114,11 +109,12 @@ contains
     end associate
   end subroutine pass_choice
 
-  !> A law that can be selected by the last choice, with arbitrary values of its parameters.
-  subroutine pass_law(self, law)
+  !> A law that can be selected by the last choice under this name, with arbitrary values of its parameters.
+  subroutine pass_law(self, name, law)
     class(parameter_list_t), intent(inout) :: self
+    character(len=*), intent(in) :: name
     class(law_t), intent(in) :: law
-    associate (unused => self, unused_law => law)
+    associate (unused => self, unused_name => name, unused_law => law)
     end associate
   end subroutine pass_law
 
