@@ -7,9 +7,9 @@ module test_finite_bearing
   use gudgeon_archive, only: archive_t
   use checks, only: checks_t
   use film_law, only: film_law_t, film_motion_t
-  use finite_film, only: cavitation_none, cavitation_gumbel, cavitation_reynolds
+  use finite_film, only: film_answer_t, cavitation_none, cavitation_gumbel, cavitation_reynolds
   use film_map, only: film_map_t
-  use film_solution, only: solved_force
+  use film_solution, only: solved_film
   use finite_bearing, only: finite_bearing_t
   use short_bearing, only: short_bearing_t
   use gudgeon_bearing, only: bearing_t
@@ -512,4 +512,14 @@ contains
     motion%pin_speed = speed
     motion%turning_speed = speed
   end function motion_of
+
+  !> Force of the film over mu V L R^3/c^2, with the arguments of `solved_film`.
+  pure subroutine solved_force(film_points, half_length, cavitation, gap, alpha, force)
+    integer, intent(in) :: film_points, cavitation
+    real(dp), intent(in) :: half_length, gap, alpha
+    real(dp), intent(out) :: force(2)
+    type(film_answer_t) :: film
+    call solved_film(film_points, half_length, cavitation, gap, alpha, film)
+    force = film%force
+  end subroutine solved_force
 end module test_finite_bearing

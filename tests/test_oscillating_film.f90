@@ -10,6 +10,7 @@ module test_oscillating_film
   use oscillating_response, only: oscillating_response_t, film_phasors_t, new_oscillating_response, inertia_function, &
     max_eccentricity_ratio
   use oscillating_film, only: oscillating_film_t
+  use oscillating_flow, only: response_at, response_of, pressure_gradient, velocity
   implicit none
   private
   public :: run_test_oscillating_film
@@ -52,7 +53,7 @@ contains
     do k = 1, 2
       call new_oscillating_response(response, 1e-12_dp, 0, k == 2)
       do i = 1, size(printed)
-        associate (got => response%phasors(0.5_dp, wave_numbers(i)**2/4), want => merge(printed(i), frame(i), k == 2))
+        associate (got => response_at(response, 0.5_dp, wave_numbers(i)**2/4), want => merge(printed(i), frame(i), k == 2))
           call check%close_to(real(got%pressure), real(want), 0.6e-7_dp, 'Int P* sin th, real')
           call check%close_to(aimag(got%pressure), aimag(want), 0.6e-8_dp, 'Int P* sin th, imaginary')
         end associate
@@ -125,7 +126,7 @@ contains
       do i = 1, size(ratios)
         do j = 1, size(wave_numbers)
           call defined_phasors(ratios(i), wave_numbers(j), k == 2, want)
-          got = response%phasors(ratios(i), wave_numbers(j)**2/4)
+          got = response_at(response, ratios(i), wave_numbers(j)**2/4)
           call check%that(abs(got%pressure - want%pressure) <= 1e-10_dp*(abs(want%pressure) + abs(want%moment)), &
             'pressure by its definition')
           call check%that(abs(got%shear - want%shear) <= 1e-10_dp*(abs(want%shear) + abs(want%moment)), &
@@ -148,11 +149,11 @@ contains
     do i = 0, 30
       eps = 1 - 10**(-0.2_dp*i)
       s = sqrt((1 - eps)*(1 + eps))
-      phasors = response%phasors(eps, 0.0_dp)
+      phasors = response_at(response, eps, 0.0_dp)
       call check%relative(real(phasors%pressure), -12*pi*eps/((2 + eps**2)*s), 1e-13_dp, 'Sommerfeld pressure')
       call check%relative(real(phasors%moment), -4*pi*(1 + 2*eps**2)/((2 + eps**2)*s), 1e-13_dp, 'Sommerfeld moment')
       call check%that(abs(aimag(phasors%pressure)) <= 0, 'Sommerfeld pressure is in phase')
-      slow = response%phasors(eps, 1e-9_dp)
+      slow = response_at(response, eps, 1e-9_dp)
       call check%that(abs(slow%pressure - phasors%pressure) <= 1e-8_dp*abs(phasors%moment), 'slow oscillation')
       call check%that(abs(slow%moment - phasors%moment) <= 1e-8_dp*abs(phasors%moment), 'slow oscillation, moment')
     end do
@@ -184,8 +185,8 @@ contains
     real(dp), intent(in) :: eps, wave_number
     real(dp) :: distance
     type(film_phasors_t) :: a, b
-    a = one%phasors(eps, wave_number**2/4)
-    b = other%phasors(eps, wave_number**2/4)
+    a = response_at(one, eps, wave_number**2/4)
+    b = response_at(other, eps, wave_number**2/4)
     distance = max(abs(a%pressure - b%pressure), abs(a%shear - b%shear), abs(a%moment - b%moment)) &
       /(abs(b%pressure) + abs(b%moment))
   end function distance
@@ -279,12 +280,12 @@ contains
       do j = 1, angles
         theta = two_pi*j/angles
         h = clearance*(1 - 0.6_dp*cos(theta))
-        call check%that(abs(film%velocity(motion, theta, 0.0_dp) - speed) <= 1e-14_dp*abs(speed), 'no slip at the pin')
-        call check%that(abs(film%velocity(motion, theta, 1.0_dp)) <= 1e-14_dp*abs(speed), 'no slip at the bearing')
-        driving = film%pressure_gradient(motion, theta)*kinematic_viscosity/(viscosity*pin_radius)
+        call check%that(abs(velocity(film, motion, theta, 0.0_dp) - speed) <= 1e-14_dp*abs(speed), 'no slip at the pin')
+        call check%that(abs(velocity(film, motion, theta, 1.0_dp)) <= 1e-14_dp*abs(speed), 'no slip at the bearing')
+        driving = pressure_gradient(film, motion, theta)*kinematic_viscosity/(viscosity*pin_radius)
         do k = 1, 9
           y = 0.1_dp*k
-          v = [(film%velocity(motion, theta, y + m*d), m=-2, 2)]
+          v = [(velocity(film, motion, theta, y + m*d), m=-2, 2)]
           curvature = (-v(-2) + 16*v(-1) - 30*v(0) + 16*v(1) - v(2))/(12*(d*h)**2)
           residual = i_unit*frequencies(i)*v(0) + driving - kinematic_viscosity*curvature
           call check%that(abs(residual) <= 1e-6_dp*(abs(driving) + kinematic_viscosity*abs(speed)/h**2), &
@@ -292,17 +293,17 @@ contains
         end do
         flow = 0
         do k = 1, steps, 2
-          flow = flow + h/(3*steps)*(film%velocity(motion, theta, (k - 1.0_dp)/steps) &
-            + 4*film%velocity(motion, theta, k*1.0_dp/steps) + film%velocity(motion, theta, (k + 1.0_dp)/steps))
+          flow = flow + h/(3*steps)*(velocity(film, motion, theta, (k - 1.0_dp)/steps) &
+            + 4*velocity(film, motion, theta, k*1.0_dp/steps) + velocity(film, motion, theta, (k + 1.0_dp)/steps))
         end do
         if (j == 1) first_flow = flow
         call check%that(abs(flow - first_flow) <= 1e-6_dp*abs(first_flow), 'the same flow everywhere')
-        v = [(film%velocity(motion, theta, m*d), m=0, 4)]
+        v = [(velocity(film, motion, theta, m*d), m=0, 4)]
         v(-2) = (-25*v(-2) + 48*v(-1) - 36*v(0) + 16*v(1) - 3*v(2))/(12*d*h)
         moment = moment + v(-2)*clearance/speed*two_pi/angles
         shear = shear + v(-2)*clearance/speed*cos(theta)*two_pi/angles
       end do
-      phasors = film%phasors(motion)
+      phasors = response_of(film, motion)
       call check%that(abs(moment - phasors%moment) <= 1e-4_dp*abs(phasors%moment), 'moment from the velocity slope at the pin')
       call check%that(abs(shear - phasors%shear) <= 1e-4_dp*(abs(phasors%shear) + abs(phasors%moment)), &
         'shear from the velocity slope at the pin')
@@ -336,10 +337,10 @@ contains
         p = 0
         do j = 1, points
           theta = two_pi*j/points
-          p = p + real(film%pressure_gradient(motion, theta) &
-            + film%pressure_gradient(motion, theta - two_pi/points))*pi/points
-          tau = viscosity*real(4*film%velocity(motion, theta, d) - film%velocity(motion, theta, 2*d) &
-            - 3*film%velocity(motion, theta, 0.0_dp))/(2*d*clearance*(1 - 0.7_dp*cos(theta)))
+          p = p + real(pressure_gradient(film, motion, theta) &
+            + pressure_gradient(film, motion, theta - two_pi/points))*pi/points
+          tau = viscosity*real(4*velocity(film, motion, theta, d) - velocity(film, motion, theta, 2*d) &
+            - 3*velocity(film, motion, theta, 0.0_dp))/(2*d*clearance*(1 - 0.7_dp*cos(theta)))
           angle = theta + direction
           total = total + (-p*[cos(angle), sin(angle)] + tau*[-sin(angle), cos(angle)])*two_pi/points
           turning = turning + tau*two_pi/points
@@ -372,8 +373,8 @@ contains
     call make(film, .false.)
     call make(printed, .true.)
     motion = some_motion(0.5_dp, 250.0_dp)
-    own = film%phasors(motion)
-    other = printed%phasors(motion)
+    own = response_of(film, motion)
+    other = response_of(printed, motion)
     call check%that(abs(other%pressure/own%pressure - 1) > 0.005_dp .and. abs(other%pressure/own%pressure - 1) < 0.02_dp, &
       'the second acceleration term is small')
     call printed%film_force(motion, one, moment)
@@ -412,9 +413,9 @@ contains
     film%largest_ratio = 0.9_dp
     inside = some_motion(0.9_dp, 250.0_dp)
     beyond = some_motion(0.95_dp, 250.0_dp)
-    call check%that(abs(film%pressure_gradient(beyond, theta)/film%pressure_gradient(inside, theta) - 1) <= 1e-12_dp, &
+    call check%that(abs(pressure_gradient(film, beyond, theta)/pressure_gradient(film, inside, theta) - 1) <= 1e-12_dp, &
       'pressure of the limited film')
-    call check%that(abs(film%velocity(beyond, theta, 0.3_dp)/film%velocity(inside, theta, 0.3_dp) - 1) <= 1e-12_dp, &
+    call check%that(abs(velocity(film, beyond, theta, 0.3_dp)/velocity(film, inside, theta, 0.3_dp) - 1) <= 1e-12_dp, &
       'velocity of the limited film')
   end subroutine test_held_flow
 

@@ -14,9 +14,8 @@ contains
   !> Derivatives of force and moment on the pin with respect to e_x, e_y, e_x', e_y' and the pin speed (columns; rows F_x, F_y and
   !> M, 0 without `film_moment`), from the components of the force along n = e/|e| and t perpendicular to it (element 0) and their
   !> derivatives with respect to eps = |e|/c, B = v*.n/c and T = v*.t/c (elements 1 to 3), with v* = e' - (omega/2) z x e.
-  pure function derivatives_in_components(film, force_scale, motion, n, eps, b, radial, tangential) result(derivatives)
+  pure function derivatives_in_components(film, motion, n, eps, b, radial, tangential) result(derivatives)
     class(film_law_t), intent(in) :: film
-    real(dp), intent(in) :: force_scale                    !! mu L R^3/c^2 [N s]
     type(film_motion_t), intent(in) :: motion
     real(dp), intent(in) :: n(2), eps, b                   !! for this motion [-, -, 1/s]; eps > 0
     real(dp), intent(in) :: radial(0:3), tangential(0:3)   !! [N]; with respect to eps [N], to B and T [N s]
@@ -36,7 +35,7 @@ contains
         derivatives(:, i) = [f_r*n(1) - f_t*n(2), f_r*n(2) + f_t*n(1), 0.0_dp]
       end associate
     end do
-    if (film%film_moment) derivatives(3, :) = film%shear_moment_slopes(force_scale, motion, &
+    if (film%film_moment) derivatives(3, :) = film%shear_moment_slopes(motion, &
       [radial(0)*n(1) - tangential(0)*n(2), radial(0)*n(2) + tangential(0)*n(1)], derivatives)
   end function derivatives_in_components
 end module film_direction

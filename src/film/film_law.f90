@@ -34,6 +34,7 @@ module film_law
   type, abstract, extends(law_t) :: film_law_t
     real(dp) :: clearance = 1                 !! c, radial [m]
     real(dp) :: per_clearance = 1             !! 1/c [1/m]
+    real(dp) :: force_scale = 0               !! mu L R^3/c^2 of a law with a pressure [N s]
     logical :: needs_ideal_motion = .false.   !! the law uses the ideal_* components and the frequency
     logical :: film_moment = .false.          !! the shear of the film acts on the pin
     real(dp) :: viscosity = 0                 !! mu, dynamic [Pa s], > 0
@@ -56,7 +57,7 @@ module film_law
     procedure :: is_quasi_static => no
     procedure :: gives_pressure => no
     procedure :: gives_side_flow => no
-    procedure :: drag_moment => none
+    procedure, non_overridable :: drag_moment
     procedure :: pressure => nowhere
     procedure :: peak_and_flow => peak_without_flow
     procedure :: pressure_field => long_field
@@ -124,28 +125,27 @@ contains
   !> Moment of the film on the pin about the pin's centre [N m] from the shear u = U y/h + y (y - h) p'/(2 mu) of a film whose
   !> pressure gives `force`: -2 pi mu omega R^3 L/(c sqrt(1 - eps^2)) - e x F/2. (The gap is assumed to be full of oil even where
   !> the film has ruptured.) With this moment the power dissipated by a film with pressure is never negative.
-  pure real(dp) function shear_moment(self, force_scale, motion, force) result(moment)
+  pure real(dp) function shear_moment(self, motion, force) result(moment)
     class(film_law_t), intent(in) :: self
-    real(dp), intent(in) :: force_scale   !! mu L R^3/c^2 [N s]
     type(film_motion_t), intent(in) :: motion
     real(dp), intent(in) :: force(2)
     real(dp) :: square
     associate (e => motion%eccentricity)
       square = min((e(1)**2 + e(2)**2)*self%per_clearance**2, 1 - 2*epsilon(1.0_dp))
-      moment = -two_pi*force_scale*self%clearance*motion%turning_speed/sqrt(1 - square) - 0.5_dp*(e(1)*force(2) - e(2)*force(1))
+      moment = -two_pi*self%force_scale*self%clearance*motion%turning_speed/sqrt(1 - square) &
+        - 0.5_dp*(e(1)*force(2) - e(2)*force(1))
     end associate
   end function shear_moment
 
   !> Derivatives of `shear_moment` with respect to e_x, e_y, e_x', e_y' and the pin speed, from those of the force (rows F_x, F_y).
-  pure function shear_moment_slopes(self, force_scale, motion, force, force_slopes) result(slopes)
+  pure function shear_moment_slopes(self, motion, force, force_slopes) result(slopes)
     class(film_law_t), intent(in) :: self
-    real(dp), intent(in) :: force_scale   !! mu L R^3/c^2 [N s]
     type(film_motion_t), intent(in) :: motion
     real(dp), intent(in) :: force(2), force_slopes(:, :)
     real(dp) :: slopes(5), gap, drag
     associate (e => motion%eccentricity)
       gap = 1 - min((e(1)**2 + e(2)**2)*self%per_clearance**2, 1 - 2*epsilon(1.0_dp))
-      drag = -two_pi*force_scale*self%clearance/sqrt(gap)
+      drag = -two_pi*self%force_scale*self%clearance/sqrt(gap)
       slopes = -0.5_dp*(e(1)*force_slopes(2, :5) - e(2)*force_slopes(1, :5))
       slopes(:2) = slopes(:2) + drag*motion%turning_speed*e*self%per_clearance**2/gap - 0.5_dp*[force(2), -force(1)]
       slopes(5) = slopes(5) + drag
@@ -161,15 +161,15 @@ contains
     no = .false.
   end function no
 
-  !> Moment of the film on the pin [N m] that `film_force` does not include if `film_moment` is .false.
-  pure real(dp) function none(self, motion, force)
+  !> Moment of the film on the pin [N m] that `film_force` does not include if `film_moment` is .false.: that of the shear of a film
+  !> with a pressure.
+  pure real(dp) function drag_moment(self, motion, force)
     class(film_law_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
     real(dp), intent(in) :: force(2)   !! of the film on the pin [N]
-    associate (unused => self, unused_too => motion, also_unused => force)
-    end associate
-    none = 0
-  end function none
+    drag_moment = 0
+    if (self%gives_pressure()) drag_moment = self%shear_moment(motion, force)
+  end function drag_moment
 
   !> Pressure in the middle plane of the film [Pa], for laws with a closed form, at the angle theta [rad] from the thinnest film
   !> (the direction of the eccentricity), positive from x to y.

@@ -5,7 +5,7 @@ module film_solution
   use finite_film, only: film_solver_t, film_answer_t, cavitation_reynolds
   implicit none
   private
-  public :: film_solution_t, solved_film, solved_force
+  public :: film_solution_t, solved_film
 
   type :: solver_pair_t
     type(film_solver_t) :: fine, coarse
@@ -104,14 +104,4 @@ contains
     call solution%begin(film_points, half_length, cavitation, gap)
     call solution%solve(alpha, .false., film)
   end subroutine solved_film
-
-  !> Its force alone, divided by mu V L R^3/c^2.
-  pure subroutine solved_force(film_points, half_length, cavitation, gap, alpha, force)
-    integer, intent(in) :: film_points, cavitation
-    real(dp), intent(in) :: half_length, gap, alpha
-    real(dp), intent(out) :: force(2)
-    type(film_answer_t) :: film
-    call solved_film(film_points, half_length, cavitation, gap, alpha, film)
-    force = film%force
-  end subroutine solved_force
 end module film_solution

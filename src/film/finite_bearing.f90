@@ -12,7 +12,7 @@ module finite_bearing
   use film_direction, only: derivatives_in_components, least_ratio_of_derivatives
   use finite_film, only: film_answer_t, film_solver_t, cavitation_none, cavitation_gumbel, cavitation_reynolds
   use film_map, only: film_map_t
-  use film_solution, only: solved_force, solved_film
+  use film_solution, only: solved_film
   implicit none
   private
   public :: finite_bearing_t
@@ -25,7 +25,6 @@ module finite_bearing
     integer :: film_points = 0       !! number of grid nodes round the film; 0: chosen from the tolerance
     type(film_map_t) :: map          !! table of the variant `table`; if it is empty, the equation is solved at every evaluation
     real(dp) :: half_length = 0      !! L/(2R)
-    real(dp) :: force_scale = 0      !! mu L R^3/c^2 [N s]
     real(dp) :: pin_radius = 0       !! R [m]
     integer :: condition = 0         !! the cavitation condition, one of the constants of finite_film
   contains
@@ -36,7 +35,6 @@ module finite_bearing
     procedure :: film_force
     procedure :: force_derivatives
     procedure :: reduced_force
-    procedure :: drag_moment
     procedure :: gives_pressure
     procedure :: gives_side_flow => gives_pressure
     procedure :: is_quasi_static => gives_pressure
@@ -203,7 +201,7 @@ contains
     tangential = self%force_scale*tangential
     force = [radial*n(1) - tangential*n(2), radial*n(2) + tangential*n(1)]
     moment = 0
-    if (self%film_moment) moment = self%shear_moment(self%force_scale, motion, force)
+    if (self%film_moment) moment = self%shear_moment(motion, force)
   end subroutine film_force
 
   !> Derivatives of `film_force`, for implicit integration: those of the table, transformed to x and y. Central differences are used
@@ -223,7 +221,7 @@ contains
     call self%map%force_slopes(eps, b, t, radial, tangential)
     radial = self%force_scale*radial
     tangential = self%force_scale*tangential
-    derivatives = derivatives_in_components(self, self%force_scale, motion, n, eps, b, radial, tangential)
+    derivatives = derivatives_in_components(self, motion, n, eps, b, radial, tangential)
   end subroutine force_derivatives
 
   !> The direction n of the eccentricity, the square of the eccentricity ratio (< 1), and the components of v*/c along n and
@@ -251,7 +249,8 @@ contains
     class(finite_bearing_t), intent(in) :: self
     real(dp), intent(in) :: eps_squared, b, t
     real(dp), intent(out) :: radial, tangential
-    real(dp) :: force(2), v
+    type(film_answer_t) :: film
+    real(dp) :: v
     if (self%map%points > 0) then
       call self%map%force(eps_squared, b, t, radial, tangential)
       return
@@ -260,19 +259,10 @@ contains
     tangential = 0
     v = sqrt(b**2 + t**2)
     if (.not. v > 0) return
-    call solved_force(self%film_points, self%half_length, self%condition, &
-      gap_of(eps_squared), atan2(t, b), force)
-    radial = v*force(1)
-    tangential = v*force(2)
+    call solved_film(self%film_points, self%half_length, self%condition, gap_of(eps_squared), atan2(t, b), film)
+    radial = v*film%force(1)
+    tangential = v*film%force(2)
   end subroutine reduced_force
-
-  !> Moment of the shear of the film on the pin [N m].
-  pure real(dp) function drag_moment(self, motion, force)
-    class(finite_bearing_t), intent(in) :: self
-    type(film_motion_t), intent(in) :: motion
-    real(dp), intent(in) :: force(2)
-    drag_moment = self%shear_moment(self%force_scale, motion, force)
-  end function drag_moment
 
   pure logical function gives_pressure(self)
     class(finite_bearing_t), intent(in) :: self

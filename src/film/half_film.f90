@@ -84,7 +84,7 @@ contains
       force(1) = radial*e(1) - tangential*e(2)
       force(2) = radial*e(2) + tangential*e(1)
     end if
-    if (self%film_moment) moment = self%shear_moment(self%force_scale, motion, force)
+    if (self%film_moment) moment = self%shear_moment(motion, force)
   end subroutine film_force
 
   !> The zeros of Im[conj(d)(4z + eps z^2)] on the unit circle, nearest to d and to -d, for eps d = x + i y, and the terms of the

@@ -9,8 +9,7 @@ module oscillating_film
   use gudgeon_parameters, only: parameter_list_t
   use gudgeon_bearing, only: bearing_t
   use film_law, only: film_law_t, film_motion_t
-  use oscillating_response, only: oscillating_response_t, film_phasors_t, new_oscillating_response, inertia_function, &
-    max_eccentricity_ratio
+  use oscillating_response, only: oscillating_response_t, film_phasors_t, new_oscillating_response, max_eccentricity_ratio
   implicit none
   private
   public :: oscillating_film_t
@@ -28,18 +27,14 @@ module oscillating_film
     real(dp) :: inertia_scale = 0         !! c^2/(4 nu), the ratio of Q to the frequency [s]
     real(dp) :: largest_ratio = 1  !! eccentricity ratio beyond which the film does not change: the film between real surfaces is at
                                    !! least as thick as their roughness, while the theoretical force grows without bound
-                                          !! no thinner than their roughness, where that of the theory pulls without bound
-    real(dp) :: force_scale = 0           !! mu w_b R/c [Pa s]
+    real(dp) :: speed_scale = 0           !! mu w_b R/c [Pa s]
     real(dp) :: arm_length = 0            !! L of (5.4), the rod length [m], if the acceleration term is included; otherwise 0
   contains
     procedure :: parameters
     procedure :: prepare
     procedure :: take_oil
     procedure :: film_force
-    procedure :: phasors
     procedure, non_overridable :: surface_speed
-    procedure :: pressure_gradient
-    procedure :: velocity
   end type oscillating_film_t
 
 contains
@@ -80,7 +75,7 @@ contains
     self%per_clearance = 1/bearing%clearance
     self%pin_radius = bearing%pin_radius()
     self%inertia_scale = bearing%clearance**2/(4*self%kinematic_viscosity)
-    self%force_scale = self%viscosity*bearing%length*self%pin_radius/bearing%clearance
+    self%speed_scale = self%viscosity*bearing%length*self%pin_radius/bearing%clearance
     self%arm_length = 0
     if (as_printed) self%arm_length = bearing%rod_length
     self%largest_ratio = 1 - self%least_film_ratio
@@ -100,17 +95,6 @@ contains
     if (motion%frequency > slowest) lag = motion%ideal_pin_acceleration*(1/motion%frequency)
     speed = cmplx(self%pin_radius*motion%ideal_pin_speed, -self%pin_radius*lag, dp)
   end function surface_speed
-
-  !> Response of the film to a unit surface speed.
-  pure function phasors(self, motion)
-    class(oscillating_film_t), intent(in) :: self
-    type(film_motion_t), intent(in) :: motion
-    type(film_phasors_t) :: phasors
-    real(dp) :: eccentricity
-    eccentricity = sqrt(motion%eccentricity(1)**2 + motion%eccentricity(2)**2)
-    phasors = self%response%phasors(min(eccentricity/self%clearance, self%largest_ratio), &
-      self%inertia_scale*motion%frequency)
-  end function phasors
 
   !> f_t = mu w_b R/c Re{U [Int t* cos th - (R/c) Int P* sin th]}, f_r = 0, moment mu w_b R^2/c Re{U Int t*}. The velocity of the
   !> pin's centre and its actual rotation have no influence. If `arm_length` is not 0, the first acceleration term of (5.4), a
@@ -133,7 +117,7 @@ contains
     end if
     call self%response%respond(square, 1 - square, self%inertia_scale*motion%frequency, response)
     speed = self%surface_speed(motion)
-    scale = two_pi*self%force_scale
+    scale = two_pi*self%speed_scale
     along = scale*real(speed)
     across = scale*aimag(speed)
     lever = self%pin_radius*self%per_clearance
@@ -143,7 +127,7 @@ contains
     force(1) = -tangential*e(2)
     force(2) = tangential*e(1)
     if (self%arm_length > 0) then
-      radial = pi*self%force_scale*self%clearance/self%kinematic_viscosity*motion%frequency*self%arm_length*real(speed)
+      radial = pi*self%speed_scale*self%clearance/self%kinematic_viscosity*motion%frequency*self%arm_length*real(speed)
       n(1) = 1   ! a centred pin has no direction; x is used
       n(2) = 0
       if (square > 0) n = e*(1/sqrt(square))
@@ -151,75 +135,4 @@ contains
       force(2) = force(2) + radial*n(2)
     end if
   end subroutine film_force
-
-  !> dP/dth [Pa] as a phasor, at the angle theta [rad] from the thinnest film (the direction of the eccentricity), positive from x
-  !> to y. Its real part is the present gradient.
-  pure complex(dp) function pressure_gradient(self, motion, theta) result(gradient)
-    class(oscillating_film_t), intent(in) :: self
-    type(film_motion_t), intent(in) :: motion
-    real(dp), intent(in) :: theta
-    complex(dp) :: speed
-    speed = self%surface_speed(motion)
-    gradient = driving_gradient(self, motion, theta)
-    if (self%response%as_printed) gradient = gradient - self%viscosity/self%kinematic_viscosity &
-      *self%pin_radius*motion%frequency*(0.0_dp, 1.0_dp)*speed
-    gradient = gradient + self%viscosity/self%kinematic_viscosity*motion%frequency*self%arm_length*sin(theta)*speed
-  end function pressure_gradient
-
-  !> The part of dP/dth [Pa] that drives the flow.
-  pure complex(dp) function driving_gradient(self, motion, theta) result(gradient)
-    class(oscillating_film_t), intent(in) :: self
-    type(film_motion_t), intent(in) :: motion
-    real(dp), intent(in) :: theta
-    complex(dp) :: inertia
-    type(film_phasors_t) :: response
-    real(dp) :: eta, v
-    response = self%phasors(motion)
-    eta = gap(self, motion, theta)/self%clearance
-    v = self%inertia_scale*motion%frequency*eta**2
-    inertia = inertia_function(v)
-    gradient = 2*self%viscosity*self%pin_radius/self%clearance**2*self%surface_speed(motion) &
-      *(eta*inertia - response%flow*(inertia + cmplx(0.0_dp, v, dp)))/eta**3
-  end function driving_gradient
-
-  !> Velocity along the film [m/s] as a phasor (5.1), at theta as above and at the relative height y/h above the pin's surface (0 at
-  !> the pin, 1 at the bearing). With the local gap h, lambda = sqrt(i w/nu) and C(z) = sinh(z)/z, it is
-  !> V = U (1 - y/h) C(lambda(h-y))/C(lambda h) - P' y(h-y)/(2 mu R) C(lambda y/2) C(lambda(h-y)/2)/cosh(lambda h/2).
-  !> Limit: |lambda h| < 700.
-  pure function velocity(self, motion, theta, height)
-    class(oscillating_film_t), intent(in) :: self
-    type(film_motion_t), intent(in) :: motion
-    real(dp), intent(in) :: theta
-    real(dp), intent(in) :: height
-    complex(dp) :: velocity
-    complex(dp) :: wave
-    real(dp) :: h
-    h = gap(self, motion, theta)
-    wave = h*sqrt(motion%frequency/(2*self%kinematic_viscosity))*(1.0_dp, 1.0_dp)
-    velocity = self%surface_speed(motion)*(1 - height)*sinhc(wave*(1 - height))/sinhc(wave) &
-      - driving_gradient(self, motion, theta)*h**2*height*(1 - height)/(2*self%viscosity*self%pin_radius) &
-      *sinhc(wave*height/2)*sinhc(wave*(1 - height)/2)/cosh(wave/2)
-  end function velocity
-
-  !> Thickness of the film [m], with the eccentricity limited as in the response.
-  pure function gap(self, motion, theta)
-    class(oscillating_film_t), intent(in) :: self
-    type(film_motion_t), intent(in) :: motion
-    real(dp), intent(in) :: theta
-    real(dp) :: gap
-    real(dp) :: eps
-    eps = min(norm2(motion%eccentricity)/self%clearance, self%largest_ratio, max_eccentricity_ratio)
-    gap = self%clearance*(1 - eps*cos(theta))
-  end function gap
-
-  !> sinh(z)/z.
-  pure function sinhc(z)
-    complex(dp), intent(in) :: z
-    complex(dp) :: sinhc
-    if (abs(z) < 1e-2_dp) then
-      sinhc = 1 + z**2/6*(1 + z**2/20*(1 + z**2/42))
-    else
-      sinhc = sinh(z)/z
-    end if
-  end function sinhc
 end module oscillating_film

@@ -17,7 +17,7 @@
 !> of centres, and half of the circle is sufficient.
 module oscillating_response
   use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi, two_pi
+  use gudgeon_constants, only: pi
   use inertia_series, only: inertia_series_t, remainder_t, new_inertia_series
   implicit none
   private
@@ -43,9 +43,9 @@ module oscillating_response
 
   !> The response at one position.
   type :: film_phasors_t
-    complex(dp) :: pressure   !! Int P* sin th dth
-    complex(dp) :: shear      !! Int t* cos th dth
-    complex(dp) :: moment     !! Int t* dth
+    complex(dp) :: pressure   !! Int P* sin th dth over 2 pi eps
+    complex(dp) :: shear      !! Int t* cos th dth over 2 pi eps
+    complex(dp) :: moment     !! Int t* dth over 2 pi
     complex(dp) :: flow       !! K
   end type film_phasors_t
 
@@ -54,7 +54,6 @@ module oscillating_response
     type(inertia_series_t) :: series      !! for small Q
     type(rule_t), allocatable :: rule(:)  !! for larger Q; the rule with the fewest points first
   contains
-    procedure, non_overridable :: phasors
     procedure, non_overridable :: respond
   end type oscillating_response_t
 
@@ -99,23 +98,9 @@ contains
     q = (pi*(2*total - sqrt(8.0_dp))/((total - 2)*(total + 2)))**2
   end function served_inertia
 
-  !> The response at an eccentricity ratio and Q = c^2 w/(4 nu).
-  pure function phasors(self, eccentricity_ratio, q)
-    class(oscillating_response_t), intent(in) :: self
-    real(dp), intent(in) :: eccentricity_ratio   !! >= 0
-    real(dp), intent(in) :: q                    !! >= 0
-    type(film_phasors_t) :: phasors
-    real(dp) :: eps
-    eps = min(eccentricity_ratio, max_eccentricity_ratio)
-    call self%respond(eps**2, (1 - eps)*(1 + eps), q, phasors)
-    phasors%pressure = two_pi*eps*phasors%pressure
-    phasors%shear = two_pi*eps*phasors%shear
-    phasors%moment = two_pi*phasors%moment
-  end function phasors
-
-  !> The same response with pressure and shear divided by 2 pi eps and the moment by 2 pi, so that the square root eps is not
-  !> needed. The closed means of 1/eta, 1/eta^2, 1/eta^3 and of their products with cos th are multiplied out with the remainders,
-  !> so that nothing cancels as eps -> 1.
+  !> The response at an eccentricity ratio and Q, with pressure and shear divided by 2 pi eps and the moment by 2 pi, so that the
+  !> square root eps is not needed. The closed means of 1/eta, 1/eta^2, 1/eta^3 and of their products with cos th are multiplied out
+  !> with the remainders, so that nothing cancels as eps -> 1.
   pure subroutine respond(self, square, gap, q, phasors)
     class(oscillating_response_t), intent(in) :: self
     real(dp), value, intent(in) :: square, gap   !! eps^2 and 1 - eps^2, both >= 0, gap not 0

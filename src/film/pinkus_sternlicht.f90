@@ -26,7 +26,6 @@ module pinkus_sternlicht
   type, extends(film_law_t) :: pinkus_sternlicht_t
     character(len=:), allocatable :: variant   !! closed_form, as_printed, or half_film for half_film_t
     real(dp) :: pressure_scale = 0   !! mu R^2/c^2 [Pa s], R of the pin
-    real(dp) :: force_scale = 0      !! mu w R^3/c^2 [N s]
     real(dp) :: withdrawal_sign = 1  !! factor of the radial force for eps_dot < 0: 1 corrected, -1 as printed
   contains
     procedure :: serves
@@ -35,7 +34,6 @@ module pinkus_sternlicht
     procedure :: film_force
     procedure :: force_derivatives
     procedure :: is_quasi_static
-    procedure :: drag_moment
     procedure :: gives_pressure
     procedure :: pressure
     procedure, non_overridable :: reduced
@@ -146,7 +144,7 @@ contains
       force(1) = radial*n(1) - tangential*n(2)
       force(2) = radial*n(2) + tangential*n(1)
     end associate
-    if (self%film_moment) moment = self%shear_moment(self%force_scale, motion, force)
+    if (self%film_moment) moment = self%shear_moment(motion, force)
   end subroutine film_force
 
   !> Derivatives of `film_force`, for implicit integration (see `difference_derivatives`): those of the polar components with
@@ -168,8 +166,7 @@ contains
     end if
     radial(3) = -2*radial(3)
     tangential(3) = -2*tangential(3)
-    derivatives = derivatives_in_components(self, self%force_scale, motion, state%normal, state%ratio, state%ratio_rate, radial, &
-      tangential)
+    derivatives = derivatives_in_components(self, motion, state%normal, state%ratio, state%ratio_rate, radial, tangential)
   end subroutine force_derivatives
 
   !> Radial and tangential force (element 0) and their derivatives with respect to eps, eps_dot and eps W (elements 1 to 3). At rest
@@ -208,14 +205,6 @@ contains
       tangential(3) = tangential(3) + scale(0)*gap*pi*quotient(0)
     end associate
   end subroutine polar_forces
-
-  !> Moment of the shear of the film on the pin [N m].
-  pure real(dp) function drag_moment(self, motion, force)
-    class(pinkus_sternlicht_t), intent(in) :: self
-    type(film_motion_t), intent(in) :: motion
-    real(dp), intent(in) :: force(2)
-    drag_moment = self%shear_moment(self%force_scale, motion, force)
-  end function drag_moment
 
   pure logical function gives_pressure(self)
     class(pinkus_sternlicht_t), intent(in) :: self
