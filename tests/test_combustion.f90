@@ -161,7 +161,8 @@ contains
     call gas%part_at(0.0_dp, .false., part, start)
     call check%that(part == part_open .and. start < 0, 'the cycle at q = 0 is open')
     call check%relative(gas%pressure(0.0_dp, part, start), 101325.0_dp, 1e-15_dp, 'the open cycle is at intake pressure')
-    call working%take_cycle(gas, 101325.0_dp)
+    working%cylinder = gas%cylinder
+    working%crankcase_pressure = 101325
     call check%close_to(working%force(201325.0_dp), 1e5_dp*pi*0.07_dp**2/4, 1e-10_dp, 'gas force')
   end subroutine parts_join
 

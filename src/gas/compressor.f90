@@ -61,6 +61,8 @@ contains
     valves%suction_pressure = self%suction_pressure
     valves%discharge_pressure = self%discharge_pressure
     valves%exponent = self%polytropic_exponent
-    call gas%take_valves(valves, self%crankcase_pressure)
+    allocate (gas%valves, source=valves)
+    gas%cylinder = valves%cylinder
+    gas%crankcase_pressure = self%crankcase_pressure
   end subroutine prepare
 end module compressor

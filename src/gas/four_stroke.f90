@@ -2,7 +2,6 @@
 module four_stroke
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
-  use gudgeon_parameters, only: parameter_list_t
   use wiebe_law, only: wiebe_law_t
   implicit none
   private
@@ -10,20 +9,11 @@ module four_stroke
 
   type, extends(wiebe_law_t) :: four_stroke_t
   contains
-    procedure :: parameters
     procedure :: conflict
-    procedure :: closes
-    procedure :: opens
-    procedure :: period
+    procedure :: timing
   end type four_stroke_t
 
 contains
-
-  subroutine parameters(self, list)
-    class(four_stroke_t), intent(inout) :: self
-    class(parameter_list_t), intent(inout) :: list
-    call self%wiebe_parameters(list)
-  end subroutine parameters
 
   pure subroutine conflict(self, key, wanted)
     class(four_stroke_t), intent(in) :: self
@@ -33,24 +23,12 @@ contains
     if (self%start_deg + self%duration_deg > 540) key = 'duration_deg'
   end subroutine conflict
 
-  pure real(dp) function closes(self)
+  pure subroutine timing(self, period, half_closed)
     class(four_stroke_t), intent(in) :: self
-    associate (unused => self)
-    end associate
-    closes = pi
-  end function closes
-
-  pure real(dp) function opens(self)
-    class(four_stroke_t), intent(in) :: self
-    associate (unused => self)
-    end associate
-    opens = 3*pi
-  end function opens
-
-  pure real(dp) function period(self)
-    class(four_stroke_t), intent(in) :: self
+    real(dp), intent(out) :: period, half_closed
     associate (unused => self)
     end associate
     period = 4*pi
-  end function period
+    half_closed = pi
+  end subroutine timing
 end module four_stroke

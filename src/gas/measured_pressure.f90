@@ -6,7 +6,7 @@ module measured_pressure
   use gudgeon_parameters, only: parameter_list_t
   use measured_curve, only: measured_curve_t
   use monotone_cubic, only: new_periodic_cubic
-  use cylinder, only: cylinder_t, new_cylinder
+  use cylinder, only: new_cylinder
   use gas_law, only: gas_law_t
   use working_gas, only: working_gas_t
   implicit none
@@ -51,14 +51,13 @@ contains
     real(dp), intent(in) :: tolerance
     type(working_gas_t), intent(out) :: gas
     type(error_t), allocatable, intent(out) :: error
-    type(cylinder_t) :: cylinder
     associate (unused => tolerance, never => allocated(error))
     end associate
-    cylinder = new_cylinder(self%bore, crank_length, rod_length, 2.0_dp)
-    cylinder%dead_volume = 0
-    if (self%compression_ratio > 1) cylinder%dead_volume = cylinder%displacement/(self%compression_ratio - 1)
-    call gas%take_curve(cylinder, self%crankcase_pressure, &
-      new_periodic_cubic((self%curve%x + self%offset_deg)*degree, self%curve%y, self%period_deg*degree))
+    gas%cylinder = new_cylinder(self%bore, crank_length, rod_length, 2.0_dp)
+    gas%cylinder%dead_volume = 0
+    if (self%compression_ratio > 1) gas%cylinder%dead_volume = gas%cylinder%displacement/(self%compression_ratio - 1)
+    gas%crankcase_pressure = self%crankcase_pressure
+    allocate (gas%curve, source=new_periodic_cubic((self%curve%x + self%offset_deg)*degree, self%curve%y, self%period_deg*degree))
   end subroutine prepare
 
   pure integer function revolutions(self)

@@ -14,9 +14,7 @@ module two_stroke
   contains
     procedure :: parameters
     procedure :: conflict
-    procedure :: closes
-    procedure :: opens
-    procedure :: period
+    procedure :: timing
   end type two_stroke_t
 
 contains
@@ -45,20 +43,10 @@ contains
     end if
   end subroutine conflict
 
-  pure real(dp) function closes(self)
+  pure subroutine timing(self, period, half_closed)
     class(two_stroke_t), intent(in) :: self
-    closes = two_pi - self%port_opens_deg*degree
-  end function closes
-
-  pure real(dp) function opens(self)
-    class(two_stroke_t), intent(in) :: self
-    opens = two_pi + self%port_opens_deg*degree
-  end function opens
-
-  pure real(dp) function period(self)
-    class(two_stroke_t), intent(in) :: self
-    associate (unused => self)
-    end associate
+    real(dp), intent(out) :: period, half_closed
     period = two_pi
-  end function period
+    half_closed = self%port_opens_deg*degree
+  end subroutine timing
 end module two_stroke

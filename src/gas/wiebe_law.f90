@@ -20,20 +20,21 @@ module wiebe_law
     real(dp) :: start_deg = 0, duration_deg = 0   !! combustion: start and duration [degrees]
     real(dp) :: intake_pressure = 101325          !! pressure while the cylinder is open [Pa]
   contains
-    procedure :: wiebe_parameters
+    procedure :: parameters => wiebe_parameters
+    procedure, non_overridable :: wiebe_parameters
     procedure :: prepare
     procedure :: revolutions
-    procedure(angle_of), deferred :: closes
-    procedure(angle_of), deferred :: opens
-    procedure(angle_of), deferred :: period
+    procedure(timing), deferred :: timing
   end type wiebe_law_t
 
   abstract interface
-    !> An angle of the cycle [rad]: at which the cylinder closes, at which it opens, after which the cycle repeats.
-    pure real(dp) function angle_of(self)
+    !> Angles of the cycle [rad]: that after which it repeats, and that for which the cylinder is closed before the firing dead
+    !> centre and again after it.
+    pure subroutine timing(self, period, half_closed)
       import :: wiebe_law_t, dp
       class(wiebe_law_t), intent(in) :: self
-    end function angle_of
+      real(dp), intent(out) :: period, half_closed
+    end subroutine timing
   end interface
 
 contains
@@ -66,19 +67,24 @@ contains
     type(working_gas_t), intent(out) :: gas
     type(error_t), allocatable, intent(out) :: error
     type(gas_cycle_t) :: cycle
+    real(dp) :: half_closed
     cycle%cylinder = new_cylinder(self%bore, crank_length, rod_length, self%compression_ratio)
     cycle%release = heat_release_t(self%heat, self%efficiency, self%form, self%start_deg*degree, self%duration_deg*degree)
     cycle%heat_capacity_ratio = self%heat_capacity_ratio
     cycle%intake_pressure = self%intake_pressure
-    cycle%period = self%period()
-    cycle%closes = self%closes()
-    cycle%opens = self%opens()
+    call self%timing(cycle%period, half_closed)
+    cycle%closes = two_pi - half_closed
+    cycle%opens = two_pi + half_closed
     call new_gas_cycle(cycle, tolerance, error)
-    if (.not. allocated(error)) call gas%take_cycle(cycle, self%crankcase_pressure)
+    allocate (gas%cycle, source=cycle)
+    gas%cylinder = cycle%cylinder
+    gas%crankcase_pressure = self%crankcase_pressure
   end subroutine prepare
 
   pure integer function revolutions(self)
     class(wiebe_law_t), intent(in) :: self
-    revolutions = nint(self%period()/two_pi)
+    real(dp) :: period, half_closed
+    call self%timing(period, half_closed)
+    revolutions = nint(period/two_pi)
   end function revolutions
 end module wiebe_law

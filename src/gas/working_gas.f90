@@ -16,9 +16,10 @@ module working_gas
   !> Events of a cycle: the crank passes from one part to the next, forwards or backwards.
   integer, parameter :: n_cycle_events = 2
 
-  !> Exactly one of the last three components is allocated.
+  !> Exactly one of the last three components is allocated. The second derivative of a measured pressure is discontinuous at its
+  !> points. There are no events for this: the error control detects it and reduces the order of the method.
   type :: working_gas_t
-    integer :: n_events = 0          !! number of event functions
+    integer :: n_events = 0          !! number of event functions, set by `start`
     integer :: part = 0              !! present part of the cycle
     real(dp) :: cycle_start = 0      !! crank angle at which the present cycle began [rad]
     type(cylinder_t) :: cylinder
@@ -27,9 +28,6 @@ module working_gas
     type(valve_gas_t), allocatable :: valves
     type(monotone_cubic_t), allocatable :: curve   !! measured pressure [Pa] over the crank angle [rad]
   contains
-    procedure :: take_cycle
-    procedure :: take_valves
-    procedure :: take_curve
     procedure :: start
     procedure :: longest_turn
     procedure :: revolutions
@@ -44,45 +42,15 @@ module working_gas
 
 contains
 
-  subroutine take_cycle(self, cycle, crankcase_pressure)
-    class(working_gas_t), intent(inout) :: self
-    type(gas_cycle_t), intent(in) :: cycle
-    real(dp), intent(in) :: crankcase_pressure   !! [Pa]
-    allocate (self%cycle, source=cycle)
-    self%cylinder = cycle%cylinder
-    self%crankcase_pressure = crankcase_pressure
-    self%n_events = n_cycle_events
-  end subroutine take_cycle
-
-  subroutine take_valves(self, valves, crankcase_pressure)
-    class(working_gas_t), intent(inout) :: self
-    type(valve_gas_t), intent(in) :: valves
-    real(dp), intent(in) :: crankcase_pressure   !! [Pa]
-    allocate (self%valves, source=valves)
-    self%cylinder = valves%cylinder
-    self%crankcase_pressure = crankcase_pressure
-    self%n_events = n_valve_events
-  end subroutine take_valves
-
-  !> Set a measured pressure. Its second derivative is discontinuous at its points. There are no events for this: the error control
-  !> detects it and reduces the order of the method.
-  subroutine take_curve(self, cylinder, crankcase_pressure, curve)
-    class(working_gas_t), intent(inout) :: self
-    type(cylinder_t), intent(in) :: cylinder
-    real(dp), intent(in) :: crankcase_pressure   !! [Pa]
-    type(monotone_cubic_t), intent(in) :: curve
-    allocate (self%curve, source=curve)
-    self%cylinder = cylinder
-    self%crankcase_pressure = crankcase_pressure
-  end subroutine take_curve
-
   !> Find the initial discrete state: for a cycle, the part that contains the crank angle or is about to be entered.
   subroutine start(self, crank_angle, crank_speed)
     class(working_gas_t), intent(inout) :: self
     real(dp), intent(in) :: crank_angle, crank_speed   !! [rad], [rad/s]
     if (allocated(self%cycle)) then
+      self%n_events = n_cycle_events
       call self%cycle%part_at(crank_angle, crank_speed < 0, self%part, self%cycle_start)
     else if (allocated(self%valves)) then
+      self%n_events = n_valve_events
       call self%valves%find_state(crank_angle, crank_speed)
     end if
   end subroutine start
