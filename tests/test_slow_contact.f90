@@ -4,7 +4,8 @@ module test_slow_contact
   use gudgeon_kinds, only: dp
   use chain_motion, only: piston_pin
   use checks, only: checks_t
-  use contact_stiffness, only: hertz_stiffness
+  use gudgeon_bearing, only: bearing_t
+  use hertz_sphere, only: hertz_sphere_t
   use gudgeon_errors, only: error_t
   use contact_law, only: contact_law_t
   use laws, only: contact_law_of
@@ -100,7 +101,11 @@ contains
 
   !> Penetration at which the elastic force carries the piston of the dry case [m].
   real(dp) function resting_depth()
-    resting_depth = (0.14_dp*9.80665_dp/hertz_stiffness(0.010_dp, 1e-4_dp, [207e9_dp, 207e9_dp], [0.3_dp, 0.3_dp]))**(2/3.0_dp)
+    type(hertz_sphere_t) :: steel
+    steel%youngs_modulus = 207e9_dp
+    steel%poissons_ratio = 0.3_dp
+    call steel%prepare(bearing_t(radius=0.010_dp, clearance=1e-4_dp))
+    resting_depth = (0.14_dp*9.80665_dp/steel%stiffness)**(2/3.0_dp)
   end function resting_depth
 
   !> A pin that starts at rest with a larger penetration than in equilibrium remains in contact and reaches the equilibrium.

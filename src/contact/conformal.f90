@@ -6,7 +6,6 @@ module conformal
   use gudgeon_bearing, only: bearing_t
   use trace_row, only: trace_row_t
   use contact_geometry, only: contact_geometry_t
-  use contact_stiffness, only: contact_modulus
   implicit none
   private
   public :: conformal_t
@@ -53,7 +52,7 @@ contains
     class(conformal_t), intent(inout) :: self
     type(bearing_t), intent(in) :: bearing
     self%clearance = bearing%clearance
-    self%modulus = pi*contact_modulus(self%youngs_modulus, self%poissons_ratio)*bearing%length
+    self%modulus = pi*self%contact_modulus()*bearing%length
     self%area = bearing%length*bearing%radius
   end subroutine prepare
 

@@ -4,7 +4,6 @@ module contact_geometry
   use gudgeon_parameters, only: law_t, parameter_list_t
   use gudgeon_bearing, only: bearing_t
   use trace_row, only: trace_row_t
-  use contact_stiffness, only: valid_impact_speed
   implicit none
   private
   public :: contact_geometry_t
@@ -16,6 +15,7 @@ module contact_geometry
     real(dp) :: density(2) = 0          !! of pin and bearing [kg/m^3]
     real(dp) :: three_halves = 0        !! K [N/m^1.5] if the force is K delta^1.5, set by `prepare`; otherwise 0
   contains
+    procedure :: parameters => material_parameters
     procedure(prepare), deferred :: prepare
     procedure(elastic_force), deferred :: elastic_force
     procedure(slope), deferred :: slope
@@ -25,6 +25,7 @@ module contact_geometry
     procedure :: bearing_conflict => fits_every_bearing
     procedure :: put_columns => no_columns
     procedure, non_overridable :: material_parameters
+    procedure, non_overridable :: contact_modulus
     procedure, non_overridable :: fastest_impact
   end type contact_geometry_t
 
@@ -57,7 +58,7 @@ module contact_geometry
 
 contains
 
-  !> Declare the material parameters, for `parameters` of a geometry.
+  !> Declare the material parameters. A geometry with others declares both.
   subroutine material_parameters(self, list)
     class(contact_geometry_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
@@ -128,9 +129,16 @@ contains
     end associate
   end subroutine no_columns
 
-  !> The largest impact speed for which elastic contact of these materials is valid (remark after 4.7) [m/s].
+  !> E* [Pa] of the two materials: 1/E* = (1 - nu_i^2)/E_i + (1 - nu_j^2)/E_j.
+  pure real(dp) function contact_modulus(self)
+    class(contact_geometry_t), intent(in) :: self
+    contact_modulus = 1/sum((1 - self%poissons_ratio**2)/self%youngs_modulus)
+  end function contact_modulus
+
+  !> Largest impact speed for which elastic contact of these materials is valid [m/s]: 1e-5 sqrt(E/rho), the smaller value of the two
+  !> (remark after 4.7).
   pure real(dp) function fastest_impact(self)
     class(contact_geometry_t), intent(in) :: self
-    fastest_impact = valid_impact_speed(self%youngs_modulus, self%density)
+    fastest_impact = 1e-5_dp*sqrt(minval(self%youngs_modulus/self%density))
   end function fastest_impact
 end module contact_geometry

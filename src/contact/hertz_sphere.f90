@@ -4,7 +4,6 @@ module hertz_sphere
   use gudgeon_parameters, only: parameter_list_t
   use gudgeon_bearing, only: bearing_t
   use contact_geometry, only: contact_geometry_t
-  use contact_stiffness, only: hertz_stiffness
   implicit none
   private
   public :: hertz_sphere_t
@@ -35,13 +34,16 @@ contains
       only_here=.true.)
   end subroutine parameters
 
-  !> The stiffness given in the case, or Hertz's (4.2).
+  !> The stiffness given in the case, or Hertz's from (4.2) and (4.3), both corrected: K = 4/(3(sigma_i + sigma_j)) sqrt(Rb Rj/(Rb -
+  !> Rj)), sigma = (1 - nu^2)/E. The printed (4.2) has Rb + Rj, as for two convex surfaces; the printed (4.3) has one radius too
+  !> many. For Rb - Rj the radial clearance is used, since computing it would cancel digits. Limits: 0 < clearance < radius of the
+  !> bearing, E > 0, |nu| < 1.
   subroutine prepare(self, bearing)
     class(hertz_sphere_t), intent(inout) :: self
     type(bearing_t), intent(in) :: bearing
     self%stiffness = self%given_stiffness
-    if (.not. self%stiffness > 0) &
-      self%stiffness = hertz_stiffness(bearing%radius, bearing%clearance, self%youngs_modulus, self%poissons_ratio)
+    if (.not. self%stiffness > 0) self%stiffness = 4/(3*sum((1 - self%poissons_ratio**2)/self%youngs_modulus)) &
+      *sqrt(bearing%radius*(bearing%radius - bearing%clearance)/bearing%clearance)
     self%three_halves = 0
     if (abs(self%exponent - 1.5_dp) <= 0) self%three_halves = self%stiffness
   end subroutine prepare

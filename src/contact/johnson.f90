@@ -3,10 +3,8 @@
 module johnson
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
-  use gudgeon_parameters, only: parameter_list_t
   use gudgeon_bearing, only: bearing_t
   use contact_geometry, only: contact_geometry_t
-  use contact_stiffness, only: contact_modulus
   implicit none
   private
   public :: johnson_t
@@ -19,7 +17,6 @@ module johnson
     real(dp) :: modulus = 0      !! pi E* L [N/m]
     real(dp) :: last_v = 2       !! v (see below) at the largest penetration of the law
   contains
-    procedure :: parameters
     procedure :: prepare
     procedure :: elastic_force
     procedure :: slope
@@ -31,17 +28,11 @@ module johnson
 
 contains
 
-  subroutine parameters(self, list)
-    class(johnson_t), intent(inout) :: self
-    class(parameter_list_t), intent(inout) :: list
-    call self%material_parameters(list)
-  end subroutine parameters
-
   subroutine prepare(self, bearing)
     class(johnson_t), intent(inout) :: self
     type(bearing_t), intent(in) :: bearing
     self%clearance = bearing%clearance
-    self%modulus = pi*contact_modulus(self%youngs_modulus, self%poissons_ratio)*bearing%length
+    self%modulus = pi*self%contact_modulus()*bearing%length
     self%last_v = log_term(last)
   end subroutine prepare
 
