@@ -22,7 +22,6 @@ module elastic_crankshaft
     procedure :: moment
     procedure :: drive_of_crank
     procedure :: accelerate_flywheel
-    procedure :: strain_energy
     procedure :: energy
     procedure :: damping_power
     procedure :: natural_frequency
@@ -73,18 +72,12 @@ contains
     end if
   end subroutine accelerate_flywheel
 
-  !> Elastic energy of the twist [J].
-  pure real(dp) function strain_energy(self, motion)
-    class(elastic_crankshaft_t), intent(in) :: self
-    type(motion_t), intent(in) :: motion
-    strain_energy = 0.5_dp*self%stiffness*(motion%flywheel_angle - motion%crank_angle)**2
-  end function strain_energy
-
   !> Elastic energy of the twist and kinetic energy of the flywheel [J].
   pure real(dp) function energy(self, motion)
     class(elastic_crankshaft_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
-    energy = self%strain_energy(motion) + 0.5_dp*self%flywheel_inertia*motion%flywheel_speed**2
+    energy = 0.5_dp*self%stiffness*(motion%flywheel_angle - motion%crank_angle)**2 &
+      + 0.5_dp*self%flywheel_inertia*motion%flywheel_speed**2
   end function energy
 
   !> Power of the damping on crank and flywheel [W], <= 0.

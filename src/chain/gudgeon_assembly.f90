@@ -13,7 +13,7 @@ module gudgeon_assembly
   use small_cholesky, only: factorise_cholesky, solve_cholesky
   implicit none
   private
-  public :: equations_t, body_t, most_coordinates, most_velocities
+  public :: equations_t, body_t, most_coordinates
 
   integer, parameter :: most_coordinates = 24   !! of a chain
   integer, parameter :: most_velocities = 20    !! of a body
@@ -85,13 +85,13 @@ contains
     real(dp), intent(out) :: accelerations(:)   !! (n)
     real(dp), intent(out) :: holding
     logical, intent(out) :: definite
-    real(dp), intent(in), optional :: held   !! [unit of the coordinate/s^2]; 0 if it is absent
+    real(dp), intent(in) :: held   !! [unit of the coordinate/s^2]
     real(dp) :: matrix(self%n, self%n), a(self%n)
     integer :: first
     first = merge(2, 1, holds_first)
     a = self%force(:self%n)
     a(:first - 1) = 0
-    if (holds_first .and. present(held)) then
+    if (holds_first) then
       a = a - held*self%mass(:self%n, 1)
       a(1) = held
     end if

@@ -11,7 +11,7 @@ module gudgeon_chain
   use rod_piston, only: accelerate_rod_piston
   use free_rod, only: accelerate_free_rod
   use assembled_chain, only: accelerate_assembled
-  use loose_piston, only: free_piston, kinetic_energy_beside, height_beside
+  use loose_piston, only: free_piston, add_energy_beside
   use varying_drive, only: varying_drive_t
   use elastic_members, only: elastic_members_t
   use elastic_rod, only: elastic_rod_t
@@ -54,53 +54,25 @@ contains
     type(accelerations_t), intent(out) :: accelerations
     real(dp), intent(out) :: crank_moment
     logical, intent(out) :: solvable
-    type(drive_t) :: drive
+    type(drive_t) :: drive, of_crank
+    real(dp) :: speed
     solvable = .true.
-    drive = drive_of_crank(self, motion)
+    drive = self%drive
+    if (allocated(self%varying)) then
+      speed = motion%crank_speed
+      if (allocated(self%elastic)) speed = self%elastic%driven_speed(motion)
+      drive = self%varying%at(self%drive, speed, motion)
+    end if
+    of_crank = drive
+    if (self%has_crankshaft()) of_crank = self%elastic%crankshaft%drive_of_crank(motion)
     if (self%has_elastic_rod()) then
-      call accelerate_with_elastic_rod(self, drive, motion, loads, accelerations, crank_moment, solvable)
+      call accelerate_with_elastic_rod(self, of_crank, motion, loads, accelerations, crank_moment, solvable)
     else
-      call self%accelerate_rigid(drive, motion, loads, accelerations, crank_moment)
+      call self%accelerate_rigid(of_crank, motion, loads, accelerations, crank_moment)
     end if
-    call accelerate_flywheel(self, motion, accelerations, crank_moment)
+    if (self%has_crankshaft()) &
+      call self%elastic%crankshaft%accelerate_flywheel(drive, motion, accelerations%flywheel, crank_moment)
   end subroutine accelerate
-
-  !> The present drive of the crank: the drive or, with an elastic crankshaft, the shaft.
-  pure type(drive_t) function drive_of_crank(chain, motion) result(drive)
-    type(chain_t), intent(in) :: chain
-    type(motion_t), intent(in) :: motion
-    if (chain%has_crankshaft()) then
-      drive = chain%elastic%crankshaft%drive_of_crank(motion)
-    else
-      drive = present_drive(chain, motion)
-    end if
-  end function drive_of_crank
-
-  !> The present drive, which may depend on the speed or the time.
-  pure type(drive_t) function present_drive(chain, motion) result(drive)
-    type(chain_t), intent(in) :: chain
-    type(motion_t), intent(in) :: motion
-    drive = chain%drive
-    if (allocated(chain%varying)) drive = chain%varying%at(chain%drive, driven_speed(chain, motion), motion)
-  end function present_drive
-
-  !> Angular speed of the part on which the drive acts: the crank, or the flywheel of an elastic crankshaft [rad/s].
-  pure real(dp) function driven_speed(chain, motion)
-    type(chain_t), intent(in) :: chain
-    type(motion_t), intent(in) :: motion
-    driven_speed = motion%crank_speed
-    if (allocated(chain%elastic)) driven_speed = chain%elastic%driven_speed(motion)
-  end function driven_speed
-
-  !> Acceleration of the flywheel of an elastic crankshaft, and the moment of the drive on it [N m].
-  pure subroutine accelerate_flywheel(chain, motion, accelerations, drive_moment)
-    type(chain_t), intent(in) :: chain
-    type(motion_t), intent(in) :: motion
-    type(accelerations_t), intent(inout) :: accelerations
-    real(dp), intent(inout) :: drive_moment
-    if (.not. chain%has_crankshaft()) return
-    call chain%elastic%crankshaft%accelerate_flywheel(present_drive(chain, motion), motion, accelerations%flywheel, drive_moment)
-  end subroutine accelerate_flywheel
 
   !> The same with a rigid rod and a given drive of the crank; `crank_moment` is the moment of this drive [N m].
   pure subroutine accelerate_rigid(self, drive, motion, loads, accelerations, crank_moment)
@@ -179,31 +151,27 @@ contains
     class(chain_t), intent(in) :: self
     type(motion_t), intent(inout) :: motion
     logical, intent(out) :: reachable
-    if (allocated(self%elastic)) then
-      if (allocated(self%elastic%rod)) then
-        call self%elastic%rod%follow(self%bodies%crank%length, motion, reachable)
-        return
-      end if
+    if (self%has_elastic_rod()) then
+      call self%elastic%rod%follow(self%bodies%crank%length, motion, reachable)
+    else
+      call follow_rod(self%bodies%crank%length, self%bodies%per_rod_length, motion, reachable)
     end if
-    call follow_rod(self%bodies%crank%length, self%bodies%per_rod_length, motion, reachable)
   end subroutine move_rod
 
   !> Set the piston of a motion whose crank and rod are known.
   pure subroutine move_piston(self, motion)
     class(chain_t), intent(in) :: self
     type(motion_t), intent(inout) :: motion
-    if (allocated(self%elastic)) then
-      if (allocated(self%elastic%rod)) then
-        call self%elastic%rod%follow_piston(self%bodies%crank%length, motion)
-        return
-      end if
+    if (self%has_elastic_rod()) then
+      call self%elastic%rod%follow_piston(self%bodies%crank%length, motion)
+    else
+      call follow_piston(self%bodies%crank%length, self%bodies%rod%length, motion)
     end if
-    call follow_piston(self%bodies%crank%length, self%bodies%rod%length, motion)
   end subroutine move_piston
 
   !> Changes of the accelerations and of the moment on the crank due to a load of pins with clearance or of the gas, on which they
   !> depend linearly. They are computed for bodies at rest without other loads, by the general assembly unless the chain has only
-  !> ideal pins or clearance only at the piston pin.
+  !> ideal pins or clearance only at the piston pin; for an elastic rod in its deformed state but without its stiffness.
   pure subroutine response(self, motion, loads, accelerations, crank_moment)
     class(chain_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
@@ -211,6 +179,8 @@ contains
     type(accelerations_t), intent(out) :: accelerations
     real(dp), intent(out) :: crank_moment
     type(motion_t) :: rest
+    type(drive_t) :: drive
+    type(elastic_rod_t), allocatable :: slack
     if (.not. (self%is_loose(crank_pin) .or. self%bodies%piston%is_loose .or. allocated(self%elastic))) then
       if (self%is_loose(piston_pin)) then
         call respond_crank_rod(self%bodies, self%drive, loads, motion, accelerations, crank_moment)
@@ -224,41 +194,19 @@ contains
     rest%crank_speed = 0
     rest%rod_speed = 0
     rest%tilting%tilt_rate = 0
-    if (self%has_elastic_rod()) then
-      call respond_elastic_rod(self, rest, loads, accelerations, crank_moment)
-      return
-    end if
-    call accelerate_assembled(weightless(self%bodies), free_drive(self), self%is_loose, loads, rest, accelerations, crank_moment)
-    accelerations%rod_end = -accelerations%rod
-    accelerations%flywheel = 0
-  end subroutine response
-
-  !> A drive without moment.
-  pure type(drive_t) function free_drive(chain) result(drive)
-    type(chain_t), intent(in) :: chain
-    drive = undriven
-    drive%free_crank = chain%drive%free_crank .or. chain%has_crankshaft()
-  end function free_drive
-
-  !> The same for an elastic rod, in its deformed state but without its stiffness.
-  pure subroutine respond_elastic_rod(chain, at_rest, loads, accelerations, crank_moment)
-    type(chain_t), intent(in) :: chain
-    type(motion_t), intent(in) :: at_rest
-    type(loads_t), intent(in) :: loads
-    type(accelerations_t), intent(out) :: accelerations
-    real(dp), intent(out) :: crank_moment
-    type(motion_t) :: rest
-    type(elastic_rod_t) :: slack
-    rest = at_rest
     rest%chord_rate = 0
     rest%shape_rate = 0
-    slack = chain%elastic%rod
-    slack%stiffness = 0
-    call accelerate_assembled(weightless(chain%bodies), free_drive(chain), chain%is_loose, loads, rest, accelerations, &
-      crank_moment, slack)
-    call turn_rod_ends(slack, accelerations)
+    drive = undriven
+    drive%free_crank = self%drive%free_crank .or. self%has_crankshaft()
+    if (self%has_elastic_rod()) then
+      slack = self%elastic%rod
+      slack%stiffness = 0
+    end if
+    call accelerate_assembled(weightless(self%bodies), drive, self%is_loose, loads, rest, accelerations, crank_moment, slack)
+    accelerations%rod_end = -accelerations%rod
+    if (allocated(slack)) call turn_rod_ends(slack, accelerations)
     accelerations%flywheel = 0
-  end subroutine respond_elastic_rod
+  end subroutine response
 
   !> Add a multiple of a response to the accelerations.
   pure subroutine add_response(self, factor, change, accelerations)
@@ -324,9 +272,6 @@ contains
       energy = self%bodies%kinetic_energy(motion) + self%bodies%potential_energy(motion)
     end if
     if (self%has_crankshaft()) energy = energy + self%elastic%crankshaft%energy(motion)
-    if (.not. self%bodies%piston%is_loose) return
-    associate (b => self%bodies)
-      energy = energy + kinetic_energy_beside(b%piston, motion) - b%piston%mass*dot_product(b%gravity, height_beside(motion))
-    end associate
+    if (self%bodies%piston%is_loose) call add_energy_beside(self%bodies, motion, energy)
   end function energy
 end module gudgeon_chain

@@ -15,7 +15,7 @@ module loose_piston
   use chain_loads, only: loads_t, bearing_moment
   implicit none
   private
-  public :: place_piston, move_centre, centre_acceleration, pin_eccentricity, free_piston, kinetic_energy_beside, height_beside
+  public :: place_piston, move_centre, centre_acceleration, pin_eccentricity, free_piston, add_energy_beside
 
 contains
 
@@ -80,21 +80,16 @@ contains
     end associate
   end subroutine free_piston
 
-  !> Kinetic energy of the piston in addition to that of its mass moving along x with the pin's bearing [J].
-  pure real(dp) function kinetic_energy_beside(piston, motion) result(energy)
-    type(piston_t), intent(in) :: piston
+  !> Add to an energy [J] that of the piston beside that of its mass moving along the cylinder's axis with the pin's bearing.
+  pure subroutine add_energy_beside(bodies, motion, energy)
+    type(bodies_t), intent(in) :: bodies
     type(motion_t), intent(in) :: motion
+    real(dp), intent(inout) :: energy
     real(dp) :: turn
-    associate (at => motion%tilting)
+    associate (at => motion%tilting, piston => bodies%piston)
       turn = at%com(2)*at%tilt_rate   ! x' of the bearing minus that of the centre of mass
-      energy = 0.5_dp*(piston%mass*(at%offset_rate**2 + turn*(turn - 2*motion%piston_velocity)) + piston%inertia*at%tilt_rate**2)
+      energy = energy + 0.5_dp*(piston%mass*(at%offset_rate**2 + turn*(turn - 2*motion%piston_velocity)) &
+        + piston%inertia*at%tilt_rate**2) - piston%mass*dot_product(bodies%gravity, [at%com(1), at%offset])
     end associate
-  end function kinetic_energy_beside
-
-  !> Vector from the point on the cylinder's axis at the height of the pin's bearing to the centre of mass (x, y) [m].
-  pure function height_beside(motion) result(way)
-    type(motion_t), intent(in) :: motion
-    real(dp) :: way(2)
-    way = [motion%tilting%com(1), motion%tilting%offset]
-  end function height_beside
+  end subroutine add_energy_beside
 end module loose_piston
