@@ -87,7 +87,8 @@ contains
     logical :: inside
     call scene%evaluate(0.0_dp, scene%initial_state(), start, inside)
     call scene%evaluate(t, y, now, inside)
-    energy_residual = (scene%energy(now%motion) - scene%energy(start%motion) - scene%work(y))/scene%energy(start%motion)
+    energy_residual = (scene%chain%energy(now%motion) - scene%chain%energy(start%motion) - scene%work(y)) &
+      /scene%chain%energy(start%motion)
   end function energy_residual
 
   !> Flores's mechanism with a free crank, friction and losses at both pins, over one revolution.

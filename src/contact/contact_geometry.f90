@@ -135,8 +135,8 @@ contains
     contact_modulus = 1/sum((1 - self%poissons_ratio**2)/self%youngs_modulus)
   end function contact_modulus
 
-  !> Largest impact speed for which elastic contact of these materials is valid [m/s]: 1e-5 sqrt(E/rho), the smaller value of the two
-  !> (remark after 4.7).
+  !> Largest impact speed for which elastic contact of these materials is valid [m/s]: 1e-5 sqrt(E/rho), the smaller value of the
+  !> two (remark after 4.7).
   pure real(dp) function fastest_impact(self)
     class(contact_geometry_t), intent(in) :: self
     fastest_impact = 1e-5_dp*sqrt(minval(self%youngs_modulus/self%density))

@@ -120,7 +120,7 @@ contains
       'moment of the drive on the crank, positive in the sense of crank_angle; at constant speed the one that holds the speed')
     call put_forces(scene, now, row)
     energy = 0
-    if (row%wants(2)) energy = scene%energy(now%motion)
+    if (row%wants(2)) energy = scene%chain%energy(now%motion)
     call row%put('energy[J]', energy, 'kinetic and potential energy of all bodies, with the energy stored in elastic members')
     call row%put('energy_residual[J]', energy - initial_energy - work, &
       'energy minus initial energy minus the work of all non-conservative forces and of the drive; 0 for an exact integration')

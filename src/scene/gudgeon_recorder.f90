@@ -10,7 +10,7 @@ module gudgeon_recorder
   use ode_method, only: ode_method_t, limit_stability
   use gudgeon_solver, only: observer_t
   use chain_motion, only: crank_pin, piston_pin, most_pins => n_pins
-  use gudgeon_scene, only: scene_t, evaluation_t, event_none, event_contact_begins
+  use gudgeon_scene, only: scene_t, evaluation_t, event_none, event_contact_begins, of_guide
   use gudgeon_columns, only: column_list_t, row_values
   use angle_grid, only: angle_grid_t
   use crank_passage, only: find_turning
@@ -72,7 +72,7 @@ contains
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     call self%pins(1)%prepare(piston_pin, scene)
-    if (scene%joint_at(crank_pin) > 0) then
+    if (scene%joint_of_pin(crank_pin) > 0) then
       self%n_pins = 2
       call self%pins(2)%prepare(crank_pin, scene)
     end if
@@ -101,7 +101,7 @@ contains
 
     call look_at(self, scene, 0.0_dp, y, now, inside)
     if (inside) then
-      self%initial_energy = scene%energy(now%motion)
+      self%initial_energy = scene%chain%energy(now%motion)
       self%start_angle = now%motion%crank_angle
     end if
     if (allocated(self%cycles)) then
@@ -147,12 +147,12 @@ contains
       else
         call take_end(self, method, problem, method%t, method%y)
       end if
+      self%steps = self%steps + 1
+      if (mod(self%steps, steps_between_reports) == 0) then
+        call tell_progress(self, problem, t_to)
+        if (method%statistics%time_limited_by(limit_stability) > 0.5_dp*t_to) call self%sink%take_cost(t_to, method%statistics)
+      end if
     end select
-    self%steps = self%steps + 1
-    if (mod(self%steps, steps_between_reports) == 0) then
-      call tell_progress(self, problem, t_to)
-      if (method%statistics%time_limited_by(limit_stability) > 0.5_dp*t_to) call self%sink%take_cost(t_to, method%statistics)
-    end if
     call keep_budget(self, method%statistics%evaluations)
     call self%patience%follow(self%figures%time, abs(self%figures%crank_travel)/two_pi)
     self%wants_to_stop = self%sink%wants_to_stop .or. self%over_budget .or. self%periods%has_ended .or. self%patience%is_over
@@ -219,16 +219,13 @@ contains
 
   !> Report the progress of the run to the sink. If the run ends after a number of turns, its end is estimated from the mean speed
   !> so far.
-  subroutine tell_progress(self, problem, t)
+  subroutine tell_progress(self, scene, t)
     class(recorder_t), intent(inout) :: self
-    class(ode_problem_t), intent(in) :: problem
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
     self%sink%expected_end = self%expected_end
-    select type (problem)
-    class is (scene_t)
-      if (allocated(problem%turns) .and. abs(self%figures%crank_travel) > 0) self%sink%expected_end = &
-        min(self%end_time, t*problem%turns%wanted*two_pi/abs(self%figures%crank_travel))
-    end select
+    if (allocated(scene%turns) .and. abs(self%figures%crank_travel) > 0) self%sink%expected_end = &
+      min(self%end_time, t*scene%turns%wanted*two_pi/abs(self%figures%crank_travel))
     call self%sink%take_progress(t)
   end subroutine tell_progress
 
@@ -330,7 +327,7 @@ contains
     integer :: i
 
     if (.not. inside) return
-    energy = scene%energy(now%motion)
+    energy = scene%chain%energy(now%motion)
     associate (f => self%figures)
       f%max_energy = max(f%max_energy, abs(energy))
       f%max_energy_residual = max(f%max_energy_residual, abs(energy - self%initial_energy - scene%work(y)))
@@ -370,7 +367,7 @@ contains
         if (self%pins(i)%joint == problem%event_of(index)%joint) &
           call take_contact(self, self%pins(i), problem%reported_event(index), t, now)
       end do
-      if (problem%is_of_guide(index)) &
+      if (problem%event_of(index)%joint == of_guide) &
         call take_corner_contact(self, problem%event_of(index)%event, problem%reported_event(index), t, now)
     end select
   end subroutine event_taken

@@ -20,7 +20,7 @@ module gudgeon_scene
   private
   public :: scene_t, evaluation_t
   public :: phase_free, phase_film, phase_contact
-  public :: event_none, event_contact_begins, event_contact_ends
+  public :: event_none, event_contact_begins, event_contact_ends, of_guide
 
   !> Events reported in the trace.
   integer, parameter :: event_none = 0, event_contact_begins = 1, event_contact_ends = 2
@@ -45,9 +45,11 @@ module gudgeon_scene
     real(dp) :: power               !! of all non-conservative forces and the drive [W]
   end type evaluation_t
 
+  integer, parameter :: of_gas = 0, of_turns = -1, of_guide = -2   !! owners of events other than joints
+
   !> The owner of an event function of the integrator.
   type :: event_owner_t
-    integer :: joint = 0            !! 0: the gas, -1: the turns of the crank, -2: the guide
+    integer :: joint = 0            !! or of_gas, of_turns, of_guide
     integer :: event = 0            !! number of the event within its owner
   end type event_owner_t
 
@@ -92,7 +94,6 @@ module gudgeon_scene
     procedure :: events => all_events
     procedure :: handle_event
     procedure :: reported_event
-    procedure :: is_of_guide
     procedure :: judge_step
     procedure :: lands_on_step_end
     procedure :: rough_time
@@ -103,11 +104,9 @@ module gudgeon_scene
     procedure :: measure_joint
     procedure :: force_integrals
     procedure :: joint_loss
-    procedure :: energy
     procedure :: energy_scale
     procedure :: speed_scale
     procedure :: twist_frequency
-    procedure :: joint_at
     procedure :: phase_at
     procedure :: forcing_revolutions
     procedure :: exchange
@@ -142,12 +141,6 @@ module gudgeon_scene
       class(scene_t), intent(in) :: self
       integer, intent(in) :: index
     end function reported_event
-
-    !> Whether event `index` of the integrator belongs to a corner of the skirt.
-    pure logical module function is_of_guide(self, index)
-      class(scene_t), intent(in) :: self
-      integer, intent(in) :: index
-    end function is_of_guide
 
     !> Reject a step whose penetration at its end exceeds the limit of a joint.
     pure module subroutine judge_step(self, t_old, y_old, t, y, verdict, fraction)
@@ -546,13 +539,6 @@ contains
     work = y(self%work_at)
   end function work
 
-  !> Kinetic and potential energy of the bodies [J].
-  pure real(dp) function energy(self, motion)
-    class(scene_t), intent(in) :: self
-    type(motion_t), intent(in) :: motion
-    energy = self%chain%energy(motion)
-  end function energy
-
   !> Natural size of the crank speed [rad/s]: the starting speed; from rest, one radian in the time simulated.
   pure real(dp) function speed_scale(self, span)
     class(scene_t), intent(in) :: self
@@ -579,19 +565,12 @@ contains
     end associate
   end function energy_scale
 
-  !> Index of the joint with clearance at a pin; 0: the pin is ideal.
-  pure integer function joint_at(self, place)
-    class(scene_t), intent(in) :: self
-    integer, intent(in) :: place
-    joint_at = self%joint_of_pin(place)
-  end function joint_at
-
   !> Phase of the joint at a pin; an ideal pin counts as free.
   pure integer function phase_at(self, place)
     class(scene_t), intent(in) :: self
     integer, intent(in) :: place
     integer :: i
-    i = self%joint_at(place)
+    i = self%joint_of_pin(place)
     phase_at = phase_free
     if (i > 0) phase_at = self%joints(i)%phase
   end function phase_at

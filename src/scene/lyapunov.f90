@@ -25,7 +25,7 @@ module lyapunov
   use ode_method, only: ode_method_t, ode_settings_t
   use ode_problem, only: ode_problem_t
   use gudgeon_methods, only: new_method
-  use gudgeon_solver, only: integrate, observer_t, integration_interrupted
+  use gudgeon_solver, only: integrate, silent_observer_t, integration_interrupted
   use gudgeon_scene, only: scene_t
   use scene_builder, only: settings_for
   use crank_passage, only: find_passage
@@ -50,7 +50,7 @@ module lyapunov
   end type exponent_t
 
   !> One of the scenes.
-  type, extends(observer_t) :: companion_t
+  type, extends(silent_observer_t) :: companion_t
     type(scene_t), allocatable :: scene
     class(ode_method_t), allocatable :: method
     real(dp) :: t = 0                        !! [s]
@@ -62,7 +62,6 @@ module lyapunov
   contains
     procedure :: run_to
     procedure :: step_taken
-    procedure :: event_taken
   end type companion_t
 
 contains
@@ -224,13 +223,4 @@ contains
     type(scene_t), allocatable, intent(out) :: kept
     allocate (kept, source=scene)
   end subroutine keep
-
-  subroutine event_taken(self, problem, index, t, y)
-    class(companion_t), intent(inout) :: self
-    class(ode_problem_t), intent(in) :: problem
-    integer, intent(in) :: index
-    real(dp), intent(in) :: t, y(:)
-    associate (unused_self => self, unused_problem => problem, unused_index => index, unused_t => t, unused_y => y)
-    end associate
-  end subroutine event_taken
 end module lyapunov

@@ -42,7 +42,7 @@ contains
     integer, intent(in) :: pin
     type(scene_t), intent(in) :: scene
     self%pin = pin
-    self%joint = scene%joint_at(pin)
+    self%joint = scene%joint_of_pin(pin)
     self%contact%pin = pin
     self%peaks%pin = self%pin
     self%peaks%joint = self%joint

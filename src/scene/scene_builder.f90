@@ -51,10 +51,9 @@ contains
     logical :: makes_tables
 
     call assemble_scene(case, ideal_joint, scene)
-    call prepare_joints(case, scene)
     makes_tables = .true.
     if (present(without_tables)) makes_tables = .not. without_tables
-    if (makes_tables) call make_tables(case, scene)
+    call prepare_joints(case, makes_tables, scene)
     associate (m => case%mechanism)
       scene%chain%bodies = new_bodies(crank_t(m%crank_length, m%crank_mass, &
         m%crank_inertia + case%drive%flywheel_inertia, m%crank_com), &
@@ -108,22 +107,14 @@ contains
     allocate (scene)
     is_loose = [case%joint%has_clearance(), case%crank_pin%has_clearance()] .and. .not. ideal_joint
     allocate (scene%joints(count(is_loose)))
-    n = 0
-    if (is_loose(1)) then
-      n = n + 1
-      call build_joint(case, case%joint, piston_pin, scene%joints(n))
-      scene%joints(n)%start_eccentricity = case%initial%eccentricity
-      scene%joints(n)%start_rate = case%initial%eccentricity_rate
-    end if
-    if (is_loose(2)) then
-      n = n + 1
-      call build_joint(case, case%crank_pin, crank_pin, scene%joints(n))
-      scene%joints(n)%start_eccentricity = case%initial%crank_pin_eccentricity
-      scene%joints(n)%start_rate = case%initial%crank_pin_eccentricity_rate
-    end if
-    scene%chain%is_loose(piston_pin) = is_loose(1)
-    scene%chain%is_loose(crank_pin) = is_loose(2)
     scene%n_joints = size(scene%joints)
+    associate (initial => case%initial)
+      if (is_loose(1)) call build_joint(case, case%joint, piston_pin, initial%eccentricity, initial%eccentricity_rate, &
+        scene%joints(1))
+      if (is_loose(2)) call build_joint(case, case%crank_pin, crank_pin, initial%crank_pin_eccentricity, &
+        initial%crank_pin_eccentricity_rate, scene%joints(scene%n_joints))
+    end associate
+    scene%chain%is_loose([piston_pin, crank_pin]) = is_loose
     if (allocated(case%guide) .and. .not. (ideal_joint .and. case%has_loose_guide())) then
       allocate (scene%guide)
       call case%guide%build(scene%guide)
@@ -178,9 +169,10 @@ contains
       call scene%gas%start(scene%start_angle, merge(case%drive%ramp_from, scene%start_speed, scene%runs_up))
   end subroutine prepare_gas
 
-  !> Prepare the laws of the joints for their bearings.
-  subroutine prepare_joints(case, scene)
+  !> Prepare the laws of the joints for their bearings, and compute missing tables of films.
+  subroutine prepare_joints(case, makes_tables, scene)
     type(case_t), intent(in) :: case
+    logical, intent(in) :: makes_tables
     type(scene_t), intent(inout) :: scene
     integer :: i
     if (allocated(scene%guide)) call scene%guide%prepare()
@@ -195,29 +187,22 @@ contains
         if (allocated(joint%elastic)) call joint%elastic%prepare(joint%bearing)
         if (allocated(joint%asperities)) call joint%asperities%prepare(joint%bearing)
         if (allocated(joint%contact) .and. case%integrator%contact_entry == 'step_rejection') scene%refuses_steps = .true.
+        if (makes_tables .and. allocated(joint%film)) &
+          call joint%film%make_table(joint%bearing, case%integrator%relative_tolerance)
       end associate
     end do
   end subroutine prepare_joints
 
-  !> Compute missing tables of films.
-  subroutine make_tables(case, scene)
-    type(case_t), intent(in) :: case
-    type(scene_t), intent(inout) :: scene
-    integer :: i
-    do i = 1, size(scene%joints)
-      associate (joint => scene%joints(i))
-        if (allocated(joint%film)) call joint%film%make_table(joint%bearing, case%integrator%relative_tolerance)
-      end associate
-    end do
-  end subroutine make_tables
-
   !> Build a joint with the laws that the case names.
-  subroutine build_joint(case, wanted, place, joint)
+  subroutine build_joint(case, wanted, place, eccentricity, rate, joint)
     type(case_t), intent(in) :: case
     type(joint_case_t), intent(in) :: wanted
     integer, intent(in) :: place   !! place of the pin in the chain
+    real(dp), intent(in) :: eccentricity(2), rate(2)   !! initial values [m], [m/s]
     type(clearance_joint_t), intent(out) :: joint
 
+    joint%start_eccentricity = eccentricity
+    joint%start_rate = rate
     joint%place = place
     joint%bearing = wanted%bearing(case%mechanism%rod_length)
     joint%pin_radius = joint%bearing%pin_radius()
@@ -291,7 +276,7 @@ contains
     type(case_t), intent(in) :: case
     type(scene_t), intent(in) :: scene
     type(ode_settings_t) :: settings
-    real(dp) :: scales(scene%n), factor, tolerance
+    real(dp) :: scales(scene%n), factor, tolerance, steps(2)
     logical :: growing(scene%n)
 
     settings%span = simulated_time(case)
@@ -309,24 +294,13 @@ contains
     end if
     where (growing .and. scales > 0) settings%relative = rounding_share
     settings%first_step = first_angle/scene%speed_scale(settings%span)
-    if (case%integrator%max_step > 0) settings%max_step = case%integrator%max_step
-    if (allocated(scene%gas)) call limit_turn(settings, scene%gas%longest_turn()/scene%speed_scale(settings%span))
+    steps = [case%integrator%max_step, 0.0_dp]   ! limits; 0: there is none
+    if (allocated(scene%gas)) steps(2) = scene%gas%longest_turn()/scene%speed_scale(settings%span)
+    if (any(steps > 0)) settings%max_step = minval(steps, steps > 0)
     settings%max_order = case%integrator%max_order
     settings%max_evaluations = case%integrator%max_evaluations
     settings%chatter_time = min(1e-6_dp*two_pi/scene%speed_scale(settings%span), longest_chatter)
   end function settings_for
-
-  !> Limit the length of the steps [s]; 0: no limit.
-  pure subroutine limit_turn(settings, longest)
-    type(ode_settings_t), intent(inout) :: settings
-    real(dp), intent(in) :: longest
-    if (.not. longest > 0) return
-    if (settings%max_step > 0) then
-      settings%max_step = min(settings%max_step, longest)
-    else
-      settings%max_step = longest
-    end if
-  end subroutine limit_turn
 
   !> Reduce the tolerance of one component to a fraction, but not below its rounding error.
   pure subroutine tighten(settings, i, share)

@@ -10,8 +10,6 @@ submodule (gudgeon_scene) scene_events
   use crank_turns, only: n_turn_events
   implicit none
 
-  integer, parameter :: of_gas = 0, of_turns = -1, of_guide = -2   !! owners other than joints
-
 contains
 
   !> Number the event functions.
@@ -154,10 +152,6 @@ contains
       reported_event = merge(event_contact_ends, event_contact_begins, self%joints(i)%phase == phase_contact)
     end associate
   end procedure reported_event
-
-  module procedure is_of_guide
-    is_of_guide = self%event_of(index)%joint == of_guide
-  end procedure is_of_guide
 
   module procedure judge_step
     integer :: i, judged

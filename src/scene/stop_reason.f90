@@ -122,7 +122,7 @@ contains
   !> Whether the piston pin has the only joint with clearance, so that texts need not name it.
   pure logical function has_plain_names(scene)
     type(scene_t), intent(in) :: scene
-    has_plain_names = scene%joint_at(crank_pin) == 0
+    has_plain_names = scene%joint_of_pin(crank_pin) == 0
   end function has_plain_names
 
   !> The name of the pin of a joint, for messages.
