@@ -224,7 +224,8 @@ contains
       end if
       associate (geometry => joint%contact%geometry)
         if (geometry%needs_length() .and. joint%bearing_length <= 0) then
-          call refuse(group, 'bearing_length', needed(group, 'bearing_length', 'with contact geometry = '''//trim(geometry%name)//''''))
+          call refuse(group, 'bearing_length', needed(group, 'bearing_length', 'with contact geometry = '''// &
+            trim(geometry%name)//''''))
           return
         end if
         call geometry%bearing_conflict(joint%bearing(rod_length=0.0_dp), key, wanted)
