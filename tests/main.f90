@@ -39,7 +39,7 @@ program gudgeon_tests
   use test_finite_bearing, only: run_test_finite_bearing
   use test_film_derivatives, only: run_test_film_derivatives
   use test_film_moment, only: run_test_film_moment
-  use test_half_film_guess, only: run_test_half_film_guess
+  use test_half_film_parts, only: run_test_half_film_parts
   use test_film_figures, only: run_test_film_figures
   use test_friction, only: run_test_friction
   use test_friction_runs, only: run_test_friction_runs
@@ -115,7 +115,7 @@ program gudgeon_tests
   call run('finite_bearing', run_test_finite_bearing)
   call run('film_derivatives', run_test_film_derivatives)
   call run('film_moment', run_test_film_moment)
-  call run('half_film_guess', run_test_half_film_guess)
+  call run('half_film_parts', run_test_half_film_parts)
   call run('film_figures', run_test_film_figures)
   call run('friction', run_test_friction)
   call run('friction_runs', run_test_friction_runs)
