@@ -41,7 +41,6 @@ module command_line
     option_t('version', 'V', .false.), option_t('fresh', '', .false.), option_t('rows', '', .true.), &
     option_t('reference', '', .true.)]
 
-  character(len=*), parameter :: hint = '; gudgeon --help lists the options'
   integer, parameter :: most_jobs = 1024
 
 contains
@@ -53,187 +52,180 @@ contains
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: text
     logical :: only_cases
-    integer :: i
+    integer :: i   ! the last argument used
     line%out = 'results'
     line%accuracy = ''
     line%progress = 'auto'
     line%reference = ''
     allocate (character(len=len(arguments)) :: line%overrides(size(arguments)), line%cases(size(arguments)))
     only_cases = .false.
-    i = 1
-    do while (i <= size(arguments))
+    i = 0
+    do while (i < size(arguments) .and. .not. allocated(error))
+      i = i + 1
       text = trim(arguments(i))
-      if (only_cases .or. index(text, '-') /= 1) then
-        if (text == '') call fail(error, 'an empty argument is no case file'//hint, status_command_line)
-        if (text == 'sweep' .and. .not. (line%sweep .or. only_cases) .and. line%case_count == 0) then
-          line%sweep = .true.
-          i = i + 1
-          cycle
-        end if
+      if (text == '') then
+        call refuse('an empty argument is no case file')
+      else if (text == 'sweep' .and. .not. (line%sweep .or. only_cases) .and. line%case_count == 0) then
+        line%sweep = .true.
+      else if (only_cases .or. index(text, '-') /= 1) then
         line%case_count = line%case_count + 1
         line%cases(line%case_count) = text
       else if (text == '--') then
         only_cases = .true.
       else if (index(text, '--') == 1) then
-        call take_long(line, arguments, i, error)
+        call take_long()
       else
-        call take_short(line, arguments, i, error)
+        call take_short()
       end if
-      if (allocated(error)) return
-      i = i + 1
     end do
     call shorten(line%overrides, line%override_count)
     call shorten(line%cases, line%case_count)
-    if (line%help .or. line%version .or. line%template .or. line%reference /= '') return
+    if (allocated(error) .or. line%help .or. line%version .or. line%template .or. line%reference /= '') return
     if (size(line%cases) == 0) then
-      if (line%sweep) call fail(error, 'no study file given'//hint, status_command_line)
-      if (.not. line%sweep) call fail(error, 'no case file given'//hint, status_command_line)
-      return
+      call refuse('no '//trim(merge('study', 'case ', line%sweep))//' file given')
     else if (line%sweep .and. line%certify) then
-      call fail(error, '--certify is not for gudgeon sweep'//hint, status_command_line)
-      return
+      call refuse('--certify is not for gudgeon sweep')
     else if (.not. line%sweep .and. (line%fresh .or. line%last_row > 0)) then
-      call fail(error, '--fresh and --rows are for gudgeon sweep'//hint, status_command_line)
-      return
+      call refuse('--fresh and --rows are for gudgeon sweep')
     else if (line%sweep .and. line%resume) then
-      call fail(error, '--resume is for cases; a stopped sweep continues without it'//hint, status_command_line)
-      return
-    end if
-    call check_names(line%cases, error)
-  end subroutine parse_command_line
-
-  !> `--name`, `--name value` or `--name=value`; `i` is moved to the last argument used.
-  subroutine take_long(line, arguments, i, error)
-    type(command_line_t), intent(inout) :: line
-    character(len=*), intent(in) :: arguments(:)
-    integer, intent(inout) :: i
-    type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: text, name, near
-    character(len=10) :: names(size(options))
-    integer :: equals, place
-    text = trim(arguments(i))
-    equals = index(text, '=')
-    name = text(3:)
-    if (equals > 0) name = text(3:equals - 1)
-    place = findloc(options%long == name, .true., 1)
-    if (place == 0) then
-      names = options%long
-      near = nearest_word(name, names)
-      if (near /= '') near = '; did you mean --'//near//'?'
-      call fail(error, '--'//printable(name, 40)//': unknown option'//near//hint, status_command_line)
-    else if (.not. options(place)%takes_value) then
-      if (equals > 0) then
-        call fail(error, '--'//name//': takes no value'//hint, status_command_line)
-      else
-        call take(line, options(place)%long, '', error)
-      end if
-    else if (equals > 0) then
-      call take(line, options(place)%long, text(equals + 1:), error)
+      call refuse('--resume is for cases; a stopped sweep continues without it')
     else
-      call take_next(line, options(place)%long, '--'//name, arguments, i, error)
+      call check_names()
     end if
-  end subroutine take_long
 
-  !> `-s VALUE`, `-sVALUE`, `-q`, or several options without values together, such as `-qh`.
-  subroutine take_short(line, arguments, i, error)
-    type(command_line_t), intent(inout) :: line
-    character(len=*), intent(in) :: arguments(:)
-    integer, intent(inout) :: i
-    type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: text
-    integer :: k, place
-    text = trim(arguments(i))
-    if (len(text) == 1) call fail(error, '-: a case is read from a file, not from standard input'//hint, &
-                                  status_command_line)
-    do k = 2, len(text)
-      place = findloc(options%short == text(k:k) .and. options%short /= '', .true., 1)
+  contains
+
+    subroutine refuse(message)
+      character(len=*), intent(in) :: message
+      call fail(error, message//'; gudgeon --help lists the options', status_command_line)
+    end subroutine refuse
+
+    !> `--name`, `--name value` or `--name=value`.
+    subroutine take_long()
+      character(len=:), allocatable :: name, near
+      character(len=10) :: names(size(options))
+      integer :: equals, place
+      equals = index(text, '=')
+      name = text(3:)
+      if (equals > 0) name = text(3:equals - 1)
+      place = findloc(options%long == name, .true., 1)
       if (place == 0) then
-        call fail(error, printable(text, 40)//': unknown option'//hint, status_command_line)
-        return
+        names = options%long
+        near = nearest_word(name, names)
+        if (near /= '') near = '; did you mean --'//near//'?'
+        call refuse('--'//printable(name, 40)//': unknown option'//near)
+      else if (equals == 0) then
+        call take_option(options(place), '--'//name)
+      else if (options(place)%takes_value) then
+        call take(options(place)%long, text(equals + 1:))
+      else
+        call refuse('--'//name//': takes no value')
       end if
-      if (options(place)%takes_value) then
-        if (k < len(text)) then
-          call take(line, options(place)%long, text(k + 1:), error)
+    end subroutine take_long
+
+    !> `-s VALUE`, `-sVALUE`, `-q`, or several options without values together, such as `-qh`.
+    subroutine take_short()
+      integer :: k, place
+      if (len(text) == 1) call refuse('-: a case is read from a file, not from standard input')
+      do k = 2, len(text)
+        place = findloc(options%short == text(k:k) .and. options%short /= '', .true., 1)
+        if (place == 0) then
+          call refuse(printable(text, 40)//': unknown option')
+        else if (options(place)%takes_value .and. k < len(text)) then
+          call take(options(place)%long, text(k + 1:))
+          return
         else
-          call take_next(line, options(place)%long, '-'//text(k:k), arguments, i, error)
+          call take_option(options(place), '-'//text(k:k))
         end if
-        return
+        if (allocated(error)) return
+      end do
+    end subroutine take_short
+
+    !> Carry out an option to which no value is attached: if it takes one, that is the next argument.
+    subroutine take_option(option, shown)
+      type(option_t), intent(in) :: option
+      character(len=*), intent(in) :: shown
+      if (.not. option%takes_value) then
+        call take(option%long, '')
+      else if (i == size(arguments)) then
+        call refuse(shown//': a value is missing')
+      else
+        i = i + 1
+        call take(option%long, trim(arguments(i)))
       end if
-      call take(line, options(place)%long, '', error)
-    end do
-  end subroutine take_short
+    end subroutine take_option
 
-  !> Take the next argument as the value of an option.
-  subroutine take_next(line, name, shown, arguments, i, error)
-    type(command_line_t), intent(inout) :: line
-    character(len=*), intent(in) :: name, shown
-    character(len=*), intent(in) :: arguments(:)
-    integer, intent(inout) :: i
-    type(error_t), allocatable, intent(out) :: error
-    if (i == size(arguments)) then
-      call fail(error, shown//': a value is missing'//hint, status_command_line)
-      return
-    end if
-    i = i + 1
-    call take(line, name, trim(arguments(i)), error)
-  end subroutine take_next
+    !> Carry out one option.
+    subroutine take(name, value)
+      character(len=*), intent(in) :: name, value
+      character(len=:), allocatable :: wanted
+      integer :: status
+      select case (name)
+      case ('out')
+        line%out = value
+        if (value == '') wanted = 'must name a folder'
+      case ('set')
+        if (.not. is_override(value)) wanted = 'must have the form GROUP.KEY=VALUE or GROUP=none'
+        line%override_count = line%override_count + 1
+        line%overrides(line%override_count) = value
+      case ('accuracy')
+        line%accuracy = value
+        if (all(value /= ['draft    ', 'standard ', 'reference'])) wanted = 'must be draft, standard or reference'
+      case ('jobs')
+        line%jobs = 0
+        if (value /= '' .and. verify(value, '0123456789') == 0 .and. len(value) < 6) read (value, *) line%jobs
+        if (line%jobs < 1 .or. line%jobs > most_jobs) wanted = 'must be a whole number from 1 to 1024'
+      case ('progress')
+        line%progress = value
+        if (all(value /= ['auto  ', 'always', 'never '])) wanted = 'must be auto, always or never'
+      case ('checkpoint')
+        line%checkpoint_interval = -1
+        if (value /= '' .and. value /= '.' .and. verify(value, '0123456789.') == 0 .and. len(value) < 10) &
+          read (value, *, iostat=status) line%checkpoint_interval
+        if (.not. line%checkpoint_interval >= 0) wanted = 'must be a number of seconds, 0 or more'
+      case ('resume')
+        line%resume = .true.
+      case ('check')
+        line%check = .true.
+      case ('template')
+        line%template = .true.
+      case ('reference')
+        line%reference = value
+        if (all(value /= ['case   ', 'study  ', 'results'])) wanted = 'must be case, study or results'
+      case ('quiet')
+        line%quiet = .true.
+      case ('certify')
+        line%certify = .true.
+      case ('fresh')
+        line%fresh = .true.
+      case ('rows')
+        call read_rows(value, line%first_row, line%last_row)
+        if (line%last_row == 0) wanted = 'must have the form A:B, 1 <= A <= B'
+      case ('help')
+        line%help = .true.
+      case default
+        line%version = .true.
+      end select
+      if (allocated(wanted)) call refuse('--'//trim(name)//' '//printable(value, 60)//': '//wanted)
+    end subroutine take
 
-  !> Carry out one option.
-  subroutine take(line, name, value, error)
-    type(command_line_t), intent(inout) :: line
-    character(len=*), intent(in) :: name, value
-    type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: wanted
-    integer :: status
-    select case (name)
-    case ('out')
-      line%out = value
-      if (value == '') wanted = 'must name a folder'
-    case ('set')
-      if (.not. is_override(value)) wanted = 'must have the form GROUP.KEY=VALUE or GROUP=none'
-      line%override_count = line%override_count + 1
-      line%overrides(line%override_count) = value
-    case ('accuracy')
-      line%accuracy = value
-      if (all(value /= ['draft    ', 'standard ', 'reference'])) wanted = 'must be draft, standard or reference'
-    case ('jobs')
-      line%jobs = 0
-      if (value /= '' .and. verify(value, '0123456789') == 0 .and. len(value) < 6) read (value, *) line%jobs
-      if (line%jobs < 1 .or. line%jobs > most_jobs) wanted = 'must be a whole number from 1 to 1024'
-    case ('progress')
-      line%progress = value
-      if (all(value /= ['auto  ', 'always', 'never '])) wanted = 'must be auto, always or never'
-    case ('checkpoint')
-      line%checkpoint_interval = -1
-      if (value /= '' .and. value /= '.' .and. verify(value, '0123456789.') == 0 .and. len(value) < 10) &
-        read (value, *, iostat=status) line%checkpoint_interval
-      if (.not. line%checkpoint_interval >= 0) wanted = 'must be a number of seconds, 0 or more'
-    case ('resume')
-      line%resume = .true.
-    case ('check')
-      line%check = .true.
-    case ('template')
-      line%template = .true.
-    case ('reference')
-      line%reference = value
-      if (all(value /= ['case   ', 'study  ', 'results'])) wanted = 'must be case, study or results'
-    case ('quiet')
-      line%quiet = .true.
-    case ('certify')
-      line%certify = .true.
-    case ('fresh')
-      line%fresh = .true.
-    case ('rows')
-      call read_rows(value, line%first_row, line%last_row)
-      if (line%last_row == 0) wanted = 'must have the form A:B, 1 <= A <= B'
-    case ('help')
-      line%help = .true.
-    case default
-      line%version = .true.
-    end select
-    if (allocated(wanted)) call fail(error, '--'//trim(name)//' '//printable(value, 60)//': '//wanted//hint, &
-                                     status_command_line)
-  end subroutine take
+    !> Check that no two cases would write files of the same name: a/x.nml and b/x.nml, or x.nml and x.ideal.nml.
+    subroutine check_names()
+      character(len=8), parameter :: suffixes(4) = ['        ', '.ideal  ', '.events ', '.summary']
+      character(len=:), allocatable :: one, other
+      integer :: first, second
+      do first = 1, size(line%cases)
+        one = case_name(trim(line%cases(first)))
+        do second = 1, size(line%cases)
+          other = case_name(trim(line%cases(second)))
+          if (second == first .or. all(other /= one//suffixes .or. len(other) /= len_trim(one//suffixes))) cycle
+          call fail(error, printable(trim(line%cases(first)), 100)//' and '//printable(trim(line%cases(second)), 100)// &
+            ': their results would have the same names; run them separately with --out', status_command_line)
+          return
+        end do
+      end do
+    end subroutine check_names
+  end subroutine parse_command_line
 
   !> Whether a text has the form GROUP.KEY=VALUE or GROUP=none.
   pure logical function is_override(text)
@@ -259,28 +251,6 @@ contains
     read (value(colon + 1:), *) last
     if (first < 1 .or. first > last) last = 0
   end subroutine read_rows
-
-  !> Check that no two cases would write files of the same name: a/x.nml and b/x.nml, or x.nml and x.ideal.nml.
-  subroutine check_names(cases, error)
-    character(len=*), intent(in) :: cases(:)
-    type(error_t), allocatable, intent(out) :: error
-    character(len=8), parameter :: suffixes(4) = ['        ', '.ideal  ', '.events ', '.summary']
-    character(len=:), allocatable :: one, other
-    integer :: i, k, s
-    do i = 1, size(cases)
-      one = case_name(trim(cases(i)))
-      do k = 1, size(cases)
-        if (k == i) cycle
-        other = case_name(trim(cases(k)))
-        do s = 1, size(suffixes)
-          if (other /= one//trim(suffixes(s)) .or. len(other) /= len_trim(one//suffixes(s))) cycle
-          call fail(error, printable(trim(cases(i)), 100)//' and '//printable(trim(cases(k)), 100)// &
-                    ': their results would have the same names; run them separately with --out', status_command_line)
-          return
-        end do
-      end do
-    end do
-  end subroutine check_names
 
   !> Shorten a list to its first `count` elements.
   subroutine shorten(list, count)
