@@ -2,7 +2,7 @@
 !> or group and key, value as written, and what is allowed.
 module case_file
   use gudgeon_errors, only: error_t, fail, status_case_file
-  use text_tools, only: lowercase, printable, integer_text, case_name
+  use text_tools, only: lowercase, printable, case_name
   use text_file, only: read_text_file
   use case_definition, only: case_t, piston_pin_place, crank_pin_place
   use case_schema, only: key_t, group_definition_t, case_schema_of, find_group, is_listed, shown_group, text_kind
@@ -25,10 +25,9 @@ contains
     character(len=*), intent(in) :: path, overrides(:)
     type(case_t), intent(out) :: this
     type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: text
-    call read_text_file(path, largest_file, 'case file', text, error)
-    if (allocated(error)) return
-    call parse_case(text, path, overrides, this, error)
+    type(case_values_t) :: values
+    call read_case_values(path, overrides, values, error)
+    if (.not. allocated(error)) call complete_case(values, path, this, error)
   end subroutine read_case
 
   !> Read a case from a text; `path` gives its name and is used in messages. `resolved` is the case with all defaults as text;
@@ -102,13 +101,10 @@ contains
     character(len=*), intent(in) :: text
     type(error_t), allocatable, intent(out) :: error
     type(namelist_t) :: list
-    character(len=:), allocatable :: message, at
-    integer :: i, line, group, place
-    call read_namelist(text, list, message, line)
-    if (allocated(message)) then
-      call fail(error, at_line(values, line)//message, status_case_file)
-      return
-    end if
+    character(len=:), allocatable :: at
+    integer :: i, group, place
+    call read_namelist(text, values%file, list, error)
+    if (allocated(error)) return
     if (size(list%groups) == 0) then
       call fail(error, values%file//': the file contains no group; gudgeon --template prints a case', status_case_file)
       return
@@ -116,26 +112,24 @@ contains
     do i = 1, size(list%groups)
       call name_place(values, list, i, error)
       if (allocated(error)) return
-      group = find_group(values%groups, list%groups(i)%name)
-      if (list%groups(i)%name == 'study' .or. list%groups(i)%name == 'parameter') then
-        call fail(error, at_line(values, list%groups(i)%line)//'&'//list%groups(i)%name//': a study, not a case: run it with '// &
-                  'gudgeon sweep '//values%file, status_case_file)
-        return
-      else if (group == 0) then
-        call values%find(list%groups(i)%name, '', at_line(values, list%groups(i)%line), place, error)
-        return
-      end if
-      if (values%is_present(group)) then
-        call fail(error, at_line(values, list%groups(i)%line)//shown_group(list%groups(i)%name)// &
-                  ': this group is given twice', status_case_file)
-        return
-      end if
+      at = list%at(list%groups(i)%line)
+      associate (name => list%groups(i)%name)
+        group = find_group(values%groups, name)
+        if (name == 'study' .or. name == 'parameter') then
+          call fail(error, at//'&'//name//': a study, not a case: run it with gudgeon sweep '//values%file, status_case_file)
+        else if (group == 0) then
+          call values%find(name, '', at, place, error)
+        else if (values%is_present(group)) then
+          call fail(error, at//shown_group(name)//': this group is given twice', status_case_file)
+        end if
+      end associate
+      if (allocated(error)) return
       values%is_present(group) = .true.
     end do
     do i = 1, size(list%entries)
       associate (entry => list%entries(i))
-        at = at_line(values, entry%line)
         if (entry%key == 'place' .and. has_places(values, entry%group)) cycle
+        at = list%at(entry%line)
         call values%find(list%groups(entry%group_number)%name, entry%key, at, place, error)
         if (allocated(error)) return
         call values%assign(place, entry%index, entry%tokens, at, .false., error)
@@ -169,7 +163,7 @@ contains
           if (.not. is_listed(place, places)) wanted = 'must be one of '//places
         end if
         if (wanted /= '') then
-          call fail(error, at_line(values, entry%line)//'&'//entry%group//' place = '//printable(place, 48)//': '//wanted, &
+          call fail(error, list%at(entry%line)//'&'//entry%group//' place = '//printable(place, 48)//': '//wanted, &
                     status_case_file)
           return
         end if
@@ -246,12 +240,4 @@ contains
     common = find_group(values%groups, group(len(crank_pin_place) + 2:))
     if (own > 0 .and. common > 0) is_shared = values%is_present(common) .and. .not. values%is_present(own)
   end function is_shared
-
-  !> `path:line: `
-  function at_line(values, line) result(at)
-    type(case_values_t), intent(in) :: values
-    integer, intent(in) :: line
-    character(len=:), allocatable :: at
-    at = values%file//':'//integer_text(line)//': '
-  end function at_line
 end module case_file

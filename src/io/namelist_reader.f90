@@ -2,12 +2,13 @@
 !> reader of a compiler, which accepts some mistakes: only comments may stand outside a group, every group must be closed by / or
 !> &end, every key must have values, and no value may be missing between commas.
 module namelist_reader
-  use text_tools, only: printable
+  use gudgeon_errors, only: error_t, fail, status_case_file
+  use text_tools, only: printable, integer_text
   use text_scanner, only: scanner_t, name_here, pass_name, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line, &
     newline, return, digits, shown
   implicit none
   private
-  public :: namelist_t, named_group_t, entry_t, token_t, read_namelist, read_values
+  public :: namelist_t, entry_t, token_t, read_namelist, read_values
 
   !> One value as written, `repeat` times.
   type :: token_t
@@ -34,43 +35,50 @@ module namelist_reader
 
   !> All groups and entries of a file; names in lower case.
   type :: namelist_t
+    character(len=:), allocatable :: file          !! name of the file in messages
     type(named_group_t), allocatable :: groups(:)
     type(entry_t), allocatable :: entries(:)
+    integer, private :: n_groups = 0, n_entries = 0   !! while the file is read
+  contains
+    procedure :: at
   end type namelist_t
 
   integer, parameter :: most = 1000  !! largest number of groups, keys, and values of a key
 
 contains
 
-  !> Read the text of a whole file. On a mistake `message` is allocated, and `line` is its line.
-  subroutine read_namelist(text, list, message, line)
-    character(len=*), intent(in) :: text
+  !> Read the text of the file at `path`. Error: a mistake in the syntax (status_case_file).
+  subroutine read_namelist(text, path, list, error)
+    character(len=*), intent(in) :: text, path
     type(namelist_t), intent(out) :: list
-    character(len=:), allocatable, intent(out) :: message
-    integer, intent(out) :: line
+    type(error_t), allocatable, intent(out) :: error
     type(scanner_t) :: scan
-    type(named_group_t) :: groups(most)
-    type(entry_t) :: entries(most)
-    integer :: n_groups, n_entries
-    n_groups = 0
-    n_entries = 0
+    list%file = printable(path, 200)
+    allocate (list%groups(most), list%entries(most))
     scan%text = text
     if (index(text, char(239)//char(187)//char(191)) == 1) scan%at = 4
     do
       call skip_blanks(scan)
       if (at_end(scan)) exit
       if (scan%text(scan%at:scan%at) == '&') then
-        call read_group(scan, groups, n_groups, entries, n_entries)
+        call read_group(scan, list)
       else
         scan%message = 'text outside a group: '//piece(scan)
       end if
       if (allocated(scan%message)) exit
     end do
-    line = scan%line
-    list%groups = groups(:n_groups)
-    list%entries = entries(:n_entries)
-    if (allocated(scan%message)) call move_alloc(scan%message, message)
+    list%groups = list%groups(:list%n_groups)
+    list%entries = list%entries(:list%n_entries)
+    if (allocated(scan%message)) call fail(error, list%at(scan%line)//scan%message, status_case_file)
   end subroutine read_namelist
+
+  !> `path:line: `, where a message says what is wrong there.
+  function at(self, line)
+    class(namelist_t), intent(in) :: self
+    integer, intent(in) :: line
+    character(len=:), allocatable :: at
+    at = self%file//':'//integer_text(line)//': '
+  end function at
 
   !> Read the values of one key from a text that contains nothing else.
   subroutine read_values(text, tokens, message)
@@ -88,11 +96,9 @@ contains
   end subroutine read_values
 
   !> Read a group from its & to the closing / or &end.
-  subroutine read_group(scan, groups, n_groups, entries, n_entries)
+  subroutine read_group(scan, list)
     type(scanner_t), intent(inout) :: scan
-    type(named_group_t), intent(inout) :: groups(most)
-    type(entry_t), intent(inout) :: entries(most)
-    integer, intent(inout) :: n_groups, n_entries
+    type(namelist_t), intent(inout) :: list
     type(named_group_t) :: group
     character(len=:), allocatable :: next
     scan%at = scan%at + 1
@@ -103,10 +109,10 @@ contains
       if (group%name == 'end') scan%message = '&end closes no group'
       return
     end if
-    if (n_groups == most) scan%message = 'too many groups'
+    if (list%n_groups == most) scan%message = 'too many groups'
     if (allocated(scan%message)) return
-    n_groups = n_groups + 1
-    groups(n_groups) = group
+    list%n_groups = list%n_groups + 1
+    list%groups(list%n_groups) = group
     do
       call skip_blanks(scan)
       if (at_end(scan)) then
@@ -123,12 +129,14 @@ contains
         if (next /= 'end') call not_closed(scan, group, '&'//printable(next, shown))
         return
       end select
-      if (n_entries == most) scan%message = 'too many keys'
+      if (list%n_entries == most) scan%message = 'too many keys'
       if (allocated(scan%message)) return
-      n_entries = n_entries + 1
-      entries(n_entries)%group = group%name
-      entries(n_entries)%group_number = n_groups
-      call read_entry(scan, entries(n_entries))
+      list%n_entries = list%n_entries + 1
+      associate (entry => list%entries(list%n_entries))
+        entry%group = group%name
+        entry%group_number = list%n_groups
+        call read_entry(scan, entry)
+      end associate
       if (allocated(scan%message)) return
     end do
   end subroutine read_group

@@ -1,7 +1,7 @@
 !> Reads study files and checks their values. Errors have the form of those of case files.
 module study_file
   use gudgeon_errors, only: error_t, fail, status_case_file
-  use text_tools, only: printable, integer_text, case_name, lowercase, path_beside
+  use text_tools, only: printable, case_name, lowercase, path_beside
   use text_file, only: read_text_file
   use gudgeon_posix, only: absolute_path
   use namelist_reader, only: namelist_t, entry_t, token_t, read_namelist
@@ -41,18 +41,14 @@ contains
     character(len=*), intent(in) :: path
     type(study_t), intent(out) :: study
     type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: text, message
+    character(len=:), allocatable :: text
     type(namelist_t) :: list
     type(case_values_t), allocatable :: groups(:)
-    integer :: line
 
     call read_text_file(path, 1, 'study file', text, error)
     if (allocated(error)) return
-    call read_namelist(text, list, message, line)
-    if (allocated(message)) then
-      call fail(error, at_line(path, line)//message, status_case_file)
-      return
-    end if
+    call read_namelist(text, path, list, error)
+    if (allocated(error)) return
     call take_groups(path, list, groups, error)
     if (allocated(error)) return
     study%file = path
@@ -71,6 +67,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(group_definition_t), allocatable :: schema_groups(:)
     type(key_t), allocatable :: schema_keys(:)
+    character(len=:), allocatable :: at
     integer :: place(size(list%groups)), i, n, key
 
     call study_schema_of(schema_groups, schema_keys)
@@ -83,12 +80,10 @@ contains
     n = 1
     place = 0
     do i = 1, size(list%groups)
+      at = list%at(list%groups(i)%line)
       select case (list%groups(i)%name)
       case ('study')
-        if (groups(1)%is_present(1)) then
-          call fail(error, at_line(path, list%groups(i)%line)//'&study: this group is given twice', status_case_file)
-          return
-        end if
+        if (groups(1)%is_present(1)) call fail(error, at//'&study: this group is given twice', status_case_file)
         place(i) = 1
         groups(1)%is_present(1) = .true.
       case ('parameter')
@@ -97,21 +92,21 @@ contains
         groups(n)%is_present(2) = .true.
       case default
         if (is_group_of_cases(list%groups(i)%name)) then
-          call fail(error, at_line(path, list%groups(i)%line)//'&'//list%groups(i)%name//': a case, not a study: run it with '// &
-                    'gudgeon '//groups(1)%file//', without sweep', status_case_file)
+          call fail(error, at//'&'//list%groups(i)%name//': a case, not a study: run it with gudgeon '//list%file// &
+            ', without sweep', status_case_file)
         else
-          call groups(1)%find(list%groups(i)%name, '', at_line(path, list%groups(i)%line), key, error)
+          call groups(1)%find(list%groups(i)%name, '', at, key, error)
         end if
-        return
       end select
+      if (allocated(error)) return
     end do
     if (.not. groups(1)%is_present(1)) then
-      call fail(error, groups(1)%file//': &study: this group is required', status_case_file)
+      call fail(error, list%file//': &study: this group is required', status_case_file)
       return
     end if
     do i = 1, size(list%entries)
       associate (entry => list%entries(i), group => groups(place(list%entries(i)%group_number)))
-        call take_entry(entry, at_line(path, entry%line), group, error)
+        call take_entry(entry, list%at(entry%line), group, error)
         if (allocated(error)) return
       end associate
     end do
@@ -135,14 +130,6 @@ contains
     if (entry%key == 'values') tokens%quoted = .true.
     call group%assign(key, entry%index, tokens, at, .false., error)
   end subroutine take_entry
-
-  !> `path:line: `
-  function at_line(path, line) result(at)
-    character(len=*), intent(in) :: path
-    integer, intent(in) :: line
-    character(len=:), allocatable :: at
-    at = printable(path, 200)//':'//integer_text(line)//': '
-  end function at_line
 
   !> Set the values of &study.
   subroutine take_study(values, study)
