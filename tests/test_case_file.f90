@@ -5,7 +5,7 @@ module test_case_file
   use case_definition, only: case_t
   use case_rules, only: case_warning
   use case_file, only: read_case, parse_case, template
-  use case_schema, only: shared_keys_differ
+  use case_schema, only: key_table_t, case_schema_of
   use text_file, only: read_text_file
   use gudgeon_posix, only: make_directory, remove_file
   use result_file, only: result_file_t
@@ -28,7 +28,9 @@ contains
 
   subroutine run_test_case_file(check)
     class(checks_t), intent(inout) :: check
-    call check%equal_text(shared_keys_differ(), '', 'a key has the same meaning in all laws of a group')
+    type(key_table_t) :: table
+    call case_schema_of(table)
+    call check%equal_text(table%difference, '', 'a key has the same meaning in all laws of a group')
     call test_values(check)
     call test_forms(check)
     call test_resolved(check)

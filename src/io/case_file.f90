@@ -5,7 +5,7 @@ module case_file
   use text_tools, only: lowercase, printable, case_name
   use text_file, only: read_text_file
   use case_definition, only: case_t, piston_pin_place, crank_pin_place
-  use case_schema, only: key_t, group_definition_t, case_schema_of, find_group, is_listed, shown_group, text_kind
+  use case_schema, only: key_table_t, case_schema_of, find_group, is_listed, shown_group, text_kind
   use case_values, only: case_values_t
   use case_loader, only: load_case
   use case_rules, only: check_rules
@@ -58,7 +58,7 @@ contains
     type(case_values_t), intent(out) :: values
     type(error_t), allocatable, intent(out) :: error
     integer :: i
-    call case_schema_of(values%groups, values%keys)
+    call case_schema_of(values%key_table_t)
     call values%set_defaults(path)
     call take_file(values, text, error)
     if (allocated(error)) return
@@ -89,10 +89,9 @@ contains
   !> A complete case file with comments, which can be read back.
   function template() result(text)
     character(len=:), allocatable :: text
-    type(group_definition_t), allocatable :: groups(:)
-    type(key_t), allocatable :: keys(:)
-    call case_schema_of(groups, keys)
-    text = template_text('A case of gudgeon with every key there is. Keys marked required have no default.', groups, keys)
+    type(key_table_t) :: table
+    call case_schema_of(table)
+    text = template_text('A case of gudgeon with every key there is. Keys marked required have no default.', table)
   end function template
 
   !> Put the groups and keys of a file's text into the values.

@@ -7,8 +7,8 @@ module case_schema
   use case_definition, only: case_t, visit_case, piston_pin_place
   implicit none
   private
-  public :: key_t, group_definition_t, schema_t, case_schema_of, find_key, find_group, is_listed, is_group_of_cases
-  public :: shown_group, real_kind, integer_kind, logical_kind, word_kind, text_kind, shared_keys_differ
+  public :: key_t, group_definition_t, key_table_t, schema_t, case_schema_of, find_key, find_group, is_listed, is_group_of_cases
+  public :: shown_group, real_kind, integer_kind, logical_kind, word_kind, text_kind
 
   !> A group. The group of an optional model may be missing in a case; its model is then absent from the scene.
   type :: group_definition_t
@@ -21,6 +21,13 @@ module case_schema
     integer :: first = 1, last = 0        !! range of its keys in the table
   end type group_definition_t
 
+  !> All groups and keys of a kind of file.
+  type :: key_table_t
+    type(group_definition_t), allocatable :: groups(:)
+    type(key_t), allocatable :: keys(:)
+    character(len=:), allocatable :: difference   !! a shared key that laws describe differently, which is a defect of the program
+  end type key_table_t
+
   !> A visitor that collects groups and keys. Laws of one group may share a key, which must then have the same meaning in all of
   !> them.
   type, extends(parameter_list_t) :: schema_t
@@ -29,8 +36,7 @@ module case_schema
     type(key_t), allocatable :: keys(:)
     integer :: n_groups = 0, n_keys = 0
     integer :: present_choice = 0              !! index of the key that names the law being collected; 0: none
-    character(len=:), allocatable :: law_name
-    character(len=:), allocatable :: difference   !! a shared key that laws describe differently, for the tests
+    character(len=:), allocatable :: law_name, difference
   contains
     procedure :: begin
     procedure :: take
@@ -42,13 +48,15 @@ module case_schema
 
 contains
 
-  !> Groups and keys of a case, in the order of the template and of the resolved case.
-  subroutine case_schema_of(groups, keys)
-    type(group_definition_t), allocatable, intent(out) :: groups(:)
-    type(key_t), allocatable, intent(out) :: keys(:)
+  !> Groups and keys of a case file, in the order of the template and of the resolved case.
+  subroutine case_schema_of(table)
+    type(key_table_t), intent(out) :: table
     type(schema_t) :: schema
-    call collect_case(schema)
-    call schema%take(groups, keys)
+    type(case_t) :: case
+    call schema%begin()
+    call visit_case(case, schema)
+    call add_laws_of_one_joint(schema)
+    call schema%take(table)
   end subroutine case_schema_of
 
   !> Initialise the visitor.
@@ -60,59 +68,43 @@ contains
   end subroutine begin
 
   !> Return the collected groups and keys.
-  subroutine take(self, groups, keys)
+  subroutine take(self, table)
     class(schema_t), intent(in) :: self
-    type(group_definition_t), allocatable, intent(out) :: groups(:)
-    type(key_t), allocatable, intent(out) :: keys(:)
-    groups = self%groups(:self%n_groups)
-    keys = self%keys(:self%n_keys)
+    type(key_table_t), intent(out) :: table
+    table%groups = self%groups(:self%n_groups)
+    table%keys = self%keys(:self%n_keys)
+    table%difference = self%difference
   end subroutine take
 
   !> Whether case files have a group of this name.
   logical function is_group_of_cases(name)
     character(len=*), intent(in) :: name
-    type(group_definition_t), allocatable :: groups(:)
-    type(key_t), allocatable :: keys(:)
-    call case_schema_of(groups, keys)
-    is_group_of_cases = find_group(groups, name) > 0
+    type(key_table_t) :: table
+    call case_schema_of(table)
+    is_group_of_cases = find_group(table%groups, name) > 0
   end function is_group_of_cases
-
-  !> A key that two laws of a group share but describe differently; empty if there is none.
-  function shared_keys_differ() result(key)
-    character(len=:), allocatable :: key
-    type(schema_t) :: schema
-    call collect_case(schema)
-    key = schema%difference
-  end function shared_keys_differ
-
-  subroutine collect_case(schema)
-    type(schema_t), intent(inout) :: schema
-    type(case_t) :: case
-    call schema%begin()
-    call visit_case(case, schema)
-    call add_laws_of_one_joint(schema)
-  end subroutine collect_case
 
   !> Add the groups of laws that are valid for the first joint alone: copies of the groups that are valid for every joint.
   subroutine add_laws_of_one_joint(schema)
     type(schema_t), intent(inout) :: schema
+    type(key_t) :: key
     integer :: i, j, n_groups
     n_groups = schema%n_groups
     do i = 1, n_groups
       if (schema%groups(i)%place /= piston_pin_place .or. .not. schema%groups(i)%is_model) cycle
       schema%n_groups = schema%n_groups + 1
-      schema%groups(schema%n_groups) = schema%groups(i)
-      schema%groups(schema%n_groups)%name = piston_pin_place//'.'//trim(schema%groups(i)%name)
-      schema%groups(i)%place = ''
-      schema%groups(i)%is_law = .true.
-      schema%groups(schema%n_groups)%first = schema%n_keys + 1
-      schema%groups(schema%n_groups)%last = schema%n_keys + 1 + schema%groups(i)%last - schema%groups(i)%first
-      do j = schema%groups(i)%first, schema%groups(i)%last
-        if (schema%n_keys == size(schema%keys)) call make_room(schema%keys)
-        schema%n_keys = schema%n_keys + 1
-        schema%keys(schema%n_keys) = schema%keys(j)
-        schema%keys(schema%n_keys)%group = schema%groups(schema%n_groups)%name
-      end do
+      associate (shared => schema%groups(i), own => schema%groups(schema%n_groups))
+        own = shared
+        own%name = piston_pin_place//'.'//trim(shared%name)
+        own%first = schema%n_keys + 1
+        own%last = schema%n_keys + 1 + shared%last - shared%first
+        shared%place = ''
+        shared%is_law = .true.
+        do j = shared%first, shared%last
+          key = schema%keys(j)
+          call add_key(schema, key, own%name)
+        end do
+      end associate
     end do
   end subroutine add_laws_of_one_joint
 
@@ -187,11 +179,8 @@ contains
     end associate
     place = find_key(self%keys, self%groups(self%n_groups), trim(key%name))
     if (place == 0) then
-      if (self%n_keys == size(self%keys)) call make_room(self%keys)
-      self%n_keys = self%n_keys + 1
+      call add_key(self, key, self%groups(self%n_groups)%name)
       place = self%n_keys
-      self%keys(place) = key
-      self%keys(place)%group = self%groups(self%n_groups)%name
       self%groups(self%n_groups)%last = place
       if (self%law_name /= '') then
         self%keys(place)%choice = trim(self%keys(self%present_choice)%name)
@@ -207,13 +196,21 @@ contains
     call add_words(self%keys(place)%words, key%words)
   end subroutine collect
 
-  subroutine make_room(keys)
-    type(key_t), allocatable, intent(inout) :: keys(:)
+  !> Add a key of a group to the table, which is enlarged if it is full.
+  subroutine add_key(self, key, group)
+    class(schema_t), intent(inout) :: self
+    type(key_t), intent(in) :: key
+    character(len=*), intent(in) :: group
     type(key_t), allocatable :: larger(:)
-    allocate (larger(2*size(keys)))
-    larger(:size(keys)) = keys
-    call move_alloc(larger, keys)
-  end subroutine make_room
+    if (self%n_keys == size(self%keys)) then
+      allocate (larger(2*self%n_keys))
+      larger(:self%n_keys) = self%keys
+      call move_alloc(larger, self%keys)
+    end if
+    self%n_keys = self%n_keys + 1
+    self%keys(self%n_keys) = key
+    self%keys(self%n_keys)%group = group
+  end subroutine add_key
 
   !> Whether two laws give a key the same meaning. Its words and its default may differ for words, its default for switches.
   pure logical function same_meaning(a, b)

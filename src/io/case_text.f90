@@ -4,7 +4,7 @@ module case_text
   use number_text, only: real_text
   use number_writer, only: most_digits
   use gudgeon_parameters, only: key_t, real_kind, integer_kind, logical_kind
-  use case_schema, only: group_definition_t, find_key, is_listed
+  use case_schema, only: group_definition_t, key_table_t, find_key, is_listed
   use case_values, only: case_values_t, value_t
   implicit none
   private
@@ -15,30 +15,31 @@ module case_text
 contains
 
   !> A complete case file: every group and key, with unit, range, allowed words and default as comments.
-  function template_text(first_line, groups, keys) result(text)
+  function template_text(first_line, table) result(text)
     character(len=*), intent(in) :: first_line   !! without the !
-    type(group_definition_t), intent(in) :: groups(:)
-    type(key_t), intent(in) :: keys(:)
+    type(key_table_t), intent(in) :: table
     character(len=:), allocatable :: text
     character(len=:), allocatable :: out
     integer :: group, i
     text = '! '//first_line//newline
-    do group = 1, size(groups)
-      if (index(groups(group)%name, '.') > 0) cycle   ! copies of groups for another joint
-      out = ''
-      text = text//newline//'! '//trim(groups(group)%description)//newline
-      if (groups(group)%instead_of /= '') then
-        text = text//'! (cannot be combined with &'//trim(groups(group)%instead_of)//', therefore commented out here)'//newline
-        out = '! '
-      end if
-      text = text//out//'&'//trim(groups(group)%name)//newline
-      if (groups(group)%place /= '' .or. groups(group)%is_law) text = text//'  ! place = ''crank_pin''                   '// &
-        'in a second group of this name: '//trim(merge('the joint of crank and rod', 'laws for that joint alone ', &
-        groups(group)%place /= ''))//newline
-      do i = 1, size(keys)
-        if (keys(i)%group == groups(group)%name) text = text//out//template_line(keys, groups(group), keys(i))//newline
-      end do
-      text = text//out//'/'//newline
+    do group = 1, size(table%groups)
+      associate (it => table%groups(group))
+        if (index(it%name, '.') > 0) cycle   ! copies of groups for another joint
+        out = ''
+        text = text//newline//'! '//trim(it%description)//newline
+        if (it%instead_of /= '') then
+          text = text//'! (cannot be combined with &'//trim(it%instead_of)//', therefore commented out here)'//newline
+          out = '! '
+        end if
+        text = text//out//'&'//trim(it%name)//newline
+        if (it%place /= '' .or. it%is_law) text = text//'  ! place = ''crank_pin''                   '// &
+          'in a second group of this name: '//trim(merge('the joint of crank and rod', 'laws for that joint alone ', &
+          it%place /= ''))//newline
+        do i = it%first, it%last
+          text = text//out//template_line(table%keys, it, table%keys(i))//newline
+        end do
+        text = text//out//'/'//newline
+      end associate
     end do
   end function template_text
 
@@ -102,9 +103,8 @@ contains
       dot = index(values%groups(group)%name, '.')
       text = text//'&'//trim(values%groups(group)%name(dot + 1:))//newline
       if (dot > 0) text = text//'  place = '''//values%groups(group)%name(:dot - 1)//''''//newline
-      do i = 1, size(values%keys)
-        if (values%keys(i)%group == values%groups(group)%name .and. values%is_used(i)) &
-          text = text//resolved_line(values%keys(i), values%values(i))//newline
+      do i = values%groups(group)%first, values%groups(group)%last
+        if (values%is_used(i)) text = text//resolved_line(values%keys(i), values%values(i))//newline
       end do
       text = text//'/'//newline
     end do

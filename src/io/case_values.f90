@@ -3,7 +3,7 @@
 module case_values
   use gudgeon_errors, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text, nearest_word
-  use case_schema, only: key_t, group_definition_t, find_group, find_key, is_listed, shown_group, &
+  use case_schema, only: key_t, key_table_t, find_group, find_key, is_listed, shown_group, &
     real_kind, integer_kind
   use namelist_reader, only: token_t
   use case_value, only: value_t, set_to_default, convert, find_decimal_comma, is_default, element_is_within, unit_of, most_reals
@@ -11,10 +11,8 @@ module case_values
   private
   public :: case_values_t, value_t
 
-  type :: case_values_t
+  type, extends(key_table_t) :: case_values_t
     character(len=:), allocatable :: file          !! name of the case file in messages
-    type(group_definition_t), allocatable :: groups(:)
-    type(key_t), allocatable :: keys(:)
     logical, allocatable :: is_present(:)          !! for each group
     type(value_t), allocatable :: values(:)        !! for each key
   contains

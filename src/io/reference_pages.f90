@@ -3,7 +3,7 @@
 module reference_pages
   use gudgeon_errors, only: error_t
   use gudgeon_parameters, only: key_t, logical_kind
-  use case_schema, only: group_definition_t, case_schema_of, find_key
+  use case_schema, only: group_definition_t, key_table_t, case_schema_of, find_key
   use case_definition, only: case_t
   use case_file, only: parse_case, template
   use gudgeon_columns, only: choose_columns
@@ -27,30 +27,30 @@ contains
   !> Page of all groups and keys of a case file.
   function case_reference() result(text)
     character(len=:), allocatable :: text
-    type(group_definition_t), allocatable :: groups(:)
-    type(key_t), allocatable :: keys(:)
-    call case_schema_of(groups, keys)
-    text = keys_reference(groups, keys)
+    type(key_table_t) :: table
+    call case_schema_of(table)
+    text = keys_reference(table)
   end function case_reference
 
   !> A section for each group, with a table row for each key.
-  function keys_reference(groups, keys) result(text)
-    type(group_definition_t), intent(in) :: groups(:)
-    type(key_t), intent(in) :: keys(:)
+  function keys_reference(table) result(text)
+    type(key_table_t), intent(in) :: table
     character(len=:), allocatable :: text
     integer :: group, i
     text = ''
-    do group = 1, size(groups)
-      if (index(groups(group)%name, '.') > 0) cycle   ! copies of groups for another joint
-      text = text//'## &'//trim(groups(group)%name)//newline//newline//sentence(trim(groups(group)%description))//newline
-      if (groups(group)%instead_of /= '') text = text//'Cannot be combined with `&'//trim(groups(group)%instead_of)//'`.'//newline
-      if (groups(group)%place /= '' .or. groups(group)%is_law) &
-        text = text//'`place = ''crank_pin''` in a second group of this name makes it that of the crank pin.'//newline
-      text = text//newline//'| key | unit | limits | default | meaning |'//newline//'|---|---|---|---|---|'//newline
-      do i = 1, size(keys)
-        if (keys(i)%group == groups(group)%name) text = text//key_row(keys, groups(group), keys(i))//newline
-      end do
-      text = text//newline
+    do group = 1, size(table%groups)
+      associate (it => table%groups(group))
+        if (index(it%name, '.') > 0) cycle   ! copies of groups for another joint
+        text = text//'## &'//trim(it%name)//newline//newline//sentence(trim(it%description))//newline
+        if (it%instead_of /= '') text = text//'Cannot be combined with `&'//trim(it%instead_of)//'`.'//newline
+        if (it%place /= '' .or. it%is_law) &
+          text = text//'`place = ''crank_pin''` in a second group of this name makes it that of the crank pin.'//newline
+        text = text//newline//'| key | unit | limits | default | meaning |'//newline//'|---|---|---|---|---|'//newline
+        do i = it%first, it%last
+          text = text//key_row(table%keys, it, table%keys(i))//newline
+        end do
+        text = text//newline
+      end associate
     end do
   end function keys_reference
 

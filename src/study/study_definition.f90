@@ -2,7 +2,7 @@
 module study_definition
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t
-  use case_schema, only: schema_t, key_t, group_definition_t
+  use case_schema, only: schema_t, key_table_t
   implicit none
   private
   public :: study_t, parameter_t, text_t, study_schema_of
@@ -47,9 +47,8 @@ module study_definition
 contains
 
   !> Groups and keys of a study file.
-  subroutine study_schema_of(groups, keys)
-    type(group_definition_t), allocatable, intent(out) :: groups(:)
-    type(key_t), allocatable, intent(out) :: keys(:)
+  subroutine study_schema_of(table)
+    type(key_table_t), intent(out) :: table
     type(schema_t) :: schema
     type(study_t) :: study
     type(parameter_t) :: parameter
@@ -58,7 +57,7 @@ contains
     call study%parameters(schema)
     call schema%group('parameter', 'One key that is varied. Give one group for each key', .true.)
     call parameter%parameters(schema)
-    call schema%take(groups, keys)
+    call schema%take(table)
   end subroutine study_schema_of
 
   subroutine parameters_of_study(self, list)

@@ -6,7 +6,7 @@ module study_file
   use gudgeon_posix, only: absolute_path
   use namelist_reader, only: namelist_t, entry_t, token_t, read_namelist
   use case_values, only: case_values_t
-  use case_schema, only: key_t, group_definition_t, is_group_of_cases
+  use case_schema, only: key_table_t, is_group_of_cases
   use case_loader, only: load_model
   use case_text, only: resolved_text, template_text
   use reference_pages, only: keys_reference
@@ -20,20 +20,17 @@ contains
   !> A complete study file with comments.
   function study_template() result(text)
     character(len=:), allocatable :: text
-    type(group_definition_t), allocatable :: groups(:)
-    type(key_t), allocatable :: keys(:)
-    call study_schema_of(groups, keys)
-    text = template_text('A parameter study of gudgeon with every key there is. Keys marked required have no default.', &
-      groups, keys)
+    type(key_table_t) :: table
+    call study_schema_of(table)
+    text = template_text('A parameter study of gudgeon with every key there is. Keys marked required have no default.', table)
   end function study_template
 
   !> Page of the manual in Markdown: all groups and keys of a study file.
   function study_reference() result(text)
     character(len=:), allocatable :: text
-    type(group_definition_t), allocatable :: groups(:)
-    type(key_t), allocatable :: keys(:)
-    call study_schema_of(groups, keys)
-    text = keys_reference(groups, keys)
+    type(key_table_t) :: table
+    call study_schema_of(table)
+    text = keys_reference(table)
   end function study_reference
 
   !> Read and check a study file. Paths in it are converted to paths relative to the current folder.
@@ -65,16 +62,14 @@ contains
     type(namelist_t), intent(in) :: list
     type(case_values_t), allocatable, intent(out) :: groups(:)
     type(error_t), allocatable, intent(out) :: error
-    type(group_definition_t), allocatable :: schema_groups(:)
-    type(key_t), allocatable :: schema_keys(:)
+    type(key_table_t) :: table
     character(len=:), allocatable :: at
     integer :: place(size(list%groups)), i, n, key
 
-    call study_schema_of(schema_groups, schema_keys)
+    call study_schema_of(table)
     allocate (groups(count([(list%groups(i)%name == 'parameter', i=1, size(list%groups))]) + 1))
     do i = 1, size(groups)
-      groups(i)%groups = schema_groups
-      groups(i)%keys = schema_keys
+      groups(i)%key_table_t = table
       call groups(i)%set_defaults(path)
     end do
     n = 1
