@@ -4,9 +4,9 @@
 module accuracy_presets
   implicit none
   private
-  public :: with_preset, preset_length
+  public :: with_preset
 
-  integer, parameter :: preset_length = 40
+  integer, parameter :: n_keys = 5, preset_length = 40
 
 contains
 
@@ -17,26 +17,16 @@ contains
     character(len=*), intent(in) :: level           !! draft, standard, reference or empty
     character(len=*), intent(in) :: overrides(:)    !! GROUP.KEY=VALUE
     character(len=:), allocatable :: all(:)
-    character(len=preset_length) :: preset(5)
-    integer :: i, n
-
-    preset = [character(len=preset_length) :: 'integrator.method=auto', 'integrator.max_order=12', &
-      'integrator.contact_entry=root', 'integrator.absolute_tolerance=0', '']
-    select case (level)
-    case ('draft')
-      preset(5) = 'integrator.relative_tolerance=1e-4'
-    case ('standard')
-      preset(5) = 'integrator.relative_tolerance=1e-6'
-    case ('reference')
-      preset(5) = 'integrator.relative_tolerance=1e-10'
-    end select
-    n = merge(size(preset), 0, level /= '')
-    allocate (character(len=max(preset_length, len(overrides))) :: all(n + size(overrides)))
-    do i = 1, n
-      all(i) = preset(i)
-    end do
-    do i = 1, size(overrides)
-      all(n + i) = overrides(i)
-    end do
+    character(len=*), parameter :: levels(3) = ['draft    ', 'standard ', 'reference']
+    character(len=*), parameter :: tolerances(3) = ['1e-4 ', '1e-6 ', '1e-10']
+    if (level == '') then
+      allocate (all, source=overrides)
+      return
+    end if
+    allocate (character(len=max(preset_length, len(overrides))) :: all(n_keys + size(overrides)))
+    all(:n_keys) = [character(len=preset_length) :: 'integrator.method=auto', 'integrator.max_order=12', &
+      'integrator.contact_entry=root', 'integrator.absolute_tolerance=0', &
+      'integrator.relative_tolerance='//tolerances(findloc(levels == level, .true., 1))]
+    all(n_keys + 1:) = overrides
   end function with_preset
 end module accuracy_presets

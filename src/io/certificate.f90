@@ -14,7 +14,6 @@ module certificate
   use case_definition, only: case_t
   use gudgeon_columns, only: column_list_t, choose_columns
   use gudgeon_simulation, only: run_report_t
-  use trace_sink, only: trace_event_t
   use run_witness, only: witness_t, run, has_coarse_table, keep_own_tables, figures_of, means_of, n_statistics, n_figures, &
     loss_figure
   implicit none
@@ -65,8 +64,8 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(case_t) :: plain, close
     type(witness_t) :: own, closer_run, other_run
-    real(dp), allocatable :: errors(:)
-    integer :: n
+    real(dp), allocatable :: errors(:)   ! of the states in each row of the run
+    integer :: n   ! number of rows that the closer run has too
 
     if (case%integrator%relative_tolerance < 10*finest_tolerance) then
       certificate%reason = 'not certified: no tolerance ten times smaller is possible'
@@ -92,15 +91,109 @@ contains
     call run(close, certificate%list, enough_for_another_method(report%statistics%evaluations), other_run, error)
     if (allocated(error)) return
     certificate%has_other_method = other_run%is_done
-    allocate (errors(size(own%values, 2)))
-    call find_errors(own, closer_run, other_run, certificate, errors, n)
-    call find_end(own, errors, n, certificate)
+    call find_errors()
+    call find_end()
     if (certificate%is_whole) certificate%until = report%figures%time   ! the remainder is shorter than one row
-    call find_column_errors(own, closer_run, certificate)
-    call match_impacts(own, closer_run, certificate)
-    call compare_statistics(own, closer_run, other_run, certificate)
-    call compare_figures(case, own, closer_run, other_run, certificate)
+    call find_column_errors()
+    call match_impacts()
+    call compare_statistics()
+    call compare_figures()
     certificate%is_made = .true.
+
+  contains
+
+    !> Error of the states in each row, relative to their ranges.
+    subroutine find_errors()
+      real(dp) :: doubt
+      integer :: c, i, n_other
+      associate (a => own%values, b => closer_run%values)
+        certificate%range = maxval(a, 2) - minval(a, 2)
+        n = min(size(a, 2), size(b, 2))
+        n_other = 0
+        if (other_run%is_done) n_other = size(other_run%values, 2)
+        allocate (errors(size(a, 2)), source=0.0_dp)
+        errors(n + 1:) = huge(1.0_dp)
+        do c = 1, size(certificate%list%id)
+          if (.not. (is_state(certificate%list%names(certificate%list%id(c))) .and. certificate%range(c) > 0)) cycle
+          do i = 1, n
+            errors(i) = max(errors(i), margin*abs(a(c, i) - b(c, i))/certificate%range(c))
+            if (i > n_other) cycle
+            doubt = abs(other_run%values(c, i) - b(c, i))
+            if (doubt > limit*certificate%range(c)) errors(i) = huge(1.0_dp)
+          end do
+        end do
+      end associate
+    end subroutine find_errors
+
+    !> Find the time up to which the error of the states is within the limit, and the number of correct digits up to there.
+    subroutine find_end()
+      integer :: last
+      last = findloc(errors(:n) > limit, .true., 1) - 1
+      if (last < 0) last = n
+      if (last == 0) return
+      certificate%until = own%values(1, last)
+      certificate%is_whole = last == size(own%values, 2)
+      certificate%state_error = maxval(errors(:last))
+      certificate%digits = -log10(max(median(errors(:last)), epsilon(1.0_dp)))
+    end subroutine find_end
+
+    !> Errors of every column in the certified part.
+    subroutine find_column_errors()
+      integer :: i, n
+      allocate (certificate%error(size(certificate%range)), certificate%rms(size(certificate%range)), source=0.0_dp)
+      associate (a => own%values, b => closer_run%values)
+        n = count(a(1, :min(size(a, 2), size(b, 2))) <= certificate%until)
+        do i = 1, n
+          certificate%error = max(certificate%error, margin*abs(a(:, i) - b(:, i)))
+          certificate%rms = certificate%rms + (a(:, i) - b(:, i))**2/n
+        end do
+      end associate
+      certificate%rms = sqrt(certificate%rms)
+    end subroutine find_column_errors
+
+    !> Count the impacts in the certified part, and those that the closer run has at the same pin and at the same time: within half
+    !> the time to the impacts before and after at that pin.
+    subroutine match_impacts()
+      integer :: pin
+      certificate%impacts = count(own%impact%time <= certificate%until)
+      do pin = 1, maxval(own%impact%pin)
+        certificate%impacts_matched = certificate%impacts_matched + matched(pack(own%impact%time, own%impact%pin == pin), &
+          pack(closer_run%impact%time, closer_run%impact%pin == pin), certificate%until)
+      end do
+    end subroutine match_impacts
+
+    !> Means over the whole revolutions that begin after the certified part, and their differences between the runs.
+    subroutine compare_statistics()
+      real(dp) :: begins
+      integer :: first, last
+      if (certificate%is_whole .or. .not. allocated(own%cycles)) return
+      first = 1
+      begins = 0
+      last = min(own%cycles%statistics%cycles, closer_run%cycles%statistics%cycles)
+      if (other_run%is_done) last = min(last, other_run%cycles%statistics%cycles)
+      do while (first <= last .and. begins < certificate%until)
+        begins = begins + own%cycles%cycles(first)%duration
+        first = first + 1
+      end do
+      certificate%revolutions_beyond = max(0, last - first + 1)
+      if (certificate%revolutions_beyond == 0) return
+      certificate%statistic = means_of(own%cycles%cycles(first:last))
+      certificate%difference = relative(means_of(closer_run%cycles%cycles(first:last)), certificate%statistic)
+      if (other_run%is_done) certificate%difference = max(certificate%difference, &
+        relative(means_of(other_run%cycles%cycles(first:last)), certificate%statistic))
+    end subroutine compare_statistics
+
+    !> Differences between the results of the runs.
+    subroutine compare_figures()
+      certificate%has_figure = [.true., case%joint%has_clearance(), case%joint%has_clearance(), case%crank_pin%has_clearance(), &
+        case%crank_pin%has_clearance(), case%crank_pin%has_clearance(), own%figures%time > 0, .false.]
+      if (allocated(own%cycles)) certificate%has_figure(loss_figure) = min(own%cycles%statistics%cycles, &
+        closer_run%cycles%statistics%cycles) > 0
+      certificate%figure = figures_of(own)
+      certificate%figure_difference = abs(figures_of(closer_run) - certificate%figure)
+      if (other_run%is_done) certificate%figure_difference = max(certificate%figure_difference, &
+        abs(figures_of(other_run) - certificate%figure))
+    end subroutine compare_figures
   end subroutine make_certificate
 
   !> The case in the form in which all three runs carry it out: all columns, rows of its own, and the end of the run.
@@ -142,62 +235,20 @@ contains
     enough = int(min(4*real(evaluations, dp) + 40000, real(huge(enough), dp)))
   end function enough_for_another_method
 
-  !> Error of the states in each row, relative to their ranges.
-  subroutine find_errors(own, closer_run, other_run, certificate, errors, n)
-    type(witness_t), intent(in) :: own, closer_run, other_run
-    type(certificate_t), intent(inout) :: certificate
-    real(dp), intent(out) :: errors(:)   !! (rows of the run)
-    integer, intent(out) :: n            !! number of rows that the closer run has too
-    real(dp) :: doubt
-    integer :: c, i, n_other
-    associate (a => own%values, b => closer_run%values)
-      certificate%range = maxval(a, 2) - minval(a, 2)
-      n = min(size(a, 2), size(b, 2))
-      n_other = 0
-      if (other_run%is_done) n_other = size(other_run%values, 2)
-      errors = 0
-      errors(n + 1:) = huge(1.0_dp)
-      do c = 1, size(certificate%list%id)
-        if (.not. (is_state(certificate%list%names(certificate%list%id(c))) .and. certificate%range(c) > 0)) cycle
-        do i = 1, n
-          errors(i) = max(errors(i), margin*abs(a(c, i) - b(c, i))/certificate%range(c))
-          if (i > n_other) cycle
-          doubt = abs(other_run%values(c, i) - b(c, i))
-          if (doubt > limit*certificate%range(c)) errors(i) = huge(1.0_dp)
-        end do
-      end do
-    end associate
-  end subroutine find_errors
-
   !> Whether a column is a coordinate or a speed.
   pure logical function is_state(name)
     character(len=*), intent(in) :: name
-    integer :: i, length
-    is_state = .false.
-    do i = 1, size(state_names)
-      length = index(name, '[') - 1
-      is_state = is_state .or. name(:length) == state_names(i) .or. name(:length) == 'crank_pin_'//state_names(i)
-    end do
+    associate (quantity => name(:index(name, '[') - 1))
+      is_state = any(quantity == state_names .or. quantity == 'crank_pin_'//state_names)
+    end associate
   end function is_state
 
-  !> Find the time up to which the error of the states is within the limit, and the number of correct digits up to there.
-  subroutine find_end(own, errors, n, certificate)
-    type(witness_t), intent(in) :: own
-    real(dp), intent(in) :: errors(:)
-    integer, intent(in) :: n
-    type(certificate_t), intent(inout) :: certificate
-    integer :: i, last
-    last = 0
-    do i = 1, n
-      if (errors(i) > limit) exit
-      last = i
-    end do
-    if (last == 0) return
-    certificate%until = own%values(1, last)
-    certificate%is_whole = last == size(own%values, 2)
-    certificate%state_error = maxval(errors(:last))
-    certificate%digits = -log10(max(median(errors(:last)), epsilon(1.0_dp)))
-  end subroutine find_end
+  !> Differences of means relative to the larger ones; 0 where both are 0.
+  pure elemental real(dp) function relative(other, own)
+    real(dp), intent(in) :: other, own
+    relative = 0
+    if (abs(own) > 0 .or. abs(other) > 0) relative = abs(other - own)/max(abs(own), abs(other))
+  end function relative
 
   !> Median, by bisection on the logarithm.
   pure real(dp) function median(values)
@@ -215,44 +266,6 @@ contains
     end do
     median = 10**high
   end function median
-
-  !> Errors of every column in the certified part.
-  subroutine find_column_errors(own, closer_run, certificate)
-    type(witness_t), intent(in) :: own, closer_run
-    type(certificate_t), intent(inout) :: certificate
-    integer :: i, n
-    allocate (certificate%error(size(certificate%range)), certificate%rms(size(certificate%range)), source=0.0_dp)
-    associate (a => own%values, b => closer_run%values)
-      n = count(a(1, :min(size(a, 2), size(b, 2))) <= certificate%until)
-      do i = 1, n
-        certificate%error = max(certificate%error, margin*abs(a(:, i) - b(:, i)))
-        certificate%rms = certificate%rms + (a(:, i) - b(:, i))**2/n
-      end do
-    end associate
-    certificate%rms = sqrt(certificate%rms)
-  end subroutine find_column_errors
-
-  !> Count the impacts in the certified part, and those that the closer run has at the same pin and at the same time: within half
-  !> the time to the impacts before and after at that pin.
-  subroutine match_impacts(own, closer_run, certificate)
-    type(witness_t), intent(in) :: own, closer_run
-    type(certificate_t), intent(inout) :: certificate
-    integer :: pin, i
-    certificate%impacts = count([(own%impact(i)%time <= certificate%until, i=1, size(own%impact))])
-    do pin = 1, maxval([(own%impact(i)%pin, i=1, size(own%impact))])
-      certificate%impacts_matched = certificate%impacts_matched + matched(times_at(own%impact, pin), &
-        times_at(closer_run%impact, pin), certificate%until)
-    end do
-  end subroutine match_impacts
-
-  !> Times of the impacts at one pin.
-  pure function times_at(impact, pin) result(times)
-    type(trace_event_t), intent(in) :: impact(:)
-    integer, intent(in) :: pin
-    real(dp), allocatable :: times(:)
-    integer :: i
-    times = pack([(impact(i)%time, i=1, size(impact))], [(impact(i)%pin == pin, i=1, size(impact))])
-  end function times_at
 
   !> Number of times up to `until` that agree with one of the other run's times. Both lists are in rising order.
   pure integer function matched(times, others, until)
@@ -275,54 +288,4 @@ contains
     end do
   end function matched
 
-  !> Means over the whole revolutions that begin after the certified part, and their differences between the runs.
-  subroutine compare_statistics(own, closer_run, other_run, certificate)
-    type(witness_t), intent(in) :: own, closer_run, other_run
-    type(certificate_t), intent(inout) :: certificate
-    real(dp) :: means(n_statistics), begins
-    integer :: first, last
-    if (certificate%is_whole .or. .not. allocated(own%cycles)) return
-    first = 1
-    begins = 0
-    last = min(own%cycles%statistics%cycles, closer_run%cycles%statistics%cycles)
-    if (other_run%is_done) last = min(last, other_run%cycles%statistics%cycles)
-    do while (first <= last .and. begins < certificate%until)
-      begins = begins + own%cycles%cycles(first)%duration
-      first = first + 1
-    end do
-    certificate%revolutions_beyond = max(0, last - first + 1)
-    if (certificate%revolutions_beyond == 0) return
-    certificate%statistic = means_of(own%cycles%cycles(first:last))
-    means = means_of(closer_run%cycles%cycles(first:last))
-    certificate%difference = relative(means)
-    if (.not. other_run%is_done) return
-    means = means_of(other_run%cycles%cycles(first:last))
-    certificate%difference = max(certificate%difference, relative(means))
-
-  contains
-
-    !> Differences relative to the run's own means; 0 where both are 0.
-    pure function relative(others) result(differences)
-      real(dp), intent(in) :: others(n_statistics)
-      real(dp) :: differences(n_statistics)
-      differences = 0
-      where (abs(certificate%statistic) > 0 .or. abs(others) > 0) differences = abs(others - certificate%statistic)/ &
-        max(abs(certificate%statistic), abs(others))
-    end function relative
-  end subroutine compare_statistics
-
-  !> Differences between the results of the runs.
-  subroutine compare_figures(case, own, closer_run, other_run, certificate)
-    type(case_t), intent(in) :: case
-    type(witness_t), intent(in) :: own, closer_run, other_run
-    type(certificate_t), intent(inout) :: certificate
-    certificate%has_figure = [.true., case%joint%has_clearance(), case%joint%has_clearance(), case%crank_pin%has_clearance(), &
-      case%crank_pin%has_clearance(), case%crank_pin%has_clearance(), own%figures%time > 0, .false.]
-    if (allocated(own%cycles)) certificate%has_figure(loss_figure) = min(own%cycles%statistics%cycles, &
-      closer_run%cycles%statistics%cycles) > 0
-    certificate%figure = figures_of(own)
-    certificate%figure_difference = abs(figures_of(closer_run) - certificate%figure)
-    if (other_run%is_done) certificate%figure_difference = max(certificate%figure_difference, &
-      abs(figures_of(other_run) - certificate%figure))
-  end subroutine compare_figures
 end module certificate
