@@ -15,7 +15,7 @@ program gudgeon
   use text_tools, only: printable
   use run_identity, only: identity_length, program_identity
   use gudgeon_posix, only: fill_standard_descriptors, signal_set_t, hold_interrupts, interrupted, ignore_write_signals, &
-    write_bytes, error_text, error_interrupted, error_broken_pipe, quit
+    write_all, error_text, error_broken_pipe, quit
   use gudgeon_version, only: program_version
   implicit none
   type(command_line_t) :: options
@@ -143,17 +143,9 @@ contains
   subroutine say(line, status)
     character(len=*), intent(in) :: line
     integer, intent(inout) :: status
-    character(len=:), allocatable :: text
-    integer :: at, done, problem
-    text = line//achar(10)
-    at = 0
-    do while (at < len(text))
-      call write_bytes(standard_output, text(at + 1:), done, problem)
-      if (problem == error_interrupted) cycle
-      if (problem /= 0) exit
-      at = at + done
-    end do
-    if (at == len(text) .or. problem == error_broken_pipe) return
+    integer :: done, problem
+    call write_all(standard_output, line//achar(10), done, problem)
+    if (problem == 0 .or. problem == error_broken_pipe) return
     call tell('standard output: '//error_text(problem))
     status = max(status, status_output)
   end subroutine say

@@ -10,8 +10,8 @@ module gudgeon_posix
   implicit none
   private
   public :: open_for_reading, open_standard_input, open_for_writing, open_for_appending, open_to_lock, lock_file, &
-    is_file, file_length, absolute_path, read_at, read_bytes, write_bytes, truncate_file, reserve_file, synchronise_file, &
-    synchronise_folder, close_file, rename_file, remove_file, make_directory, is_terminal, wait_for_input, &
+    is_file, file_length, absolute_path, read_at, read_bytes, write_bytes, write_all, truncate_file, reserve_file, &
+    synchronise_file, synchronise_folder, close_file, rename_file, remove_file, make_directory, is_terminal, wait_for_input, &
     error_text, signal_set_t, hold_interrupts, restore_interrupts, interrupted, fill_standard_descriptors, &
     ignore_write_signals, quit
   public :: error_no_entry, error_interrupted, error_locked, error_exists, error_is_directory, error_no_space, &
@@ -214,6 +214,22 @@ contains
     done = int(c_write(int(descriptor, c_int), c_loc(text), len(text, c_size_t)))
     status = outcome(done)
   end subroutine write_bytes
+
+  !> Write a text in as many calls as necessary: `done` bytes of it before an error.
+  subroutine write_all(descriptor, text, done, status)
+    integer, intent(in) :: descriptor
+    character(len=*), intent(in) :: text
+    integer, intent(out) :: done, status
+    integer :: more
+    done = 0
+    status = 0
+    do while (done < len(text))
+      call write_bytes(descriptor, text(done + 1:), more, status)
+      if (status == error_interrupted) cycle
+      if (status /= 0) return
+      done = done + more
+    end do
+  end subroutine write_all
 
   !> Truncate an open file to `length` bytes. The position for the next write does not change.
   subroutine truncate_file(descriptor, length, status)

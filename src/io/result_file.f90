@@ -5,7 +5,7 @@ module result_file
   use, intrinsic :: iso_c_binding, only: c_long
   use gudgeon_errors, only: error_t, fail, status_output
   use text_tools, only: printable
-  use gudgeon_posix, only: open_for_writing, open_for_appending, write_bytes, truncate_file, reserve_file, &
+  use gudgeon_posix, only: open_for_writing, open_for_appending, write_all, truncate_file, reserve_file, &
     synchronise_file, close_file, rename_file, remove_file, error_text, error_interrupted, &
     error_no_entry, error_is_directory
   implicit none
@@ -235,27 +235,21 @@ contains
     if (status == 0 .and. failed /= error_no_entry .and. failed /= error_is_directory) status = failed
   end subroutine remove_result
 
-  !> Write all of `text`, in as many calls as necessary. After a failure the file is truncated to whole rows.
+  !> Write all of `text`. After a failure the file is truncated to whole rows.
   subroutine write_rows(self, text)
     class(result_file_t), intent(inout) :: self
     character(len=*), intent(in) :: text
-    integer :: at, done, status, last
+    integer :: done, status, last
     if (self%status /= 0) return
-    at = 0
-    do while (at < len(text))
-      call write_bytes(self%descriptor, text(at + 1:), done, status)
-      if (status == error_interrupted) cycle
-      if (status /= 0) exit
-      at = at + done
-    end do
-    last = at
-    if (at < len(text)) then
+    call write_all(self%descriptor, text, done, status)
+    last = done
+    if (status /= 0) then
       !$omp atomic write
       self%status = status
-      last = index(text(:at), achar(10), back=.true.)
+      last = index(text(:done), achar(10), back=.true.)
     end if
     self%written = self%written + last
-    if (last < at) call truncate_file(self%descriptor, self%written, status)
+    if (last < done) call truncate_file(self%descriptor, self%written, status)
   end subroutine write_rows
 
   !> The error for an error number of the system, for a result file.

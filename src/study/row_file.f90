@@ -11,9 +11,8 @@ module row_file
   use text_tools, only: printable, whole_number
   use growing_text, only: growing_text_t
   use result_file, only: result_file_t, fail_with_file
-  use gudgeon_posix, only: open_for_reading, open_for_appending, read_at, read_bytes, write_bytes, truncate_file, &
-    synchronise_file, &
-    synchronise_folder, close_file, error_interrupted, error_no_entry, interrupted
+  use gudgeon_posix, only: open_for_reading, open_for_appending, read_at, read_bytes, write_all, truncate_file, &
+    synchronise_file, synchronise_folder, close_file, error_interrupted, error_no_entry, interrupted
   implicit none
   private
   public :: row_file_t
@@ -227,21 +226,17 @@ contains
   subroutine write_waiting(self, error)
     class(row_file_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
-    integer :: at, done, ignored
+    integer :: done, ignored
     if (self%descriptor < 0) return
     call self%waiting%make_room(0)
-    at = 0
-    do while (at < self%waiting%used .and. self%status == 0)
-      call write_bytes(self%descriptor, self%waiting%text(at + 1:self%waiting%used), done, self%status)
-      if (self%status == error_interrupted) self%status = 0
-      if (self%status == 0) at = at + max(done, 0)
-    end do
+    done = 0
+    if (self%status == 0) call write_all(self%descriptor, self%waiting%text(:self%waiting%used), done, self%status)
     self%waiting%used = 0
     if (self%status /= 0) then
-      if (at > 0) call truncate_file(self%descriptor, int(self%written, c_long), ignored)
+      if (done > 0) call truncate_file(self%descriptor, int(self%written, c_long), ignored)
       call fail_with_file(self%path, self%status, error)
     else
-      self%written = self%written + at
+      self%written = self%written + done
     end if
   end subroutine write_waiting
 
