@@ -314,7 +314,6 @@ contains
     call check%equal_text(content(path), header, 'rows are kept in memory at first')
     call check%that(first%bytes_waiting() == 24, 'number of bytes in memory')
     call first%write(error)
-    call first%synchronise(error)
     call check%that(.not. allocated(error), 'rows are written')
     call check%equal_text(content(path), header//'6,a,1'//n//'6,b,2'//n//'4,"c,,""",7'//n, &
       'rows are in the order in which they came')

@@ -75,7 +75,6 @@ contains
     self%notice = ''
     associate (start => self%start)
       start%interval = checkpoint_interval
-      start%identity = identity
       start%checkpoint%path = base//'.checkpoint'
       start%checkpoint%identity = identity
       start%checkpoint%case_text = case_text
@@ -86,9 +85,7 @@ contains
   subroutine look_for_earlier(self, error)
     class(case_run_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: case_text
-    case_text = self%start%checkpoint%case_text
-    call self%start%look_for(self%base, self%case%file, case_text, .not. self%is_twin, self%has_events(), error)
+    call self%start%look_for(self%base, self%case%file, .not. self%is_twin, self%has_events(), error)
     if (self%start%is_done) self%line = self%case%file//': done already; '//self%base//'.csv'
   end subroutine look_for_earlier
 
@@ -227,7 +224,7 @@ contains
     self%line = summary_line(case, self%report, files%wall_time(), self%base, remark)
     if (.not. files%advice%was_given) self%notice = advice(self%report%auto_saves)
     if (self%notice /= '') self%notice = printable(case%file, 200)//': '//self%notice
-    call self%summary%put(summary_table(case, self%report, files%wall_time(), self%start%identity, &
+    call self%summary%put(summary_table(case, self%report, files%wall_time(), self%start%checkpoint%identity, &
                                         int(files%trace%length(), int64), int(files%event_list%length(), int64), self%is_twin))
     if (allocated(self%certificate)) call self%summary%put(certificate_summary(self%certificate))
   end subroutine put_summary

@@ -183,11 +183,8 @@ contains
       return
     end if
     text = shown_group(group)//' '//printable(key, 40)//': unknown key'
-    do i = 1, size(self%keys)
-      if (self%keys(i)%name /= key) cycle
-      text = text//' of this group; it belongs to '//shown_group(trim(self%keys(i)%group))
-      exit
-    end do
+    i = findloc(self%keys%name == key, .true., 1)
+    if (i > 0) text = text//' of this group; it belongs to '//shown_group(trim(self%keys(i)%group))
     associate (names => [(self%keys(i)%name, i=1, size(self%keys))])
       call fail(error, at//text//suggestion(key, pack(names, self%keys%group == group)), status_case_file)
     end associate

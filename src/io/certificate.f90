@@ -14,6 +14,7 @@ module certificate
   use case_definition, only: case_t
   use gudgeon_columns, only: column_list_t, choose_columns
   use gudgeon_simulation, only: run_report_t
+  use trace_sink, only: trace_event_t
   use run_witness, only: witness_t, run, has_coarse_table, keep_own_tables, figures_of, means_of, n_statistics, n_figures, &
     loss_figure
   implicit none
@@ -157,8 +158,8 @@ contains
       integer :: pin
       certificate%impacts = count(own%impact%time <= certificate%until)
       do pin = 1, maxval(own%impact%pin)
-        certificate%impacts_matched = certificate%impacts_matched + matched(pack(own%impact%time, own%impact%pin == pin), &
-          pack(closer_run%impact%time, closer_run%impact%pin == pin), certificate%until)
+        certificate%impacts_matched = certificate%impacts_matched + matched(times_at(own%impact, pin), &
+          times_at(closer_run%impact, pin), certificate%until)
       end do
     end subroutine match_impacts
 
@@ -266,6 +267,15 @@ contains
     end do
     median = 10**high
   end function median
+
+  !> Times of the impacts at one pin.
+  pure function times_at(impact, pin) result(times)
+    type(trace_event_t), intent(in) :: impact(:)
+    integer, intent(in) :: pin
+    real(dp), allocatable :: times(:)
+    integer :: i
+    times = pack([(impact(i)%time, i=1, size(impact))], impact%pin == pin)
+  end function times_at
 
   !> Number of times up to `until` that agree with one of the other run's times. Both lists are in rising order.
   pure integer function matched(times, others, until)

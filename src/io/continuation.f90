@@ -5,7 +5,7 @@ module continuation
   use gudgeon_errors, only: error_t, fail, status_case_file
   use gudgeon_checkpoint, only: checkpoint_t, restart_hint
   use gudgeon_posix, only: file_length
-  use run_identity, only: identity_length, compare_cases
+  use run_identity, only: compare_cases
   use gudgeon_summary, only: summary_value
   use text_file, only: read_whole
   use text_tools, only: printable
@@ -18,8 +18,7 @@ module continuation
     logical :: goes_on = .false.     !! continue from the checkpoint
     logical :: is_done = .false.     !! the run is complete already
     real(dp) :: interval = 0         !! between checkpoints [s]; 0: none
-    character(len=identity_length) :: identity = ''   !! identity of the run that is to begin
-    type(checkpoint_t) :: checkpoint
+    type(checkpoint_t) :: checkpoint   !! its path, and identity and resolved case of the run; with `goes_on` all that it holds
   contains
     procedure :: look_for
   end type continuation_t
@@ -28,33 +27,36 @@ contains
 
   !> Look for complete results of the same run under BASE, or for its checkpoint. Errors: the checkpoint is damaged, or belongs to
   !> another case or program.
-  subroutine look_for(self, base, file, case_text, with_case, with_events, error)
+  subroutine look_for(self, base, file, with_case, with_events, error)
     class(continuation_t), intent(inout) :: self
     character(len=*), intent(in) :: base, file   !! path of the results without suffix; path of the case file
-    character(len=*), intent(in) :: case_text    !! the resolved case
     logical, intent(in) :: with_case             !! the resolved case belongs to the results
     logical, intent(in) :: with_events           !! a list of events belongs to the results
     type(error_t), allocatable, intent(out) :: error
+    type(checkpoint_t) :: stopped
     character(len=:), allocatable :: earlier, difference
     logical :: found
     integer :: status
 
-    self%is_done = are_whole(base, self%identity, with_events)
+    self%is_done = are_whole(base, self%checkpoint%identity, with_events)
     if (self%is_done .and. with_case) then
       call read_whole(base//'.resolved.nml', earlier, status)
-      call compare_cases(case_text, earlier, difference)
+      call compare_cases(self%checkpoint%case_text, earlier, difference)
       self%is_done = status == 0 .and. difference == ''
     end if
     if (self%is_done) return
-    call self%checkpoint%load(found, error)
+    stopped%path = self%checkpoint%path
+    call stopped%load(found, error)
     if (allocated(error) .or. .not. found) return
-    call compare_cases(case_text, self%checkpoint%case_text, difference)
-    self%goes_on = self%checkpoint%identity == self%identity
+    call compare_cases(self%checkpoint%case_text, stopped%case_text, difference)
+    self%goes_on = stopped%identity == self%checkpoint%identity
     if (difference /= '') then
       call fail(error, printable(file, 200)//': '//difference//restart_hint, status_case_file)
     else if (.not. self%goes_on) then
-      call fail(error, printable(self%checkpoint%path, 200)//': written by another build of gudgeon, or on another kind of '// &
+      call fail(error, printable(stopped%path, 200)//': written by another build of gudgeon, or on another kind of '// &
                 'processor: the rounding may differ'//restart_hint, status_case_file)
+    else
+      self%checkpoint = stopped
     end if
   end subroutine look_for
 

@@ -25,20 +25,15 @@ contains
     do i = 1, size(fields)
       do j = 1, size(fields(i)%angle)
         do k = 1, size(fields(i)%along)
-          call append_node(file, fields(i), j, k)
+          associate (field => fields(i))
+            call file%append(real_text(field%time)//','//real_text(field%crank_angle)//','//trim(pin_names(field%place))//',')
+            call file%append(real_text(field%angle(j) + field%direction)//',')
+            call file%append(real_text(field%clearance - field%distance*cos(field%angle(j)))//',')
+            call file%append(real_text(field%along(k))//','//real_text(field%pressure(j, k))//achar(10))
+          end associate
         end do
       end do
     end do
     call write_text(path, file%text(:file%used), error)
   end subroutine write_film_file
-
-  subroutine append_node(file, field, j, k)
-    type(growing_text_t), intent(inout) :: file
-    type(film_field_t), intent(in) :: field
-    integer, intent(in) :: j, k   !! indices of the angle and of the axial position
-    call file%append(real_text(field%time)//','//real_text(field%crank_angle)//','//trim(pin_names(field%place))//',')
-    call file%append(real_text(field%angle(j) + field%direction)//',')
-    call file%append(real_text(field%clearance - field%distance*cos(field%angle(j)))//',')
-    call file%append(real_text(field%along(k))//','//real_text(field%pressure(j, k))//achar(10))
-  end subroutine append_node
 end module film_file

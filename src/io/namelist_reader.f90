@@ -5,7 +5,7 @@ module namelist_reader
   use gudgeon_errors, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text
   use text_scanner, only: scanner_t, name_here, pass_name, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line, &
-    newline, return, digits, shown
+    digits, shown
   implicit none
   private
   public :: namelist_t, entry_t, token_t, read_namelist, read_values
@@ -271,28 +271,21 @@ contains
   subroutine read_string(scan, token)
     type(scanner_t), intent(inout) :: scan
     type(token_t), intent(inout) :: token
-    character(len=1) :: quote, c
-    character(len=:), allocatable :: inside
-    integer :: start, length
-    quote = scan%text(scan%at:scan%at)
+    character(len=1) :: quote
+    integer :: start, last, length
     start = scan%at
-    length = 0
+    last = start + rest_of_line(scan) - 1
+    quote = scan%text(start:start)
     token%quoted = .true.
-    allocate (character(len=rest_of_line(scan)) :: inside)
-    scan%at = scan%at + 1
-    do while (.not. at_end(scan))
-      c = scan%text(scan%at:scan%at)
-      if (c == newline .or. c == return) exit
+    token%text = ''
+    do
       scan%at = scan%at + 1
-      if (c == quote) then
-        if (.not. next_is(scan, quote)) then
-          token%text = inside(:length)
-          return
-        end if
-        scan%at = scan%at + 1
-      end if
-      length = length + 1
-      inside(length:length) = c
+      length = index(scan%text(scan%at:last), quote) - 1
+      if (length < 0) exit
+      token%text = token%text//scan%text(scan%at:scan%at + length - 1)
+      scan%at = scan%at + length + 1
+      if (.not. next_is(scan, quote)) return
+      token%text = token%text//quote
     end do
     scan%at = start
     scan%message = 'the string is not closed on its line: '//piece(scan)

@@ -117,14 +117,10 @@ contains
   pure function means_of(cycles) result(means)
     type(cycle_t), intent(in) :: cycles(:)
     real(dp) :: means(n_statistics), duration
-    integer :: i
-    means = 0
     duration = sum(cycles%duration)
-    do i = 1, size(cycles)
-      means(1) = means(1) + cycles(i)%pin(piston_pin)%force_integral/duration
-      means(2) = means(2) + (cycles(i)%pin(piston_pin)%contact_time + cycles(i)%pin(crank_pin)%contact_time)/duration
-      means(3) = means(3) + real(cycles(i)%pin(piston_pin)%impacts + cycles(i)%pin(crank_pin)%impacts, dp)/size(cycles)
-      means(4) = means(4) + cycles(i)%dissipated_energy/size(cycles)
-    end do
+    associate (piston => cycles%pin(piston_pin), crank => cycles%pin(crank_pin), n => size(cycles))
+      means = [sum(piston%force_integral/duration), sum((piston%contact_time + crank%contact_time)/duration), &
+        sum(real(piston%impacts + crank%impacts, dp)/n), sum(cycles%dissipated_energy/n)]
+    end associate
   end function means_of
 end module run_witness

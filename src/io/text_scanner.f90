@@ -13,7 +13,7 @@ module text_scanner
     character(len=:), allocatable :: message
   end type scanner_t
 
-  character(len=*), parameter :: digits = '0123456789'
+  character(len=*), parameter :: digits = '0123456789', letters = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_'
   character(len=*), parameter :: tab = achar(9), newline = achar(10), return = achar(13)
   integer, parameter :: shown = 40   !! longest part of a file quoted in a message
 
@@ -32,18 +32,12 @@ contains
   !> Move behind a name, if one begins here.
   subroutine pass_name(scan)
     type(scanner_t), intent(inout) :: scan
-    integer :: first
-    first = scan%at
-    do while (.not. at_end(scan))
-      select case (scan%text(scan%at:scan%at))
-      case ('a':'z', 'A':'Z', '_')
-      case ('0':'9')
-        if (scan%at == first) exit
-      case default
-        exit
-      end select
-      scan%at = scan%at + 1
-    end do
+    integer :: length
+    if (at_end(scan)) return
+    if (index(digits, scan%text(scan%at:scan%at)) > 0) return
+    length = verify(scan%text(scan%at:), letters//digits) - 1
+    if (length < 0) length = len(scan%text) - scan%at + 1
+    scan%at = scan%at + length
   end subroutine pass_name
 
   !> Skip blanks, ends of lines (LF, CR LF or CR) and comments.
@@ -72,24 +66,21 @@ contains
   !> Number of bytes to the end of the line.
   pure integer function rest_of_line(scan) result(length)
     type(scanner_t), intent(in) :: scan
-    do length = 0, len(scan%text) - scan%at
-      select case (scan%text(scan%at + length:scan%at + length))
-      case (newline, return)
-        return
-      end select
-    end do
+    length = bytes_before(scan%text(scan%at:), newline//return)
   end function rest_of_line
 
   !> Number of bytes to the next separator.
   pure integer function bare_length(scan) result(length)
     type(scanner_t), intent(in) :: scan
-    do length = 0, len(scan%text) - scan%at
-      select case (scan%text(scan%at + length:scan%at + length))
-      case (' ', ',', '/', '!', '&', '=', '(', ')', '''', '"', tab, newline, return)   ! separators
-        return
-      end select
-    end do
+    length = bytes_before(scan%text(scan%at:), ' ,/!&=()''"'//tab//newline//return)
   end function bare_length
+
+  !> Number of bytes before the first of some characters; the length of the text if it contains none of them.
+  pure integer function bytes_before(text, ends) result(length)
+    character(len=*), intent(in) :: text, ends
+    length = scan(text, ends) - 1
+    if (length < 0) length = len(text)
+  end function bytes_before
 
   pure logical function at_end(scan) result(ended)
     type(scanner_t), intent(in) :: scan

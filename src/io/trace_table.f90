@@ -1,7 +1,7 @@
 !> Writes NAME.csv, the trace of a run: rows of numbers; the phase is one digit.
 module trace_table
   use gudgeon_kinds, only: dp
-  use gudgeon_columns, only: column_list_t, column_name
+  use gudgeon_columns, only: column_list_t
   use number_writer, only: number_writer_t, longest_number
   use result_file, only: result_file_t
   implicit none
@@ -23,11 +23,7 @@ contains
     class(trace_table_t), intent(inout) :: self
     type(column_list_t), intent(in) :: list
     integer, intent(in) :: digits
-    integer :: i
-    self%phase_column = size(list%id) + 1
-    do i = 1, size(list%id)
-      if (column_name(list, i) == 'phase[-]') self%phase_column = i
-    end do
+    self%phase_column = findloc([list%names(list%id) == 'phase[-]', .true.], .true., 1)
     call self%numbers%prepare(digits)
   end subroutine prepare
 

@@ -44,7 +44,6 @@ module row_file
     procedure :: append
     procedure :: bytes_waiting
     procedure :: write => write_waiting
-    procedure :: synchronise
     procedure :: finish
     procedure, private :: take_line
     procedure, private :: is_in_order
@@ -222,7 +221,8 @@ contains
     bytes_waiting = self%size - self%written
   end function bytes_waiting
 
-  !> Write the rows not yet written. After an error the file has its previous content, and every further call returns the error.
+  !> Write the rows not yet written, and wait until they are on the disk. After an error the file has its previous content, and
+  !> every further call returns the error.
   subroutine write_waiting(self, error)
     class(row_file_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
@@ -232,22 +232,14 @@ contains
     done = 0
     if (self%status == 0) call write_all(self%descriptor, self%waiting%text(:self%waiting%used), done, self%status)
     self%waiting%used = 0
-    if (self%status /= 0) then
-      if (done > 0) call truncate_file(self%descriptor, int(self%written, c_long), ignored)
-      call fail_with_file(self%path, self%status, error)
-    else
+    if (self%status == 0) then
       self%written = self%written + done
+      call synchronise_file(self%descriptor, self%status)
+    else if (done > 0) then
+      call truncate_file(self%descriptor, int(self%written, c_long), ignored)
     end if
-  end subroutine write_waiting
-
-  !> Wait until what was written is on the disk.
-  subroutine synchronise(self, error)
-    class(row_file_t), intent(inout) :: self
-    type(error_t), allocatable, intent(out) :: error
-    if (self%descriptor < 0) return
-    if (self%status == 0) call synchronise_file(self%descriptor, self%status)
     if (self%status /= 0) call fail_with_file(self%path, self%status, error)
-  end subroutine synchronise
+  end subroutine write_waiting
 
   !> Close the file; if the study is `complete`, sort its rows.
   subroutine finish(self, complete, error)

@@ -228,7 +228,6 @@ contains
     if (sweep%study%traces /= 'none') call synchronise_folder(sweep%path//'/', unimportant)
     do i = 1, size(sweep%files)
       if (.not. allocated(error)) call sweep%files(i)%write(error)
-      if (.not. allocated(error)) call sweep%files(i)%synchronise(error)
     end do
     ended = clock()
     sweep%next_write = ended + min(most_interval, max(least_interval, intervals*(ended - began)))
