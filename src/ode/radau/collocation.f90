@@ -158,6 +158,7 @@ contains
       self%a_p(k, m), self%a_v(k, k), self%e1(k, k), self%e2(k, k, 2*most_pairs), self%pivot1(k), &
       self%pivot2(k, most_pairs), self%inverse_weight(n))
     self%z = 0
+    self%z_new = 0   ! the first evaluation adds the increments of quadratures, which it computes
     self%w = 0    ! columns beyond the stages in use are included in halvings
     self%dw = 0
   end subroutine prepare
