@@ -45,7 +45,7 @@ contains
     integer, allocatable, intent(out) :: lines(:)
     character(len=:), allocatable, intent(out) :: message
     integer, intent(out) :: line
-    real(dp) :: factors(2)
+    real(dp) :: factors(2), values(2)
     character(len=:), allocatable :: row
     integer :: at, n
     logical :: has_header
@@ -65,14 +65,16 @@ contains
       line = line + 1
       if (row == '' .or. index(row, '#') == 1) cycle
       if (.not. has_header) then
-        call read_header(row, x_is, y_is, factors, message)
+        call read_pair(row, [x_is, y_is], read_unit, factors, message)
         has_header = .true.
       else if (n == size(x)) then
         message = 'the table has more than '//integer_text(most_rows)//' rows'
       else
         n = n + 1
         lines(n) = line
-        call read_row(row, x_is, y_is, factors, x(n), y(n), message)
+        call read_pair(row, [x_is, y_is], read_number, values, message)
+        x(n) = values(1)*factors(1)
+        y(n) = values(2)*factors(2)
         if (message == '' .and. n > 1) call compare_rows(x_is, row, x(n - 1), lines(n - 1), x(n), message)
       end if
     end do
@@ -103,20 +105,23 @@ contains
     end do
   end subroutine split
 
-  !> Conversion factors of both columns from the units in the header.
-  subroutine read_header(row, x_is, y_is, factors, message)
+  !> Read both fields of a row: `read_field` is `read_unit` for the header, and `read_number` for the other rows.
+  subroutine read_pair(row, is, read_field, values, message)
     character(len=*), intent(in) :: row
-    type(quantity_t), intent(in) :: x_is, y_is
-    real(dp), intent(out) :: factors(2)
+    type(quantity_t), intent(in) :: is(2)
+    procedure(read_number) :: read_field
+    real(dp), intent(out) :: values(2)
     character(len=:), allocatable, intent(inout) :: message
-    character(len=len(row)) :: names(2)
-    factors = 0
-    call split(row, names, message)
-    if (message /= '') return
-    call read_unit(trim(names(1)), x_is, factors(1), message)
-    if (message == '') call read_unit(trim(names(2)), y_is, factors(2), message)
-  end subroutine read_header
+    character(len=len(row)) :: fields(2)
+    integer :: i
+    values = 0
+    call split(row, fields, message)
+    do i = 1, 2
+      if (message == '') call read_field(trim(fields(i)), is(i), values(i), message)
+    end do
+  end subroutine read_pair
 
+  !> The value of a unit in the first unit of its quantity, from the name of a column.
   subroutine read_unit(name, quantity, factor, message)
     character(len=*), intent(in) :: name
     type(quantity_t), intent(in) :: quantity
@@ -156,23 +161,6 @@ contains
       if (quantity%units(i)%name /= '') list = list//', '//trim(quantity%units(i)%name)
     end do
   end function unit_list
-
-  subroutine read_row(row, x_is, y_is, factors, x, y, message)
-    character(len=*), intent(in) :: row
-    type(quantity_t), intent(in) :: x_is, y_is
-    real(dp), intent(in) :: factors(2)
-    real(dp), intent(out) :: x, y
-    character(len=:), allocatable, intent(inout) :: message
-    character(len=len(row)) :: fields(2)
-    x = 0
-    y = 0
-    call split(row, fields, message)
-    if (message /= '') return
-    call read_number(trim(fields(1)), x_is, x, message)
-    if (message == '') call read_number(trim(fields(2)), y_is, y, message)
-    x = x*factors(1)
-    y = y*factors(2)
-  end subroutine read_row
 
   subroutine read_number(field, quantity, value, message)
     character(len=*), intent(in) :: field

@@ -43,7 +43,7 @@ contains
     character(len=*), intent(in) :: path, keys(:), at
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: key
-    integer :: i, dot, group
+    integer :: i, dot
 
     self%values = values
     call complete_case(self%values, path, self%case, error)
@@ -60,14 +60,15 @@ contains
         self%varies_words = self%varies_words .or. schema%kind == word_kind
         self%is_number(i) = schema%kind <= integer_kind .and. schema%count == 1
         self%is_whole(i) = self%is_number(i) .and. schema%kind == integer_kind
-        group = find_group(values%groups, trim(schema%group))
-        self%groups(group) = .true.
-        self%values%is_present(group) = .true.
-        self%values%values(self%places(i))%replaces = self%values%is_said(self%places(i))
-        self%values%values(self%places(i))%given(1) = .true.
-        self%values%values(self%places(i))%is_override = .true.
+        self%groups(find_group(values%groups, trim(schema%group))) = .true.
+      end associate
+      associate (value => self%values%values(self%places(i)))
+        value%replaces = self%values%is_said(self%places(i))
+        value%given(1) = .true.
+        value%is_override = .true.
       end associate
     end do
+    where (self%groups) self%values%is_present = .true.
     do i = 1, size(keys)   ! a parameter replaces the base case's values of other keys of its family
       if (values%keys(self%places(i))%family /= '') call self%values%prefer(self%places(i))
     end do

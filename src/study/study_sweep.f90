@@ -150,12 +150,8 @@ contains
     total = sweep%last - sweep%first + 1
     failed = 0
     line = printable(sweep%study%file, 200)//': '
-    if (sweep%is_drawn) then
-      do i = 1, sweep%design%runs
-        call check_run(i)
-      end do
-    else if (total <= most_checked .or. sweep%study%table /= '') then
-      do i = sweep%first, sweep%last
+    if (sweep%is_drawn .or. total <= most_checked .or. sweep%study%table /= '') then
+      do i = merge(1, sweep%first, sweep%is_drawn), merge(sweep%design%runs, sweep%last, sweep%is_drawn)
         call check_run(i)
       end do
     else
