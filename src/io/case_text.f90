@@ -65,7 +65,10 @@ contains
     line = line//trim(key%description)
     if (.not. allocated(key%laws)) return
     associate (all_laws => keys(find_key(keys, group, key%choice))%words)
-      if (key%laws /= all_laws) line = line//' ('//shorter(key%laws, others(all_laws, key%laws))//')'
+      if (key%laws == all_laws) return
+      note = 'not '//others(all_laws, key%laws)
+      if (len(note) >= len(key%laws)) note = key%laws   ! the shorter of both
+      line = line//' ('//note//')'
     end associate
   end function template_line
 
@@ -83,14 +86,6 @@ contains
     end do
     list = list(3:)
   end function others
-
-  !> The list of laws, or `not` and the other laws if that is shorter.
-  pure function shorter(laws, the_others) result(text)
-    character(len=*), intent(in) :: laws, the_others
-    character(len=:), allocatable :: text
-    text = laws
-    if (len(the_others) + 4 < len(laws)) text = 'not '//the_others
-  end function shorter
 
   !> A case file with all keys of the models of the case, in every group that is present. Reals have 17 significant digits.
   function resolved_text(values) result(text)

@@ -5,7 +5,7 @@ module gudgeon_summary
   use gudgeon_constants, only: two_pi
   use ode_method, only: highest_order, with_adams, with_radau, n_limits, limit_names, limit_stability
   use gudgeon_simulation, only: run_report_t
-  use run_figures, only: pin_figures_t, corner_figures_t, elastic_figures_t
+  use run_figures, only: pin_figures_t, elastic_figures_t
   use piston_guide, only: n_corners, corner_names
   use period_watch, only: period_watch_t
   use chain_motion, only: crank_pin, piston_pin, name_prefix
@@ -77,7 +77,7 @@ contains
         end do
       end if
       if (report%auto_saves > 0) call add('evaluations_over_those_of_auto', real_text(report%auto_saves), '1')
-      call add('max_pin_force', real_text(f%pin(piston_pin)%max_force, case%output%digits), 'N')
+      call add('max_pin_force', peak(f%pin(piston_pin)%max_force), 'N')
       call add('crank_revolutions', real_text(f%crank_travel/two_pi), '1')
       if (f%time > 0) call add('mean_crank_speed', real_text(f%crank_travel/f%time), 'rad/s')
       if (report%periods%is_on) call add_period(report%periods)
@@ -93,12 +93,15 @@ contains
       if (report%energy_is_poor) call add('energy_warning', quoted(energy_warning(case, report), '"'), '')
       if (case%joint%has_clearance()) call add_joint('', case%joint, f%pin(piston_pin))
       if (case%crank_pin%has_clearance()) then
-        call add(name_prefix(crank_pin)//'max_pin_force', real_text(f%pin(crank_pin)%max_force, case%output%digits), 'N')
+        call add(name_prefix(crank_pin)//'max_pin_force', peak(f%pin(crank_pin)%max_force), 'N')
         call add_joint(name_prefix(crank_pin), case%crank_pin, f%pin(crank_pin))
       end if
       if (case%has_loose_guide()) then
         do corner = 1, n_corners
-          call add_corner(corner_names(corner)//'_', f%corner(corner))
+          associate (c => f%corner(corner), prefix => corner_names(corner)//'_')
+            call add_contacts(prefix, c%contacts, c%contact_time, c%max_penetration)
+            call add(prefix//'max_force', peak(c%max_force), 'N')
+          end associate
         end do
       end if
       if (case%is_elastic()) call add_elastic(f%elastic)
@@ -130,78 +133,63 @@ contains
       character(len=*), intent(in) :: prefix
       type(joint_case_t), intent(in) :: joint
       type(pin_figures_t), intent(in) :: pin
-      if (allocated(joint%film) .and. joint%oil%is_known()) &
-        call add(prefix//'viscosity', real_text(joint%oil%dynamic_viscosity(), case%output%digits), 'Pa s')
-      if (allocated(joint%film)) call add_table(prefix, joint)
-      call add(prefix//'min_film_thickness', real_text(pin%min_film_thickness, case%output%digits), 'm')
-      call add(prefix//'contacts', integer_text(pin%contacts), '1')
-      if (report%figures%time > 0) &
-        call add(prefix//'contact_time_fraction', real_text(pin%contact_time/report%figures%time), '1')
-      call add(prefix//'max_penetration', real_text(pin%max_penetration, case%output%digits), 'm')
+      if (allocated(joint%film)) then
+        if (joint%oil%is_known()) call add(prefix//'viscosity', peak(joint%oil%dynamic_viscosity()), 'Pa s')
+        if (joint%film%table_of /= '') then
+          call add(prefix//'film_table_error', real_text(joint%film%table_error), '1')
+          call add(prefix//'film_table_mean_error', real_text(joint%film%table_mean_error), '1')
+        end if
+      end if
+      call add(prefix//'min_film_thickness', peak(pin%min_film_thickness), 'm')
+      call add_contacts(prefix, pin%contacts, pin%contact_time, pin%max_penetration)
       call add(prefix//'max_entry_penetration', real_text(pin%max_entry_penetration), 'm')
       call add(prefix//'impacts_beyond_validity', integer_text(pin%impacts_beyond_validity), '1')
       call add(prefix//'contacts_beyond_validity', integer_text(pin%contacts_beyond_validity), '1')
       if (pin%friction_work < huge(pin%friction_work)) call add(prefix//'friction_work', real_text(pin%friction_work), 'J')
-      if (joint%reports_film .and. allocated(joint%film)) call add_film(prefix, joint, pin)
-    end subroutine add_joint
-
-    !> Row of the error of a film's table, if it has one.
-    subroutine add_table(prefix, joint)
-      character(len=*), intent(in) :: prefix
-      type(joint_case_t), intent(in) :: joint
-      if (joint%film%table_of == '') return
-      call add(prefix//'film_table_error', real_text(joint%film%table_error), '1')
-      call add(prefix//'film_table_mean_error', real_text(joint%film%table_mean_error), '1')
-    end subroutine add_table
-
-    !> Rows of a corner of the skirt in the bore.
-    subroutine add_corner(prefix, corner)
-      character(len=*), intent(in) :: prefix
-      type(corner_figures_t), intent(in) :: corner
-      call add(prefix//'contacts', integer_text(corner%contacts), '1')
-      if (report%figures%time > 0) &
-        call add(prefix//'contact_time_fraction', real_text(corner%contact_time/report%figures%time), '1')
-      call add(prefix//'max_penetration', real_text(corner%max_penetration, case%output%digits), 'm')
-      call add(prefix//'max_force', real_text(corner%max_force, case%output%digits), 'N')
-    end subroutine add_corner
-
-    subroutine add_film(prefix, joint, pin)
-      character(len=*), intent(in) :: prefix
-      type(joint_case_t), intent(in) :: joint
-      type(pin_figures_t), intent(in) :: pin
+      if (.not. (joint%reports_film .and. allocated(joint%film))) return
       call add(prefix//'film_energy_lost', real_text(pin%film_energy_lost), 'J')
-      if (joint%film%gives_pressure()) &
-        call add(prefix//'max_film_pressure', real_text(pin%max_film_pressure, case%output%digits), 'Pa')
+      if (joint%film%gives_pressure()) call add(prefix//'max_film_pressure', peak(pin%max_film_pressure), 'Pa')
       if (joint%film%gives_side_flow() .and. report%figures%time > 0) &
         call add(prefix//'mean_film_side_flow', real_text(pin%film_volume/report%figures%time), 'm3/s')
-    end subroutine add_film
+    end subroutine add_joint
+
+    !> Rows of the contacts of a pin or of a corner of the skirt.
+    subroutine add_contacts(prefix, contacts, time, max_penetration)
+      character(len=*), intent(in) :: prefix
+      integer, intent(in) :: contacts
+      real(dp), intent(in) :: time, max_penetration
+      call add(prefix//'contacts', integer_text(contacts), '1')
+      if (report%figures%time > 0) call add(prefix//'contact_time_fraction', real_text(time/report%figures%time), '1')
+      call add(prefix//'max_penetration', peak(max_penetration), 'm')
+    end subroutine add_contacts
 
     !> Rows of elastic members. The summary of the ideal twin says that they are rigid.
     subroutine add_elastic(largest)
       type(elastic_figures_t), intent(in) :: largest
-      logical :: is_rigid
-      is_rigid = .false.
-      if (present(is_twin)) is_rigid = is_twin
-      if (is_rigid) then
-        call add('elastic_members', 'none: the ideal twin is rigid', '')
-        return
+      if (present(is_twin)) then
+        if (is_twin) call add('elastic_members', 'none: the ideal twin is rigid', '')
+        if (is_twin) return
       end if
-      if (allocated(case%elastic_rod) .and. allocated(case%crankshaft)) then
-        call add('elastic_members', 'rod and crankshaft', '')
-      else
-        call add('elastic_members', trim(merge('rod       ', 'crankshaft', allocated(case%elastic_rod))), '')
-      end if
+      call add('elastic_members', trim(merge(merge('rod and crankshaft', 'rod               ', allocated(case%crankshaft)), &
+        'crankshaft        ', allocated(case%elastic_rod))), '')
       if (allocated(case%elastic_rod)) then
         call add('rod_bending_frequency', real_text(largest%bending_frequency/two_pi), 'Hz')
         call add('rod_axial_frequency', real_text(largest%axial_frequency/two_pi), 'Hz')
-        call add('max_rod_mid_deflection', real_text(largest%mid_deflection, case%output%digits), 'm')
-        call add('max_rod_stretch', real_text(largest%stretch, case%output%digits), 'm')
-        call add('max_rod_strain_energy', real_text(largest%strain_energy, case%output%digits), 'J')
+        call add('max_rod_mid_deflection', peak(largest%mid_deflection), 'm')
+        call add('max_rod_stretch', peak(largest%stretch), 'm')
+        call add('max_rod_strain_energy', peak(largest%strain_energy), 'J')
       end if
       if (.not. allocated(case%crankshaft)) return
       call add('crankshaft_frequency', real_text(largest%twist_frequency/two_pi), 'Hz')
-      call add('max_crankshaft_twist', real_text(largest%twist, case%output%digits), 'rad')
+      call add('max_crankshaft_twist', peak(largest%twist), 'rad')
     end subroutine add_elastic
+
+    !> A peak, with as many digits as the trace.
+    function peak(value) result(number)
+      real(dp), intent(in) :: value
+      character(len=:), allocatable :: number
+      number = real_text(value, case%output%digits)
+    end function peak
 
     subroutine add(quantity, value, unit)
       character(len=*), intent(in) :: quantity, value, unit

@@ -167,7 +167,7 @@ contains
     rows = ''
     do i = 1, size(list%names)
       if (any(seen == list%names(i))) cycle
-      if (is_joint_prefixed(list%names(i), seen)) cycle
+      if (index(list%names(i), 'crank_pin_') == 1 .and. any(seen == list%names(i)(11:))) cycle
       seen = [character(len=name_length) :: seen, list%names(i)]
       name = list%names(i)
       bracket = index(name, '[')
@@ -179,13 +179,6 @@ contains
     if (rows /= '') text = text//'### '//trim(title)//newline//newline//'| column | unit | meaning |'//newline//'|---|---|---|'// &
       newline//rows//newline
   end subroutine add_columns
-
-  !> Whether a column is one of the piston pin with the prefix `crank_pin_`.
-  pure logical function is_joint_prefixed(name, names)
-    character(len=*), intent(in) :: name, names(:)
-    is_joint_prefixed = .false.
-    if (index(name, 'crank_pin_') == 1) is_joint_prefixed = any(names == name(11:))
-  end function is_joint_prefixed
 
   function quantity_table(list) result(text)
     type(quantity_t), intent(in) :: list(:)

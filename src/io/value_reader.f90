@@ -65,16 +65,12 @@ contains
     value = 0
     if (.not. is_whole(text)) then
       wanted = 'must be a whole number'
-    else if (len(text) > 18) then
-      wanted = 'must be a whole number up to 2147483647'
-    else
-      wide = whole_number(text)
-      if (abs(wide) > huge(value)) then
-        wanted = 'must be a whole number up to 2147483647'
-      else
-        value = int(wide)
-      end if
+      return
     end if
+    wide = huge(wide)   ! too large
+    if (len(text) <= 18) wide = whole_number(text)
+    if (abs(wide) <= huge(value)) value = int(wide)
+    if (abs(wide) > huge(value)) wanted = 'must be a whole number up to 2147483647'
   end subroutine read_integer
 
   pure subroutine read_logical(text, value, wanted)

@@ -27,11 +27,10 @@ module study_design
     integer :: text_length = 1                          !! length of the longest value
     character(len=:), allocatable :: keys(:)            !! GROUP.KEY of each parameter
     logical, allocatable :: is_whole(:)  !! parameters whose ranges are of whole numbers; must be set before `get_values` is called
-    type(study_table_t) :: table
+    type(study_table_t) :: table                        !! without rows for a design over parameters
     type(axis_t), allocatable, private :: axes(:)
-    logical, private :: has_table = .false., has_sobol = .false.
     real(dp), allocatable, private :: fraction(:, :)    !! relative position in the range, (parameters, runs), for a Latin hypercube
-    type(sobol_points_t), private :: sobol
+    type(sobol_points_t), private :: sobol              !! prepared for a design of Sobol's points
     type(number_writer_t), private :: numbers
   contains
     procedure :: get_values
@@ -53,7 +52,6 @@ contains
     if (study%table /= '') then
       call read_table(study%table, design%table, error)
       if (allocated(error)) return
-      design%has_table = .true.
       design%runs = design%table%rows
       design%text_length = design%table%longest
       allocate (design%keys, source=design%table%keys)
@@ -125,7 +123,6 @@ contains
                 ' parameters', status_case_file)
       return
     end if
-    design%has_sobol = .true.
     call design%sobol%prepare(size(design%axes))
     if (study%seed == 0) return
     call random%begin(study%seed)
@@ -154,7 +151,7 @@ contains
     character(len=*), intent(out) :: values(:)   !! (parameters), of length text_length
     integer :: i, rest, level
     real(dp) :: fraction
-    if (self%has_table) then
+    if (self%table%rows > 0) then
       do i = 1, size(values)
         values(i) = self%table%field(i, run)
       end do
@@ -166,7 +163,7 @@ contains
         if (allocated(self%fraction)) then
           fraction = self%fraction(i, run)
           level = int(fraction*axis%levels)
-        else if (self%has_sobol) then
+        else if (allocated(self%sobol%direction)) then
           fraction = self%sobol%coordinate(run - 1, i)
           level = int(fraction*axis%levels)
         else

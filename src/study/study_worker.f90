@@ -71,6 +71,7 @@ contains
     type(run_report_t) :: report
     type(error_t), allocatable :: error
     type(patient_sink_t) :: sink
+    character(len=:), allocatable :: outcome
     logical :: has_begun
 
     self%is_done = .false.
@@ -95,19 +96,17 @@ contains
     if (self%was_interrupted .or. allocated(self%output_error)) return
     call self%cycle_rows%clear()
     call self%strobe_rows%clear()
-    associate (case => self%base%case)
-      if (allocated(error)) then
-        call put_run(self%run_row, number, self%values, reason_of(error%message), has_begun, self%watch, report, case)
-      else if (self%watch%statistics%cycles == 0) then
-        call put_run(self%run_row, number, self%values, 'no whole revolution after settle_cycles', has_begun, self%watch, report, &
-          case)
-      else
-        self%is_done = .true.
-        call put_run(self%run_row, number, self%values, 'done', has_begun, self%watch, report, case)
-        if (self%writes_cycles) call put_cycles(self%cycle_rows, number, self%watch, case)
-        call put_strobes(self%strobe_rows, number, self%watch)
-      end if
-    end associate
+    outcome = 'done'
+    if (allocated(error)) then
+      outcome = reason_of(error%message)
+    else if (self%watch%statistics%cycles == 0) then
+      outcome = 'no whole revolution after settle_cycles'
+    end if
+    self%is_done = outcome == 'done'
+    call put_run(self%run_row, number, self%values, outcome, has_begun, self%watch, report, self%base%case)
+    if (.not. self%is_done) return
+    if (self%writes_cycles) call put_cycles(self%cycle_rows, number, self%watch, self%base%case)
+    call put_strobes(self%strobe_rows, number, self%watch)
   end subroutine run
 
   !> Carry out the run whose values have been set, with a trace NAME/RUN.csv and its events.
