@@ -112,8 +112,8 @@ contains
     call check%that(found .and. .not. allocated(error), 'a checkpoint is read')
     call check%equal_text(loaded%identity, '0123456789ABCDEF', 'identity in a checkpoint')
     call check%that(loaded%case_text == saved%case_text .and. loaded%state == saved%state .and. &
-      .not. abs(loaded%wall_time - 2.5_dp) > 0 .and. loaded%trace%length == 3_int64 .and. &
-      loaded%event_list%checksum == -7, 'a checkpoint is restored unchanged')
+      .not. abs(loaded%wall_time - 2.5_dp) > 0 .and. loaded%mark(1)%length == 3_int64 .and. &
+      loaded%mark(2)%checksum == -7, 'a checkpoint is restored unchanged')
     call loaded%remove()
     call loaded%load(found, error)
     call check%that(.not. found .and. .not. allocated(error), 'a missing checkpoint is not an error')
@@ -238,8 +238,8 @@ contains
     checkpoint%identity = '0123456789ABCDEF'
     checkpoint%case_text = '&joint'//n//'/'//n
     checkpoint%wall_time = 2.5_dp
-    checkpoint%trace%length = 3
-    checkpoint%event_list%checksum = -7
+    checkpoint%mark(1)%length = 3
+    checkpoint%mark(2)%checksum = -7
     call archive%contents(checkpoint%state)
   end subroutine fill
 

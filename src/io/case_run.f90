@@ -180,10 +180,10 @@ contains
     type(error_t), allocatable :: film_error
     logical :: is_whole
     integer :: folder_status
-    call files%synchronise()
+    call files%file%synchronise()
     is_whole = self%report%status == 'done'
-    if (files%has_failed()) is_whole = .false.
-    if (is_whole) call files%conclude()
+    if (any(files%file%has_failed())) is_whole = .false.
+    if (is_whole) call files%file%conclude()
     !$omp critical (texts)
     if (allocated(self%report%films)) then
       call write_film_file(self%base//'.film.csv', self%report%films, film_error)
@@ -193,8 +193,8 @@ contains
     !$omp end critical (texts)
     call self%summary%synchronise()
     call self%summary%conclude()
-    if (self%summary%has_failed()) call files%leave()   ! no effect on files that have their final names
-    call files%conclude()
+    if (self%summary%has_failed()) call files%file%leave()   ! no effect on files that have their final names
+    call files%file%conclude()
     call synchronise_folder(self%base, folder_status)
     !$omp critical (texts)
     call self%collect_errors(files, folder_status)
@@ -225,7 +225,7 @@ contains
     if (.not. files%advice%was_given) self%notice = advice(self%report%auto_saves)
     if (self%notice /= '') self%notice = printable(case%file, 200)//': '//self%notice
     call self%summary%put(summary_table(case, self%report, files%wall_time(), self%start%checkpoint%identity, &
-                                        int(files%trace%length(), int64), int(files%event_list%length(), int64), self%is_twin))
+                                        int(files%file(1)%length(), int64), int(files%file(2)%length(), int64), self%is_twin))
     if (allocated(self%certificate)) call self%summary%put(certificate_summary(self%certificate))
   end subroutine put_summary
 

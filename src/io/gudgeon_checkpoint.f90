@@ -39,7 +39,7 @@ module gudgeon_checkpoint
     character(len=identity_length) :: identity = ''   !! identity of the run
     character(len=:), allocatable :: case_text   !! the resolved case
     real(dp) :: wall_time = 0                    !! used by the run so far [s]
-    type(file_mark_t) :: trace, event_list       !! length and checksum of the result files
+    type(file_mark_t) :: mark(2)                 !! length and checksum of the trace and of the list of events
     character(len=:), allocatable :: state       !! state of the run: the content of an archive
   contains
     procedure :: save => save_checkpoint
@@ -116,8 +116,8 @@ contains
     self%identity = identity
     call archive%exchange_text(self%case_text)
     call archive%exchange(self%wall_time)
-    call self%trace%exchange(archive)
-    call self%event_list%exchange(archive)
+    call self%mark(1)%exchange(archive)
+    call self%mark(2)%exchange(archive)
     call archive%exchange_text(self%state)
   end subroutine exchange
 

@@ -126,7 +126,7 @@ contains
 
   !> Write the content of the buffer to the file and to the disk. After a failure nothing more is written, since the system may have
   !> discarded data; `tell_error` reports it. No text function is used here.
-  subroutine synchronise(self)
+  impure elemental subroutine synchronise(self)
     class(result_file_t), intent(inout) :: self
     integer :: status
     if (self%descriptor < 0) return
@@ -149,7 +149,7 @@ contains
   end function length
 
   !> Whether a write has failed. May be called while another thread writes.
-  logical function has_failed(self) result(failed)
+  impure elemental logical function has_failed(self) result(failed)
     class(result_file_t), intent(in) :: self
     integer :: status
     !$omp atomic read
@@ -166,7 +166,7 @@ contains
 
   !> Write the remaining rows and give the file its final name. After a failed write the file keeps its complete rows; it is removed
   !> if it has none, or if a part of it is useless. `close` reports the failure. No text function is used here.
-  subroutine conclude(self)
+  impure elemental subroutine conclude(self)
     class(result_file_t), intent(inout) :: self
     integer :: status, ignored
     if (self%descriptor < 0) return
@@ -192,7 +192,7 @@ contains
   end subroutine close_result
 
   !> Leave the file under its temporary name; an empty file is removed.
-  subroutine leave(self)
+  impure elemental subroutine leave(self)
     class(result_file_t), intent(inout) :: self
     integer :: ignored
     if (self%descriptor < 0) return

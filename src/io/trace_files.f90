@@ -24,11 +24,13 @@ module trace_files
   public :: trace_files_t
 
   character(len=*), parameter :: newline = achar(10)
+  integer, parameter :: trace = 1, event_list = 2   !! indices of the files
+  character(len=*), parameter :: suffixes(2) = [character(len=11) :: '.csv', '.events.csv']
 
   !> A sink that writes files. It asks for the end of the run if the user interrupts or a file cannot be written.
   type, extends(trace_sink_t) :: trace_files_t
-    type(trace_table_t) :: trace
-    type(result_file_t) :: event_list
+    type(result_file_t) :: file(2)      !! trace and list of events; a file that was not opened stays without effect
+    type(trace_table_t), private :: table
     type(progress_t) :: progress
     type(stability_advice_t) :: advice
     type(checkpoint_t) :: checkpoint    !! path, identity and case; the rest is set when it is written
@@ -41,11 +43,7 @@ module trace_files
     type(row_text_t), private :: event   !! row of the last event
   contains
     procedure :: open
-    procedure :: synchronise
-    procedure :: has_failed
     procedure :: tell_error
-    procedure :: conclude
-    procedure :: leave
     procedure :: close
     procedure :: take_row
     procedure :: take_event
@@ -70,20 +68,20 @@ contains
     integer :: i
 
     call prepare(self, path, list, digits)
-    call self%trace%open(path//'.csv', error)
+    call self%file(trace)%open(path//trim(suffixes(trace)), error)
     if (allocated(error)) return
     do i = 1, size(list%id)
-      if (i > 1) call self%trace%put(',')
-      call self%trace%put(column_name(list, i))
+      if (i > 1) call self%file(trace)%put(',')
+      call self%file(trace)%put(column_name(list, i))
     end do
-    call self%trace%put(newline)
+    call self%file(trace)%put(newline)
     if (.not. with_events) return
-    call self%event_list%open(path//'.events.csv', error)
+    call self%file(event_list)%open(path//suffixes(event_list), error)
     if (allocated(error)) then
-      call self%trace%abandon()
+      call self%file(trace)%abandon()
       return
     end if
-    call self%event_list%put('time[s],crank_angle[rad],event,normal_speed[m/s],duration[s],max_penetration[m],'// &
+    call self%file(event_list)%put('time[s],crank_angle[rad],event,normal_speed[m/s],duration[s],max_penetration[m],'// &
       'max_normal_force[N],joint'//newline)
   end subroutine open
 
@@ -94,7 +92,7 @@ contains
     type(column_list_t), intent(in) :: list
     integer, intent(in) :: digits
     self%path = path
-    call self%trace%prepare(list, digits)
+    call self%table%prepare(list, digits)
     call system_clock(self%began)
     self%saved = self%began
   end subroutine prepare
@@ -109,17 +107,21 @@ contains
     logical, intent(in) :: with_events
     type(checkpoint_t), intent(in) :: checkpoint
     type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: trace_name, event_name
-
+    character(len=:), allocatable :: name
+    character(len=len(path) + 16) :: names(2)
+    integer :: i, last
+    last = merge(event_list, trace, with_events)
     call prepare(self, path, list, digits)
-    call find_marked(path//'.csv', checkpoint%trace, self%checkpoint%trace, trace_name, error)
-    if (with_events .and. .not. allocated(error)) &
-      call find_marked(path//'.events.csv', checkpoint%event_list, self%checkpoint%event_list, event_name, error)
-    if (allocated(error)) return
+    do i = trace, last
+      call find_marked(path//trim(suffixes(i)), checkpoint%mark(i), self%checkpoint%mark(i), name, error)
+      if (allocated(error)) return
+      names(i) = name
+    end do
     self%earlier_time = checkpoint%wall_time
-    call self%trace%reopen(path//'.csv', trace_name, checkpoint%trace%length, error)
-    if (with_events .and. .not. allocated(error)) &
-      call self%event_list%reopen(path//'.events.csv', event_name, checkpoint%event_list%length, error)
+    do i = trace, last
+      if (.not. allocated(error)) &
+        call self%file(i)%reopen(path//trim(suffixes(i)), trim(names(i)), checkpoint%mark(i)%length, error)
+    end do
   end subroutine reopen
 
   !> Find under which of its two names the file exists that begins with the marked content.
@@ -160,19 +162,22 @@ contains
     class(trace_files_t), intent(inout) :: self
     type(archive_t), intent(in) :: archive
     logical :: is_there
+    integer :: i
     self%wants_archive = .false.
     call system_clock(self%saved)
-    call self%synchronise()
-    if (self%has_failed()) then
+    call self%file%synchronise()
+    if (any(self%file%has_failed())) then
       !$omp critical (texts)
       call self%tell_error(self%checkpoint_error)
       !$omp end critical (texts)
       return
     end if
     associate (checkpoint => self%checkpoint)
-      call checkpoint%trace%move_to(self%path//'.csv.part', self%trace%length(), is_there)
-      if (is_there .and. self%event_list%length() > 0) &
-        call checkpoint%event_list%move_to(self%path//'.events.csv.part', self%event_list%length(), is_there)
+      is_there = .true.
+      do i = trace, event_list
+        if (is_there .and. self%file(i)%length() > 0) &
+          call checkpoint%mark(i)%move_to(self%path//trim(suffixes(i))//'.part', self%file(i)%length(), is_there)
+      end do
       call archive%contents(checkpoint%state)
       checkpoint%wall_time = self%wall_time()
       !$omp critical (texts)
@@ -194,41 +199,13 @@ contains
     wall_time = self%earlier_time + real(now - self%began, dp)/real(rate, dp)
   end function wall_time
 
-  !> Write the buffered rows of both files to the disk. No text function is used here, so that any thread may call it at any time.
-  subroutine synchronise(self)
-    class(trace_files_t), intent(inout) :: self
-    call self%trace%synchronise()
-    call self%event_list%synchronise()
-  end subroutine synchronise
-
-  !> Whether one of the files could not be written.
-  logical function has_failed(self)
-    class(trace_files_t), intent(in) :: self
-    has_failed = self%trace%has_failed()
-    if (self%event_list%has_failed()) has_failed = .true.
-  end function has_failed
-
   !> The reason why one of the files could not be written, if so.
   subroutine tell_error(self, error)
     class(trace_files_t), intent(in) :: self
     type(error_t), allocatable, intent(out) :: error
-    call self%trace%tell_error(error)
-    if (.not. allocated(error)) call self%event_list%tell_error(error)
+    call self%file(trace)%tell_error(error)
+    if (.not. allocated(error)) call self%file(event_list)%tell_error(error)
   end subroutine tell_error
-
-  !> Give both files their final names. No text function is used here.
-  subroutine conclude(self)
-    class(trace_files_t), intent(inout) :: self
-    call self%trace%conclude()
-    call self%event_list%conclude()
-  end subroutine conclude
-
-  !> Leave both files under their temporary names. No text function is used here.
-  subroutine leave(self)
-    class(trace_files_t), intent(inout) :: self
-    call self%trace%leave()
-    call self%event_list%leave()
-  end subroutine leave
 
   !> Conclude both files unless that has been done. The first error is reported.
   subroutine close(self, error)
@@ -236,8 +213,8 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(error_t), allocatable :: second
     call self%progress%finish()
-    call self%trace%close(error)
-    call self%event_list%close(second)
+    call self%file(trace)%close(error)
+    call self%file(event_list)%close(second)
     call keep_first(second, error)
   end subroutine close
 
@@ -245,7 +222,7 @@ contains
     class(trace_files_t), intent(inout) :: self
     real(dp), intent(in), contiguous :: values(:)
     integer, parameter :: rows_between_looks = 100
-    call self%trace%put_row(values)
+    call self%table%put_row(values, self%file(trace))
     self%rows = self%rows + 1
     if (mod(self%rows, rows_between_looks) == 0) call look(self)
   end subroutine take_row
@@ -253,7 +230,7 @@ contains
   subroutine take_event(self, event)
     class(trace_files_t), intent(inout) :: self
     type(trace_event_t), intent(in) :: event
-    associate (row => self%event, numbers => self%trace%numbers, has_ended => event%kind /= event_contact_begins)
+    associate (row => self%event, numbers => self%table%numbers, has_ended => event%kind /= event_contact_begins)
       call row%clear()
       call row%add_number(numbers, event%time)
       call row%add_number(numbers, event%crank_angle)
@@ -264,7 +241,7 @@ contains
       call row%add_number(numbers, event%max_normal_force, has_ended)
       call row%add_text(joint_names(event%pin))
       call row%end_row()
-      call self%event_list%put(row%text(:row%used))
+      call self%file(event_list)%put(row%text(:row%used))
     end associate
   end subroutine take_event
 
@@ -289,7 +266,7 @@ contains
     class(trace_files_t), intent(inout) :: self
     integer(int64) :: now, rate
     if (interrupted()) self%wants_to_stop = .true.
-    if (self%has_failed()) self%wants_to_stop = .true.
+    if (any(self%file%has_failed())) self%wants_to_stop = .true.
     if (.not. self%keeps_archives) return
     call system_clock(now, rate)
     if (real(now - self%saved, dp) >= self%checkpoint_interval*real(rate, dp)) self%wants_archive = .true.

@@ -8,7 +8,7 @@ module trace_table
   private
   public :: trace_table_t
 
-  type, extends(result_file_t) :: trace_table_t
+  type :: trace_table_t
     type(number_writer_t) :: numbers
     integer, private :: phase_column = 1   !! index of the phase's column; the last index plus one if there is none
   contains
@@ -27,12 +27,13 @@ contains
     call self%numbers%prepare(digits)
   end subroutine prepare
 
-  !> Add a row, written directly into the buffer.
-  subroutine put_row(self, values)
-    class(trace_table_t), intent(inout) :: self
+  !> Add a row to a file, written directly into its buffer.
+  subroutine put_row(self, values, file)
+    class(trace_table_t), intent(in) :: self
     real(dp), intent(in), contiguous :: values(:)
-    call self%make_room((longest_number + 1)*size(values))
-    associate (text => self%buffer, used => self%used, phase => self%phase_column)
+    type(result_file_t), intent(inout) :: file
+    call file%make_room((longest_number + 1)*size(values))
+    associate (text => file%buffer, used => file%used, phase => self%phase_column)
       call self%numbers%append_list(text, used, values(:phase - 1))
       if (phase <= size(values)) then
         text(used + 1:used + 1) = achar(iachar('0') + int(values(phase)))

@@ -126,7 +126,7 @@ contains
     !$omp end critical (texts)
     if (allocated(error) .or. allocated(self%output_error)) return
     call simulate(self%base%case, .false., list, files, report, error, cycles=self%watch)
-    call files%synchronise()   ! before the row that reports the run as done
+    call files%file%synchronise()   ! before the row that reports the run as done
     !$omp critical (texts)
     call files%close(self%output_error)
     !$omp end critical (texts)
