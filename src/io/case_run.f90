@@ -3,6 +3,7 @@ module case_run
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_errors, only: error_t, fail, keep_first, status_output
   use case_definition, only: case_t
+  use command_line, only: command_line_t
   use gudgeon_columns, only: column_list_t
   use film_tables, only: provide_tables
   use gudgeon_simulation, only: simulate, run_report_t
@@ -31,7 +32,7 @@ module case_run
     character(len=:), allocatable :: line, notice        !! texts for the user: the outcome, and remarks
     type(continuation_t) :: start
     character(len=:), allocatable :: base                !! path of the results without suffix
-    logical :: certifies = .false.                       !! make a certificate if the run is completed
+    logical, private :: certifies = .false.              !! make a certificate if the run is completed
     type(certificate_t), allocatable, private :: certificate
     type(case_t), private :: case
     logical, private :: is_twin = .false.                !! this is the run of the ideal twin
@@ -55,7 +56,7 @@ module case_run
 contains
 
   !> Set what is to be run, and where its results are written.
-  subroutine prepare(self, case, case_text, identity, is_twin, list, base, checkpoint_interval, show_progress, quiet)
+  subroutine prepare(self, case, case_text, identity, is_twin, list, base, options, show_progress)
     class(case_run_t), intent(inout) :: self
     type(case_t), intent(in) :: case
     character(len=*), intent(in) :: case_text            !! the resolved case
@@ -63,18 +64,19 @@ contains
     logical, intent(in) :: is_twin
     type(column_list_t), intent(in) :: list
     character(len=*), intent(in) :: base
-    real(kind(self%start%interval)), intent(in) :: checkpoint_interval   !! [s]; 0: no checkpoints
-    logical, intent(in) :: show_progress, quiet
+    type(command_line_t), intent(in) :: options
+    logical, intent(in) :: show_progress
     self%line = case%file//': correct'
     self%case = case
     self%is_twin = is_twin
     self%list = list
     self%base = base
     self%show_progress = show_progress
-    self%quiet = quiet
+    self%quiet = options%quiet
+    self%certifies = options%certify .and. .not. is_twin
     self%notice = ''
     associate (start => self%start)
-      start%interval = checkpoint_interval
+      start%interval = options%checkpoint_interval
       start%checkpoint%path = base//'.checkpoint'
       start%checkpoint%identity = identity
       start%checkpoint%case_text = case_text

@@ -82,11 +82,10 @@ contains
     text = resolved_text(values)
     self%has_twin = case%output%ideal_twin .and. (case%has_clearance() .or. case%is_elastic())
     identity = identity_of(text, program)
-    call self%run%prepare(case, text, identity, .false., list, base, options%checkpoint_interval, show_progress, options%quiet)
-    self%run%certifies = options%certify
+    call self%run%prepare(case, text, identity, .false., list, base, options, show_progress)
     self%twin%base = base//'.ideal'
     if (self%has_twin) call self%twin%prepare(case, text, twin_identity(identity), .true., ideal_list, self%twin%base, &
-      options%checkpoint_interval, show_progress .and. options%jobs == 1, options%quiet)
+      options, show_progress .and. options%jobs == 1)
   end subroutine prepare
 
   !> Compute film tables, which uses all processors. Call it after `prepare` for cases that are to be run.

@@ -308,15 +308,11 @@ contains
   function period_text(periods) result(text)
     type(period_watch_t), intent(in) :: periods
     character(len=:), allocatable :: text
-    select case (periods%period)
-    case (0)
-      text = 'not periodic within '//integer_text(periods%most_revolutions)//' revolutions'
-    case (1)
-      text = 'repeats every revolution'
-    case default
-      text = 'repeats every '//integer_text(periods%period)//' revolutions'
-    end select
-    if (periods%period > 0) text = text//', recognised after '//integer_text(periods%found_after)
+    text = 'not periodic within '//integer_text(periods%most_revolutions)//' revolutions'
+    if (periods%period == 0) return
+    text = 'repeats every revolution'
+    if (periods%period > 1) text = 'repeats every '//integer_text(periods%period)//' revolutions'
+    text = text//', recognised after '//integer_text(periods%found_after)
   end function period_text
 
   !> Text about one pin.

@@ -155,7 +155,6 @@ contains
     type(entry_t), intent(inout) :: entry
     character(len=:), allocatable :: place
     entry%line = scan%line
-    entry%index = 0
     place = '&'//printable(entry%group, shown)
     entry%key = name_here(scan)
     if (entry%key == '') then
@@ -238,8 +237,6 @@ contains
     type(scanner_t), intent(inout) :: scan
     type(token_t), intent(inout) :: token
     integer :: length, star
-    token%repeat = 1
-    token%quoted = .false.
     if (.not. next_is(scan, '''') .and. .not. next_is(scan, '"')) then
       length = bare_length(scan)
       if (length == 0) then
