@@ -15,7 +15,7 @@ module certificate
   use gudgeon_columns, only: column_list_t, choose_columns
   use gudgeon_simulation, only: run_report_t
   use trace_sink, only: trace_event_t
-  use run_witness, only: witness_t, run, has_coarse_table, keep_own_tables, figures_of, means_of, n_statistics, n_figures, &
+  use run_witness, only: witness_t, run, has_coarse_table, figures_of, means_of, n_statistics, n_figures, &
     loss_figure
   implicit none
   private
@@ -219,7 +219,8 @@ contains
     end if
     call choose_columns(plain, .false., list, error)
     !$omp end critical (texts)
-    call keep_own_tables(plain)
+    if (allocated(plain%joint%film)) plain%joint%film%table_file = ''   ! the files that the user names are not written again
+    if (allocated(plain%crank_pin%film)) plain%crank_pin%film%table_file = ''
     plain%run%lyapunov_revolutions = 0
     plain%output%start_time = 0
     plain%output%every_step = .false.

@@ -15,7 +15,7 @@ module run_witness
   use trace_sink, only: trace_event_t
   implicit none
   private
-  public :: witness_t, run, has_coarse_table, keep_own_tables, means_of, figures_of, n_statistics, statistic_names, &
+  public :: witness_t, run, has_coarse_table, means_of, figures_of, n_statistics, statistic_names, &
     n_figures, figure_names, loss_figure
 
   integer, parameter :: n_statistics = 4
@@ -91,13 +91,6 @@ contains
       if (finer /= own) has_coarse_table = .true.
     end subroutine look_at
   end function has_coarse_table
-
-  !> Prevent runs of this case from writing to the files of film tables that the user names.
-  subroutine keep_own_tables(case)
-    type(case_t), intent(inout) :: case
-    if (allocated(case%joint%film)) case%joint%film%table_file = ''
-    if (allocated(case%crank_pin%film)) case%crank_pin%film%table_file = ''
-  end subroutine keep_own_tables
 
   !> Results of a run in the order of `figure_names`; 0 for results that it does not have.
   pure function figures_of(witness) result(values)

@@ -10,6 +10,7 @@ module value_reader
 
   character(len=*), parameter :: digits = '0123456789'
   integer, parameter :: largest_exponent = 30   !! reals are 0 or between 1e-30 and 1e30 in magnitude, so that products stay finite
+  character(len=*), parameter :: out_of_reach = 'must be 0 or of a size from 1e-30 to 1e30'
 
 contains
 
@@ -26,7 +27,7 @@ contains
     exponent = 0
     if (letter > 0) then
       if (.not. is_whole(mantissa(letter + 1:))) wanted = 'must be a number'
-      if (len(mantissa) - letter > 8) wanted = out_of_reach()
+      if (len(mantissa) - letter > 8) wanted = out_of_reach
       if (allocated(wanted)) return
       exponent = int(whole_number(mantissa(letter + 1:)))
       mantissa = mantissa(:letter - 1)
@@ -43,7 +44,7 @@ contains
     if (first == 0) return
     exponent = exponent + whole - first + merge(1, 0, first > whole)   ! exponent of the first digit that is not 0
     if (len(text) > 100 .or. exponent >= largest_exponent .or. exponent < -largest_exponent) then
-      wanted = out_of_reach()
+      wanted = out_of_reach
       return
     end if
     mantissa = lowercase(text)
@@ -51,11 +52,6 @@ contains
     read (mantissa, *, iostat=iostat) value
     if (iostat /= 0) wanted = 'must be a number'
   end subroutine read_real
-
-  pure function out_of_reach() result(wanted)
-    character(len=:), allocatable :: wanted
-    wanted = 'must be 0 or of a size from 1e-30 to 1e30'
-  end function out_of_reach
 
   pure subroutine read_integer(text, value, wanted)
     character(len=*), intent(in) :: text

@@ -6,7 +6,6 @@ module study_case
   use case_schema, only: find_group
   use case_values, only: case_values_t
   use case_file, only: complete_case
-  use case_text, only: resolved_text
   use case_loader, only: load_case
   use case_rules, only: check_rules
   use namelist_reader, only: token_t, read_values
@@ -18,7 +17,7 @@ module study_case
   !> The values of the base case, modified for each run. Each thread has its own copy.
   type :: study_case_t
     type(case_t) :: case                             !! case of the present run
-    type(case_values_t), private :: values
+    type(case_values_t) :: values                    !! its values, and all defaults
     integer, allocatable, private :: places(:)       !! indices of the parameters in the table of keys
     logical, allocatable, private :: groups(:)       !! groups that contain a parameter
     logical, allocatable :: is_number(:)             !! whether each parameter is one number, real or whole
@@ -30,7 +29,6 @@ module study_case
     procedure :: put
     procedure :: convert
     procedure :: check
-    procedure :: resolved
   end type study_case_t
 
 contains
@@ -157,11 +155,4 @@ contains
     if (.not. allocated(error)) call check_rules(self%case, self%values, error)
     !$omp end critical (texts)
   end subroutine check
-
-  !> The present case with all defaults as the text of a case file.
-  function resolved(self) result(text)
-    class(study_case_t), intent(in) :: self
-    character(len=:), allocatable :: text
-    text = resolved_text(self%values)
-  end function resolved
 end module study_case

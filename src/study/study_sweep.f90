@@ -8,6 +8,7 @@ module study_sweep
   use gudgeon_columns, only: column_list_t, choose_columns
   use case_definition, only: case_t
   use case_file, only: read_case_values
+  use case_text, only: resolved_text
   use case_values, only: case_values_t
   use accuracy_presets, only: with_preset
   use command_line, only: command_line_t
@@ -199,7 +200,7 @@ contains
     character(len=16) :: text
     type(checksum_t) :: checksum
     integer :: i, run
-    call checksum%add(program_version//achar(10)//sweep%base%resolved()//sweep%study%identity)
+    call checksum%add(program_version//achar(10)//resolved_text(sweep%base%values)//sweep%study%identity)
     if (sweep%study%table /= '') then
       do i = 1, size(sweep%design%keys)
         call checksum%add(trim(sweep%design%keys(i))//',')
