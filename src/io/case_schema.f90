@@ -62,7 +62,7 @@ contains
   !> Initialise the visitor.
   subroutine begin(self)
     class(schema_t), intent(inout) :: self
-    allocate (self%groups(50), self%keys(200))
+    allocate (self%groups(50), self%keys(300))
     self%law_name = ''
     self%difference = ''
   end subroutine begin
@@ -143,14 +143,8 @@ contains
   subroutine collect_choice(self, key, default, says)
     class(schema_t), intent(inout) :: self
     character(len=*), intent(in) :: key, default, says
-    type(key_t) :: new
     self%law_name = ''
-    new%name = key
-    new%kind = word_kind
-    new%description = says
-    new%default = default
-    new%words = ''
-    call self%visit(new)
+    call self%visit(key_t(name=key, kind=word_kind, description=says, default=default, words=''))
     self%present_choice = self%n_keys
   end subroutine collect_choice
 
