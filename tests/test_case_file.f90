@@ -5,6 +5,7 @@ module test_case_file
   use case_definition, only: case_t
   use case_rules, only: case_warning
   use case_file, only: read_case, parse_case, template
+  use text_tools, only: path_beside, replaced, next_line
   use case_schema, only: key_table_t, case_schema_of
   use text_file, only: read_text_file
   use gudgeon_posix, only: make_directory, remove_file
@@ -33,6 +34,7 @@ contains
     call check%equal_text(table%difference, '', 'a key has the same meaning in all laws of a group')
     call test_values(check)
     call test_forms(check)
+    call test_texts(check)
     call test_resolved(check)
     call test_syntax(check)
     call test_names(check)
@@ -114,6 +116,30 @@ contains
     call parse_case(whole//'&case title='''//repeat('x', 3000)//''' /', 'x', none, c, error)
     call check%that(len(c%title) == 3000, 'long lines')
   end subroutine test_forms
+
+  !> Paths of files that another file names, replaced parts of texts, and lines.
+  subroutine test_texts(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: text = 'a'//n//n//'bc'
+    character(len=:), allocatable :: line
+    integer :: at
+    call check%equal_text(path_beside('a/b/c.nml', 'd.csv'), 'a/b/d.csv', 'a path relative to a file')
+    call check%equal_text(path_beside('c.nml', '../d.csv'), '../d.csv', 'a path relative to a file of the current folder')
+    call check%equal_text(path_beside('a/c.nml', '/d.csv'), '/d.csv', 'an absolute path')
+    call check%equal_text(path_beside('/dev/stdin', 'd.csv'), 'd.csv', 'a path relative to standard input')
+    call check%equal_text(path_beside('a/c.nml', ''), '', 'no path')
+    call check%equal_text(replaced('abcabca', 'ca', '.'), 'ab.b.', 'every occurrence is replaced')
+    call check%equal_text(replaced('aaa', 'a', 'aa'), 'aaaaaa', 'what was put in is not replaced again')
+    call check%equal_text(replaced('abc', 'x', ''), 'abc', 'nothing to replace')
+    at = 1
+    call next_line(text, at, line)
+    call check%equal_text(line, 'a', 'the first line')
+    call next_line(text, at, line)
+    call check%equal_text(line, '', 'an empty line')
+    call next_line(text, at, line)
+    call check%equal_text(line, 'bc', 'the last line has no end')
+    call check%that(at > len(text), 'there are no more lines')
+  end subroutine test_texts
 
   !> A resolved case reads back as the same bits and the same text; so does the template.
   subroutine test_resolved(check)
