@@ -7,7 +7,7 @@
 module auto_method
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t
-  use ode_method, only: ode_method_t, step_statistics_t, step_done, limit_stability, with_adams, with_radau
+  use ode_method, only: step_statistics_t, step_done, limit_stability, with_adams, with_radau
   use adams, only: adams_t
   use radau, only: radau_t
   use gudgeon_archive, only: archive_t
@@ -21,14 +21,15 @@ module auto_method
   real(dp), parameter :: adams_price = 1.3_dp  !! evaluations of Adams limited by stability, per 1/rate of the fastest mode
   real(dp), parameter :: step_overhead = 5     !! cost of Jacobian and linear algebra of a Radau step, in evaluations
 
-  type, extends(ode_method_t) :: auto_t
+  !> Adams, with Radau at its side. While Radau is in use, its solution is copied after every step; Adams itself costs no more than
+  !> without this choice.
+  type, extends(adams_t) :: auto_t
     private
-    type(adams_t) :: adams
     type(radau_t) :: radau
     logical :: stiff = .false.            !! Radau is in use
     logical, allocatable :: stiff_in(:)   !! the last phase of this mode ended with Radau, (0:highest mode)
     integer :: mode = 0                   !! mode of the present phase
-    integer :: bound = 0                  !! excess of Adams steps limited by stability over other steps
+    integer :: excess = 0                 !! excess of Adams steps limited by stability over other steps
     integer, allocatable :: patience(:)   !! number of such steps required, for each mode
     real(dp), allocatable :: loss(:)      !! evaluations by Radau minus those that Adams would have needed, for each mode
   contains
@@ -52,13 +53,11 @@ contains
     integer, intent(out) :: status
 
     if (first) then
-      self%statistics = step_statistics_t()
       call forget_modes(self, problem%highest_mode)
       self%stiff = .false.
-      self%adams%settings = self%settings
       self%radau%settings = self%settings
       call self%radau%prepare(problem)
-      call self%adams%prepare(problem)
+      call self%prepare(problem)
     end if
     self%mode = problem%mode
     call begin_with(self, problem, self%stiff_in(self%mode), t, y, first, status)
@@ -89,16 +88,14 @@ contains
     class(auto_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
     type(archive_t), intent(inout) :: archive
-    self%adams%settings = self%settings
     self%radau%settings = self%settings
     if (archive%is_reading) call forget_modes(self, problem%highest_mode)
-    call self%exchange_solution(problem, archive)
-    call self%adams%exchange(problem, archive)
+    call self%adams_t%exchange(problem, archive)
     call self%radau%exchange(problem, archive)
     call archive%exchange(self%stiff)
     call archive%exchange(self%stiff_in)
     call archive%exchange(self%mode)
-    call archive%exchange(self%bound)
+    call archive%exchange(self%excess)
     call archive%exchange(self%patience)
     call archive%exchange(self%loss)
     call archive%exchange(self%time_with)
@@ -112,19 +109,16 @@ contains
     real(dp), intent(in) :: t, y(:)
     integer, intent(out) :: status
 
-    if (stiff .and. .not. self%stiff) self%radau%statistics = self%adams%statistics
-    if (self%stiff .and. .not. stiff) self%adams%statistics = self%radau%statistics
+    if (stiff .and. .not. self%stiff) self%radau%statistics = self%statistics
+    if (self%stiff .and. .not. stiff) self%statistics = self%radau%statistics
     self%stiff = stiff
-    self%bound = 0
+    self%excess = 0
     if (stiff) then
       call self%radau%start(problem, t, y, first, status)
+      call take_solution(self)
     else
-      call self%adams%start(problem, t, y, first, status)
+      call self%adams_t%start(problem, t, y, first, status)
     end if
-    self%t = t
-    self%t_old = t
-    self%y = y
-    self%y_old = y
   end subroutine begin_with
 
   subroutine step(self, problem, status)
@@ -138,7 +132,7 @@ contains
       if (self%stiff .and. self%loss(mode) > most_loss(self)) then
         self%patience(mode) = min(4*self%patience(mode), most_patience)
         call change_over(self, problem, .false., status)
-      else if (.not. self%stiff .and. self%bound >= self%patience(mode)) then
+      else if (.not. self%stiff .and. self%excess >= self%patience(mode)) then
         self%loss(mode) = 0
         call change_over(self, problem, .true., status)
       end if
@@ -147,17 +141,18 @@ contains
         evaluations_before = self%radau%statistics%evaluations
         call self%radau%step(problem, status)
         if (status /= step_done) return
-        call take_over(self, self%radau)
+        call take_solution(self)
         self%loss(mode) = self%loss(mode) + self%radau%statistics%evaluations - evaluations_before + step_overhead &
           - adams_price*self%radau%fastest_rate()*(self%t - self%t_old)
         return
       end if
     end associate
-    self%adams%rough_time = self%rough_time
-    call self%adams%step(problem, status)
-    if (status /= step_done) return
-    call take_over(self, self%adams)
-    self%bound = merge(self%bound + 1, max(0, self%bound - 1), self%adams%limit_done == limit_stability)
+    call self%adams_t%step(problem, status)
+    if (self%limit_done == limit_stability) then
+      self%excess = self%excess + 1
+    else
+      self%excess = max(0, self%excess - 1)
+    end if
   end subroutine step
 
   !> Continue with the other method from the present point.
@@ -166,14 +161,17 @@ contains
     class(ode_problem_t), intent(in) :: problem
     logical, intent(in) :: stiff
     integer, intent(out) :: status
+    real(dp) :: t, y(size(self%y))
     self%stiff_in(self%mode) = stiff
-    self%adams%goes_on = .true.
-    call begin_with(self, problem, stiff, self%t, self%y, .false., status)
-    self%adams%goes_on = .false.
+    t = self%t
+    y = self%y
+    self%goes_on = .true.
+    call begin_with(self, problem, stiff, t, y, .false., status)
+    self%goes_on = .false.
     if (stiff) then
       call count_change(self%radau%statistics)
     else
-      call count_change(self%adams%statistics)
+      call count_change(self%statistics)
     end if
   end subroutine change_over
 
@@ -184,30 +182,17 @@ contains
     statistics%switches = statistics%switches + 1
   end subroutine count_change
 
-  !> Take the last step of the method in use as the step of this method.
-  subroutine take_over(self, method)
+  !> Copy Radau's solution at both ends of its last step.
+  pure subroutine take_solution(self)
     class(auto_t), intent(inout) :: self
-    class(ode_method_t), intent(in) :: method
-    self%t = method%t
-    self%t_old = method%t_old
-    self%order = method%order
-    call copy_states(size(self%y), method%y, method%y_old, self%y, self%y_old)
-    self%statistics%accepted = method%statistics%accepted
-    self%statistics%evaluations = method%statistics%evaluations
-  end subroutine take_over
-
-  !> Copy y and y_old in one loop: with plain arrays, since this is done in every step.
-  pure subroutine copy_states(n, from_y, from_y_old, y, y_old)
-    integer, intent(in) :: n
-    real(dp), intent(in) :: from_y(n), from_y_old(n)
-    real(dp), intent(out) :: y(n), y_old(n)
-    integer :: i
-    !GCC$ novector
-    do i = 1, n
-      y(i) = from_y(i)
-      y_old(i) = from_y_old(i)
-    end do
-  end subroutine copy_states
+    self%t = self%radau%t
+    self%t_old = self%radau%t_old
+    self%y = self%radau%y
+    self%y_old = self%radau%y_old
+    self%order = self%radau%order
+    self%statistics%accepted = self%radau%statistics%accepted
+    self%statistics%evaluations = self%radau%statistics%evaluations
+  end subroutine take_solution
 
   pure subroutine interpolate(self, t, y)
     class(auto_t), intent(inout) :: self
@@ -216,7 +201,7 @@ contains
     if (self%stiff) then
       call self%radau%interpolate(t, y)
     else
-      call self%adams%interpolate(t, y)
+      call self%adams_t%interpolate(t, y)
     end if
   end subroutine interpolate
 
@@ -229,7 +214,7 @@ contains
     if (self%stiff) then
       call self%radau%land_on(problem, t, y, landed)
     else
-      call self%adams%land_on(problem, t, y, landed)
+      call self%adams_t%land_on(problem, t, y, landed)
     end if
   end subroutine land_on
 
@@ -240,10 +225,9 @@ contains
     integer, intent(out) :: status
     if (self%stiff) then
       call self%radau%withdraw(problem, longest, status)
-      call take_over(self, self%radau)
+      call take_solution(self)
     else
-      call self%adams%withdraw(problem, longest, status)
-      call take_over(self, self%adams)
+      call self%adams_t%withdraw(problem, longest, status)
     end if
   end subroutine withdraw
 
@@ -257,17 +241,14 @@ contains
     if (self%stiff) then
       call self%radau%count_time(t_to)
     else
-      call self%adams%count_time(t_to)
+      call self%adams_t%count_time(t_to)
     end if
   end subroutine count_time
 
-  !> Sum of the statistics of both methods.
+  !> The statistics are with the method in use.
   pure type(step_statistics_t) function totals(self) result(statistics)
     class(auto_t), intent(in) :: self
-    if (self%stiff) then
-      statistics = self%radau%statistics
-    else
-      statistics = self%adams%statistics
-    end if
+    statistics = self%statistics
+    if (self%stiff) statistics = self%radau%statistics
   end function totals
 end module auto_method
