@@ -6,7 +6,8 @@
 
 The study varies clearance and viscosity of simulation I (method auto, accuracy draft, Latin hypercube). Three measurements:
  - throughput of `gudgeon sweep` on one thread and on several, measured alternately; the best of the repeats. Other programs that
-   run on the machine make it wrong;
+   run on the machine make it wrong. For comparison as many programs of one thread at once, which share nothing but the machine:
+   what they lack to the number of threads is the machine's;
  - processor time of the sweep and of the same runs simulated one after the other in one process (scripts/measure_runs.f90), without
    and with the statistics of revolutions;
  - instructions of a sweep of 100 runs under valgrind: those of the simulations, and those of the sweep itself (setting and checking
@@ -43,6 +44,18 @@ def timed(command):
     return clock, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, after.ru_maxrss, done.stdout
 
 
+def timed_at_once(commands):
+    """Wall time and processor time in seconds of several commands that run at the same time."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    start = time.monotonic()
+    for running in [subprocess.Popen(command, stdout=subprocess.DEVNULL) for command in commands]:
+        if running.wait() != 0:
+            raise SystemExit(f"measure_sweep: exit status {running.returncode} of {' '.join(running.args)}")
+    clock = time.monotonic() - start
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return clock, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
 def instructions(command, function, folder):
     """Instructions spent inside a function."""
     done = subprocess.run(["valgrind", "--tool=callgrind", f"--toggle-collect={function}",
@@ -69,19 +82,21 @@ def main():
     options = parser.parse_args()
     gudgeon = program()
     with tempfile.TemporaryDirectory() as folder:
-        def study(count):
-            path = f"{folder}/study_{count}.nml"
+        def study(count, part=1):
+            os.makedirs(f"{folder}/{part}", exist_ok=True)
+            path = f"{folder}/{part}/study_{count}.nml"
             with open(path, "w", encoding="utf-8") as file:
                 file.write(STUDY.format(case=os.path.abspath("cases/sim_I.nml"), runs=count))
             return path
 
         def sweep(path, threads):
-            return [gudgeon, "sweep", *SETTINGS, "-j", str(threads), "-o", folder, path]
+            return [gudgeon, "sweep", *SETTINGS, "-j", str(threads), "-o", os.path.dirname(path), path]
 
         if options.instructions:
             count_instructions(sweep(study(100), 1), folder)
             return
         path, runs = study(options.runs), program("measure_runs")
+        parts = [sweep(study(options.runs // options.threads, part), 1) for part in range(2, 2 + options.threads)]
         clock, processor = {}, {}
         for _ in range(options.repeats):
             for name, command in (("sweep, 1 thread", sweep(path, 1)),
@@ -92,12 +107,17 @@ def main():
                     cpu, seconds = (float(x) for x in printed.split("\n")[1].split(",")[2:])
                 clock[name] = min(seconds, clock.get(name, seconds))
                 processor[name] = min(cpu, processor.get(name, cpu))
+            seconds, cpu = timed_at_once(parts)
+            name = f"{options.threads} programs at once"
+            clock[name] = min(seconds, clock.get(name, seconds))
+            processor[name] = min(cpu, processor.get(name, cpu))
         print(f"{options.runs} runs, best of {options.repeats}; load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
         for name in clock:
             print(f"{name:24s} {clock[name]:8.2f} s  {processor[name]:8.2f} s processor time, "
                   f"{1e6*processor[name]/options.runs:8.1f} us a run, {100*(processor[name]/processor['bare runs'] - 1):+5.1f} %")
-        print(f"throughput on {options.threads} threads over 1: "
-              f"{clock['sweep, 1 thread']/clock[f'sweep, {options.threads} threads']:.2f}; processor time of a run, 1 thread over "
+        alone = clock["sweep, 1 thread"]
+        print(f"throughput on {options.threads} threads over 1: {alone/clock[f'sweep, {options.threads} threads']:.2f}, of "
+              f"{options.threads} programs at once {alone/clock[f'{options.threads} programs at once']:.2f}; processor time of a run, 1 thread over "
               f"{options.threads}: {processor['sweep, 1 thread']/processor[f'sweep, {options.threads} threads']:.3f}")
         count_instructions(sweep(study(100), 1), folder)
 
