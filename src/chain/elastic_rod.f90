@@ -64,7 +64,6 @@ module elastic_rod
   contains
     procedure :: parameters
     procedure :: prepare
-    procedure :: find_chord
     procedure :: follow
     procedure :: follow_piston
     procedure :: natural_frequency
@@ -200,19 +199,6 @@ contains
     end do
   end subroutine find_axial
 
-  !> Length and rate of the chord from the shapes.
-  pure subroutine find_chord(self, motion)
-    class(elastic_rod_t), intent(in) :: self
-    type(motion_t), intent(inout) :: motion
-    associate (n => self%n_bending)
-      motion%chord = self%length - sum(self%shortening(:n)*motion%shape(:n)**2)
-      motion%chord_rate = -2*sum(self%shortening(:n)*motion%shape(:n)*motion%shape_rate(:n))
-      if (self%n_axial == 0) return
-      motion%chord = motion%chord + motion%shape(n + 1)
-      motion%chord_rate = motion%chord_rate + motion%shape_rate(n + 1)
-    end associate
-  end subroutine find_chord
-
   !> Set the rod of a motion whose crank, offset and shapes are known: sin A = (R sin q - o_y)/l. `reachable` is false if there is
   !> no rod angle, or if the chord differs from the length of the rod by more than `largest_change` of it.
   pure subroutine follow(self, crank_length, motion, reachable)
@@ -220,7 +206,14 @@ contains
     real(dp), intent(in) :: crank_length   !! R [m]
     type(motion_t), intent(inout) :: motion
     logical, intent(out) :: reachable
-    call self%find_chord(motion)
+    associate (n => self%n_bending)
+      motion%chord = self%length - sum(self%shortening(:n)*motion%shape(:n)**2)
+      motion%chord_rate = -2*sum(self%shortening(:n)*motion%shape(:n)*motion%shape_rate(:n))
+      if (self%n_axial > 0) then
+        motion%chord = motion%chord + motion%shape(n + 1)
+        motion%chord_rate = motion%chord_rate + motion%shape_rate(n + 1)
+      end if
+    end associate
     reachable = abs(motion%chord - self%length) < largest_change*self%length
     if (.not. reachable) return
     motion%sin_rod = (crank_length*motion%sin_crank - motion%offset(2))/motion%chord

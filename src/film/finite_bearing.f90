@@ -115,31 +115,19 @@ contains
     if (self%cavitation == 'none') self%condition = cavitation_none
   end subroutine set_scales
 
-  pure integer function film_points_for(tolerance)
-    real(dp), intent(in) :: tolerance
-    film_points_for = 128
-    if (tolerance > 3e-5_dp) film_points_for = 64
-    if (tolerance < 1e-8_dp) film_points_for = 192
-  end function film_points_for
-
-  !> Number of table values in each direction. With Reynolds' condition the solver takes long, and more than 65 values would mainly
-  !> interpolate its error.
-  pure integer function table_points_for(tolerance, cavitation)
-    real(dp), intent(in) :: tolerance
-    character(len=*), intent(in) :: cavitation
-    table_points_for = merge(65, 97, cavitation == 'reynolds')
-    if (tolerance > 3e-5_dp) table_points_for = 33
-  end function table_points_for
-
-  !> The numbers of points given in the case, or chosen from the tolerance.
+  !> Numbers of table values in each direction and of grid nodes round the film, given in the case or chosen from the tolerance.
+  !> With Reynolds' condition the solver takes long, and more than 65 values would mainly interpolate its error.
   pure subroutine choose_points(self, tolerance, table_points, film_points)
     class(finite_bearing_t), intent(in) :: self
     real(dp), intent(in) :: tolerance
     integer, intent(out) :: table_points, film_points
-    table_points = self%table_points
-    if (table_points == 0) table_points = table_points_for(tolerance, self%cavitation)
-    film_points = self%film_points
-    if (film_points == 0) film_points = film_points_for(tolerance)
+    table_points = merge(65, 97, self%cavitation == 'reynolds')
+    if (tolerance > 3e-5_dp) table_points = 33
+    if (self%table_points > 0) table_points = self%table_points
+    film_points = 128
+    if (tolerance > 3e-5_dp) film_points = 64
+    if (tolerance < 1e-8_dp) film_points = 192
+    if (self%film_points > 0) film_points = self%film_points
   end subroutine choose_points
 
   !> Identifies the contents of a table: laws with the same key have the same table. Empty if the variant needs none.

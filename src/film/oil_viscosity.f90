@@ -65,18 +65,15 @@ contains
     character(len=:), allocatable, intent(out) :: key, wanted
     real(dp), parameter :: thinnest = 0.21_dp*mm2
     key = ''
+    wanted = 'required with viscosity_law = '''//self%law//''''
     if (.not. self%temperature > 0) then
       key = 'temperature'
-      wanted = 'required with viscosity_law = '''//self%law//''''
     else if (.not. minval(self%known_temperatures) > 0) then
       key = 'known_temperatures'
-      wanted = 'required with viscosity_law = '''//self%law//''''
     else if (.not. minval(self%known_viscosities) > 0) then
       key = 'known_viscosities'
-      wanted = 'required with viscosity_law = '''//self%law//''''
     else if (.not. self%density > 0) then
       key = 'density'
-      wanted = 'required with viscosity_law = '''//self%law//''''
     else if (.not. abs(self%known_temperatures(2) - self%known_temperatures(1)) >= 1) then
       key = 'known_temperatures'
       wanted = 'must be 1 K apart or more'

@@ -8,7 +8,7 @@ module pinkus_sternlicht
   use film_direction, only: derivatives_in_components, least_ratio_of_derivatives
   implicit none
   private
-  public :: pinkus_sternlicht_t, reduced_motion_t, max_eccentricity_ratio
+  public :: pinkus_sternlicht_t, max_eccentricity_ratio
 
   !> Largest eccentricity ratio that is evaluated. The force has no bound at 1, which a run never reaches. For a state at or beyond
   !> 1 the force of this ratio is used, which is finite.
@@ -36,7 +36,6 @@ module pinkus_sternlicht
     procedure :: is_quasi_static
     procedure :: gives_pressure
     procedure :: pressure
-    procedure, non_overridable :: reduced
   end type pinkus_sternlicht_t
 
 contains
@@ -87,12 +86,6 @@ contains
   end subroutine prepare
 
   !> The motion in polar coordinates. If the pin is concentric, the direction of the eccentricity is set to that of x.
-  pure type(reduced_motion_t) function reduced(self, motion) result(state)
-    class(pinkus_sternlicht_t), intent(in) :: self
-    type(film_motion_t), intent(in) :: motion
-    call reduce(self%per_clearance, motion, state)
-  end function reduced
-
   pure subroutine reduce(per_clearance, motion, state)
     real(dp), intent(in) :: per_clearance   !! [1/m]
     type(film_motion_t), intent(in) :: motion
@@ -158,7 +151,7 @@ contains
     real(dp) :: radial(0:3), tangential(0:3)
     logical :: moves
 
-    state = self%reduced(motion)
+    call reduce(self%per_clearance, motion, state)
     call polar_forces(self, state, radial, tangential, moves)
     if (state%ratio < least_ratio_of_derivatives .or. .not. moves) then
       call difference_derivatives(self, motion, derivatives)
@@ -224,7 +217,7 @@ contains
     real(dp) :: pressure
     type(reduced_motion_t) :: state
     real(dp) :: c, s, bracket
-    state = self%reduced(motion)
+    call reduce(self%per_clearance, motion, state)
     c = -cos(theta)
     s = -sin(theta)
     associate (eps => state%ratio)

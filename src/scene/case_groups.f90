@@ -1,5 +1,6 @@
 !> The groups of a case: every group with its keys and laws, in the order of the template.
 submodule (case_definition) case_groups
+  use gudgeon_parameters, only: law_t
   use contact_laws, only: offer_contact_laws, offer_contact_geometries
   use friction_laws, only: offer_friction_laws, offer_speed_laws
   use films, only: offer_film_laws
@@ -72,13 +73,7 @@ contains
     call list%group('contact', 'Contact of pin and bearing. Without this group there is no contact', .true., place)
     call list%choice('law', 'lankarani_nikravesh', 'energy loss of an impact; hertz: no loss')
     call offer_contact_laws(list)
-    if (list%sets .and. allocated(law)) deallocate (law)
-    if (list%sets .and. allocated(list%chosen)) then
-      select type (chosen => list%chosen)
-      class is (contact_law_t)
-        allocate (law, source=chosen)
-      end select
-    end if
+    if (list%sets) call take_contact(list%chosen, law)
     call list%choice('geometry', 'hertz_sphere', 'elastic force of the contact')
     call offer_contact_geometries(list)
     if (.not. list%sets .or. .not. allocated(list%chosen)) return
@@ -99,14 +94,30 @@ contains
     call list%add('report_work', reports_work, &
       'write the work of friction into the summary (laws with bristles always do)', '.false.')
     call offer_friction_laws(list)
-    if (.not. list%sets) return
-    if (allocated(law)) deallocate (law)
-    if (.not. allocated(list%chosen)) return
-    select type (chosen => list%chosen)
+    if (list%sets) call take_friction(list%chosen, law)
+  end subroutine visit_friction
+
+  !> Take the contact law that a case names, if it names one.
+  subroutine take_contact(chosen, law)
+    class(law_t), allocatable, intent(in) :: chosen
+    class(contact_law_t), allocatable, intent(out) :: law
+    if (.not. allocated(chosen)) return
+    select type (chosen)
+    class is (contact_law_t)
+      allocate (law, source=chosen)
+    end select
+  end subroutine take_contact
+
+  !> Take the friction law that a case names, if it names one.
+  subroutine take_friction(chosen, law)
+    class(law_t), allocatable, intent(in) :: chosen
+    class(friction_law_t), allocatable, intent(out) :: law
+    if (.not. allocated(chosen)) return
+    select type (chosen)
     class is (friction_law_t)
       allocate (law, source=chosen)
     end select
-  end subroutine visit_friction
+  end subroutine take_friction
 
   subroutine visit_film(law, transition, oil, elastic, reports, place, list)
     class(film_law_t), allocatable, intent(inout) :: law
@@ -151,26 +162,19 @@ contains
     class(parameter_list_t), intent(inout) :: list
     type(guide_case_t) :: described
     call list%group('guide', 'Piston in its bore. Without this group the guide is ideal', .true.)
-    call offer_guide(described, list)
-    if (.not. list%sets) return
-    if (allocated(guide)) deallocate (guide)
-    if (list%is_present) allocate (guide, source=described)
-  end subroutine visit_guide
-
-  !> Visit the keys and laws of a guide.
-  subroutine offer_guide(guide, list)
-    type(guide_case_t), intent(inout) :: guide
-    class(parameter_list_t), intent(inout) :: list
-    call guide%parameters(list)
+    call described%parameters(list)
     call list%choice('law', 'ambrosio', 'friction law of piston and bore; coefficient = 0: no friction')
     call list%make_optional('coefficient')
     call offer_speed_laws(list)
     call list%make_optional('')
-    call guide%take_friction(list%chosen)
+    call take_friction(list%chosen, described%friction)
     call list%choice('contact_law', 'exact', 'energy loss of an impact of the skirt, for kind = ''clearance''')
     call offer_contact_laws(list)
-    call guide%take_contact(list%chosen)
-  end subroutine offer_guide
+    call take_contact(list%chosen, described%contact)
+    if (.not. list%sets) return
+    if (allocated(guide)) deallocate (guide)
+    if (list%is_present) allocate (guide, source=described)
+  end subroutine visit_guide
 
   subroutine visit_elastic_rod(rod, list)
     type(elastic_rod_t), allocatable, intent(inout) :: rod

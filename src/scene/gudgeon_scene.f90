@@ -107,7 +107,6 @@ module gudgeon_scene
     procedure :: energy_scale
     procedure :: speed_scale
     procedure :: twist_frequency
-    procedure :: phase_at
     procedure :: forcing_revolutions
     procedure :: exchange
   end type scene_t
@@ -196,6 +195,7 @@ contains
     real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: inside
     type(evaluation_t) :: now
+    integer :: i
     call find_accelerations(self, self%n_joints, self%joints, t, y, now, inside)
     if (.not. inside) return
     if (self%crank_moves) then
@@ -208,7 +208,9 @@ contains
     if (allocated(self%guide)) call self%guide%put_rates(now%motion%tilting, now%accelerations%offset, now%accelerations%tilt, &
       dydt)
     if (allocated(self%chain%elastic)) call self%chain%elastic%put_rates(now%motion, now%accelerations, dydt)
-    call put_own_rates(self%n_joints, self%joints, now, dydt)
+    do i = 1, self%n_joints
+      if (self%joints(i)%has_own_rates) call self%joints(i)%put_own_rates(now%relative(i), now%joint(i), dydt)
+    end do
     if (self%measures%last < self%measures%first) return
     if (self%measures_loss) dydt(self%measures%last) = -sum(now%joint(:self%n_joints)%power)
     dydt(self%measures%first) = force_size(now%loads%force(:, piston_pin))
@@ -231,18 +233,6 @@ contains
       end associate
     end do
   end subroutine put_rates
-
-  !> Rates of the states of the laws of the joints.
-  pure subroutine put_own_rates(n, joints, now, dydt)
-    integer, intent(in) :: n
-    type(clearance_joint_t), intent(in) :: joints(n)
-    type(evaluation_t), intent(in) :: now
-    real(dp), intent(inout) :: dydt(*)
-    integer :: i
-    do i = 1, n
-      if (joints(i)%has_own_rates) call joints(i)%put_own_rates(now%relative(i), now%joint(i), dydt)
-    end do
-  end subroutine put_own_rates
 
   !> Evaluate all quantities at (t, y). `inside` is false if a model is not defined there; then only the crank angle and the motion
   !> of the joints are set, without sliding speeds.
@@ -564,16 +554,6 @@ contains
       if (allocated(self%guide)) energy_scale = energy_scale + 0.5_dp*(b%rod%mass + b%piston%mass)*self%guide%own_speed(span)**2
     end associate
   end function energy_scale
-
-  !> Phase of the joint at a pin; an ideal pin counts as free.
-  pure integer function phase_at(self, place)
-    class(scene_t), intent(in) :: self
-    integer, intent(in) :: place
-    integer :: i
-    i = self%joint_of_pin(place)
-    phase_at = phase_free
-    if (i > 0) phase_at = self%joints(i)%phase
-  end function phase_at
 
   !> Period of the excitation [revolutions]: that of the gas, or 1.
   pure integer function forcing_revolutions(self)

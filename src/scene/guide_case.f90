@@ -1,7 +1,7 @@
 !> The parameters of the piston's guide in a case.
 module guide_case
   use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: has_parameters_t, parameter_list_t, law_t
+  use gudgeon_parameters, only: has_parameters_t, parameter_list_t
   use contact_law, only: contact_law_t
   use friction_law, only: friction_law_t
   use hertz_sphere, only: hertz_sphere_t
@@ -22,8 +22,6 @@ module guide_case
     class(contact_law_t), allocatable :: contact
   contains
     procedure :: parameters
-    procedure :: take_friction
-    procedure :: take_contact
     procedure :: build
     procedure :: most_friction
   end type guide_case_t
@@ -56,28 +54,6 @@ contains
       default='0.0')
     call list%add('exponent', self%exponent, 'exponent of the penetration', range='>= 1', default='1.0')
   end subroutine parameters
-
-  !> Allocate the friction law that the case names.
-  subroutine take_friction(self, law)
-    class(guide_case_t), intent(inout) :: self
-    class(law_t), allocatable, intent(in) :: law
-    if (.not. allocated(law)) return
-    select type (law)
-    class is (friction_law_t)
-      allocate (self%friction, source=law)
-    end select
-  end subroutine take_friction
-
-  !> Allocate the contact law that the case names.
-  subroutine take_contact(self, law)
-    class(guide_case_t), intent(inout) :: self
-    class(law_t), allocatable, intent(in) :: law
-    if (.not. allocated(law)) return
-    select type (law)
-    class is (contact_law_t)
-      allocate (self%contact, source=law)
-    end select
-  end subroutine take_contact
 
   !> Largest ratio of friction to normal force [-] at sliding speeds up to a given one [m/s], within 2 %: the law is evaluated at
   !> speeds that differ by a tenth.

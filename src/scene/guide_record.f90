@@ -203,21 +203,9 @@ contains
     type(evaluation_t), intent(in) :: now
     type(run_figures_t), intent(inout) :: figures
     type(trace_event_t), intent(out) :: event
-    associate (contact => self%contact(i))
-      contact%kind = kind
-      if (kind == event_contact_begins) then
-        figures%corner(i)%contacts = figures%corner(i)%contacts + 1
-        contact%duration = 0
-        contact%max_penetration = 0
-        contact%max_normal_force = 0
-      else
-        contact%duration = t - contact%time
-      end if
-      contact%time = t
-      contact%crank_angle = now%motion%crank_angle
-      contact%normal_speed = now%guide%corner(i)%depth_rate
-      event = contact
-    end associate
+    if (kind == event_contact_begins) figures%corner(i)%contacts = figures%corner(i)%contacts + 1
+    call self%contact(i)%change(kind, kind == event_contact_begins, t, now%motion%crank_angle, now%guide%corner(i)%depth_rate)
+    event = self%contact(i)
   end subroutine take_contact
 
   !> Write the results so far to an archive, or read them from it.

@@ -214,13 +214,8 @@ contains
       call find_passage(method, problem, self%target, self%direction, method%t_old, t_to, 0.0_dp, self%t, self%y)
       self%is_there = .true.
       self%wants_to_stop = .true.
-      call keep(problem, self%kept)
+      if (allocated(self%kept)) deallocate (self%kept)
+      allocate (self%kept, source=problem)
     end select
   end subroutine step_taken
-
-  subroutine keep(scene, kept)
-    type(scene_t), intent(in) :: scene
-    type(scene_t), allocatable, intent(out) :: kept
-    allocate (kept, source=scene)
-  end subroutine keep
 end module lyapunov

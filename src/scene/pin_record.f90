@@ -3,7 +3,6 @@ module pin_record
   use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
   use ode_method, only: ode_method_t
-  use chain_motion, only: piston_pin
   use gudgeon_scene, only: scene_t, evaluation_t, phase_contact, event_contact_begins
   use step_peaks, only: peak_watch_t, of_pin_force, of_penetration, of_normal_force, n_peaks
   use cycle_watch, only: cycle_watch_t
@@ -14,19 +13,14 @@ module pin_record
   private
   public :: pin_record_t
 
-  type :: pin_record_t
-    integer :: pin = piston_pin                !! place of the pin in the chain
-    integer :: joint = 0                       !! index of the scene's joint at this pin; 0: the pin is ideal
+  type, extends(peak_watch_t) :: pin_record_t
     real(dp) :: validity_limit = huge(1.0_dp)  !! largest impact speed for which the contact law is valid [m/s]
     real(dp) :: deepest = huge(1.0_dp)         !! largest penetration for which the contact geometry is valid [m]
     type(trace_event_t), private :: contact    !! present or last contact
-    type(peak_watch_t), private :: peaks
     logical, private :: reports_film = .false.
     real(dp), private :: film_time = 0         !! time up to which the results of its film have been integrated [s]
   contains
     procedure, non_overridable :: prepare
-    procedure, non_overridable :: begin
-    procedure, non_overridable :: change_phase
     procedure, non_overridable :: search
     procedure, non_overridable :: take_values
     procedure, non_overridable :: take_contact
@@ -44,8 +38,6 @@ contains
     self%pin = pin
     self%joint = scene%joint_of_pin(pin)
     self%contact%pin = pin
-    self%peaks%pin = self%pin
-    self%peaks%joint = self%joint
     if (self%joint == 0) return
     self%reports_film = scene%joints(self%joint)%reports_film
     if (.not. allocated(scene%joints(self%joint)%contact)) return
@@ -54,20 +46,6 @@ contains
       self%deepest = geometry%deepest()
     end associate
   end subroutine prepare
-
-  !> Begin the run at t, where the scene has been evaluated.
-  subroutine begin(self, t, now)
-    class(pin_record_t), intent(inout) :: self
-    real(dp), intent(in) :: t
-    type(evaluation_t), intent(in) :: now
-    call self%peaks%begin(t, now)
-  end subroutine begin
-
-  !> Account for an event that changes the phase of a joint.
-  pure subroutine change_phase(self)
-    class(pin_record_t), intent(inout) :: self
-    call self%peaks%change_phase()
-  end subroutine change_phase
 
   !> Whether the joint at the pin is in contact.
   pure logical function is_touching(self, scene)
@@ -100,10 +78,10 @@ contains
       known(of_penetration) = min(known(of_penetration), self%contact%max_penetration)
       known(of_normal_force) = self%contact%max_normal_force
     end if
-    before = self%peaks%evaluations
-    call self%peaks%search(method, scene, t, now, known, largest)
-    figures%evaluations = figures%evaluations + (self%peaks%evaluations - before)
-    figures%peak_evaluations = figures%peak_evaluations + (self%peaks%evaluations - before)
+    before = self%evaluations
+    call self%search_interval(method, scene, t, now, known, largest)
+    figures%evaluations = figures%evaluations + (self%evaluations - before)
+    figures%peak_evaluations = figures%peak_evaluations + (self%evaluations - before)
     call put_values(self, touches, largest, figures, cycles)
     if (self%reports_film) call sum_film(self, method, scene, t, now, figures)
   end subroutine search
@@ -148,7 +126,7 @@ contains
     type(run_figures_t), intent(inout) :: figures
     type(cycle_watch_t), intent(inout), optional :: cycles
     type(film_figures_t) :: film
-    call put_values(self, self%is_touching(scene), self%peaks%values(now), figures, cycles)
+    call put_values(self, self%is_touching(scene), self%values(now), figures, cycles)
     if (.not. self%reports_film) return
     film = film_figures_of(scene%joints(self%joint), now%relative(self%joint), now%joint(self%joint))
     figures%pin(self%pin)%max_film_pressure = max(figures%pin(self%pin)%max_film_pressure, film%max_pressure)
@@ -184,23 +162,15 @@ contains
     type(trace_event_t), intent(out) :: event
     type(cycle_watch_t), intent(inout), optional :: cycles
 
-    associate (contact => self%contact, f => figures%pin(self%pin), relative => now%relative(self%joint))
-      contact%kind = kind
-      if (contact%kind == event_contact_begins) then
+    associate (f => figures%pin(self%pin), relative => now%relative(self%joint))
+      if (kind == event_contact_begins) then
         f%contacts = f%contacts + 1
         if (present(cycles)) call cycles%take_impact(self%pin)
         f%max_entry_penetration = max(f%max_entry_penetration, relative%penetration)
         if (relative%penetration_rate > self%validity_limit) f%impacts_beyond_validity = f%impacts_beyond_validity + 1
-        contact%duration = 0
-        contact%max_penetration = 0
-        contact%max_normal_force = 0
-      else
-        contact%duration = t - contact%time
       end if
-      contact%time = t
-      contact%crank_angle = now%motion%crank_angle
-      contact%normal_speed = relative%penetration_rate
-      event = contact
+      call self%contact%change(kind, kind == event_contact_begins, t, now%motion%crank_angle, relative%penetration_rate)
+      event = self%contact
     end associate
   end subroutine take_contact
 
@@ -209,7 +179,7 @@ contains
     class(pin_record_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
     call self%contact%exchange(archive)
-    call self%peaks%exchange(archive)
+    call self%peak_watch_t%exchange(archive)
     call archive%exchange(self%film_time)
   end subroutine exchange
 end module pin_record

@@ -41,7 +41,7 @@ module step_peaks
   contains
     procedure, non_overridable :: begin
     procedure, non_overridable :: change_phase
-    procedure, non_overridable :: search
+    procedure, non_overridable :: search_interval
     procedure, non_overridable :: values
     procedure :: exchange
   end type peak_watch_t
@@ -114,7 +114,7 @@ contains
   !> Search the last step of the method, from the end of the last interval or from the beginning of the step to t_to, for values
   !> above `known`. `largest` is the largest value found in the interval, including its end. Most intervals are finished after a few
   !> comparisons, without copies or calls.
-  subroutine search(self, method, scene, t_to, now, known, largest)
+  subroutine search_interval(self, method, scene, t_to, now, known, largest)
     class(peak_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
@@ -154,7 +154,7 @@ contains
       if (may_exceed(self, i, t_to, ends(i), known(i))) &
         call find_force_peak(self, method, scene, i, t_to, ends(i), known(i), largest(i))
     end subroutine search_force
-  end subroutine search
+  end subroutine search_interval
 
   !> Find the quantities at the beginning of the step, after a change of phase. In free flight there is no force, and at the
   !> beginning of a contact nearly none: the scene is then not evaluated.

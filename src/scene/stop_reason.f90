@@ -4,7 +4,7 @@ module stop_reason
   use gudgeon_constants, only: degree
   use ode_method, only: ode_settings_t, step_too_small, tolerance_too_small, start_outside, left_domain
   use gudgeon_solver, only: step_limit_reached, integration_interrupted, chattering, evaluation_limit_reached, unreadable_archive
-  use gudgeon_scene, only: scene_t, evaluation_t
+  use gudgeon_scene, only: scene_t, evaluation_t, phase_free
   use chain_motion, only: crank_pin, piston_pin
   implicit none
   private
@@ -183,13 +183,11 @@ contains
     call scene%evaluate(t, y, now, inside)
     write (figures, '(a,es15.8,a,f0.4,a)') 't =', t, ' s, crank angle ', now%motion%crank_angle/degree, ' deg'
     text = trim(figures)//', phase '
-    if (has_plain_names(scene)) then
-      text = text//trim(phase_names(scene%phase_at(piston_pin)))
-      return
-    end if
+    if (scene%n_joints == 0) text = text//trim(phase_names(phase_free))
     do i = 1, scene%n_joints
       if (i > 1) text = text//', '
-      text = text//trim(phase_names(scene%joints(i)%phase))//' at the '//joint_name(scene, i)
+      text = text//trim(phase_names(scene%joints(i)%phase))
+      if (.not. has_plain_names(scene)) text = text//' at the '//joint_name(scene, i)
     end do
   end function place
 end module stop_reason

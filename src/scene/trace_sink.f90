@@ -23,6 +23,7 @@ module trace_sink
     real(dp) :: max_normal_force = 0       !! largest normal force during it [N]
     integer :: pin = piston_pin            !! index of the place in `joint_names`
   contains
+    procedure :: change
     procedure :: exchange
   end type trace_event_t
 
@@ -42,7 +43,26 @@ module trace_sink
 
 contains
 
-  !> Write the state of the sink to an archive, or read it from it.
+  !> A contact begins or ends at this place.
+  pure subroutine change(self, kind, begins, time, crank_angle, normal_speed)
+    class(trace_event_t), intent(inout) :: self   !! present or last contact of the place
+    integer, intent(in) :: kind
+    logical, intent(in) :: begins
+    real(dp), intent(in) :: time, crank_angle, normal_speed
+    if (begins) then
+      self%duration = 0
+      self%max_penetration = 0
+      self%max_normal_force = 0
+    else
+      self%duration = time - self%time
+    end if
+    self%kind = kind
+    self%time = time
+    self%crank_angle = crank_angle
+    self%normal_speed = normal_speed
+  end subroutine change
+
+  !> Write the event to an archive, or read it from it.
   subroutine exchange(self, archive)
     class(trace_event_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
