@@ -319,11 +319,8 @@ contains
     type(archive_t), intent(inout) :: archive
     integer :: i
     call archive%exchange(self%half_length)
-    call archive%exchange(self%cavitation)
-    call archive%exchange(self%film_points)
-    call archive%exchange(self%points)
-    call archive%exchange(self%largest_error)
-    call archive%exchange(self%mean_error)
+    call archive%exchange(self%cavitation, self%film_points, self%points)
+    call archive%exchange(self%largest_error, self%mean_error)
     if (archive%failed .or. self%points < 8) return
     self%per_tau = (self%points - 1)/tau_of(last_gap)
     self%per_chi = (self%points - 1)/pi

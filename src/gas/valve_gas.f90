@@ -148,11 +148,7 @@ contains
     class(valve_gas_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
     call archive%exchange(self%state)
-    call archive%exchange(self%held_pressure)
-    call archive%exchange(self%held_volume)
-    call archive%exchange(self%discharge_volume)
-    call archive%exchange(self%suction_volume)
-    call archive%exchange(self%sense)
-    call archive%exchange(self%dead_centre)
+    call archive%exchange(self%held_pressure, self%held_volume, self%discharge_volume, self%suction_volume, self%sense, &
+      self%dead_centre)
   end subroutine exchange
 end module valve_gas

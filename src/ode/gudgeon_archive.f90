@@ -131,22 +131,28 @@ contains
     end do
   end subroutine exchange_matrix
 
-  subroutine exchange_real(self, value)
+  !> One number or several, each as an entry of its own.
+  recursive subroutine exchange_real(self, value, b, c, d, e, f)
     class(archive_t), intent(inout) :: self
     real(dp), intent(inout) :: value
+    real(dp), intent(inout), optional :: b, c, d, e, f
     real(dp) :: values(1)
     values = value
     call self%exchange(values)
     value = values(1)
+    if (present(b)) call self%exchange(b, c, d, e, f)
   end subroutine exchange_real
 
-  subroutine exchange_integer(self, value)
+  !> One number or several, each as an entry of its own.
+  recursive subroutine exchange_integer(self, value, b, c)
     class(archive_t), intent(inout) :: self
     integer, intent(inout) :: value
+    integer, intent(inout), optional :: b, c
     integer :: values(1)
     values = value
     call self%exchange(values)
     value = values(1)
+    if (present(b)) call self%exchange(b, c)
   end subroutine exchange_integer
 
   subroutine exchange_logicals(self, values)

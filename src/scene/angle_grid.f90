@@ -108,7 +108,6 @@ contains
   subroutine exchange(self, archive)
     class(angle_grid_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
-    call archive%exchange(self%last)
-    call archive%exchange(self%side)
+    call archive%exchange(self%last, self%side)
   end subroutine exchange
 end module angle_grid

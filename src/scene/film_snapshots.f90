@@ -138,8 +138,7 @@ contains
     class(film_snapshots_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
     integer :: i
-    call archive%exchange(self%next)
-    call archive%exchange(self%n)
+    call archive%exchange(self%next, self%n)
     if (archive%failed .or. self%n > size(self%kept, 2)) return
     do i = 1, self%n
       call archive%exchange(self%kept(:, i))

@@ -442,17 +442,14 @@ contains
     end do
     call self%guide%exchange(archive)
     if (allocated(self%films)) call self%films%exchange(archive)
-    call archive%exchange(self%initial_energy)
-    call archive%exchange(self%start_angle)
+    call archive%exchange(self%initial_energy, self%start_angle)
     call archive%exchange(self%next_row)
     call self%angles%exchange(archive)
     call self%periods%exchange(archive)
     call self%patience%exchange(archive)
     call archive%exchange(self%first_sample)
-    call archive%exchange(self%steps)
-    call archive%exchange(self%evaluations_then)
-    call archive%exchange(self%time_then)
-    call archive%exchange(self%angle_then)
+    call archive%exchange(self%steps, self%evaluations_then)
+    call archive%exchange(self%time_then, self%angle_then)
   end subroutine exchange_recorder
 
   !> Hand the state of the run to the sink.

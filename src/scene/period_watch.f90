@@ -202,13 +202,10 @@ contains
     class(period_watch_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
     if (.not. self%is_on) return
-    call archive%exchange(self%period)
-    call archive%exchange(self%found_after)
-    call archive%exchange(self%difference)
-    call archive%exchange(self%duration)
+    call archive%exchange(self%period, self%found_after)
+    call archive%exchange(self%difference, self%duration)
     call archive%exchange(self%window_after)
-    call archive%exchange(self%window_start)
-    call archive%exchange(self%t)
+    call archive%exchange(self%window_start, self%t)
     call archive%exchange(self%made)
     call archive%exchange(self%states)
     call archive%exchange(self%low)

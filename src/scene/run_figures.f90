@@ -43,8 +43,6 @@ module run_figures
     real(dp) :: bending_frequency = 0         !! of the rod between two fixed pins [rad/s]
     real(dp) :: axial_frequency = 0           !! of the axial vibration of the rod with the piston [rad/s]
     real(dp) :: twist_frequency = 0           !! of the crankshaft at the starting angle [rad/s]
-  contains
-    procedure :: exchange => exchange_elastic
   end type elastic_figures_t
 
   type :: run_figures_t
@@ -73,44 +71,22 @@ contains
     end do
     do i = 1, n_corners
       call archive%exchange(self%corner(i)%contacts)
-      call archive%exchange(self%corner(i)%contact_time)
-      call archive%exchange(self%corner(i)%max_penetration)
-      call archive%exchange(self%corner(i)%max_force)
+      call archive%exchange(self%corner(i)%contact_time, self%corner(i)%max_penetration, self%corner(i)%max_force)
     end do
-    call self%elastic%exchange(archive)
-    call archive%exchange(self%evaluations)
-    call archive%exchange(self%peak_evaluations)
-    call archive%exchange(self%max_energy)
-    call archive%exchange(self%max_energy_residual)
-    call archive%exchange(self%crank_travel)
-    call archive%exchange(self%time)
+    associate (e => self%elastic)   ! the frequencies are known at the beginning
+      call archive%exchange(e%mid_deflection, e%stretch, e%strain_energy, e%twist)
+    end associate
+    call archive%exchange(self%evaluations, self%peak_evaluations)
+    call archive%exchange(self%max_energy, self%max_energy_residual, self%crank_travel, self%time)
   end subroutine exchange_figures
-
-  !> Write the results of elastic members, except those known at the beginning, to an archive, or read them from it.
-  subroutine exchange_elastic(self, archive)
-    class(elastic_figures_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    call archive%exchange(self%mid_deflection)
-    call archive%exchange(self%stretch)
-    call archive%exchange(self%strain_energy)
-    call archive%exchange(self%twist)
-  end subroutine exchange_elastic
 
   !> Write the results at a pin to an archive, or read them from it.
   subroutine exchange_pin(self, archive)
     class(pin_figures_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
-    call archive%exchange(self%contacts)
-    call archive%exchange(self%impacts_beyond_validity)
-    call archive%exchange(self%contacts_beyond_validity)
-    call archive%exchange(self%contact_time)
-    call archive%exchange(self%max_penetration)
-    call archive%exchange(self%max_entry_penetration)
-    call archive%exchange(self%max_force)
-    call archive%exchange(self%min_film_thickness)
-    call archive%exchange(self%friction_work)
-    call archive%exchange(self%film_energy_lost)
-    call archive%exchange(self%film_volume)
-    call archive%exchange(self%max_film_pressure)
+    call archive%exchange(self%contacts, self%impacts_beyond_validity, self%contacts_beyond_validity)
+    call archive%exchange(self%contact_time, self%max_penetration, self%max_entry_penetration, self%max_force, &
+      self%min_film_thickness, self%friction_work)
+    call archive%exchange(self%film_energy_lost, self%film_volume, self%max_film_pressure)
   end subroutine exchange_pin
 end module run_figures

@@ -67,12 +67,8 @@ contains
     class(trace_event_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
     call archive%exchange(self%kind)
-    call archive%exchange(self%time)
-    call archive%exchange(self%crank_angle)
-    call archive%exchange(self%normal_speed)
-    call archive%exchange(self%duration)
-    call archive%exchange(self%max_penetration)
-    call archive%exchange(self%max_normal_force)
+    call archive%exchange(self%time, self%crank_angle, self%normal_speed, self%duration, self%max_penetration, &
+      self%max_normal_force)
     call archive%exchange(self%pin)
   end subroutine exchange
 
