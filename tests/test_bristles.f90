@@ -56,7 +56,7 @@ contains
     real(dp), parameter :: tolerance = 1e-12_dp
     call new_method(method_name, method, error)
     method%settings%relative = [tolerance, 0.0_dp]
-    method%settings%absolute = tolerance*[law%state_scale(), 0.15_dp*law%state_scale()]
+    method%settings%absolute = tolerance*[law%state_scale, 0.15_dp*law%state_scale]
     method%settings%span = span
   end subroutine prepare
 
@@ -93,7 +93,7 @@ contains
           if (row == 51) work = -y(2)
           if (row == 91) work = work + y(2)
         end do
-        off = off/[law%state_scale(), 0.15_dp, maxval(abs(table(first + 2, :)))]
+        off = off/[law%state_scale, 0.15_dp, maxval(abs(table(first + 2, :)))]
         call check%close_to(maxval(off), 0.0_dp, 2e-8_dp, trim(table_name)//' of '//trim(names(i))//' by '//methods(j))
         call check%that(work < 0, 'work of a closed cycle is negative: '//names(i)//table_name)
         if (abs(cycle_work(i)) > 0) call check%relative(work, cycle_work(i), 1e-4_dp, &
@@ -223,7 +223,7 @@ contains
       call friction_law_of(trim(keys(i)), law, error)
       call check%that(.not. allocated(error), 'bristles at the ends of the ranges')
       if (allocated(error)) cycle
-      bound = law%state_scale()
+      bound = law%state_scale
       do j = -30, 4
         v = 10.0_dp**j
         call law%state_friction(v, [bound], ratio, rates)

@@ -138,7 +138,7 @@ contains
     call check%that(rows == 21, 'the table of conformal contact has 21 rows')
     call law%geometry%put_columns(0.0_dp, 0.0_dp, row)
     call check%that(abs(row%values(5)) + abs(row%values(6)) <= 0, 'without contact there is neither arc nor pressure')
-    call check%that(law%geometry%deepest() > 15*c .and. law%geometry%deepest() < 50*c, 'the fit ends beyond 83 degrees')
+    call check%that(law%geometry%deepest > 15*c .and. law%geometry%deepest < 50*c, 'the fit ends beyond 83 degrees')
   end subroutine conformal_arc_and_pressure
 
   !> The derivative agrees with finite differences, the energy is the integral of the force, and a force multiplied by a factor has
@@ -178,7 +178,7 @@ contains
     real(dp) :: below, above
     call new_law(check, "geometry='johnson'", law)
     associate (geometry => law%geometry)
-      call check%relative(geometry%deepest(), last, 1e-15_dp, 'the law holds up to 0.3 c')
+      call check%relative(geometry%deepest, last, 1e-15_dp, 'the law holds up to 0.3 c')
       call check%relative(geometry%elastic_force(last), 12807.3566219_dp, 1e-11_dp, 'force at the end of the law')
       below = geometry%elastic_force(last*(1 - tiny_step))
       above = geometry%elastic_force(last*(1 + tiny_step))
@@ -234,8 +234,8 @@ contains
     call new_law(check, trim(geometries(7)), of_liner)
     call check%relative(of_liner%geometry%elastic_force(1e-6_dp)/law%geometry%elastic_force(1e-6_dp), &
       3e9_dp*0.65_dp/(1.35_dp*0.3_dp*0.5e-3_dp)/k, 1e-14_dp, 'foundation modulus of a liner')
-    call check%relative(of_liner%geometry%deepest(), 0.5e-3_dp, 1e-15_dp, 'the law of a liner holds up to its thickness')
-    call check%that(law%geometry%deepest() > 1e300_dp, 'a foundation has no limit')
+    call check%relative(of_liner%geometry%deepest, 0.5e-3_dp, 1e-15_dp, 'the law of a liner holds up to its thickness')
+    call check%that(law%geometry%deepest > 1e300_dp, 'a foundation has no limit')
   end subroutine winkler_by_quadrature
 
   !> The two branches of the exponent meet at c = 0.34954 mm.

@@ -53,7 +53,7 @@ contains
     call new_method(method_name, method, error)
     allocate (method%settings%relative(belt%n), method%settings%absolute(belt%n), source=tolerance)
     method%settings%relative(belt%n) = 0
-    if (law%n_states > 0) method%settings%absolute(3) = tolerance*law%state_scale()
+    if (law%n_states > 0) method%settings%absolute(3) = tolerance*law%state_scale
     method%settings%span = 40
   end subroutine prepare
 

@@ -27,7 +27,6 @@ module conformal
     procedure :: prepare
     procedure :: elastic_force
     procedure :: slope
-    procedure :: deepest
     procedure :: put_columns
   end type conformal_t
 
@@ -51,9 +50,12 @@ contains
   subroutine prepare(self, bearing)
     class(conformal_t), intent(inout) :: self
     type(bearing_t), intent(in) :: bearing
+    real(dp) :: d, d_slope
     self%clearance = bearing%clearance
     self%modulus = pi*self%contact_modulus()*bearing%length
     self%area = bearing%length*bearing%radius
+    call depth(load_of_arc(widest), self%compliance, d, d_slope)   ! at the end of the fit
+    self%deepest = d*self%clearance
   end subroutine prepare
 
   pure function elastic_force(self, penetration) result(force)
@@ -114,14 +116,6 @@ contains
     d = x*p
     d_slope = p + (y*p_slope - 1)/(1 + x)
   end subroutine depth
-
-  !> Penetration at the end of the fit [m].
-  pure real(dp) function deepest(self)
-    class(conformal_t), intent(in) :: self
-    real(dp) :: d, d_slope
-    call depth(load_of_arc(widest), self%compliance, d, d_slope)
-    deepest = d*self%clearance
-  end function deepest
 
   !> Persson's relation (1964) between load and contact half-angle a, b = tan(a/2), with the modulus of one body.
   pure real(dp) function load_of_arc(b) result(x)

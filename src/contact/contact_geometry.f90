@@ -14,13 +14,13 @@ module contact_geometry
     real(dp) :: poissons_ratio(2) = 0   !! of pin and bearing [-]
     real(dp) :: density(2) = 0          !! of pin and bearing [kg/m^3]
     real(dp) :: three_halves = 0        !! K [N/m^1.5] if the force is K delta^1.5, set by `prepare`; otherwise 0
+    real(dp) :: deepest = huge(1.0_dp)  !! largest penetration for which the geometry is valid [m]; `prepare` may set a limit
   contains
     procedure :: parameters => material_parameters
     procedure(prepare), deferred :: prepare
     procedure(elastic_force), deferred :: elastic_force
     procedure(slope), deferred :: slope
     procedure :: elastic_energy => integral_of_force
-    procedure :: deepest => any_depth
     procedure, nopass :: needs_length => needs_it
     procedure :: bearing_conflict => fits_every_bearing
     procedure :: put_columns => no_columns
@@ -93,14 +93,6 @@ contains
       share = penetration*root*self%elastic_force(penetration*root**2)
     end function share
   end function integral_of_force
-
-  !> Largest penetration for which the geometry is valid [m]. The default is no limit.
-  pure real(dp) function any_depth(self)
-    class(contact_geometry_t), intent(in) :: self
-    associate (unused => self)
-    end associate
-    any_depth = huge(any_depth)
-  end function any_depth
 
   !> Whether the force is proportional to the length of the bearing. The default is yes.
   pure logical function needs_it()

@@ -21,7 +21,6 @@ module johnson
     procedure :: elastic_force
     procedure :: slope
     procedure :: elastic_energy
-    procedure :: deepest
   end type johnson_t
 
   real(dp), parameter :: last = 0.3_dp   !! largest D for which the law is used
@@ -34,6 +33,7 @@ contains
     self%clearance = bearing%clearance
     self%modulus = pi*self%contact_modulus()*bearing%length
     self%last_v = log_term(last)
+    self%deepest = last*self%clearance   ! there the linear part begins
   end subroutine prepare
 
   !> v = ln(4/x) - 1 = D/x, > 1: the root of v - ln v = -ln(e D/4), which is -W(-(e/4) D) with the lower branch of Lambert's
@@ -55,10 +55,10 @@ contains
     class(johnson_t), intent(in) :: self
     real(dp), value, intent(in) :: penetration
     real(dp) :: force
-    if (penetration <= self%deepest()) then
+    if (penetration <= self%deepest) then
       force = self%modulus*penetration/log_term(penetration/self%clearance)
     else
-      force = self%modulus*(self%deepest()/self%last_v + (penetration - self%deepest())/(self%last_v - 1))
+      force = self%modulus*(self%deepest/self%last_v + (penetration - self%deepest)/(self%last_v - 1))
     end if
   end function elastic_force
 
@@ -67,7 +67,7 @@ contains
     class(johnson_t), intent(in) :: self
     real(dp), intent(in) :: penetration, force
     real(dp) :: slope, v
-    if (penetration <= self%deepest()) then
+    if (penetration <= self%deepest) then
       v = log_term(penetration/self%clearance)
       slope = force/penetration*(v/(v - 1))
     else
@@ -80,16 +80,10 @@ contains
     class(johnson_t), intent(in) :: self
     real(dp), intent(in) :: penetration
     real(dp) :: depth, v
-    depth = min(penetration, self%deepest())
+    depth = min(penetration, self%deepest)
     v = log_term(depth/self%clearance)
     energy = self%modulus*(depth/v)**2*(v/2 - 0.25_dp)
     if (penetration > depth) energy = energy + (penetration - depth)*(self%elastic_force(depth) &
       + self%elastic_force(penetration))/2
   end function elastic_energy
-
-  !> Penetration at which the linear part begins [m].
-  pure real(dp) function deepest(self)
-    class(johnson_t), intent(in) :: self
-    deepest = last*self%clearance
-  end function deepest
 end module johnson

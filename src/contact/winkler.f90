@@ -23,7 +23,6 @@ module winkler
     procedure :: elastic_force
     procedure :: slope
     procedure :: elastic_energy
-    procedure :: deepest
   end type winkler_t
 
 contains
@@ -72,6 +71,7 @@ contains
     end associate
     self%clearance = bearing%clearance
     self%bedding = k*bearing%radius*bearing%length
+    if (self%liner_thickness > 0) self%deepest = self%liner_thickness
   end subroutine prepare
 
   !> tan a = sqrt(D (2 + D)).
@@ -130,11 +130,4 @@ contains
     end if
     energy = energy*self%bedding*self%clearance**2
   end function elastic_energy
-
-  !> The liner's thickness [m].
-  pure real(dp) function deepest(self)
-    class(winkler_t), intent(in) :: self
-    deepest = huge(deepest)
-    if (self%liner_thickness > 0) deepest = self%liner_thickness
-  end function deepest
 end module winkler

@@ -1,5 +1,5 @@
-!> The lubricating films that a case can name. A new law needs a `use` line and a line with its name below. Types with the same name
-!> are variants of one law.
+!> The lubricating films that a case can name. A new law needs a `use` line and a line with its name below. A type that
+!> implements one variant of a law comes before that of the others.
 module films
   use gudgeon_parameters, only: parameter_list_t
   use pinkus_sternlicht, only: pinkus_sternlicht_t
@@ -16,10 +16,10 @@ contains
   !> Declare all laws to a visitor, in the order of the template.
   subroutine offer_film_laws(list)
     class(parameter_list_t), intent(inout) :: list
+    call list%law('pinkus_sternlicht', half_film_t(), variant='half_film')
     call list%law('pinkus_sternlicht', pinkus_sternlicht_t())
-    call list%law('pinkus_sternlicht', half_film_t())
     call list%law('oscillating_film', oscillating_film_t())
+    call list%law('finite_bearing', short_bearing_t(), variant='short')
     call list%law('finite_bearing', finite_bearing_t())
-    call list%law('finite_bearing', short_bearing_t())
   end subroutine offer_film_laws
 end module films

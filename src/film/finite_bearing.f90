@@ -28,7 +28,6 @@ module finite_bearing
     real(dp) :: pin_radius = 0       !! R [m]
     integer :: condition = 0         !! the cavitation condition, one of the constants of finite_film
   contains
-    procedure :: serves
     procedure :: conflict
     procedure :: parameters
     procedure :: prepare
@@ -47,15 +46,6 @@ module finite_bearing
   end type finite_bearing_t
 
 contains
-
-  !> True for all variants except the short bearing, which is short_bearing_t.
-  pure logical function serves(self, variant)
-    class(finite_bearing_t), intent(in) :: self
-    character(len=*), intent(in) :: variant
-    associate (unused => self)
-    end associate
-    serves = variant /= 'short'
-  end function serves
 
   subroutine parameters(self, list)
     class(finite_bearing_t), intent(inout) :: self

@@ -15,20 +15,11 @@ module half_film
   !> The variant `half_film` of the law of its parent.
   type, extends(pinkus_sternlicht_t) :: half_film_t
   contains
-    procedure :: serves
     procedure :: film_force
     procedure :: force_derivatives
   end type half_film_t
 
 contains
-
-  pure logical function serves(self, variant)
-    class(half_film_t), intent(in) :: self
-    character(len=*), intent(in) :: variant
-    associate (unused => self)
-    end associate
-    serves = variant == 'half_film'
-  end function serves
 
   !> Force of the positive pressure. With the angle a from the thickest film, z = exp(i a), u = 1 + eps cos a = h/c, A = eps W/2,
   !> B = eps_dot and V^2 = A^2 + B^2, the pressure is 6 mu (R/c)^2 Im[(A - iB)(4z + eps z^2)]/((2 + eps^2) u^2). It is positive on

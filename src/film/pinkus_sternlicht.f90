@@ -28,7 +28,6 @@ module pinkus_sternlicht
     real(dp) :: pressure_scale = 0   !! mu R^2/c^2 [Pa s], R of the pin
     real(dp) :: withdrawal_sign = 1  !! factor of the radial force for eps_dot < 0: 1 corrected, -1 as printed
   contains
-    procedure :: serves
     procedure :: parameters
     procedure :: prepare
     procedure :: film_force
@@ -39,15 +38,6 @@ module pinkus_sternlicht
   end type pinkus_sternlicht_t
 
 contains
-
-  !> True for all variants except the half film, which is half_film_t.
-  pure logical function serves(self, variant)
-    class(pinkus_sternlicht_t), intent(in) :: self
-    character(len=*), intent(in) :: variant
-    associate (unused => self)
-    end associate
-    serves = variant /= 'half_film'
-  end function serves
 
   subroutine parameters(self, list)
     class(pinkus_sternlicht_t), intent(inout) :: self

@@ -12,7 +12,6 @@ module short_bearing
   !> The variant `short` of the law of its parent.
   type, extends(finite_bearing_t) :: short_bearing_t
   contains
-    procedure :: serves
     procedure :: conflict
     procedure :: reduced_force
     procedure :: reduced_peak_and_flow
@@ -20,14 +19,6 @@ module short_bearing
   end type short_bearing_t
 
 contains
-
-  pure logical function serves(self, variant)
-    class(short_bearing_t), intent(in) :: self
-    character(len=*), intent(in) :: variant
-    associate (unused => self)
-    end associate
-    serves = variant == 'short'
-  end function serves
 
   !> Report a condition of cavitation: the short bearing always uses the positive part of the pressure.
   pure subroutine conflict(self, key, wanted)

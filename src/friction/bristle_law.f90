@@ -26,7 +26,6 @@ module bristle_law
     procedure :: conflict
     procedure :: touch_down_limit
     procedure :: prepare
-    procedure :: state_scale
     procedure :: friction_ratio
     procedure :: friction_ratio_slope
     procedure :: state_friction
@@ -113,13 +112,8 @@ contains
     class(bristle_law_t), intent(inout) :: self
     self%n_states = 1
     call self%find_static_part()
+    self%state_scale = (self%coefficient + self%static_part)/self%bristle_stiffness   ! deflection at the beginning of sliding
   end subroutine prepare
-
-  !> Deflection at the beginning of sliding [m].
-  pure real(dp) function state_scale(self)
-    class(bristle_law_t), intent(in) :: self
-    state_scale = (self%coefficient + self%static_part)/self%bristle_stiffness
-  end function state_scale
 
   !> g(v) = c_f + (c_s - c_f) exp(-(v/v_s)^2) [-] and its derivative [s/m]: the friction of steady sliding without the viscous part.
   pure subroutine steady_sliding(self, v, g, slope)

@@ -16,13 +16,13 @@ module friction_law
     logical :: set_valued = .false.  !! the law is discontinuous at zero sliding speed: the scene must determine whether the
                                      !! surfaces stick
     integer :: n_states = 0           !! number of states, 0 to most_friction_states; set by `prepare`
+    real(dp) :: state_scale = 1       !! natural size of the states, for the error control; set by `prepare`
   contains
     procedure :: prepare => nothing_to_prepare
     procedure(friction_ratio), deferred :: friction_ratio
     procedure :: friction_ratio_slope
     procedure :: holding_ratio
     procedure :: touch_down_limit => no_limit
-    procedure :: state_scale => unit_scale
     procedure :: state_friction => steady_friction
     procedure :: state_slopes => steady_slopes
     procedure :: put_columns => no_columns
@@ -74,14 +74,6 @@ contains
     end associate
     no_limit = huge(no_limit)
   end function no_limit
-
-  !> Natural size of the states, for the error control. The default is for laws without states.
-  pure real(dp) function unit_scale(self)
-    class(friction_law_t), intent(in) :: self
-    associate (unused_self => self)
-    end associate
-    unit_scale = 1
-  end function unit_scale
 
   !> Friction force divided by the normal force [-], with the sign of `friction_ratio`, for a law with states, and the rates of the
   !> states. The default is for laws without states.

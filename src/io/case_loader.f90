@@ -102,17 +102,16 @@ contains
   end subroutine load_choice
 
   !> Allocate a law if the case names it.
-  subroutine load_law(self, name, law)
+  subroutine load_law(self, name, law, variant)
     class(loader_t), intent(inout) :: self
     character(len=*), intent(in) :: name
     class(law_t), intent(in) :: law
+    character(len=*), intent(in), optional :: variant
     character(len=:), allocatable :: key, wanted
-    integer :: variant
     if (.not. (self%sets .and. self%is_present) .or. allocated(self%chosen)) return
     if (name /= self%law_name) return
-    variant = self%place_of('variant')
-    if (variant > 0) then
-      if (.not. law%serves(self%values%values(variant)%text)) return
+    if (present(variant)) then
+      if (self%values%values(self%place_of('variant'))%text /= variant) return
     end if
     allocate (self%chosen, source=law)
     self%chosen%name = name

@@ -149,11 +149,14 @@ contains
   end subroutine collect_choice
 
   !> Add the name of a law to the words of its choice, and collect its keys.
-  subroutine collect_law(self, name, law)
+  subroutine collect_law(self, name, law, variant)
     class(schema_t), intent(inout) :: self
     character(len=*), intent(in) :: name
     class(law_t), intent(in) :: law
+    character(len=*), intent(in), optional :: variant
     class(law_t), allocatable :: copy
+    associate (unused => present(variant))
+    end associate
     self%law_name = name
     call add_word(self%keys(self%present_choice)%words, self%law_name)
     allocate (copy, source=law)

@@ -146,7 +146,7 @@ contains
     self%n_friction_states = self%friction%n_states
     self%has_own_rates = self%n_friction_states > 0 .or. self%reports_friction_work
     if (self%n_friction_states > 0) &
-      call layout%claim_states(self%n_friction_states, self%friction%state_scale(), self%friction_states)
+      call layout%claim_states(self%n_friction_states, self%friction%state_scale, self%friction_states)
     if (self%has_own_rates) call layout%claim_quadratures(1, 0.0_dp, self%friction_work)
   end subroutine claim
 

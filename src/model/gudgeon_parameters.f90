@@ -62,7 +62,6 @@ module gudgeon_parameters
   type, abstract, extends(has_parameters_t) :: law_t
     character(len=24) :: name = ''   !! in a case; set when a case selects the law
   contains
-    procedure :: serves => serves_every_variant
     procedure :: conflict => no_conflict
   end type law_t
 
@@ -109,12 +108,14 @@ contains
     end associate
   end subroutine pass_choice
 
-  !> A law that can be selected by the last choice under this name, with arbitrary values of its parameters.
-  subroutine pass_law(self, name, law)
+  !> A law that can be selected by the last choice under this name, with arbitrary values of its parameters. If only one `variant`
+  !> of that law is implemented by this type, it comes before the type of the others.
+  subroutine pass_law(self, name, law, variant)
     class(parameter_list_t), intent(inout) :: self
     character(len=*), intent(in) :: name
     class(law_t), intent(in) :: law
-    associate (unused => self, unused_name => name, unused_law => law)
+    character(len=*), intent(in), optional :: variant
+    associate (unused => self, unused_name => name, unused_law => law, unused_variant => present(variant))
     end associate
   end subroutine pass_law
 
@@ -225,16 +226,6 @@ contains
     if (present(default)) key%default = default
     if (present(example)) key%example = example
   end function described
-
-  !> Whether this type implements a variant of the law of its name; an empty text is the default variant. Two types may share a name
-  !> and implement different variants. The default is a law without variants.
-  pure logical function serves_every_variant(self, variant)
-    class(law_t), intent(in) :: self
-    character(len=*), intent(in) :: variant
-    associate (unused_self => self, unused_variant => variant)
-    end associate
-    serves_every_variant = .true.
-  end function serves_every_variant
 
   !> Find a contradiction between the parameters: the key of the wrong one, and what is required of it. An empty key means that
   !> there is none, which is the default.

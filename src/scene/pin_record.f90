@@ -43,7 +43,7 @@ contains
     if (.not. allocated(scene%joints(self%joint)%contact)) return
     associate (geometry => scene%joints(self%joint)%contact%geometry)
       self%validity_limit = geometry%fastest_impact()
-      self%deepest = geometry%deepest()
+      self%deepest = geometry%deepest
     end associate
   end subroutine prepare
 
