@@ -5,16 +5,10 @@ module guide_events
   use piston_guide, only: piston_guide_t, corner_t, n_corners
   implicit none
   private
-  public :: n_guide_events, corner_events, change_contact, begin_corner_contact, contact_is_rough, rough_corner_end, &
+  public :: corner_events, change_contact, begin_corner_contact, contact_is_rough, rough_corner_end, &
     inward_acceleration
 
 contains
-
-  !> Number of event functions of the guide: one for each corner, or none for an ideal guide.
-  pure integer function n_guide_events(guide)
-    type(piston_guide_t), intent(in) :: guide
-    n_guide_events = merge(n_corners, 0, guide%is_loose)
-  end function n_guide_events
 
   !> Event functions and their rates: the penetration of a corner [m] while it is not in contact, and minus the penetration while it
   !> is.

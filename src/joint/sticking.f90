@@ -36,7 +36,9 @@ contains
     end do
     do k = 1, size(joints)
       if (.not. own(k)%sticks) cycle
-      unit(k) = unit_friction(joints(k), relative(k))
+      unit(k) = unloaded   ! but a friction force of 1 N
+      unit(k)%force(:, joints(k)%place) = [-relative(k)%normal(2), relative(k)%normal(1)]
+      unit(k)%moment(joints(k)%place) = joints(k)%pin_radius
       call chain%response(motion, unit(k), change(k), moment(k))
       wanted(k) = -sliding_acceleration(joints(k)%place, joints(k)%bearing_turns, joints(k)%pin_radius, relative(k), &
         accelerations, at_rest=.false.)
@@ -64,14 +66,4 @@ contains
     end do
     if (.not. chain%is_loose(piston_pin)) call chain%complete_loads(motion, accelerations, loads)
   end subroutine hold_surfaces
-
-  !> Loads of a friction force of 1 N on one journal.
-  pure function unit_friction(joint, relative) result(loads)
-    type(clearance_joint_t), intent(in) :: joint
-    type(joint_motion_t), intent(in) :: relative
-    type(loads_t) :: loads
-    loads = unloaded
-    loads%force(:, joint%place) = [-relative%normal(2), relative%normal(1)]
-    loads%moment(joint%place) = joint%pin_radius
-  end function unit_friction
 end module sticking

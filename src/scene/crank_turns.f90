@@ -63,15 +63,9 @@ contains
     made = abs(crank_angle - self%start_angle)/two_pi
   end function made
 
-  !> Angle by which a crank at rest must move before its sense of rotation is known [rad].
-  pure real(dp) function way_out(self)
-    class(crank_turns_t), intent(in) :: self
-    way_out = min(degree, 0.5_dp*two_pi*self%wanted)
-  end function way_out
-
-  !> Event functions of a free crank: it has reached the end of the run (or, from rest, has left its start), and it turns back. The
-  !> rate of the second would need an evaluation of the scene. It is not given; the search for events therefore samples steps in
-  !> which the speed changes fourfold.
+  !> Event functions of a free crank: it has reached the end of the run (or, from rest, has left its start far enough to know its
+  !> sense of rotation), and it turns back. The rate of the second would need an evaluation of the scene. It is not given; the search
+  !> for events therefore samples steps in which the speed changes fourfold.
   pure subroutine events(self, crank_angle, crank_speed, g, g_rate)
     class(crank_turns_t), intent(in) :: self
     real(dp), intent(in) :: crank_angle, crank_speed   !! [rad], [rad/s]
@@ -80,7 +74,7 @@ contains
     travel = crank_angle - self%start_angle
     g_rate(2) = 0
     if (self%sense == 0) then
-      g = [travel**2 - way_out(self)**2, -1.0_dp]
+      g = [travel**2 - min(degree, 0.5_dp*two_pi*self%wanted)**2, -1.0_dp]
       g_rate(1) = 2*travel*crank_speed
     else
       g = [self%sense*travel - two_pi*self%wanted, -self%sense*crank_speed]

@@ -107,7 +107,6 @@ module gudgeon_scene
     procedure :: energy_scale
     procedure :: speed_scale
     procedure :: twist_frequency
-    procedure :: forcing_revolutions
     procedure :: exchange
   end type scene_t
 
@@ -554,13 +553,6 @@ contains
       if (allocated(self%guide)) energy_scale = energy_scale + 0.5_dp*(b%rod%mass + b%piston%mass)*self%guide%own_speed(span)**2
     end associate
   end function energy_scale
-
-  !> Period of the excitation [revolutions]: that of the gas, or 1.
-  pure integer function forcing_revolutions(self)
-    class(scene_t), intent(in) :: self
-    forcing_revolutions = 1
-    if (allocated(self%gas)) forcing_revolutions = self%gas%revolutions()
-  end function forcing_revolutions
 
   !> Write the discrete state to an archive, or read it from it.
   subroutine exchange(self, archive)

@@ -42,22 +42,13 @@ contains
       now%motion%crank_pin_rate = 0
     end if
     inside = .true.
-    if (allocated(self%guide)) call place_in_bore(self, y, now, inside)
+    if (self%chain%bodies%piston%is_loose) then
+      call self%guide%read_state(y, now%motion%tilting)
+      inside = self%guide%admits(now%motion%tilting)
+      if (inside) call place_piston(self%chain%bodies%piston, now%motion)
+    end if
     if (allocated(self%chain%elastic)) call self%chain%elastic%read_state(t, y, now%motion)
   end subroutine place_more_bodies
-
-  !> Position of the piston in its bore. `inside` is false if it is not admissible.
-  pure subroutine place_in_bore(scene, y, now, inside)
-    class(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: y(scene%n)
-    type(evaluation_t), intent(inout) :: now
-    logical, intent(out) :: inside
-    inside = .true.
-    if (.not. scene%guide%is_loose) return
-    call scene%guide%read_state(y, now%motion%tilting)
-    inside = scene%guide%admits(now%motion%tilting)
-    if (inside) call place_piston(scene%chain%bodies%piston, now%motion)
-  end subroutine place_in_bore
 
   !> Add the loads of the guide to those of joints and gas; the friction force only if it follows from the loads of the piston pin
   !> known so far.

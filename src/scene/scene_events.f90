@@ -4,7 +4,7 @@ submodule (gudgeon_scene) scene_events
   use joint_events, only: n_events, may_stick, contact_changes, sliding_changes, film_held_changes, film_gone_changes, &
     contact_event, sliding_event, transition_events, judge_entry, rough_end, begin_contact, end_contact, pass_kink, choose_sliding
   use joint_motion, only: outward_acceleration
-  use guide_events, only: n_guide_events, corner_events, change_contact, begin_corner_contact, contact_is_rough, rough_corner_end, &
+  use guide_events, only: corner_events, change_contact, begin_corner_contact, contact_is_rough, rough_corner_end, &
     inward_acceleration
   use piston_guide, only: corner_t, n_corners
   use crank_turns, only: n_turn_events
@@ -24,7 +24,7 @@ contains
     end do
     if (allocated(scene%gas)) call number(of_gas, scene%gas%n_events)
     if (allocated(scene%turns)) call number(of_turns, n_turn_events)
-    if (allocated(scene%guide)) call number(of_guide, n_guide_events(scene%guide))
+    if (allocated(scene%guide)) call number(of_guide, merge(n_corners, 0, scene%guide%is_loose))
 
   contains
 
