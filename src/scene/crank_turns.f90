@@ -64,8 +64,8 @@ contains
   end function made
 
   !> Event functions of a free crank: it has reached the end of the run (or, from rest, has left its start far enough to know its
-  !> sense of rotation), and it turns back. The rate of the second would need an evaluation of the scene. It is not given; the search
-  !> for events therefore samples steps in which the speed changes fourfold.
+  !> sense of rotation), and it turns back. The rate of the second would need an evaluation of the scene. It is not given; the
+  !> search for events therefore samples steps in which the speed changes fourfold.
   pure subroutine events(self, crank_angle, crank_speed, g, g_rate)
     class(crank_turns_t), intent(in) :: self
     real(dp), intent(in) :: crank_angle, crank_speed   !! [rad], [rad/s]
