@@ -69,8 +69,6 @@ module summary_quantities
       'largest relative error of the force in the table of the film, measured when it was made'), &
     quantity_t('film_table_mean_error', '1', 'root mean square of the same'), &
     quantity_t('min_film_thickness', 'm', 'smallest film thickness; negative: deepest penetration'), &
-    quantity_t('film_table_error', '1', 'largest relative error of the force in the table of the film, measured at its making'), &
-    quantity_t('film_table_mean_error', '1', 'root mean square of that error'), &
     quantity_t('contacts', '1', 'contacts that began'), &
     quantity_t('contact_time_fraction', '1', 'share of the simulated time in contact'), &
     quantity_t('max_penetration', 'm', 'deepest penetration; 0 without contact'), &
