@@ -34,26 +34,17 @@ def program(*target):
     return os.path.abspath(subprocess.run(["scripts/build.sh", *target], check=True, capture_output=True, text=True).stdout.strip())
 
 
-def timed(command):
-    """Wall time and processor time of a command in seconds, and its output."""
+def timed(*commands):
+    """Wall time and processor time in seconds of commands that run at the same time, and the output of the last one."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     start = time.monotonic()
-    done = subprocess.run(command, check=True, capture_output=True, text=True)
-    clock = time.monotonic() - start
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return clock, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, after.ru_maxrss, done.stdout
-
-
-def timed_at_once(commands):
-    """Wall time and processor time in seconds of several commands that run at the same time."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    start = time.monotonic()
-    for running in [subprocess.Popen(command, stdout=subprocess.DEVNULL) for command in commands]:
-        if running.wait() != 0:
+    for running in [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for command in commands]:
+        printed, _ = running.communicate()
+        if running.returncode != 0:
             raise SystemExit(f"measure_sweep: exit status {running.returncode} of {' '.join(running.args)}")
     clock = time.monotonic() - start
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return clock, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return clock, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, printed
 
 
 def instructions(command, function, folder):
@@ -99,18 +90,15 @@ def main():
         parts = [sweep(study(options.runs // options.threads, part), 1) for part in range(2, 2 + options.threads)]
         clock, processor = {}, {}
         for _ in range(options.repeats):
-            for name, command in (("sweep, 1 thread", sweep(path, 1)),
-                                  (f"sweep, {options.threads} threads", sweep(path, options.threads)),
-                                  ("bare runs", [runs, path]), ("runs with statistics", [runs, path, "watched"])):
-                seconds, cpu, _, printed = timed(command)
+            for name, *commands in (("sweep, 1 thread", sweep(path, 1)),
+                                    (f"sweep, {options.threads} threads", sweep(path, options.threads)),
+                                    (f"{options.threads} programs at once", *parts),
+                                    ("bare runs", [runs, path]), ("runs with statistics", [runs, path, "watched"])):
+                seconds, cpu, printed = timed(*commands)
                 if "runs" == name.split()[-1] or "statistics" in name:   # without the time that builds the cases
                     cpu, seconds = (float(x) for x in printed.split("\n")[1].split(",")[2:])
                 clock[name] = min(seconds, clock.get(name, seconds))
                 processor[name] = min(cpu, processor.get(name, cpu))
-            seconds, cpu = timed_at_once(parts)
-            name = f"{options.threads} programs at once"
-            clock[name] = min(seconds, clock.get(name, seconds))
-            processor[name] = min(cpu, processor.get(name, cpu))
         print(f"{options.runs} runs, best of {options.repeats}; load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
         for name in clock:
             print(f"{name:24s} {clock[name]:8.2f} s  {processor[name]:8.2f} s processor time, "
