@@ -6,7 +6,7 @@ module trace_row
   use gudgeon_kinds, only: dp
   implicit none
   private
-  public :: trace_row_t, column_list_t, name_length, meaning_length, most_columns
+  public :: trace_row_t, column_list_t, name_length, most_columns
 
   integer, parameter :: name_length = 40
   integer, parameter :: meaning_length = 160

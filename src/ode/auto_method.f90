@@ -245,7 +245,7 @@ contains
     end if
   end subroutine count_time
 
-  !> The statistics are with the method in use.
+  !> Statistics of the whole integration so far, which the method in use continues from those of the other.
   pure type(step_statistics_t) function totals(self) result(statistics)
     class(auto_t), intent(in) :: self
     statistics = self%statistics

@@ -10,7 +10,7 @@ module crank_turns
   use gudgeon_archive, only: archive_t
   implicit none
   private
-  public :: crank_turns_t, new_crank_turns, n_turn_events, on_the_way, all_made, turned_back, turn_patience_t
+  public :: crank_turns_t, new_crank_turns, n_turn_events, all_made, turned_back, turn_patience_t
 
   integer, parameter :: n_turn_events = 2  !! event functions: the crank angle still to go, and the crank speed against the sense of
                                            !! the turns

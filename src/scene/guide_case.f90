@@ -8,7 +8,7 @@ module guide_case
   use piston_guide, only: piston_guide_t
   implicit none
   private
-  public :: guide_case_t, guide_clearance, guide_friction
+  public :: guide_case_t, guide_clearance
 
   character(len=*), parameter :: guide_friction = 'friction', guide_clearance = 'clearance'   !! the kinds of guide
 

@@ -17,7 +17,7 @@ module period_watch
   use run_length, only: longest_period
   implicit none
   private
-  public :: period_watch_t, repeats_needed
+  public :: period_watch_t
 
   integer, parameter :: repeats_needed = 3                                !! consecutive periods that must agree
   integer, parameter :: depth = (repeats_needed + 1)*longest_period       !! number of revolutions that are stored

@@ -6,7 +6,7 @@ module run_figures
   use piston_guide, only: n_corners
   implicit none
   private
-  public :: run_figures_t, pin_figures_t, corner_figures_t, elastic_figures_t
+  public :: run_figures_t, pin_figures_t, elastic_figures_t
 
   !> Results at one pin. A pin without clearance has only a force; an ideal crank pin has no results.
   type :: pin_figures_t
