@@ -10,6 +10,8 @@ submodule (gudgeon_scene) scene_events
   use crank_turns, only: n_turn_events
   implicit none
 
+  real(dp), parameter :: rounding = 4*epsilon(1.0_dp)   !! relative distance from the wall that is treated as none
+
 contains
 
   !> Number the event functions.
@@ -181,9 +183,7 @@ contains
   end procedure rough_time
 
   module procedure prepare_start
-    real(dp) :: y(self%n), contact(2), onwards
-    type(evaluation_t) :: now
-    logical :: inside
+    real(dp) :: y(self%n), contact(2)
     integer :: i
 
     call number_events(self)
@@ -194,18 +194,12 @@ contains
       contact = penetration_and_rate(self%joints(i), y)
       if (allocated(self%joints(i)%transition)) &
         call self%joints(i)%transition%begin(contact(1) + self%joints(i)%bearing%clearance, contact(2))
-      if (allocated(self%joints(i)%contact) .and. contact(1) >= 0) call begin_contact(self%joints(i), contact(2))
+      if (.not. allocated(self%joints(i)%contact)) cycle
+      if (contact(1) >= -rounding*self%joints(i)%bearing%clearance) call begin_contact(self%joints(i), contact(2))
     end do
     if (allocated(self%guide)) call prepare_corners(self, y)
-    do i = 1, self%n_joints   ! exactly at the wall
-      contact = penetration_and_rate(self%joints(i), y)
-      if (self%joints(i)%phase /= phase_contact .or. contact(1) > 0) cycle
-      onwards = contact(2)
-      call self%evaluate(0.0_dp, y, now, inside)
-      if (inside .and. .not. abs(onwards) > 0) &
-        onwards = outward_acceleration(self%joints(i)%place, now%relative(i), now%accelerations)
-      if (onwards < 0) call end_contact(self%joints(i))
-      if (contact(2) > 0) self%entry_time = 0
+    do i = 1, self%n_joints
+      if (self%joints(i)%phase == phase_contact) call decide_at_wall(self, i, y)
     end do
     self%smooth_in_root = .not. self%entry_time < 0
     self%mode = mode_of(self)
@@ -213,6 +207,30 @@ contains
       if (self%joints(i)%phase == phase_contact) call find_sliding_direction(self, i, 0.0_dp, y, .true.)
     end do
   end procedure prepare_start
+
+  !> A start at the wall, within rounding: if the pin moves away from it or, at rest, is drawn away from it, there is no contact. The
+  !> start is then moved by a few units of rounding to the side of the wall that is decided on: otherwise the event functions, which
+  !> are rounded differently, may find a contact that begins or ends at t = 0.
+  subroutine decide_at_wall(scene, i, y)
+    class(scene_t), intent(inout) :: scene
+    integer, intent(in) :: i
+    real(dp), intent(in) :: y(:)
+    type(evaluation_t) :: now
+    real(dp) :: contact(2), onwards
+    logical :: inside
+    associate (joint => scene%joints(i))
+      contact = penetration_and_rate(joint, y)
+      if (contact(1) > rounding*joint%bearing%clearance) return
+      onwards = contact(2)
+      if (abs(onwards) <= rounding*norm2(y(joint%at%rate:joint%at%rate + 1))) then
+        call scene%evaluate(0.0_dp, y, now, inside)
+        if (inside) onwards = outward_acceleration(joint%place, now%relative(i), now%accelerations)
+      end if
+      if (onwards < 0) call end_contact(joint)
+      if (contact(2) > 0) scene%entry_time = 0
+      joint%start_eccentricity = joint%start_eccentricity*(1 + sign(rounding, onwards))
+    end associate
+  end subroutine decide_at_wall
 
   !> Find the corners of the skirt that are in contact at t = 0: corners beyond the wall, and corners exactly at the wall that move
   !> into it or, at rest, are pressed into it.
