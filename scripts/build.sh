@@ -1,20 +1,23 @@
 #!/bin/sh
-# Builds the fast program (release profile, `fpm @release`) and prints its path, relative to the top of the checkout. The tool chain
-# is set up first if it is missing.
+# Builds the fast program (`fpm @release`) and prints its path, relative to the top of the checkout. The tool chain is set up first
+# if it is missing.
 #
-#   scripts/build.sh            builds gudgeon
-#   scripts/build.sh PROGRAM    builds one of the programs of scripts/fpm.toml: check_numbers, measure_costs, ...
+#   scripts/build.sh                     builds gudgeon
+#   scripts/build.sh PROGRAM             builds one of the programs of scripts/fpm.toml: check_numbers, measure_costs, ...
+#   scripts/build.sh --native [PROGRAM]  the same for this processor alone (`fpm @native`)
 #
 # Nothing else is printed on standard output. If the build fails, the exit status is 1 and the messages of fpm are on standard
 # error.
 cd "$(dirname "$0")/.." || exit 1
 . scripts/setup.sh || exit 1
+profile=@release
+[ "$1" = --native ] && profile=@native && shift
 folder=
 [ $# -gt 0 ] && folder=scripts/
 
 build() {
   # shellcheck disable=SC2086  # options or nothing
-  said=$(fpm @release ${folder:+--directory scripts} --runner echo "$@" 2>&1) &&
+  said=$(fpm $profile ${folder:+--directory scripts} --runner echo "$@" 2>&1) &&
     found=$folder$(printf '%s\n' "$said" | grep "^build/.*/${1:-gudgeon}\$" | tail -n 1) &&
     [ -x "$found" ]
 }

@@ -35,6 +35,14 @@ check "a source file moved and changed" [ "$("$work/$program")" = 2 ]
 source_with one 1
 program=$(cd "$work" && scripts/build.sh)
 check "a source file moved back unchanged" [ "$("$work/$program")" = 1 ]
+portable=$program
+program=$(cd "$work" && scripts/build.sh --native)
+check "a program for this processor, $program" [ "$("$work/$program")" = 1 ]
+check "it is built with other options, in a folder of its own" [ "$program" != "$portable" ]
+installed=$(cd "$work" && scripts/install.sh --native "$work/into" 2>/dev/null)
+check "it is installed" cmp -s "$installed" "$work/$program"
+check "an unknown option of the installation" [ "$(cd "$work" && scripts/install.sh --other 2>&1; echo $?)" = "install: usage: scripts/install.sh [--native] [DIR]
+2" ]
 
 # an fpm that fails while objects of an earlier build exist
 mkdir "$work/bin"

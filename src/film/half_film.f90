@@ -40,8 +40,9 @@ contains
   !> about 1e-15/(1 - eps).
   !>
   !> Multiplied by eps, the brackets contain only eps^2, eps A and eps B, and n is e/(c eps): no square root of the eccentricity is
-  !> needed. Of these only eps A depends on the speed of the pin, which is known last. Sums are arranged in pairs, since the latency
-  !> of dependent operations determines the time.
+  !> needed. Of these only eps A depends on the speed of the pin, which is known last. Sums are arranged in pairs, and what the
+  !> turn of Sommerfeld's angle is multiplied by is computed while it is, since the latency of dependent operations determines the
+  !> time.
   pure subroutine film_force(self, motion, force, moment)
     class(half_film_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
@@ -51,7 +52,7 @@ contains
     real(dp), parameter :: at_rest = 1e-250_dp   !! if (eps V)^2 [1/s^2] is smaller, the force is 0
     real(dp), parameter :: held = max_eccentricity_ratio
     real(dp) :: e(2), rate(2), square, gap, scale, a, b, speed, p, cube, t, s, k, twice_m, reach, rise, product, turn
-    real(dp) :: radial, tangential
+    real(dp) :: m4, radial, tangential, radial_turn, tangential_turn
     force = 0
     moment = 0
     e = motion%eccentricity*self%per_clearance
@@ -75,16 +76,19 @@ contains
       t = (square*b**2)/((square*b**2 + cube*b**2) + cube*a**2)
       s = (p*t)*cubic_share(t)
       k = p + s
-      twice_m = sqrt((4 + (4*(1 + p))*s) + (2*s)**2)
-      rise = s*((1 + 2*k) + twice_m)**2     ! T^2 r^2 (1 - eps^2)
+      m4 = (4 + (4*(1 + p))*s) + (2*s)**2                                     ! 4 m^2
+      twice_m = sqrt(m4)
+      rise = s*(m4 + (1 + 2*k)**2) + (2*s*(1 + 2*k))*twice_m     ! T^2 r^2 (1 - eps^2)
       reach = gap*((2 + s) + twice_m)       ! r^2 (1 - eps^2)
       turn = turn_between(rise, reach, b)
       speed = speed*(1/square)              ! V^2
       product = 4*sqrt(reach*speed)*(1/((speed*k)*(twice_m*((2 + 2*s) + twice_m))))   ! j/(k m V)
-      radial = -scale*((square*(2 + twice_m) + 4*s)*(0.5_dp*(speed*k)*twice_m)*product + (b*(2 + square))*turn)
-      tangential = (scale*gap)*((a*b)*product + (2*a)*turn)
-      force(1) = radial*e(1) - tangential*e(2)
-      force(2) = radial*e(2) + tangential*e(1)
+      radial = -scale*((square*(2 + twice_m) + 4*s)*(0.5_dp*(speed*k)*twice_m)*product)
+      tangential = (scale*gap)*((a*b)*product)
+      radial_turn = -scale*(b*(2 + square))
+      tangential_turn = (scale*gap)*(2*a)
+      force(1) = (radial*e(1) - tangential*e(2)) + (radial_turn*e(1) - tangential_turn*e(2))*turn
+      force(2) = (radial*e(2) + tangential*e(1)) + (radial_turn*e(2) + tangential_turn*e(1))*turn
     end if
     if (self%film_moment) moment = self%shear_moment(motion, force)
   end subroutine film_force
