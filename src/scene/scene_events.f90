@@ -208,9 +208,9 @@ contains
     end do
   end procedure prepare_start
 
-  !> A start at the wall, within rounding: if the pin moves away from it or, at rest, is drawn away from it, there is no contact. The
-  !> start is then moved by a few units of rounding to the side of the wall that is decided on: otherwise the event functions, which
-  !> are rounded differently, may find a contact that begins or ends at t = 0.
+  !> Start of a pin at the wall, within rounding: if it moves away from the wall or, at rest, is drawn away from it, there is no
+  !> contact. The start is then moved by a few units of rounding to the side of the wall that is decided on: otherwise the event
+  !> functions, which are rounded differently, may find a contact that begins or ends at t = 0.
   subroutine decide_at_wall(scene, i, y)
     class(scene_t), intent(inout) :: scene
     integer, intent(in) :: i
