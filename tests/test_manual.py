@@ -9,6 +9,7 @@ Needs a release build (or makes one). Ends with the line "N passed, N failed".
 from __future__ import annotations
 
 import argparse
+import csv
 import re
 import shutil
 import subprocess
@@ -79,42 +80,55 @@ MEASURED = re.compile(r"\d\.\d|\de-?\d")
 NOT_MEASURED = {"cases/README.md": "simulation case figures", "tests/README.md": "what is judged"}   # first cells of tables of parameters and limits
 
 
-def check_hand_made_tables() -> None:
-    """Tables written by hand hold no measured numbers, and those of cases, tests, folders and figures are complete and right. A measured
-    table begins with its command, which is there, its date and its machine."""
+def check_tables() -> None:
+    """Tables written by hand hold no measured numbers. A measured table begins with its command, which is there, its date and its
+    machine."""
     for page in pages():
         name = str(page.relative_to(ROOT))
         if name.startswith("data/measured/"):
-            head = page.read_text(encoding="utf-8").split("\n\n")[1:3]
-            command = re.sub(r"^sh -c '", "", head[0].strip()).split()[0]
-            check(head[0].startswith("    ") and (ROOT / command).is_file(), f"{name}: begins with a command that is there", command)
-            check(re.match(r"\d{4}-\d\d-\d\d, .*cores", head[1]), f"{name}: says date and machine", head[1][:80])
+            check_origin(page, name)
             continue
         for table in tables(page):
-            if table[0][0] and NOT_MEASURED.get(name, "").find(table[0][0]) >= 0:
+            if table[0][0] and table[0][0] in NOT_MEASURED.get(name, ""):
                 continue
             cells = [cell for row in table[1:] for cell in row if MEASURED.search(re.sub(r"`[^`]*`|\[.*?\]\(.*?\)", "", cell))]
             check(not cells, f"{name}: the table '{table[0][0]}' has no measured numbers", str(cells[:2]))
-    cases = ROOT / "cases/README.md"
-    for row in next(table for table in tables(cases) if table[0][0] == "simulation")[1:]:
+
+
+def check_origin(page: Path, name: str) -> None:
+    """Command, date and machine of a measured table."""
+    head = page.read_text(encoding="utf-8").split("\n\n")[1:3]
+    command = re.sub(r"^sh -c '", "", head[0].strip()).split()[0]
+    check(head[0].startswith("    ") and (ROOT / command).is_file(), f"{name}: begins with a command that is there", command)
+    check(re.match(r"\d{4}-\d\d-\d\d, .*cores", head[1]), f"{name}: says date and machine", head[1][:80])
+
+
+def check_page_of_cases() -> None:
+    """The page of the cases has their values, every case, and the figures that scripts/figures.csv lists."""
+    page = ROOT / "cases/README.md"
+    for row in table_with(page, "simulation"):
         case = ROOT / f"cases/sim_{row[0]}.nml"
         heat = value_in(case, "combustion", "heat")
         said = (float(row[1].split()[0]) * 1e-6, float(row[2].split()[0]), None if row[3] == "no" else float(row[3].split()[0]), float(row[4]))
         there = (value_in(case, "joint", "clearance"), value_in(case, "initial", "crank_speed"), heat, value_in(case, "integrator", "revolutions"))
         check(all(a == b or (a and b and abs(a / b - 1) < 1e-9) for a, b in zip(said, there)), f"cases/README.md: simulation {row[0]}", f"{said}, {there}")
-    text = cases.read_text(encoding="utf-8")
+    text = page.read_text(encoding="utf-8")
     for case in sorted((ROOT / "cases").rglob("*.nml")):
         if case.parent.name in ("studies", "base", "wiebe") or re.fullmatch(r"sim_[IV]+(_oscillating|_finite)?", case.stem):
             continue
         check(re.search(rf"[`/]{case.stem}`", text), f"cases/README.md names {case.relative_to(ROOT)}")
-    figures = [line.split(",")[0] for line in (ROOT / "scripts/figures.csv").read_text(encoding="utf-8").splitlines()[1:]]
     named: set[str] = set()
-    for row in next(table for table in tables(cases) if table[0][0] == "figures")[1:]:
+    for row in table_with(page, "figures"):
         for part in row[0].split(", "):
             chapter, first = part.split("-")[0].split(".")
             last = part.split("-")[-1].split(".")[1]
             named |= {f"{chapter}.{number}" for number in range(int(first), int(last) + 1)}
-    check(named == set(figures), "cases/README.md: the figures are those of figures.csv", str(named ^ set(figures)))
+    figures = first_column(ROOT / "scripts/figures.csv")
+    check(named == figures, "cases/README.md: the figures are those of figures.csv", str(named ^ figures))
+
+
+def check_lists() -> None:
+    """Lists of tests, folders, references and pages are complete."""
     text = (ROOT / "tests/README.md").read_text(encoding="utf-8")
     for test in sorted([*(ROOT / "tests").glob("test_*.py"), *(ROOT / "tests").glob("test_*.sh")]):
         check(f"`{test.name}`" in text, f"tests/README.md names {test.name}")
@@ -122,13 +136,24 @@ def check_hand_made_tables() -> None:
     for folder in [*(ROOT / "src").iterdir(), *(ROOT / name for name in ("cases", "data", "scripts", "src", "tests"))]:
         if folder.is_dir():
             check(f"`{folder.name}/`" in text, f"README.md: the map has {folder.relative_to(ROOT)}")
-    listed = {line.split(",")[0] for line in (ROOT / "data/references.csv").read_text(encoding="utf-8").splitlines()[1:]}
-    there = {path.name.removesuffix(".csv") for path in (ROOT / "data").glob("*.csv") if (ROOT / "data" / f"{path.stem}.events.csv").exists()}
+    listed = first_column(ROOT / "data/references.csv")
+    there = {path.stem for path in (ROOT / "data").glob("*.csv") if (ROOT / "data" / f"{path.stem}.events.csv").exists()}
     there |= {f"film/models/{path.stem}" for path in (ROOT / "data/film/models").glob("*.nml")}
     check(listed == there, "data/references.csv lists every reference", str(listed ^ there))
     index = (ROOT / "data/manual/index.md").read_text(encoding="utf-8")
     for page in re.findall(r"^ordered_subpage: (.+)$", index, re.MULTILINE):
         check(index.count(f"{page})") == 1, f"data/manual/index.md: the table has {page}")
+
+
+def table_with(page: Path, first: str) -> list[list[str]]:
+    """Rows of the table of a page whose first column has this head, without the heads."""
+    return next(table for table in tables(page) if table[0][0] == first)[1:]
+
+
+def first_column(path: Path) -> set[str]:
+    """Values in the first column of a CSV file."""
+    with path.open(encoding="utf-8", newline="") as lines:
+        return {row[0] for row in list(csv.reader(lines))[1:] if row}
 
 
 def check_built(program: Path) -> None:
@@ -257,7 +282,9 @@ def main() -> int:
     parser.add_argument("--program", type=Path)
     options = parser.parse_args()
     check_markdown()
-    check_hand_made_tables()
+    check_tables()
+    check_page_of_cases()
+    check_lists()
     program = (options.program or program_built()).resolve()
     check_reference(program)
     check_study(program)
