@@ -378,6 +378,12 @@ for signal in INT TERM; do
   check "$signal at the start of a large sweep, status $?" [ $? != 137 ]
 done
 
+# a table that is missing
+echo "&study case = 'base.nml', table = 'gone.csv' /" >"$work/gone.nml"
+run sweep -o "$work" "$work/gone.nml"
+check "a table that is missing: study, key and file, status $status: $(cat "$work/err")" \
+  [ "$status" = 3 -a "$(cat "$work/err")" = "gudgeon: $work/gone.nml: &study table: $work/gone.csv: No such file or directory" ]
+
 # one long field in a table
 awk 'BEGIN { print "case.title,joint.clearance"; for (i = 1; i < 20000; i++) print "a" i ",2e-5"
   for (i = 0; i < 60000; i++) printf "0123456789"; print ",2e-5" }' >"$work/wide.csv"

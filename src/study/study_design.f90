@@ -51,6 +51,7 @@ contains
     call design%numbers%prepare(digits)
     if (study%table /= '') then
       call read_table(study%table, design%table, error)
+      if (allocated(error)) error%message = printable(study%file, 200)//': &study table: '//error%message
       if (allocated(error)) return
       design%runs = design%table%rows
       design%text_length = design%table%longest
