@@ -661,6 +661,16 @@ class Drawing(unittest.TestCase):
             self.assertIn(name, [text.get_text() for text in drawing.legends[0].get_texts()], number)
             plt.close(drawing)
 
+    def test_orbits_name_only_curves_that_show(self) -> None:
+        for thickness, names in ((1e-6, {"with clearance", "beginning"}), (-1e-6, {"in contact", "beginning"})):
+            turn = np.linspace(0, 2 * np.pi, 50)
+            made = run({"eccentricity_x": np.cos(turn) * 1e-4, "eccentricity_y": np.sin(turn) * 1e-4, "film_thickness": np.full(50, thickness)},
+                       {"joint": {"clearance": 1e-4}})
+            drawing, axis = plt.subplots()
+            QUANTITIES["pin_orbit"].draw(axis, made, None, "blue")
+            self.assertEqual(set(axis.get_legend_handles_labels()[1]), names)
+            plt.close(drawing)
+
     def test_last_tick_is_numbered(self) -> None:
         drawing = figures.draw(read_figures()["B.4"], MadeResults(turns=2, rows=1441))
         drawing.canvas.draw()

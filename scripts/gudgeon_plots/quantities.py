@@ -106,7 +106,8 @@ def pin_orbit(axis: Axes, run: Run, _ideal: Run | None, colour: str) -> None:
     near[1:] |= outside[:-1]
     near[:-1] |= outside[1:]
     axis.add_patch(Circle((0, 0), 1, fill=False, edgecolor=BLACK, linewidth=0.8, zorder=3))
-    axis.plot(np.where(near & outside, np.nan, y), np.where(near & outside, np.nan, x), color=colour, linewidth=0.6, label=curve_name(run))
+    if not outside.all():
+        axis.plot(np.where(outside, np.nan, y), np.where(outside, np.nan, x), color=colour, linewidth=0.6, label=curve_name(run))
     if outside.any():
         thin = 0.6 if len(x) < 20000 else 0.3
         axis.plot(np.where(near, y, np.nan), np.where(near, x, np.nan), color=PURPLE, linewidth=thin, label="in contact")
