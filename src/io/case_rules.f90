@@ -9,8 +9,7 @@ module case_rules
   use measured_pressure, only: measured_pressure_periods
   use case_values, only: case_values_t
   use film_snapshots, only: read_times
-  use guide_rules, only: check_guide, bore_reach
-  use elastic_rules, only: check_elastic
+  use body_rules, only: check_guide, check_elastic, bore_reach
   implicit none
   private
   public :: check_rules, case_warning
@@ -36,60 +35,52 @@ contains
     logical :: turns   ! the crank turns at the start
     turns = abs(c%initial%crank_speed) > 0
     call check_bodies()
-    if (.not. allocated(error)) call check_joint(c%joint, 'joint', piston_pin_place)
-    if (.not. allocated(error)) call check_joint(c%crank_pin, crank_pin_place//'.joint', crank_pin_place)
-    if (.not. allocated(error)) call check_friction(c%joint, piston_pin_place)
-    if (.not. allocated(error)) call check_friction(c%crank_pin, crank_pin_place)
+    call check_joint(c%joint, 'joint', piston_pin_place)
+    call check_joint(c%crank_pin, crank_pin_place//'.joint', crank_pin_place)
+    call check_friction(c%joint, piston_pin_place)
+    call check_friction(c%crank_pin, crank_pin_place)
     if (.not. allocated(error)) call check_guide(c, values, error)
-    if (.not. allocated(error)) call check_start()
+    call check_start()
     if (.not. allocated(error)) call check_elastic(c, values, error)
-    if (.not. allocated(error)) call check_gas()
-    if (.not. allocated(error)) call check_drive()
-    if (.not. allocated(error)) call check_periods()
+    call check_gas()
+    call check_drive()
+    call check_periods()
     if (.not. allocated(error)) call check_run()
     if (.not. allocated(error)) call check_output()
 
   contains
 
-    !> The error for a value of the case.
-    subroutine refuse(group, name, wanted)
+    !> The error for a value of the case if it is wrong; the first error is kept.
+    subroutine forbid(is_wrong, group, name, wanted)
+      logical, intent(in) :: is_wrong
       character(len=*), intent(in) :: group, name, wanted
-      call values%refuse(group, name, wanted, error)
-    end subroutine refuse
+      call values%forbid(is_wrong, group, name, wanted, error)
+    end subroutine forbid
 
     !> Check that the rod is long enough, and that the mass matrix of crank and rod is positive definite at every crank angle. With
     !> A = I_c + m_c |com_c|^2 and B = I_r + m_r |com_r|^2 its smallest determinant is A B + m_r R^2 I_r.
     subroutine check_bodies()
+      character(len=*), parameter :: away = 'must be > 0 unless crank_mass is > 0 away from the axis'
       real(dp) :: reach, crank, rod
       associate (m => c%mechanism)
         reach = m%crank_length
         if (c%joint%has_clearance()) reach = reach + c%joint%clearance
         if (c%crank_pin%has_clearance()) reach = reach + c%crank_pin%clearance
         reach = reach + bore_reach(c)
-        if (m%rod_length <= reach) then
-          call refuse('mechanism', 'rod_length', 'must be > crank_length'//trim(merge(' + clearance', '            ', &
-            reach > m%crank_length)))
-          return
-        end if
+        call forbid(m%rod_length <= reach, 'mechanism', 'rod_length', &
+          'must be > crank_length'//trim(merge(' + clearance', '            ', reach > m%crank_length)))
         crank = m%crank_inertia + c%drive%flywheel_inertia + m%crank_mass*sum(m%crank_com**2)
         rod = m%rod_inertia + m%rod_mass*sum(m%rod_com**2)
         if (c%crank_pin%has_clearance()) then
-          if (crank <= 0) then
-            call refuse('mechanism', 'crank_inertia', 'must be > 0 unless crank_mass is > 0 away from the axis')
-          else if (m%rod_mass <= 0) then
-            call refuse('mechanism', 'rod_mass', 'must be > 0 with clearance at the crank pin')
-          else if (m%rod_inertia <= 0) then
-            call refuse('mechanism', 'rod_inertia', 'must be > 0 with clearance at the crank pin')
-          end if
+          call forbid(crank <= 0, 'mechanism', 'crank_inertia', away)
+          call forbid(m%rod_mass <= 0, 'mechanism', 'rod_mass', 'must be > 0 with clearance at the crank pin')
+          call forbid(m%rod_inertia <= 0, 'mechanism', 'rod_inertia', 'must be > 0 with clearance at the crank pin')
         else if (c%joint%has_clearance()) then
-          if (rod <= 0) then
-            call refuse('mechanism', 'rod_inertia', 'must be > 0 unless rod_mass is > 0 away from the crank pin')
-          else if (crank*rod + m%rod_mass*m%crank_length**2*m%rod_inertia <= 0) then
-            call refuse('mechanism', 'crank_inertia', 'must be > 0 unless crank_mass is > 0 away from the axis, '// &
-                               'or rod_mass and rod_inertia are')
-          end if
-        else if (crank + m%rod_inertia <= 0) then
-          call refuse('mechanism', 'crank_inertia', 'must be > 0 unless crank_mass is > 0 away from the axis, or rod_inertia is')
+          call forbid(rod <= 0, 'mechanism', 'rod_inertia', 'must be > 0 unless rod_mass is > 0 away from the crank pin')
+          call forbid(crank*rod + m%rod_mass*m%crank_length**2*m%rod_inertia <= 0, 'mechanism', 'crank_inertia', &
+            away//', or rod_mass and rod_inertia are')
+        else
+          call forbid(crank + m%rod_inertia <= 0, 'mechanism', 'crank_inertia', away//', or rod_inertia is')
         end if
       end associate
     end subroutine check_bodies
@@ -100,37 +91,33 @@ contains
       character(len=*), intent(in) :: group   !! group of the joint
       character(len=*), intent(in) :: place
       if (.not. joint%has_clearance()) then
-        if (allocated(joint%contact) .or. allocated(joint%friction) .or. allocated(joint%film) .or. allocated(joint%asperities) &
-            .or. has_own_law(place)) then
-          call refuse(group, 'kind', 'must be clearance with contact, friction or lubrication: an ideal joint '// &
-                             'has no clearance; remove these groups, for example with --set contact=none')
-        else if (joint%clearance > 0 .and. .not. values%is_given(group, 'kind')) then
-          call refuse(group, 'clearance', 'needs kind = ''clearance''; the default is ideal')
-        end if
+        call forbid(allocated(joint%contact) .or. allocated(joint%friction) .or. allocated(joint%film) .or. &
+          allocated(joint%asperities) .or. has_own_law(place), group, 'kind', 'must be clearance with contact, friction or '// &
+          'lubrication: an ideal joint has no clearance; remove these groups, for example with --set contact=none')
+        call forbid(joint%clearance > 0 .and. .not. values%is_given(group, 'kind'), group, 'clearance', &
+          'needs kind = ''clearance''; the default is ideal')
         return
       end if
       if (allocated(joint%film)) call check_oil(joint, law_group('lubrication', place))
+      call values%demand(joint%clearance > 0, group, 'clearance', 'with kind = ''clearance''', error)
+      call values%demand(joint%bearing_radius > 0, group, 'bearing_radius', 'with kind = ''clearance''', error)
+      call forbid(joint%bearing_radius <= joint%clearance, group, 'bearing_radius', &
+        'must be > clearance: the pin''s radius is the difference')
+      call values%demand(joint%bearing_length > 0 .or. .not. allocated(joint%film), group, 'bearing_length', &
+        'with lubrication', error)
+      call forbid(.not. (allocated(joint%contact) .or. allocated(joint%film)), group, 'kind', &
+        'needs contact or lubrication: without them no force would act on the pin')
+      call forbid(allocated(joint%friction) .and. .not. allocated(joint%contact), law_group('friction', place), 'law', &
+        'needs the group contact: dry friction follows the normal force')
       if (allocated(error)) return
-      if (joint%clearance <= 0) then
-        call refuse(group, 'clearance', needed(group, 'clearance', 'with kind = ''clearance'''))
-      else if (joint%bearing_radius <= 0) then
-        call refuse(group, 'bearing_radius', needed(group, 'bearing_radius', 'with kind = ''clearance'''))
-      else if (joint%bearing_radius <= joint%clearance) then
-        call refuse(group, 'bearing_radius', 'must be > clearance: the pin''s radius is the difference')
-      else if (allocated(joint%film) .and. joint%bearing_length <= 0) then
-        call refuse(group, 'bearing_length', needed(group, 'bearing_length', 'with lubrication'))
-      else if (.not. allocated(joint%contact) .and. .not. allocated(joint%film)) then
-        call refuse(group, 'kind', 'needs contact or lubrication: without them no force would act on the pin')
-      else if (allocated(joint%friction) .and. .not. allocated(joint%contact)) then
-        call refuse(law_group('friction', place), 'law', 'needs the group contact: dry friction follows the normal force')
-      else if (allocated(joint%asperities)) then
+      if (allocated(joint%asperities)) then
         call check_asperities(joint, law_group('asperities', place))
       else if (allocated(joint%contact)) then
         call check_contact(joint, group, law_group('contact', place))
       end if
       if (allocated(error) .or. .not. allocated(joint%film)) return
       call check_transition(joint, law_group('lubrication', place))
-      if (.not. allocated(error)) call check_elastic_film(joint, law_group('lubrication', place), law_group('contact', place))
+      call check_elastic_film(joint, law_group('lubrication', place), law_group('contact', place))
     end subroutine check_joint
 
     !> Check that the viscosity of the film is given by one source.
@@ -142,20 +129,21 @@ contains
       integer :: i, place
       logical :: is_said
       do i = 1, size(names)
-        place = values%place_of(group, trim(names(i)))
+        key = trim(names(i))
+        place = values%place_of(group, key)
         is_said = values%is_said(place)
-        if (joint%oil%is_known() .and. is_said) then
-          call refuse(group, trim(names(i)), 'must not be given: viscosity_law = '''//joint%oil%law//''' computes it')
-        else if (.not. joint%oil%is_known() .and. values%is_used(place) .and. .not. is_said) then
-          call refuse(group, trim(names(i)), needed(group, trim(names(i)), adjustl(values%by_law(values%keys(place)))))
+        if (joint%oil%is_known()) then
+          call forbid(is_said, group, key, 'must not be given: viscosity_law = '''//joint%oil%law//''' computes it')
+        else if (values%is_used(place)) then
+          call values%demand(is_said, group, key, adjustl(values%by_law(values%keys(place))), error)
         end if
-        if (allocated(error)) return
       end do
       if (joint%oil%is_known()) then
         call joint%oil%conflict(key, wanted)
-        if (key /= '') call refuse(group, key, wanted)
-      else if (joint%oil%temperature > 0 .and. .not. values%is_given(group, 'viscosity_law')) then
-        call refuse(group, 'temperature', 'needs viscosity_law = ''walther'' or ''vogel''; the default is given')
+        call forbid(key /= '', group, key, wanted)
+      else
+        call forbid(joint%oil%temperature > 0 .and. .not. values%is_given(group, 'viscosity_law'), group, 'temperature', &
+          'needs viscosity_law = ''walther'' or ''vogel''; the default is given')
       end if
     end subroutine check_oil
 
@@ -163,18 +151,18 @@ contains
     subroutine check_transition(joint, own)
       type(joint_case_t), intent(in) :: joint
       character(len=*), intent(in) :: own   !! group of the film
-      if (.not. joint%transition%is_weighted()) then
-        if (joint%transition%depth > 0 .and. .not. values%is_given(own, 'transition')) &
-          call refuse(own, 'transition_depth', 'needs transition = ''weighted''; the default is switch')
-      else if (allocated(joint%asperities)) then
-        call refuse(own, 'transition', 'must be switch with asperities: they carry with the film at every depth')
-      else if (.not. allocated(joint%contact)) then
-        call refuse(own, 'transition', 'needs the group contact: film and contact share the load')
-      else if (.not. joint%transition%depth > 0) then
-        call refuse(own, 'transition_depth', needed(own, 'transition_depth', 'with transition = ''weighted'''))
-      else if (joint%transition%depth > joint%clearance) then
-        call refuse(own, 'transition_depth', 'must be <= clearance')
-      end if
+      associate (depth => joint%transition%depth)
+        if (.not. joint%transition%is_weighted()) then
+          call forbid(depth > 0 .and. .not. values%is_given(own, 'transition'), own, 'transition_depth', &
+            'needs transition = ''weighted''; the default is switch')
+          return
+        end if
+        call forbid(allocated(joint%asperities), own, 'transition', &
+          'must be switch with asperities: they carry with the film at every depth')
+        call forbid(.not. allocated(joint%contact), own, 'transition', 'needs the group contact: film and contact share the load')
+        call values%demand(depth > 0, own, 'transition_depth', 'with transition = ''weighted''', error)
+        call forbid(depth > joint%clearance, own, 'transition_depth', 'must be <= clearance')
+      end associate
     end subroutine check_transition
 
     !> Check that elastic walls have a stiffness and no loss, that the law of the film between them gives a velocity for a load, and
@@ -183,20 +171,21 @@ contains
       type(joint_case_t), intent(in) :: joint
       character(len=*), intent(in) :: own, contact   !! groups of the film and of the contact
       if (.not. joint%elastic%is_wanted) then
-        if (joint%elastic%pressure_viscosity > 0) call refuse(own, 'pressure_viscosity', &
+        call forbid(joint%elastic%pressure_viscosity > 0, own, 'pressure_viscosity', &
           'needs elastic_film = .true.: the pressures between rigid walls are not realistic')
-      else if (.not. allocated(joint%contact)) then
-        call refuse(own, 'elastic_film', 'needs the group contact, whose geometry is the stiffness of the walls')
-      else if (joint%contact%name /= 'hertz') then
-        call refuse(contact, 'law', 'must be hertz with elastic_film: the film dissipates, the walls do not')
-      else if (allocated(joint%friction)) then
-        call refuse(own, 'elastic_film', 'cannot be combined with the group friction: the surfaces never touch')
-      else if (joint%transition%is_weighted()) then
-        call refuse(own, 'elastic_film', 'cannot be combined with transition = ''weighted'': the film carries at every depth')
-      else if (.not. joint%film%is_quasi_static()) then
-        call refuse(own, 'elastic_film', 'is for films of wedge and squeeze: finite_bearing, '// &
-          'and closed_form and half_film of pinkus_sternlicht')
+        return
       end if
+      call forbid(.not. allocated(joint%contact), own, 'elastic_film', &
+        'needs the group contact, whose geometry is the stiffness of the walls')
+      if (allocated(error)) return
+      call forbid(joint%contact%name /= 'hertz', contact, 'law', 'must be hertz with elastic_film: the film dissipates, '// &
+        'the walls do not')
+      call forbid(allocated(joint%friction), own, 'elastic_film', &
+        'cannot be combined with the group friction: the surfaces never touch')
+      call forbid(joint%transition%is_weighted(), own, 'elastic_film', &
+        'cannot be combined with transition = ''weighted'': the film carries at every depth')
+      call forbid(.not. joint%film%is_quasi_static(), own, 'elastic_film', &
+        'is for films of wedge and squeeze: finite_bearing, and closed_form and half_film of pinkus_sternlicht')
     end subroutine check_elastic_film
 
     !> Check that asperities are combined with a film and not with a contact law.
@@ -204,13 +193,11 @@ contains
       type(joint_case_t), intent(in) :: joint
       character(len=*), intent(in) :: group   !! group of the asperities
       real(dp), parameter :: roughest = 0.125_dp   !! largest roughness over clearance
-      if (.not. allocated(joint%film)) then
-        call refuse(group, 'roughness', 'needs the group lubrication: asperities touch through a film')
-      else if (allocated(joint%contact)) then
-        call refuse(group, 'roughness', 'cannot be combined with the group contact: asperities are the contact of rough surfaces')
-      else if (joint%asperities%roughness > roughest*joint%clearance) then
-        call refuse(group, 'roughness', 'must be <= clearance/8: a centred pin may not touch')
-      end if
+      call forbid(.not. allocated(joint%film), group, 'roughness', 'needs the group lubrication: asperities touch through a film')
+      call forbid(allocated(joint%contact), group, 'roughness', &
+        'cannot be combined with the group contact: asperities are the contact of rough surfaces')
+      call forbid(joint%asperities%roughness > roughest*joint%clearance, group, 'roughness', &
+        'must be <= clearance/8: a centred pin may not touch')
     end subroutine check_asperities
 
     !> Check that the loss of a contact is given by one key, and that its geometry is possible in its bearing.
@@ -218,18 +205,14 @@ contains
       type(joint_case_t), intent(in) :: joint
       character(len=*), intent(in) :: group, contact_group   !! groups of the joint and of its contact
       character(len=:), allocatable :: key, wanted
-      if (values%is_said(values%place_of(contact_group, 'dissipation'))) then
+      if (values%is_said(values%place_of(contact_group, 'dissipation'))) &
         call values%check_family(contact_group, 'dissipation', error)
-        if (allocated(error)) return
-      end if
       associate (geometry => joint%contact%geometry)
-        if (geometry%needs_length() .and. joint%bearing_length <= 0) then
-          call refuse(group, 'bearing_length', needed(group, 'bearing_length', 'with contact geometry = '''// &
-            trim(geometry%name)//''''))
-          return
-        end if
+        call values%demand(joint%bearing_length > 0 .or. .not. geometry%needs_length(), group, 'bearing_length', &
+          'with contact geometry = '''//trim(geometry%name)//'''', error)
+        if (allocated(error)) return
         call geometry%bearing_conflict(joint%bearing(rod_length=0.0_dp), key, wanted)
-        if (key /= '') call refuse(group, key, wanted)
+        call forbid(key /= '', group, key, wanted)
       end associate
     end subroutine check_contact
 
@@ -240,16 +223,16 @@ contains
       type(joint_case_t), intent(in) :: joint
       character(len=*), intent(in) :: place
       real(dp) :: speed, limit
-      if (.not. (joint%has_clearance() .and. allocated(joint%friction))) return
+      if (allocated(error) .or. .not. (joint%has_clearance() .and. allocated(joint%friction))) return
       associate (m => c%mechanism, bearing => joint%bearing(c%mechanism%rod_length))
         speed = m%crank_length/m%rod_length
         if (place == crank_pin_place) speed = 1 + speed
         speed = speed*abs(c%initial%crank_speed)*bearing%pin_radius()
       end associate
       limit = joint%friction%touch_down_limit()
-      if (speed > limit) call refuse(law_group('friction', place), 'damping_speed', 'a constant bristle_damping '// &
-        'gives more than the static friction at touch-down from '//short_text(limit)//' m/s on, and this joint slides with '// &
-        short_text(speed)//' m/s: must be > 0')
+      if (speed > limit) call values%refuse(law_group('friction', place), 'damping_speed', 'a constant bristle_damping gives '// &
+        'more than the static friction at touch-down from '//short_text(limit)//' m/s on, and this joint slides with '// &
+        short_text(speed)//' m/s: must be > 0', error)
     end subroutine check_friction
 
     !> Whether the case has a law for the joint at this place alone.
@@ -269,33 +252,29 @@ contains
 
     !> Check that the initial positions of the pins are admissible.
     subroutine check_start()
-      call check_pin(c%joint, '', c%initial%eccentricity, c%initial%eccentricity_rate)
-      if (.not. allocated(error)) call check_pin(c%crank_pin, crank_pin_place//'_', c%initial%crank_pin_eccentricity, &
-        c%initial%crank_pin_eccentricity_rate)
-      if (allocated(error)) return
-      associate (distance => norm2(c%initial%eccentricity), other => norm2(c%initial%crank_pin_eccentricity), m => c%mechanism)
-        if (distance + other < m%rod_length - m%crank_length) return
-        call refuse('initial', trim(merge('eccentricity          ', 'crank_pin_eccentricity', distance > 0)), &
+      associate (start => c%initial, m => c%mechanism)
+        call check_pin(c%joint, '', norm2(start%eccentricity), start%eccentricity_rate)
+        call check_pin(c%crank_pin, crank_pin_place//'_', norm2(start%crank_pin_eccentricity), start%crank_pin_eccentricity_rate)
+        call forbid(norm2(start%eccentricity) + norm2(start%crank_pin_eccentricity) >= m%rod_length - m%crank_length, 'initial', &
+          trim(merge('eccentricity          ', 'crank_pin_eccentricity', norm2(start%eccentricity) > 0)), &
           'must be shorter than rod_length - crank_length')
       end associate
     end subroutine check_start
 
     !> Check that a pin starts inside its bearing, or, with a contact law, in its wall but not beyond it.
-    subroutine check_pin(joint, prefix, eccentricity, rate)
+    subroutine check_pin(joint, prefix, distance, rate)
       type(joint_case_t), intent(in) :: joint
       character(len=*), intent(in) :: prefix   !! prefix of the keys
-      real(dp), intent(in) :: eccentricity(2), rate(2)
-      associate (distance => norm2(eccentricity), key => prefix//'eccentricity')
-        if (.not. joint%has_clearance()) then
-          if (distance > 0) then
-            call refuse('initial', key, 'must be 0 in an ideal joint')
-          else if (norm2(rate) > 0) then
-            call refuse('initial', key//'_rate', 'must be 0 in an ideal joint')
-          end if
-        else if (.not. (joint%can_touch() .or. allocated(joint%asperities)) .and. distance >= joint%clearance) then
-          call refuse('initial', key, 'must be shorter than the clearance where there is no contact')
-        else if (distance >= joint%bearing_radius) then
-          call refuse('initial', key, 'must be shorter than bearing_radius: the pin would leave its bearing')
+      real(dp), intent(in) :: distance, rate(2)
+      associate (key => prefix//'eccentricity')
+        if (joint%has_clearance()) then
+          call forbid(.not. (joint%can_touch() .or. allocated(joint%asperities)) .and. distance >= joint%clearance, 'initial', &
+            key, 'must be shorter than the clearance where there is no contact')
+          call forbid(distance >= joint%bearing_radius, 'initial', key, &
+            'must be shorter than bearing_radius: the pin would leave its bearing')
+        else
+          call forbid(distance > 0, 'initial', key, 'must be 0 in an ideal joint')
+          call forbid(norm2(rate) > 0, 'initial', key//'_rate', 'must be 0 in an ideal joint')
         end if
       end associate
     end subroutine check_pin
@@ -309,129 +288,104 @@ contains
       has_film = .false.
       if (allocated(c%joint%film)) has_film = c%joint%film%gives_pressure()
       if (allocated(c%crank_pin%film)) has_film = has_film .or. c%crank_pin%film%gives_pressure()
-      if (.not. allocated(times)) then
-        call refuse('output', 'film_times', 'must be times >= 0 in rising order with commas, or from:to:count')
-      else if (.not. has_film) then
-        call refuse('output', 'film_times', 'needs a film with a pressure: pinkus_sternlicht or finite_bearing')
-      end if
+      call forbid(.not. allocated(times), 'output', 'film_times', &
+        'must be times >= 0 in rising order with commas, or from:to:count')
+      call forbid(.not. has_film, 'output', 'film_times', 'needs a film with a pressure: pinkus_sternlicht or finite_bearing')
     end subroutine check_film_times
-
-    !> Text for a length of the joint that is missing or given as 0.
-    function needed(group, name, why) result(wanted)
-      character(len=*), intent(in) :: group, name, why
-      character(len=:), allocatable :: wanted
-      wanted = trim('required '//why)
-      if (values%is_given(group, name)) wanted = 'must be > 0'
-    end function needed
 
     !> Check that there is one gas model at most, with an allowed period.
     subroutine check_gas()
       if (.not. allocated(c%measured)) return
-      if (allocated(c%combustion)) then
-        call refuse('cylinder_pressure', 'table', 'cannot be combined with the group combustion: one pressure acts on the piston')
-      else if (all(c%measured%period_deg /= measured_pressure_periods)) then
-        call refuse('cylinder_pressure', 'period_deg', 'must be 360 or 720')
-      end if
+      call forbid(allocated(c%combustion), 'cylinder_pressure', 'table', &
+        'cannot be combined with the group combustion: one pressure acts on the piston')
+      call forbid(all(c%measured%period_deg /= measured_pressure_periods), 'cylinder_pressure', 'period_deg', 'must be 360 or 720')
     end subroutine check_gas
 
     !> Check that the keys of a variable drive match its kind, and that there is one flywheel at most.
     subroutine check_drive()
       associate (drive => c%drive)
-        if (drive%table%is_wanted() .and. drive%kind /= 'free') then
-          call refuse('drive', &
-            'torque_table', 'needs kind = ''free'': at constant speed the drive supplies whatever torque is needed')
-        else if (drive%ramp_time > 0 .and. drive%kind /= 'constant_speed') then
-          call refuse('drive', 'ramp_time', 'needs kind = ''constant_speed'': the loads make the speed of a free crank')
-        else if (abs(drive%ramp_from) > 0 .and. .not. drive%ramp_time > 0) then
-          call refuse('drive', 'ramp_from', 'needs ramp_time, the time in which the speed rises from here to crank_speed')
-        else if (drive%ramp_time > 0 .and. c%integrator%crank_revolutions > 0) then
-          call refuse('drive', 'ramp_time', 'needs revolutions or end_time instead of crank_revolutions')
-        else if (drive%flywheel_inertia > 0 .and. allocated(c%crankshaft)) then
-          call refuse('drive', 'flywheel_inertia', 'must be 0 with the group crankshaft, which has its own flywheel_inertia')
-        end if
+        call forbid(drive%table%is_wanted() .and. drive%kind /= 'free', 'drive', 'torque_table', &
+          'needs kind = ''free'': at constant speed the drive supplies whatever torque is needed')
+        call forbid(drive%ramp_time > 0 .and. drive%kind /= 'constant_speed', 'drive', 'ramp_time', &
+          'needs kind = ''constant_speed'': the loads make the speed of a free crank')
+        call forbid(abs(drive%ramp_from) > 0 .and. .not. drive%ramp_time > 0, 'drive', 'ramp_from', &
+          'needs ramp_time, the time in which the speed rises from here to crank_speed')
+        call forbid(drive%ramp_time > 0 .and. c%integrator%crank_revolutions > 0, 'drive', 'ramp_time', &
+          'needs revolutions or end_time instead of crank_revolutions')
+        call forbid(drive%flywheel_inertia > 0 .and. allocated(c%crankshaft), 'drive', 'flywheel_inertia', &
+          'must be 0 with the group crankshaft, which has its own flywheel_inertia')
       end associate
     end subroutine check_drive
 
     !> Check that the end of the run is given once and is reached.
     subroutine check_run()
-      associate (run => c%integrator)
+      real(dp) :: held_end   ! time in which a held crank makes crank_revolutions [s]
+      associate (run => c%integrator, is_held => c%drive%kind == 'constant_speed')
         if (.not. c%run%is_until_periodic()) call values%check_family('integrator', 'revolutions', error)
-        if (allocated(error)) return
-        if (run%revolutions > 0 .and. .not. turns) then
-          call refuse('integrator', 'revolutions', 'needs crank_speed other than 0; give end_time')
-        else if (run%crank_revolutions > 0 .and. .not. turns .and. c%drive%kind == 'constant_speed') then
-          call refuse('integrator', 'crank_revolutions', 'needs crank_speed other than 0: the crank is held at rest')
-        else if (run%crank_revolutions > 0 .and. .not. turns .and. run%end_time <= 0) then
-          call refuse('integrator', 'crank_revolutions', 'needs end_time beside it with crank_speed = 0: the latest '// &
-                             'end, should the crank not make them')
-        else if (c%drive%kind == 'constant_speed' .and. run%end_time > 0 .and. &
-                 run%end_time < run%crank_revolutions*two_pi/max(abs(c%initial%crank_speed), tiny(1.0_dp))) then
-          call refuse('integrator', 'end_time', 'must be >= '//short_text(run%crank_revolutions*two_pi/ &
-                             abs(c%initial%crank_speed))//' s, when the held crank has made crank_revolutions')
-        else if (run%contact_entry == 'step_rejection' .and. run%max_penetration <= 0) then
-          call refuse('integrator', 'max_penetration', 'must be > 0 for contact_entry = ''step_rejection''')
+        call forbid(run%revolutions > 0 .and. .not. turns, 'integrator', 'revolutions', &
+          'needs crank_speed other than 0; give end_time')
+        call forbid(run%crank_revolutions > 0 .and. .not. turns .and. is_held, 'integrator', 'crank_revolutions', &
+          'needs crank_speed other than 0: the crank is held at rest')
+        call forbid(run%crank_revolutions > 0 .and. .not. turns .and. run%end_time <= 0, 'integrator', 'crank_revolutions', &
+          'needs end_time beside it with crank_speed = 0: the latest end, should the crank not make them')
+        if (is_held .and. turns) then
+          held_end = run%crank_revolutions*two_pi/abs(c%initial%crank_speed)
+          call forbid(run%end_time > 0 .and. run%end_time < held_end, 'integrator', 'end_time', &
+            'must be >= '//short_text(held_end)//' s, when the held crank has made crank_revolutions')
         end if
+        call forbid(run%contact_entry == 'step_rejection' .and. run%max_penetration <= 0, 'integrator', 'max_penetration', &
+          'must be > 0 for contact_entry = ''step_rejection''')
       end associate
     end subroutine check_run
 
     !> Check that in a run until the motion is periodic the crank turns, and that enough revolutions are allowed.
     subroutine check_periods()
-      if (c%run%lyapunov_revolutions > 0) then
-        if (.not. (turns .and. (c%has_play() .or. c%drive%kind == 'free'))) call refuse('run', 'lyapunov_revolutions', &
-          'needs crank_speed other than 0, and clearance at a joint or a free crank')
-        if (allocated(error)) return
-      end if
-      if (.not. c%run%is_until_periodic()) then
-        if (c%output%window == 'last_period') call refuse('output', 'window', 'is for &run until = ''periodic'' alone')
-      else if (.not. turns) then
-        call refuse('run', 'until', 'needs crank_speed other than 0')
-      else if (c%run%period_revolutions < c%gas_revolutions()) then
-        call refuse('run', 'period_revolutions', 'must be >= 2, what the gas takes to repeat')
-      else if (c%output%window == 'last_period' .and. c%output%start_time > 0) then
-        call refuse('output', 'start_time', 'must be 0 with window = ''last_period''')
-      else if (c%output%window == 'last_period' .and. c%run%most_revolutions <= c%run%period_revolutions) then
-        call refuse('run', 'most_revolutions', 'must be > period_revolutions with window = ''last_period''')
-      end if
+      associate (run => c%run, is_cut => c%output%window == 'last_period')
+        call forbid(run%lyapunov_revolutions > 0 .and. .not. (turns .and. (c%has_play() .or. c%drive%kind == 'free')), 'run', &
+          'lyapunov_revolutions', 'needs crank_speed other than 0, and clearance at a joint or a free crank')
+        if (.not. run%is_until_periodic()) then
+          call forbid(is_cut, 'output', 'window', 'is for &run until = ''periodic'' alone')
+          return
+        end if
+        call forbid(.not. turns, 'run', 'until', 'needs crank_speed other than 0')
+        call forbid(run%period_revolutions < c%gas_revolutions(), 'run', 'period_revolutions', &
+          'must be >= 2, what the gas takes to repeat')
+        call forbid(is_cut .and. c%output%start_time > 0, 'output', 'start_time', 'must be 0 with window = ''last_period''')
+        call forbid(is_cut .and. run%most_revolutions <= run%period_revolutions, 'run', 'most_revolutions', &
+          'must be > period_revolutions with window = ''last_period''')
+      end associate
     end subroutine check_periods
 
     !> Check that the spacing of the rows is given, and that there are not too many rows.
     subroutine check_output()
       real(dp) :: samples, speed, end_time
       character(len=*), parameter :: letters = 'abcdefghijklmnopqrstuvwxyz0123456789_, '
-      if (c%output%sampling == 'crank_angle') then
-        if (c%output%interval > 0) then
-          call refuse('output', 'interval', 'must not be given with sampling = ''crank_angle''')
-        else if (c%output%every_step) then
-          call refuse('output', 'every_step', 'must be .false. with sampling = ''crank_angle''')
+      associate (output => c%output)
+        if (output%sampling == 'crank_angle') then
+          call forbid(output%interval > 0, 'output', 'interval', 'must not be given with sampling = ''crank_angle''')
+          call forbid(output%every_step, 'output', 'every_step', 'must be .false. with sampling = ''crank_angle''')
+        else
+          call forbid(abs(output%angle_origin_deg) > 0, 'output', 'angle_origin_deg', 'is for sampling = ''crank_angle'' alone')
+          call forbid(output%interval <= 0 .and. .not. turns, 'output', 'interval', 'required with crank_speed = 0')
         end if
-      else if (abs(c%output%angle_origin_deg) > 0) then
-        call refuse('output', 'angle_origin_deg', 'is for sampling = ''crank_angle'' alone')
-      else if (c%output%interval <= 0 .and. .not. turns) then
-        call refuse('output', 'interval', 'required with crank_speed = 0')
-      end if
-      if (allocated(error)) return
-      if (c%integrator%end_time > 0 .and. c%output%start_time >= c%integrator%end_time .and. .not. c%run%is_until_periodic()) then
-        call refuse('output', 'start_time', 'must be < end_time')
-        return
-      end if
-      if (verify(c%output%columns, letters) > 0 .or. c%output%columns == '') then
-        call refuse('output', 'columns', 'must be ''standard'' or names of columns without their units')
-        return
-      end if
-      call check_film_times()
-      if (allocated(error)) return
-      speed = abs(c%initial%crank_speed)
-      end_time = c%integrator%end_time
-      if (turns) end_time = max(end_time, max(c%integrator%revolutions, c%integrator%crank_revolutions)*two_pi/speed)
-      if (c%run%is_until_periodic()) end_time = c%run%most_revolutions*two_pi/speed
-      if (c%output%window == 'last_period') end_time = c%run%period_revolutions*two_pi/speed
-      if (c%output%interval > 0) then
-        samples = end_time/c%output%interval
-        if (samples > most_samples) call refuse('output', 'interval', 'asks for more than 1e9 rows')
-      else
-        samples = end_time*speed/two_pi*c%output%samples_per_revolution
-        if (samples > most_samples) call refuse('output', 'samples_per_revolution', 'asks for more than 1e9 rows')
-      end if
+        call forbid(c%integrator%end_time > 0 .and. output%start_time >= c%integrator%end_time .and. &
+          .not. c%run%is_until_periodic(), 'output', 'start_time', 'must be < end_time')
+        call forbid(verify(output%columns, letters) > 0 .or. output%columns == '', 'output', 'columns', &
+          'must be ''standard'' or names of columns without their units')
+        call check_film_times()
+        speed = abs(c%initial%crank_speed)
+        end_time = c%integrator%end_time
+        if (turns) end_time = max(end_time, max(c%integrator%revolutions, c%integrator%crank_revolutions)*two_pi/speed)
+        if (c%run%is_until_periodic()) end_time = c%run%most_revolutions*two_pi/speed
+        if (output%window == 'last_period') end_time = c%run%period_revolutions*two_pi/speed
+        if (output%interval > 0) then
+          samples = end_time/output%interval
+          call forbid(samples > most_samples, 'output', 'interval', 'asks for more than 1e9 rows')
+        else
+          samples = end_time*speed/two_pi*output%samples_per_revolution
+          call forbid(samples > most_samples, 'output', 'samples_per_revolution', 'asks for more than 1e9 rows')
+        end if
+      end associate
     end subroutine check_output
   end subroutine check_rules
 end module case_rules

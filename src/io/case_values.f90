@@ -33,6 +33,8 @@ module case_values
     procedure :: check_range  !! range of one key
     procedure :: is_in_range
     procedure :: refuse       !! error for a value
+    procedure :: forbid       !! the same if a condition holds
+    procedure :: demand       !! error for a value that is missing or 0
     procedure :: is_given
   end type case_values_t
 
@@ -368,6 +370,29 @@ contains
     if (self%values(place)%given(shown)) text = text//' = '//trim(self%values(place)%written(shown))
     call fail(error, text//': '//wanted//unit_of(self%keys(place)), status_case_file)
   end subroutine refuse
+
+  !> The error for a value if it is wrong, unless there is an error already.
+  subroutine forbid(self, is_wrong, group, name, wanted, error)
+    class(case_values_t), intent(in) :: self
+    logical, intent(in) :: is_wrong
+    character(len=*), intent(in) :: group, name, wanted
+    type(error_t), allocatable, intent(inout) :: error
+    if (is_wrong .and. .not. allocated(error)) call self%refuse(group, name, wanted, error)
+  end subroutine forbid
+
+  !> The error for a number that is missing, or given as 0, unless there is an error already. `why` says when it is required.
+  subroutine demand(self, is_there, group, name, why, error)
+    class(case_values_t), intent(in) :: self
+    logical, intent(in) :: is_there
+    character(len=*), intent(in) :: group, name, why
+    type(error_t), allocatable, intent(inout) :: error
+    if (is_there .or. allocated(error)) return
+    if (self%is_given(group, name)) then
+      call self%refuse(group, name, 'must be > 0', error)
+    else
+      call self%refuse(group, name, trim('required '//why), error)
+    end if
+  end subroutine demand
 
   !> Whether a key is set in the file or by an override.
   pure logical function is_given(self, group, name) result(given)
