@@ -9,7 +9,7 @@ program film_costs
   use case_definition, only: case_t
   use case_file, only: read_case
   use film_law, only: film_motion_t
-  use film_tables, only: provide_tables
+  use film_files, only: provide_tables
   use measured_times, only: time_of_pairs, time_of_integration, no_difference
   implicit none
 

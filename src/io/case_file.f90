@@ -144,21 +144,19 @@ contains
     integer, intent(in) :: number   !! number of the group in the file
     type(error_t), allocatable, intent(out) :: error
     character(len=*), parameter :: places = piston_pin_place//', '//crank_pin_place
-    character(len=:), allocatable :: wanted, place
-    logical :: is_given
+    character(len=:), allocatable :: wanted, place, found
     integer :: i
     if (.not. has_places(values, list%groups(number)%name)) return
-    is_given = .false.
+    found = ''
     do i = 1, size(list%entries)
       associate (entry => list%entries(i))
         if (entry%group_number /= number .or. entry%key /= 'place') cycle
-        wanted = ''
+        wanted = 'takes 1 value'
         place = ''
-        if (size(entry%tokens) /= 1 .or. entry%index > 0) then
-          wanted = 'takes 1 value'
-        else
+        if (size(entry%tokens) == 1 .and. entry%index == 0) then
+          wanted = ''
           place = lowercase(entry%tokens(1)%text)
-          if (is_given) wanted = 'given twice'
+          if (found /= '') wanted = 'given twice'
           if (.not. is_listed(place, places)) wanted = 'must be one of '//places
         end if
         if (wanted /= '') then
@@ -166,12 +164,11 @@ contains
                     status_case_file)
           return
         end if
-        is_given = .true.
+        found = place
       end associate
     end do
-    if (.not. is_given) return
-    if (place == piston_pin_place .and. list%groups(number)%name == 'joint') return
-    list%groups(number)%name = place//'.'//list%groups(number)%name
+    if (found == '' .or. found == piston_pin_place .and. list%groups(number)%name == 'joint') return
+    list%groups(number)%name = found//'.'//list%groups(number)%name
   end subroutine name_place
 
   !> Whether a group may appear once for each joint.

@@ -5,18 +5,17 @@ module case_run
   use case_definition, only: case_t
   use command_line, only: command_line_t
   use gudgeon_columns, only: column_list_t
-  use film_tables, only: provide_tables
+  use film_files, only: provide_tables, write_film_file
   use gudgeon_simulation, only: simulate, run_report_t
   use trace_files, only: trace_files_t
   use result_file, only: result_file_t, remove_result, write_text
-  use continuation, only: continuation_t
+  use gudgeon_checkpoint, only: continuation_t
   use run_identity, only: identity_length
   use certificate, only: certificate_t, make_certificate
   use certificate_text, only: certificate_table, certificate_summary, certificate_clause
   use gudgeon_archive, only: archive_t
   use gudgeon_summary, only: summary_table, summary_line
   use stability_advice, only: advice
-  use film_file, only: write_film_file
   use gudgeon_posix, only: synchronise_folder, error_text
   use text_tools, only: printable
   implicit none

@@ -4,10 +4,10 @@ module case_value
   use text_tools, only: lowercase, printable, is_clean
   use case_schema, only: key_t, is_listed, real_kind, integer_kind, logical_kind, word_kind
   use namelist_reader, only: token_t
-  use value_reader, only: read_real, read_integer, read_logical, is_within
+  use value_reader, only: read_real, read_integer, read_logical
   implicit none
   private
-  public :: value_t, set_to_default, convert, find_decimal_comma, is_default, element_is_within, unit_of, most_reals
+  public :: value_t, set_to_default, convert, find_decimal_comma, is_default, unit_of, most_reals
 
   integer, parameter :: most_reals = 2   !! longest array of reals in the schema
   integer, parameter :: longest_text = 4000
@@ -93,18 +93,6 @@ contains
     wanted = printable(tokens(1)%text//','//tokens(2)%text, 40)//' has a decimal comma: write '// &
       printable(tokens(1)%text//'.'//tokens(2)%text, 40)
   end subroutine find_decimal_comma
-
-  !> Whether the numbers are in the range of the key.
-  pure logical function element_is_within(key, value, element) result(within)
-    type(key_t), intent(in) :: key
-    type(value_t), intent(in) :: value
-    integer, intent(in) :: element
-    if (key%kind == real_kind) then
-      within = is_within(value%reals(element), key%range)
-    else
-      within = is_within(real(value%whole, dp), key%range)
-    end if
-  end function element_is_within
 
   !> Whether a number equals the default of its key, however it is written.
   logical function is_default(key, value, element) result(same)

@@ -1,12 +1,14 @@
 !> The values of one case, key by key in the order of the schema: taken from a file or an override, and checked for kind, count,
 !> words and range.
 module case_values
+  use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text, nearest_word
   use case_schema, only: key_t, key_table_t, find_group, find_key, is_listed, shown_group, &
     real_kind, integer_kind
   use namelist_reader, only: token_t
-  use case_value, only: value_t, set_to_default, convert, find_decimal_comma, is_default, element_is_within, unit_of, most_reals
+  use value_reader, only: is_within
+  use case_value, only: value_t, set_to_default, convert, find_decimal_comma, is_default, unit_of, most_reals
   implicit none
   private
   public :: case_values_t, value_t
@@ -27,11 +29,9 @@ module case_values
     procedure :: is_said      !! a number that differs from its default
     procedure :: check        !! required keys and ranges
     procedure :: check_required
-    procedure :: check_absent
     procedure :: by_law       !! text that names the laws that have a key
     procedure :: is_used      !! whether the selected law has this key
     procedure :: check_range  !! range of one key
-    procedure :: is_in_range
     procedure :: refuse       !! error for a value
     procedure :: forbid       !! the same if a condition holds
     procedure :: demand       !! error for a value that is missing or 0
@@ -101,21 +101,17 @@ contains
     character(len=*), intent(in) :: group, name
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: others, earlier
-    integer :: place, i, k, first, last
+    integer :: place, i, k
     logical :: is_ended
     place = self%place_of(group, name)
     is_ended = .false.
     others = 'this'
-    associate (range => self%groups(find_group(self%groups, group)))
-      first = range%first
-      last = range%last
-    end associate
-    do i = first, last
+    do i = 1, size(self%keys)
       if (.not. is_relative(self%keys(i), self%keys(place))) cycle
       if (i /= place) others = others//' or '//trim(self%keys(i)%name)
       if (.not. self%is_said(i)) cycle
       is_ended = .true.
-      do k = first, i - 1
+      do k = 1, i - 1
         if (.not. is_relative(self%keys(k), self%keys(i)) .or. may_stand_beside(self%keys(k), self%keys(i))) cycle
         if (.not. self%is_said(k)) cycle
         earlier = trim(self%keys(k)%name)
@@ -255,7 +251,7 @@ contains
     end associate
   end subroutine assign
 
-  !> Check that required keys are given, and that all numbers are in their ranges.
+  !> Check that required keys are given, that all numbers are in their ranges, and that no key is given that only another law has.
   subroutine check(self, error)
     class(case_values_t), intent(in) :: self
     type(error_t), allocatable, intent(out) :: error
@@ -267,7 +263,10 @@ contains
         call self%check_required(i, error)
         if (.not. allocated(error)) call self%check_range(i, error)
       else if (self%keys(i)%only_here) then   ! other keys of the group may belong to other laws
-        call self%check_absent(i, error)
+        associate (key => self%keys(i))
+          call self%forbid(self%is_said(i), trim(key%group), trim(key%name), 'is for '//key%choice//' = '''//key%laws// &
+            ''' alone and must not be given with '''//self%values(self%place_of(trim(key%group), key%choice))%text//'''', error)
+        end associate
       end if
       if (allocated(error)) return
     end do
@@ -290,18 +289,6 @@ contains
       end if
     end associate
   end subroutine check_required
-
-  !> Check that the key at `place` is not given if the selected law does not have it.
-  subroutine check_absent(self, place, error)
-    class(case_values_t), intent(in) :: self
-    integer, intent(in) :: place
-    type(error_t), allocatable, intent(out) :: error
-    if (.not. self%is_said(place)) return
-    associate (key => self%keys(place), choice => self%place_of(trim(self%keys(place)%group), self%keys(place)%choice))
-      call self%refuse(trim(key%group), trim(key%name), 'is for '//key%choice//' = '''//key%laws//''' alone and must not be '// &
-        'given with '''//self%values(choice)%text//'''', error)
-    end associate
-  end subroutine check_absent
 
   !> Whether the selected model has the key at `place`; a group may also contain keys of other laws.
   pure logical function is_used(self, place)
@@ -331,28 +318,16 @@ contains
     integer, intent(in) :: place
     type(error_t), allocatable, intent(out) :: error
     integer :: element
-    if (self%is_in_range(place)) return
     associate (key => self%keys(place), value => self%values(place))
+      if (key%kind > integer_kind) return
       do element = 1, key%count
-        if (element_is_within(key, value, element)) cycle
+        if (is_within(merge(value%reals(element), real(value%whole, dp), key%kind == real_kind), key%range)) cycle
         if (is_default(key, value, element)) cycle
         call self%refuse(trim(key%group), trim(key%name), 'must be '//trim(key%range), error, element)
         return
       end do
     end associate
   end subroutine check_range
-
-  !> Whether all numbers of the key at `place` are in its range; true for a key that is not a number.
-  pure logical function is_in_range(self, place)
-    class(case_values_t), intent(in) :: self
-    integer, intent(in) :: place
-    integer :: element
-    is_in_range = .true.
-    if (self%keys(place)%kind > integer_kind) return
-    do element = 1, self%keys(place)%count
-      is_in_range = is_in_range .and. element_is_within(self%keys(place), self%values(place), element)
-    end do
-  end function is_in_range
 
   !> The error for a value: file, group, key, value as written, allowed values, unit.
   subroutine refuse(self, group, name, wanted, error, element)

@@ -106,8 +106,8 @@ contains
       end if
       if (case%is_elastic()) call add_elastic(f%elastic)
     end associate
-    if (trace_length > 0) call add('trace_bytes', bytes_text(trace_length), 'B')
-    if (events_length > 0) call add('events_bytes', bytes_text(events_length), 'B')
+    if (trace_length > 0) call add('trace_bytes', integer_text(trace_length), 'B')
+    if (events_length > 0) call add('events_bytes', integer_text(events_length), 'B')
     call add('identity', identity, '')
     call add('version', program_version, '')
     call add('compiler', quoted(compiler_version(), '"'), '')
@@ -230,15 +230,6 @@ contains
     text = table(first:first + index(table(first:)//newline, newline) - 2)
     text = text(:index(text, ',', back=.true.) - 1)
   end function summary_value
-
-  !> Length of a file as a text.
-  function bytes_text(length) result(text)
-    integer(int64), intent(in) :: length
-    character(len=:), allocatable :: text
-    character(len=20) :: digits
-    write (digits, '(i0)') length
-    text = trim(digits)
-  end function bytes_text
 
   !> Largest energy residual divided by the largest energy [-]; 0 if there is no energy.
   pure real(dp) function relative_residual(report)

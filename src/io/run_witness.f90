@@ -6,7 +6,7 @@ module run_witness
   use chain_motion, only: piston_pin, crank_pin
   use cycle_statistics, only: cycle_t
   use cycle_watch, only: cycle_watch_t
-  use film_tables, only: provide_tables
+  use film_files, only: provide_tables
   use gudgeon_columns, only: column_list_t
   use gudgeon_scene, only: event_contact_begins
   use gudgeon_simulation, only: simulate, run_report_t

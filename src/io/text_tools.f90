@@ -6,6 +6,16 @@ module text_tools
   public :: lowercase, printable, is_clean, integer_text, whole_number, quoted, nearest_word, case_name, &
     path_beside, replaced, next_line
 
+  !> Ranges of characters that are blanks beyond ASCII, have no width or change the direction of writing: U+00A0, U+00AD,
+  !> U+2000-200F, U+2028-202F, U+205F-206F, U+3000, U+FEFF.
+  integer, parameter :: first_invisible(7) = [160, 173, 8192, 8232, 8287, 12288, 65279], &
+    last_invisible(7) = [160, 173, 8207, 8239, 8303, 12288, 65279]
+
+  !> A whole number as text.
+  interface integer_text
+    procedure :: short_integer, long_integer
+  end interface integer_text
+
 contains
 
   pure function lowercase(text) result(lower)
@@ -19,20 +29,27 @@ contains
     end do
   end function lowercase
 
-  pure function integer_text(number) result(text)
+  pure function short_integer(number) result(text)
     integer, intent(in) :: number
     character(len=:), allocatable :: text
-    character(len=11) :: digits
-    integer :: rest, i
+    text = integer_text(int(number, int64))
+  end function short_integer
+
+  pure function long_integer(number) result(text)
+    integer(int64), intent(in) :: number
+    character(len=:), allocatable :: text
+    character(len=20) :: digits
+    integer(int64) :: rest
+    integer :: i
     rest = merge(number, -number, number < 0)   ! negative, since the most negative number has no positive one
     do i = len(digits), 1, -1
-      digits(i:i) = achar(iachar('0') - mod(rest, 10))
+      digits(i:i) = achar(iachar('0') - int(mod(rest, 10_int64)))
       rest = rest/10
       if (rest == 0) exit
     end do
     text = digits(i:)
     if (number < 0) text = '-'//text
-  end function integer_text
+  end function long_integer
 
   !> The number in a text: at most 18 digits, possibly with a sign.
   pure integer(int64) function whole_number(text) result(number)
@@ -60,12 +77,12 @@ contains
     integer, intent(in) :: limit
     character(len=:), allocatable :: shown
     character(len=4) :: escaped
-    integer :: i, bytes
+    integer :: i, code, bytes
     shown = ''
     i = 1
     do while (i <= len(text))
-      bytes = clean_length(text, i)
-      if (bytes > 1) bytes = merge(0, bytes, is_invisible(text(i:i + bytes - 1)))
+      call take_character(text, i, code, bytes)
+      if (any(first_invisible <= code .and. code <= last_invisible)) bytes = 0
       if (len(shown) + max(bytes, 4) > limit .and. len(shown) + len(text) - i + 1 > limit) then
         shown = shown//'...'
         return
@@ -80,67 +97,39 @@ contains
     end do
   end function printable
 
-  !> Whether a character of UTF-8 beyond ASCII is a blank, has no width or changes the direction of writing: U+00A0, U+00AD,
-  !> U+2000-200F, U+2028-202F, U+205F-206F, U+3000, U+FEFF.
-  pure logical function is_invisible(character) result(answer)
-    character(len=*), intent(in) :: character
-    integer :: last
-    last = ichar(character(len(character):))
-    select case (character(:len(character) - 1))
-    case (char(194))
-      answer = last == 160 .or. last == 173
-    case (char(226)//char(128))
-      answer = last <= 143 .or. last >= 168 .and. last <= 175
-    case (char(226)//char(129))
-      answer = last >= 159 .and. last <= 175
-    case (char(227)//char(128))
-      answer = last == 128
-    case (char(239)//char(187))
-      answer = last == 191
-    case default
-      answer = .false.
-    end select
-  end function is_invisible
-
   !> Whether the text is UTF-8 without control characters.
   pure logical function is_clean(text) result(clean)
     character(len=*), intent(in) :: text
-    integer :: i, bytes
+    integer :: i, code, bytes
     clean = .true.
     i = 1
     do while (i <= len(text) .and. clean)
-      bytes = clean_length(text, i)
+      call take_character(text, i, code, bytes)
       clean = bytes > 0
       i = i + bytes
     end do
   end function is_clean
 
-  !> Number of bytes of the UTF-8 character that begins at `i`; 0 if there is none or it is a control character.
-  pure function clean_length(text, i) result(bytes)
+  !> The code of the UTF-8 character that begins at `i`, and its number of bytes; 0 bytes if there is none or it is a control
+  !> character.
+  pure subroutine take_character(text, i, code, bytes)
     character(len=*), intent(in) :: text
     integer, intent(in) :: i
-    integer :: bytes, lead, k, next
-    lead = ichar(text(i:i))
+    integer, intent(out) :: code, bytes
+    integer, parameter :: lead(4) = [0, 192, 224, 240], least(4) = [32, 160, 2048, 65536]   ! for 1 to 4 bytes
+    integer :: n, k, next
     bytes = 0
-    if (lead >= 32 .and. lead < 127) bytes = 1
-    if (lead >= 194 .and. lead < 224) bytes = 2
-    if (lead >= 224 .and. lead < 240) bytes = 3
-    if (lead >= 240 .and. lead < 245) bytes = 4
-    if (i + bytes - 1 > len(text)) bytes = 0
-    do k = 1, bytes - 1
-      next = ichar(text(i + k:i + k))
-      if (next < 128 .or. next > 191) then
-        bytes = 0
-        return
-      end if
-      if (k > 1) cycle
-      if (lead == 194 .and. next < 160 .or. lead == 224 .and. next < 160 .or. lead == 237 .and. next > 159 .or. &
-          lead == 240 .and. next < 144 .or. lead == 244 .and. next > 143) then
-        bytes = 0
-        return
-      end if
+    code = ichar(text(i:i))
+    n = count(code >= lead)
+    code = code - lead(n)
+    if (n == 1 .and. code > 126 .or. i + n - 1 > len(text)) return
+    do k = 1, n - 1
+      next = ichar(text(i + k:i + k)) - 128
+      if (next < 0 .or. next > 63) return
+      code = 64*code + next
     end do
-  end function clean_length
+    if (code >= least(n) .and. code <= 1114111 .and. code/2048 /= 27) bytes = n   ! 27: halves of a pair of UTF-16
+  end subroutine take_character
 
   !> The word of a list that is most similar to a misspelt one; empty if none is similar.
   pure function nearest_word(word, list) result(nearest)

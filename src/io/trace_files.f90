@@ -13,7 +13,7 @@ module trace_files
   use result_file, only: result_file_t
   use gudgeon_checkpoint, only: checkpoint_t, file_mark_t, restart_hint
   use row_text, only: row_text_t
-  use trace_table, only: trace_table_t
+  use number_writer, only: number_writer_t, longest_number
   use gudgeon_progress, only: progress_t
   use stability_advice, only: stability_advice_t
   use ode_method, only: step_statistics_t
@@ -30,7 +30,8 @@ module trace_files
   !> A sink that writes files. It asks for the end of the run if the user interrupts or a file cannot be written.
   type, extends(trace_sink_t) :: trace_files_t
     type(result_file_t) :: file(2)      !! trace and list of events; a file that was not opened stays without effect
-    type(trace_table_t), private :: table
+    type(number_writer_t), private :: numbers
+    integer, private :: phase_column = 1   !! index of the phase's column; the last index plus one if there is none
     type(progress_t) :: progress
     type(stability_advice_t) :: advice
     type(checkpoint_t) :: checkpoint    !! path, identity and case; the rest is set when it is written
@@ -92,7 +93,8 @@ contains
     type(column_list_t), intent(in) :: list
     integer, intent(in) :: digits
     self%path = path
-    call self%table%prepare(list, digits)
+    self%phase_column = findloc([list%names(list%id) == 'phase[-]', .true.], .true., 1)
+    call self%numbers%prepare(digits)
     call system_clock(self%began)
     self%saved = self%began
   end subroutine prepare
@@ -222,15 +224,33 @@ contains
     class(trace_files_t), intent(inout) :: self
     real(dp), intent(in), contiguous :: values(:)
     integer, parameter :: rows_between_looks = 100
-    call self%table%put_row(values, self%file(trace))
+    call put_row(self%numbers, self%phase_column, values, self%file(trace))
     self%rows = self%rows + 1
     if (mod(self%rows, rows_between_looks) == 0) call look(self)
   end subroutine take_row
 
+  !> Add a row to a file, written directly into its buffer; the phase is one digit.
+  subroutine put_row(numbers, phase, values, file)
+    type(number_writer_t), intent(in) :: numbers
+    integer, intent(in) :: phase   !! index of the phase's column
+    real(dp), intent(in), contiguous :: values(:)
+    type(result_file_t), intent(inout) :: file
+    call file%make_room((longest_number + 1)*size(values))
+    associate (text => file%buffer, used => file%used)
+      call numbers%append_list(text, used, values(:phase - 1))
+      if (phase <= size(values)) then
+        text(used + 1:used + 2) = achar(iachar('0') + int(values(phase)))//','
+        used = used + 2
+        call numbers%append_list(text, used, values(phase + 1:))
+      end if
+      text(used:used) = achar(10)
+    end associate
+  end subroutine put_row
+
   subroutine take_event(self, event)
     class(trace_files_t), intent(inout) :: self
     type(trace_event_t), intent(in) :: event
-    associate (row => self%event, numbers => self%table%numbers, has_ended => event%kind /= event_contact_begins)
+    associate (row => self%event, numbers => self%numbers, has_ended => event%kind /= event_contact_begins)
       call row%clear()
       call row%add_number(numbers, event%time)
       call row%add_number(numbers, event%crank_angle)

@@ -84,19 +84,15 @@ contains
   end subroutine read_logical
 
   !> Whether a value is in a range written as `> 0`, or `>= 0 and <= 0.5`.
-  pure logical function is_within(value, range) result(within)
+  pure recursive logical function is_within(value, range) result(within)
     real(dp), intent(in) :: value
     character(len=*), intent(in) :: range
-    integer :: last
-    within = .true.
-    if (range == '') return
-    last = index(range, ' and ')
-    if (last > 0) then
-      within = meets(value, range(:last - 1))
-      if (within) within = meets(value, trim(range(last + 5:)))
-    else
-      within = meets(value, trim(range))
-    end if
+    integer :: length
+    within = range == ''
+    if (within) return
+    length = index(range//' and ', ' and ') - 1
+    within = meets(value, trim(range(:length)))
+    if (within) within = is_within(value, range(length + 6:))
   end function is_within
 
   !> Whether a value meets one condition: an operator and a number, separated by a blank.

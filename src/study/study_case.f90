@@ -142,15 +142,11 @@ contains
     class(study_case_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
     integer :: i
-    do i = 1, size(self%places)
-      if (self%values%is_in_range(self%places(i)) .or. .not. self%values%is_used(self%places(i))) cycle
-      !$omp critical (texts)
-      call self%values%check_range(self%places(i), error)
-      !$omp end critical (texts)
-      if (allocated(error)) return
-    end do
     !$omp critical (texts)
-    if (self%varies_words) call self%values%check(error)
+    do i = 1, size(self%places)
+      if (self%values%is_used(self%places(i)) .and. .not. allocated(error)) call self%values%check_range(self%places(i), error)
+    end do
+    if (self%varies_words .and. .not. allocated(error)) call self%values%check(error)
     if (.not. allocated(error) .and. allocated(self%wrong)) error = self%wrong
     if (.not. allocated(error)) call check_rules(self%case, self%values, error)
     !$omp end critical (texts)

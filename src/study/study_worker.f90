@@ -5,7 +5,7 @@ module study_worker
   use gudgeon_constants, only: degree
   use gudgeon_columns, only: column_list_t, choose_columns
   use cycle_watch, only: cycle_watch_t
-  use film_tables, only: provide_tables
+  use film_files, only: provide_tables
   use gudgeon_simulation, only: simulate, run_report_t, interrupted_text
   use row_store, only: patient_sink_t
   use trace_files, only: trace_files_t

@@ -1,26 +1,30 @@
-!> Stores the tables of film laws between runs, in the user's cache folder or in a file that the case names, since they take long to
+!> Files of films: tables of film laws, and NAME.film.csv, the pressure of films over half of the bearing at the times that the case
+!> asks for. Tables are stored between runs, in the user's cache folder or in a file that the case names, since they take long to
 !> compute.
 !>
-!> A file contains a line that identifies its format, the key of the table, the table as an archive, and a checksum of all this. A
+!> The file of a table contains a line that identifies its format, the key of the table, the table as an archive, and a checksum of all this. A
 !> damaged file, or one written by another version of the program, is computed again; if it cannot be written into the cache, the
 !> run continues without storing it. A file that a case names is replaced only if it is a table of a film, of any parameters.
-module film_tables
+module film_files
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_integration, status_case_file
   use gudgeon_archive, only: archive_t
   use gudgeon_bearing, only: bearing_t
   use gudgeon_checksum, only: checksum_t, mark_of, mark_length
+  use chain_motion, only: pin_names
   use case_definition, only: case_t, joint_case_t
+  use film_snapshots, only: film_field_t
   use film_law, only: film_law_t, table_watch_t
-  use gudgeon_posix, only: make_directory
-  use posix_signals, only: interrupted
+  use gudgeon_posix, only: make_directory, interrupted
+  use growing_text, only: growing_text_t
+  use number_text, only: real_text
   use gudgeon_progress, only: progress_t
   use result_file, only: write_text
   use text_tools, only: path_beside
   use text_file, only: read_whole
   implicit none
   private
-  public :: provide_tables
+  public :: provide_tables, write_film_file
 
   character(len=*), parameter :: newline = achar(10), title = 'gudgeon film table'//newline
 
@@ -161,4 +165,28 @@ contains
     bytes = title//key//newline//bytes
     call write_text(path, bytes//mark_of(bytes), error)
   end subroutine save
-end module film_tables
+
+  !> Write one row for each node of the film: the angle from x towards y in the frame of the bearing, and the axial distance from
+  !> its middle. The pressures in the other half are equal. Error: the file cannot be written (status_output).
+  subroutine write_film_file(path, fields, error)
+    character(len=*), intent(in) :: path
+    type(film_field_t), intent(in) :: fields(:)
+    type(error_t), allocatable, intent(out) :: error
+    type(growing_text_t) :: file
+    integer :: i, j, k
+    call file%append('time[s],crank_angle[rad],joint,angle[rad],film_thickness[m],place[m],pressure[Pa]'//achar(10))
+    do i = 1, size(fields)
+      do j = 1, size(fields(i)%angle)
+        do k = 1, size(fields(i)%along)
+          associate (field => fields(i))
+            call file%append(real_text(field%time)//','//real_text(field%crank_angle)//','//trim(pin_names(field%place))//',')
+            call file%append(real_text(field%angle(j) + field%direction)//',')
+            call file%append(real_text(field%clearance - field%distance*cos(field%angle(j)))//',')
+            call file%append(real_text(field%along(k))//','//real_text(field%pressure(j, k))//achar(10))
+          end associate
+        end do
+      end do
+    end do
+    call write_text(path, file%text(:file%used), error)
+  end subroutine write_film_file
+end module film_files
