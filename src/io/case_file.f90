@@ -5,12 +5,12 @@ module case_file
   use text_tools, only: lowercase, printable, case_name
   use text_file, only: read_text_file
   use case_definition, only: case_t, piston_pin_place, crank_pin_place
-  use case_schema, only: key_table_t, case_schema_of, find_group, is_listed, shown_group, text_kind
+  use case_schema, only: key_table_t, case_schema_of, find_group, is_listed, shown_group
   use case_values, only: case_values_t
   use case_loader, only: load_case
   use case_rules, only: check_rules
   use case_text, only: template_text, resolved_text
-  use namelist_reader, only: namelist_t, token_t, read_namelist, read_values
+  use namelist_reader, only: namelist_t, read_namelist
   implicit none
   private
   public :: read_case, parse_case, read_case_values, complete_case, template
@@ -184,8 +184,7 @@ contains
     type(case_values_t), intent(inout) :: values
     character(len=*), intent(in) :: override
     type(error_t), allocatable, intent(out) :: error
-    type(token_t), allocatable :: tokens(:)
-    character(len=:), allocatable :: at, message, group, key, text
+    character(len=:), allocatable :: at, group, key, text
     integer :: dot, equals, place
     at = values%file//': --set '//printable(override, 60)//': '
     equals = index(override, '=')
@@ -208,19 +207,9 @@ contains
     key = trim(adjustl(lowercase(override(dot + 1:equals - 1))))
     call values%find(group, key, at, place, error)
     if (allocated(error)) return
-    text = trim(adjustl(override(equals + 1:)))
-    if (values%keys(place)%kind == text_kind .and. verify(text//' ', '''"') == 1) then
-      allocate (tokens(1))
-      tokens(1)%text = text
-    else
-      call read_values(text, tokens, message)
-    end if
-    if (allocated(message)) then
-      call fail(error, at//message, status_case_file)
-      return
-    end if
     values%is_present(find_group(values%groups, group)) = .true.
-    call values%assign(place, 0, tokens, at, .true., error)
+    text = trim(adjustl(override(equals + 1:)))
+    call values%assign_text(place, text, .false., at, error)
     if (allocated(error) .and. lowercase(text) == 'none') &
       error%message = error%message//'; --set '//group//'=none takes the group out'
   end subroutine take_override

@@ -46,10 +46,6 @@ module case_run
     procedure :: clear
     procedure :: make_ready
     procedure :: go
-    procedure, private :: has_events
-    procedure, private :: open_files
-    procedure, private :: put_summary
-    procedure, private :: collect_errors
   end type case_run_t
 
 contains
@@ -86,7 +82,7 @@ contains
   subroutine look_for_earlier(self, error)
     class(case_run_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
-    call self%start%look_for(self%base, self%case%file, .not. self%is_twin, self%has_events(), error)
+    call self%start%look_for(self%base, self%case%file, .not. self%is_twin, has_events(self), error)
     if (self%start%is_done) self%line = self%case%file//': done already; '//self%base//'.csv'
   end subroutine look_for_earlier
 
@@ -131,7 +127,7 @@ contains
 
     if (self%start%is_done .or. allocated(self%error)) return
     !$omp critical (texts)
-    call self%open_files(files)
+    call open_files(self, files)
     !$omp end critical (texts)
     if (allocated(self%error)) return
     if (self%start%goes_on) then
@@ -159,9 +155,9 @@ contains
       if (allocated(self%error)) then
         continue
       else if (start%goes_on) then
-        call files%reopen(base, list, case%output%digits, self%has_events(), start%checkpoint, self%error)
+        call files%reopen(base, list, case%output%digits, has_events(self), start%checkpoint, self%error)
       else
-        call files%open(base, list, case%output%digits, self%has_events(), self%error)
+        call files%open(base, list, case%output%digits, has_events(self), self%error)
       end if
       if (allocated(self%error)) then
         call self%summary%abandon()
@@ -190,7 +186,7 @@ contains
       call write_film_file(self%base//'.film.csv', self%report%films, film_error)
       call keep_first(film_error, self%error)
     end if
-    call self%put_summary(files)
+    call put_summary(self, files)
     !$omp end critical (texts)
     call self%summary%synchronise()
     call self%summary%conclude()
@@ -198,7 +194,7 @@ contains
     call files%file%conclude()
     call synchronise_folder(self%base, folder_status)
     !$omp critical (texts)
-    call self%collect_errors(files, folder_status)
+    call collect_errors(self, files, folder_status)
     !$omp end critical (texts)
   end subroutine close_files
 

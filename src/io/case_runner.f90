@@ -39,9 +39,6 @@ module case_runner
     procedure :: make_ready
     procedure :: go
     procedure :: tell_outcome
-    procedure, private :: take_place
-    procedure, private :: secure_place
-    procedure, private :: make_room
   end type case_job_t
 
 contains
@@ -147,9 +144,9 @@ contains
     end if
     may_go = .not. (allocated(self%error) .or. is_over) .and. (self%has_twin .or. .not. is_twin)
     is_first = may_go .and. .not. self%has_place
-    if (is_first) call self%take_place(options)
+    if (is_first) call take_place(self, options)
     !$omp end critical (texts)
-    if (is_first) call self%secure_place(may_go)
+    if (is_first) call secure_place(self, may_go)
     if (may_go .and. is_twin) then
       call self%twin%go()
     else if (may_go) then
@@ -190,7 +187,7 @@ contains
       if (.not. (allocated(self%error) .or. self%run%start%is_done .or. self%run%start%goes_on .or. options%quiet)) call tell( &
         printable(self%path, 200)//': no checkpoint in '//printable(options%out, 200)//': starts from the beginning')
     end if
-    if (.not. allocated(self%error)) call self%make_room()
+    if (.not. allocated(self%error)) call make_room(self)
     if (allocated(self%error) .or. self%run%start%is_done) return
     call self%resolved%open(self%run%base//'.resolved.nml', self%error, whole_only=.true.)
     call self%resolved%put(self%run%start%checkpoint%case_text)

@@ -5,8 +5,8 @@ module case_values
   use gudgeon_errors, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text, nearest_word
   use case_schema, only: key_t, key_table_t, find_group, find_key, is_listed, shown_group, &
-    real_kind, integer_kind
-  use namelist_reader, only: token_t
+    real_kind, integer_kind, text_kind
+  use namelist_reader, only: token_t, read_values
   use value_reader, only: is_within
   use case_value, only: value_t, set_to_default, convert, find_decimal_comma, is_default, unit_of, most_reals
   implicit none
@@ -22,6 +22,7 @@ module case_values
     procedure :: find         !! index of a key, or an error
     procedure :: place_of     !! index of a key
     procedure :: assign       !! give a key its values as written
+    procedure :: assign_text  !! the same, from a text of the user, as an override
     procedure :: take_out     !! remove a group, as if the file did not contain it
     procedure :: prefer_overrides   !! to other keys of the same family
     procedure :: prefer
@@ -250,6 +251,29 @@ contains
       end do
     end associate
   end subroutine assign
+
+  !> Give the key at `place` the values in a text, as an override. A key that is a text takes it unchanged; without `is_plain` it
+  !> may also be in quotes.
+  subroutine assign_text(self, place, text, is_plain, at, error)
+    class(case_values_t), intent(inout) :: self
+    integer, intent(in) :: place
+    character(len=*), intent(in) :: text, at
+    logical, intent(in) :: is_plain
+    type(error_t), allocatable, intent(out) :: error
+    type(token_t), allocatable :: tokens(:)
+    character(len=:), allocatable :: message
+    if (self%keys(place)%kind == text_kind .and. (is_plain .or. verify(text//' ', '''"') == 1)) then
+      allocate (tokens(1))
+      tokens(1)%text = text
+    else
+      call read_values(text, tokens, message)
+    end if
+    if (allocated(message)) then
+      call fail(error, at//message, status_case_file)
+    else
+      call self%assign(place, 0, tokens, at, .true., error)
+    end if
+  end subroutine assign_text
 
   !> Check that required keys are given, that all numbers are in their ranges, and that no key is given that only another law has.
   subroutine check(self, error)

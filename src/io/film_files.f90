@@ -2,9 +2,10 @@
 !> asks for. Tables are stored between runs, in the user's cache folder or in a file that the case names, since they take long to
 !> compute.
 !>
-!> The file of a table contains a line that identifies its format, the key of the table, the table as an archive, and a checksum of all this. A
-!> damaged file, or one written by another version of the program, is computed again; if it cannot be written into the cache, the
-!> run continues without storing it. A file that a case names is replaced only if it is a table of a film, of any parameters.
+!> The file of a table contains a line that identifies its format, the key of the table, the table as an archive, and a checksum of
+!> all this. A damaged file, or one written by another version of the program, is computed again; if it cannot be written into the
+!> cache, the run continues without storing it. A file that a case names is replaced only if it is a table of a film, of any
+!> parameters.
 module film_files
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_integration, status_case_file

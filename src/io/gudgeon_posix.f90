@@ -10,7 +10,7 @@ module gudgeon_posix
   implicit none
   private
   public :: open_for_reading, open_standard_input, open_for_writing, open_for_appending, open_to_lock, lock_file, &
-    is_file, file_length, absolute_path, read_at, read_bytes, write_bytes, write_all, truncate_file, reserve_file, &
+    is_file, file_length, absolute_path, read_at, read_bytes, write_all, truncate_file, reserve_file, &
     synchronise_file, synchronise_folder, close_file, rename_file, remove_file, make_directory, is_terminal, wait_for_input, &
     error_text, signal_set_t, hold_interrupts, restore_interrupts, interrupted, fill_standard_descriptors, &
     ignore_write_signals, quit
@@ -95,7 +95,7 @@ contains
     descriptor = c_open(path//c_null_char, ior(flags, ior(o_nonblock, o_cloexec)), 0_c_int)
     status = outcome(descriptor)
     if (status /= 0) return
-    select case (kind_of_file(int(descriptor, c_int), '', at_empty_path))
+    select case (kind_of_file(descriptor, '', at_empty_path))
     case (kind_regular)
       if (through_link) return
       if (is_file(path, descriptor)) return
@@ -115,7 +115,7 @@ contains
   subroutine lock_file(descriptor, status)
     integer, intent(in) :: descriptor
     integer, intent(out) :: status
-    status = outcome(int(c_flock(int(descriptor, c_int), ior(lock_exclusive, lock_without_waiting))))
+    status = outcome(c_flock(descriptor, ior(lock_exclusive, lock_without_waiting)))
   end subroutine lock_file
 
   !> Whether `path` is the name of this open file itself, and not of a link to it.
@@ -125,7 +125,7 @@ contains
     type(file_status_t) :: named, opened
     answer = .false.
     if (c_statx(at_working_folder, path//c_null_char, at_link_itself, basic_status, named) /= 0) return
-    if (c_statx(int(descriptor, c_int), ''//c_null_char, at_empty_path, basic_status, opened) /= 0) return
+    if (c_statx(descriptor, ''//c_null_char, at_empty_path, basic_status, opened) /= 0) return
     answer = all(named%device == opened%device) .and. named%number == opened%number
   end function is_file
 
@@ -151,7 +151,7 @@ contains
     integer, intent(in) :: descriptor
     character(len=*), intent(out), target :: buffer
     integer, intent(out) :: done, status
-    done = int(c_read(int(descriptor, c_int), c_loc(buffer), len(buffer, c_size_t)))
+    done = int(c_read(descriptor, c_loc(buffer), len(buffer, c_size_t)))
     status = outcome(done)
   end subroutine read_bytes
 
@@ -161,7 +161,7 @@ contains
     integer(c_long), intent(in) :: offset
     character(len=*), intent(out), target :: buffer
     integer, intent(out) :: done, status
-    done = int(c_pread(int(descriptor, c_int), c_loc(buffer), len(buffer, c_size_t), offset))
+    done = int(c_pread(descriptor, c_loc(buffer), len(buffer, c_size_t), offset))
     status = outcome(done)
   end subroutine read_at
 
@@ -178,7 +178,7 @@ contains
   subroutine synchronise_file(descriptor, status)
     integer, intent(in) :: descriptor
     integer, intent(out) :: status
-    status = outcome(int(c_fsync(int(descriptor, c_int))))
+    status = outcome(c_fsync(descriptor))
   end subroutine synchronise_file
 
   !> Wait until the names in the folder of `path` are on its disk. Does not wait if the file system does not support it.
@@ -202,29 +202,21 @@ contains
     integer(c_long), intent(in) :: length
     integer, intent(out) :: status
     integer(c_int), parameter :: keep_length = 1
-    status = outcome(int(c_fallocate(int(descriptor, c_int), keep_length, 0_c_long, length)))
+    status = outcome(c_fallocate(descriptor, keep_length, 0_c_long, length))
     if (status /= error_no_space) status = 0
   end subroutine reserve_file
-
-  !> One call of write: `done` bytes of `text` were written, possibly not all of them.
-  subroutine write_bytes(descriptor, text, done, status)
-    integer, intent(in) :: descriptor
-    character(len=*), intent(in), target :: text
-    integer, intent(out) :: done, status
-    done = int(c_write(int(descriptor, c_int), c_loc(text), len(text, c_size_t)))
-    status = outcome(done)
-  end subroutine write_bytes
 
   !> Write a text in as many calls as necessary: `done` bytes of it before an error.
   subroutine write_all(descriptor, text, done, status)
     integer, intent(in) :: descriptor
-    character(len=*), intent(in) :: text
+    character(len=*), intent(in), target :: text
     integer, intent(out) :: done, status
     integer :: more
     done = 0
     status = 0
     do while (done < len(text))
-      call write_bytes(descriptor, text(done + 1:), more, status)
+      more = int(c_write(descriptor, c_loc(text(done + 1:)), len(text, c_size_t) - done))
+      status = outcome(more)
       if (status == error_interrupted) cycle
       if (status /= 0) return
       done = done + more
@@ -236,26 +228,26 @@ contains
     integer, intent(in) :: descriptor
     integer(c_long), intent(in) :: length
     integer, intent(out) :: status
-    status = outcome(int(c_ftruncate(int(descriptor, c_int), length)))
+    status = outcome(c_ftruncate(descriptor, length))
   end subroutine truncate_file
 
   subroutine close_file(descriptor, status)
     integer, intent(in) :: descriptor
     integer, intent(out) :: status
-    status = outcome(int(c_close(int(descriptor, c_int))))
+    status = outcome(c_close(descriptor))
   end subroutine close_file
 
   !> Rename a file, replacing an existing file.
   subroutine rename_file(from, to, status)
     character(len=*), intent(in) :: from, to
     integer, intent(out) :: status
-    status = outcome(int(c_rename(from//c_null_char, to//c_null_char)))
+    status = outcome(c_rename(from//c_null_char, to//c_null_char))
   end subroutine rename_file
 
   subroutine remove_file(path, status)
     character(len=*), intent(in) :: path
     integer, intent(out) :: status
-    status = outcome(int(c_unlink(path//c_null_char)))
+    status = outcome(c_unlink(path//c_null_char))
   end subroutine remove_file
 
   !> Make a folder and all its parents; an existing folder is not an error.
@@ -266,7 +258,7 @@ contains
     do i = 2, len(path)
       if (path(i:i) == '/') status = c_mkdir(path(:i - 1)//c_null_char, folder_mode)
     end do
-    status = outcome(int(c_mkdir(path//c_null_char, folder_mode)))
+    status = outcome(c_mkdir(path//c_null_char, folder_mode))
     if (status /= error_exists) return
     status = 0
     if (kind_of_file(at_working_folder, path, 0_c_int) /= kind_folder) status = error_not_directory
@@ -275,7 +267,7 @@ contains
   !> Whether a file descriptor (1 standard output, 2 standard error) is a terminal.
   logical function is_terminal(descriptor) result(answer)
     integer, intent(in) :: descriptor
-    answer = c_isatty(int(descriptor, c_int)) == 1
+    answer = c_isatty(descriptor) == 1
   end function is_terminal
 
   !> Wait for data to read, or for their end, at most for the given time in ms. `is_there` is true also if reading would fail.
@@ -284,8 +276,8 @@ contains
     logical, intent(out) :: is_there
     integer(c_short), parameter :: to_read = 1
     type(poll_t) :: file
-    file = poll_t(int(descriptor, c_int), to_read, 0_c_short)
-    is_there = c_poll(file, 1_c_long, int(milliseconds, c_int)) > 0
+    file = poll_t(descriptor, to_read, 0_c_short)
+    is_there = c_poll(file, 1_c_long, milliseconds) > 0
   end subroutine wait_for_input
 
   !> The system's text for an error number.
@@ -297,7 +289,7 @@ contains
     if (number == error_is_link) text = 'a symbolic link'
     if (number < 0) return
     text = 'unknown error'
-    if (c_strerror_r(int(number, c_int), buffer, len(buffer, c_size_t)) == 0) text = buffer(:index(buffer, c_null_char) - 1)
+    if (c_strerror_r(number, buffer, len(buffer, c_size_t)) == 0) text = buffer(:index(buffer, c_null_char) - 1)
   end function error_text
 
   !> If the program was started without standard input, output or error, open them on /dev/null. Otherwise the first result file
@@ -310,13 +302,13 @@ contains
       descriptor = c_open('/dev/null'//c_null_char, read_and_write, 0_c_int)
       if (descriptor < 0 .or. descriptor > last_standard) exit
     end do
-    if (descriptor > last_standard) unused = c_close(int(descriptor, c_int))
+    if (descriptor > last_standard) unused = c_close(descriptor)
   end subroutine fill_standard_descriptors
 
   !> End the program with an exit status, without output.
   subroutine quit(status)
     integer, intent(in) :: status
-    call c_exit(int(status, c_int))
+    call c_exit(status)
   end subroutine quit
 
   !> 0 after success, else the error number of the last call.

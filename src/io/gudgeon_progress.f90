@@ -5,7 +5,7 @@ module gudgeon_progress
   use gudgeon_kinds, only: dp
   use text_tools, only: printable, integer_text
   use number_text, only: short_text
-  use gudgeon_posix, only: is_terminal, write_bytes
+  use gudgeon_posix, only: is_terminal, write_all
   implicit none
   private
   public :: progress_t, progress_wanted, tell, rate_text, duration_text
@@ -119,7 +119,7 @@ contains
   subroutine tell(line)
     character(len=*), intent(in) :: line
     integer :: done, ignored
-    call write_bytes(standard_error, 'gudgeon: '//line//achar(10), done, ignored)
+    call write_all(standard_error, 'gudgeon: '//line//achar(10), done, ignored)
   end subroutine tell
 
   subroutine clear_line(self)
@@ -134,9 +134,9 @@ contains
     integer :: done, ignored
     self%has_shown = .true.
     if (self%rewrites) then
-      call write_bytes(standard_error, achar(13)//line//achar(27)//'[K', done, ignored)
+      call write_all(standard_error, achar(13)//line//achar(27)//'[K', done, ignored)
     else
-      call write_bytes(standard_error, line//achar(10), done, ignored)
+      call write_all(standard_error, line//achar(10), done, ignored)
     end if
   end subroutine show
 

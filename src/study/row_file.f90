@@ -26,9 +26,8 @@ module row_file
     integer :: fields = 0                          !! number of fields of a row
     integer :: descriptor = -1
     integer :: status = 0                          !! error number of the first write that failed
-    integer(int64) :: size = 0                     !! length of the file including the rows not yet written [bytes]
     integer(int64) :: written = 0                  !! length of the file on the disk [bytes]
-    type(growing_text_t) :: waiting
+    type(growing_text_t), public :: waiting        !! rows not yet written
     integer :: first = 1                           !! first run
     integer(int64), allocatable :: at(:)           !! position of the rows of each run in the file
     integer, allocatable :: length(:)              !! length of the rows of each run [bytes]
@@ -42,12 +41,8 @@ module row_file
     procedure :: drop
     procedure :: begin
     procedure :: append
-    procedure :: bytes_waiting
     procedure :: write => write_waiting
     procedure :: finish
-    procedure, private :: take_line
-    procedure, private :: is_in_order
-    procedure, private :: rewrite
   end type row_file_t
 
 contains
@@ -111,17 +106,16 @@ contains
       do
         next = index(buffer(first:done), newline)
         if (next == 0) exit
-        call self%take_line(line//buffer(first:first + next - 1), previous, error)
+        call take_line(self, line//buffer(first:first + next - 1), previous, error)
         if (allocated(error)) exit
-        self%size = self%size + len(line) + next
+        self%written = self%written + len(line) + next
         line = ''
         first = first + next
       end do
       line = line//buffer(first:done)
       if (interrupted()) call fail(error, printable(self%path, 200)//': interrupted while it was read', status_integration)
     end do
-    self%size = self%size + len(line)
-    self%written = self%size
+    self%written = self%written + len(line)
     call close_file(descriptor, ignored)
     if (status /= 0) call fail_with_file(self%path, status, error)
   end subroutine take_up
@@ -133,7 +127,7 @@ contains
     integer, intent(inout) :: previous
     type(error_t), allocatable, intent(out) :: error
     integer :: fields, numbers(0:ubound(self%columns, 1))
-    if (self%size == 0) then
+    if (self%written == 0) then
       if (line == self%header .and. len(line) == len(self%header)) return
       call fail(error, printable(self%path, 200)//': its first row is not that of this study'//fresh, status_output)
       return
@@ -148,7 +142,7 @@ contains
         return
       end if
       if (run /= previous) then
-        self%at(run) = self%size
+        self%at(run) = self%written
         call self%drop(run)
       end if
       self%length(run) = self%length(run) + len(line)
@@ -194,10 +188,10 @@ contains
     integer :: status
     if (.not. allocated(self%path)) return
     status = error_no_entry
-    if (self%size == len(self%header) + sum(int(self%length, int64))) &
+    if (self%written == len(self%header) + sum(int(self%length, int64))) &
       call open_for_appending(self%path, self%descriptor, status)
     if (status == 0) return
-    call self%rewrite(error)
+    call rewrite(self, error)
     if (allocated(error)) return
     call open_for_appending(self%path, self%descriptor, status)
     if (status /= 0) call fail_with_file(self%path, status, error)
@@ -209,17 +203,10 @@ contains
     integer, intent(in) :: run
     character(len=*), intent(in) :: text   !! with an end of line
     if (self%descriptor < 0 .or. len(text) == 0) return
-    call self%waiting%append(text)
-    self%at(run) = self%size
+    self%at(run) = self%written + self%waiting%used
     self%length(run) = len(text)
-    self%size = self%size + len(text)
+    call self%waiting%append(text)
   end subroutine append
-
-  !> Number of bytes not yet written.
-  pure integer(int64) function bytes_waiting(self)
-    class(row_file_t), intent(in) :: self
-    bytes_waiting = self%size - self%written
-  end function bytes_waiting
 
   !> Write the rows not yet written, and wait until they are on the disk. After an error the file has its previous content, and
   !> every further call returns the error.
@@ -252,8 +239,8 @@ contains
     self%descriptor = -1
     if (status /= 0 .and. status /= error_interrupted) then
       call fail_with_file(self%path, status, error)
-    else if (complete .and. .not. self%is_in_order()) then
-      call self%rewrite(error)
+    else if (complete .and. .not. is_in_order(self)) then
+      call rewrite(self, error)
     end if
   end subroutine finish
 
@@ -314,7 +301,6 @@ contains
       call synchronise_folder(self%path, status)
       if (status /= 0 .and. .not. allocated(error)) call fail_with_file(self%path, status, error)
     end if
-    self%size = at
     self%written = at
   end subroutine rewrite
 end module row_file

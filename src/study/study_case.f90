@@ -2,14 +2,14 @@
 module study_case
   use gudgeon_errors, only: error_t, fail, status_case_file
   use case_definition, only: case_t
-  use gudgeon_parameters, only: real_kind, integer_kind, word_kind, text_kind
+  use gudgeon_parameters, only: integer_kind, word_kind
   use case_schema, only: find_group
   use case_values, only: case_values_t
   use case_file, only: complete_case
   use case_loader, only: load_case
   use case_rules, only: check_rules
-  use namelist_reader, only: token_t, read_values
-  use value_reader, only: read_real, read_integer
+  use case_value, only: read_value => convert
+  use namelist_reader, only: token_t
   implicit none
   private
   public :: study_case_t
@@ -99,43 +99,21 @@ contains
     integer, intent(in) :: i
     character(len=*), intent(in) :: text
     type(error_t), allocatable, intent(out) :: error
+    type(token_t) :: token
     character(len=:), allocatable :: wanted
     associate (place => self%places(i))
-      if (.not. self%is_number(i)) then
-        call convert_other(self, text, place, error)
-        return
-      else if (self%values%keys(place)%kind == real_kind) then
-        call read_real(text, self%values%values(place)%reals(1), wanted)
+      if (self%is_number(i)) then
+        token%text = text
+        call read_value(self%values%keys(place), token, self%values%values(place), 1, wanted)
+        self%values%values(place)%written(1) = text
+        if (allocated(wanted)) call fail(error, wanted, status_case_file)
       else
-        call read_integer(text, self%values%values(place)%whole, wanted)
+        !$omp critical (texts)
+        call self%values%assign_text(place, text, .true., '', error)
+        !$omp end critical (texts)
       end if
-      self%values%values(place)%written(1) = text
-      if (allocated(wanted)) call fail(error, wanted, status_case_file)
     end associate
   end subroutine convert
-
-  !> Convert a value that is a word, a text, a switch or several numbers.
-  subroutine convert_other(self, text, place, error)
-    class(study_case_t), intent(inout) :: self
-    character(len=*), intent(in) :: text
-    integer, intent(in) :: place
-    type(error_t), allocatable, intent(out) :: error
-    type(token_t), allocatable :: tokens(:)
-    character(len=:), allocatable :: message
-    !$omp critical (texts)
-    if (self%values%keys(place)%kind == text_kind) then
-      allocate (tokens(1))
-      tokens(1)%text = text
-    else
-      call read_values(text, tokens, message)
-    end if
-    if (allocated(message)) then
-      call fail(error, message, status_case_file)
-    else
-      call self%values%assign(place, 0, tokens, '', .true., error)
-    end if
-    !$omp end critical (texts)
-  end subroutine convert_other
 
   !> Check the ranges of the values set last and the rules between them. An error concerns this run, not the study.
   subroutine check(self, error)

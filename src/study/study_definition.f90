@@ -22,6 +22,7 @@ module study_definition
     type(text_t), allocatable :: list(:)      !! the values of that list; empty: a range
   contains
     procedure :: parameters => parameters_of_parameter
+    procedure :: levels
   end type parameter_t
 
   type, extends(has_parameters_t) :: study_t
@@ -81,6 +82,12 @@ contains
     call list%add('strobe_cycles', self%strobe_cycles, &
       'number of strobe rows of a run, after settle_cycles; 0: until its end', '>= 0', '0')
   end subroutine parameters_of_study
+
+  !> Number of values in a grid.
+  pure integer function levels(self)
+    class(parameter_t), intent(in) :: self
+    levels = merge(size(self%list), self%count, size(self%list) > 0)
+  end function levels
 
   subroutine parameters_of_parameter(self, list)
     class(parameter_t), intent(inout) :: self

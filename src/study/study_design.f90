@@ -16,19 +16,13 @@ module study_design
 
   integer, parameter :: most_runs = 10000000
 
-  !> The values of one parameter: a list, or a range.
-  type :: axis_t
-    type(parameter_t) :: range
-    integer :: levels = 0             !! number of values in a grid
-  end type axis_t
-
   type :: study_design_t
     integer :: runs = 0
     integer :: text_length = 1                          !! length of the longest value
     character(len=:), allocatable :: keys(:)            !! GROUP.KEY of each parameter
     logical, allocatable :: is_whole(:)  !! parameters whose ranges are of whole numbers; must be set before `get_values` is called
     type(study_table_t) :: table                        !! without rows for a design over parameters
-    type(axis_t), allocatable, private :: axes(:)
+    type(parameter_t), allocatable, private :: axes(:)
     real(dp), allocatable, private :: fraction(:, :)    !! relative position in the range, (parameters, runs), for a Latin hypercube
     type(sobol_points_t), private :: sobol              !! prepared for a design of Sobol's points
     type(number_writer_t), private :: numbers
@@ -60,16 +54,14 @@ contains
     end if
     longest = maxval([(len(study%varied(i)%key), i=1, size(study%varied))])
     allocate (character(len=longest) :: design%keys(size(study%varied)))
-    allocate (design%axes(size(study%varied)))
+    design%axes = study%varied
     allocate (design%is_whole(size(study%varied)), source=.false.)
     design%text_length = longest_number
     runs = 1
     do i = 1, size(design%axes)
-      associate (axis => design%axes(i), p => study%varied(i))
+      associate (p => design%axes(i))
         design%keys(i) = p%key
-        axis%range = p
-        axis%levels = merge(size(p%list), p%count, size(p%list) > 0)
-        runs = min(runs*axis%levels, 10_int64*most_runs)
+        runs = min(runs*p%levels(), 10_int64*most_runs)
         do k = 1, size(p%list)
           design%text_length = max(design%text_length, len(p%list(k)%text))
         end do
@@ -138,9 +130,9 @@ contains
     class(study_design_t), intent(in) :: self
     integer, intent(in) :: i
     integer :: k
-    outermost = self%axes(i)%levels - 1
+    outermost = self%axes(i)%levels() - 1
     do k = i + 1, size(self%axes)
-      outermost = outermost*self%axes(k)%levels
+      outermost = outermost*self%axes(k)%levels()
     end do
     outermost = outermost + 1
   end function outermost
@@ -163,19 +155,19 @@ contains
       associate (axis => self%axes(i))
         if (allocated(self%fraction)) then
           fraction = self%fraction(i, run)
-          level = int(fraction*axis%levels)
+          level = int(fraction*axis%levels())
         else if (allocated(self%sobol%direction)) then
           fraction = self%sobol%coordinate(run - 1, i)
-          level = int(fraction*axis%levels)
+          level = int(fraction*axis%levels())
         else
-          level = mod(rest, axis%levels)
-          rest = rest/axis%levels
-          fraction = real(level, dp)/max(1, axis%levels - 1)
+          level = mod(rest, axis%levels())
+          rest = rest/axis%levels()
+          fraction = real(level, dp)/max(1, axis%levels() - 1)
         end if
-        if (size(axis%range%list) > 0) then
-          values(i) = axis%range%list(level + 1)%text
+        if (size(axis%list) > 0) then
+          values(i) = axis%list(level + 1)%text
         else
-          call put_number(self%numbers, axis%range, self%is_whole(i), fraction, values(i))
+          call put_number(self%numbers, axis, self%is_whole(i), fraction, values(i))
         end if
       end associate
     end do

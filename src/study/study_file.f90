@@ -4,7 +4,7 @@ module study_file
   use text_tools, only: printable, case_name, lowercase, path_beside
   use text_file, only: read_text_file
   use gudgeon_posix, only: absolute_path
-  use namelist_reader, only: namelist_t, entry_t, token_t, read_namelist
+  use namelist_reader, only: namelist_t, read_namelist
   use case_values, only: case_values_t
   use case_schema, only: key_table_t, is_group_of_cases
   use case_loader, only: load_model
@@ -59,7 +59,7 @@ contains
   !> The values of each group of the file: first those of &study, then those of each &parameter.
   subroutine take_groups(path, list, groups, error)
     character(len=*), intent(in) :: path
-    type(namelist_t), intent(in) :: list
+    type(namelist_t), intent(inout) :: list
     type(case_values_t), allocatable, intent(out) :: groups(:)
     type(error_t), allocatable, intent(out) :: error
     type(key_table_t) :: table
@@ -101,7 +101,11 @@ contains
     end if
     do i = 1, size(list%entries)
       associate (entry => list%entries(i), group => groups(place(list%entries(i)%group_number)))
-        call take_entry(entry, list%at(entry%line), group, error)
+        at = list%at(entry%line)
+        call group%find(entry%group, entry%key, at, key, error)
+        if (allocated(error)) return
+        if (entry%key == 'values') entry%tokens%quoted = .true.   ! a list is kept as written, numbers and words alike
+        call group%assign(key, entry%index, entry%tokens, at, .false., error)
         if (allocated(error)) return
       end associate
     end do
@@ -110,21 +114,6 @@ contains
       if (allocated(error)) return
     end do
   end subroutine take_groups
-
-  !> Put one `key = values` into the values of its group. Values of a list are kept as written, numbers and words alike.
-  subroutine take_entry(entry, at, group, error)
-    type(entry_t), intent(in) :: entry
-    character(len=*), intent(in) :: at
-    type(case_values_t), intent(inout) :: group
-    type(error_t), allocatable, intent(out) :: error
-    type(token_t) :: tokens(size(entry%tokens))
-    integer :: key
-    call group%find(entry%group, entry%key, at, key, error)
-    if (allocated(error)) return
-    tokens = entry%tokens
-    if (entry%key == 'values') tokens%quoted = .true.
-    call group%assign(key, entry%index, tokens, at, .false., error)
-  end subroutine take_entry
 
   !> Set the values of &study.
   subroutine take_study(values, study)
@@ -161,20 +150,21 @@ contains
     type(study_t), intent(in) :: study
     integer, intent(in) :: n_parameters
     type(error_t), allocatable, intent(out) :: error
-    if (study%case == '') then
-      call values%refuse('study', 'case', 'must name a case file', error)
-    else if (study%table /= '' .and. n_parameters > 0) then
-      call values%refuse('study', 'table', 'must not be given together with &parameter', error)
-    else if (study%table == '' .and. n_parameters == 0) then
-      call values%refuse('study', 'table', 'this or &parameter is required', error)
-    else if (study%table /= '' .and. values%is_given('study', 'design')) then
-      call values%refuse('study', 'design', 'must not be given together with table', error)
-    else if (study%design == 'grid' .and. study%runs > 0) then
-      call values%refuse('study', 'runs', 'is for design = ''latin_hypercube'' or ''sobol''; a grid has the count of each '// &
-                         'parameter', error)
-    else if (study%design /= 'grid' .and. study%runs == 0) then
-      call values%refuse('study', 'runs', 'required with design = '''//trim(study%design)//'''', error)
-    end if
+    call forbid(study%case == '', 'case', 'must name a case file')
+    call forbid(study%table /= '' .and. n_parameters > 0, 'table', 'must not be given together with &parameter')
+    call forbid(study%table == '' .and. n_parameters == 0, 'table', 'this or &parameter is required')
+    call forbid(study%table /= '' .and. values%is_given('study', 'design'), 'design', 'must not be given together with table')
+    call forbid(study%design == 'grid' .and. study%runs > 0, 'runs', &
+      'is for design = ''latin_hypercube'' or ''sobol''; a grid has the count of each parameter')
+    call forbid(study%design /= 'grid' .and. study%runs == 0, 'runs', 'required with design = '''//trim(study%design)//'''')
+
+  contains
+
+    subroutine forbid(is_wrong, key, wanted)
+      logical, intent(in) :: is_wrong
+      character(len=*), intent(in) :: key, wanted
+      call values%forbid(is_wrong, 'study', key, wanted, error)
+    end subroutine forbid
   end subroutine check_study
 
   !> Set the values of all &parameter groups.
@@ -208,24 +198,26 @@ contains
     type(study_t), intent(in) :: study
     type(parameter_t), intent(in) :: p
     type(error_t), allocatable, intent(out) :: error
-    logical :: has_range
-    character(len=:), allocatable :: key
-    key = '; &parameter key = '''//printable(p%key, 60)//''''
-    has_range = values%is_given('parameter', 'from') .or. values%is_given('parameter', 'to')
+    logical :: has_from, has_to
+    has_from = values%is_given('parameter', 'from')
+    has_to = values%is_given('parameter', 'to')
     if (size(p%list) > 0) then
-      if (has_range .or. p%count > 0) call values%refuse('parameter', 'values', &
-        'must not be given together with from, to or count'//key, error)
-    else if (.not. values%is_given('parameter', 'from')) then
-      call values%refuse('parameter', 'from', 'from and to, or values, are required'//key, error)
-    else if (.not. values%is_given('parameter', 'to')) then
-      call values%refuse('parameter', 'to', 'required with from'//key, error)
-    else if (p%scale == 'log' .and. .not. (p%from > 0 .and. p%to > 0)) then
-      call values%refuse('parameter', 'scale', 'from and to must be > 0 for scale = ''log'''//key, error)
-    else if (study%design == 'grid' .and. p%count == 0) then
-      call values%refuse('parameter', 'count', 'required on a grid, with from and to'//key, error)
-    else if (study%design /= 'grid' .and. p%count > 0) then
-      call values%refuse('parameter', 'count', 'is for a grid; a sampled design has runs'//key, error)
+      call forbid(has_from .or. has_to .or. p%count > 0, 'values', 'must not be given together with from, to or count')
+      return
     end if
+    call forbid(.not. has_from, 'from', 'from and to, or values, are required')
+    call forbid(.not. has_to, 'to', 'required with from')
+    call forbid(p%scale == 'log' .and. .not. (p%from > 0 .and. p%to > 0), 'scale', 'from and to must be > 0 for scale = ''log''')
+    call forbid(study%design == 'grid' .and. p%count == 0, 'count', 'required on a grid, with from and to')
+    call forbid(study%design /= 'grid' .and. p%count > 0, 'count', 'is for a grid; a sampled design has runs')
+
+  contains
+
+    subroutine forbid(is_wrong, key, wanted)
+      logical, intent(in) :: is_wrong
+      character(len=*), intent(in) :: key, wanted
+      call values%forbid(is_wrong, 'parameter', key, wanted//'; &parameter key = '''//printable(p%key, 60)//'''', error)
+    end subroutine forbid
   end subroutine check_parameter
 
   !> The fields of a list separated by commas, without surrounding blanks.

@@ -26,7 +26,7 @@ module study_runner
   !> interval is exceeded.
   real(dp), parameter :: least_interval = 0.25_dp, most_interval = 5   !! between two writes [s]
   real(dp), parameter :: intervals = 50                                !! ratio of the interval to the duration of the last write
-  integer(int64), parameter :: most_waiting = 16000000                 !! bytes of rows of revolutions and strobes
+  integer, parameter :: most_waiting = 16000000                        !! bytes of rows of revolutions and strobes
 
 contains
 
@@ -206,7 +206,7 @@ contains
       sweep%done = sweep%done + 1
       if (.not. worker%is_done) sweep%failed = sweep%failed + 1
       if (clock() > sweep%next_write .or. &
-          sweep%files(file_cycles)%bytes_waiting() + sweep%files(file_strobes)%bytes_waiting() > most_waiting) &
+          sweep%files(file_cycles)%waiting%used + sweep%files(file_strobes)%waiting%used > most_waiting) &
         call write_rows(sweep, sweep%error)
       call sweep%progress%update_runs(sweep%done, sweep%last - sweep%first + 1, sweep%began)
       !$omp end critical (texts)

@@ -31,7 +31,6 @@ module study_worker
   contains
     procedure :: prepare
     procedure :: run
-    procedure, private :: run_with_trace
   end type study_worker_t
 
 contains
@@ -85,12 +84,12 @@ contains
       self%was_interrupted = allocated(error)
       if (self%was_interrupted) return
       if (self%traces_all) then
-        call self%run_with_trace(number, report, error)
+        call run_with_trace(self, number, report, error)
       else
         call simulate(self%base%case, .false., self%no_columns, sink, report, error, cycles=self%watch)
         self%was_interrupted = sink%wants_to_stop
         if (allocated(error) .and. self%traces_failed .and. .not. self%was_interrupted) &
-          call self%run_with_trace(number, report, error)
+          call run_with_trace(self, number, report, error)
       end if
     end if
     if (self%was_interrupted .or. allocated(self%output_error)) return
