@@ -108,6 +108,7 @@ contains
       call fail(error, values%file//': the file contains no group; gudgeon --template prints a case', status_case_file)
       return
     end if
+    at = ''
     do i = 1, size(list%groups)
       call name_place(values, list, i, error)
       if (allocated(error)) return

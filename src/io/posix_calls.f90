@@ -49,6 +49,12 @@ module posix_calls
       character(kind=c_char), intent(in) :: path(*)
       character(kind=c_char), intent(out) :: resolved(*)
     end function c_realpath
+    integer(c_long) function c_write(descriptor, buffer, count) bind(c, name='write') result(done)
+      import :: c_int, c_ptr, c_size_t, c_long
+      integer(c_int), value :: descriptor
+      type(c_ptr), value :: buffer
+      integer(c_size_t), value :: count
+    end function c_write
     integer(c_int) function c_fsync(descriptor) bind(c, name='fsync') result(status)
       import :: c_int
       integer(c_int), value :: descriptor
@@ -79,6 +85,10 @@ module posix_calls
       integer(c_long), value :: number
       integer(c_int), value :: milliseconds
     end function c_poll
+    integer(c_int) function c_close(descriptor) bind(c, name='close') result(status)
+      import :: c_int
+      integer(c_int), value :: descriptor
+    end function c_close
     integer(c_int) function c_rename(from, to) bind(c, name='rename') result(status)
       import :: c_char, c_int
       character(kind=c_char), intent(in) :: from(*), to(*)
@@ -92,6 +102,10 @@ module posix_calls
       character(kind=c_char), intent(in) :: path(*)
       integer(c_int), value :: mode
     end function c_mkdir
+    integer(c_int) function c_isatty(descriptor) bind(c, name='isatty') result(answer)
+      import :: c_int
+      integer(c_int), value :: descriptor
+    end function c_isatty
     type(c_ptr) function c_errno_location() bind(c, name='__errno_location') result(location)
       import :: c_ptr
     end function c_errno_location
@@ -106,8 +120,4 @@ module posix_calls
       integer(c_int), value :: status
     end subroutine c_exit
   end interface
-
-  procedure(c_read), bind(c, name='write') :: c_write
-  procedure(c_fsync), bind(c, name='close') :: c_close
-  procedure(c_fsync), bind(c, name='isatty') :: c_isatty
 end module posix_calls

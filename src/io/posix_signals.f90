@@ -22,6 +22,11 @@ module posix_signals
       type(signal_set_t), intent(inout) :: set
       integer(c_int), value :: number
     end function c_sigaddset
+    integer(c_int) function c_sigismember(set, number) bind(c, name='sigismember') result(answer)
+      import :: signal_set_t, c_int
+      type(signal_set_t), intent(in) :: set
+      integer(c_int), value :: number
+    end function c_sigismember
     integer(c_int) function c_sigpending(set) bind(c, name='sigpending') result(status)
       import :: signal_set_t, c_int
       type(signal_set_t), intent(inout) :: set
@@ -38,7 +43,6 @@ module posix_signals
       integer(c_intptr_t), value :: handler
     end function c_signal
   end interface
-  procedure(c_sigaddset), bind(c, name='sigismember') :: c_sigismember
 
 contains
 
