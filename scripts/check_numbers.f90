@@ -4,7 +4,7 @@
 program check_numbers
   use, intrinsic :: iso_fortran_env, only: int64, output_unit
   use gudgeon_kinds, only: dp
-  use number_writer, only: number_writer_t, append_formatted, longest_number, fewest_digits, most_digits
+  use number_text, only: number_writer_t, append_formatted, longest_number, fewest_digits, most_digits
   implicit none
   real(dp), parameter :: least_gain = 8
   integer, parameter :: timed(4) = [9, 10, 12, 17]   !! numbers of digits that are timed

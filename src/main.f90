@@ -1,6 +1,6 @@
 !> gudgeon: simulation of the slider-crank mechanism with clearance in its joints. Reads the command line and runs the cases.
 program gudgeon
-  use, intrinsic :: iso_fortran_env, only: int64, compiler_options
+  use, intrinsic :: iso_fortran_env, only: compiler_options
   use gudgeon_kinds, only: dp
   use omp_lib, only: omp_get_num_procs
   use gudgeon_errors, only: error_t, fail, status_ok, status_integration, status_output
@@ -10,7 +10,7 @@ program gudgeon
   use study_runner, only: run_study_file
   use study_file, only: study_template, study_reference
   use reference_pages, only: case_reference, results_reference
-  use gudgeon_progress, only: progress_wanted, tell
+  use gudgeon_progress, only: progress_wanted, clock, tell
   use gudgeon_summary, only: build_advice
   use text_tools, only: printable
   use run_identity, only: identity_length, program_identity
@@ -63,11 +63,11 @@ contains
     character(len=identity_length) :: program
     logical :: show_progress, is_last
     character(len=:), allocatable :: advice
-    integer(int64) :: began, ended, rate
+    real(dp) :: began   ! [s]
     integer :: i, run, jobs
 
     call hold_interrupts()
-    call system_clock(began, rate)
+    began = clock()
     status = status_ok
     show_progress = progress_wanted(options%progress) .and. .not. options%quiet
     program = program_identity()
@@ -89,8 +89,7 @@ contains
       if (is_last) call say_outcome(cases((run + 1)/2), options, status)
     end do
     !$omp end parallel do
-    call system_clock(ended)
-    advice = build_advice(compiler_options(), real(ended - began, dp)/real(rate, dp))
+    advice = build_advice(compiler_options(), clock() - began)
     if (advice /= '' .and. .not. options%quiet) call tell(advice)
   end subroutine run_all
 

@@ -104,6 +104,7 @@ contains
     type(checkpoint_t) :: saved, loaded
     type(error_t), allocatable :: error
     logical :: found
+    integer :: status
     call fill(saved)
     call saved%save(error)
     call check%that(.not. allocated(error), 'a checkpoint is written')
@@ -114,7 +115,7 @@ contains
     call check%that(loaded%case_text == saved%case_text .and. loaded%state == saved%state .and. &
       .not. abs(loaded%wall_time - 2.5_dp) > 0 .and. loaded%mark(1)%length == 3_int64 .and. &
       loaded%mark(2)%checksum == -7, 'a checkpoint is restored unchanged')
-    call loaded%remove()
+    call remove_file(loaded%path, status)
     call loaded%load(found, error)
     call check%that(.not. found .and. .not. allocated(error), 'a missing checkpoint is not an error')
     saved%path = folder//'/none/a.checkpoint'
@@ -154,7 +155,7 @@ contains
     call check%that(accepted == 0, 'another version of the format is refused')
     call try(of_version(4))
     call check%that(accepted == 1, 'the present version of the format is accepted')
-    call saved%remove()
+    call remove_file(saved%path, status)
 
   contains
 

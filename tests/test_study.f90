@@ -4,7 +4,7 @@ module test_study
   use checks, only: checks_t
   use gudgeon_errors, only: error_t
   use gudgeon_checksum, only: checksum_t
-  use number_writer, only: number_writer_t
+  use number_text, only: number_writer_t
   use gudgeon_posix, only: remove_file
   use random_numbers, only: random_numbers_t
   use sobol_points, only: sobol_points_t, most_dimensions

@@ -16,7 +16,7 @@ module case_run
   use gudgeon_archive, only: archive_t
   use gudgeon_summary, only: summary_table, summary_line
   use stability_advice, only: advice
-  use gudgeon_posix, only: synchronise_folder, error_text
+  use gudgeon_posix, only: synchronise_folder, remove_file, error_text
   use text_tools, only: printable
   implicit none
   private
@@ -233,6 +233,7 @@ contains
     type(trace_files_t), intent(inout) :: files
     integer, intent(in) :: folder_status
     type(error_t), allocatable :: output_error, summary_error
+    integer :: ignored
     if (allocated(self%error)) then
       if (self%report%can_go_on) call tell_how_to_go_on(files, self%error)
       if (self%is_twin) self%error%message = 'ideal twin: '//self%error%message
@@ -243,7 +244,7 @@ contains
     call keep_first(summary_error, output_error)
     if (folder_status /= 0 .and. .not. allocated(output_error)) &
       call fail(output_error, printable(self%base, 200)//'.csv: '//error_text(folder_status), status_output)
-    if (.not. (self%report%can_go_on .or. allocated(output_error))) call files%checkpoint%remove()
+    if (.not. (self%report%can_go_on .or. allocated(output_error))) call remove_file(files%checkpoint%path, ignored)
     if (allocated(output_error)) call move_alloc(output_error, self%error)
   end subroutine collect_errors
 

@@ -7,8 +7,7 @@ module case_values
   use case_schema, only: key_t, key_table_t, find_group, find_key, is_listed, shown_group, &
     real_kind, integer_kind, text_kind
   use namelist_reader, only: token_t, read_values
-  use value_reader, only: is_within
-  use case_value, only: value_t, set_to_default, convert, find_decimal_comma, is_default, unit_of, most_reals
+  use value_reader, only: value_t, set_to_default, convert, find_decimal_comma, is_default, unit_of, most_reals, is_within
   implicit none
   private
   public :: case_values_t, value_t

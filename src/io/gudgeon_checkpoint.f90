@@ -8,7 +8,7 @@ module gudgeon_checkpoint
   use gudgeon_errors, only: error_t, fail, status_case_file
   use gudgeon_archive, only: archive_t
   use gudgeon_checksum, only: checksum_t, mark_of, mark_length
-  use gudgeon_posix, only: open_for_reading, read_at, close_file, remove_file, synchronise_folder, file_length, error_text, &
+  use gudgeon_posix, only: open_for_reading, read_at, close_file, synchronise_folder, file_length, error_text, &
     error_no_entry, error_interrupted
   use result_file, only: write_text
   use run_identity, only: identity_length, compare_cases
@@ -25,14 +25,13 @@ module gudgeon_checkpoint
 
   integer, parameter :: buffer_size = 65536   !! [bytes]; fits into the processor's cache
 
-  !> The length of a file and a checksum of all its bytes.
+  !> The length of a file and a checksum of all its bytes. A mark from an archive can be compared with others, but not extended.
   type :: file_mark_t
     integer(int64) :: length = 0
     integer(int64) :: checksum = 0
     type(checksum_t), private :: sum
   contains
     procedure :: move_to
-    procedure :: exchange => exchange_mark
   end type file_mark_t
 
   type :: checkpoint_t
@@ -45,7 +44,6 @@ module gudgeon_checkpoint
   contains
     procedure :: save => save_checkpoint
     procedure :: load
-    procedure :: remove
     procedure, private :: exchange
   end type checkpoint_t
 
@@ -107,18 +105,11 @@ contains
     found = .not. allocated(wrong)
   end subroutine load
 
-  !> Remove the file, if it exists.
-  subroutine remove(self)
-    class(checkpoint_t), intent(in) :: self
-    integer :: ignored
-    call remove_file(self%path, ignored)
-  end subroutine remove
-
   subroutine exchange(self, archive)
     class(checkpoint_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
     character(len=:), allocatable :: identity
-    integer :: version
+    integer :: version, i
     version = format_version
     call archive%exchange(version)
     if (version /= format_version) archive%failed = .true.
@@ -127,8 +118,10 @@ contains
     self%identity = identity
     call archive%exchange_text(self%case_text)
     call archive%exchange(self%wall_time)
-    call self%mark(1)%exchange(archive)
-    call self%mark(2)%exchange(archive)
+    do i = 1, size(self%mark)
+      call archive%exchange(self%mark(i)%length)
+      call archive%exchange(self%mark(i)%checksum)
+    end do
     call archive%exchange_text(self%state)
   end subroutine exchange
 
@@ -157,15 +150,6 @@ contains
     call close_file(descriptor, ignored)
     self%checksum = self%sum%value()
   end subroutine move_to
-
-  !> Write length and checksum to an archive, or read them from it. A mark that was read can be compared with others, but not
-  !> extended.
-  subroutine exchange_mark(self, archive)
-    class(file_mark_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    call archive%exchange(self%length)
-    call archive%exchange(self%checksum)
-  end subroutine exchange_mark
 
   !> Look for complete results of the same run under BASE, or for its checkpoint. Errors: the checkpoint is damaged, or belongs to
   !> another case or program.

@@ -8,7 +8,7 @@ module gudgeon_progress
   use gudgeon_posix, only: is_terminal, write_all
   implicit none
   private
-  public :: progress_t, progress_wanted, tell, rate_text, duration_text
+  public :: progress_t, progress_wanted, clock, tell, rate_text, duration_text
 
   integer, parameter :: standard_error = 2
   real(dp), parameter :: least_interval = 0.2_dp   !! shortest time between two lines [s]
@@ -20,7 +20,7 @@ module gudgeon_progress
     logical :: has_shown = .false.
     logical :: rewrites = .false.                  !! on a terminal: the line is overwritten
     character(len=:), allocatable :: name
-    integer(int64) :: began = 0, shown = 0         !! clock ticks
+    real(dp) :: began = 0, shown = 0               !! times of `clock` [s]
   contains
     procedure :: start
     procedure :: update
@@ -38,6 +38,13 @@ contains
     if (when == 'auto') wanted = is_terminal(standard_error)
   end function progress_wanted
 
+  !> Time since an arbitrary instant [s].
+  real(dp) function clock()
+    integer(int64) :: ticks, rate
+    call system_clock(ticks, rate)
+    clock = real(ticks, dp)/real(rate, dp)
+  end function clock
+
   !> Begin a case; if `is_on` is false, the other procedures have no effect.
   subroutine start(self, name, is_on)
     class(progress_t), intent(inout) :: self
@@ -47,7 +54,7 @@ contains
     self%has_shown = .false.
     self%rewrites = is_terminal(standard_error)
     self%name = printable(name, 60)
-    call system_clock(self%began)
+    self%began = clock()
     self%shown = self%began
   end subroutine start
 
@@ -88,15 +95,12 @@ contains
     class(progress_t), intent(inout) :: self
     real(dp), intent(out) :: elapsed
     logical, intent(out) :: is_due
-    integer(int64) :: now, rate
     elapsed = 0
     is_due = self%is_on
     if (.not. is_due) return
-    call system_clock(now, rate)
-    is_due = real(now - self%shown, dp) >= least_interval*real(rate, dp)
-    if (.not. is_due) return
-    self%shown = now
-    elapsed = real(now - self%began, dp)/real(rate, dp)
+    elapsed = clock() - self%began
+    is_due = elapsed >= self%shown - self%began + least_interval
+    if (is_due) self%shown = self%began + elapsed
   end subroutine look_at_clock
 
   !> End the reports, and clear the line, if one is shown.

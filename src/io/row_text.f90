@@ -7,7 +7,7 @@
 module row_text
   use gudgeon_kinds, only: dp
   use value_reader, only: read_real
-  use number_writer, only: number_writer_t, longest_number
+  use number_text, only: number_writer_t, longest_number
   use growing_text, only: growing_text_t
   use text_tools, only: integer_text
   implicit none

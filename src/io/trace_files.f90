@@ -3,7 +3,6 @@
 !> Cases run in several threads, and gfortran stores the length of a function result of deferred length in static memory. During a
 !> case texts must therefore be made by subroutines, or inside the critical section `texts`.
 module trace_files
-  use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, keep_first, status_case_file, status_output
   use gudgeon_archive, only: archive_t
@@ -13,8 +12,8 @@ module trace_files
   use result_file, only: result_file_t
   use gudgeon_checkpoint, only: checkpoint_t, file_mark_t, restart_hint
   use row_text, only: row_text_t
-  use number_writer, only: number_writer_t, longest_number
-  use gudgeon_progress, only: progress_t
+  use number_text, only: number_writer_t, longest_number
+  use gudgeon_progress, only: progress_t, clock
   use stability_advice, only: stability_advice_t
   use ode_method, only: step_statistics_t
   use gudgeon_posix, only: interrupted
@@ -38,7 +37,7 @@ module trace_files
     type(error_t), allocatable :: checkpoint_error        !! reason why the last checkpoint could not be written
     real(dp), private :: checkpoint_interval = 0          !! [s]
     real(dp), private :: earlier_time = 0                 !! wall time of earlier parts of the run [s]
-    integer(int64), private :: began = 0, saved = 0       !! clock ticks
+    real(dp), private :: began = 0, saved = 0             !! times of `clock` [s]
     character(len=:), allocatable, private :: path        !! of the files, without suffix
     integer, private :: rows = 0
     type(row_text_t), private :: event   !! row of the last event
@@ -95,7 +94,7 @@ contains
     self%path = path
     self%phase_column = findloc([list%names(list%id) == 'phase[-]', .true.], .true., 1)
     call self%numbers%prepare(digits)
-    call system_clock(self%began)
+    self%began = clock()
     self%saved = self%began
   end subroutine prepare
 
@@ -166,7 +165,7 @@ contains
     logical :: is_there
     integer :: i
     self%wants_archive = .false.
-    call system_clock(self%saved)
+    self%saved = clock()
     call self%file%synchronise()
     if (any(self%file%has_failed())) then
       !$omp critical (texts)
@@ -190,15 +189,13 @@ contains
       end if
       !$omp end critical (texts)
     end associate
-    call system_clock(self%saved)
+    self%saved = clock()
   end subroutine take_archive
 
   !> Time since the beginning of the run, without the time between its parts [s].
   real(dp) function wall_time(self)
     class(trace_files_t), intent(in) :: self
-    integer(int64) :: now, rate
-    call system_clock(now, rate)
-    wall_time = self%earlier_time + real(now - self%began, dp)/real(rate, dp)
+    wall_time = self%earlier_time + clock() - self%began
   end function wall_time
 
   !> The reason why one of the files could not be written, if so.
@@ -284,11 +281,9 @@ contains
   !> Check whether the run must stop, or whether a checkpoint is due.
   subroutine look(self)
     class(trace_files_t), intent(inout) :: self
-    integer(int64) :: now, rate
     if (interrupted()) self%wants_to_stop = .true.
     if (any(self%file%has_failed())) self%wants_to_stop = .true.
     if (.not. self%keeps_archives) return
-    call system_clock(now, rate)
-    if (real(now - self%saved, dp) >= self%checkpoint_interval*real(rate, dp)) self%wants_archive = .true.
+    if (clock() - self%saved >= self%checkpoint_interval) self%wants_archive = .true.
   end subroutine look
 end module trace_files

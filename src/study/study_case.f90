@@ -8,7 +8,7 @@ module study_case
   use case_file, only: complete_case
   use case_loader, only: load_case
   use case_rules, only: check_rules
-  use case_value, only: read_value => convert
+  use value_reader, only: read_value => convert
   use namelist_reader, only: token_t
   implicit none
   private

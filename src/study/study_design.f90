@@ -5,7 +5,7 @@ module study_design
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text
-  use number_writer, only: number_writer_t, longest_number
+  use number_text, only: number_writer_t, longest_number
   use study_definition, only: study_t, parameter_t
   use study_table, only: study_table_t, read_table
   use random_numbers, only: random_numbers_t

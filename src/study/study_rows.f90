@@ -10,7 +10,7 @@ module study_rows
   use cycle_watch, only: cycle_watch_t
   use gudgeon_simulation, only: run_report_t
   use gudgeon_summary, only: relative_residual
-  use number_writer, only: number_writer_t
+  use number_text, only: number_writer_t
   use row_text, only: row_text_t
   implicit none
   private

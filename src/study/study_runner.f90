@@ -1,6 +1,5 @@
 !> Runs a study from its file to its results.
 module study_runner
-  use, intrinsic :: iso_fortran_env, only: int64
   use omp_lib, only: omp_get_num_procs
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, keep_first, status_output, status_integration
@@ -8,7 +7,7 @@ module study_runner
   use number_text, only: short_text
   use result_file, only: write_text, fail_with_file
   use command_line, only: command_line_t
-  use gudgeon_progress, only: rate_text
+  use gudgeon_progress, only: rate_text, clock
   use case_runner, only: tell_warning
   use gudgeon_posix, only: make_directory, synchronise_folder, interrupted, signal_set_t, hold_interrupts, &
     restore_interrupts
@@ -41,7 +40,7 @@ contains
     character(len=:), allocatable, intent(out) :: line
     type(error_t), allocatable, intent(out) :: error
     type(sweep_t), allocatable :: sweep
-    integer(int64) :: began, ended, rate
+    real(dp) :: began   ! [s]
 
     call restore_interrupts(before)
     line = ''
@@ -56,14 +55,13 @@ contains
       call sweep%lock%release()
       return
     end if
-    call system_clock(began, rate)
+    began = clock()
     call sweep%progress%start(sweep%study%name, show_progress)
     call run_rows(options%jobs, sweep)
     call sweep%progress%finish()
     call close_files(sweep)
     call sweep%lock%release()
-    call system_clock(ended)
-    call conclude(sweep, real(ended - began, dp)/real(rate, dp), line, error)
+    call conclude(sweep, clock() - began, line, error)
   end subroutine run_study_file
 
   !> Continue the results of the same study, or start from the beginning. Results of another study with the same name are not
@@ -232,13 +230,6 @@ contains
     ended = clock()
     sweep%next_write = ended + min(most_interval, max(least_interval, intervals*(ended - began)))
   end subroutine write_rows
-
-  !> Time since an arbitrary instant [s].
-  real(dp) function clock()
-    integer(int64) :: ticks, rate
-    call system_clock(ticks, rate)
-    clock = real(ticks, dp)/real(rate, dp)
-  end function clock
 
   !> Close the files, sorted if every run has its row. The first error is kept.
   subroutine close_files(sweep)
