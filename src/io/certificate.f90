@@ -67,6 +67,7 @@ contains
     type(witness_t) :: own, closer_run, other_run
     real(dp), allocatable :: errors(:)   ! of the states in each row of the run
     integer :: n   ! number of rows that the closer run has too
+    integer :: most_evaluations   ! allowed for the run with the other method
 
     if (case%integrator%relative_tolerance < 10*finest_tolerance) then
       certificate%reason = 'not certified: no tolerance ten times smaller is possible'
@@ -89,9 +90,12 @@ contains
       return
     end if
     close%integrator%method = merge('auto ', 'radau', case%integrator%method == 'radau')
-    call run(close, certificate%list, enough_for_another_method(report%statistics%evaluations), other_run, error)
+    ! a method that is not suitable for the case would need hundreds of times as many evaluations
+    most_evaluations = int(min(4*real(report%statistics%evaluations, dp) + 40000, real(huge(most_evaluations), dp)))
+    call run(close, certificate%list, most_evaluations, other_run, error)
     if (allocated(error)) return
     certificate%has_other_method = other_run%is_done
+    if (.not. other_run%is_done) other_run = closer_run   ! which then differs from itself in nothing
     call find_errors()
     call find_end()
     if (certificate%is_whole) certificate%until = report%figures%time   ! the remainder is shorter than one row
@@ -106,19 +110,17 @@ contains
     !> Error of the states in each row, relative to their ranges.
     subroutine find_errors()
       real(dp) :: doubt
-      integer :: c, i, n_other
+      integer :: c, i
       associate (a => own%values, b => closer_run%values)
         certificate%range = maxval(a, 2) - minval(a, 2)
         n = min(size(a, 2), size(b, 2))
-        n_other = 0
-        if (other_run%is_done) n_other = size(other_run%values, 2)
         allocate (errors(size(a, 2)), source=0.0_dp)
         errors(n + 1:) = huge(1.0_dp)
         do c = 1, size(certificate%list%id)
           if (.not. (is_state(certificate%list%names(certificate%list%id(c))) .and. certificate%range(c) > 0)) cycle
           do i = 1, n
             errors(i) = max(errors(i), margin*abs(a(c, i) - b(c, i))/certificate%range(c))
-            if (i > n_other) cycle
+            if (i > size(other_run%values, 2)) cycle
             doubt = abs(other_run%values(c, i) - b(c, i))
             if (doubt > limit*certificate%range(c)) errors(i) = huge(1.0_dp)
           end do
@@ -170,8 +172,7 @@ contains
       if (certificate%is_whole .or. .not. allocated(own%cycles)) return
       first = 1
       begins = 0
-      last = min(own%cycles%statistics%cycles, closer_run%cycles%statistics%cycles)
-      if (other_run%is_done) last = min(last, other_run%cycles%statistics%cycles)
+      last = min(own%cycles%statistics%cycles, closer_run%cycles%statistics%cycles, other_run%cycles%statistics%cycles)
       do while (first <= last .and. begins < certificate%until)
         begins = begins + own%cycles%cycles(first)%duration
         first = first + 1
@@ -179,8 +180,7 @@ contains
       certificate%revolutions_beyond = max(0, last - first + 1)
       if (certificate%revolutions_beyond == 0) return
       certificate%statistic = means_of(own%cycles%cycles(first:last))
-      certificate%difference = relative(means_of(closer_run%cycles%cycles(first:last)), certificate%statistic)
-      if (other_run%is_done) certificate%difference = max(certificate%difference, &
+      certificate%difference = max(relative(means_of(closer_run%cycles%cycles(first:last)), certificate%statistic), &
         relative(means_of(other_run%cycles%cycles(first:last)), certificate%statistic))
     end subroutine compare_statistics
 
@@ -191,8 +191,7 @@ contains
       if (allocated(own%cycles)) certificate%has_figure(loss_figure) = min(own%cycles%statistics%cycles, &
         closer_run%cycles%statistics%cycles) > 0
       certificate%figure = figures_of(own)
-      certificate%figure_difference = abs(figures_of(closer_run) - certificate%figure)
-      if (other_run%is_done) certificate%figure_difference = max(certificate%figure_difference, &
+      certificate%figure_difference = max(abs(figures_of(closer_run) - certificate%figure), &
         abs(figures_of(other_run) - certificate%figure))
     end subroutine compare_figures
   end subroutine make_certificate
@@ -229,13 +228,6 @@ contains
     if (speed > 0) plain%output%interval = min(plain%output%interval, two_pi/(speed*rows_per_revolution))
     plain%output%interval = max(plain%output%interval, report%figures%time/most_rows)
   end subroutine prepare
-
-  !> Largest number of evaluations allowed for the run with the other method, from that of the run: four times as many, plus a
-  !> constant for short runs. A method that is not suitable for the case would need hundreds of times as many.
-  pure integer function enough_for_another_method(evaluations) result(enough)
-    integer, intent(in) :: evaluations
-    enough = int(min(4*real(evaluations, dp) + 40000, real(huge(enough), dp)))
-  end function enough_for_another_method
 
   !> Whether a column is a coordinate or a speed.
   pure logical function is_state(name)
@@ -298,5 +290,4 @@ contains
       if (abs(others(nearest) - times(i)) < 0.5_dp*gap) matched = matched + 1
     end do
   end function matched
-
 end module certificate

@@ -25,7 +25,7 @@ module number_text
   type :: decade_t
     integer(int64) :: least          !! bits of the smallest number of the decade
     integer(int64) :: high, low      !! its factor is high 2**63 + low, truncated
-    character(len=8) :: ending       !! E-05,
+    character(len=8) :: ending       !! E-05, with a third digit if necessary, and a comma
     integer :: ending_length
   end type decade_t
 
@@ -78,7 +78,8 @@ contains
         factor = shiftr(powers(digits - 1 - k), 125 + 52 - 63 - fraction_bits - exponents(k) - exponents(digits - 1 - k))
         decade%high = int(shiftr(factor, 63), int64)
         decade%low = int(iand(factor, shiftl(one, 63) - 1), int64)
-        call make_ending(k, decade%ending, decade%ending_length)
+        write (decade%ending, '(a,sp,i0.2,a)') 'E', k, ','
+        decade%ending_length = len_trim(decade%ending)
       end associate
     end do
   end subroutine prepare
@@ -91,20 +92,6 @@ contains
     power = shiftr(power, 1)
     exponent = exponent + 1
   end subroutine normalise
-
-  !> E-05, with a third digit if necessary, and a comma.
-  pure subroutine make_ending(decade, ending, length)
-    integer, intent(in) :: decade
-    character(len=*), intent(out) :: ending
-    integer, intent(out) :: length
-    integer :: size
-    size = abs(decade)
-    length = 6
-    ending = merge('E-', 'E+', decade < 0)//achar(48 + size/100)//achar(48 + mod(size/10, 10))//achar(48 + mod(size, 10))//','
-    if (size > 99) return
-    length = 5
-    ending(3:) = ending(4:)
-  end subroutine make_ending
 
   !> Append a real to the first `used` characters of a line that has room for `longest_number` more. Negative zero is written
   !> without sign.

@@ -16,11 +16,38 @@ module reference_pages
 
   character(len=*), parameter :: newline = achar(10)
 
-  !> A kind of scene: changes to the case of the template, one on each line.
+  !> A kind of scene: changes to the case of the template, separated by blanks.
   type :: scene_kind_t
     character(len=80) :: title = ''
-    character(len=60) :: changes(12) = ''
+    character(len=260) :: changes = ''
   end type scene_kind_t
+
+  character(len=*), parameter :: play = 'joint.kind=clearance ', contact = 'contact.law=hertz ', &
+    film = 'lubrication.viscosity=0.0117 '
+
+  !> Kinds of scenes that together have every column.
+  type(scene_kind_t), parameter :: kinds(14) = [ &
+    scene_kind_t('Every scene', ''), &
+    scene_kind_t('Joint with clearance (the last three columns only with `&contact`)', play//contact), &
+    scene_kind_t('Contact with `geometry = ''conformal''`', play//contact//'contact.geometry=conformal'), &
+    scene_kind_t('Friction with bristles (`lugre`, `dahl`, `elasto_plastic`)', play//contact//'friction.law=lugre '// &
+      'friction.coefficient=0.1 friction.stribeck_speed=0.01 friction.bristle_stiffness=1e4'), &
+    scene_kind_t('Oil film', play//film), &
+    scene_kind_t('Oil film of finite length', play//film//'lubrication.law=finite_bearing lubrication.variant=short'), &
+    scene_kind_t('Film and contact that share the load', play//film//contact// &
+      'lubrication.transition=weighted lubrication.transition_depth=1e-6'), &
+    scene_kind_t('Elastic walls (`elastic_film`)', play//film//contact//'lubrication.elastic_film=T'), &
+    scene_kind_t('Asperities', play//film//'asperities.roughness=0.4e-6'), &
+    scene_kind_t('Crank pin with clearance', 'crank_pin.joint.kind=clearance crank_pin.joint.clearance=2e-5 '// &
+      'crank_pin.joint.bearing_radius=0.02 crank_pin.contact.law=hertz'), &
+    scene_kind_t('Guide (`kind = ''friction''` has the first column alone)', 'guide.kind=clearance '// &
+      'guide.bore_clearance=1e-4 guide.skirt_top=0.02 guide.skirt_bottom=0.02 guide.piston_radius=0.035 '// &
+      'guide.piston_inertia=1e-3 guide.stiffness=1e8 guide.coefficient=0'), &
+    scene_kind_t('Gas', 'combustion.bore=0.07 combustion.compression_ratio=9 combustion.heat_capacity_ratio=1.4 '// &
+      'combustion.heat=165 combustion.wiebe_efficiency=5 combustion.wiebe_form=3 combustion.start_deg=340 '// &
+      'combustion.duration_deg=40'), &
+    scene_kind_t('Elastic rod', 'elastic_rod.section_area=3e-4 elastic_rod.section_inertia=1.5e-8'), &
+    scene_kind_t('Elastic crankshaft', 'crankshaft.flywheel_inertia=0.02 crankshaft.torsional_stiffness=2e4')]
 
 contains
 
@@ -81,11 +108,9 @@ contains
   function results_reference() result(text)
     character(len=:), allocatable :: text
     character(len=name_length), allocatable :: seen(:)
-    type(scene_kind_t) :: kinds(14)
     type(error_t), allocatable :: error
     type(column_list_t) :: list
     integer :: i
-    call scene_kinds(kinds)
     allocate (seen(0))
     text = '## Columns of NAME.csv'//newline//newline
     do i = 1, size(kinds)
@@ -105,53 +130,22 @@ contains
     type(scene_kind_t), intent(in) :: kind
     type(column_list_t), intent(out) :: list
     type(error_t), allocatable, intent(out) :: error
-    character(len=*), parameter :: rigid_and_dry(11) = [character(len=60) :: 'joint.kind=ideal', 'contact=none', 'friction=none', &
-      'lubrication=none', 'guide=none', 'elastic_rod=none', 'crankshaft=none', 'combustion=none', 'output.columns=standard', &
-      'output.ideal_twin=F', 'output.film_times=']
+    character(len=*), parameter :: rigid_and_dry = 'joint.kind=ideal contact=none friction=none lubrication=none guide=none '// &
+      'elastic_rod=none crankshaft=none combustion=none output.columns=standard output.ideal_twin=F output.film_times='
+    character(len=:), allocatable :: changes
     character(len=60), allocatable :: overrides(:)
     type(case_t) :: case
-    overrides = [rigid_and_dry, pack(kind%changes, kind%changes /= '')]
+    integer :: blank
+    changes = rigid_and_dry//' '//trim(kind%changes)//' '
+    allocate (overrides(0))
+    do while (changes /= '')
+      blank = index(changes, ' ')
+      overrides = [character(len=60) :: overrides, changes(:blank - 1)]
+      changes = changes(blank + 1:)
+    end do
     call parse_case(template(), 'reference', overrides, case, error)
     if (.not. allocated(error)) call choose_columns(case, .false., list, error)
   end subroutine columns_of
-
-  !> Kinds of scenes that together have every column.
-  pure subroutine scene_kinds(kinds)
-    type(scene_kind_t), intent(out) :: kinds(14)
-    character(len=60), parameter :: play = 'joint.kind=clearance', none = '', film = 'lubrication.viscosity=0.0117', &
-      contact = 'contact.law=hertz'
-    kinds(1) = kind_of('Every scene', [none])
-    kinds(2) = kind_of('Joint with clearance (the last three columns only with `&contact`)', [play, contact])
-    kinds(3) = kind_of('Contact with `geometry = ''conformal''`', [character(len=60) :: play, contact, &
-      'contact.geometry=conformal'])
-    kinds(4) = kind_of('Friction with bristles (`lugre`, `dahl`, `elasto_plastic`)', [character(len=60) :: play, contact, &
-      'friction.law=lugre', 'friction.coefficient=0.1', 'friction.stribeck_speed=0.01', 'friction.bristle_stiffness=1e4'])
-    kinds(5) = kind_of('Oil film', [play, film])
-    kinds(6) = kind_of('Oil film of finite length', [character(len=60) :: play, film, 'lubrication.law=finite_bearing', &
-      'lubrication.variant=short'])
-    kinds(7) = kind_of('Film and contact that share the load', [character(len=60) :: play, film, contact, &
-      'lubrication.transition=weighted', 'lubrication.transition_depth=1e-6'])
-    kinds(8) = kind_of('Elastic walls (`elastic_film`)', [character(len=60) :: play, film, contact, 'lubrication.elastic_film=T'])
-    kinds(9) = kind_of('Asperities', [character(len=60) :: play, film, 'asperities.roughness=0.4e-6'])
-    kinds(10) = kind_of('Crank pin with clearance', [character(len=60) :: 'crank_pin.joint.kind=clearance', &
-      'crank_pin.joint.clearance=2e-5', 'crank_pin.joint.bearing_radius=0.02', 'crank_pin.contact.law=hertz'])
-    kinds(11) = kind_of('Guide (`kind = ''friction''` has the first column alone)', [character(len=60) :: &
-      'guide.kind=clearance', 'guide.bore_clearance=1e-4', 'guide.skirt_top=0.02', 'guide.skirt_bottom=0.02', &
-      'guide.piston_radius=0.035', 'guide.piston_inertia=1e-3', 'guide.stiffness=1e8', 'guide.coefficient=0'])
-    kinds(12) = kind_of('Gas', [character(len=60) :: 'combustion.bore=0.07', 'combustion.compression_ratio=9', &
-      'combustion.heat_capacity_ratio=1.4', 'combustion.heat=165', 'combustion.wiebe_efficiency=5', &
-      'combustion.wiebe_form=3', 'combustion.start_deg=340', 'combustion.duration_deg=40'])
-    kinds(13) = kind_of('Elastic rod', [character(len=60) :: 'elastic_rod.section_area=3e-4', &
-      'elastic_rod.section_inertia=1.5e-8'])
-    kinds(14) = kind_of('Elastic crankshaft', [character(len=60) :: 'crankshaft.flywheel_inertia=0.02', &
-      'crankshaft.torsional_stiffness=2e4'])
-  end subroutine scene_kinds
-
-  pure type(scene_kind_t) function kind_of(title, changes) result(kind)
-    character(len=*), intent(in) :: title, changes(:)
-    kind%title = title
-    kind%changes(:size(changes)) = changes
-  end function kind_of
 
   !> Append a section with the columns of a scene that no earlier scene had. Columns of the crank pin that the piston pin has too
   !> are left out.

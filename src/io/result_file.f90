@@ -46,18 +46,13 @@ contains
 
   !> Begin a file with the final name `path`. With `whole_only` a part of it is useless, and is removed after a failure.
   subroutine open_result(self, path, error, whole_only)
-    class(result_file_t), intent(inout) :: self
+    class(result_file_t), intent(out) :: self
     character(len=*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
     logical, intent(in), optional :: whole_only
     integer :: status
-    self%whole_only = .false.
     if (present(whole_only)) self%whole_only = whole_only
     self%path = path
-    self%used = 0
-    self%written = 0
-    self%status = 0
-    self%is_reserved = .false.
     do
       call open_for_writing(path//'.part', self%descriptor, status)
       if (status /= error_interrupted) exit
@@ -67,15 +62,13 @@ contains
 
   !> Continue a file with the final name `path` after its first `length` bytes. The existing file has the name `present`.
   subroutine reopen(self, path, present, length, error)
-    class(result_file_t), intent(inout) :: self
+    class(result_file_t), intent(out) :: self
     character(len=*), intent(in) :: path, present
     integer(c_long), intent(in) :: length
     type(error_t), allocatable, intent(out) :: error
     integer :: status
     self%path = path
-    self%used = 0
     self%written = length
-    self%status = 0
     call open_for_appending(present, self%descriptor, status)
     if (status == 0) call truncate_file(self%descriptor, length, status)
     if (status == 0 .and. present /= path//'.part') call rename_file(present, path//'.part', status)
