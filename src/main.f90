@@ -15,7 +15,8 @@ program gudgeon
   use text_tools, only: printable
   use run_identity, only: identity_length, program_identity
   use gudgeon_posix, only: fill_standard_descriptors, signal_set_t, hold_interrupts, interrupted, ignore_write_signals, &
-    write_all, error_text, error_broken_pipe, quit
+    write_all, error_text, error_broken_pipe
+  use posix_calls, only: c_exit
   use gudgeon_version, only: program_version
   implicit none
   type(command_line_t) :: options
@@ -51,7 +52,7 @@ program gudgeon
   else
     call run_all(options, status)
   end if
-  call quit(status)
+  call c_exit(status)   ! without output
 
 contains
 
@@ -78,7 +79,7 @@ contains
     end do
     if (options%check) return
     do i = 1, size(cases)
-      call cases(i)%make_ready()
+      if (.not. allocated(cases(i)%error)) call cases(i)%run%make_ready()   ! uses all processors
     end do
     jobs = options%jobs
     if (jobs == 0) jobs = omp_get_num_procs()

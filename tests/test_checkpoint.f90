@@ -40,9 +40,9 @@ contains
     character(len=256) :: all_bytes
     integer(int64) :: whole
     integer :: i
-    call check%that(sum%value() == 0, 'checksum of no bytes')
+    call check%that(sum%sum == 0, 'checksum of no bytes')
     call sum%add('123456789')
-    call check%that(sum%value() == -7395533204333446662_int64 .and. sum%hexadecimal() == '995DC9BBDF1939FA', &
+    call check%that(sum%sum == -7395533204333446662_int64 .and. sum%hexadecimal() == '995DC9BBDF1939FA', &
       'checksum of 123456789: 995DC9BBDF1939FA')
     do i = 1, 256
       all_bytes(i:i) = achar(i - 1)
@@ -50,12 +50,12 @@ contains
     sum = checksum_t()
     call sum%add(all_bytes)
     call check%that(sum%hexadecimal() == '72414B2F65DB3AB0', 'checksum of all bytes: 72414B2F65DB3AB0')
-    whole = sum%value()
+    whole = sum%sum
     do i = 1, 255
       sum = checksum_t()
       call sum%add(all_bytes(:i))
       call sum%add(all_bytes(i + 1:))
-      call check%that(sum%value() == whole, 'checksum in two pieces')
+      call check%that(sum%sum == whole, 'checksum in two pieces')
     end do
   end subroutine test_checksum
 
@@ -183,7 +183,7 @@ contains
       at = index(text, n) + 6   ! behind the kind and the count of the first entry
       text(at:at + 3) = transfer(version, number)
       call sum%add(text)
-      text = text//transfer(sum%value(), mark)
+      text = text//transfer(sum%sum, mark)
     end function of_version
   end subroutine test_damage
 

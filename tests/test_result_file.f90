@@ -3,8 +3,8 @@ module test_result_file
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, status_output
-  use gudgeon_posix, only: make_directory, remove_file, open_for_reading, read_bytes, close_file, error_text, &
-    ignore_write_signals, synchronise_folder, file_length, open_for_appending, open_to_lock, error_no_entry, error_no_space, &
+  use gudgeon_posix, only: make_directory, remove_file, open_file, to_read, to_append, read_bytes, close_file, error_text, &
+    ignore_write_signals, synchronise_folder, file_length, open_to_lock, error_no_entry, error_no_space, &
     error_is_directory, error_is_link, error_not_regular
   use result_file, only: result_file_t, remove_result
   use checks, only: checks_t
@@ -135,22 +135,22 @@ contains
     call file%close(error)
     call read_back(folder//'/a.csv', text, status)
     call check%equal_text(text, 'mine'//n, 'a link under the temporary name is replaced')
-    call open_for_appending(link, descriptor, status)
+    call open_file(link, to_append, descriptor, status)
     call check%that(status == error_is_link, 'a link is not opened to add rows: '//error_text(status))
     call open_to_lock(link, descriptor, status)
     call check%that(status == error_is_link, 'a link is not locked: '//error_text(status))
     call open_to_lock(folder//'/lost', descriptor, status)
     call check%that(status == error_is_link, 'a file is not made through a link: '//error_text(status))
     call check%that(file_length(folder//'/nowhere') < 0, 'the target of a link was not made')
-    call open_for_reading(pipe, descriptor, status)
+    call open_file(pipe, to_read, descriptor, status)
     call check%that(status == error_not_regular, 'a pipe is not read: '//error_text(status))
-    call open_for_appending(pipe, descriptor, status)
+    call open_file(pipe, to_append, descriptor, status)
     call check%that(status /= 0, 'a pipe is not opened to add rows: '//error_text(status))
     call open_to_lock(pipe, descriptor, status)
     call check%that(status == error_not_regular, 'a pipe is not locked: '//error_text(status))
-    call open_for_reading(folder, descriptor, status)
+    call open_file(folder, to_read, descriptor, status)
     call check%that(status == error_is_directory, 'a folder is not read: '//error_text(status))
-    call open_for_reading(link, descriptor, status)
+    call open_file(link, to_read, descriptor, status)
     call check%that(status == 0, 'reading follows a link')
     if (status == 0) call close_file(descriptor, status)
     call read_back(victim, text, status)
@@ -201,7 +201,7 @@ contains
     integer :: descriptor, done, ignored
     text = ''
     allocate (character(len=65536) :: buffer)
-    call open_for_reading(path, descriptor, status)
+    call open_file(path, to_read, descriptor, status)
     if (status /= 0) return
     do
       call read_bytes(descriptor, buffer, done, status)

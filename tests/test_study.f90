@@ -324,7 +324,7 @@ contains
     write (unit) '5,d,5'//n//'3,e'//n//'3,'//achar(0)//',1'//n//achar(0)//achar(0)//n//'3,torn'
     close (unit)
     call again%take_up(error)
-    call check%that(again%has(6) .and. again%has(5) .and. again%has(4) .and. .not. again%has(3), 'runs found in an earlier file')
+    call check%that(all(again%length(4:6) > 0) .and. again%length(3) == 0, 'runs found in an earlier file')
     call check%that(again%rows(6) == 2 .and. again%rows(5) == 1 .and. again%rows(3) == 0, 'number of rows of a run')
     call check%that(again%numbers(1, 4) == 7 .and. again%numbers(2, 4) == 0 .and. again%numbers(1, 6) == 2, 'numbers in the rows')
     call again%drop(4)

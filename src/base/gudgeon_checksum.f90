@@ -24,10 +24,9 @@ module gudgeon_checksum
 
   !> The checksum of the texts added so far, as one text.
   type :: checksum_t
-    integer(int64), private :: sum = 0
+    integer(int64) :: sum = 0   !! its 64 bits
   contains
     procedure :: add
-    procedure :: value
     procedure :: hexadecimal
   end type checksum_t
 
@@ -45,12 +44,6 @@ contains
     self%sum = not(sum)
   end subroutine add
 
-  !> The 64 bits.
-  pure integer(int64) function value(self)
-    class(checksum_t), intent(in) :: self
-    value = self%sum
-  end function value
-
   !> The checksum as 16 hexadecimal digits.
   pure function hexadecimal(self) result(text)
     class(checksum_t), intent(in) :: self
@@ -64,6 +57,6 @@ contains
     character(len=mark_length) :: mark
     type(checksum_t) :: sum
     call sum%add(bytes)
-    mark = transfer(sum%value(), mark)
+    mark = transfer(sum%sum, mark)
   end function mark_of
 end module gudgeon_checksum

@@ -222,7 +222,7 @@ contains
     if (.not. files%advice%was_given) self%notice = advice(self%report%auto_saves)
     if (self%notice /= '') self%notice = printable(case%file, 200)//': '//self%notice
     call self%summary%put(summary_table(case, self%report, files%wall_time(), self%start%checkpoint%identity, &
-                                        int(files%file(1)%length(), int64), int(files%file(2)%length(), int64), self%is_twin))
+                                        int(files%file(1)%written, int64), int(files%file(2)%written, int64), self%is_twin))
     if (allocated(self%certificate)) call self%summary%put(certificate_summary(self%certificate))
   end subroutine put_summary
 

@@ -36,7 +36,6 @@ module case_runner
     logical, private :: has_removed = .false.         !! earlier results were removed
   contains
     procedure :: prepare
-    procedure :: make_ready
     procedure :: go
     procedure :: tell_outcome
   end type case_job_t
@@ -84,12 +83,6 @@ contains
     if (self%has_twin) call self%twin%prepare(case, text, twin_identity(identity), .true., ideal_list, self%twin%base, &
       options, show_progress .and. options%jobs == 1)
   end subroutine prepare
-
-  !> Compute film tables, which uses all processors. Call it after `prepare` for cases that are to be run.
-  subroutine make_ready(self)
-    class(case_job_t), intent(inout) :: self
-    if (.not. allocated(self%error)) call self%run%make_ready()
-  end subroutine make_ready
 
   !> Check that the results do not replace a table that the case reads, such as motor.csv beside motor.nml.
   subroutine keep_tables(case, base, error)

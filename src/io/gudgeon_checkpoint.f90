@@ -8,7 +8,7 @@ module gudgeon_checkpoint
   use gudgeon_errors, only: error_t, fail, status_case_file
   use gudgeon_archive, only: archive_t
   use gudgeon_checksum, only: checksum_t, mark_of, mark_length
-  use gudgeon_posix, only: open_for_reading, read_at, close_file, synchronise_folder, file_length, error_text, &
+  use gudgeon_posix, only: open_file, to_read, read_at, close_file, synchronise_folder, file_length, error_text, &
     error_no_entry, error_interrupted
   use result_file, only: write_text
   use run_identity, only: identity_length, compare_cases
@@ -135,7 +135,7 @@ contains
     character(len=buffer_size) :: buffer
     integer :: descriptor, status, wanted, done, ignored
 
-    call open_for_reading(path, descriptor, status)
+    call open_file(path, to_read, descriptor, status)
     is_there = status == 0
     if (.not. is_there) return
     do while (self%length < length)
@@ -148,7 +148,7 @@ contains
       self%length = self%length + done
     end do
     call close_file(descriptor, ignored)
-    self%checksum = self%sum%value()
+    self%checksum = self%sum%sum
   end subroutine move_to
 
   !> Look for complete results of the same run under BASE, or for its checkpoint. Errors: the checkpoint is damaged, or belongs to

@@ -4,16 +4,15 @@ module gudgeon_posix
   use, intrinsic :: iso_c_binding, only: c_int, c_long, c_short, c_null_char, c_ptr, &
     c_size_t, c_loc, c_f_pointer, c_associated
   use posix_calls, only: file_status_t, poll_t, c_open, c_read, c_pread, c_realpath, c_write, c_fsync, c_ftruncate, c_flock, &
-    c_fallocate, c_statx, c_poll, c_close, c_rename, c_unlink, c_mkdir, c_isatty, c_errno_location, c_strerror_r, &
-    c_exit
+    c_fallocate, c_statx, c_poll, c_close, c_rename, c_unlink, c_mkdir, c_isatty, c_errno_location, c_strerror_r
   use posix_signals, only: signal_set_t, hold_interrupts, restore_interrupts, interrupted, ignore_write_signals
   implicit none
   private
-  public :: open_for_reading, open_standard_input, open_for_writing, open_for_appending, open_to_lock, lock_file, &
+  public :: open_file, to_read, to_append, open_standard_input, open_for_writing, open_to_lock, lock_file, &
     is_file, file_length, absolute_path, read_at, read_bytes, write_all, truncate_file, reserve_file, &
     synchronise_file, synchronise_folder, close_file, rename_file, remove_file, make_directory, is_terminal, wait_for_input, &
     error_text, signal_set_t, hold_interrupts, restore_interrupts, interrupted, fill_standard_descriptors, &
-    ignore_write_signals, quit
+    ignore_write_signals
   public :: error_no_entry, error_interrupted, error_locked, error_exists, error_is_directory, error_no_space, &
     error_broken_pipe, error_not_regular, error_is_link
 
@@ -25,7 +24,7 @@ module gudgeon_posix
 
   !> Flags of open and statx, as far as they are equal on all processors.
   integer(c_int), parameter :: read_only = 0, write_only = 1, read_and_write = 2, o_creat = 64, o_excl = 128, o_append = 1024, &
-    o_nonblock = 2048, o_cloexec = 524288
+    o_nonblock = 2048, o_cloexec = 524288, to_read = read_only, to_append = ior(write_only, o_append), to_lock = read_and_write
   integer(c_int), parameter :: at_working_folder = -100, at_link_itself = 256, at_empty_path = 4096, basic_status = 2047
 
   !> Kinds of files, as in their mode.
@@ -34,13 +33,6 @@ module gudgeon_posix
   integer(c_int), parameter :: file_mode = 438, folder_mode = 511   !! rw-rw-rw-, rwxrwxrwx, before the umask
 
 contains
-
-  !> Open a regular file for reading, without waiting for the other end of a pipe; `status` is 0 or the error number.
-  subroutine open_for_reading(path, descriptor, status)
-    character(len=*), intent(in) :: path
-    integer, intent(out) :: descriptor, status
-    call open_regular(path, read_only, .true., descriptor, status)
-  end subroutine open_for_reading
 
   !> Open the standard input of the program, which may be a pipe or a terminal: see `wait_for_input`.
   subroutine open_standard_input(descriptor, status)
@@ -72,32 +64,25 @@ contains
   subroutine open_to_lock(path, descriptor, status)
     character(len=*), intent(in) :: path
     integer, intent(out) :: descriptor, status
-    call open_regular(path, read_and_write, .false., descriptor, status)
+    call open_file(path, to_lock, descriptor, status)
     if (status == error_no_entry) call create_file(path, descriptor, status)
     if (status /= error_exists) return
     if (kind_of_file(at_working_folder, path, at_link_itself) == kind_link) status = error_is_link   ! a link without a target
   end subroutine open_to_lock
 
-  !> Open a file for writing at its end; `status` is 0 or the error number.
-  subroutine open_for_appending(path, descriptor, status)
+  !> Open an existing regular file in the way `to_read`, `to_append` or `to_lock`, without waiting for the other end of a pipe; only
+  !> for reading a symbolic link is followed. `status` is 0 or the error number.
+  subroutine open_file(path, way, descriptor, status)
     character(len=*), intent(in) :: path
-    integer, intent(out) :: descriptor, status
-    call open_regular(path, ior(write_only, o_append), .false., descriptor, status)
-  end subroutine open_for_appending
-
-  !> Open an existing regular file; a symbolic link is followed only if `through_link` is true.
-  subroutine open_regular(path, flags, through_link, descriptor, status)
-    character(len=*), intent(in) :: path
-    integer(c_int), intent(in) :: flags
-    logical, intent(in) :: through_link
+    integer, intent(in) :: way
     integer, intent(out) :: descriptor, status
     integer :: ignored
-    descriptor = c_open(path//c_null_char, ior(flags, ior(o_nonblock, o_cloexec)), 0_c_int)
+    descriptor = c_open(path//c_null_char, ior(way, ior(o_nonblock, o_cloexec)), 0_c_int)
     status = outcome(descriptor)
     if (status /= 0) return
     select case (kind_of_file(descriptor, '', at_empty_path))
     case (kind_regular)
-      if (through_link) return
+      if (way == to_read) return
       if (is_file(path, descriptor)) return
       status = error_no_entry
       if (kind_of_file(at_working_folder, path, at_link_itself) == kind_link) status = error_is_link
@@ -108,7 +93,7 @@ contains
     end select
     call close_file(descriptor, ignored)
     descriptor = -1
-  end subroutine open_regular
+  end subroutine open_file
 
   !> Lock an open file for this opening of it, until it is closed or the program ends. `status` is `error_locked` if another opening
   !> holds the lock.
@@ -304,12 +289,6 @@ contains
     end do
     if (descriptor > last_standard) unused = c_close(descriptor)
   end subroutine fill_standard_descriptors
-
-  !> End the program with an exit status, without output.
-  subroutine quit(status)
-    integer, intent(in) :: status
-    call c_exit(status)
-  end subroutine quit
 
   !> 0 after success, else the error number of the last call.
   integer function outcome(returned) result(status)

@@ -4,7 +4,7 @@
 module namelist_reader
   use gudgeon_errors, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text
-  use text_scanner, only: scanner_t, name_here, pass_name, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line, &
+  use text_scanner, only: scanner_t, name_here, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line, &
     digits, shown
   implicit none
   private
@@ -295,8 +295,7 @@ contains
     at = scan%at
     line = scan%line
     found = .false.
-    call pass_name(scan)
-    if (scan%at > at) then
+    if (name_here(scan) /= '') then
       call skip_blanks(scan)
       n = 1
       if (next_is(scan, '(')) call read_index(scan, n)

@@ -5,7 +5,7 @@ module result_file
   use, intrinsic :: iso_c_binding, only: c_long
   use gudgeon_errors, only: error_t, fail, status_output
   use text_tools, only: printable
-  use gudgeon_posix, only: open_for_writing, open_for_appending, write_all, truncate_file, reserve_file, &
+  use gudgeon_posix, only: open_for_writing, open_file, to_append, write_all, truncate_file, reserve_file, &
     synchronise_file, close_file, rename_file, remove_file, error_text, error_interrupted, &
     error_no_entry, error_is_directory
   implicit none
@@ -21,7 +21,7 @@ module result_file
     integer :: used = 0                                 !! number of bytes in the buffer
     character(len=:), allocatable, private :: path      !! final name
     integer, private :: descriptor = -1
-    integer(c_long), private :: written = 0             !! number of bytes of whole rows in the file
+    integer(c_long) :: written = 0                      !! number of bytes of whole rows in the file
     logical, private :: whole_only = .false.            !! a part of the file is useless
     logical, private :: is_reserved = .false.           !! more disk space has been reserved than the file has bytes
     integer, private :: status = 0                      !! error number of the first write that failed
@@ -33,7 +33,6 @@ module result_file
     procedure :: reserve
     procedure :: flush => flush_rows
     procedure :: synchronise
-    procedure :: length
     procedure :: has_failed
     procedure :: tell_error
     procedure :: conclude
@@ -69,7 +68,7 @@ contains
     integer :: status
     self%path = path
     self%written = length
-    call open_for_appending(present, self%descriptor, status)
+    call open_file(present, to_append, self%descriptor, status)
     if (status == 0) call truncate_file(self%descriptor, length, status)
     if (status == 0 .and. present /= path//'.part') call rename_file(present, path//'.part', status)
     if (status /= 0) call fail_with_file(self%path, status, error)
@@ -133,13 +132,6 @@ contains
       self%status = status
     end if
   end subroutine synchronise
-
-  !> Number of bytes of whole rows in the file.
-  pure function length(self)
-    class(result_file_t), intent(in) :: self
-    integer(c_long) :: length
-    length = self%written
-  end function length
 
   !> Whether a write has failed. May be called while another thread writes.
   impure elemental logical function has_failed(self) result(failed)

@@ -4,7 +4,7 @@ module run_identity
   use, intrinsic :: iso_fortran_env, only: compiler_version, compiler_options
   use gudgeon_kinds, only: dp
   use gudgeon_checksum, only: checksum_t
-  use gudgeon_posix, only: open_for_reading, read_at, close_file
+  use gudgeon_posix, only: open_file, to_read, read_at, close_file
   use text_file, only: read_whole
   use text_tools, only: next_line
   use gudgeon_version, only: program_version
@@ -68,7 +68,7 @@ contains
     character(len=:), allocatable :: bytes
     integer :: descriptor, status, done, ignored
     done = 0
-    call open_for_reading(file, descriptor, status)
+    call open_file(file, to_read, descriptor, status)
     if (status == 0) then
       call read_at(descriptor, 0_c_long, page, done, status)
       call close_file(descriptor, ignored)

@@ -3,8 +3,8 @@ module text_file
   use gudgeon_errors, only: error_t, fail, status_case_file, status_integration
   use text_tools, only: printable, integer_text
   use growing_text, only: growing_text_t
-  use gudgeon_posix, only: open_for_reading, open_standard_input, wait_for_input, interrupted, read_bytes, close_file, error_text, &
-    error_interrupted
+  use gudgeon_posix, only: open_file, to_read, open_standard_input, wait_for_input, interrupted, read_bytes, close_file, &
+    error_text, error_interrupted
   implicit none
   private
   public :: read_text_file, read_whole
@@ -26,7 +26,7 @@ contains
     if (is_input) then
       call open_standard_input(descriptor, status)
     else
-      call open_for_reading(path, descriptor, status)
+      call open_file(path, to_read, descriptor, status)
     end if
     call read_all(descriptor, is_input, most*1000000, text, status, was_interrupted)
     if (status /= 0) then
@@ -46,7 +46,7 @@ contains
     integer, intent(out) :: status
     integer :: descriptor
     logical :: never
-    call open_for_reading(path, descriptor, status)
+    call open_file(path, to_read, descriptor, status)
     call read_all(descriptor, .false., huge(0) - buffer_size, bytes, status, never)
   end subroutine read_whole
 

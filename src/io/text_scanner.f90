@@ -3,7 +3,7 @@ module text_scanner
   use text_tools, only: lowercase, printable
   implicit none
   private
-  public :: scanner_t, name_here, pass_name, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line
+  public :: scanner_t, name_here, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line
   public :: newline, return, digits, shown
 
   !> The position, and the error found there.
@@ -23,22 +23,13 @@ contains
   function name_here(scan) result(name)
     type(scanner_t), intent(inout) :: scan
     character(len=:), allocatable :: name
-    integer :: first
-    first = scan%at
-    call pass_name(scan)
-    name = lowercase(scan%text(first:scan%at - 1))
-  end function name_here
-
-  !> Move behind a name, if one begins here.
-  subroutine pass_name(scan)
-    type(scanner_t), intent(inout) :: scan
     integer :: length
-    if (at_end(scan)) return
-    if (index(digits, scan%text(scan%at:scan%at)) > 0) return
     length = verify(scan%text(scan%at:), letters//digits) - 1
     if (length < 0) length = len(scan%text) - scan%at + 1
-    scan%at = scan%at + length
-  end subroutine pass_name
+    name = lowercase(scan%text(scan%at:scan%at + length - 1))
+    if (index(digits, name(:min(1, len(name)))) > 0) name = ''   ! a number
+    scan%at = scan%at + len(name)
+  end function name_here
 
   !> Skip blanks, ends of lines (LF, CR LF or CR) and comments.
   subroutine skip_blanks(scan)

@@ -176,8 +176,8 @@ contains
     associate (checkpoint => self%checkpoint)
       is_there = .true.
       do i = trace, event_list
-        if (is_there .and. self%file(i)%length() > 0) &
-          call checkpoint%mark(i)%move_to(self%path//trim(suffixes(i))//'.part', self%file(i)%length(), is_there)
+        if (is_there .and. self%file(i)%written > 0) &
+          call checkpoint%mark(i)%move_to(self%path//trim(suffixes(i))//'.part', self%file(i)%written, is_there)
       end do
       call archive%contents(checkpoint%state)
       checkpoint%wall_time = self%wall_time()

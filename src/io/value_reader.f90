@@ -1,5 +1,5 @@
-!> The value of one key of a case: conversion from text, comparison with its default and with a range. If a text cannot be converted,
-!> a message says what is required; no input can cause an overflow.
+!> The value of one key of a case: conversion from text, comparison with its default and with a range. If a text cannot be
+!> converted, a message says what is required; no input can cause an overflow.
 module value_reader
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp

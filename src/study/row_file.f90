@@ -11,7 +11,7 @@ module row_file
   use text_tools, only: printable, whole_number
   use growing_text, only: growing_text_t
   use result_file, only: result_file_t, fail_with_file
-  use gudgeon_posix, only: open_for_reading, open_for_appending, read_at, read_bytes, write_all, truncate_file, &
+  use gudgeon_posix, only: open_file, to_read, to_append, read_at, read_bytes, write_all, truncate_file, &
     synchronise_file, synchronise_folder, close_file, error_interrupted, error_no_entry, interrupted
   implicit none
   private
@@ -30,14 +30,13 @@ module row_file
     type(growing_text_t), public :: waiting        !! rows not yet written
     integer :: first = 1                           !! first run
     integer(int64), allocatable :: at(:)           !! position of the rows of each run in the file
-    integer, allocatable :: length(:)              !! length of the rows of each run [bytes]
+    integer, allocatable, public :: length(:)      !! length of the rows of each run [bytes]; 0: there are none
     integer, allocatable, public :: rows(:)        !! number of rows of each run that were read back
     integer, allocatable, public :: numbers(:, :)  !! (columns, runs), from the last row of each run that was read back; 0 if there
                                                    !! is none
   contains
     procedure :: prepare
     procedure :: take_up
-    procedure :: has
     procedure :: drop
     procedure :: begin
     procedure :: append
@@ -65,13 +64,6 @@ contains
     self%rows(first) = 0
   end subroutine prepare
 
-  !> Whether the file has rows of a run.
-  pure logical function has(self, run)
-    class(row_file_t), intent(in) :: self
-    integer, intent(in) :: run
-    has = self%length(run) > 0
-  end function has
-
   !> Discard the rows of a run that were read back.
   pure subroutine drop(self, run)
     class(row_file_t), intent(inout) :: self
@@ -89,7 +81,7 @@ contains
     character(len=:), allocatable :: buffer, line
     integer :: descriptor, status, done, ignored, first, next, previous
     if (.not. allocated(self%path)) return
-    call open_for_reading(self%path, descriptor, status)
+    call open_file(self%path, to_read, descriptor, status)
     if (status == error_no_entry) return
     if (status /= 0) then
       call fail_with_file(self%path, status, error)
@@ -189,11 +181,11 @@ contains
     if (.not. allocated(self%path)) return
     status = error_no_entry
     if (self%written == len(self%header) + sum(int(self%length, int64))) &
-      call open_for_appending(self%path, self%descriptor, status)
+      call open_file(self%path, to_append, self%descriptor, status)
     if (status == 0) return
     call rewrite(self, error)
     if (allocated(error)) return
-    call open_for_appending(self%path, self%descriptor, status)
+    call open_file(self%path, to_append, self%descriptor, status)
     if (status /= 0) call fail_with_file(self%path, status, error)
   end subroutine begin
 
@@ -269,7 +261,7 @@ contains
     integer(int64) :: at
     descriptor = -1
     status = 0
-    if (any(self%length > 0)) call open_for_reading(self%path, descriptor, status)
+    if (any(self%length > 0)) call open_file(self%path, to_read, descriptor, status)
     if (status == 0) call file%open(self%path, error, whole_only=.true.)
     if (status /= 0) call fail_with_file(self%path, status, error)
     if (.not. allocated(error)) call file%put(self%header)

@@ -127,7 +127,7 @@ contains
       if (allocated(error)) return
     end do
     do run = sweep%first, sweep%last
-      fits = sweep%files(file_runs)%has(run)
+      fits = sweep%files(file_runs)%length(run) > 0
       if (fits) then
         cycles = sweep%files(file_runs)%numbers(1, run)   ! empty for a run that failed
         strobes = sweep%files(file_runs)%numbers(2, run)
@@ -179,7 +179,7 @@ contains
       !$omp atomic read
       is_over = sweep%is_over
       if (is_over .or. run > sweep%last) exit
-      if (sweep%files(file_runs)%has(run)) cycle
+      if (sweep%files(file_runs)%length(run) > 0) cycle
       call worker%run(sweep%design, run)
       !$omp critical (study_results)
       call take_results(sweep, worker, run)
