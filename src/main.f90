@@ -8,8 +8,10 @@ program gudgeon
   use case_file, only: template
   use case_runner, only: case_job_t
   use study_runner, only: run_study_file
-  use study_file, only: study_template, study_reference
-  use reference_pages, only: case_reference, results_reference
+  use study_definition, only: study_schema_of
+  use case_schema, only: key_table_t, case_schema_of
+  use case_text, only: template_text
+  use reference_pages, only: keys_reference, results_reference
   use gudgeon_progress, only: progress_wanted, clock, tell
   use gudgeon_summary, only: build_advice
   use text_tools, only: printable
@@ -35,18 +37,8 @@ program gudgeon
     call say(help_text(), status)
   else if (options%version) then
     call say('gudgeon '//program_version, status)
-  else if (options%template) then
-    if (options%sweep) call say(study_template(), status)
-    if (.not. options%sweep) call say(template(), status)
-  else if (options%reference /= '') then
-    select case (options%reference)
-    case ('case')
-      call say(case_reference(), status)
-    case ('study')
-      call say(study_reference(), status)
-    case default
-      call say(results_reference(), status)
-    end select
+  else if (options%template .or. options%reference /= '') then
+    call say_page(options, status)
   else if (options%sweep) then
     call run_studies(options, status)
   else
@@ -55,6 +47,29 @@ program gudgeon
   call c_exit(status)   ! without output
 
 contains
+
+  !> Print a template or a page of the manual.
+  subroutine say_page(options, status)
+    type(command_line_t), intent(in) :: options
+    integer, intent(inout) :: status
+    type(key_table_t) :: table
+    if (options%template .and. .not. options%sweep) then
+      call say(template(), status)
+      return
+    else if (options%reference == 'case' .and. .not. options%template) then
+      call case_schema_of(table)
+    else
+      call study_schema_of(table)
+    end if
+    if (options%template) then
+      call say(template_text('A parameter study of gudgeon with every key there is. Keys marked required have no default.', &
+        table), status)
+    else if (options%reference == 'results') then
+      call say(results_reference(), status)
+    else
+      call say(keys_reference(table), status)
+    end if
+  end subroutine say_page
 
   !> Run all cases and their ideal twins, several at the same time; the largest exit status is returned.
   subroutine run_all(options, status)

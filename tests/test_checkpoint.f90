@@ -6,7 +6,7 @@ module test_checkpoint
   use gudgeon_archive, only: archive_t
   use gudgeon_checksum, only: checksum_t
   use gudgeon_checkpoint, only: checkpoint_t, file_mark_t
-  use run_identity, only: program_identity, identity_of, twin_identity, compare_cases
+  use run_identity, only: program_identity, identity_of, compare_cases
   use text_file, only: read_whole
   use result_file, only: result_file_t
   use gudgeon_posix, only: make_directory, remove_file
@@ -200,7 +200,7 @@ contains
       'a limit does not change the identity')
     call check%equal_text(identity_of(case//'/'//n, program), identity, 'a limit that is left out does not change the identity')
     call check%that(identity_of(case//'  max_step = 0'//n//'/'//n, program) /= identity, 'another key changes the identity')
-    call check%that(twin_identity(identity) /= identity, 'the ideal twin has another identity')
+    call check%that(identity_of('ideal twin', identity) /= identity, 'the ideal twin has another identity')
     call check%that(identity_of('&joint'//n//'  clearance = 2'//n//'/'//n//'&integrator'//n//'/'//n, program) /= identity, &
       'another value changes the identity')
     program = 'another program '

@@ -123,7 +123,7 @@ contains
   subroutine go(self)
     class(case_run_t), intent(inout) :: self
     type(trace_files_t) :: files
-    type(archive_t) :: archive
+    type(archive_t), allocatable :: archive
 
     if (self%start%is_done .or. allocated(self%error)) return
     !$omp critical (texts)
@@ -131,11 +131,10 @@ contains
     !$omp end critical (texts)
     if (allocated(self%error)) return
     if (self%start%goes_on) then
+      allocate (archive)
       call archive%begin_reading(self%start%checkpoint%state)
-      call simulate(self%case, self%is_twin, self%list, files, self%report, self%error, archive)
-    else
-      call simulate(self%case, self%is_twin, self%list, files, self%report, self%error)
     end if
+    call simulate(self%case, self%is_twin, self%list, files, self%report, self%error, archive)   ! absent if not allocated
     if (.not. allocated(self%report%status)) self%report%status = self%error%message
     if (self%certifies .and. self%report%status == 'done') then
       allocate (self%certificate)

@@ -13,7 +13,7 @@ module case_runner
   use scene_builder, only: build_scene
   use case_run, only: case_run_t, name_file
   use result_file, only: result_file_t, fail_with_file
-  use run_identity, only: identity_length, identity_of, twin_identity
+  use run_identity, only: identity_length, identity_of
   use case_lock, only: case_lock_t
   use gudgeon_posix, only: absolute_path, make_directory, synchronise_folder, file_length, interrupted, error_text
   use gudgeon_progress, only: tell
@@ -80,7 +80,7 @@ contains
     identity = identity_of(text, program)
     call self%run%prepare(case, text, identity, .false., list, base, options, show_progress)
     self%twin%base = base//'.ideal'
-    if (self%has_twin) call self%twin%prepare(case, text, twin_identity(identity), .true., ideal_list, self%twin%base, &
+    if (self%has_twin) call self%twin%prepare(case, text, identity_of('ideal twin', identity), .true., ideal_list, self%twin%base, &
       options, show_progress .and. options%jobs == 1)
   end subroutine prepare
 

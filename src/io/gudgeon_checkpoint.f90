@@ -11,7 +11,7 @@ module gudgeon_checkpoint
   use gudgeon_posix, only: open_file, to_read, read_at, close_file, synchronise_folder, file_length, error_text, &
     error_no_entry, error_interrupted
   use result_file, only: write_text
-  use run_identity, only: identity_length, compare_cases
+  use run_identity, only: compare_cases
   use gudgeon_summary, only: summary_value
   use text_file, only: read_whole
   use text_tools, only: printable, integer_text
@@ -36,7 +36,7 @@ module gudgeon_checkpoint
 
   type :: checkpoint_t
     character(len=:), allocatable :: path        !! of the file
-    character(len=identity_length) :: identity = ''   !! identity of the run
+    character(len=:), allocatable :: identity    !! identity of the run
     character(len=:), allocatable :: case_text   !! the resolved case
     real(dp) :: wall_time = 0                    !! used by the run so far [s]
     type(file_mark_t) :: mark(2)                 !! length and checksum of the trace and of the list of events
@@ -108,14 +108,11 @@ contains
   subroutine exchange(self, archive)
     class(checkpoint_t), intent(inout) :: self
     type(archive_t), intent(inout) :: archive
-    character(len=:), allocatable :: identity
     integer :: version, i
     version = format_version
     call archive%exchange(version)
     if (version /= format_version) archive%failed = .true.
-    identity = self%identity
-    call archive%exchange_text(identity)
-    self%identity = identity
+    call archive%exchange_text(self%identity)
     call archive%exchange_text(self%case_text)
     call archive%exchange(self%wall_time)
     do i = 1, size(self%mark)

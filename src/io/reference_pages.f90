@@ -3,7 +3,7 @@
 module reference_pages
   use gudgeon_errors, only: error_t
   use gudgeon_parameters, only: key_t, logical_kind
-  use case_schema, only: group_definition_t, key_table_t, case_schema_of, find_key
+  use case_schema, only: group_definition_t, key_table_t, find_key
   use case_definition, only: case_t
   use case_file, only: parse_case, template
   use gudgeon_columns, only: choose_columns
@@ -12,7 +12,7 @@ module reference_pages
   use summary_quantities, only: quantity_t, quantities_of_runs, event_columns
   implicit none
   private
-  public :: case_reference, results_reference, keys_reference
+  public :: keys_reference, results_reference
 
   character(len=*), parameter :: newline = achar(10)
 
@@ -51,15 +51,7 @@ module reference_pages
 
 contains
 
-  !> Page of all groups and keys of a case file.
-  function case_reference() result(text)
-    character(len=:), allocatable :: text
-    type(key_table_t) :: table
-    call case_schema_of(table)
-    text = keys_reference(table)
-  end function case_reference
-
-  !> A section for each group, with a table row for each key.
+  !> Page of all groups and keys of a kind of file: a section for each group, with a table row for each key.
   function keys_reference(table) result(text)
     type(key_table_t), intent(in) :: table
     character(len=:), allocatable :: text

@@ -10,7 +10,7 @@ module run_identity
   use gudgeon_version, only: program_version
   implicit none
   private
-  public :: identity_length, program_identity, identity_of, twin_identity, compare_cases
+  public :: identity_length, program_identity, identity_of, compare_cases
 
   integer, parameter :: identity_length = 16   !! hexadecimal digits
   character(len=*), parameter :: newline = achar(10)
@@ -33,7 +33,7 @@ contains
   end function program_identity
 
   !> A digest of everything on which the results of a run depend: the program, and the resolved case without the keys that may
-  !> change.
+  !> change. That of the ideal twin is the digest of the text 'ideal twin' and the identity of the run instead of a program.
   function identity_of(case_text, program) result(identity)
     character(len=*), intent(in) :: case_text                 !! the resolved case
     character(len=identity_length), intent(in) :: program     !! identity of the program
@@ -49,15 +49,6 @@ contains
     end do
     identity = sum%hexadecimal()
   end function identity_of
-
-  !> The identity of the ideal twin of a run.
-  pure function twin_identity(identity) result(twin)
-    character(len=identity_length), intent(in) :: identity
-    character(len=identity_length) :: twin
-    type(checksum_t) :: sum
-    call sum%add(identity//' ideal twin')
-    twin = sum%hexadecimal()
-  end function twin_identity
 
   !> Add the program to a checksum: the first page of its file, which contains a digest of the whole file (the build id of the
   !> linker); without a build id, the whole file.

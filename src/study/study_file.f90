@@ -8,30 +8,13 @@ module study_file
   use case_values, only: case_values_t
   use case_schema, only: key_table_t, is_group_of_cases
   use case_loader, only: load_model
-  use case_text, only: resolved_text, template_text
-  use reference_pages, only: keys_reference
+  use case_text, only: resolved_text
   use study_definition, only: study_t, parameter_t, text_t, study_schema_of
   implicit none
   private
-  public :: read_study, study_template, study_reference
+  public :: read_study
 
 contains
-
-  !> A complete study file with comments.
-  function study_template() result(text)
-    character(len=:), allocatable :: text
-    type(key_table_t) :: table
-    call study_schema_of(table)
-    text = template_text('A parameter study of gudgeon with every key there is. Keys marked required have no default.', table)
-  end function study_template
-
-  !> Page of the manual in Markdown: all groups and keys of a study file.
-  function study_reference() result(text)
-    character(len=:), allocatable :: text
-    type(key_table_t) :: table
-    call study_schema_of(table)
-    text = keys_reference(table)
-  end function study_reference
 
   !> Read and check a study file. Paths in it are converted to paths relative to the current folder.
   subroutine read_study(path, study, error)
