@@ -15,10 +15,8 @@ module case_loader
   type, extends(parameter_list_t) :: loader_t
     type(case_values_t), pointer :: values => null()
     logical, allocatable :: only(:)               !! groups to be set, by index in the table
-    character(len=:), allocatable :: group_name   !! group being visited
-    integer :: at = 0                             !! its index in the table
+    integer :: at = 0                             !! index of the group being visited in the table
     character(len=:), allocatable :: law_name     !! law that the case names in this group
-    logical :: is_loading_law = .false.
     type(error_t), allocatable :: error           !! the first error
   contains
     procedure :: visit => load_parameter
@@ -38,7 +36,6 @@ contains
     type(error_t), allocatable, intent(out) :: error
     logical, intent(in), optional :: only(:)  !! groups to be set. A group of a joint may change the laws of the other joint; if one
                                               !! such group changes, set all groups of joints.
-                                               !! one group of a joint all are set
     type(loader_t) :: loader
     loader%values => values
     allocate (loader%only(size(values%groups)), source=.true.)
@@ -84,7 +81,6 @@ contains
         if (.not. is_model .or. self%values%is_present(of_place)) self%at = of_place
       end if
     end if
-    self%group_name = trim(self%values%groups(self%at)%name)
     self%law_name = ''
     self%sets = self%only(self%at)
     self%passes = .not. self%sets
@@ -115,11 +111,9 @@ contains
     end if
     allocate (self%chosen, source=law)
     self%chosen%name = name
-    self%is_loading_law = .true.
     call self%chosen%parameters(self)
-    self%is_loading_law = .false.
     call self%chosen%conflict(key, wanted)
-    if (key /= '' .and. .not. allocated(self%error)) call self%values%refuse(self%group_name, key, wanted, self%error)
+    call self%values%forbid(key /= '', trim(self%values%groups(self%at)%name), key, wanted, self%error)
   end subroutine load_law
 
   !> Index of a key of the present group in the table; 0 if there is none.
@@ -149,8 +143,8 @@ contains
       if (.not. value%given(1) .or. key%kind == word_kind .and. value%text == '') value%text = trim(key%default)
       text = value%text
     end associate
-    if (key%kind /= word_kind .or. .not. self%is_loading_law .or. allocated(self%error)) return
-    if (.not. is_listed(text, key%words)) call self%values%refuse(self%group_name, trim(key%name), &
+    if (key%kind /= word_kind .or. .not. allocated(self%chosen)) return
+    call self%values%forbid(.not. is_listed(text, key%words), trim(self%values%groups(self%at)%name), trim(key%name), &
       'must be one of '//key%words//' for '//self%law_name, self%error)
   end subroutine load_parameter
 end module case_loader

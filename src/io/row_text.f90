@@ -9,7 +9,6 @@ module row_text
   use value_reader, only: read_real
   use number_text, only: number_writer_t, longest_number
   use growing_text, only: growing_text_t
-  use text_tools, only: integer_text
   implicit none
   private
   public :: row_text_t, begins_formula
@@ -75,8 +74,10 @@ contains
   pure subroutine add_whole(self, number)
     class(row_text_t), intent(inout) :: self
     integer, intent(in) :: number
+    character(len=11) :: digits
     if (self%is_open) call self%append(',')
-    call self%append(integer_text(number))
+    write (digits, '(i0)') number
+    call self%append(digits(:len_trim(digits)))
     self%is_open = .true.
   end subroutine add_whole
 

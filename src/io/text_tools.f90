@@ -32,23 +32,17 @@ contains
   pure function short_integer(number) result(text)
     integer, intent(in) :: number
     character(len=:), allocatable :: text
-    text = integer_text(int(number, int64))
+    character(len=11) :: digits
+    write (digits, '(i0)') number
+    text = trim(digits)
   end function short_integer
 
   pure function long_integer(number) result(text)
     integer(int64), intent(in) :: number
     character(len=:), allocatable :: text
     character(len=20) :: digits
-    integer(int64) :: rest
-    integer :: i
-    rest = merge(number, -number, number < 0)   ! negative, since the most negative number has no positive one
-    do i = len(digits), 1, -1
-      digits(i:i) = achar(iachar('0') - int(mod(rest, 10_int64)))
-      rest = rest/10
-      if (rest == 0) exit
-    end do
-    text = digits(i:)
-    if (number < 0) text = '-'//text
+    write (digits, '(i0)') number
+    text = trim(digits)
   end function long_integer
 
   !> The number in a text: at most 18 digits, possibly with a sign.
