@@ -15,6 +15,8 @@ module monotone_cubic
     real(dp), allocatable, private :: point(:)         !! (0:n), increasing
     real(dp), allocatable, private :: coefficient(:, :)  !! coefficients of powers of x - point(i) between points i and i + 1, (0:3,
                                                          !! 0:n - 1)
+    integer, allocatable, private :: place(:)          !! (0:n): interval that contains the beginning of the k-th of n equal parts
+    real(dp), private :: per_part = 0
   contains
     procedure :: value
     procedure :: slope
@@ -87,19 +89,34 @@ contains
     type(monotone_cubic_t), intent(out) :: curve
     real(dp), intent(in) :: x(0:), y(0:), slope(0:)
     real(dp) :: width, secant
-    integer :: i, n
+    integer :: i, k, n
     n = ubound(x, 1)
-    allocate (curve%point(0:n), curve%coefficient(0:3, 0:n - 1))
+    allocate (curve%point(0:n), curve%coefficient(0:3, 0:n - 1), curve%place(0:n))
     curve%point = x
     curve%first = x(0)
     curve%last = x(n)
+    curve%per_part = n/(x(n) - x(0))
     do i = 0, n - 1
       width = x(i + 1) - x(i)
       secant = (y(i + 1) - y(i))/width
       curve%coefficient(:, i) = [y(i), slope(i), (3*secant - 2*slope(i) - slope(i + 1))/width, &
         (slope(i) + slope(i + 1) - 2*secant)/width**2]
     end do
+    i = 0
+    do k = 0, n
+      do while (i < n - 1 .and. part_of(curve, x(min(i + 1, n))) < k)
+        i = i + 1
+      end do
+      curve%place(k) = i
+    end do
   end subroutine take_points
+
+  !> Number of the equal part that contains x.
+  pure integer function part_of(curve, x)
+    type(monotone_cubic_t), intent(in) :: curve
+    real(dp), intent(in) :: x
+    part_of = min(max(int((x - curve%first)*curve%per_part), 0), ubound(curve%place, 1))
+  end function part_of
 
   !> The interval of x, and the distance of x from its beginning.
   pure subroutine find(self, x, i, along)
@@ -108,12 +125,13 @@ contains
     integer, intent(out) :: i
     real(dp), intent(out) :: along
     real(dp) :: inside
-    integer :: last, middle
+    integer :: k, last, middle
     inside = x
     if (self%period > 0) inside = x - self%period*floor((x - self%first)/self%period)
     inside = min(max(inside, self%first), self%last)
-    i = 0
-    last = ubound(self%point, 1) - 1
+    k = part_of(self, inside)
+    i = self%place(k)
+    last = self%place(min(k + 1, ubound(self%place, 1)))
     do while (i < last)
       middle = (i + last + 1)/2
       if (self%point(middle) <= inside) then

@@ -113,7 +113,7 @@ contains
     self%chosen%name = name
     call self%chosen%parameters(self)
     call self%chosen%conflict(key, wanted)
-    call self%values%forbid(key /= '', trim(self%values%groups(self%at)%name), key, wanted, self%error)
+    if (key /= '') call self%values%forbid(.true., trim(self%values%groups(self%at)%name), key, wanted, self%error)
   end subroutine load_law
 
   !> Index of a key of the present group in the table; 0 if there is none.

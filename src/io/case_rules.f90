@@ -330,7 +330,7 @@ contains
           'needs end_time beside it with crank_speed = 0: the latest end, should the crank not make them')
         if (is_held .and. turns) then
           held_end = run%crank_revolutions*two_pi/abs(c%initial%crank_speed)
-          call forbid(run%end_time > 0 .and. run%end_time < held_end, 'integrator', 'end_time', &
+          if (run%end_time > 0 .and. run%end_time < held_end) call forbid(.true., 'integrator', 'end_time', &
             'must be >= '//short_text(held_end)//' s, when the held crank has made crank_revolutions')
         end if
         call forbid(run%contact_entry == 'step_rejection' .and. run%max_penetration <= 0, 'integrator', 'max_penetration', &

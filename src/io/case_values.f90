@@ -101,17 +101,21 @@ contains
     character(len=*), intent(in) :: group, name
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: others, earlier
-    integer :: place, i, k
+    integer :: place, i, k, first, last
     logical :: is_ended
     place = self%place_of(group, name)
     is_ended = .false.
     others = 'this'
-    do i = 1, size(self%keys)
+    associate (range => self%groups(find_group(self%groups, group)))
+      first = range%first
+      last = range%last
+    end associate
+    do i = first, last
       if (.not. is_relative(self%keys(i), self%keys(place))) cycle
       if (i /= place) others = others//' or '//trim(self%keys(i)%name)
       if (.not. self%is_said(i)) cycle
       is_ended = .true.
-      do k = 1, i - 1
+      do k = first, i - 1
         if (.not. is_relative(self%keys(k), self%keys(i)) .or. may_stand_beside(self%keys(k), self%keys(i))) cycle
         if (.not. self%is_said(k)) cycle
         earlier = trim(self%keys(k)%name)

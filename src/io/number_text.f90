@@ -78,7 +78,9 @@ contains
         factor = shiftr(powers(digits - 1 - k), 125 + 52 - 63 - fraction_bits - exponents(k) - exponents(digits - 1 - k))
         decade%high = int(shiftr(factor, 63), int64)
         decade%low = int(iand(factor, shiftl(one, 63) - 1), int64)
-        write (decade%ending, '(a,sp,i0.2,a)') 'E', k, ','
+        decade%ending = merge('E-', 'E+', k < 0)//achar(48 + abs(k)/100)//achar(48 + mod(abs(k)/10, 10))// &
+          achar(48 + mod(abs(k), 10))//','
+        if (abs(k) < 100) decade%ending(3:) = decade%ending(4:)
         decade%ending_length = len_trim(decade%ending)
       end associate
     end do
