@@ -167,7 +167,12 @@ class Row:
     @property
     def com_acceleration(self) -> Vector:
         """Acceleration of the piston's centre of mass."""
-        return self.ax - self.tilt_acceleration * self.com[1] - self.tilt_rate**2 * self.com[0], self.get.get("piston_offset_acceleration", 0.0)
+        return math.fsum(self.com_acceleration_terms), self.get.get("piston_offset_acceleration", 0.0)
+
+    @property
+    def com_acceleration_terms(self) -> tuple[float, ...]:
+        """The acceleration of the piston's centre of mass along the cylinder: that of its pin, and by the tilt."""
+        return self.ax, -self.tilt_acceleration * self.com[1], -self.tilt_rate**2 * self.com[0]
 
     @property
     def bearing_acceleration(self) -> float:
@@ -317,7 +322,8 @@ class Row:
         at_pin = acceleration((0.0, 0.0), self.crankpin, self.turn, self.turn_rate)
         crank = acceleration((0.0, 0.0), self.crank_arm, self.turn, self.turn_rate)
         rod = acceleration(at_pin, self.rod_arm, self.rod_turn, self.rod_turn_rate)
-        found["Newton, piston"] = balance(b.mass[2] * self.com_acceleration[0], self.gas, self.force[0], -self.bore_friction, -b.mass[2] * g[0])
+        found["Newton, piston"] = balance(*(b.mass[2] * one for one in self.com_acceleration_terms), self.gas, self.force[0], -self.bore_friction,
+                                          -b.mass[2] * g[0])
         # the guide force follows from the rod's moments, so it contains their rounding
         found["guide force"] = Balance(abs(get["guide_force"] + self.force[1] - b.mass[2] * (g[1] - self.com_acceleration[1])), abs(self.force[1]) + abs(on_rod[1]) + (
             sum(map(abs, self.rod_moment_terms())) + abs(self.rod[1] * on_rod[0])) / abs(self.rod[0]))
