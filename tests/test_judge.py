@@ -83,6 +83,10 @@ SCENES = {
     "both": ("joints/both_pins", {"integrator.revolutions": "0.2", "drive.kind": "'free'", "mechanism.gravity_angle_deg": "25"}),
     "crank": ("joints/crank_pin", {"integrator.revolutions": "0.2", "integrator.relative_tolerance": "1e-7"}),
     "slap": ("joints/piston_slap", {"integrator.revolutions": "0.3", "mechanism.gravity_angle_deg": "25"}),
+    # almost without inertia of tilting: the acceleration of the centre of mass is a small difference of those of pin and tilt
+    "jammed": ("joints/piston_slap", {"integrator.revolutions": "1e-4", "mechanism.gravity": "9.8", "initial.piston_tilt": "-0.04",
+                                      "guide.piston_com": "-0.0104, 0.0002", "guide.piston_inertia": "5e-8", "guide.contact_law": "'exact'",
+                                      "guide.stiffness": "1e12", "guide.coefficient": "0", "guide.viscous": "0"}),
     "guide": ("flores/ideal", {"drive.kind": "'free'", "mechanism.gravity": "9.8", "guide.law": "threlfall", "guide.coefficient": "0.1", "guide.v1": "0.5",
                                "guide.viscous": "3"}),
     "films": ("joints/both_pins_lubricated", {"integrator.revolutions": "0.5"}),
@@ -101,7 +105,7 @@ PHASES = {**dict.fromkeys(("thickening", "printed", "half", "short", "finite", "
           "elasto_plastic": {0, 2}, "conformal": {0, 2}, "johnson": {0, 2},
           "liner": {0, 2}, "pereira": {0, 2}, "dissipation": {0, 2}, "film": {1}, "contact": {1, 2}, "weighted": {1, 2}, "elastic": {1},
           "compressor": {1}, "two_stroke": {1}, "measured": {1}, "ramp": {1}, "motor": {1}, "both": {0, 2}, "crank": {0}, "films": {1},
-          "slap": {0, 2}, "guide": {0}, "ideal": {0}, "rod": {0, 2}, "rods": {0, 2}, "shaft": {1}, "bent": {0}}   # 0 free flight, 1 film, 2 contact
+          "slap": {0, 2}, "jammed": {0}, "guide": {0}, "ideal": {0}, "rod": {0, 2}, "rods": {0, 2}, "shaft": {1}, "bent": {0}}   # 0 free flight, 1 film, 2 contact
 
 #: (fault, scene, column, change of (value, row), text that the verdict must contain)
 CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
