@@ -23,7 +23,6 @@ module elastic_members
     real(dp) :: start_speed = 0                 !! [rad/s]
   contains
     procedure :: claim
-    procedure :: settle
     procedure :: put_start
     procedure :: read_state
     procedure :: put_rates
@@ -64,16 +63,6 @@ contains
     if (allocated(self%crankshaft) .and. .not. self%holds_flywheel) &
       call layout%claim_positions(1, 1.0_dp, crank_speed, self%flywheel, grows=.true.)
   end subroutine claim
-
-  subroutine settle(self, layout)
-    class(elastic_members_t), intent(inout) :: self
-    type(layout_t), intent(in) :: layout
-    integer :: i
-    do i = 1, self%n_shapes()
-      call layout%settle(self%shapes(i))
-    end do
-    if (self%flywheel%n > 0) call layout%settle(self%flywheel)
-  end subroutine settle
 
   !> Put the initial state into the state vector: the rod is straight and has its nominal length, the shaft is not twisted, and
   !> their rates are 0.

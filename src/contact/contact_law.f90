@@ -13,11 +13,12 @@ module contact_law
   real(dp), parameter :: ratio_limit = 100
 
   !> A compliant normal contact between pin and bearing, F = f(delta) [1 + chi delta_dot/delta_dot_minus]: f is given by the
-  !> geometry; a law sets chi in `prepare`. A law with another form of damping sets `has_own_damping` and overrides `damped_force`
-  !> and its derivatives.
+  !> geometry; a law sets chi in `prepare`. With `has_own_damping` the force is f (1 + a delta_dot), where a is the `dissipation`,
+  !> independent of the impact speed; a law with another form of damping overrides `damped_force` and its derivatives.
   type, abstract, extends(law_t) :: contact_law_t
     class(contact_geometry_t), allocatable :: geometry
     real(dp) :: damping = 0                    !! chi [-], >= 0
+    real(dp) :: dissipation = 0                !! a [s/m], >= 0
     real(dp) :: least_impact_speed = 1e-5_dp   !! slower impacts are damped as if they had this speed [m/s], > 0
     logical :: has_own_damping = .false.
     real(dp), private :: three_halves = 0      !! K [N/m^1.5] if f is K delta^1.5 and is damped by chi; otherwise 0
@@ -118,16 +119,16 @@ contains
     end associate
   end subroutine normal_force_slopes
 
-  !> The normal force [N] of a law with another form of damping; never negative. The default has no damping.
+  !> The normal force [N] of a law with `has_own_damping`; never negative.
   pure function damped_force(self, elastic_force, penetration, penetration_rate) result(force)
     class(contact_law_t), intent(in) :: self
     real(dp), value, intent(in) :: elastic_force      !! [N], > 0
     real(dp), value, intent(in) :: penetration        !! [m], > 0
     real(dp), value, intent(in) :: penetration_rate   !! [m/s]
     real(dp) :: force
-    associate (unused_self => self, unused_depth => penetration, unused_rate => penetration_rate)
+    associate (unused => penetration)
     end associate
-    force = elastic_force
+    force = elastic_force*max(0.0_dp, 1 + self%dissipation*penetration_rate)
   end function damped_force
 
   !> Derivatives of `damped_force`, where it is positive, with respect to the penetration [N/m] and its rate [N s/m].
@@ -135,9 +136,9 @@ contains
     class(contact_law_t), intent(in) :: self
     real(dp), intent(in) :: penetration, penetration_rate
     real(dp), intent(out) :: stiffness, damping
-    associate (unused_rate => penetration_rate)
-    end associate
-    stiffness = self%geometry%slope(penetration, self%geometry%elastic_force(penetration))
-    damping = 0
+    real(dp) :: elastic
+    elastic = self%geometry%elastic_force(penetration)
+    stiffness = self%geometry%slope(penetration, self%damped_force(elastic, penetration, penetration_rate))
+    damping = elastic*self%dissipation
   end subroutine damped_force_slopes
 end module contact_law

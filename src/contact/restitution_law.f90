@@ -13,14 +13,11 @@ module restitution_law
   public :: restitution_law_t, one_percent
 
   type, abstract, extends(contact_law_t) :: restitution_law_t
-    real(dp) :: restitution = 1   !! e, given in the case [-], 0 to 1
-    real(dp) :: dissipation = 0   !! given in the case, instead of chi/delta_dot_minus [s/m]; 0: from the restitution
+    real(dp) :: restitution = 1   !! e, given in the case [-], 0 to 1; used if the case does not give the `dissipation`
   contains
     procedure :: parameters
     procedure :: conflict
     procedure :: prepare
-    procedure :: damped_force
-    procedure :: damped_force_slopes
     procedure(damping_for), deferred, nopass :: damping_for
     procedure, nopass :: least_restitution => zero
   end type restitution_law_t
@@ -78,24 +75,4 @@ contains
   pure real(dp) function one_percent()
     one_percent = 0.01_dp
   end function one_percent
-
-  !> f (1 + a delta_dot), where a is the dissipation; independent of the impact speed.
-  pure function damped_force(self, elastic_force, penetration, penetration_rate) result(force)
-    class(restitution_law_t), intent(in) :: self
-    real(dp), value, intent(in) :: elastic_force, penetration, penetration_rate
-    real(dp) :: force
-    associate (unused => penetration)
-    end associate
-    force = elastic_force*max(0.0_dp, 1 + self%dissipation*penetration_rate)
-  end function damped_force
-
-  pure subroutine damped_force_slopes(self, penetration, penetration_rate, stiffness, damping)
-    class(restitution_law_t), intent(in) :: self
-    real(dp), intent(in) :: penetration, penetration_rate
-    real(dp), intent(out) :: stiffness, damping
-    real(dp) :: elastic
-    elastic = self%geometry%elastic_force(penetration)
-    stiffness = self%geometry%slope(penetration, self%damped_force(elastic, penetration, penetration_rate))
-    damping = elastic*self%dissipation
-  end subroutine damped_force_slopes
 end module restitution_law

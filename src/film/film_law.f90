@@ -8,7 +8,8 @@ module film_law
   use reynolds_grid, only: reynolds_grid_t, new_reynolds_grid
   implicit none
   private
-  public :: film_law_t, film_motion_t, table_watch_t, difference_derivatives, difference_steps, moved, angles_of_film, field_points
+  public :: film_law_t, film_motion_t, table_watch_t, difference_derivatives, difference_steps, moved, angles_of_film, &
+    field_points, yes
 
   integer, parameter :: field_points = 128   !! number of angles of a pressure field
 
@@ -54,9 +55,9 @@ module film_law
     procedure, non_overridable :: add_least_film
     procedure, non_overridable :: shear_moment
     procedure, non_overridable :: shear_moment_slopes
-    procedure :: is_quasi_static => no
-    procedure :: gives_pressure => no
-    procedure :: gives_side_flow => no
+    procedure :: is_quasi_static
+    procedure, nopass :: gives_pressure => no
+    procedure, nopass :: gives_side_flow => no
     procedure, non_overridable :: drag_moment
     procedure :: pressure => nowhere
     procedure :: peak_and_flow => peak_without_flow
@@ -152,14 +153,22 @@ contains
     end associate
   end function shear_moment_slopes
 
-  !> Properties of a law: whether the force is proportional to v* = e' - (omega/2) z x e, opposes it and depends on no other motion;
-  !> whether the law gives a pressure relative to that at the ends of the film, and a side flow. All are false by default.
-  pure logical function no(self)
+  !> Whether the force is proportional to v* = e' - (omega/2) z x e, opposes it and depends on no other motion. By default this
+  !> holds for the laws that give a pressure.
+  pure logical function is_quasi_static(self)
     class(film_law_t), intent(in) :: self
-    associate (unused => self)
-    end associate
+    is_quasi_static = self%gives_pressure()
+  end function is_quasi_static
+
+  !> Properties of a law: whether it gives a pressure relative to that at the ends of the film, and a side flow. The default is
+  !> `no`.
+  pure logical function no()
     no = .false.
   end function no
+
+  pure logical function yes()
+    yes = .true.
+  end function yes
 
   !> Moment of the film on the pin [N m] that `film_force` does not include if `film_moment` is .false.: that of the shear of a film
   !> with a pressure.

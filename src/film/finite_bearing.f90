@@ -8,7 +8,7 @@ module finite_bearing
   use gudgeon_parameters, only: parameter_list_t
   use gudgeon_bearing, only: bearing_t
   use gudgeon_archive, only: archive_t
-  use film_law, only: film_law_t, film_motion_t, table_watch_t, difference_derivatives, field_points
+  use film_law, only: film_law_t, film_motion_t, table_watch_t, difference_derivatives, field_points, yes
   use film_direction, only: derivatives_in_components, least_ratio_of_derivatives
   use finite_film, only: film_answer_t, film_solver_t, cavitation_none, cavitation_gumbel, cavitation_reynolds
   use film_map, only: film_map_t
@@ -34,9 +34,8 @@ module finite_bearing
     procedure :: film_force
     procedure :: force_derivatives
     procedure :: reduced_force
-    procedure :: gives_pressure
-    procedure :: gives_side_flow => gives_pressure
-    procedure :: is_quasi_static => gives_pressure
+    procedure, nopass :: gives_pressure => yes
+    procedure, nopass :: gives_side_flow => yes
     procedure :: peak_and_flow
     procedure :: reduced_peak_and_flow
     procedure :: pressure_field
@@ -241,13 +240,6 @@ contains
     radial = v*film%force(1)
     tangential = v*film%force(2)
   end subroutine reduced_force
-
-  pure logical function gives_pressure(self)
-    class(finite_bearing_t), intent(in) :: self
-    associate (unused => self)
-    end associate
-    gives_pressure = .true.
-  end function gives_pressure
 
   !> Largest pressure [Pa], and side flow out of both ends [m^3/s].
   pure subroutine peak_and_flow(self, motion, most, flow)

@@ -4,7 +4,7 @@ module pinkus_sternlicht
   use gudgeon_constants, only: pi
   use gudgeon_parameters, only: parameter_list_t
   use gudgeon_bearing, only: bearing_t
-  use film_law, only: film_law_t, film_motion_t, difference_derivatives
+  use film_law, only: film_law_t, film_motion_t, difference_derivatives, yes
   use film_direction, only: derivatives_in_components, least_ratio_of_derivatives
   implicit none
   private
@@ -33,7 +33,7 @@ module pinkus_sternlicht
     procedure :: film_force
     procedure :: force_derivatives
     procedure :: is_quasi_static
-    procedure :: gives_pressure
+    procedure, nopass :: gives_pressure => yes
     procedure :: pressure
   end type pinkus_sternlicht_t
 
@@ -188,13 +188,6 @@ contains
       tangential(3) = tangential(3) + scale(0)*gap*pi*quotient(0)
     end associate
   end subroutine polar_forces
-
-  pure logical function gives_pressure(self)
-    class(pinkus_sternlicht_t), intent(in) :: self
-    associate (unused => self)
-    end associate
-    gives_pressure = .true.
-  end function gives_pressure
 
   !> Pressure of the film [Pa] (5.20), 0 where it would be negative, at the angle theta [rad] from the thinnest film (the direction
   !> of the eccentricity), positive from x to y:

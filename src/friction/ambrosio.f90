@@ -16,7 +16,7 @@ module ambrosio
     procedure :: parameters
     procedure :: conflict
     procedure :: prepare
-    procedure :: friction_ratio
+    procedure :: sliding_ratio
     procedure :: friction_ratio_slope
   end type ambrosio_t
 
@@ -43,18 +43,12 @@ contains
     self%set_valued = .not. self%v1 > 0
   end subroutine prepare
 
-  !> (4.9) with (4.10). Continuous for v0 < v1; for v0 = v1 > 0 it has a jump of c_f at v1. `direction` is used only without a ramp,
-  !> as in Coulomb's law.
-  pure function friction_ratio(self, sliding_speed, direction) result(ratio)
+  !> (4.9) with (4.10). Continuous for v0 < v1; for v0 = v1 > 0 it has a jump of c_f at v1.
+  pure function sliding_ratio(self, sliding_speed) result(ratio)
     class(ambrosio_t), intent(in) :: self
     real(dp), value, intent(in) :: sliding_speed
-    integer, value, intent(in) :: direction
     real(dp) :: ratio
     real(dp) :: speed
-    if (self%set_valued) then
-      ratio = -self%coefficient*direction
-      return
-    end if
     speed = abs(sliding_speed)
     if (speed >= self%v1) then
       ratio = self%coefficient
@@ -64,7 +58,7 @@ contains
       ratio = self%coefficient*(speed - self%v0)/(self%v1 - self%v0)
     end if
     ratio = -sign(ratio, sliding_speed)
-  end function friction_ratio
+  end function sliding_ratio
 
   pure function friction_ratio_slope(self, sliding_speed) result(slope)
     class(ambrosio_t), intent(in) :: self

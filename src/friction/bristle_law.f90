@@ -26,7 +26,7 @@ module bristle_law
     procedure :: conflict
     procedure :: touch_down_limit
     procedure :: prepare
-    procedure :: friction_ratio
+    procedure :: sliding_ratio
     procedure :: friction_ratio_slope
     procedure :: state_friction
     procedure :: state_slopes
@@ -142,16 +142,13 @@ contains
   end subroutine damping_at
 
   !> Friction of steady sliding, which is reached after sliding some micrometres in one direction.
-  pure function friction_ratio(self, sliding_speed, direction) result(ratio)
+  pure function sliding_ratio(self, sliding_speed) result(ratio)
     class(bristle_law_t), intent(in) :: self
     real(dp), value, intent(in) :: sliding_speed
-    integer, value, intent(in) :: direction
     real(dp) :: ratio
-    associate (unused => direction)
-    end associate
     call self%steady_sliding(sliding_speed, ratio)
     ratio = -(sign(ratio, sliding_speed) + self%viscous_coefficient*sliding_speed)
-  end function friction_ratio
+  end function sliding_ratio
 
   pure function friction_ratio_slope(self, sliding_speed) result(slope)
     class(bristle_law_t), intent(in) :: self

@@ -13,7 +13,7 @@ module brown_mcphee
     real(dp) :: transition_speed = 0     !! v_t, sliding speed of the largest friction [m/s], > 0
   contains
     procedure :: parameters
-    procedure :: friction_ratio
+    procedure :: sliding_ratio
     procedure :: friction_ratio_slope
   end type brown_mcphee_t
 
@@ -30,14 +30,11 @@ contains
   end subroutine parameters
 
   !> For u > 1 the static part is computed from 1/u, which does not overflow.
-  pure function friction_ratio(self, sliding_speed, direction) result(ratio)
+  pure function sliding_ratio(self, sliding_speed) result(ratio)
     class(brown_mcphee_t), intent(in) :: self
     real(dp), value, intent(in) :: sliding_speed
-    integer, value, intent(in) :: direction
     real(dp) :: ratio
     real(dp) :: u, peak
-    associate (unused => direction)
-    end associate
     u = sliding_speed/self%transition_speed
     if (abs(u) < 1) then
       peak = u/(0.25_dp*u**2 + 0.75_dp)**2
@@ -45,7 +42,7 @@ contains
       peak = (1/u)**3/(0.25_dp + 0.75_dp*(1/u)**2)**2
     end if
     ratio = -(self%coefficient*tanh(4*u) + self%static_part*peak + self%viscous_coefficient*sliding_speed)
-  end function friction_ratio
+  end function sliding_ratio
 
   pure function friction_ratio_slope(self, sliding_speed) result(slope)
     class(brown_mcphee_t), intent(in) :: self

@@ -12,7 +12,7 @@ module coulomb
   contains
     procedure :: parameters
     procedure :: prepare
-    procedure :: friction_ratio
+    procedure :: sliding_ratio
     procedure :: holding_ratio
   end type coulomb_t
 
@@ -30,17 +30,13 @@ contains
     self%set_valued = .true.
   end subroutine prepare
 
-  !> (4.8). The sign is that of `direction`, which the scene changes only at reversals of sliding; the sliding speed is not used, so
-  !> that the force is smooth within a step.
-  pure function friction_ratio(self, sliding_speed, direction) result(ratio)
+  !> (4.8), for a speed other than 0.
+  pure function sliding_ratio(self, sliding_speed) result(ratio)
     class(coulomb_t), intent(in) :: self
     real(dp), value, intent(in) :: sliding_speed
-    integer, value, intent(in) :: direction
     real(dp) :: ratio
-    associate (unused => sliding_speed)
-    end associate
-    ratio = -self%coefficient*direction
-  end function friction_ratio
+    ratio = -sign(self%coefficient, sliding_speed)
+  end function sliding_ratio
 
   pure real(dp) function holding_ratio(self)
     class(coulomb_t), intent(in) :: self

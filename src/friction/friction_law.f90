@@ -19,7 +19,8 @@ module friction_law
     real(dp) :: state_scale = 1       !! natural size of the states, for the error control; set by `prepare`
   contains
     procedure :: prepare => nothing_to_prepare
-    procedure(friction_ratio), deferred :: friction_ratio
+    procedure, non_overridable :: friction_ratio
+    procedure(sliding_ratio), deferred :: sliding_ratio
     procedure :: friction_ratio_slope
     procedure :: holding_ratio
     procedure :: touch_down_limit => no_limit
@@ -30,14 +31,13 @@ module friction_law
   end type friction_law_t
 
   abstract interface
-    !> Friction force on the pin divided by the normal force [-], positive along the tangent t = (-n_y, n_x).
-    pure function friction_ratio(self, sliding_speed, direction) result(ratio)
+    !> `friction_ratio` of a law that is not set-valued.
+    pure function sliding_ratio(self, sliding_speed) result(ratio)
       import :: friction_law_t, dp
       class(friction_law_t), intent(in) :: self
-      real(dp), value, intent(in) :: sliding_speed   !! velocity of the pin's surface relative to the bearing's along t [m/s]
-      integer, value, intent(in) :: direction        !! present direction of sliding: -1 or +1 (for set-valued laws)
+      real(dp), value, intent(in) :: sliding_speed
       real(dp) :: ratio
-    end function friction_ratio
+    end function sliding_ratio
   end interface
 
 contains
@@ -48,6 +48,21 @@ contains
     associate (unused_self => self)
     end associate
   end subroutine nothing_to_prepare
+
+  !> Friction force on the pin divided by the normal force [-], positive along the tangent t = (-n_y, n_x). That of a set-valued
+  !> law (4.8) depends only on the direction, which the scene changes at reversals of sliding, so that the force is smooth within a
+  !> step.
+  pure function friction_ratio(self, sliding_speed, direction) result(ratio)
+    class(friction_law_t), intent(in) :: self
+    real(dp), value, intent(in) :: sliding_speed   !! velocity of the pin's surface relative to the bearing's along t [m/s]
+    integer, value, intent(in) :: direction        !! present direction of sliding: -1 or +1 (for set-valued laws)
+    real(dp) :: ratio
+    if (self%set_valued) then
+      ratio = -self%coefficient*direction
+    else
+      ratio = self%sliding_ratio(sliding_speed)
+    end if
+  end function friction_ratio
 
   !> Derivative of the ratio with respect to the sliding speed [s/m], for implicit integration. The default, 0, is for laws that do
   !> not depend on the magnitude of the speed.

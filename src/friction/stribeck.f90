@@ -16,7 +16,7 @@ module stribeck
     real(dp) :: transition_speed = 0     !! v_t, speed scale of the transition through zero [m/s], > 0
   contains
     procedure :: parameters
-    procedure :: friction_ratio
+    procedure :: sliding_ratio
     procedure :: friction_ratio_slope
   end type stribeck_t
 
@@ -34,16 +34,13 @@ contains
     call self%add_viscous(list)
   end subroutine parameters
 
-  pure function friction_ratio(self, sliding_speed, direction) result(ratio)
+  pure function sliding_ratio(self, sliding_speed) result(ratio)
     class(stribeck_t), intent(in) :: self
     real(dp), value, intent(in) :: sliding_speed
-    integer, value, intent(in) :: direction
     real(dp) :: ratio
-    associate (unused => direction)
-    end associate
     ratio = -((self%coefficient + self%static_part*exp(-(abs(sliding_speed)/self%stribeck_speed)**self%stribeck_exponent))* &
       tanh(sliding_speed/self%transition_speed) + self%viscous_coefficient*sliding_speed)
-  end function friction_ratio
+  end function sliding_ratio
 
   pure function friction_ratio_slope(self, sliding_speed) result(slope)
     class(stribeck_t), intent(in) :: self

@@ -13,7 +13,7 @@ module threlfall
   contains
     procedure :: parameters
     procedure :: conflict
-    procedure :: friction_ratio
+    procedure :: sliding_ratio
     procedure :: friction_ratio_slope
   end type threlfall_t
 
@@ -35,15 +35,12 @@ contains
   end subroutine conflict
 
   !> Ratio of friction to normal force: continuous, with a kink at v1.
-  pure function friction_ratio(self, sliding_speed, direction) result(ratio)
+  pure function sliding_ratio(self, sliding_speed) result(ratio)
     class(threlfall_t), intent(in) :: self
     real(dp), value, intent(in) :: sliding_speed
-    integer, value, intent(in) :: direction
     real(dp) :: ratio
-    associate (unused => direction)
-    end associate
     ratio = -sign(self%coefficient*(1 - exp(-3*min(abs(sliding_speed)/self%v1, 1.0_dp))), sliding_speed)
-  end function friction_ratio
+  end function sliding_ratio
 
   pure function friction_ratio_slope(self, sliding_speed) result(slope)
     class(threlfall_t), intent(in) :: self

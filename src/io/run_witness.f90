@@ -103,7 +103,9 @@ contains
         crank%contact_time/f%time, crank%min_film_thickness, f%crank_travel/f%time]
     end associate
     if (.not. allocated(witness%cycles)) return
-    if (witness%cycles%statistics%cycles > 0) values(loss_figure) = witness%cycles%statistics%dissipated_energy_mean()
+    associate (s => witness%cycles%statistics)
+      if (s%cycles > 0) values(loss_figure) = s%total%dissipated_energy/s%cycles
+    end associate
   end function figures_of
 
   !> Statistics of some revolutions, at both pins.

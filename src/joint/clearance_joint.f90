@@ -73,7 +73,6 @@ module clearance_joint
   contains
     procedure :: claim
     procedure :: own_speed
-    procedure :: settle
     procedure :: put_start
     procedure :: put_own_rates
     procedure :: reset_friction
@@ -165,15 +164,6 @@ contains
     real(dp), parameter :: most_crossing_speed = 1
     crossing_speed = min(joint%bearing%clearance/span, most_crossing_speed)
   end function crossing_speed
-
-  subroutine settle(self, layout)
-    class(clearance_joint_t), intent(inout) :: self
-    type(layout_t), intent(in) :: layout
-    call layout%settle(self%at)
-    if (allocated(self%elastic)) call layout%settle(self%film_states)
-    if (self%n_friction_states > 0) call layout%settle(self%friction_states)
-    if (self%has_friction_work()) call layout%settle(self%friction_work)
-  end subroutine settle
 
   !> Number of first-order states of the laws.
   pure integer function n_states(self)

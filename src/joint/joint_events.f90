@@ -52,33 +52,37 @@ contains
     type(clearance_joint_t), intent(in) :: joint
     real(dp), intent(in) :: y(*)
     real(dp), intent(out) :: g, g_rate
-    associate (x => y(joint%at%position), x_rate => y(joint%at%rate), &
-               across => y(joint%at%position + 1), across_rate => y(joint%at%rate + 1))
-      g = 0.5_dp*(x**2 + across**2 - joint%bearing%clearance**2)
-      g_rate = x*x_rate + across*across_rate
-      if (joint%phase /= phase_contact) return
-      g = -g
-      g_rate = -g_rate
-    end associate
+    call reach_event(joint, y, joint%bearing%clearance, joint%phase == phase_contact, g, g_rate)
   end subroutine contact_event
 
-  !> Event functions of the kinks of a weighted transition, and their rates: half the difference between e . e and its value at the
-  !> kink [m^2], with the sign that makes the next passage one from negative to positive. (At the end of a smooth share only the
-  !> curvature is discontinuous; the event costs no more evaluations than it saves.)
+  !> Event functions of the kinks of a weighted transition, and their rates. (At the end of a smooth share only the curvature is
+  !> discontinuous; the event costs no more evaluations than it saves.)
   pure subroutine transition_events(joint, y, g, g_rate)
     type(clearance_joint_t), intent(in) :: joint
     real(dp), intent(in) :: y(*)
     real(dp), intent(out) :: g(2), g_rate(2)
-    associate (x => y(joint%at%position), x_rate => y(joint%at%rate), &
-               across => y(joint%at%position + 1), across_rate => y(joint%at%rate + 1), kinks => joint%transition)
-      g = 0.5_dp*(x**2 + across**2 - [kinks%film_reach, kinks%contact_reach]**2)
-      g_rate = x*x_rate + across*across_rate
-      where ([kinks%film_is_held, kinks%film_is_gone])
-        g = -g
-        g_rate = -g_rate
-      end where
+    associate (kinks => joint%transition)
+      call reach_event(joint, y, kinks%film_reach, kinks%film_is_held, g(1), g_rate(1))
+      call reach_event(joint, y, kinks%contact_reach, kinks%film_is_gone, g(2), g_rate(2))
     end associate
   end subroutine transition_events
+
+  !> Half the difference between e . e and its value at an eccentricity [m^2], and its rate, with the sign that makes the next
+  !> passage one from negative to positive.
+  pure subroutine reach_event(joint, y, reach, is_beyond, g, g_rate)
+    type(clearance_joint_t), intent(in) :: joint
+    real(dp), intent(in) :: y(*), reach   !! [m]
+    logical, intent(in) :: is_beyond      !! the eccentricity is the larger one
+    real(dp), intent(out) :: g, g_rate
+    associate (x => y(joint%at%position), x_rate => y(joint%at%rate), &
+               across => y(joint%at%position + 1), across_rate => y(joint%at%rate + 1))
+      g = 0.5_dp*(x**2 + across**2 - reach**2)
+      g_rate = x*x_rate + across*across_rate
+      if (.not. is_beyond) return
+      g = -g
+      g_rate = -g_rate
+    end associate
+  end subroutine reach_event
 
   !> The journal passes a kink of a weighted transition.
   pure subroutine pass_kink(joint, event)

@@ -57,7 +57,6 @@ module piston_guide
   contains
     procedure :: prepare
     procedure :: claim
-    procedure :: settle
     procedure :: put_start
     procedure :: read_state
     procedure :: place_corners
@@ -110,14 +109,6 @@ contains
     if (self%is_loose) own_speed = max(abs(self%start_rate(1)), maxval(abs(self%height))*abs(self%start_rate(2)), &
       crossing_speed(self, span))
   end function own_speed
-
-  subroutine settle(self, layout)
-    class(piston_guide_t), intent(inout) :: self
-    type(layout_t), intent(in) :: layout
-    if (.not. self%is_loose) return
-    call layout%settle(self%offset)
-    call layout%settle(self%tilt)
-  end subroutine settle
 
   !> Put the initial offset and tilt into the state vector.
   pure subroutine put_start(self, y)

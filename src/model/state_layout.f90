@@ -1,9 +1,10 @@
 !> The layout of the state y = (positions | their rates | first-order states | quadratures): the indices of each owner's components,
 !> and their natural sizes.
 !>
-!> When a scene is built, every owner (crank, joint, law, rod) claims the components that it needs, with their natural sizes. After
-!> all claims each owner settles its own, since only then the indices of rates, states and quadratures are known. Quadratures are
-!> last, so that more of them may be claimed and settled later.
+!> When a scene is built, every owner (crank, joint, law, rod) claims the components that it needs, with their natural sizes. The
+!> indices of rates, states and quadratures depend on the number of all positions and states. Therefore all claims are made twice:
+!> the first time they are counted, and after `count_again` the same claims give the final indices. Quadratures are last, so that
+!> more of them may be claimed later.
 module state_layout
   use gudgeon_kinds, only: dp
   implicit none
@@ -14,13 +15,12 @@ module state_layout
   type :: coordinates_t
     integer :: n = 0          !! number of positions
     integer :: position = 0   !! index of the first position in y
-    integer :: rate = 0       !! index of the first rate in y; 0: not settled
+    integer :: rate = 0       !! index of the first rate in y
   end type coordinates_t
 
   !> First-order states or quadratures of one owner, adjacent in the state.
   type :: slice_t
-    integer :: first = 1, last = 0   !! indices in y; empty unless claimed and settled
-    integer, private :: section = 0, before = 0
+    integer :: first = 1, last = 0   !! indices in y; empty unless claimed
   end type slice_t
 
   !> One part of the state.
@@ -34,19 +34,29 @@ module state_layout
   !> The layout of one state.
   type :: layout_t
     integer :: n_positions = 0, n_states = 0, n_quadratures = 0
+    integer, private :: all_positions = 0, all_states = 0   !! numbers counted the first time
     type(section_t), private :: section(4)
   contains
+    procedure :: count_again
     procedure :: claim_positions
     procedure :: claim_states
     procedure :: claim_quadratures
-    generic :: settle => settle_coordinates, settle_slice
     procedure :: n
     procedure :: natural_scales
-    procedure, private :: settle_coordinates
-    procedure, private :: settle_slice
   end type layout_t
 
 contains
+
+  !> Forget all claims except their number: the same claims, made again, give the final indices.
+  pure subroutine count_again(self)
+    class(layout_t), intent(inout) :: self
+    self%all_positions = self%n_positions
+    self%all_states = self%n_states
+    self%n_positions = 0
+    self%n_states = 0
+    self%n_quadratures = 0
+    self%section = section_t()
+  end subroutine count_again
 
   !> Claim `n` positions and their rates. If a position `grows` without bound (a crank angle), its tolerance is not relative to its
   !> value.
@@ -59,6 +69,7 @@ contains
     logical, intent(in) :: grows
     at%n = n
     at%position = self%n_positions + 1
+    at%rate = self%all_positions + at%position
     call append(self%section(positions), n, scale, grows)
     call append(self%section(rates), n, rate_scale, .false.)
     self%n_positions = self%n_positions + n
@@ -71,9 +82,8 @@ contains
     real(dp), intent(in) :: scale
     type(slice_t), intent(out) :: at
     call append(self%section(states), n, scale, .false.)
-    at%section = states
-    at%before = self%n_states
-    at%last = n
+    at%first = 2*self%all_positions + self%n_states + 1
+    at%last = at%first + n - 1
     self%n_states = self%n_states + n
   end subroutine claim_states
 
@@ -84,29 +94,10 @@ contains
     real(dp), intent(in) :: scale
     type(slice_t), intent(out) :: at
     call append(self%section(quadratures), n, scale, .true.)
-    at%section = quadratures
-    at%before = self%n_quadratures
-    at%last = n
+    at%first = 2*self%all_positions + self%all_states + self%n_quadratures + 1
+    at%last = at%first + n - 1
     self%n_quadratures = self%n_quadratures + n
   end subroutine claim_quadratures
-
-  !> Find the indices of the rates of claimed positions.
-  pure subroutine settle_coordinates(self, at)
-    class(layout_t), intent(in) :: self
-    type(coordinates_t), intent(inout) :: at
-    at%rate = at%position + self%n_positions
-  end subroutine settle_coordinates
-
-  !> Find the indices of claimed states or quadratures.
-  pure subroutine settle_slice(self, at)
-    class(layout_t), intent(in) :: self
-    type(slice_t), intent(inout) :: at
-    integer :: n
-    n = at%last - at%first + 1
-    at%first = 2*self%n_positions + at%before + 1
-    if (at%section == quadratures) at%first = at%first + self%n_states
-    at%last = at%first + n - 1
-  end subroutine settle_slice
 
   !> Length of the state.
   pure integer function n(self)

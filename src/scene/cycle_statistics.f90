@@ -37,13 +37,11 @@ module cycle_statistics
   type :: cycle_statistics_t
     integer :: cycles = 0
     type(cycle_t) :: total                            !! sums of times, counts and energies; extremes of the other quantities
-    real(dp), private :: film_sum(n_pins) = 0, force_sum(n_pins) = 0, skirt_force_sum = 0
+    !> Sums of extremes, for means over the revolutions: the smallest film thickness [m] and the largest force [N] at each pin, and
+    !> the largest force on a corner of the skirt [N].
+    real(dp) :: film_sum(n_pins) = 0, force_sum(n_pins) = 0, skirt_force_sum = 0
   contains
     procedure :: add
-    procedure :: min_film_thickness_mean
-    procedure :: max_force_mean
-    procedure :: skirt_force_mean
-    procedure :: dissipated_energy_mean
   end type cycle_statistics_t
 
 contains
@@ -73,31 +71,4 @@ contains
     where (cycle%pin%min_film_thickness < huge(1.0_dp)) self%film_sum = self%film_sum + cycle%pin%min_film_thickness
     self%force_sum = self%force_sum + cycle%pin%max_force
   end subroutine add
-
-  !> Mean over the revolutions of the smallest film thickness of each at a pin [m]. This and the following means need at least one
-  !> revolution.
-  pure real(dp) function min_film_thickness_mean(self, pin)
-    class(cycle_statistics_t), intent(in) :: self
-    integer, intent(in) :: pin
-    min_film_thickness_mean = self%film_sum(pin)/self%cycles
-  end function min_film_thickness_mean
-
-  !> Mean over the revolutions of the largest force of each on a pin [N].
-  pure real(dp) function max_force_mean(self, pin)
-    class(cycle_statistics_t), intent(in) :: self
-    integer, intent(in) :: pin
-    max_force_mean = self%force_sum(pin)/self%cycles
-  end function max_force_mean
-
-  !> Mean over the revolutions of the largest force of each on a corner of the skirt [N].
-  pure real(dp) function skirt_force_mean(self)
-    class(cycle_statistics_t), intent(in) :: self
-    skirt_force_mean = self%skirt_force_sum/self%cycles
-  end function skirt_force_mean
-
-  !> Mean energy lost in one revolution [J].
-  pure real(dp) function dissipated_energy_mean(self)
-    class(cycle_statistics_t), intent(in) :: self
-    dissipated_energy_mean = self%total%dissipated_energy/self%cycles
-  end function dissipated_energy_mean
 end module cycle_statistics

@@ -83,9 +83,6 @@ module gudgeon_scene
     type(event_owner_t) :: event_of(max_events)     !! owners of the event functions
   contains
     procedure :: claim
-    procedure, non_overridable :: read_crank
-    procedure, non_overridable :: place_journals
-    procedure, non_overridable :: find_loads
     procedure :: derivatives
     procedure :: evaluate
     procedure :: jacobian
@@ -165,14 +162,22 @@ module gudgeon_scene
       class(scene_t), intent(inout) :: self
     end subroutine prepare_start
 
-    !> `find_accelerations` of a scene that is not plain: with elastic members, a guide that is not ideal or a drive that varies.
-    pure module subroutine find_general_accelerations(self, joints, t, y, now, inside)
+    !> Motion of the rod in a scene that is not plain: with elastic members, a guide that is not ideal or a drive that varies.
+    !> `inside` is false if a position is not admissible.
+    pure module subroutine move_all_bodies(self, t, y, now, inside)
       class(scene_t), intent(in) :: self
-      type(clearance_joint_t), intent(in) :: joints(:)
       real(dp), intent(in) :: t, y(self%n)
       type(evaluation_t), intent(inout) :: now
       logical, intent(out) :: inside
-    end subroutine find_general_accelerations
+    end subroutine move_all_bodies
+
+    !> Loads of the guide, accelerations and power of such a scene. `inside` is false if they cannot be computed.
+    pure module subroutine accelerate_all_bodies(self, joints, now, inside)
+      class(scene_t), intent(in) :: self
+      type(clearance_joint_t), intent(in) :: joints(:)
+      type(evaluation_t), intent(inout) :: now
+      logical, intent(out) :: inside
+    end subroutine accelerate_all_bodies
 
     !> Claim the states of the elastic members.
     module subroutine claim_elastic(self)
@@ -268,17 +273,21 @@ contains
     type(evaluation_t), intent(inout) :: now
     logical, intent(out) :: inside
 
-    if (.not. self%is_plain) then
-      call find_general_accelerations(self, joints, t, y, now, inside)
-      return
-    end if
-    call self%read_crank(t, y, now%motion)
-    call self%place_journals(n, joints, y, now, inside)
+    call read_crank(self, t, y, now%motion)
+    call place_journals(self, n, joints, y, now, inside)
     if (.not. inside) return
     associate (bodies => self%chain%bodies, drive => self%chain%drive, motion => now%motion)
-      call follow_rod(bodies%crank%length, bodies%per_rod_length, motion, inside)
+      if (self%is_plain) then
+        call follow_rod(bodies%crank%length, bodies%per_rod_length, motion, inside)
+      else
+        call move_all_bodies(self, t, y, now, inside)
+      end if
       if (.not. inside) return
-      call self%find_loads(n, joints, y, now)
+      call find_loads(self, n, joints, y, now)
+      if (.not. self%is_plain) then
+        call accelerate_all_bodies(self, joints, now, inside)
+        return
+      end if
       if (n == 0) then
         call accelerate_ideal_chain(bodies, drive, motion, now%loads, now%accelerations, now%crank_moment)
       else if (self%joint_of_pin(crank_pin) == 0) then
@@ -375,7 +384,6 @@ contains
   !> Let all parts claim their states and number the events, after everything else has been set.
   subroutine claim(self)
     class(scene_t), intent(inout) :: self
-    type(slice_t) :: work
     integer :: i
     self%n_joints = size(self%joints)
     self%joint_of_pin = 0
@@ -385,26 +393,28 @@ contains
     self%highest_mode = n_phases**self%n_joints - 1
     if (allocated(self%guide)) self%highest_mode = 2*(self%highest_mode + 1) - 1
     self%crank_moves = self%chain%drive%free_crank .or. self%chain%has_crankshaft()
-    if (self%crank_moves) &
-      call self%layout%claim_positions(1, 1.0_dp, self%speed_scale(self%span), self%crank, grows=.true.)
-    do i = 1, self%n_joints
-      call self%joints(i)%claim(self%layout, self%speed_scale(self%span), self%span)
-    end do
-    if (allocated(self%guide)) call self%guide%claim(self%layout, self%speed_scale(self%span), self%span)
-    if (allocated(self%chain%elastic)) call claim_elastic(self)
-    call self%layout%claim_quadratures(1, self%energy_scale(self%span), work)
-    call self%layout%settle(self%crank)
-    if (allocated(self%chain%elastic)) call self%chain%elastic%settle(self%layout)
-    do i = 1, self%n_joints
-      call self%joints(i)%settle(self%layout)
-    end do
-    if (allocated(self%guide)) call self%guide%settle(self%layout)
+    call claim_states(self)
+    call self%layout%count_again()
+    call claim_states(self)
     self%is_plain = .not. (allocated(self%chain%elastic) .or. allocated(self%guide) .or. allocated(self%chain%varying))
     self%has_more_rates = any(self%joints%has_own_rates) .or. allocated(self%chain%elastic) .or. allocated(self%guide)
-    call self%layout%settle(work)
-    self%work_at = work%first
     call take_layout(self)
   end subroutine claim
+
+  !> Let all parts claim their states.
+  subroutine claim_states(self)
+    class(scene_t), intent(inout) :: self
+    type(slice_t) :: work
+    integer :: i
+    if (self%crank_moves) call self%layout%claim_positions(1, 1.0_dp, self%speed_scale(), self%crank, grows=.true.)
+    do i = 1, self%n_joints
+      call self%joints(i)%claim(self%layout, self%speed_scale(), self%span)
+    end do
+    if (allocated(self%guide)) call self%guide%claim(self%layout, self%speed_scale(), self%span)
+    if (allocated(self%chain%elastic)) call claim_elastic(self)
+    call self%layout%claim_quadratures(1, self%energy_scale(), work)
+    self%work_at = work%first
+  end subroutine claim_states
 
   !> Pass the parts of the layout that the integrator needs to it.
   subroutine take_layout(self)
@@ -428,10 +438,9 @@ contains
       self%measures_loss = .not. work_tells(self)
       if (self%measures_loss) n = n + 1
     else
-      scale = self%energy_scale(self%span)/(self%chain%bodies%crank%length*self%speed_scale(self%span))
+      scale = self%energy_scale()/(self%chain%bodies%crank%length*self%speed_scale())
     end if
     call self%layout%claim_quadratures(n, scale, self%measures)
-    call self%layout%settle(self%measures)
     self%has_more_rates = .true.
     call take_layout(self)
   end subroutine measure_joint
@@ -529,28 +538,27 @@ contains
   end function work
 
   !> Natural size of the crank speed [rad/s]: the starting speed; from rest, one radian in the time simulated.
-  pure real(dp) function speed_scale(self, span)
+  pure real(dp) function speed_scale(self)
     class(scene_t), intent(in) :: self
-    real(dp), intent(in) :: span
     speed_scale = abs(self%start_speed)
-    if (.not. speed_scale > 0) speed_scale = 1/span
+    if (.not. speed_scale > 0) speed_scale = 1/self%span
   end function speed_scale
 
   !> Natural size of the energy [J]: the kinetic energy at the speed scale, the potential energy of a lift by the crank length, and
   !> the energy of rod and piston at the natural speeds of the joints.
-  pure real(dp) function energy_scale(self, span)
+  pure real(dp) function energy_scale(self)
     class(scene_t), intent(in) :: self
-    real(dp), intent(in) :: span
     integer :: i
     associate (b => self%chain%bodies)
-      energy_scale = 0.5_dp*(b%crank_term + b%piston%mass*b%crank%length**2)*self%speed_scale(span)**2 &
+      energy_scale = 0.5_dp*(b%crank_term + b%piston%mass*b%crank%length**2)*self%speed_scale()**2 &
         + (b%crank%mass + b%rod%mass + b%piston%mass)*norm2(b%gravity)*b%crank%length
       if (self%chain%has_crankshaft()) energy_scale = energy_scale &
-        + 0.5_dp*self%chain%elastic%crankshaft%flywheel_inertia*self%speed_scale(span)**2
+        + 0.5_dp*self%chain%elastic%crankshaft%flywheel_inertia*self%speed_scale()**2
       do i = 1, self%n_joints
-        energy_scale = energy_scale + 0.5_dp*(b%rod%mass + b%piston%mass)*self%joints(i)%own_speed(span)**2
+        energy_scale = energy_scale + 0.5_dp*(b%rod%mass + b%piston%mass)*self%joints(i)%own_speed(self%span)**2
       end do
-      if (allocated(self%guide)) energy_scale = energy_scale + 0.5_dp*(b%rod%mass + b%piston%mass)*self%guide%own_speed(span)**2
+      if (allocated(self%guide)) &
+        energy_scale = energy_scale + 0.5_dp*(b%rod%mass + b%piston%mass)*self%guide%own_speed(self%span)**2
     end associate
   end function energy_scale
 

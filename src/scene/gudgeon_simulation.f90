@@ -84,7 +84,7 @@ contains
     recorder%patience%longest = longest_turn(case)
     recorder%every_step = case%output%every_step
     recorder%max_evaluations_per_revolution = case%integrator%max_evaluations_per_revolution
-    recorder%revolution_time = two_pi/scene%speed_scale(recorder%expected_end)
+    recorder%revolution_time = two_pi/scene%speed_scale()
     recorder%sink => sink
     if (present(cycles)) then
       call scene%measure_joint()

@@ -194,7 +194,7 @@ contains
     call move_alloc(self%method, method)
     t = self%t
     y = self%y
-    call integrate(scene, method, t, y, self%t + patience*two_pi/scene%speed_scale(scene%span), 0, self, status)
+    call integrate(scene, method, t, y, self%t + patience*two_pi/scene%speed_scale(), 0, self, status)
     if (status /= integration_interrupted) self%is_there = .false.
     call move_alloc(scene, self%scene)
     call move_alloc(method, self%method)

@@ -293,13 +293,13 @@ contains
       call tighten(settings, scene%crank%position, angle_share)
     end if
     where (growing .and. scales > 0) settings%relative = rounding_share
-    settings%first_step = first_angle/scene%speed_scale(settings%span)
+    settings%first_step = first_angle/scene%speed_scale()
     steps = [case%integrator%max_step, 0.0_dp]   ! limits; 0: there is none
-    if (allocated(scene%gas)) steps(2) = scene%gas%longest_turn()/scene%speed_scale(settings%span)
+    if (allocated(scene%gas)) steps(2) = scene%gas%longest_turn()/scene%speed_scale()
     if (any(steps > 0)) settings%max_step = minval(steps, steps > 0)
     settings%max_order = case%integrator%max_order
     settings%max_evaluations = case%integrator%max_evaluations
-    settings%chatter_time = min(1e-6_dp*two_pi/scene%speed_scale(settings%span), longest_chatter)
+    settings%chatter_time = min(1e-6_dp*two_pi/scene%speed_scale(), longest_chatter)
   end function settings_for
 
   !> Reduce the tolerance of one component to a fraction, but not below its rounding error.

@@ -134,12 +134,9 @@ contains
     if (t_to > self%t) then
       if (known(of_pin_force) < huge(known)) call search_force(of_pin_force)
       if (known(of_normal_force) < huge(known)) call search_force(of_normal_force)
-      if (known(of_penetration) < huge(known)) then
-        if (may_peak(self%t, self%last(of_penetration), self%slope(of_penetration), t_to, ends(of_penetration), rate, &
-          known(of_penetration))) call search_between(self, method, scene, of_penetration, &
-          sample_t(self%t, self%last(of_penetration), self%slope(of_penetration)), sample_t(t_to, ends(of_penetration), rate), &
-          largest(of_penetration))
-      end if
+      if (known(of_penetration) < huge(known)) call search_between(self, method, scene, of_penetration, &
+        sample_t(self%t, self%last(of_penetration), self%slope(of_penetration)), sample_t(t_to, ends(of_penetration), rate), &
+        known(of_penetration), largest(of_penetration))
       self%t_before = self%t
       self%before = self%last
       self%has_before = .true.
@@ -208,26 +205,20 @@ contains
     real(dp), intent(in) :: t_to, value, known
     real(dp), intent(inout) :: largest
     type(sample_t) :: left, right
+    logical :: rises
     left = sample_t(self%t, self%last(quantity), self%slope(quantity))
     right = sample_t(t_to, value, 0.0_dp)
     right%slope = slope_at(right, -1)
+    rises = .false.
     if (self%slope_time(quantity) < self%t) then
-      if (right%slope < 0 .or. right%value < left%value .or. .not. self%has_before) then
-        left%slope = slope_at(left, 1)
-        call search()
-      end if
-    else
-      call search()
+      rises = .not. (right%slope < 0 .or. right%value < left%value) .and. self%has_before
+      if (.not. rises) left%slope = slope_at(left, 1)
     end if
+    if (.not. rises) call search_between(self, method, scene, quantity, left, right, known, largest)
     self%slope(quantity) = right%slope
     self%slope_time(quantity) = t_to
 
   contains
-
-    subroutine search()
-      if (may_peak(left%t, left%value, left%slope, right%t, right%value, right%slope, known)) &
-        call search_between(self, method, scene, quantity, left, right, largest)
-    end subroutine search
 
     !> Slope at one end of the interval, from one more value at a fraction `short` of the interval later (1) or earlier (-1).
     real(dp) function slope_at(at, way)
@@ -240,17 +231,19 @@ contains
     end function slope_at
   end subroutine find_force_peak
 
-  !> Search the peak between two samples, if it may exceed `largest`.
-  subroutine search_between(self, method, scene, quantity, left, right, largest)
+  !> Search the peak between two samples, if it may exceed `known`.
+  subroutine search_between(self, method, scene, quantity, left, right, known, largest)
     class(peak_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: quantity
     type(sample_t), intent(in) :: left, right
+    real(dp), intent(in) :: known
     real(dp), intent(inout) :: largest
     type(peak_search_t) :: peak
     real(dp) :: t
     logical :: is_done
+    if (.not. may_peak(left%t, left%value, left%slope, right%t, right%value, right%slope, known)) return
     call peak%begin(left, right)
     do
       call peak%next_time(t, is_done)

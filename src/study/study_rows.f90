@@ -206,7 +206,7 @@ contains
     logical, intent(in) :: is_there, with_means   !! the revolutions were made; means over several revolutions are wanted
     call put_pin(row, s, '', piston_pin, is_there .and. case%joint%has_clearance(), is_there, with_means)
     call row%put('mean_crank_speed[rad/s]', direction*two_pi*s%cycles/s%total%duration, is_there)
-    call row%put('dissipated_energy[J]', s%dissipated_energy_mean(), is_there .and. case%has_play())
+    call row%put('dissipated_energy[J]', s%total%dissipated_energy/s%cycles, is_there .and. case%has_play())
   end subroutine put_motion
 
   !> Append the columns of the crank pin and the piston in its bore, if the study has them.
@@ -225,7 +225,7 @@ contains
       call put_impacts(row, 'guide_', total%impacts, s%cycles, is_loose, with_means)
       call row%put('guide_max_penetration[m]', total%max_penetration, is_loose)
       call row%put('guide_max_force[N]', total%max_force, is_loose)
-      if (with_means) call row%put('guide_max_force_mean[N]', s%skirt_force_mean(), is_loose)
+      if (with_means) call row%put('guide_max_force_mean[N]', s%skirt_force_sum/s%cycles, is_loose)
     end associate
   end subroutine put_further_joints
 
@@ -237,12 +237,12 @@ contains
     logical, intent(in) :: has_clearance, has_force, with_means
     associate (total => s%total%pin(pin), duration => s%total%duration)
       call row%put(prefix//'min_film_thickness[m]', total%min_film_thickness, has_clearance)
-      if (with_means) call row%put(prefix//'min_film_thickness_mean[m]', s%min_film_thickness_mean(pin), has_clearance)
+      if (with_means) call row%put(prefix//'min_film_thickness_mean[m]', s%film_sum(pin)/s%cycles, has_clearance)
       call row%put(prefix//'contact_time_fraction[-]', total%contact_time/duration, has_clearance)
       call put_impacts(row, prefix, total%impacts, s%cycles, has_clearance, with_means)
       call row%put(prefix//'max_penetration[m]', total%max_penetration, has_clearance)
       call row%put(prefix//'max_pin_force[N]', total%max_force, has_force)
-      if (with_means) call row%put(prefix//'max_pin_force_mean[N]', s%max_force_mean(pin), has_force)
+      if (with_means) call row%put(prefix//'max_pin_force_mean[N]', s%force_sum(pin)/s%cycles, has_force)
       call row%put(prefix//'mean_pin_force[N]', total%force_integral/duration, has_force)
     end associate
   end subroutine put_pin
