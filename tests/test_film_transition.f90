@@ -84,14 +84,14 @@ contains
       call film%film_force(motion, want, want_moment)
       motion%eccentricity = (0.95_dp + 0.03_dp*i)*20e-6_dp*n
       transition%film_is_held = .true.
-      call transition%film_force(film, motion, force, moment)
+      call film%film_force(transition%held_motion(motion), force, moment)
       call check%close_to(norm2(force - want), 0.0_dp, 1e-11_dp*norm2(want), 'force of a limited film')
       call check%relative(moment, want_moment, 1e-11_dp, 'moment of a limited film')
     end do
     transition%film_is_held = .false.
     motion%eccentricity = 0.5_dp*20e-6_dp*n
     call film%film_force(motion, want, want_moment)
-    call transition%film_force(film, motion, force, moment)
+    call film%film_force(transition%held_motion(motion), force, moment)
     call check%that(all(abs(force - want) <= 0), 'a film that is not limited is that of the law')
   end subroutine film_is_held
 

@@ -88,7 +88,7 @@ contains
     end do
     ratio = volume_at(105*degree, dead)/dead
     call check%relative(work, 250*(1 - ratio**(1 - gamma)), 1e-8_dp, 'Otto cycle of a two-stroke engine: work')
-    call check%that(gas%revolutions() == 1, 'a two-stroke engine repeats after one revolution')
+    call check%that(gas%revolutions == 1, 'a two-stroke engine repeats after one revolution')
     call check%relative(peak, 101325*ratio**gamma + (gamma - 1)*250/dead, 1e-6_dp, &
       'Otto cycle of a two-stroke engine: peak pressure')
     call gas%start(0.0_dp, 1.0_dp)

@@ -13,7 +13,7 @@ module elastic_rod_body
   use gudgeon_kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, n_pins
   use chain_bodies, only: bodies_t
-  use chain_loads, only: loads_t, bearing_moment
+  use chain_loads, only: loads_t, unloaded, bearing_moment
   use gudgeon_assembly, only: body_t
   use elastic_rod, only: elastic_rod_t, most_of_a_kind
   implicit none
@@ -245,14 +245,10 @@ contains
     type(motion_t), intent(in) :: motion
     type(accelerations_t), intent(in) :: accelerations
     real(dp), intent(out) :: force(2), turning   !! [N], [N m]
-    type(loads_t) :: nothing
     type(body_t) :: body
     real(dp) :: own(3 + rod%n), radius(2)
-    nothing%force = 0
-    nothing%moment = 0
-    nothing%axial_force = 0
     call body%begin(3 + rod%n, 1)
-    call put_own_equations(rod, bodies, nothing, motion, body)
+    call put_own_equations(rod, bodies, unloaded, motion, body)
     radius = bodies%crank%length*[motion%cos_crank, motion%sin_crank]
     own(1:2) = [-radius(2), radius(1)]*accelerations%crank - radius*motion%crank_speed**2 - accelerations%pin(:, crank_pin)
     own(3) = accelerations%rod

@@ -39,6 +39,7 @@ module film_law
     logical :: needs_ideal_motion = .false.   !! the law uses the ideal_* components and the frequency
     logical :: film_moment = .false.          !! the shear of the film acts on the pin
     real(dp) :: viscosity = 0                 !! mu, dynamic [Pa s], > 0
+    real(dp) :: kinematic_viscosity = 0       !! nu, of a law with inertia [m^2/s], > 0
     real(dp) :: least_film_ratio = 0          !! smallest film thickness over clearance of a law that limits it [-]
     logical :: singular_at_wall = .true.      !! the force has no bound at |e| = c, which the state must not reach
     character(len=:), allocatable :: table_file  !! file for the table chosen by the user, relative to the folder of the case; or
@@ -51,7 +52,6 @@ module film_law
     procedure(film_force), deferred :: film_force
     procedure :: force_derivatives => difference_derivatives
     procedure, non_overridable :: add_viscosity
-    procedure :: take_oil
     procedure, non_overridable :: add_least_film
     procedure, non_overridable :: shear_moment
     procedure, non_overridable :: shear_moment_slopes
@@ -103,16 +103,6 @@ contains
     call list%add('viscosity', self%viscosity, 'dynamic viscosity; required unless viscosity_law gives it', 'Pa s', '> 0', &
       default='0.0', example='0.0117')
   end subroutine add_viscosity
-
-  !> Set the viscosity of an oil, before the law is prepared.
-  subroutine take_oil(self, viscosity, kinematic_viscosity)
-    class(film_law_t), intent(inout) :: self
-    real(dp), intent(in) :: viscosity             !! [Pa s]
-    real(dp), intent(in) :: kinematic_viscosity   !! [m^2/s]
-    associate (unused => kinematic_viscosity)
-    end associate
-    self%viscosity = viscosity
-  end subroutine take_oil
 
   !> Declare the parameter that limits the film thickness, for all laws that can do so.
   subroutine add_least_film(self, list)

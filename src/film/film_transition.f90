@@ -32,7 +32,6 @@ module film_transition
     procedure :: prepare
     procedure :: begin
     procedure :: weight
-    procedure :: film_force
     procedure :: held_motion
     procedure :: film_derivatives
     procedure :: exchange
@@ -107,15 +106,6 @@ contains
     if (present(slope)) slope = w_slope
   end subroutine weight
 
-  !> Force of the full film on the pin [N] and its moment [N m], held where it would grow without bound.
-  pure subroutine film_force(self, film, motion, force, moment)
-    class(film_transition_t), intent(in) :: self
-    class(film_law_t), intent(in) :: film
-    type(film_motion_t), intent(in) :: motion
-    real(dp), intent(out) :: force(2), moment
-    call film%film_force(self%held_motion(motion), force, moment)
-  end subroutine film_force
-
   !> Derivatives of the film force in the form of those of a film law: a held film rotates with the eccentricity and does not depend
   !> on its magnitude.
   pure subroutine film_derivatives(self, film, motion, derivatives)
@@ -134,7 +124,7 @@ contains
     end associate
   end subroutine film_derivatives
 
-  !> The motion on which the held film depends.
+  !> The motion on which the force of the full film depends, which is held where it would grow without bound.
   pure type(film_motion_t) function held_motion(self, motion) result(held)
     class(film_transition_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion

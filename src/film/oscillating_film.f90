@@ -23,7 +23,6 @@ module oscillating_film
     integer :: quadrature_points = 0      !! number of points around the film; 0: chosen from the tolerance
     type(oscillating_response_t) :: response
     real(dp) :: pin_radius = 0            !! R [m]
-    real(dp) :: kinematic_viscosity = 0   !! nu [m^2/s]
     real(dp) :: inertia_scale = 0         !! c^2/(4 nu), the ratio of Q to the frequency [s]
     real(dp) :: largest_ratio = 1  !! eccentricity ratio beyond which the film does not change: the film between real surfaces is at
                                    !! least as thick as their roughness, while the theoretical force grows without bound
@@ -32,7 +31,6 @@ module oscillating_film
   contains
     procedure :: parameters
     procedure :: prepare
-    procedure :: take_oil
     procedure :: film_force
     procedure, non_overridable :: surface_speed
   end type oscillating_film_t
@@ -52,13 +50,6 @@ contains
       default='0')
     call self%add_least_film(list)
   end subroutine parameters
-
-  subroutine take_oil(self, viscosity, kinematic_viscosity)
-    class(oscillating_film_t), intent(inout) :: self
-    real(dp), intent(in) :: viscosity, kinematic_viscosity
-    self%viscosity = viscosity
-    self%kinematic_viscosity = kinematic_viscosity
-  end subroutine take_oil
 
   !> Set the scales, and prepare the response of the film with means more accurate than the tolerance of the run by `mean_margin`.
   !> The variant `as_printed` has the acceleration terms of (5.4), with the rod length as L.

@@ -57,6 +57,7 @@ contains
     gas%cylinder%dead_volume = 0
     if (self%compression_ratio > 1) gas%cylinder%dead_volume = gas%cylinder%displacement/(self%compression_ratio - 1)
     gas%crankcase_pressure = self%crankcase_pressure
+    gas%revolutions = self%revolutions()
     allocate (gas%curve, source=new_periodic_cubic((self%curve%x + self%offset_deg)*degree, self%curve%y, self%period_deg*degree))
   end subroutine prepare
 

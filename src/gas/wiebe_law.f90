@@ -78,6 +78,7 @@ contains
     call new_gas_cycle(cycle, tolerance, error)
     allocate (gas%cycle, source=cycle)
     gas%cylinder = cycle%cylinder
+    gas%revolutions = self%revolutions()
     gas%crankcase_pressure = self%crankcase_pressure
   end subroutine prepare
 

@@ -2,7 +2,7 @@
 !> of its valves, or a measured pressure.
 module working_gas
   use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: degree, two_pi
+  use gudgeon_constants, only: degree
   use gudgeon_archive, only: archive_t
   use trace_row, only: trace_row_t
   use monotone_cubic, only: monotone_cubic_t
@@ -20,6 +20,7 @@ module working_gas
   !> points. There are no events for this: the error control detects it and reduces the order of the method.
   type :: working_gas_t
     integer :: n_events = 0          !! number of event functions, set by `start`
+    integer :: revolutions = 1       !! period of the pressure [revolutions]
     integer :: part = 0              !! present part of the cycle
     real(dp) :: cycle_start = 0      !! crank angle at which the present cycle began [rad]
     type(cylinder_t) :: cylinder
@@ -30,7 +31,6 @@ module working_gas
   contains
     procedure :: start
     procedure :: longest_turn
-    procedure :: revolutions
     procedure, non_overridable :: pressure
     procedure, non_overridable :: force
     procedure :: force_slope
@@ -63,14 +63,6 @@ contains
     longest_turn = 0
     if (allocated(self%curve)) longest_turn = min(max(self%curve%finest(), 0.25_dp*degree), 5*degree)
   end function longest_turn
-
-  !> Period of the pressure [revolutions].
-  pure integer function revolutions(self)
-    class(working_gas_t), intent(in) :: self
-    revolutions = 1
-    if (allocated(self%cycle)) revolutions = nint(self%cycle%period/two_pi)
-    if (allocated(self%curve)) revolutions = nint(self%curve%period/two_pi)
-  end function revolutions
 
   !> Pressure at a crank angle [Pa].
   pure real(dp) function pressure(self, crank_angle)

@@ -5,7 +5,7 @@
 module clearance_joint
   use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
-  use gudgeon_bearing, only: bearing_t
+  use gudgeon_bearing, only: bearing_t, crossing_speed
   use state_layout, only: layout_t, coordinates_t, slice_t
   use chain_motion, only: motion_t, piston_pin
   use chain_bodies, only: bodies_t
@@ -136,7 +136,7 @@ contains
     real(dp), intent(in) :: span          !! duration of the simulation [s]
     if (self%place /= piston_pin) self%bearing_turns = .true.
     call layout%claim_positions(2, self%bearing%clearance, max(self%bearing%clearance*crank_speed, norm2(self%start_rate), &
-      0.01_dp*crossing_speed(self, span)), self%at, grows=.false.)
+      0.01_dp*crossing_speed(self%bearing%clearance, span)), self%at, grows=.false.)
     if (allocated(self%elastic)) then
       call layout%claim_states(n_film_states, self%bearing%clearance, self%film_states)
       self%has_own_rates = .true.
@@ -154,16 +154,8 @@ contains
   pure real(dp) function own_speed(self, span)
     class(clearance_joint_t), intent(in) :: self
     real(dp), intent(in) :: span   !! [s]
-    own_speed = max(norm2(self%start_rate), crossing_speed(self, span))
+    own_speed = max(norm2(self%start_rate), crossing_speed(self%bearing%clearance, span))
   end function own_speed
-
-  !> Speed that crosses the clearance in the time simulated, at most `most_crossing_speed` [m/s].
-  pure real(dp) function crossing_speed(joint, span)
-    type(clearance_joint_t), intent(in) :: joint
-    real(dp), intent(in) :: span   !! [s]
-    real(dp), parameter :: most_crossing_speed = 1
-    crossing_speed = min(joint%bearing%clearance/span, most_crossing_speed)
-  end function crossing_speed
 
   !> Number of first-order states of the laws.
   pure integer function n_states(self)
@@ -295,7 +287,7 @@ contains
         force = own%film
       else
         if (allocated(self%transition)) then
-          call self%transition%film_force(self%film, self%film_motion(bodies, motion, joint), own%film, own%moment)
+          call self%film%film_force(self%transition%held_motion(self%film_motion(bodies, motion, joint)), own%film, own%moment)
         else
           call self%film%film_force(self%film_motion(bodies, motion, joint), own%film, own%moment)
         end if
@@ -346,7 +338,7 @@ contains
     own%film = 0
     if (self%transition%film_is_gone) return
     call self%transition%weight(joint%penetration, w)
-    call self%transition%film_force(self%film, motion, force, moment)
+    call self%film%film_force(self%transition%held_motion(motion), force, moment)
     own%film = (1 - w)*force
     own%contact = w*own%contact
     own%moment = w*own%moment + (1 - w)*moment

@@ -45,7 +45,7 @@ contains
     call contact_slopes(self, joint, full, derivatives)
     if (self%transition%film_is_gone) return
     call self%transition%weight(joint%penetration, w, slope)
-    call self%transition%film_force(self%film, motion, force, moment)
+    call self%film%film_force(self%transition%held_motion(motion), force, moment)
     call self%transition%film_derivatives(self%film, motion, of_film)
     associate (n => joint%normal, pressing => full%normal_force, friction => full%friction_force)
       change = [-pressing*n(1) - friction*n(2), friction*n(1) - pressing*n(2), friction*self%pin_radius] - [force, moment]

@@ -10,7 +10,7 @@
 module piston_guide
   use gudgeon_kinds, only: dp
   use gudgeon_archive, only: archive_t
-  use gudgeon_bearing, only: bearing_t
+  use gudgeon_bearing, only: bearing_t, crossing_speed
   use state_layout, only: layout_t, coordinates_t
   use chain_motion, only: motion_t, tilting_t
   use chain_bodies, only: piston_t
@@ -89,17 +89,10 @@ contains
     if (.not. self%is_loose) return
     arm = 0.5_dp*(self%height(1) - self%height(2))
     speed = max(self%clearance*crank_speed, abs(self%start_rate(1)), arm*abs(self%start_rate(2)), &
-      0.01_dp*crossing_speed(self, span))
+      0.01_dp*crossing_speed(self%clearance, span))
     call layout%claim_positions(1, self%clearance, speed, self%offset, grows=.false.)
     call layout%claim_positions(1, self%clearance/arm, speed/arm, self%tilt, grows=.false.)
   end subroutine claim
-
-  !> Speed that crosses the clearance in the time simulated, at most 1 m/s.
-  pure real(dp) function crossing_speed(guide, span)
-    type(piston_guide_t), intent(in) :: guide
-    real(dp), intent(in) :: span   !! [s]
-    crossing_speed = min(guide%clearance/span, 1.0_dp)
-  end function crossing_speed
 
   !> Natural size of the piston's transverse speed where it does not follow from the crank speed [m/s]; 0 without clearance.
   pure real(dp) function own_speed(self, span)
@@ -107,7 +100,7 @@ contains
     real(dp), intent(in) :: span   !! [s]
     own_speed = 0
     if (self%is_loose) own_speed = max(abs(self%start_rate(1)), maxval(abs(self%height))*abs(self%start_rate(2)), &
-      crossing_speed(self, span))
+      crossing_speed(self%clearance, span))
   end function own_speed
 
   !> Put the initial offset and tilt into the state vector.

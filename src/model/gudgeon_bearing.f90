@@ -3,7 +3,7 @@ module gudgeon_bearing
   use gudgeon_kinds, only: dp
   implicit none
   private
-  public :: bearing_t
+  public :: bearing_t, crossing_speed
 
   type :: bearing_t
     real(dp) :: radius = 0       !! of the bore, R_b [m]
@@ -21,4 +21,10 @@ contains
     class(bearing_t), intent(in) :: self
     pin_radius = self%radius - self%clearance
   end function pin_radius
+
+  !> Speed that crosses a clearance in the time simulated, at most 1 m/s [m/s].
+  pure real(dp) function crossing_speed(clearance, span)
+    real(dp), intent(in) :: clearance, span   !! [m], [s]
+    crossing_speed = min(clearance/span, 1.0_dp)
+  end function crossing_speed
 end module gudgeon_bearing

@@ -74,7 +74,7 @@ contains
     call scene%layout%natural_scales(scales, growing)
     self%smallest_range = least_range*scales(self%at)
     self%turning = merge(1.0_dp, 0.0_dp, growing(self%at))
-    if (allocated(scene%gas)) self%forcing = scene%gas%revolutions()
+    if (allocated(scene%gas)) self%forcing = scene%gas%revolutions
     self%start_angle = scene%start_angle
     self%direction = sign(1.0_dp, scene%start_speed)
     allocate (self%states(size(self%at), 0:depth - 1), source=0.0_dp)

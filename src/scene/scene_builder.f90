@@ -210,7 +210,10 @@ contains
     if (allocated(wanted%friction)) allocate (joint%friction, source=wanted%friction)
     if (allocated(wanted%film)) then
       allocate (joint%film, source=wanted%film)
-      if (wanted%oil%is_known()) call joint%film%take_oil(wanted%oil%dynamic_viscosity(), wanted%oil%kinematic_viscosity())
+      if (wanted%oil%is_known()) then
+        joint%film%viscosity = wanted%oil%dynamic_viscosity()
+        joint%film%kinematic_viscosity = wanted%oil%kinematic_viscosity()
+      end if
     end if
     if (allocated(wanted%film) .and. allocated(wanted%contact) .and. wanted%elastic%is_wanted) then
       allocate (joint%elastic, source=wanted%elastic)
