@@ -83,6 +83,9 @@ module gudgeon_scene
     type(event_owner_t) :: event_of(max_events)     !! owners of the event functions
   contains
     procedure :: claim
+    procedure, non_overridable :: read_crank
+    procedure, non_overridable :: place_journals
+    procedure, non_overridable :: find_loads
     procedure :: derivatives
     procedure :: evaluate
     procedure :: jacobian
@@ -162,22 +165,14 @@ module gudgeon_scene
       class(scene_t), intent(inout) :: self
     end subroutine prepare_start
 
-    !> Motion of the rod in a scene that is not plain: with elastic members, a guide that is not ideal or a drive that varies.
-    !> `inside` is false if a position is not admissible.
-    pure module subroutine move_all_bodies(self, t, y, now, inside)
+    !> `find_accelerations` of a scene that is not plain: with elastic members, a guide that is not ideal or a drive that varies.
+    pure module subroutine find_general_accelerations(self, joints, t, y, now, inside)
       class(scene_t), intent(in) :: self
+      type(clearance_joint_t), intent(in) :: joints(:)
       real(dp), intent(in) :: t, y(self%n)
       type(evaluation_t), intent(inout) :: now
       logical, intent(out) :: inside
-    end subroutine move_all_bodies
-
-    !> Loads of the guide, accelerations and power of such a scene. `inside` is false if they cannot be computed.
-    pure module subroutine accelerate_all_bodies(self, joints, now, inside)
-      class(scene_t), intent(in) :: self
-      type(clearance_joint_t), intent(in) :: joints(:)
-      type(evaluation_t), intent(inout) :: now
-      logical, intent(out) :: inside
-    end subroutine accelerate_all_bodies
+    end subroutine find_general_accelerations
 
     !> Claim the states of the elastic members.
     module subroutine claim_elastic(self)
@@ -273,21 +268,17 @@ contains
     type(evaluation_t), intent(inout) :: now
     logical, intent(out) :: inside
 
-    call read_crank(self, t, y, now%motion)
-    call place_journals(self, n, joints, y, now, inside)
+    if (.not. self%is_plain) then
+      call find_general_accelerations(self, joints, t, y, now, inside)
+      return
+    end if
+    call self%read_crank(t, y, now%motion)
+    call self%place_journals(n, joints, y, now, inside)
     if (.not. inside) return
     associate (bodies => self%chain%bodies, drive => self%chain%drive, motion => now%motion)
-      if (self%is_plain) then
-        call follow_rod(bodies%crank%length, bodies%per_rod_length, motion, inside)
-      else
-        call move_all_bodies(self, t, y, now, inside)
-      end if
+      call follow_rod(bodies%crank%length, bodies%per_rod_length, motion, inside)
       if (.not. inside) return
-      call find_loads(self, n, joints, y, now)
-      if (.not. self%is_plain) then
-        call accelerate_all_bodies(self, joints, now, inside)
-        return
-      end if
+      call self%find_loads(n, joints, y, now)
       if (n == 0) then
         call accelerate_ideal_chain(bodies, drive, motion, now%loads, now%accelerations, now%crank_moment)
       else if (self%joint_of_pin(crank_pin) == 0) then

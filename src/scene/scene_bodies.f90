@@ -10,31 +10,45 @@ submodule (gudgeon_scene) scene_bodies
 
 contains
 
-  module procedure accelerate_all_bodies
+  module procedure find_general_accelerations
+    logical :: solvable
+    call self%read_crank(t, y, now%motion)
+    call self%place_journals(self%n_joints, joints, y, now, inside)
+    if (.not. inside) return
+    call place_more_bodies(self, t, y, now, inside)
+    if (.not. inside) return
+    call self%chain%move_rod(now%motion, inside)
+    if (.not. inside) return
+    call self%find_loads(self%n_joints, joints, y, now)
     call load_guide(self, now)
-    call self%chain%accelerate(now%motion, now%loads, now%accelerations, now%crank_moment, inside)
-    if (inside) call add_guide_friction(self, joints, now, inside)
+    call self%chain%accelerate(now%motion, now%loads, now%accelerations, now%crank_moment, solvable)
+    if (solvable) call add_guide_friction(self, joints, now, solvable)
+    inside = solvable
     if (.not. inside) return
     if (self%may_stick) call hold_surfaces(self%chain, joints, now%motion, now%relative, now%joint, now%loads, now%accelerations, &
       now%crank_moment, now%power)
     call add_power(self, now)
-  end procedure accelerate_all_bodies
+  end procedure find_general_accelerations
 
-  !> A piston with clearance in its bore, the shapes of the rod and the flywheel are set before the rod.
-  module procedure move_all_bodies
+  !> Set the position of a piston with clearance in its bore, of the shapes of the rod and of the flywheel. `inside` is false if
+  !> they are not admissible.
+  pure subroutine place_more_bodies(self, t, y, now, inside)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(self%n)
+    type(evaluation_t), intent(inout) :: now
+    logical, intent(out) :: inside
     if (self%joint_of_pin(crank_pin) == 0) then   ! not every closed form reads it
       now%motion%crank_pin = 0
       now%motion%crank_pin_rate = 0
     end if
+    inside = .true.
     if (self%chain%bodies%piston%is_loose) then
       call self%guide%read_state(y, now%motion%tilting)
       inside = self%guide%admits(now%motion%tilting)
-      if (.not. inside) return
-      call place_piston(self%chain%bodies%piston, now%motion)
+      if (inside) call place_piston(self%chain%bodies%piston, now%motion)
     end if
     if (allocated(self%chain%elastic)) call self%chain%elastic%read_state(t, y, now%motion)
-    call self%chain%move_rod(now%motion, inside)
-  end procedure move_all_bodies
+  end subroutine place_more_bodies
 
   !> Add the loads of the guide to those of joints and gas; the friction force only if it follows from the loads of the piston pin
   !> known so far.
