@@ -45,7 +45,7 @@ contains
       call problem%evaluate(t, y, now, inside)
       associate (m => now%motion)
         self%values = [m%crank_angle, atan2(m%sin_rod, m%cos_rod), m%piston_position, m%crank_speed, m%rod_speed, &
-          m%piston_velocity, now%relative(1)%eccentricity]
+          m%piston_velocity, m%offset]
       end associate
       self%largest = max(self%largest, abs(self%values))
       associate (r => problem%chain%bodies%crank%length, l => problem%chain%bodies%rod%length, v => self%values)

@@ -25,14 +25,8 @@ module gudgeon_scene
   !> Events reported in the trace.
   integer, parameter :: event_none = 0, event_contact_begins = 1, event_contact_ends = 2
 
-  !> The motion and the loads of an ideal pin, in the form of those of a joint with clearance.
-  type(joint_motion_t), parameter :: centred_pin = joint_motion_t([0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp], 0.0_dp, 0.0_dp, &
-    [1.0_dp, 0.0_dp], 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, [0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp])
-  type(joint_loads_t), parameter :: no_loads = joint_loads_t([0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp], 0.0_dp, 0.0_dp, 0.0_dp, &
-    0.0_dp, 0.0_dp, .false.)
-
-  !> The results of one evaluation of a scene. Arrays have one element for each joint with clearance, or, without any, one for a
-  !> centred pin without loads. The right-hand side sets only the components that it needs.
+  !> The results of one evaluation of a scene. Arrays have one element for each joint with clearance. The right-hand side sets only
+  !> the components that it needs.
   type :: evaluation_t
     type(motion_t) :: motion
     type(accelerations_t) :: accelerations
@@ -246,10 +240,6 @@ contains
     evaluation%loads%moment = 0
     evaluation%motion%crank_pin = 0
     evaluation%motion%crank_pin_rate = 0
-    if (self%n_joints == 0) then
-      evaluation%relative(1) = centred_pin
-      evaluation%joint(1) = no_loads
-    end if
     call find_accelerations(self, self%n_joints, self%joints, t, y, evaluation, inside)
     if (inside) call self%chain%move_piston(evaluation%motion)
     do i = 1, self%n_joints
@@ -440,8 +430,7 @@ contains
   pure logical function work_tells(self)
     class(scene_t), intent(in) :: self
     work_tells = self%chain%drive%free_crank .and. .not. (self%chain%drive%damping > 0 .or. allocated(self%gas) &
-      .or. allocated(self%chain%varying) &
-                                                         .or. allocated(self%guide) .or. allocated(self%chain%elastic))
+      .or. allocated(self%chain%varying) .or. allocated(self%guide) .or. allocated(self%chain%elastic))
   end function work_tells
 
   !> Integrals of the magnitudes of the forces on the pins so far [N s], in a scene that computes them; 0 for an ideal crank pin.
