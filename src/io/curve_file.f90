@@ -85,41 +85,33 @@ contains
     lines = lines(:n)
   end subroutine parse_curve
 
-  !> Split a row into two fields at the comma, without surrounding blanks and quotes.
-  subroutine split(row, fields, message)
-    character(len=*), intent(in) :: row
-    character(len=len(row)), intent(out) :: fields(2)
-    character(len=:), allocatable, intent(inout) :: message
-    integer :: comma, i, length
-    comma = index(row, ',')
-    fields = ''
-    if (comma == 0 .or. index(row(comma + 1:), ',') > 0) then
-      message = printable(row, 60)//': needs two columns separated by a comma'
-      return
-    end if
-    fields = [character(len=len(row)) :: adjustl(row(:comma - 1)), adjustl(row(comma + 1:))]
-    do i = 1, 2
-      length = len_trim(fields(i))
-      if (length < 2) cycle
-      if (fields(i)(1:1) == '"' .and. fields(i)(length:length) == '"') fields(i) = fields(i)(2:length - 1)
-    end do
-  end subroutine split
-
-  !> Read both fields of a row: `read_field` is `read_unit` for the header, and `read_number` for the other rows.
+  !> Read the two fields of a row, which a comma separates: `read_field` is `read_unit` for the header, and `read_number` for the
+  !> other rows.
   subroutine read_pair(row, is, read_field, values, message)
     character(len=*), intent(in) :: row
     type(quantity_t), intent(in) :: is(2)
     procedure(read_number) :: read_field
     real(dp), intent(out) :: values(2)
     character(len=:), allocatable, intent(inout) :: message
-    character(len=len(row)) :: fields(2)
-    integer :: i
+    integer :: comma
     values = 0
-    call split(row, fields, message)
-    do i = 1, 2
-      if (message == '') call read_field(trim(fields(i)), is(i), values(i), message)
-    end do
+    comma = index(row, ',')
+    if (comma == 0 .or. index(row(comma + 1:), ',') > 0) then
+      message = printable(row, 60)//': needs two columns separated by a comma'
+      return
+    end if
+    call read_field(bare(row(:comma - 1)), is(1), values(1), message)
+    if (message == '') call read_field(bare(row(comma + 1:)), is(2), values(2), message)
   end subroutine read_pair
+
+  !> A field without surrounding blanks and quotes.
+  pure function bare(field) result(text)
+    character(len=*), intent(in) :: field
+    character(len=:), allocatable :: text
+    text = trim(adjustl(field))
+    if (len(text) < 2) return
+    if (text(1:1) == '"' .and. text(len(text):) == '"') text = trim(text(2:len(text) - 1))
+  end function bare
 
   !> The value of a unit in the first unit of its quantity, from the name of a column.
   subroutine read_unit(name, quantity, factor, message)

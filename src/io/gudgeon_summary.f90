@@ -243,15 +243,10 @@ contains
     character(len=*), intent(in) :: flags   !! compiler options, separated by blanks
     real(dp), intent(in) :: seconds         !! time taken by the cases [s]
     character(len=:), allocatable :: text
-    character(len=*), parameter :: worth_it(3) = [character(len=7) :: ' -O2', ' -O3', ' -Ofast']
     real(dp), parameter :: patience = 2
-    integer :: i
     text = ''
-    if (seconds <= patience) return
-    do i = 1, size(worth_it)
-      if (index(' '//flags, trim(worth_it(i))) > 0) return
-    end do
-    text = 'this is a build for debugging, several times slower than the fast program: scripts/install.sh installs that'
+    if (seconds > patience .and. index(' '//flags, ' -O2') + index(' '//flags, ' -O3') + index(' '//flags, ' -Ofast') == 0) &
+      text = 'this is a build for debugging, several times slower than the fast program: scripts/install.sh installs that'
   end function build_advice
 
   !> Warning about a completed run with a large energy residual.

@@ -132,13 +132,12 @@ contains
     type(file_mark_t), intent(out) :: mark
     character(len=:), allocatable, intent(out) :: name
     type(error_t), allocatable, intent(out) :: error
-    type(file_mark_t) :: empty
     logical :: is_there
     integer :: i
     do i = 1, 2
       name = path
       if (i == 1) name = path//'.part'
-      mark = empty
+      mark = file_mark_t()
       call mark%move_to(name, wanted%length, is_there)
       if (is_there .and. mark%checksum == wanted%checksum) return
     end do

@@ -27,7 +27,7 @@ module study_worker
     type(column_list_t), private :: no_columns
     character(len=:), allocatable, private :: values(:)
     character(len=:), allocatable, private :: trace_folder
-    logical, private :: traces_all = .false., traces_failed = .false., writes_cycles = .false.
+    logical, private :: traces_all = .false., traces_failed = .false.
   contains
     procedure :: prepare
     procedure :: run
@@ -51,7 +51,6 @@ contains
     self%trace_folder = trace_folder
     self%traces_all = study%traces == 'all'
     self%traces_failed = study%traces == 'failed'
-    self%writes_cycles = study%cycles
     allocate (self%watch)
     self%watch%settle = study%settle_cycles
     self%watch%keeps_cycles = study%cycles
@@ -104,7 +103,7 @@ contains
     self%is_done = outcome == 'done'
     call put_run(self%run_row, number, self%values, outcome, has_begun, self%watch, report, self%base%case)
     if (.not. self%is_done) return
-    if (self%writes_cycles) call put_cycles(self%cycle_rows, number, self%watch, self%base%case)
+    if (self%watch%keeps_cycles) call put_cycles(self%cycle_rows, number, self%watch, self%base%case)
     call put_strobes(self%strobe_rows, number, self%watch)
   end subroutine run
 
