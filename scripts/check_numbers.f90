@@ -1,4 +1,4 @@
-!> Compares `number_writer` with formatted writes: check_numbers [NUMBERS] (default 10000000). Half of the numbers are random bit
+!> Compares `number_writer_t` with formatted writes: check_numbers [NUMBERS] (default 10000000). Half of the numbers are random bit
 !> patterns, half have ordinary magnitudes; the number of significant digits changes from number to number. Then measures the time
 !> of both. Ends with `N passed, N failed`.
 program check_numbers

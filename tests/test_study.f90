@@ -298,7 +298,7 @@ contains
   subroutine test_row_file(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: path = 'build/test_rows.csv', header = 'run,x,y'//n
-    integer, parameter :: none(0) = 0
+    character(len=1), parameter :: none(0) = [character(len=1) ::]
     type(row_file_t) :: first, again, renamed, shorter
     type(error_t), allocatable :: error
     integer :: unit, ignored
@@ -319,7 +319,7 @@ contains
       'rows are in the order in which they came')
     call check%that(first%waiting%used == 0, 'no bytes are left in memory')
     call first%finish(.false., error)
-    call again%prepare(path, header, 3, 6, [3, 2])
+    call again%prepare(path, header, 3, 6, ['y', 'x'])
     open (newunit=unit, file=path, position='append', access='stream', form='unformatted')
     write (unit) '5,d,5'//n//'3,e'//n//'3,'//achar(0)//',1'//n//achar(0)//achar(0)//n//'3,torn'
     close (unit)

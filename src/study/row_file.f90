@@ -46,17 +46,22 @@ module row_file
 
 contains
 
-  !> Prepare the file at `path` for the runs `first` to `last`. `header` is its first row. The whole numbers in `columns` are kept
-  !> of rows that are read back.
+  !> Prepare the file at `path` for the runs `first` to `last`. `header` is its first row. The whole numbers in the columns of these
+  !> names, not the first one, are kept of rows that are read back.
   subroutine prepare(self, path, header, first, last, columns)
     class(row_file_t), intent(inout) :: self
-    character(len=*), intent(in) :: path, header
-    integer, intent(in) :: first, last, columns(:)
+    character(len=*), intent(in) :: path, header, columns(:)
+    integer, intent(in) :: first, last
+    integer :: i, k, at
     self%path = path
     self%header = header
     self%first = first
     allocate (self%columns(0:size(columns)))
-    self%columns = [1, columns]
+    self%columns = 1
+    do i = 1, size(columns)
+      at = index(header, ','//trim(columns(i)))   ! 0 if there is no such column
+      self%columns(i) = count([(header(k:k) == ',', k=1, at)]) + min(at, 1)
+    end do
     allocate (self%at(first:last), source=0_int64)
     allocate (self%length(first:last), self%rows(first:last), source=0)
     allocate (self%numbers(size(columns), first:last), source=0)

@@ -14,7 +14,7 @@ module study_rows
   use row_text, only: row_text_t
   implicit none
   private
-  public :: study_row_t, run_header, cycle_header, strobe_header, cycles_column, strobes_column
+  public :: study_row_t, run_header, cycle_header, strobe_header
   public :: put_run, put_cycles, put_strobes
 
   character(len=*), parameter :: crank_pin_prefix = crank_pin_place//'_'
@@ -90,18 +90,6 @@ contains
     call put_run(row, 0, keys, 'status', .false., no_watch, no_report, no_case)
     text = row%text(:row%used)
   end function run_header
-
-  !> Index of the column cycles[-] in NAME.runs.csv, which is empty for a failed run.
-  pure integer function cycles_column(keys)
-    character(len=*), intent(in) :: keys(:)
-    cycles_column = size(keys) + 3
-  end function cycles_column
-
-  !> Index of the column strobes[-], if there is one.
-  pure integer function strobes_column(keys)
-    character(len=*), intent(in) :: keys(:)
-    strobes_column = cycles_column(keys) + 14
-  end function strobes_column
 
   !> Header of NAME.cycles.csv.
   function cycle_header(keys, base) result(text)

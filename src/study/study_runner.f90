@@ -14,7 +14,7 @@ module study_runner
   use text_file, only: read_text_file
   use study_sweep, only: sweep_t, read_sweep, check_rows, study_checksum, file_cycles, file_strobes, file_runs
   use study_worker, only: study_worker_t
-  use study_rows, only: run_header, cycle_header, strobe_header, cycles_column, strobes_column
+  use study_rows, only: run_header, cycle_header, strobe_header
   implicit none
   private
   public :: run_study_file
@@ -104,10 +104,10 @@ contains
 
   subroutine prepare_files(sweep)
     type(sweep_t), intent(inout) :: sweep
-    integer, parameter :: none(0) = 0
+    character(len=*), parameter :: none(0) = [character(len=1) ::]
     associate (first => sweep%first, last => sweep%last, keys => sweep%design%keys)
       call sweep%files(file_runs)%prepare(sweep%path//'.runs.csv', run_header(keys, sweep%base%case, sweep%has_strobes), first, &
-        last, [cycles_column(keys), strobes_column(keys)])
+        last, ['cycles[-] ', 'strobes[-]'])   ! cycles are empty for a failed run
       if (sweep%study%cycles) &
         call sweep%files(file_cycles)%prepare(sweep%path//'.cycles.csv', cycle_header(keys, sweep%base%case), first, last, none)
       if (sweep%has_strobes) &

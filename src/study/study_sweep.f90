@@ -179,6 +179,7 @@ contains
     subroutine check_run(run)
       integer, intent(in) :: run
       character(len=sweep%design%text_length) :: values(size(sweep%design%keys))
+      character(len=:), allocatable :: which
       type(error_t), allocatable :: problem
       call sweep%design%get_values(run, values)
       call sweep%base%put(values, problem)
@@ -186,11 +187,9 @@ contains
       if (.not. allocated(problem)) return
       failed = failed + 1
       if (allocated(error)) return
-      if (sweep%is_drawn) then
-        call fail(error, printable(sweep%study%file, 200)//': some runs: '//problem%message, status_integration)
-      else
-        call fail(error, printable(sweep%study%file, 200)//': run '//integer_text(run)//': '//problem%message, status_integration)
-      end if
+      which = 'run '//integer_text(run)
+      if (sweep%is_drawn) which = 'some runs'
+      call fail(error, printable(sweep%study%file, 200)//': '//which//': '//problem%message, status_integration)
     end subroutine check_run
   end subroutine check_rows
 

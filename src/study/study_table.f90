@@ -112,10 +112,9 @@ contains
     end do
     table%rows = row
     if (row < 0) then
-      call fail(error, printable(path, 200)//': the table is empty; it needs a header of GROUP.KEY and a row for each run', &
-                status_case_file)
+      message = 'the table is empty; it needs a header of GROUP.KEY and a row for each run'
     else if (row == 0) then
-      call fail(error, printable(path, 200)//': the table has a header but no run', status_case_file)
+      message = 'the table has a header but no run'
     else
       allocate (character(len=max(1, maxval(table%last(:columns) - table%first(:columns)) + 1)) :: table%keys(columns))
       do i = 1, columns
@@ -123,6 +122,7 @@ contains
       end do
       call check_header(path, table, error)
     end if
+    if (message /= '') call fail(error, printable(path, 200)//': '//message, status_case_file)
   end subroutine parse_table
 
   !> Number of occurrences of a character in a text.
