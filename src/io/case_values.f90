@@ -3,7 +3,7 @@
 module case_values
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_case_file
-  use text_tools, only: printable, integer_text, nearest_word
+  use text_tools, only: printable, integer_text, suggestion
   use case_schema, only: key_t, key_table_t, find_group, find_key, is_listed, shown_group, &
     real_kind, integer_kind, text_kind
   use namelist_reader, only: token_t, read_values
@@ -191,20 +191,6 @@ contains
       call fail(error, at//text//suggestion(key, pack(names, self%keys%group == group)), status_case_file)
     end associate
   end subroutine find
-
-  !> `; did you mean x? (allowed: ...)`
-  pure function suggestion(word, allowed) result(text)
-    character(len=*), intent(in) :: word, allowed(:)
-    character(len=:), allocatable :: text
-    integer :: i
-    text = nearest_word(word, allowed)
-    if (text /= '') text = '; did you mean '//text//'?'
-    text = text//' (allowed: '//trim(allowed(1))
-    do i = 2, size(allowed)
-      text = text//', '//trim(allowed(i))
-    end do
-    text = text//')'
-  end function suggestion
 
   !> Give the key at `place` its values as written, from element `index` on; 0 means all elements. An override replaces the value of
   !> the file; within the file an element may be given once. `at` names file and line.

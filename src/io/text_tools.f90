@@ -3,7 +3,7 @@ module text_tools
   use, intrinsic :: iso_fortran_env, only: int64
   implicit none
   private
-  public :: lowercase, printable, is_clean, integer_text, whole_number, quoted, nearest_word, case_name, &
+  public :: lowercase, printable, is_clean, integer_text, whole_number, quoted, nearest_word, suggestion, case_name, &
     path_beside, replaced, next_line
 
   !> Ranges of characters that are blanks beyond ASCII, have no width or change the direction of writing: U+00A0, U+00AD,
@@ -140,6 +140,20 @@ contains
       end if
     end do
   end function nearest_word
+
+  !> For a misspelt word, `; did you mean x? (allowed: ...)`.
+  pure function suggestion(word, allowed) result(text)
+    character(len=*), intent(in) :: word, allowed(:)
+    character(len=:), allocatable :: text
+    integer :: i
+    text = nearest_word(word, allowed)
+    if (text /= '') text = '; did you mean '//text//'?'
+    text = text//' (allowed: '//trim(allowed(1))
+    do i = 2, size(allowed)
+      text = text//', '//trim(allowed(i))
+    end do
+    text = text//')'
+  end function suggestion
 
   !> Number of letters to insert, remove or replace to turn one word into the other (Levenshtein); large for long words.
   pure function edits(a, b) result(distance)
