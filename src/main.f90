@@ -53,20 +53,17 @@ contains
     type(command_line_t), intent(in) :: options
     integer, intent(inout) :: status
     type(key_table_t) :: table
-    if (options%template .and. .not. options%sweep) then
-      call say(template(), status)
-      return
-    else if (options%reference == 'case' .and. .not. options%template) then
-      call case_schema_of(table)
-    else
+    if (options%template .and. options%sweep) then
       call study_schema_of(table)
-    end if
-    if (options%template) then
       call say(template_text('A parameter study of gudgeon with every key there is. Keys marked required have no default.', &
         table), status)
+    else if (options%template) then
+      call say(template(), status)
     else if (options%reference == 'results') then
       call say(results_reference(), status)
     else
+      if (options%reference == 'case') call case_schema_of(table)
+      if (options%reference == 'study') call study_schema_of(table)
       call say(keys_reference(table), status)
     end if
   end subroutine say_page
