@@ -94,7 +94,8 @@ class Guide:
             low, high = min(low, high), max(low, high)
             blur = 4e-15 * (self.radius + self.clearance) / depth * self.contacts[k - 1].geometry.exponent if depth > 0 else 0.0
             near = 1e-15 * (self.radius + self.clearance + abs(self.height[(k - 1) % 2] * row.tilt)) + 1e-9 * self.clearance
-            at_wall = self.contacts[k - 1].geometry.force(2 * near) if abs(depth) <= near else 0.0   # a row where the contact begins or ends
+            # a row where the contact begins or ends, written before or after this event
+            at_wall = abs(self.contacts[k - 1].force(2 * near, rate, t)) if abs(depth) <= near else 0.0
             checks.take("contact law of a corner", max(low - normal, normal - high, 0.0), (LAW + blur) * max(abs(high), abs(normal)) + at_wall, t)
             low, high = (one * normal for one in self.friction.range(along, give))
             checks.take("friction law of a corner", max(low - friction, friction - high, 0.0), LAW * (abs(low) + abs(high)) / 2 + 1e-300, t)

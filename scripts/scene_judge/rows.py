@@ -302,6 +302,9 @@ class RowChecks:
         others = [] if law.is_solved else [law.force(eps, gap, along + dx, across + dy, turn) for dx, dy in ((give, 0), (0, give))]
         blur = sum(math.hypot(other[0] - want[0], other[1] - want[1]) for other in others)
         blur += 1e-15 / max(gap, least) * math.hypot(*want)
+        if not law.is_solved:   # a thin film's force can be the small difference of much larger ones of wedge and squeeze
+            other = law.force(eps - 1e-15, gap + 1e-15, along, across, turn)
+            blur += math.hypot(other[0] - want[0], other[1] - want[1])
         blur += self.blur_of_share(row) * math.hypot(*want)
         miss = math.hypot(n[0] * force[0] + n[1] * force[1] - share * want[0], n[0] * force[1] - n[1] * force[0] - share * want[1])
         self.take("film law", miss, (LAW + law.margin) * share * math.hypot(*want) + 10 * blur, t)
@@ -327,9 +330,10 @@ class RowChecks:
         self.take("film law", abs(found - share * whole), (OSCILLATING * share + self.blur_of_share(row)) * abs(whole) + row.law_noise, t)
 
     def check_moving_film(self, row: Row, force: tuple[float, float], i: int) -> None:
-        """Check a film between elastic walls, whose film thickness changes at a rate found from the rows around this one."""
+        """Check a film between elastic walls, whose pressure takes long to find, with the rate of its place from the rows around this
+        one; other films by moving_films."""
         times, law = self.run.times, self.film_law
-        if not self.is_judged(i) or i < 2 or i > len(times) - 3 or len({*times[i - 2:i + 3]}) < 5:
+        if not law.is_solved or not self.is_judged(i) or i < 2 or i > len(times) - 3 or len({*times[i - 2:i + 3]}) < 5:
             return
         columns = self.run.columns["film_eccentricity_x"], self.run.columns["film_eccentricity_y"]
         place = columns[0][i], columns[1][i]

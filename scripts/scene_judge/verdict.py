@@ -8,6 +8,7 @@ from pathlib import Path
 
 from .elastic import requested_columns
 from .energy import BLURRED, Balances, balances
+from .moving_films import moving_film_drift
 from .reruns import Comparison, Reruns
 from .rows import RowChecks
 from .trace import Run, merged, run_case
@@ -46,6 +47,13 @@ def judge_energy(checks: RowChecks, verdict: Verdict) -> None:
     tolerance = min(run.number("integrator.relative_tolerance"), 1e-3)
     angle = run.columns["crank_angle"]
     allowed = max(FLOOR, min(CEILING, ENERGY * tolerance * max(1.0, abs(angle[-1] - angle[0]) / (2 * math.pi))))
+    for joint, prefix in ((checks, ""), (checks.crank_pin, "crank_pin_")):
+        if joint and joint.elastic and joint.film_law and not joint.film_law.is_solved:
+            drift, _, name = moving_film_drift(joint)
+            verdict.checks += 1
+            if not drift <= allowed:
+                verdict.faults.append(f"film law: {prefix}{name} is not the integral of the rate by the film's force: {drift:.3g} of the clearance "
+                                      f"off, {allowed:.1g} allowed")
     found = verdict.energy = balances(checks)
     if found.bound > BLURRED:
         verdict.notes.append(f"integrals not judged: the quadrature is only known to {found.bound:.1g}")
