@@ -39,6 +39,9 @@ SMALL_TABLE = {"lubrication.table_points": "33", "lubrication.film_points": "64"
 OIL = {f"lubrication.{key}": value for key, value in {"viscosity": "0", "viscosity_law": "'walther'", "temperature": "350", "density": "870",
                                                       "known_temperatures": "313.15, 373.15", "known_viscosities": "1e-4, 1.1e-5"}.items()}
 
+TIGHT_CRANK_PIN = {"crank_pin.joint.kind": "'clearance'", **{f"crank_pin.joint.{key}": value for key, value in
+                   {"clearance": "1e-7", "bearing_radius": "0.02", "bearing_length": "0.02"}.items()}}
+
 #: Runs by name: case, and settings that keep the run short. Together they contain every law and both joints.
 SCENES = {
     "dry": ("flores/friction_050", {"integrator.revolutions": "0.3"}),
@@ -97,10 +100,46 @@ SCENES = {
     "shaft": ("elastic/engine_crankshaft", {"integrator.revolutions": "0.3"}),
     "bent": ("flores/ideal", {"integrator.revolutions": "0.3", "elastic_rod.section_area": "9.6e-5", "elastic_rod.section_inertia": "5.12e-10",
                               "drive.kind": "'free'", "mechanism.gravity": "9.8"}),
+    # a film of 1e-11 of the clearance, where wedge and squeeze nearly cancel
+    "thin": ("sim_V", {"integrator.method": "'auto'", "integrator.revolutions": "0.1", "joint.clearance": "0.005", **TIGHT_CRANK_PIN}),
+    # corners whose damping acts fully at a depth that is less than the error of the contact's begin
+    "sharp": ("sim_I_oscillating", {"integrator.method": "'auto'", "integrator.revolutions": "0.5", "contact": "none", "friction": "none",
+                                    "lubrication.law": "'finite_bearing'", "lubrication.variant": "'short'", "lubrication.viscosity": "88.39831674523636",
+                                    "asperities.roughness": "1.3146786873649557e-07", "asperities.density_product": "1", "asperities.sharpness": "0.1",
+                                    "asperities.coefficient": "0", "asperities.transition_speed": "3.4e-4",
+                                    "joint.bearing_length": "0.02", "guide.kind": "'clearance'", "guide.bore_clearance": "2.4438502086830547e-4",
+                                    "guide.skirt_top": "0.001", "guide.skirt_bottom": "0.002070999603267184", "guide.piston_radius": "0.0035705841968826607",
+                                    "guide.piston_inertia": "1", "guide.stiffness": "194502201286.36316", "guide.contact_law": "'impact'", "guide.damping": "0.7953737193324473",
+                                    "guide.full_damping_depth": "1e-12", "initial.piston_offset": "2.4438502086830547e-4",
+                                    "initial.piston_tilt": "0.07957833032876606", "initial.piston_offset_rate": "1",
+                                    "initial.piston_tilt_rate": "-1e-6"}),
+    # long steps in a film between elastic walls
+    "walls": ("sim_I", {"integrator.method": "'auto'", "integrator.revolutions": "1", "initial.crank_angle_deg": "180", "initial.eccentricity": "0, 0",
+                        "initial.eccentricity_rate": "0, 0", "contact.law": "'hertz'", "contact.geometry": "'winkler'", "contact.dissipation": "27.574438901218087",
+                        "contact.bedding_modulus": "19275657055354.285", "friction": "none", "lubrication.elastic_film": ".true.",
+                        "lubrication.pressure_viscosity": "4.301593438724609e-11", "lubrication.variant": "'closed_form'"}),
+    # a shape of the rod that is much faster than the distance of rows, and at rest relative to the load
+    "rigid": ("sim_V", {"integrator.method": "'auto'", "integrator.revolutions": "1", "mechanism.crank_mass": "0", "lubrication.transition": "'weighted'",
+                        "lubrication.transition_depth": "2.9976694336073933e-05", "lubrication.least_film_ratio": "0.02113403968150216",
+                        "lubrication.variant": "'half_film'", "elastic_rod.youngs_modulus": "1e13", "elastic_rod.section_area": "1e-5",
+                        "elastic_rod.section_inertia": "2.3137476317273072e-08", "elastic_rod.transverse_modes": "2",
+                        "elastic_rod.axial_shapes": "0", "elastic_rod.damping_ratio": "0.999", "mechanism.rod_com": "0.06, 0"}),
+    # a crankshaft whose twist is small, but larger than the tolerance of an angle
+    "twisted": ("sim_V", {"integrator.method": "'auto'", "integrator.revolutions": "1", "integrator.relative_tolerance": "2.881411704428786e-08",
+                          **TIGHT_CRANK_PIN, "crankshaft.flywheel_inertia": "0.16449913650826556",
+                          "crankshaft.torsional_stiffness": "7758960.105467266", "crankshaft.torsional_damping": "0"}),
+    # large forces on the piston, and almost none at its pins
+    "held": ("sim_V_oscillating", {"integrator.method": "'auto'", "integrator.revolutions": "0", "integrator.end_time": "1e-12", "output.interval": "1e-14",
+                                   "initial.crank_speed": "0.001", "drive.damping": "12", **TIGHT_CRANK_PIN, "crank_pin.joint.clearance": "5e-5",
+                                   "guide.kind": "'clearance'", "guide.bore_clearance": "3.3e-6", "guide.skirt_top": "0.025", "guide.skirt_bottom": "0.0014",
+                                   "guide.piston_radius": "0.0088", "guide.piston_inertia": "0.0078", "guide.stiffness": "1e12",
+                                   "guide.piston_com": "-0.034, 0.002", "guide.exponent": "1", "guide.contact_law": "'hertz'",
+                                   "initial.piston_offset": "1.7e-6", "initial.piston_tilt": "1.2e-4", "initial.piston_offset_rate": "7.8e-5",
+                                   "initial.piston_tilt_rate": "-0.009"}),
     "ideal": ("flores/ideal", {"drive.kind": "'free'", "drive.damping": "0.03", "mechanism.gravity": "9.8", "initial.crank_angle_deg": "20"}),
 }
 
-PHASES = {**dict.fromkeys(("thickening", "printed", "half", "short", "finite", "gumbel", "full", "direct", "rough", "warm"), {1}),
+PHASES = {**dict.fromkeys(("twisted", "thin", "sharp", "walls", "rigid", "held", "thickening", "printed", "half", "short", "finite", "gumbel", "full", "direct", "rough", "warm"), {1}),
           "dry": {0, 2}, "sticks": {0, 2}, "threlfall": {0, 2}, "brown_mcphee": {0, 2}, "stribeck": {0, 2}, "lugre": {0, 2},
           "elasto_plastic": {0, 2}, "conformal": {0, 2}, "johnson": {0, 2},
           "liner": {0, 2}, "pereira": {0, 2}, "dissipation": {0, 2}, "film": {1}, "contact": {1, 2}, "weighted": {1, 2}, "elastic": {1},
@@ -210,6 +249,12 @@ CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
     ("gas force with the opposite sign", "film", "gas_force", lambda v, i: -v, "gas force"),
     ("cylinder volume wrong", "film", "cylinder_volume", lambda v, i: v * 1.001, "cylinder volume"),
     ("crank angle that is not the integral of the speed", "ideal", "crank_angle", lambda v, i: v * 1.01, "is not the integral of its rate"),
+    ("force of a corner with a sharp contact too large", "sharp", "guide_1_force", lambda v, i: v * (1 + 1e-5), "contact law of a corner"),
+    ("force of a thin film too large", "thin", "pin_force_x", lambda v, i: v * 1.001, "film law"),
+    ("film force between elastic walls too large in long steps", "walls", "film_force_x", lambda v, i: v * 1.001, "film law"),
+    ("amplitude of a fast shape wrong", "rigid", "rod_mode_2", lambda v, i: v * 1.001, "Lagrange, rod_mode_2"),
+    ("rate of a slower shape wrong", "rigid", "rod_mode_1_rate", lambda v, i: v * 1.001, "is not the integral of its rate"),
+    ("small force of the crank pin wrong", "held", "crankpin_force_x", lambda v, i: v + 1e-6, "crank pin: film force on the pin"),
     ("one value that is not a number", "dry", "crank_speed", lambda v, i: float("nan") if i == 50 else v, "Newton, crank"),
 ]
 
@@ -262,8 +307,14 @@ LIARS = [
     ("wrong gravity", "film", "mechanism.gravity", "9.8", "Newton, piston"),
     ("a larger tolerance than stated, in contact", "contact", "integrator.relative_tolerance", "1e-4", "grown tolerances from"),
     ("a larger tolerance than stated, in a film", "short", "integrator.relative_tolerance", "1e-3", "grown tolerances from"),
+    ("a larger tolerance than stated, with a crankshaft that twists", "shaft", "integrator.relative_tolerance", "1e-3", "grown tolerances from"),
+    ("wrong viscosity of a thin film", "thin", "lubrication.viscosity", "0.0118", "film law"),
+    ("wrong viscosity between elastic walls", "walls", "lubrication.viscosity", "0.01171", "film law"),
     ("wrong piston mass in one method alone", "dry", "mechanism.piston_mass", "0.25", "beyond the horizon"),
 ]
+
+#: Scenes whose states must be within the allowed distance of a run by the other method.
+COMPARED = ("twisted",)
 
 #: (wrong line, file, text of the line, its text in the mutant, scene, text that the verdict must contain)
 MUTANTS = [
@@ -420,12 +471,21 @@ def lied(program: Path, folder: Path, number: int) -> list[Finding]:
     return [(any(says in fault for fault in verdict.faults), f"a program with {what}: found by the judge", "; ".join(summary_of(verdict)))]
 
 
+def compared(program: Path, scene: str) -> list[Finding]:
+    """Check that a correct run passes with all its comparisons."""
+    name, settings = SCENES[scene]
+    verdict = judge_scene(program, ROOT / "cases" / f"{name}.nml", settings)
+    agree = verdict.states is not None and not verdict.states.unjudged and not verdict.faults
+    return [(agree, f"{scene}: sound, and as by the other method", "; ".join(summary_of(verdict)))]
+
+
 def test_judge(program: Path, folder: Path) -> None:
     """All scenes, changed columns and false programs, on all processor cores."""
     missing = {where for _, where, _, _, _ in CORRUPTIONS} - set(SCENES)
     check(not missing, "every changed column has a scene", str(missing))
     with ProcessPoolExecutor() as pool:
         tasks = [pool.submit(corrupted, program, scene) for scene in SCENES]
+        tasks += [pool.submit(compared, program, scene) for scene in COMPARED]
         tasks += [pool.submit(lied, program, folder, number) for number in range(len(LIARS))]
         for task in tasks:
             for finding in task.result():

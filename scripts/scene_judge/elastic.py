@@ -88,6 +88,13 @@ class ElasticRod:
         self.damping = [2 * n("elastic_rod.damping_ratio") * math.sqrt(k * m) for k, m in zip(bend, self.m)]
         self.damping += [2 * n("elastic_rod.axial_damping_ratio") * math.sqrt(k * self.ma[j][j]) for j, k in enumerate(pull)]
 
+    @property
+    def frequencies(self) -> dict[str, float]:
+        """Natural angular frequency of each shape alone [rad/s], by its name: with the damping ratio at most 1, no motion of the shape
+        by itself is faster."""
+        masses = self.m + [self.ma[j][j] for j in range(self.along)]
+        return {name: math.sqrt(k / m) if m > 0 else math.inf for name, k, m in zip(self.names, self.stiffness, masses)}
+
     def first_moment(self, shapes: Sequence) -> tuple:
         """First moment of the rod about its big end, along and across the chord [kg m]."""
         eta, a = shapes[:self.across], shapes[self.across:]

@@ -11,6 +11,7 @@ from .rows import CONTACT, LEAST_BEND, RowChecks
 from .trace import Run
 
 BLURRED = 1e-2   # of a size: if the quadrature error exceeds this, the rows are too far apart to judge integrals
+RESOLVED = 0.25   # largest angle [rad] by which the oscillation of a shape may proceed between two rows
 SAFETY = 4.0   # the difference of two quadratures bounds the error of the better one if the rows resolve the motion; if
 #                they hardly do, four times the difference
 
@@ -98,18 +99,24 @@ def elastic_sizes(run: Run, speed: float) -> dict[str, float]:
     return found
 
 
-def worst_drift(run: Run, rates: dict[str, str], stencil: list[list[Stencil]]) -> tuple[float, float, str]:
+def worst_drift(run: Run, rates: dict[str, str], stencil: list[list[Stencil]], frequencies: dict[str, float]) -> tuple[float, float, str]:
     """The largest of |value - first - integral of its rate| minus its bound, divided by the value's size; that bound, and the name.
-    Values whose integral is not known to a hundredth of their size are left out."""
+    Values whose integral is not known to a hundredth of their size are left out. The acceleration of a stiff shape of a rod is the
+    small difference of its elastic force and the load, so an error of the state returns in it multiplied by the frequency squared;
+    between rows that do not resolve this frequency, the rate of the shape is not judged."""
     worst = (0.0, 0.0, "")
     least = sizes(run)
     for name, rate in rates.items():
         values, found = run.columns[name], integral(run.columns[rate], stencil)
         size = max(least[name], *map(abs, values), abs(found.value[-1]))
+        frequency = frequencies.get(name, 0.0)
         if SAFETY * max(found.bound) > BLURRED * size:   # contacts shorter than the distance of the rows
             continue
-        for value, by_rate, bound in zip(values, found.value, found.bound):
-            beyond = (abs(value - values[0] - by_rate) - SAFETY * bound) / size
+        first = 0
+        for i, (value, by_rate, bound) in enumerate(zip(values, found.value, found.bound)):
+            if i and frequency * (run.times[i] - run.times[i - 1]) > RESOLVED:
+                first = i
+            beyond = (abs(value - values[first] - by_rate + found.value[first]) - SAFETY * bound) / size
             if not beyond <= worst[0]:
                 worst = (beyond, SAFETY * bound / size, name)
     return worst
@@ -181,7 +188,8 @@ def balances(checks: RowChecks) -> Balances:
         rates |= {f"piston_{one}_rate": f"piston_{one}_acceleration" for one in ("offset", "tilt")}
     run, more = elastic_rates(run, bodies)
     rates |= more
-    found.drift, found.drift_bound, found.worst = worst_drift(run, rates, stencil)
+    frequencies = {f"{name}_rate": value for name, value in bodies.elastic.frequencies.items()} if bodies.elastic else {}
+    found.drift, found.drift_bound, found.worst = worst_drift(run, rates, stencil, frequencies)
     for joint in (checks, checks.crank_pin):
         if joint and joint.friction and joint.friction.has_bristles and joint.friction.gives_way >= LEAST_BEND:
             drift = bristle_drift(joint, pieces)

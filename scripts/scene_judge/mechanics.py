@@ -265,7 +265,7 @@ class Row:
             size += sum(k * abs(x) for k, x in zip(b.elastic.stiffness, self.shape_state[1:]))
             size += sum(b.mass) * sum(map(abs, self.shape_second[1:]))
         if self.is_loose or self.has_loose_crank_pin:   # accelerations of the rod are found from those of the piston
-            size += sum(b.mass[1:]) * math.hypot(self.ax, self.get.get("piston_offset_acceleration", 0.0))
+            size += sum(b.mass[1:]) * abs(self.ax)
         size += b.inertia[1] * (self.turn**2 + self.rod_turn**2 + abs(self.rod_turn_rate)) / b.rod_length
         return LAST_DIGITS * size * b.rod_length / abs(self.rod[0])   # the guide force is proportional to the rod's slope
 

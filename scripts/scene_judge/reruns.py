@@ -25,6 +25,7 @@ LATE = 3              # rows for which the run may be in another contact than it
 HORIZON = 0.2         # states are not compared if the allowed error exceeds this part of the coordinates' sizes
 FINEST = 1e-13        # smallest tolerance of a reference
 MOST_EVALUATIONS = 2_000_000_000   # largest value that a case may have
+SOFTER = 1e-2         # largest relative error of a crankshaft's stiffness
 BLOCKS = 10           # number of revolutions for the statistics
 LEAST_BLOCKS = 4      # smallest number of them beyond the horizon
 STEADY = 0.7          # smallest over largest crank speed for which statistics of revolutions are meaningful
@@ -164,10 +165,15 @@ class Reruns:
                 start[f"initial__{key}"] = ",".join(repr(value + sign() * size) for value in run.pair(f"initial.{key}"))
         return start
 
-    def neighbour_laws(self, off: float) -> dict[str, str]:
+    def neighbour_laws(self, off: float, reference: Run) -> dict[str, str]:
         """Settings of the laws' constants with a relative error of `off`: an error that acts all the time, as that of the steps
-        does."""
+        does. The stiffness of a crankshaft has the error that changes its twist by the angle `off`, the tolerance of an angle: the
+        shaft starts without twist, so the start cannot have this error."""
         changed = {}
+        twist = max(map(abs, reference.columns.get("crankshaft_twist", [0.0])))
+        if twist > 0:
+            stiffness = self.judged.number("crankshaft.torsional_stiffness")
+            changed["crankshaft__torsional_stiffness"] = repr(stiffness * (1 + self.random.choice((-1.0, 1.0)) * min(off / twist, SOFTER)))
         for key in ("joint.clearance", "contact.youngs_modulus", "lubrication.viscosity", "mechanism.piston_mass", "mechanism.crank_inertia",
                     "guide.stiffness", "guide.coefficient", "guide.viscous"):
             if self.judged.number(key) > 0:
@@ -195,7 +201,7 @@ class Reruns:
             if run.status or len(run.times) < 10:
                 return f"{name}: {run.summary.get('status', run.message)[:120]}"
         scales = scales_of(reference, states(reference))
-        changes = self.neighbour_start(scales, off), {**self.neighbour_start(scales, off), **self.neighbour_laws(off)}
+        changes = self.neighbour_start(scales, off), {**self.neighbour_start(scales, off), **self.neighbour_laws(off, reference)}
         neighbours = [self.reference(span, rows, change) for change in changes]
         for run in neighbours:   # at the edge of what is possible a neighbour may be refused
             if run.status:
