@@ -27,6 +27,8 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "scripts"))
 from assertions import Assertions  # noqa: E402
 from scene_judge.elastic import requested_columns  # noqa: E402
+from scene_judge.energy import SAFETY  # noqa: E402
+from scene_judge.quadrature import integral, stencils  # noqa: E402
 from scene_judge.trace import Run, merged, run_case  # noqa: E402
 from scene_judge.verdict import judge_files, judge_scene, summary_of  # noqa: E402
 
@@ -103,16 +105,15 @@ SCENES = {
     # a film of 1e-11 of the clearance, where wedge and squeeze nearly cancel
     "thin": ("sim_V", {"integrator.method": "'auto'", "integrator.revolutions": "0.1", "joint.clearance": "0.005", **TIGHT_CRANK_PIN}),
     # corners whose damping acts fully at a depth that is less than the error of the contact's begin
-    "sharp": ("sim_I_oscillating", {"integrator.method": "'auto'", "integrator.revolutions": "0.5", "contact": "none", "friction": "none",
-                                    "lubrication.law": "'finite_bearing'", "lubrication.variant": "'short'", "lubrication.viscosity": "88.39831674523636",
-                                    "asperities.roughness": "1.3146786873649557e-07", "asperities.density_product": "1", "asperities.sharpness": "0.1",
-                                    "asperities.coefficient": "0", "asperities.transition_speed": "3.4e-4",
-                                    "joint.bearing_length": "0.02", "guide.kind": "'clearance'", "guide.bore_clearance": "2.4438502086830547e-4",
-                                    "guide.skirt_top": "0.001", "guide.skirt_bottom": "0.002070999603267184", "guide.piston_radius": "0.0035705841968826607",
-                                    "guide.piston_inertia": "1", "guide.stiffness": "194502201286.36316", "guide.contact_law": "'impact'", "guide.damping": "0.7953737193324473",
-                                    "guide.full_damping_depth": "1e-12", "initial.piston_offset": "2.4438502086830547e-4",
-                                    "initial.piston_tilt": "0.07957833032876606", "initial.piston_offset_rate": "1",
-                                    "initial.piston_tilt_rate": "-1e-6"}),
+    "sharp": ("sim_I_oscillating", {
+        "integrator.method": "'auto'", "integrator.revolutions": "0.5", "contact": "none", "friction": "none", "lubrication.law": "'finite_bearing'",
+        "lubrication.variant": "'short'", "lubrication.cavitation": "'gumbel'", "lubrication.viscosity": "88.39831674523636", "joint.bearing_length": "0.02",
+        "guide.law": "'threlfall'", "guide.coefficient": "0", "guide.v1": "0.01", "guide.kind": "'clearance'",
+        "guide.bore_clearance": "0.00024438502086830547", "guide.skirt_top": "0.001", "guide.skirt_bottom": "0.002070999603267184",
+        "guide.piston_radius": "0.0035705841968826607", "guide.piston_inertia": "1", "guide.viscous": "0", "guide.stiffness": "194502201286.36316", "guide.exponent": "1.5",
+        "guide.contact_law": "'impact'", "guide.damping": "0.7953737193324473", "guide.full_damping_depth": "1e-12",
+        "initial.piston_offset": "0.00024438502086830547", "initial.piston_tilt": "0.07957833032876606", "initial.piston_offset_rate": "1",
+        "initial.piston_tilt_rate": "-1e-06"}),
     # long steps in a film between elastic walls
     "walls": ("sim_I", {"integrator.method": "'auto'", "integrator.revolutions": "1", "initial.crank_angle_deg": "180", "initial.eccentricity": "0, 0",
                         "initial.eccentricity_rate": "0, 0", "contact.law": "'hertz'", "contact.geometry": "'winkler'", "contact.dissipation": "27.574438901218087",
@@ -492,6 +493,14 @@ def test_judge(program: Path, folder: Path) -> None:
                 check(*finding)
 
 
+def test_quadrature() -> None:
+    """The error of an integral over a piece of one row is within its bound."""
+    times, pieces = [0.0, 1.0, 2.0, 3.0], [[0, 1, 2], [3]]
+    found = integral(times, stencils(times, pieces, joined=False))
+    check(abs(found.value[-1] - 4.5) <= SAFETY * found.bound[-1], "an integral over a piece of one row is within its bound",
+          f"{found.value[-1]} +- {found.bound[-1]}, 4.5 expected")
+
+
 def test_mutants(folder: Path, part: str) -> None:
     """Build and judge copies of the program with one wrong line, for the lines in src/part. Files that are unchanged are not
     compiled again."""
@@ -535,6 +544,7 @@ def main() -> int:
         if options.mutants is not None:
             test_mutants(Path(folder), options.mutants)
         else:
+            test_quadrature()
             test_judge(program, Path(folder))
     return assertions.report()
 

@@ -66,6 +66,8 @@ def stencils(times: list[float], pieces: list[list[int]], joined: bool) -> list[
             a, b = times[row - 1], times[row]
             fine = nearest(piece, position, NODES)
             coarse = nearest(half, (position + 1) // 2, NODES) if len(piece) > NODES else fine[:max(1, len(fine) - 1)]
+            if len(fine) == 1:   # one row only: the row before it bounds the error, although there may be a jump between them
+                coarse = [row - 1]
             ours.append(Stencil(fine, weights([times[k] for k in fine], a, b), coarse, weights([times[k] for k in coarse], a, b)))
         found.append(ours)
     return found
