@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import math
 
+from .energy import SAFETY
 from .films import Film
 from .mechanics import Row, Vector
 from .quadrature import stencils
 from .rows import FILM, RowChecks
 
-SAFETY = 4.0      # as for the other integrals
 BLURRED = 1e-3    # of the clearance: if the quadrature error exceeds this, the integral begins anew: the rows are too far apart
 LEAST_RATIO = 1e-3    # smallest eccentricity ratio at which the line of centres is known
 FULL_TURN = 48    # directions in which the force of a film is looked for

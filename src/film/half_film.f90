@@ -40,9 +40,8 @@ contains
   !> about 1e-15/(1 - eps).
   !>
   !> Multiplied by eps, the brackets contain only eps^2, eps A and eps B, and n is e/(c eps): no square root of the eccentricity is
-  !> needed. Of these only eps A depends on the speed of the pin, which is known last. Sums are arranged in pairs, and what the
-  !> turn of Sommerfeld's angle is multiplied by is computed while it is, since the latency of dependent operations determines the
-  !> time.
+  !> needed. Of these only eps A depends on the speed of the pin, which is known last. Since the latency of dependent operations
+  !> determines the time, sums are arranged in pairs, and g is multiplied last: its factors are computed at the same time as g.
   pure subroutine film_force(self, motion, force, moment)
     class(half_film_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion

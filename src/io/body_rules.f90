@@ -97,12 +97,14 @@ contains
     at%offset_rate = 0
     at%tilt_rate = 0
     call guide%place_corners(at, corner)
-    if (.not. guide%admits(at)) then
-      call values%forbid(abs(at%tilt) < 1, 'initial', 'piston_offset', 'must be shorter than bore_clearance + piston_radius', error)
-      call values%forbid(.true., 'initial', 'piston_tilt', 'must be > -1 and < 1', error)
+    if (guide%admits(at)) then
+      call values%forbid(maxval(corner%depth) > c%guide%piston_radius, 'initial', 'piston_tilt', &
+        'must not put a corner of the skirt into the bore''s wall by more than piston_radius', error)
+    else if (abs(at%tilt) < 1) then
+      call values%refuse('initial', 'piston_offset', 'must be shorter than bore_clearance + piston_radius', error)
+    else
+      call values%refuse('initial', 'piston_tilt', 'must be > -1 and < 1', error)
     end if
-    call values%forbid(maxval(corner%depth) > c%guide%piston_radius, 'initial', 'piston_tilt', &
-      'must not put a corner of the skirt into the bore''s wall by more than piston_radius', error)
   end subroutine check_piston_start
 
   !> Check that an elastic rod has mass between its pins, a shank that fits between them, and a positive definite mass matrix in its

@@ -62,7 +62,7 @@ contains
   !> Initialise the visitor.
   subroutine begin(self)
     class(schema_t), intent(inout) :: self
-    allocate (self%groups(50), self%keys(400))   ! more than there are; tests check these bounds
+    allocate (self%groups(50), self%keys(300))
     self%law_name = ''
     self%difference = ''
   end subroutine begin
@@ -193,11 +193,17 @@ contains
     call add_words(self%keys(place)%words, key%words)
   end subroutine collect
 
-  !> Add a key of a group to the table.
+  !> Add a key of a group to the table, which is enlarged if it is full.
   subroutine add_key(self, key, group)
     class(schema_t), intent(inout) :: self
     type(key_t), intent(in) :: key
     character(len=*), intent(in) :: group
+    type(key_t), allocatable :: larger(:)
+    if (self%n_keys == size(self%keys)) then
+      allocate (larger(2*self%n_keys))
+      larger(:self%n_keys) = self%keys
+      call move_alloc(larger, self%keys)
+    end if
     self%n_keys = self%n_keys + 1
     self%keys(self%n_keys) = key
     self%keys(self%n_keys)%group = group

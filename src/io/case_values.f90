@@ -277,7 +277,7 @@ contains
         if (.not. allocated(error)) call self%check_range(i, error)
       else if (self%keys(i)%only_here) then   ! other keys of the group may belong to other laws
         associate (key => self%keys(i))
-          call self%forbid(self%is_said(i), trim(key%group), trim(key%name), 'is for '//key%choice//' = '''//key%laws// &
+          if (self%is_said(i)) call self%refuse(trim(key%group), trim(key%name), 'is for '//key%choice//' = '''//key%laws// &
             ''' alone and must not be given with '''//self%values(self%place_of(trim(key%group), key%choice))%text//'''', error)
         end associate
       end if

@@ -259,9 +259,9 @@ contains
   subroutine wait_for_input(descriptor, milliseconds, is_there)
     integer, intent(in) :: descriptor, milliseconds
     logical, intent(out) :: is_there
-    integer(c_short), parameter :: to_read = 1
+    integer(c_short), parameter :: is_readable = 1   !! POLLIN
     type(poll_t) :: file
-    file = poll_t(descriptor, to_read, 0_c_short)
+    file = poll_t(descriptor, is_readable, 0_c_short)
     is_there = c_poll(file, 1_c_long, milliseconds) > 0
   end subroutine wait_for_input
 
