@@ -40,7 +40,7 @@ count "Fortran tests, release build" fpm @release_tests
 count "command line" tests/test_program.sh
 count "parameter studies" tests/test_sweep.sh
 count "independent judge of runs" tests/test_judge.py
-count "extreme scenes" scripts/extremes --scenes 120 --seed 5 --evaluations 100000 --judged 24 --known tests/known_findings.csv --quiet
+count "extreme scenes" scripts/extremes --scenes 120 --seed 5 --evaluations 100000 --judged 24 --limit 120 --known tests/known_findings.csv --quiet
 count "summaries against traces" tests/test_summaries.py
 count "force tables of films" tests/test_film_tables.py
 count "failures of the machine" tests/test_faults.py --kills 10

@@ -164,7 +164,7 @@ class Cache(unittest.TestCase):
                                    env=environment, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
         time.sleep(1)
         process.send_signal(signal.SIGTERM)   # background jobs of a shell ignore SIGINT
-        _, said = process.communicate(timeout=60)
+        _, said = process.communicate(timeout=600)
         self.assertEqual(process.returncode, 4, said)
         self.assertIn("interrupted before it began", said)
         self.assertLess(time.monotonic() - began, 40, "an interruption ends the program while it computes a table")

@@ -196,7 +196,7 @@ def check_reference(program: Path) -> None:
     for case in cases:
         with tempfile.TemporaryDirectory() as folder:
             options = ["-q", "--certify"] if case.stem in ("sim_I", "dry_0500um") else short
-            done = subprocess.run([program, *options, "-o", folder, case], cwd=ROOT, capture_output=True, text=True, timeout=60)
+            done = subprocess.run([program, *options, "-o", folder, case], cwd=ROOT, capture_output=True, text=True, timeout=600)
             check(done.returncode in (0, 4), f"{case.stem}: a run, done or stopped by its limit", done.stderr)
             for trace in Path(folder).glob("*.csv"):
                 rows = trace.read_text(encoding="utf-8").splitlines()

@@ -104,12 +104,12 @@ run -o "$work/r" -s integrator.revolutions=1 cases/sim_I.nml
 check "a run limited by stability reports the savings by auto" grep -q "method = 'auto' needs 1/[0-9]* of the evaluations" "$work/err"
 
 # a long run reports this while it runs, within its first second if no other program is running
-advised() {   # advised ARGUMENTS...: whether the run reports within 20 s that it is limited by stability; the run is then stopped
+advised() {   # advised ARGUMENTS...: whether the run reports within a minute that it is limited by stability; the run is then stopped
   : >"$work/err"
   "$gudgeon" -o "$work/r" -s output.ideal_twin=F "$@" >"$work/out" 2>"$work/err" &
   pid=$!
   tries=0
-  while [ $tries -lt 200 ] && ! [ -s "$work/err" ] && kill -0 $pid 2>/dev/null; do
+  while [ $tries -lt 600 ] && ! [ -s "$work/err" ] && kill -0 $pid 2>/dev/null; do
     sleep 0.1
     tries=$((tries + 1))
   done

@@ -191,8 +191,7 @@ def check_page(browser: Browser, page: Path, checks: Assertions, pictures: Path 
             browser.screenshot(pictures / f"{name}_contact.png")
 
     browser.run("gudgeon.seek(0); document.getElementById('play').click()")
-    time.sleep(1.0)
-    checks.check(browser.run("return gudgeon.playing && gudgeon.now > 0"), f"{name}: plays")
+    checks.check(browser.wait("gudgeon.playing && gudgeon.now > 0", 60), f"{name}: plays")
     browser.run("document.getElementById('play').click()")
     stopped = browser.run("return gudgeon.now")
     time.sleep(0.3)

@@ -88,7 +88,7 @@ def stopped_by_signals(gudgeon: Gudgeon, work: Path, file: Path, length: str, ki
             process.wait(timeout=chance.uniform(0.01, 2*duration/kills) if done < kills else 600)
         except subprocess.TimeoutExpired:
             process.send_signal(sign)
-            process.wait(timeout=60)
+            process.wait(timeout=600)
         done += process.returncode != 0
         process.communicate()
         if process.returncode == 0:

@@ -362,7 +362,7 @@ study large <<'END'
 END
 for design in latin_hypercube sobol; do
   sed "s/latin_hypercube/$design/" "$work/large.nml" >"$work/large_$design.nml"
-  timeout -s KILL 10 "$gudgeon" sweep --check "$work/large_$design.nml" >"$work/out"
+  timeout -s KILL 100 "$gudgeon" sweep --check "$work/large_$design.nml" >"$work/out"
   check "a large $design is checked, status $?" [ "$(cat "$work/out")" = \
     "$work/large_$design.nml: correct, 10000000 runs (100000 of them checked)" ]
 done
@@ -371,7 +371,7 @@ study large_grid <<'END'
 &parameter key = 'joint.clearance', from = 1e-5, to = 4e-5, count = 3000 /
 &parameter key = 'lubrication.viscosity', from = 0.005, to = -1e-9, count = 3000 /
 END
-timeout -s KILL 10 "$gudgeon" sweep --check "$work/large_grid.nml" >"$work/out" 2>"$work/err"
+timeout -s KILL 100 "$gudgeon" sweep --check "$work/large_grid.nml" >"$work/out" 2>"$work/err"
 check "a large grid with a wrong last value, status $?" grep -q 'run 3000: .*viscosity = -1.000000000E-09: must be > 0' "$work/err"
 for signal in INT TERM; do
   timeout -k 10 -s $signal 0.3 "$gudgeon" sweep -o "$work/large" "$work/large.nml" 2>/dev/null

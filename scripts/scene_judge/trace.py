@@ -120,7 +120,7 @@ def read_run(folder: Path, name: str, status: int = 0, message: str = "") -> Run
     return run
 
 
-def run_case(program: Path, case: Path, settings: dict[str, str], limit: float = 60.0) -> Run:
+def run_case(program: Path, case: Path, settings: dict[str, str], limit: float = 300.0) -> Run:
     """Run one case with additional settings, in a temporary folder. Status -1: it took more than `limit` seconds."""
     with tempfile.TemporaryDirectory(prefix="judged") as out:
         words = [str(program), "-q", "-j", "1", "-o", out]

@@ -83,7 +83,7 @@ def judge_files(run: Run, resolved: bool = True) -> Verdict:
     return verdict
 
 
-def judge_scene(program: Path, case: Path, settings: dict[str, str], limit: float = 60.0) -> Verdict:
+def judge_scene(program: Path, case: Path, settings: dict[str, str], limit: float = 300.0) -> Verdict:
     """Run a scene with rows at every step and on a fine grid, judge them, and compare with runs by the other method."""
     plain = {key: value for key, value in settings.items() if not key.startswith("output.")}
     plain |= {"output.ideal_twin": ".false.", "output.digits": "17"}
