@@ -34,7 +34,9 @@ import pandas as pd  # noqa: E402
 from gudgeon_plots.measured import FOLDER, write_table  # noqa: E402
 from gudgeon_plots.program import release_program  # noqa: E402
 
-STATES = ("crank_angle", "rod_angle", "piston_position", "crank_speed", "rod_speed", "piston_velocity", "eccentricity_x", "eccentricity_y")
+STATES = ("crank_angle", "rod_angle", "piston_position", "crank_speed", "rod_speed", "piston_velocity", "eccentricity_x", "eccentricity_y",
+          "eccentricity_rate_x", "eccentricity_rate_y", "film_eccentricity_x", "film_eccentricity_y", "piston_offset", "piston_tilt",
+          "piston_offset_rate", "piston_tilt_rate", "rod_stretch", "rod_mid_deflection", "crankshaft_twist", "flywheel_speed")
 WORDS = """Certified and true time up to which no coordinate or speed is off by more than 1e-3 of its range; the time up to which two runs at 1e-13,
 by `auto` and by Radau, agree within 1e-5 of the range, so that the truth is known; the end of the run; the error that the certificate
 states, and the true one, up to the certified time; digits; impacts matched. The runs at 1e-13 end a quarter beyond the certified time:

@@ -30,9 +30,13 @@ module certificate
   real(dp), parameter :: loosest_tolerance = 1e-3_dp  !! tolerances above this one count as this one
   integer, parameter :: rows_per_revolution = 10000, fewest_rows = 2000, most_rows = 60000
 
-  !> Columns that are coordinates or speeds, without units and without the prefix of the pin.
-  character(len=*), parameter :: state_names(8) = [character(len=16) :: 'crank_angle', 'rod_angle', 'piston_position', &
-    'crank_speed', 'rod_speed', 'piston_velocity', 'eccentricity_x', 'eccentricity_y']
+  !> Columns that are coordinates or speeds, without units and without the prefix of the pin. Of an elastic rod they are its stretch
+  !> and its deflection midway; the range of a single shape may be a thousandth of theirs. Bristles are none: their deflection jumps
+  !> with a contact, as a force does.
+  character(len=*), parameter :: state_names(*) = [character(len=19) :: 'crank_angle', 'rod_angle', 'piston_position', &
+    'crank_speed', 'rod_speed', 'piston_velocity', 'eccentricity_x', 'eccentricity_y', 'eccentricity_rate_x', &
+    'eccentricity_rate_y', 'film_eccentricity_x', 'film_eccentricity_y', 'piston_offset', 'piston_tilt', &
+    'piston_offset_rate', 'piston_tilt_rate', 'rod_stretch', 'rod_mid_deflection', 'crankshaft_twist', 'flywheel_speed']
 
   type :: certificate_t
     logical :: is_made = .false.
