@@ -459,7 +459,15 @@ contains
     call refused_on(check, bodies, [still, ends], 'x.nml: &output interval: required with crank_speed = 0 (s)')
     call accepted(check, bodies, 'a run from rest', [still, ends, 'output.interval=0.01    '])
     call refused_on(check, bodies, [character(len=24) :: ends, 'output.start_time=1'], &
-                    'x.nml: &output start_time = 1: must be < end_time (s)')
+                    'x.nml: &output start_time = 1: must be before the end of the run at 1 (s)')
+    call refused_with(check, 'output.start_time=1', &
+                      'x.nml: &output start_time = 1: must be before the end of the run at 0.125664 (s)')
+    call refused_on(check, bodies, [character(len=32) :: 'integrator.crank_revolutions=2', 'drive.kind=constant_speed', &
+                    'output.start_time=1'], &
+                    'x.nml: &output start_time = 1: must be before the end of the run at 0.125664 (s)')
+    call accepted(check, bodies, 'rows from a time on that a free crank may reach', [character(len=32) :: &
+                  'integrator.crank_revolutions=2', 'output.start_time=1'])
+    call test_film_times(check)
     call refused_with(check, 'output.interval=1e-20', 'x.nml: &output interval = 1e-20: asks for more than 1e9 rows (s)')
     call refused_with(check, 'output.digits=8', 'x.nml: &output digits = 8: must be >= 9 and <= 17')
     call refused_with(check, 'output.digits=18', 'x.nml: &output digits = 18: must be >= 9 and <= 17')
@@ -496,6 +504,29 @@ contains
     call test_sampling(check)
     call test_periods(check)
   end subroutine test_ends_of_runs
+
+  !> Times of pressure fields: a list of numbers, or first:last:count, within the run.
+  subroutine test_film_times(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: filmed = whole//'&lubrication viscosity=0.01 /', length = 'joint.bearing_length=0.01', &
+      key = 'output.film_times=', message = 'x.nml: &output film_times = '
+    character(len=12), parameter :: wrong(*) = [character(len=12) :: '1e-3 2e-3', ',1e-3', '1e-3,', '1e-3,,2e-3', '1-3', &
+      '2e-3,1e-3', '0:1e-3:3:7', '0:1e-3:3 4', '0:1e-3:3,', '0::3', '0:1e-3:2.5', '0:1e-3:1', '1e-3:0:3', '-1e-3', &
+      '1..e-3', '1e', '.', '2*1e-3']
+    character(len=12), parameter :: right(*) = [character(len=12) :: '0', '.5e-3 , 1D-3', '+1.e-3', '0:1e-3:3', '0 : 1e-3 : 3']
+    integer :: i
+    do i = 1, size(wrong)
+      call refused_on(check, filmed, [character(len=32) :: length, key//wrong(i)], message//trim(wrong(i))// &
+                      ': must be times >= 0 in rising order with commas, or from:to:count')
+    end do
+    do i = 1, size(right)
+      call accepted(check, filmed, 'film_times = '//right(i), [character(len=32) :: length, key//right(i)])
+    end do
+    call refused_on(check, filmed, [character(len=32) :: length, key//'0,1'], message// &
+                    '0,1: must not be after the end of the run at 0.125664 s')
+    call refused_on(check, filmed, [character(len=32) :: length, key//'0:1:3'], message// &
+                    '0:1:3: must not be after the end of the run at 0.125664 s')
+  end subroutine test_film_times
 
   !> Runs until the motion repeats.
   subroutine test_periods(check)

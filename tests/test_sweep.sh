@@ -48,6 +48,19 @@ for kind in runs cycles strobe; do
 done
 same "chunks" "$work/chunks"
 
+# a start of the rows that only the slow run reaches: without traces the other does not fail
+sed 's/ideal_twin = .true./start_time = 0.05/' "$work/base.nml" >"$work/late_rows.nml"
+for traces in none all; do
+  study late_$traces <<END
+&study case = 'late_rows.nml', traces = '$traces' /
+&parameter key = 'initial.crank_speed', values = 250, 1000 /
+END
+done
+run sweep --check "$work/late_none.nml"
+check "late rows that no run writes" [ "$status" = 0 -a "$(cat "$work/out")" = "$work/late_none.nml: correct, 2 runs" ]
+run sweep --check "$work/late_all.nml"
+check "a run that would write no row fails" [ "$(cat "$work/out")" = "$work/late_all.nml: 2 runs, 1 would fail" ]
+
 # the crank pin: its columns come after those of every study and are empty if it is ideal
 cp cases/joints/both_pins.nml "$work/both.nml"
 study pins <<'END'

@@ -15,6 +15,7 @@ module case_rules
   public :: check_rules, case_warning
 
   real(dp), parameter :: most_samples = 1e9_dp   !! largest number of rows that a run may ask for
+  real(dp), parameter :: rounding = 1e-12_dp     !! relative difference of two times that counts as none
 
 contains
 
@@ -291,6 +292,9 @@ contains
       call forbid(.not. allocated(times), 'output', 'film_times', &
         'must be times >= 0 in rising order with commas, or from:to:count')
       call forbid(.not. has_film, 'output', 'film_times', 'needs a film with a pressure: pinkus_sternlicht or finite_bearing')
+      if (allocated(error)) return
+      call forbid(times(size(times)) > known_end()*(1 + rounding), 'output', 'film_times', &
+        'must not be after the end of the run at '//short_text(known_end())//' s')
     end subroutine check_film_times
 
     !> Check that there is one gas model at most, with an allowed period.
@@ -356,6 +360,17 @@ contains
       end associate
     end subroutine check_periods
 
+    !> The end of the run, or its latest end, if the case says it [s]; the largest number if it depends on the motion.
+    pure real(dp) function known_end()
+      known_end = huge(known_end)
+      if (c%run%is_until_periodic()) return
+      if (c%integrator%end_time > 0) known_end = c%integrator%end_time
+      if (.not. turns) return
+      if (c%integrator%revolutions > 0) known_end = min(known_end, c%integrator%revolutions*two_pi/abs(c%initial%crank_speed))
+      if (c%integrator%crank_revolutions > 0 .and. c%drive%kind == 'constant_speed') known_end = &
+        min(known_end, c%integrator%crank_revolutions*two_pi/abs(c%initial%crank_speed))
+    end function known_end
+
     !> Check that the spacing of the rows is given, and that there are not too many rows.
     subroutine check_output()
       real(dp) :: samples, speed, end_time
@@ -368,8 +383,8 @@ contains
           call forbid(abs(output%angle_origin_deg) > 0, 'output', 'angle_origin_deg', 'is for sampling = ''crank_angle'' alone')
           call forbid(output%interval <= 0 .and. .not. turns, 'output', 'interval', 'required with crank_speed = 0')
         end if
-        call forbid(c%integrator%end_time > 0 .and. output%start_time >= c%integrator%end_time .and. &
-          .not. c%run%is_until_periodic(), 'output', 'start_time', 'must be < end_time')
+        call forbid(output%start_time >= known_end(), 'output', 'start_time', 'must be before the end of the run at '// &
+          short_text(known_end()))
         call forbid(verify(output%columns, letters) > 0 .or. output%columns == '', 'output', 'columns', &
           'must be ''standard'' or names of columns without their units')
         call check_film_times()

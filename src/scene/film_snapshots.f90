@@ -39,37 +39,73 @@ module film_snapshots
 
 contains
 
-  !> Read times from a text: numbers separated by commas, or first:last:count. Not allocated if the text is neither.
-  subroutine read_times(text, times)
+  !> Read times from a text: numbers separated by commas, in rising order, or first:last:count. Not allocated if the text is
+  !> neither.
+  pure subroutine read_times(text, times)
     character(len=*), intent(in) :: text
     real(dp), allocatable, intent(out) :: times(:)
-    real(dp) :: ends(2), numbers(most_times)
-    integer :: status, count, i
-    character(len=len(text)) :: list
+    real(dp) :: numbers(most_times)
+    logical :: all_read
+    integer :: n, count, i
     if (scan(text, ':') > 0) then
-      list = text
-      do i = 1, len(list)
-        if (list(i:i) == ':') list(i:i) = ','
-      end do
-      if (verify(trim(list), '0123456789+-.eEdD, ') > 0) return
-      read (list, *, iostat=status) ends, count
-      if (status /= 0 .or. count < 2 .or. count > most_times) return
-      if (.not. (ends(1) >= 0 .and. ends(2) > ends(1) .and. ends(2) < huge(1.0_dp))) return
-      times = [(ends(1) + (ends(2) - ends(1))*(i - 1)/(count - 1), i=1, count)]
+      call read_numbers(text, ':', numbers, n, all_read)
+      if (.not. all_read .or. n /= 3) return
+      if (.not. (numbers(1) >= 0 .and. numbers(2) > numbers(1))) return
+      if (.not. (numbers(3) >= 2 .and. numbers(3) <= most_times)) return
+      count = nint(numbers(3))
+      if (abs(numbers(3) - count) > 0) return
+      times = [(numbers(1) + (numbers(2) - numbers(1))*(i - 1)/(count - 1), i=1, count)]
       return
     end if
-    if (verify(text, '0123456789+-.eEdD, ') > 0) return
-    count = 1
-    do i = 1, len(text)
-      if (text(i:i) == ',') count = count + 1
-    end do
-    if (count > most_times) return
-    read (text, *, iostat=status) numbers(:count)
-    if (status /= 0) return
-    if (.not. all(numbers(:count) >= 0 .and. numbers(:count) < huge(1.0_dp))) return
-    if (any(numbers(2:count) <= numbers(:count - 1))) return
-    times = numbers(:count)
+    call read_numbers(text, ',', numbers, n, all_read)
+    if (.not. all_read) return
+    if (any(numbers(:n) < 0) .or. any(numbers(2:n) <= numbers(:n - 1))) return
+    times = numbers(:n)
   end subroutine read_times
+
+  !> Read the numbers of a text that a character separates, as many as `numbers` can hold.
+  pure subroutine read_numbers(text, separator, numbers, n, all_read)
+    character(len=*), intent(in) :: text
+    character, intent(in) :: separator
+    real(dp), intent(out) :: numbers(:)
+    integer, intent(out) :: n
+    logical, intent(out) :: all_read   !! each part of the text is one number, and there are not too many
+    character(len=:), allocatable :: part
+    integer :: first, after, status
+    n = 0
+    numbers = 0
+    all_read = .false.
+    first = 1
+    do while (first <= len(text) + 1)
+      after = index(text(first:), separator) + first - 1
+      if (after < first) after = len(text) + 1
+      part = trim(adjustl(text(first:after - 1)))
+      if (n == size(numbers) .or. .not. is_number(part)) return
+      n = n + 1
+      read (part, *, iostat=status) numbers(n)
+      if (status /= 0 .or. .not. abs(numbers(n)) < huge(1.0_dp)) return
+      first = after + 1
+    end do
+    all_read = .true.
+  end subroutine read_numbers
+
+  !> Whether a text is one number: digits with at most one point, and behind a letter e or d at most one whole exponent. (A Fortran
+  !> `read` also takes 1-2 for 0.01, and the first of two numbers.)
+  pure logical function is_number(text)
+    character(len=*), intent(in) :: text
+    integer :: letter, first, exponent
+    character(len=*), parameter :: digits = '0123456789'
+    letter = scan(text//'e', 'eEdD')
+    first = 1
+    if (scan(text, '+-') == 1) first = 2
+    exponent = letter + 1
+    if (exponent <= len(text)) then
+      if (scan(text(exponent:exponent), '+-') == 1) exponent = exponent + 1
+    end if
+    is_number = verify(text(first:letter - 1), digits//'.') == 0 .and. scan(text(first:letter - 1), digits) > 0 .and. &
+      index(text(:letter - 1), '.') == index(text(:letter - 1), '.', back=.true.)
+    if (letter <= len(text)) is_number = is_number .and. exponent <= len(text) .and. verify(text(exponent:), digits) == 0
+  end function is_number
 
   !> Prepare for a scene that is ready to run.
   subroutine prepare(self, text, scene)

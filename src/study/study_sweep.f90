@@ -80,6 +80,10 @@ contains
       if (study%table /= '') at = printable(study%table, 200)//':1: '
       call sweep%base%prepare(values, study%case, design%keys, at, error)
       if (allocated(error)) return
+      if (study%traces == 'none') then   ! no run writes what these ask for; a run may end before them
+        sweep%base%case%output%start_time = 0
+        sweep%base%case%output%film_times = ''
+      end if
       design%is_whole = sweep%base%is_whole
       do i = 1, size(study%varied)
         if (size(study%varied(i)%list) > 0 .or. sweep%base%is_number(i)) cycle
