@@ -33,9 +33,6 @@ module collocation
   integer, parameter :: n_formulas = 3         !! formulas of 3, 5 and 7 stages
   integer, parameter :: most_iterations = 10   !! largest number of iterations in a step
   integer, parameter :: most_halvings = 8      !! largest number of halvings of a Newton step that leaves the model
-  real(dp), parameter :: least_contraction = 1e-3_dp   !! assumed after a single iteration, which gives no estimate
-  real(dp), parameter :: least_trust = 0.03_dp  !! least value assumed from the last step, since the contraction may be much weaker
-                                                !! at the beginning of a contact
 
   type :: collocation_t
     type(radau_formula_t) :: formula(n_formulas)
@@ -47,11 +44,11 @@ module collocation
     real(dp) :: t = 0                      !! beginning of the step
     real(dp) :: h = 0                      !! its size
     real(dp) :: goal = 0                   !! required remainder of Newton's iteration, in the norm of the weights
+    real(dp) :: rounding = 0               !! size of a Newton step that is only rounding, in the same norm
     real(dp), allocatable :: base(:)       !! y at the beginning of the step, (n)
     real(dp), allocatable :: inverse_weight(:)   !! weights of the error norm, (n)
     integer :: evaluations = 0             !! evaluations of the right-hand side, to be collected by the owner
     real(dp) :: contraction = 0            !! contraction of Newton's method in the last trial
-    real(dp) :: trust = 1                  !! contraction/(1 - contraction): estimated remainder relative to a Newton step
     integer :: iterations = 0              !! number of iterations in the last trial
     integer :: stages_done = 0             !! number of stages of the last accepted step, 0 after a start
     real(dp) :: h_done = 0                 !! its size
@@ -107,8 +104,9 @@ module collocation
       logical, intent(in) :: ahead
     end subroutine guess_stages
 
-    !> Simplified Newton iteration for the stage increments. Its contraction is also assumed for the first iteration of the next
-    !> step.
+    !> Simplified Newton iteration for the stage increments. A single iteration, which does not measure the contraction, is believed
+    !> only if the defect of the initial guess itself is small: Newton steps are small also where the equations are far from solved, if
+    !> the Jacobian is much stiffer than the forces (a corner of a skirt whose strong damping ends, since it never pulls).
     module subroutine iterate(self, problem, outcome)
       class(collocation_t), intent(inout) :: self
       class(ode_problem_t), intent(in) :: problem
@@ -171,11 +169,11 @@ contains
     call archive%exchange(self%t)
     call archive%exchange(self%h)
     call archive%exchange(self%goal)
+    call archive%exchange(self%rounding)
     call archive%exchange(self%base)
     call archive%exchange(self%inverse_weight)
     call archive%exchange(self%evaluations)
     call archive%exchange(self%contraction)
-    call archive%exchange(self%trust)
     call archive%exchange(self%iterations)
     call archive%exchange(self%stages_done)
     call archive%exchange(self%h_done)

@@ -5,6 +5,7 @@ submodule (collocation) collocation_newton
 
   !> Newton steps larger than this, in tolerances, are not made: forces and their squares may overflow there.
   real(dp), parameter :: farthest = 1e30_dp
+  real(dp), parameter :: first_trust = 0.1_dp   !! part of the defect that remains after one iteration, whatever the Jacobian
 contains
 
   module procedure decompose_matrices
@@ -52,33 +53,39 @@ contains
   end procedure decompose_matrices
 
   module procedure iterate
-    real(dp) :: change, last_change, ratio, last_ratio
+    real(dp) :: change, defect, last_change, ratio, last_ratio, rest
     integer :: iteration, halvings
     logical :: inside
 
     last_change = 0
     last_ratio = 0
-    self%trust = max(least_trust, max(self%trust, epsilon(1.0_dp))**0.8_dp)
-    self%contraction = least_contraction
+    self%contraction = 0
     outcome = newton_outside
     call evaluate_stages(self, problem, inside)
     if (.not. inside) return
     do iteration = 1, most_iterations
       self%iterations = iteration
-      call newton_step(self, change)
+      if (last_change > 0) then
+        call newton_step(self, change)
+      else
+        call newton_step(self, change, defect)
+        rest = first_trust*defect
+      end if
       outcome = newton_diverged
       if (.not. change < farthest) return
-      if (last_change > 0) then
+      if (change <= self%rounding) then
+        rest = 0
+      else if (last_change > 0) then
         ratio = change/last_change
         self%contraction = ratio
         if (last_ratio > 0) self%contraction = sqrt(ratio*last_ratio)
         last_ratio = ratio
         if (self%contraction >= 0.99_dp) return
-        self%trust = self%contraction/(1 - self%contraction)
-        if (self%trust*change*self%contraction**(most_iterations - 1 - iteration) > self%goal) return
+        rest = change*self%contraction/(1 - self%contraction)
+        if (rest*self%contraction**(most_iterations - 1 - iteration) > self%goal) return
       end if
       last_change = change
-      if (self%trust*change <= self%goal) then
+      if (rest <= self%goal) then
         call expand_stages(self, .true.)
         outcome = newton_converged
         return
@@ -90,7 +97,6 @@ contains
         self%w = self%w - self%dw
         last_change = 0
         last_ratio = 0
-        self%trust = 1
         call evaluate_stages(self, problem, inside)
       end do
       outcome = newton_outside
@@ -101,9 +107,10 @@ contains
 
   !> One Newton step: self%dw is added to self%w; `change` is its size relative to the inner tolerance, including its effect on the
   !> positions. The right-hand sides at the stages belong to self%w. A step that is too large is not made.
-  subroutine newton_step(self, change)
+  subroutine newton_step(self, change, defect)
     class(collocation_t), intent(inout) :: self
     real(dp), intent(out) :: change
+    real(dp), intent(out), optional :: defect   !! h times the residual of Newton's equations, in the same norm
     integer :: j, m, k, s
 
     m = self%m
@@ -112,12 +119,14 @@ contains
     associate (formula => self%formula(self%level), h => self%h)
       call combine(k, s, 1.0_dp, formula%t_inverse, self%f_stage(m + 1, 1), size(self%f_stage, 1), self%dw, k)
       call subtract_shifted(k, s, formula%gamma/h, formula%alpha, formula%beta, 1/h, self%w, self%dw)
+      if (present(defect)) defect = h*mean_size(k, s, self%step_weight, self%dw)
       call solve(self%e1, self%pivot1, self%dw(:, 1))
       do j = 1, s/2
         call solve(self%e2(:, :, 2*j - 1), self%e2(:, :, 2*j), self%pivot2(:, j), self%dw(:, 2*j), self%dw(:, 2*j + 1))
       end do
     end associate
-    call add_step(k, s, self%step_weight, self%dw, self%w, change)
+    change = mean_size(k, s, self%step_weight, self%dw)
+    if (change < farthest) self%w(:, :s) = self%w(:, :s) + self%dw(:, :s)
   end subroutine newton_step
 
   !> Subtract the terms with w from the right-hand sides: the real eigenvalue times the first column, the complex ones times pairs
@@ -141,26 +150,23 @@ contains
     end do
   end subroutine subtract_shifted
 
-  !> Add a Newton step to w and compute its size. A step that is too large is not made.
-  pure subroutine add_step(k, s, weight, dw, w, change)
+  !> Root mean square of the weighted components at all stages; the largest number if one is too large.
+  pure real(dp) function mean_size(k, s, weight, x)
     integer, intent(in) :: k, s
-    real(dp), intent(in) :: weight(k), dw(k, s)
-    real(dp), intent(inout) :: w(k, s)
-    real(dp), intent(out) :: change
+    real(dp), intent(in) :: weight(k), x(k, s)
     real(dp) :: total, part
     integer :: i, j
-    change = huge(change)
+    mean_size = huge(mean_size)
     total = 0
     do j = 1, s
       do i = 1, k
-        part = abs(dw(i, j)*weight(i))
+        part = abs(x(i, j)*weight(i))
         if (.not. part < farthest) return
         total = total + part**2
       end do
     end do
-    change = sqrt(total/(s*max(k, 1)))
-    w = w + dw
-  end subroutine add_step
+    mean_size = sqrt(total/(s*max(k, 1)))
+  end function mean_size
 
   !> Increments of all components at the stages: rates from w, positions by collocation, quadratures from the last evaluation.
   subroutine expand_stages(self, with_quadratures)

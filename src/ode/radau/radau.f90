@@ -314,7 +314,6 @@ contains
     if (.not. inside) return
     call problem%jacobian(self%t + self%h, self%y_try, self%stages%a_p, self%stages%a_v)
     self%statistics%jacobians = self%statistics%jacobians + 1
-    self%stages%trust = 1
     call self%stages%solve_stages(problem, guess_ahead, outcome)
   end subroutine try_other_jacobian
 

@@ -24,6 +24,7 @@ contains
     self%stages%t = t
     self%stages%base = y
     self%stages%h = h
+    self%stages%rounding = 10*epsilon(1.0_dp)/inner_tolerance(working_tolerance(self), self%stages%stages())
     self%stages%goal = newton_goal(self)
     if (t < self%careful_until) self%stages%goal = landing_goal(self)
   end procedure set_out
@@ -37,7 +38,7 @@ contains
     real(dp) :: tolerance, s
     s = self%stages%stages()
     tolerance = inner_tolerance(working_tolerance(self), self%stages%stages())
-    newton_goal = max(10*epsilon(1.0_dp)/tolerance, min(0.03_dp, 2*tolerance**(2*s/(s + 1) - 1)))
+    newton_goal = max(self%stages%rounding, min(0.03_dp, 2*tolerance**(2*s/(s + 1) - 1)))
   end procedure newton_goal
 
   module procedure estimate_error
@@ -74,10 +75,7 @@ contains
       self%since_change = 0
       if (self%stages%contraction > 0.8_dp .and. .not. self%first) self%stages%level = max(1, self%stages%level - 1)
     end select
-    if (outcome /= try_error .and. outcome /= try_too_deep) then
-      self%stages%trust = 1
-      self%cautious = cautious_steps
-    end if
+    if (outcome /= try_error .and. outcome /= try_too_deep) self%cautious = cautious_steps
     self%failed = .true.
     self%h = factor*self%h
     call weigh(self)

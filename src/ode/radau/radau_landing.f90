@@ -54,7 +54,6 @@ contains
     class(ode_problem_t), intent(in) :: problem
     integer, intent(in) :: try
     real(dp) :: t
-    self%stages%trust = 1
     if (try == 1) return
     t = self%t_old
     self%y_try = self%y_old

@@ -26,7 +26,6 @@ contains
     self%fresh_jacobian = .false.
     self%since_change = 0
     self%cautious = 0
-    self%stages%trust = 1
     self%stages%level = first_level(self)
     call weigh(self)
     call choose_first_step(self, problem)
