@@ -5,7 +5,6 @@ submodule (collocation) collocation_newton
 
   !> Newton steps larger than this, in tolerances, are not made: forces and their squares may overflow there.
   real(dp), parameter :: farthest = 1e30_dp
-  real(dp), parameter :: first_trust = 0.1_dp   !! part of the defect that remains after one iteration, whatever the Jacobian
 contains
 
   module procedure decompose_matrices
@@ -53,7 +52,7 @@ contains
   end procedure decompose_matrices
 
   module procedure iterate
-    real(dp) :: change, defect, last_change, ratio, last_ratio, rest
+    real(dp) :: change, defect, last_defect, last_change, ratio, last_ratio, rest
     integer :: iteration, halvings
     logical :: inside
 
@@ -65,18 +64,14 @@ contains
     if (.not. inside) return
     do iteration = 1, most_iterations
       self%iterations = iteration
-      if (last_change > 0) then
-        call newton_step(self, change)
-      else
-        call newton_step(self, change, defect)
-        rest = first_trust*defect
-      end if
+      call newton_step(self, change, defect)
+      rest = defect
       outcome = newton_diverged
       if (.not. change < farthest) return
       if (change <= self%rounding) then
         rest = 0
       else if (last_change > 0) then
-        ratio = change/last_change
+        ratio = max(change/last_change, defect/last_defect)
         self%contraction = ratio
         if (last_ratio > 0) self%contraction = sqrt(ratio*last_ratio)
         last_ratio = ratio
@@ -85,6 +80,7 @@ contains
         if (rest*self%contraction**(most_iterations - 1 - iteration) > self%goal) return
       end if
       last_change = change
+      last_defect = defect
       if (rest <= self%goal) then
         call expand_stages(self, .true.)
         outcome = newton_converged
@@ -106,11 +102,11 @@ contains
   end procedure iterate
 
   !> One Newton step: self%dw is added to self%w; `change` is its size relative to the inner tolerance, including its effect on the
-  !> positions. The right-hand sides at the stages belong to self%w. A step that is too large is not made.
+  !> positions, and `defect` is h times the residual of the equations before it, in the same norm. The right-hand sides at the stages
+  !> belong to self%w. A step that is too large is not made.
   subroutine newton_step(self, change, defect)
     class(collocation_t), intent(inout) :: self
-    real(dp), intent(out) :: change
-    real(dp), intent(out), optional :: defect   !! h times the residual of Newton's equations, in the same norm
+    real(dp), intent(out) :: change, defect
     integer :: j, m, k, s
 
     m = self%m
@@ -119,7 +115,7 @@ contains
     associate (formula => self%formula(self%level), h => self%h)
       call combine(k, s, 1.0_dp, formula%t_inverse, self%f_stage(m + 1, 1), size(self%f_stage, 1), self%dw, k)
       call subtract_shifted(k, s, formula%gamma/h, formula%alpha, formula%beta, 1/h, self%w, self%dw)
-      if (present(defect)) defect = h*mean_size(k, s, self%step_weight, self%dw)
+      defect = h*mean_size(k, s, self%step_weight, self%dw)
       call solve(self%e1, self%pivot1, self%dw(:, 1))
       do j = 1, s/2
         call solve(self%e2(:, :, 2*j - 1), self%e2(:, :, 2*j), self%pivot2(:, j), self%dw(:, 2*j), self%dw(:, 2*j + 1))
@@ -150,13 +146,13 @@ contains
     end do
   end subroutine subtract_shifted
 
-  !> Root mean square of the weighted components at all stages; the largest number if one is too large.
+  !> Root mean square of the weighted components at all stages; `farthest` if one of them is larger.
   pure real(dp) function mean_size(k, s, weight, x)
     integer, intent(in) :: k, s
     real(dp), intent(in) :: weight(k), x(k, s)
     real(dp) :: total, part
     integer :: i, j
-    mean_size = huge(mean_size)
+    mean_size = farthest
     total = 0
     do j = 1, s
       do i = 1, k

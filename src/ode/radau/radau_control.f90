@@ -38,7 +38,7 @@ contains
     real(dp) :: tolerance, s
     s = self%stages%stages()
     tolerance = inner_tolerance(working_tolerance(self), self%stages%stages())
-    newton_goal = max(self%stages%rounding, min(0.03_dp, 2*tolerance**(2*s/(s + 1) - 1)))
+    newton_goal = max(self%stages%rounding, min(0.1_dp, 6*tolerance**(2*s/(s + 1) - 1)))
   end procedure newton_goal
 
   module procedure estimate_error
