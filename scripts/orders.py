@@ -49,24 +49,28 @@ def arguments() -> argparse.Namespace:
 
 
 def main() -> int:
-    options = arguments()
+    try:
+        return analyse(arguments())
+    except MissingResult as problem:
+        print(f"orders.py: {problem}", file=sys.stderr)
+        return 1
+
+
+def analyse(options: argparse.Namespace) -> int:
+    """Write the tables and the pictures of one case. Raises MissingResult for a trace that lacks what they need."""
     given = Path(options.case)
     name = given.name.removesuffix(".nml").removesuffix(".csv")
     directory = options.results or (given.parent if given.suffix == ".csv" else TOP / "results")
     results = Results(directory, case=given if given.suffix == ".nml" and given.exists() else None)
     out = options.out or directory
     forms = options.format or ["png"]
-    try:
-        if not results.path(name).exists():
-            results.make([name])
-        cycles = whole_cycles(results[name], options.settle, options.cycles)
-        columns = chosen(cycles, options.columns)
-        tables = {column: orders(cycles, column) for column in columns}
-    except MissingResult as problem:
-        print(f"orders.py: {problem}", file=sys.stderr)
-        return 1
-    out.mkdir(parents=True, exist_ok=True)
+    if not results.path(name).exists():
+        results.make([name])
+    cycles = whole_cycles(results[name], options.settle, options.cycles)
+    columns = chosen(cycles, options.columns)
+    tables = {column: orders(cycles, column) for column in columns}
     done = work(cycles)
+    out.mkdir(parents=True, exist_ok=True)
     done.to_csv(out / f"{name}.work.csv", index=False)
     pd.concat([table.assign(column=column) for column, table in tables.items()])[
         ["column", "order", "amplitude", "phase_deg", "scatter"]

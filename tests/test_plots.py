@@ -28,7 +28,7 @@ import numpy as np  # noqa: E402
 import pandas as pd  # noqa: E402
 
 import show_noise  # noqa: E402
-from gudgeon_plots import compare, elastic_pictures, figures, film_pictures, film_pressure, language, names, report_page, ringing, tradeoff  # noqa: E402
+from gudgeon_plots import compare, elastic_pictures, figures, film_pictures, film_pressure, language, names, report_page, ringing, study, tradeoff  # noqa: E402
 from gudgeon_plots.figure_map import read_figures  # noqa: E402
 from gudgeon_plots.quantities import QUANTITIES, once_a_cycle  # noqa: E402
 from gudgeon_plots.results import (  # noqa: E402
@@ -1000,6 +1000,24 @@ class Reading(unittest.TestCase):
         trace = load_run(TOP / "data" / "sim_I.csv")
         self.assertIn("crank_speed", trace)
         self.assertEqual(trace.units["crank_speed"], "rad/s")
+
+    def test_files_that_are_no_such_result_say_so(self) -> None:
+        with tempfile.TemporaryDirectory() as work:
+            path = Path(work) / "x.csv"
+            texts = {"": "not a CSV file", "a,b\n1\n2,3,4\n": "not a CSV file", "\n": "not a CSV file", "time[s],a\n0,1\n": "no column"}
+            for text, said in texts.items():
+                path.write_text(text)
+                for read in (study.Runs.read, film_pressure.fields_of):
+                    with self.assertRaisesRegex(MissingResult, f"x.csv: .*{said}", msg=f"{read} of {text!r}"):
+                        read(path)
+            few = load_run(path)
+            self.assertEqual(list(few["a"]), [1])
+            with self.assertRaisesRegex(MissingResult, "x: the trace has no column pin_force_x"):
+                few["pin_force_x"]
+            for text in ("time[s],a\n0,1\n", "run,status\n1,done\n2,&output start_time = .05: must be (s)\n", "&study case='x'"):
+                path.write_text(text)
+                with self.assertRaisesRegex(MissingResult, "x.csv: "):
+                    study.read_study(path)
 
     def test_a_contact_that_outlasts_the_run(self) -> None:
         time = np.linspace(0, 1, 11)

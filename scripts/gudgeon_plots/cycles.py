@@ -37,6 +37,8 @@ class Cycles:
         return len(self.start)
 
     def __getitem__(self, column: str) -> np.ndarray:
+        if column not in self:
+            raise MissingResult(f"{self.run.name}: the trace has no column {column}; a run with &output columns = 'standard' may have it")
         return self.values[column]
 
     def __contains__(self, column: str) -> bool:

@@ -120,7 +120,7 @@ def fields_of(path: Path) -> list[pd.DataFrame]:
     """The nodes of the piston pin's film in a NAME.film.csv, one table for each time."""
     if not path.exists():
         raise MissingResult(f"no pressure fields {path}")
-    table = read_table(path)[0]
+    table = read_table(path, "time", "joint", "place", "angle", "pressure", "film_thickness")[0]
     return [field for _, field in table[table["joint"] == "piston_pin"].groupby("time", sort=True)]
 
 

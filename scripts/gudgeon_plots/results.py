@@ -34,6 +34,8 @@ class Run:
     case: dict[str, dict[str, object]] = field(default_factory=dict)
 
     def __getitem__(self, column: str) -> np.ndarray:
+        if column not in self:
+            raise MissingResult(f"{self.name}: the trace has no column {column}; a run with &output columns = 'standard' may have it")
         return self.trace[column].to_numpy()
 
     def __contains__(self, column: str) -> bool:
@@ -85,9 +87,13 @@ class Run:
         return found
 
 
-def read_table(path: Path) -> tuple[pd.DataFrame, dict[str, str]]:
-    """A CSV file of the program: its columns named without units, and their units."""
-    table = pd.read_csv(path)
+def read_table(path: Path, *needed: str) -> tuple[pd.DataFrame, dict[str, str]]:
+    """A CSV file of the program: its columns named without units, and their units. Raises MissingResult for a file that is no table
+    or lacks a column that is needed."""
+    try:
+        table = pd.read_csv(path)
+    except (pd.errors.EmptyDataError, pd.errors.ParserError, UnicodeDecodeError) as problem:
+        raise MissingResult(f"{path}: not a CSV file with columns ({str(problem).strip()})") from problem
     units, names = {}, []
     for heading in table.columns:
         match = COLUMN.match(heading)
@@ -95,6 +101,8 @@ def read_table(path: Path) -> tuple[pd.DataFrame, dict[str, str]]:
         names.append(name)
         units[name] = match["unit"] if match else ""
     table.columns = names
+    if lacking := [name for name in needed if name not in names]:
+        raise MissingResult(f"{path}: has no column {' '.join(lacking)}; the columns are {' '.join(names)}")
     return table, units
 
 
@@ -147,7 +155,7 @@ def load_run(path: Path) -> Run:
     """The run whose trace is `path`; events, summary and case are read from the same folder, if they exist."""
     name = path.name.removesuffix(".csv")
     base = path.with_name(name.removesuffix(".ideal"))
-    trace, units = read_table(path)
+    trace, units = read_table(path, "time")
     if trace.empty:
         raise MissingResult(f"{path}: contains no rows")
     ideal = name.endswith(".ideal")

@@ -54,7 +54,10 @@ def read_study(path: Path) -> Study:
     """Read the study in a file; its parameters must be given as ranges."""
     if not path.is_file():
         raise MissingResult(f"{path}: no such file")
-    groups = f90nml.read(path)
+    try:
+        groups = f90nml.read(path)
+    except (ValueError, AssertionError, StopIteration, UnicodeDecodeError) as problem:
+        raise MissingResult(f"{path}: not a study file") from problem
     found = groups.get("parameter", [])
     parameters = []
     for group in found if isinstance(found, list) else [found]:
@@ -100,7 +103,7 @@ class Runs:
     def read(cls, path: Path) -> "Runs":
         if not path.exists():
             raise MissingResult(f"no result {path}")
-        table, units = read_table(path)
+        table, units = read_table(path, "run", "status")
         for name in table.select_dtypes(exclude="number").columns:
             table[name] = table[name].map(_as_written)
         if list(table["run"]) != list(range(1, len(table) + 1)):
