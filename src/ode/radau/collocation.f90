@@ -70,7 +70,6 @@ module collocation
     procedure :: keep
     procedure :: filtered_error
     procedure :: polynomial
-    procedure :: end_defect
     procedure :: fastest_rate
     procedure :: exchange
   end type collocation_t
@@ -88,14 +87,6 @@ module collocation
       class(collocation_t), intent(inout) :: self
       logical, intent(out) :: singular
     end subroutine decompose_matrices
-
-    !> Defect of the trial's polynomial at its end: h (f_end - rate of the polynomial), 0 if its stages are known exactly. That of
-    !> quadratures is not computed.
-    pure module subroutine end_defect(self, f_end, defect)
-      class(collocation_t), intent(in) :: self
-      real(dp), intent(in) :: f_end(:)
-      real(dp), intent(out) :: defect(:)   !! (n)
-    end subroutine end_defect
 
     !> Initial guess of the rate increments at the stages from the last step's polynomial. The step begins at the end of the last
     !> step if it is `ahead`, otherwise at its beginning.

@@ -13,25 +13,6 @@ contains
     end do
   end procedure polynomial
 
-  module procedure end_defect
-    real(dp) :: slope   ! derivative of a Lagrange polynomial at the last node
-    integer :: i, j, k
-    k = self%m + self%k
-    defect = 0
-    defect(:k) = self%h*f_end(:k)
-    associate (s => self%formula(self%level)%stages, c => self%formula(self%level)%c)
-      slope = 1 + sum(1/(1 - c(:s - 1)))
-      defect(:k) = defect(:k) - slope*self%z_new(:k, s)
-      do j = 1, s - 1
-        slope = self%per_node(j, self%level)
-        do i = 1, s - 1
-          if (i /= j) slope = slope*(1 - c(i))
-        end do
-        defect(:k) = defect(:k) - slope*self%z_new(:k, j)
-      end do
-    end associate
-  end procedure end_defect
-
   module procedure guess_stages
     real(dp) :: weights(0:most_stages)
     real(dp) :: begin

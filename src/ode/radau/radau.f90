@@ -36,8 +36,6 @@ module radau
     logical :: failed = .false.            !! the last trial was rejected
     integer :: cautious = 0                !! number of steps in which the step size still grows slowly
     logical :: first = .true.              !! no step since the start
-    real(dp) :: careful_until = -huge(1.0_dp)   !! steps before this time, after one was taken back, must solve the equations as
-                                                !! exactly as landings
     real(dp), allocatable :: f(:)                 !! right-hand side at (t, y), (n)
     real(dp), allocatable :: f_old(:)             !! the same at (t_old, y_old)
     real(dp), allocatable :: y_try(:), y_new(:), f_new(:), error(:)
@@ -139,16 +137,6 @@ module radau
       logical, intent(in) :: may_repeat
       real(dp), intent(out) :: error
     end subroutine estimate_error
-
-    !> Required remainder of Newton's iteration of a landing, relative to the inner tolerance.
-    pure real(dp) module function landing_goal(self)
-      class(radau_t), intent(in) :: self
-    end function landing_goal
-
-    !> Whether the stages of a trial, with the right-hand side at its end in f_new, solve the equations. self%error is overwritten.
-    logical module function solves_equations(self)
-      class(radau_t), intent(inout) :: self
-    end function solves_equations
 
     !> Prepare a step of size h from (t, y).
     pure module subroutine set_out(self, t, y, h)
@@ -266,12 +254,6 @@ contains
     if (.not. inside) then
       outcome = try_outside
       return
-    end if
-    if (self%t < self%careful_until) then
-      if (.not. solves_equations(self)) then
-        outcome = newton_diverged
-        return
-      end if
     end if
     call self%stages%settle_quadratures(problem, self%f_new)
     call collect(self)

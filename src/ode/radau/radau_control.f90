@@ -26,7 +26,6 @@ contains
     self%stages%h = h
     self%stages%rounding = 10*epsilon(1.0_dp)/inner_tolerance(working_tolerance(self), self%stages%stages())
     self%stages%goal = newton_goal(self)
-    if (t < self%careful_until) self%stages%goal = landing_goal(self)
   end procedure set_out
 
   module procedure collect

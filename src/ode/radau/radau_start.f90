@@ -9,7 +9,6 @@ contains
 
     if (first .or. .not. allocated(self%error)) call prepare(self, problem)
     if (first) self%statistics = step_statistics_t()
-    self%careful_until = -huge(t)
     self%t = t
     self%t_old = t
     self%y = y
@@ -56,7 +55,6 @@ contains
     call archive%exchange(self%failed)
     call archive%exchange(self%cautious)
     call archive%exchange(self%first)
-    call archive%exchange(self%careful_until)
   end procedure exchange
 
   module procedure first_level
