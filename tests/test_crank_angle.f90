@@ -80,6 +80,8 @@ contains
     steps = run_case('cases/sim_I.nml', [character(len=long) :: common, 'output.every_step=T'])
     angle = column(rows, 'crank_angle[rad]')
     call check%that(size(rows%values, 2) > 20, 'there are rows to compare')
+    call check%that(size(steps%values, 2) == steps%report%statistics%accepted + 1, &
+      'every_step: the start and each step, no other rows')
     j = 2
     do i = 2, size(rows%values, 2)
       do while (steps%values(angle, j) < rows%values(angle, i) .and. j < size(steps%values, 2))

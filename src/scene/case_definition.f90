@@ -338,7 +338,8 @@ contains
     call list%add('digits', self%digits, 'significant digits of the numbers in a trace; 17 keep every bit', '>= 9 and <= 17', '10')
     call list%text('film_times', self%film_times, &
       'times [s] of pressure fields in NAME.film.csv: t1, t2, ... or from:to:count', '')
-    call list%add('every_step', self%every_step, 'write a row at each step of the integrator as well', '.false.')
+    call list%add('every_step', self%every_step, &
+      'write rows at the steps of the integrator instead of those at equal times', '.false.')
     call list%add('ideal_twin', self%ideal_twin, 'also run the same mechanism with ideal joints and rigid bodies', '.false.')
     call list%word('window', self%window, 'all, last_period', 'all', &
       'all: the whole run; last_period: only the last period of a run until = ''periodic''')
