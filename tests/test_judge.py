@@ -87,6 +87,9 @@ SCENES = {
                                       "lubrication.film_points": "32"}),
     "rough": ("film/sim_IV_mixed", {"integrator.revolutions": "1.2", "initial.crank_angle_deg": "170", "lubrication.variant": "short"}),
     "warm": ("sim_I", {"integrator.method": "'auto'", "integrator.revolutions": "0.2", **OIL}),
+    # a hot oil, whose density is a fifth less than that at 15 degrees, and which is so thin that its inertia matters
+    "inertia": ("sim_V_oscillating", {"integrator.method": "'auto'", "integrator.revolutions": "0.3", **OIL, "lubrication.kinematic_viscosity": "0",
+                                      "lubrication.temperature": "624", "lubrication.known_viscosities": "1e-6, 2.7e-7"}),
     "both": ("joints/both_pins", {"integrator.revolutions": "0.2", "drive.kind": "'free'", "mechanism.gravity_angle_deg": "25"}),
     "crank": ("joints/crank_pin", {"integrator.revolutions": "0.2", "integrator.relative_tolerance": "1e-7"}),
     "slap": ("joints/piston_slap", {"integrator.revolutions": "0.3", "mechanism.gravity_angle_deg": "25"}),
@@ -146,7 +149,7 @@ PHASES = {**dict.fromkeys(("twisted", "thin", "sharp", "walls", "rigid", "held",
           "dry": {0, 2}, "sticks": {0, 2}, "threlfall": {0, 2}, "brown_mcphee": {0, 2}, "stribeck": {0, 2}, "lugre": {0, 2},
           "elasto_plastic": {0, 2}, "conformal": {0, 2}, "johnson": {0, 2},
           "liner": {0, 2}, "pereira": {0, 2}, "dissipation": {0, 2}, "film": {1}, "contact": {1, 2}, "weighted": {1, 2}, "elastic": {1},
-          "compressor": {1}, "two_stroke": {1}, "measured": {1}, "ramp": {1}, "motor": {1}, "both": {0, 2}, "crank": {0}, "films": {1},
+          "inertia": {1, 2}, "compressor": {1}, "two_stroke": {1}, "measured": {1}, "ramp": {1}, "motor": {1}, "both": {0, 2}, "crank": {0}, "films": {1},
           "slap": {0, 2}, "jammed": {0}, "guide": {0}, "ideal": {0}, "rod": {0, 2}, "rods": {0, 2}, "shaft": {1}, "bent": {0}}   # 0 free flight, 1 film, 2 contact
 
 #: (fault, scene, column, change of (value, row), text that the verdict must contain)
@@ -234,6 +237,7 @@ CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
     ("film eccentricity between elastic walls wrong", "elastic", "film_eccentricity_x", lambda v, i: v * (1 + 1e-5), "elastic walls"),
     ("wall deflection too large", "elastic", "wall_deflection", lambda v, i: v * (1 + 1e-6), "wall deflection"),
     ("film force of the variant as_printed wrong", "printed", "pin_force_x", lambda v, i: v * (1 + 1e-5), "film law"),
+    ("tangential force of a thin oil's film with inertia wrong", "inertia", "pin_force_y", lambda v, i: v * (1 + 1e-4), "film law"),
     ("film force of the half film wrong", "half", "pin_force_y", lambda v, i: v * (1 + 1e-5), "film law"),
     ("film force of the short bearing wrong", "short", "pin_force_x", lambda v, i: v * (1 + 1e-5), "film law"),
     ("film force of the finite bearing wrong", "finite", "pin_force_x", lambda v, i: 1.05 * v, "film law"),

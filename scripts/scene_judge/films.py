@@ -71,9 +71,7 @@ class Film:
         self.cavitation = text("lubrication.cavitation")
         self.clearance, self.length = number("joint.clearance"), number("joint.bearing_length")
         self.radius = number("joint.bearing_radius") - self.clearance
-        self.viscosity = viscosity(run)
-        self.kinematic = number("lubrication.kinematic_viscosity") if text("lubrication.viscosity_law") in ("", "given") \
-            else self.viscosity / number("lubrication.density")
+        self.viscosity, self.kinematic = viscosities(run)
         self.least = number("lubrication.least_film_ratio")
         self.scale = self.viscosity * self.length * self.radius**3 / self.clearance**2
         self.lever = number("mechanism.crank_length") / number("mechanism.rod_length")
@@ -329,12 +327,12 @@ def table_of_means():
     return mean
 
 
-def viscosity(run: Run) -> float:
-    """Dynamic viscosity of the oil [Pa s]: as the case has it, or by ASTM D341 or Vogel's equation from two others; the density by table
-    54D of ASTM D1250."""
+def viscosities(run: Run) -> tuple[float, float]:
+    """Dynamic [Pa s] and kinematic viscosity [m^2/s] of the oil: as the case has them, or by ASTM D341 or Vogel's equation from two
+    others at the film's temperature; the density at this temperature by table 54D of ASTM D1250."""
     law = run.text("lubrication.viscosity_law")
     if law in ("", "given"):
-        return run.number("lubrication.viscosity")
+        return run.number("lubrication.viscosity"), run.number("lubrication.kinematic_viscosity")
     (t1, t2), (nu1, nu2) = run.pair("lubrication.known_temperatures"), run.pair("lubrication.known_viscosities")
     t, rho = run.number("lubrication.temperature"), run.number("lubrication.density")
     if law == "vogel":
@@ -353,4 +351,4 @@ def viscosity(run: Run) -> float:
             low, high = (middle, high) if sum_of(middle) < wanted else (low, middle)
         nu = low
     way = 0.6278 * (t - 288.15) / rho
-    return rho * math.exp(-way * (1 + 0.8 * way)) * nu
+    return rho * math.exp(-way * (1 + 0.8 * way)) * nu, nu
