@@ -400,10 +400,10 @@ contains
     end do
   end subroutine methods_agree
 
-  !> A piston that is pressed into the wall by a corner far from its centre of mass and one at it, without load, with a restitution of
-  !> 0.01. The damping brings both corners to -0.01 of the speed of the impact within 1e-5 s, where the force ends, since it never
-  !> pulls: the piston then does not turn. Radau must notice that the stiffness with which a step was begun is gone. 40 tolerances
-  !> are allowed; the error was 90 to 2000 while Newton's steps alone were the measure of its convergence.
+  !> A piston that is pressed into the wall by a corner far from its centre of mass and one at it, without load, with a restitution
+  !> of 0.01. The damping brings both corners to -0.01 of the speed of the impact within 1e-5 s, where the force ends, since it
+  !> never pulls: the piston then does not turn. Radau must notice that the stiffness with which a step was begun is gone. 40
+  !> tolerances are allowed; the error was 90 to 2000 while Newton's steps alone were the measure of its convergence.
   subroutine strong_damping_ends(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: speed = 6.86e-4_dp, tolerance = 7e-8_dp, offsets(4) = [8.47e-6_dp, 8.3e-6_dp, 9e-6_dp, 8e-6_dp]

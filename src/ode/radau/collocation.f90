@@ -95,10 +95,10 @@ module collocation
       logical, intent(in) :: ahead
     end subroutine guess_stages
 
-    !> Simplified Newton iteration for the stage increments. It contracts as slowly as the slower of two norms, that of its steps and
-    !> that of the defects: steps are small also where the equations are far from solved, if the Jacobian is much stiffer than the
-    !> forces (a corner of a skirt whose strong damping ends, since it never pulls). A single iteration, which does not measure the
-    !> contraction, is believed only if the defect before it is small.
+    !> Simplified Newton iteration for the stage increments. It contracts as slowly as the slower of two norms, of its steps and of
+    !> the defects: steps are small also where the equations are far from solved, if the Jacobian is much stiffer than the
+    !> forces (a corner of a skirt whose strong damping ends, since it never pulls). A single iteration, which does not measure
+    !> the contraction, is believed only if the defect before it is small.
     module subroutine iterate(self, problem, outcome)
       class(collocation_t), intent(inout) :: self
       class(ode_problem_t), intent(in) :: problem

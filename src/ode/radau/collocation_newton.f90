@@ -102,8 +102,8 @@ contains
   end procedure iterate
 
   !> One Newton step: self%dw is added to self%w; `change` is its size relative to the inner tolerance, including its effect on the
-  !> positions, and `defect` is h times the residual of the equations before it, in the same norm. The right-hand sides at the stages
-  !> belong to self%w. A step that is too large is not made.
+  !> positions, and `defect` is h times the residual of the equations before it, in the same norm. The right-hand sides at the
+  !> stages belong to self%w. A step that is too large is not made.
   subroutine newton_step(self, change, defect)
     class(collocation_t), intent(inout) :: self
     real(dp), intent(out) :: change, defect
