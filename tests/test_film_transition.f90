@@ -39,6 +39,7 @@ contains
     call moment_has_its_share(check)
     call kinks_are_events(check)
     call starts_anywhere(check)
+    call film_is_let_go(check)
     call sticks(check)
     call refuses(check)
   end subroutine run_test_film_transition
@@ -315,6 +316,36 @@ contains
       end do
     end do
   end subroutine starts_anywhere
+
+  !> A pin at rest exactly where the film begins to be held, on each side of its bearing: on one of them it moves inward, and the
+  !> film must not be held. The same motion begins a billionth further inside, where there is no doubt.
+  subroutine film_is_let_go(check)
+    class(checks_t), intent(inout) :: check
+    character(len=long) :: set(5)
+    type(trace_t) :: here, inside
+    real(dp), allocatable :: x(:), y(:)
+    integer :: side
+    set(1:4) = [character(len=long) :: 'integrator.revolutions=0.02', 'lubrication.least_film_ratio=0.5', &
+      'integrator.relative_tolerance=1e-9', 'initial.eccentricity_rate=0,0']
+    do side = -1, 1, 2
+      write (set(5), '(a,es23.16,a)') 'initial.eccentricity=', side*0.5_dp*c, ',0'
+      here = run_case(file, set)
+      write (set(5), '(a,es23.16,a)') 'initial.eccentricity=', side*0.5_dp*c*(1 - 1e-9_dp), ',0'
+      inside = run_case(file, set)
+      x = values_of(here, 'eccentricity_x[m]') - values_of(inside, 'eccentricity_x[m]')
+      y = values_of(here, 'eccentricity_y[m]') - values_of(inside, 'eccentricity_y[m]')
+      call check%close_to(maxval(abs(x) + abs(y)), 0.0_dp, 1e-7_dp*c, 'the film is held only beyond its reach: '//trim(set(5)))
+    end do
+
+  contains
+
+    function values_of(trace, name) result(values)
+      type(trace_t), intent(in) :: trace
+      character(len=*), intent(in) :: name
+      real(dp) :: values(size(trace%values, 2))
+      values = trace%values(column(trace, name), :)
+    end function values_of
+  end subroutine film_is_let_go
 
   !> Set-valued friction sticks and slides with the contact's share of the load, and the energy residual is small.
   subroutine sticks(check)

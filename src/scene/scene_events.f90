@@ -200,6 +200,7 @@ contains
     if (allocated(self%guide)) call prepare_corners(self, y)
     do i = 1, self%n_joints
       if (self%joints(i)%phase == phase_contact) call decide_at_wall(self, i, y)
+      if (allocated(self%joints(i)%transition)) call decide_at_kink(self, i, y)
     end do
     self%smooth_in_root = .not. self%entry_time < 0
     self%mode = mode_of(self)
@@ -231,6 +232,31 @@ contains
       joint%start_eccentricity = joint%start_eccentricity*(1 + sign(rounding, onwards))
     end associate
   end subroutine decide_at_wall
+
+  !> Start of a pin at a kink of the transition from film to contact, within rounding: its motion or, at rest, its acceleration
+  !> decides on which side it begins, and the start is moved there by a few units of rounding. Otherwise the event function of the
+  !> wrong side may never become negative, and the film stays held.
+  subroutine decide_at_kink(scene, i, y)
+    class(scene_t), intent(inout) :: scene
+    integer, intent(in) :: i
+    real(dp), intent(in) :: y(:)
+    type(evaluation_t) :: now
+    real(dp) :: contact(2), distance, onwards, moved
+    logical :: inside
+    associate (joint => scene%joints(i))
+      contact = penetration_and_rate(joint, y)
+      distance = contact(1) + joint%bearing%clearance
+      if (all(abs(distance - [joint%transition%film_reach, joint%transition%contact_reach]) > rounding*distance)) return
+      onwards = contact(2)
+      if (.not. abs(onwards) > 0) then
+        call scene%evaluate(0.0_dp, y, now, inside)
+        if (inside) onwards = outward_acceleration(joint%place, now%relative(i), now%accelerations)
+      end if
+      moved = 1 + sign(4*rounding, onwards)
+      joint%start_eccentricity = joint%start_eccentricity*moved
+      call joint%transition%begin(distance*moved, onwards)
+    end associate
+  end subroutine decide_at_kink
 
   !> Find the corners of the skirt that are in contact at t = 0: corners beyond the wall, and corners exactly at the wall that move
   !> into it or, at rest, are pressed into it.
