@@ -11,7 +11,7 @@ module collecting_sink
   use chain_motion, only: crank_pin, piston_pin
   implicit none
   private
-  public :: collecting_sink_t, trace_t, run_case, load_trace, load_table, column, last_row_time
+  public :: collecting_sink_t, trace_t, run_case, load_trace, load_table, column, values_of, last_row_time
 
   type, extends(row_store_t) :: collecting_sink_t
   end type collecting_sink_t
@@ -127,6 +127,14 @@ contains
       if (trace%names(i) == name) column = i
     end do
   end function column
+
+  !> Values of a column of a trace.
+  pure function values_of(trace, name) result(values)
+    type(trace_t), intent(in) :: trace
+    character(len=*), intent(in) :: name   !! with its unit
+    real(dp) :: values(size(trace%values, 2))
+    values = trace%values(column(trace, name), :)
+  end function values_of
 
   pure real(dp) function last_row_time(trace)
     type(trace_t), intent(in) :: trace

@@ -17,7 +17,7 @@ module test_film_transition
   use ode_problem, only: difference_jacobian
   use state_making, only: put_crank, put_pin
   use case_checks, only: expect, methods_agree
-  use collecting_sink, only: trace_t, run_case, column
+  use collecting_sink, only: trace_t, run_case, column, values_of
   implicit none
   private
   public :: run_test_film_transition
@@ -336,15 +336,6 @@ contains
       y = values_of(here, 'eccentricity_y[m]') - values_of(inside, 'eccentricity_y[m]')
       call check%close_to(maxval(abs(x) + abs(y)), 0.0_dp, 1e-7_dp*c, 'the film is held only beyond its reach: '//trim(set(5)))
     end do
-
-  contains
-
-    function values_of(trace, name) result(values)
-      type(trace_t), intent(in) :: trace
-      character(len=*), intent(in) :: name
-      real(dp) :: values(size(trace%values, 2))
-      values = trace%values(column(trace, name), :)
-    end function values_of
   end subroutine film_is_let_go
 
   !> Set-valued friction sticks and slides with the contact's share of the load, and the energy residual is small.

@@ -7,7 +7,7 @@ module test_gas_machines
   use compressor, only: compressor_t
   use working_gas, only: working_gas_t
   use checks, only: checks_t
-  use collecting_sink, only: trace_t, run_case, column
+  use collecting_sink, only: trace_t, run_case, values_of
   implicit none
   private
   public :: run_test_gas_machines
@@ -249,12 +249,4 @@ contains
     call check%that(trace%report%figures%max_energy_residual < 1e-7_dp*trace%report%figures%max_energy, &
       'a crank that swings against the gas: energy residual')
   end subroutine piston_that_swings
-
-  !> A column of a trace.
-  pure function values_of(trace, name) result(values)
-    type(trace_t), intent(in) :: trace
-    character(len=*), intent(in) :: name
-    real(dp) :: values(size(trace%values, 2))
-    values = trace%values(column(trace, name), :)
-  end function values_of
 end module test_gas_machines

@@ -6,7 +6,7 @@ module test_guide
   use gudgeon_errors, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
-  use collecting_sink, only: trace_t, run_case, load_table, column
+  use collecting_sink, only: trace_t, run_case, load_table, column, values_of
   use chain_motion, only: n_pins, tilting_t
   use chain_motion, only: motion_t, accelerations_t
   use chain_loads, only: loads_t, unloaded
@@ -42,14 +42,6 @@ contains
     call follow_siconos(check)
     call refusals(check)
   end subroutine run_test_guide
-
-  !> Values of a column of a trace.
-  function values_of(trace, name) result(values)
-    type(trace_t), intent(in) :: trace
-    character(len=*), intent(in) :: name
-    real(dp) :: values(size(trace%values, 2))
-    values = trace%values(column(trace, name), :)
-  end function values_of
 
   !> A rod without mass is a bar with a force S along it. With friction mu |N| against the motion and N = S sin A, the equation of
   !> the piston is m x'' = S cos A - mu |S sin A| sign x'. The crank speed is constant, so that x'' is known.

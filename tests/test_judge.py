@@ -6,8 +6,8 @@
 Correct runs must pass. Then the judge must find each of these faults with the check that is meant for it: a column of a trace that
 is changed slightly (its sign, or one part in a thousand or less), and a program that writes another value into the resolved case
 than it has used (restitution, friction, damping, heat, tolerance and others). With --mutants, copies of the program with one wrong
-line of physics are built and judged; with a FOLDER only those whose line is in src/FOLDER; one whose run ends because its energy is not kept counts as found. Ends
-with the line "N passed, N failed".
+line of physics are built and judged; with a FOLDER only those whose line is in src/FOLDER. A copy that stops by itself because its
+energy is not kept counts as found. Ends with the line "N passed, N failed".
 """
 from __future__ import annotations
 
@@ -558,7 +558,7 @@ class Mutants:
         os.environ["XDG_CACHE_HOME"] = str(program.parent)   # a mutant must not use tables of films of others
         run = traced(program, scene)
         if run.status == STOPPED and run.summary.get("status", "").startswith("energy not kept"):
-            print(f"{name}: no, the program stops itself: {run.summary['status']}", flush=True)
+            print(f"{name}: not needed, the program stops by itself: {run.summary['status']}", flush=True)
             return True, name, ""
         faults = judge_files(run).faults
         return any(says in fault for fault in faults), name, "; ".join(faults) or "no fault found"

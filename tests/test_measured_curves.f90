@@ -9,7 +9,7 @@ module test_measured_curves
   use measured_pressure, only: measured_pressure_t
   use working_gas, only: working_gas_t
   use checks, only: checks_t
-  use collecting_sink, only: trace_t, run_case, column
+  use collecting_sink, only: trace_t, run_case, values_of
   implicit none
   private
   public :: run_test_measured_curves
@@ -230,12 +230,4 @@ contains
     measured = run_case('cases/gas/measured.nml', [character(len=long) :: 'cylinder_pressure.period_deg=500'])
     call check%that(allocated(measured%error), 'a period of the wrong length is refused')
   end subroutine table_of_a_cycle
-
-  !> A column of a trace.
-  pure function values_of(trace, name) result(values)
-    type(trace_t), intent(in) :: trace
-    character(len=*), intent(in) :: name
-    real(dp) :: values(size(trace%values, 2))
-    values = trace%values(column(trace, name), :)
-  end function values_of
 end module test_measured_curves

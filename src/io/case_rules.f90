@@ -293,7 +293,7 @@ contains
         'must be times >= 0 in rising order with commas, or from:to:count')
       call forbid(.not. has_film, 'output', 'film_times', 'needs a film with a pressure: pinkus_sternlicht or finite_bearing')
       if (allocated(error)) return
-      call forbid(times(size(times)) > known_end()*(1 + rounding), 'output', 'film_times', &
+      if (times(size(times)) > known_end()*(1 + rounding)) call forbid(.true., 'output', 'film_times', &
         'must not be after the end of the run at '//short_text(known_end())//' s')
     end subroutine check_film_times
 
@@ -383,8 +383,8 @@ contains
           call forbid(abs(output%angle_origin_deg) > 0, 'output', 'angle_origin_deg', 'is for sampling = ''crank_angle'' alone')
           call forbid(output%interval <= 0 .and. .not. turns, 'output', 'interval', 'required with crank_speed = 0')
         end if
-        call forbid(output%start_time >= known_end(), 'output', 'start_time', 'must be before the end of the run at '// &
-          short_text(known_end()))
+        if (output%start_time >= known_end()) call forbid(.true., 'output', 'start_time', &
+          'must be before the end of the run at '//short_text(known_end()))
         call forbid(verify(output%columns, letters) > 0 .or. output%columns == '', 'output', 'columns', &
           'must be ''standard'' or names of columns without their units')
         call check_film_times()

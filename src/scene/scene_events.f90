@@ -216,17 +216,11 @@ contains
     class(scene_t), intent(inout) :: scene
     integer, intent(in) :: i
     real(dp), intent(in) :: y(:)
-    type(evaluation_t) :: now
     real(dp) :: contact(2), onwards
-    logical :: inside
     associate (joint => scene%joints(i))
       contact = penetration_and_rate(joint, y)
       if (contact(1) > rounding*joint%bearing%clearance) return
-      onwards = contact(2)
-      if (abs(onwards) <= rounding*norm2(y(joint%at%rate:joint%at%rate + 1))) then
-        call scene%evaluate(0.0_dp, y, now, inside)
-        if (inside) onwards = outward_acceleration(joint%place, now%relative(i), now%accelerations)
-      end if
+      onwards = motion_outward(scene, i, y)
       if (onwards < 0) call end_contact(joint)
       if (contact(2) > 0) scene%entry_time = 0
       joint%start_eccentricity = joint%start_eccentricity*(1 + sign(rounding, onwards))
@@ -240,23 +234,33 @@ contains
     class(scene_t), intent(inout) :: scene
     integer, intent(in) :: i
     real(dp), intent(in) :: y(:)
-    type(evaluation_t) :: now
-    real(dp) :: contact(2), distance, onwards, moved
-    logical :: inside
+    real(dp) :: distance, onwards, moved
     associate (joint => scene%joints(i))
-      contact = penetration_and_rate(joint, y)
-      distance = contact(1) + joint%bearing%clearance
+      distance = norm2(y(joint%at%position:joint%at%position + 1))
       if (all(abs(distance - [joint%transition%film_reach, joint%transition%contact_reach]) > rounding*distance)) return
-      onwards = contact(2)
-      if (.not. abs(onwards) > 0) then
-        call scene%evaluate(0.0_dp, y, now, inside)
-        if (inside) onwards = outward_acceleration(joint%place, now%relative(i), now%accelerations)
-      end if
+      onwards = motion_outward(scene, i, y)
       moved = 1 + sign(4*rounding, onwards)
       joint%start_eccentricity = joint%start_eccentricity*moved
       call joint%transition%begin(distance*moved, onwards)
     end associate
   end subroutine decide_at_kink
+
+  !> Rate of a pin's eccentricity at t = 0 [m/s] or, where it is only rounding, its acceleration [m/s^2].
+  real(dp) function motion_outward(scene, i, y)
+    class(scene_t), intent(in) :: scene
+    integer, intent(in) :: i
+    real(dp), intent(in) :: y(:)
+    type(evaluation_t) :: now
+    real(dp) :: contact(2)
+    logical :: inside
+    associate (joint => scene%joints(i))
+      contact = penetration_and_rate(joint, y)
+      motion_outward = contact(2)
+      if (abs(motion_outward) > rounding*norm2(y(joint%at%rate:joint%at%rate + 1))) return
+      call scene%evaluate(0.0_dp, y, now, inside)
+      if (inside) motion_outward = outward_acceleration(joint%place, now%relative(i), now%accelerations)
+    end associate
+  end function motion_outward
 
   !> Find the corners of the skirt that are in contact at t = 0: corners beyond the wall, and corners exactly at the wall that move
   !> into it or, at rest, are pressed into it.

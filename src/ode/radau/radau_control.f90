@@ -7,7 +7,7 @@ contains
   module procedure weigh
     real(dp) :: factor, weight
     integer :: i
-    factor = inner_tolerance(working_tolerance(self), self%stages%stages())/self%nominal_tolerance()
+    factor = inner_tolerance(self)/self%nominal_tolerance()
     do i = 1, size(self%y)
       weight = factor*(self%settings%relative(i)*abs(self%y(i)) + self%settings%absolute(i))
       self%stages%inverse_weight(i) = 0
@@ -21,24 +21,20 @@ contains
   end procedure scaled_norm
 
   module procedure set_out
+    real(dp) :: tolerance, s
     self%stages%t = t
     self%stages%base = y
     self%stages%h = h
-    self%stages%rounding = 10*epsilon(1.0_dp)/inner_tolerance(working_tolerance(self), self%stages%stages())
-    self%stages%goal = newton_goal(self)
+    s = self%stages%stages()
+    tolerance = inner_tolerance(self)
+    self%stages%rounding = 10*epsilon(1.0_dp)/tolerance
+    self%stages%goal = max(self%stages%rounding, min(0.1_dp, 6*tolerance**(2*s/(s + 1) - 1)))
   end procedure set_out
 
   module procedure collect
     self%statistics%evaluations = self%statistics%evaluations + self%stages%evaluations
     self%stages%evaluations = 0
   end procedure collect
-
-  module procedure newton_goal
-    real(dp) :: tolerance, s
-    s = self%stages%stages()
-    tolerance = inner_tolerance(working_tolerance(self), self%stages%stages())
-    newton_goal = max(self%stages%rounding, min(0.1_dp, 6*tolerance**(2*s/(s + 1) - 1)))
-  end procedure newton_goal
 
   module procedure estimate_error
     real(dp), parameter :: farthest = 1e30_dp   !! largest state for which the right-hand side is evaluated, in tolerances

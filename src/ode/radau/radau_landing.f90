@@ -15,7 +15,8 @@ contains
     level = self%stages%level
     self%stages%level = self%stages%stages_done/2
     call set_out(self, self%t_old, self%y_old, t - self%t_old)
-    self%stages%goal = landing_goal(self)
+    self%stages%goal = min(self%stages%goal, max(self%stages%rounding, & ! 3 % of the tolerance itself
+      0.03_dp*self%nominal_tolerance()/inner_tolerance(self)))
     do try = 1, 3
       call renew_jacobian(self, problem, try)
       call self%stages%solve_stages(problem, merge(guess_within, guess_none, try < 3), outcome)
@@ -32,13 +33,6 @@ contains
     end if
     self%stages%level = level
   end procedure land_on
-
-  !> Required remainder of Newton's iteration of a landing, relative to the inner tolerance: 3 % of the tolerance itself.
-  pure real(dp) function landing_goal(self)
-    class(radau_t), intent(in) :: self
-    landing_goal = min(newton_goal(self), max(10*epsilon(1.0_dp), 0.03_dp*self%nominal_tolerance()) &
-      /inner_tolerance(working_tolerance(self), self%stages%stages()))
-  end function landing_goal
 
   !> The Jacobian of a try to land: that of the last step, that at three quarters of the way, and that at its beginning.
   subroutine renew_jacobian(self, problem, try)

@@ -72,7 +72,10 @@ contains
   end procedure working_tolerance
 
   module procedure inner_tolerance
-    real(dp) :: exponent_of
+    real(dp) :: tolerance, exponent_of
+    integer :: stages
+    tolerance = working_tolerance(self)
+    stages = self%stages%stages()
     exponent_of = (stages + 1)/(2.0_dp*stages)
     if (tolerance < tight_tolerance) exponent_of = max(exponent_of, 0.75_dp)
     inner_tolerance = 0.1_dp*tolerance**exponent_of
@@ -88,7 +91,7 @@ contains
 
     order = self%stages%stages()
     longest = min(self%settings%max_step, self%settings%first_step, self%settings%span)
-    size_y = min(scaled_norm(self, self%y), 1/inner_tolerance(working_tolerance(self), order))  ! without unbounded components
+    size_y = min(scaled_norm(self, self%y), 1/inner_tolerance(self))  ! without unbounded components
     slope = scaled_norm(self, self%f(:size(self%y)))
     h = 1e-6_dp*longest
     if (slope > 0 .and. size_y > 0) h = min(0.01_dp*size_y/slope, longest)
