@@ -34,6 +34,7 @@ module gudgeon_chain
     procedure :: has_crankshaft
     procedure, non_overridable :: move_rod
     procedure, non_overridable :: move_piston
+    procedure :: rod_end_angle
     procedure :: response
     procedure :: complete_loads
     procedure :: add_response
@@ -168,6 +169,18 @@ contains
       call follow_piston(self%bodies%crank%length, self%bodies%rod%length, motion)
     end if
   end subroutine move_piston
+
+  !> Angle by which the rod has turned at one of its ends, from x to y [rad].
+  pure real(dp) function rod_end_angle(self, motion, pin)
+    class(chain_t), intent(in) :: self
+    type(motion_t), intent(in) :: motion
+    integer, intent(in) :: pin   !! crank_pin or piston_pin
+    rod_end_angle = -atan2(motion%sin_rod, motion%cos_rod)
+    if (.not. self%has_elastic_rod()) return
+    associate (n => self%elastic%rod%n_bending)
+      rod_end_angle = rod_end_angle + dot_product(motion%shape(:n), self%elastic%rod%slope(:n, pin))
+    end associate
+  end function rod_end_angle
 
   !> Changes of the accelerations and of the moment on the crank due to a load of pins with clearance or of the gas, on which they
   !> depend linearly. They are computed for bodies at rest without other loads, by the general assembly unless the chain has only

@@ -27,6 +27,8 @@ module conformal
     procedure :: prepare
     procedure :: elastic_force
     procedure :: slope
+    procedure :: half_angle
+    procedure :: pressure
     procedure :: put_columns
   end type conformal_t
 
@@ -140,20 +142,41 @@ contains
     end do
   end function arc_of_load
 
+  !> Half-angle of the contact.
+  pure real(dp) function half_angle(self, penetration)
+    class(conformal_t), intent(in) :: self
+    real(dp), intent(in) :: penetration
+    half_angle = 2*atan(arc_of_load(load(penetration/self%clearance, self%compliance)))
+  end function half_angle
+
+  !> Pressure along the arc, p Rb L/F = (2/pi) r/[q (1 + y^2)] + arsinh(r/sqrt(1 + y^2))/[pi b^2 q^2] with b = tan(a/2), y =
+  !> tan(theta/2), r^2 = b^2 - y^2 and q^2 = b^2 + 1 (Persson 1964).
+  pure real(dp) function pressure(self, half_angle, angle)
+    class(conformal_t), intent(in) :: self
+    real(dp), intent(in) :: half_angle, angle
+    real(dp) :: b, y, r
+    associate (unused => self)
+    end associate
+    b = tan(0.5_dp*half_angle)
+    y = tan(0.5_dp*angle)
+    r = sqrt(max(0.0_dp, (b - y)*(b + y)))
+    pressure = (2*r/(sqrt(b**2 + 1)*(1 + y**2)) + asinh(r/sqrt(1 + y**2))/(b**2*(b**2 + 1)))/pi
+  end function pressure
+
   !> Put the half-angle of the contact into a row, which follows from the penetration, and the pressure in its middle, which follows
-  !> from the normal force, p0 = F/(L Rb) {2b/[pi sqrt(b^2 + 1)] + arsinh(b)/[pi b^2 (b^2 + 1)]} (Persson 1964).
+  !> from the normal force.
   pure subroutine put_columns(self, penetration, normal_force, row)
     class(conformal_t), intent(in) :: self
     real(dp), intent(in) :: penetration, normal_force
     type(trace_row_t), intent(inout) :: row
-    real(dp) :: b, pressure
-    b = 0
-    pressure = 0
+    real(dp) :: half_angle, peak
+    half_angle = 0
+    peak = 0
     if (row%wants(2) .and. penetration > 0) then
-      b = arc_of_load(load(penetration/self%clearance, self%compliance))
-      pressure = normal_force/(pi*self%area)*(2*b/sqrt(b**2 + 1) + asinh(b)/(b**2*(b**2 + 1)))
+      half_angle = self%half_angle(penetration)
+      peak = normal_force/self%area*self%pressure(half_angle, 0.0_dp)
     end if
-    call row%put('contact_half_angle[rad]', 2*atan(b), 'half-angle of the arc on which pin and bearing touch; 0 without contact')
-    call row%put('peak_pressure[Pa]', pressure, 'largest contact pressure; 0 without contact')
+    call row%put('contact_half_angle[rad]', half_angle, 'half-angle of the arc on which pin and bearing touch; 0 without contact')
+    call row%put('peak_pressure[Pa]', peak, 'largest contact pressure; 0 without contact')
   end subroutine put_columns
 end module conformal

@@ -23,6 +23,8 @@ module contact_geometry
     procedure :: elastic_energy => integral_of_force
     procedure, nopass :: needs_length => needs_it
     procedure :: bearing_conflict => fits_every_bearing
+    procedure :: half_angle => line_contact
+    procedure :: pressure => no_pressure
     procedure :: put_columns => no_columns
     procedure, non_overridable :: material_parameters
     procedure, non_overridable :: contact_modulus
@@ -110,6 +112,26 @@ contains
     key = ''
     wanted = ''
   end subroutine fits_every_bearing
+
+  !> Half-angle of the arc on which pin and bore touch [rad]; 0, the default, if the geometry does not say it: the surfaces touch
+  !> along a line.
+  pure real(dp) function line_contact(self, penetration) result(half_angle)
+    class(contact_geometry_t), intent(in) :: self
+    real(dp), intent(in) :: penetration   !! [m], > 0
+    associate (unused => self, depth => penetration)
+    end associate
+    half_angle = 0
+  end function line_contact
+
+  !> Pressure times radius and length of the bore over the normal force [1/rad], at an angle from the line of centres that is
+  !> smaller than the half-angle of the arc. A geometry with an arc must override this.
+  pure real(dp) function no_pressure(self, half_angle, angle) result(pressure)
+    class(contact_geometry_t), intent(in) :: self
+    real(dp), intent(in) :: half_angle, angle   !! [rad]
+    associate (unused => self, unused_angles => half_angle + angle)
+    end associate
+    pressure = 0
+  end function no_pressure
 
   !> Put columns that only this geometry has into a row. The default is none.
   pure subroutine no_columns(self, penetration, normal_force, row)

@@ -23,6 +23,8 @@ module winkler
     procedure :: elastic_force
     procedure :: slope
     procedure :: elastic_energy
+    procedure :: half_angle
+    procedure :: pressure
   end type winkler_t
 
 contains
@@ -130,4 +132,20 @@ contains
     end if
     energy = energy*self%bedding*self%clearance**2
   end function elastic_energy
+
+  !> a with cos a = c/(c + delta).
+  pure real(dp) function half_angle(self, penetration)
+    class(winkler_t), intent(in) :: self
+    real(dp), intent(in) :: penetration
+    half_angle = atan(tangent(self, penetration))
+  end function half_angle
+
+  !> (cos theta - cos a)/(a - sin a cos a), with the first difference as a product of sines.
+  pure real(dp) function pressure(self, half_angle, angle)
+    class(winkler_t), intent(in) :: self
+    real(dp), intent(in) :: half_angle, angle
+    associate (unused => self)
+    end associate
+    pressure = 2*sin(0.5_dp*(half_angle + angle))*sin(0.5_dp*(half_angle - angle))/(half_angle - 0.5_dp*sin(2*half_angle))
+  end function pressure
 end module winkler

@@ -29,6 +29,8 @@ module asperities
     procedure :: prepare
     procedure :: force
     procedure :: integrated_force
+    procedure :: half_angle
+    procedure :: pressure
     procedure :: mean_gap
     procedure :: friction_force
   end type asperities_t
@@ -138,18 +140,41 @@ contains
     real(dp) :: last, angle
     integer :: i
     force = 0
-    associate (c => self%bearing%clearance, s => self%roughness)
-      if (c - distance >= farthest_of(self)*s) return
-      last = pi
-      if (c - farthest_of(self)*s > -distance) last = acos((c - farthest_of(self)*s)/distance)
-      do i = 0, points
-        angle = last*i/points
-        force = force + merge(0.5_dp, 1.0_dp, i == 0 .or. i == points)*cos(angle)* &
-          pressure_integral((c - distance + 2*distance*sin(0.5_dp*angle)**2)/s, self%is_fit)
-      end do
-    end associate
+    last = self%half_angle(distance)
+    if (.not. last > 0) return
+    do i = 0, points
+      angle = last*i/points
+      force = force + merge(0.5_dp, 1.0_dp, i == 0 .or. i == points)*cos(angle)*pressure_at(self, distance, angle)
+    end do
     force = 2*self%scale*force*last/points
   end function integrated_force
+
+  !> Half-angle of the arc on which asperities touch, at the eccentricity |e| [m]; 0 if none do.
+  pure real(dp) function half_angle(self, distance)
+    class(asperities_t), intent(in) :: self
+    real(dp), intent(in) :: distance
+    half_angle = 0
+    associate (gap => self%bearing%clearance - farthest_of(self)*self%roughness)
+      if (gap >= distance) return
+      half_angle = pi
+      if (gap > -distance) half_angle = acos(gap/distance)
+    end associate
+  end function half_angle
+
+  !> Pressure times radius and length of the bore [N] at an angle from the line of centres.
+  pure real(dp) function pressure(self, distance, angle)
+    class(asperities_t), intent(in) :: self
+    real(dp), intent(in) :: distance, angle
+    pressure = self%scale*pressure_at(self, distance, angle)
+  end function pressure
+
+  !> p/(K' E*) at an angle from the line of centres.
+  pure real(dp) function pressure_at(self, distance, angle)
+    class(asperities_t), intent(in) :: self
+    real(dp), intent(in) :: distance, angle
+    pressure_at = pressure_integral((self%bearing%clearance - distance + 2*distance*sin(0.5_dp*angle)**2)/self%roughness, &
+      self%is_fit)
+  end function pressure_at
 
   !> F52(H): the exact integral by a Chebyshev series of its logarithm, within 7e-7 between -4 and 8, and by its asymptotic series
   !> below -4; or the fit.

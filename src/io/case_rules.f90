@@ -93,8 +93,9 @@ contains
       character(len=*), intent(in) :: place
       if (.not. joint%has_clearance()) then
         call forbid(allocated(joint%contact) .or. allocated(joint%friction) .or. allocated(joint%film) .or. &
-          allocated(joint%asperities) .or. has_own_law(place), group, 'kind', 'must be clearance with contact, friction or '// &
-          'lubrication: an ideal joint has no clearance; remove these groups, for example with --set contact=none')
+          allocated(joint%asperities) .or. allocated(joint%wear) .or. has_own_law(place), group, 'kind', &
+          'must be clearance with contact, friction or lubrication: an ideal joint has no '// &
+          'clearance; remove these groups, for example with --set contact=none')
         call forbid(joint%clearance > 0 .and. .not. values%is_given(group, 'kind'), group, 'clearance', &
           'needs kind = ''clearance''; the default is ideal')
         return
@@ -116,6 +117,7 @@ contains
       else if (allocated(joint%contact)) then
         call check_contact(joint, group, law_group('contact', place))
       end if
+      if (allocated(joint%wear)) call check_wear(joint, group, law_group('wear', place))
       if (allocated(error) .or. .not. allocated(joint%film)) return
       call check_transition(joint, law_group('lubrication', place))
       call check_elastic_film(joint, law_group('lubrication', place), law_group('contact', place))
@@ -200,6 +202,16 @@ contains
       call forbid(joint%asperities%roughness > roughest*joint%clearance, group, 'roughness', &
         'must be <= clearance/8: a centred pin may not touch')
     end subroutine check_asperities
+
+    !> Check that wear has a rate, and a contact that wears.
+    subroutine check_wear(joint, group, wear_group)
+      type(joint_case_t), intent(in) :: joint
+      character(len=*), intent(in) :: group, wear_group   !! groups of the joint and of its wear
+      call forbid(.not. any(joint%wear%rate > 0), wear_group, 'rate', 'must be > 0 for the pin or the bore')
+      call forbid(.not. (joint%can_touch() .or. allocated(joint%asperities)), wear_group, 'rate', &
+        'needs surfaces that touch: the group contact without elastic_film, or asperities')
+      call values%demand(joint%bearing_length > 0, group, 'bearing_length', 'with wear', error)
+    end subroutine check_wear
 
     !> Check that the loss of a contact is given by one key, and that its geometry is possible in its bearing.
     subroutine check_contact(joint, group, contact_group)

@@ -6,6 +6,7 @@ module case_run
   use command_line, only: command_line_t
   use gudgeon_columns, only: column_list_t
   use film_files, only: provide_tables, write_film_file
+  use wear_file, only: write_wear_file
   use gudgeon_simulation, only: simulate, run_report_t
   use trace_files, only: trace_files_t
   use result_file, only: result_file_t, remove_result, write_text
@@ -107,6 +108,7 @@ contains
     call remove_result(self%base//'.csv', was_there, status)
     call remove_result(self%base//'.events.csv', was_there, status)
     call remove_result(self%base//'.film.csv', was_there, status)
+    call remove_result(self%base//'.wear.csv', was_there, status)
     call remove_result(self%base//'.certificate.csv', was_there, status)
     if (.not. self%is_twin) call remove_result(self%base//'.resolved.nml', was_there, status)
   end subroutine clear
@@ -183,6 +185,10 @@ contains
     !$omp critical (texts)
     if (allocated(self%report%films)) then
       call write_film_file(self%base//'.film.csv', self%report%films, film_error)
+      call keep_first(film_error, self%error)
+    end if
+    if (allocated(self%report%wear)) then
+      if (size(self%report%wear) > 0) call write_wear_file(self%base//'.wear.csv', self%report%wear, film_error)
       call keep_first(film_error, self%error)
     end if
     call put_summary(self, files)

@@ -89,8 +89,8 @@ contains
     type(case_t), intent(in) :: case
     character(len=*), intent(in) :: base
     type(error_t), allocatable, intent(out) :: error
-    character(len=*), parameter :: suffixes(*) = [character(len=18) :: '.csv', '.events.csv', '.film.csv', '.summary.csv', &
-      '.certificate.csv', '.ideal.csv', '.ideal.summary.csv', '.ideal.events.csv']
+    character(len=*), parameter :: suffixes(*) = [character(len=18) :: '.csv', '.events.csv', '.film.csv', '.wear.csv', &
+      '.summary.csv', '.certificate.csv', '.ideal.csv', '.ideal.summary.csv', '.ideal.events.csv']
     character(len=:), allocatable :: written
     integer :: i
     do i = 1, size(suffixes)

@@ -9,6 +9,7 @@ module gudgeon_summary
   use piston_guide, only: n_corners, corner_names
   use period_watch, only: period_watch_t
   use chain_motion, only: crank_pin, piston_pin, name_prefix
+  use archard_wear, only: of_pin, of_bore
   use case_definition, only: case_t, joint_case_t
   use number_text, only: real_text, short_text
   use text_tools, only: integer_text, quoted
@@ -146,12 +147,28 @@ contains
       call add(prefix//'impacts_beyond_validity', integer_text(pin%impacts_beyond_validity), '1')
       call add(prefix//'contacts_beyond_validity', integer_text(pin%contacts_beyond_validity), '1')
       if (pin%friction_work < huge(pin%friction_work)) call add(prefix//'friction_work', real_text(pin%friction_work), 'J')
+      if (allocated(joint%wear) .and. allocated(report%wear)) call add_wear(prefix)
       if (.not. (joint%reports_film .and. allocated(joint%film))) return
       call add(prefix//'film_energy_lost', real_text(pin%film_energy_lost), 'J')
       if (joint%film%gives_pressure()) call add(prefix//'max_film_pressure', peak(pin%max_film_pressure), 'Pa')
       if (joint%film%gives_side_flow() .and. report%figures%time > 0) &
         call add(prefix//'mean_film_side_flow', real_text(pin%film_volume/report%figures%time), 'm3/s')
     end subroutine add_joint
+
+    !> Rows of the worn surfaces of a joint.
+    subroutine add_wear(prefix)
+      character(len=*), intent(in) :: prefix
+      integer :: i
+      do i = 1, size(report%wear)
+        associate (worn => report%wear(i))
+          if (name_prefix(worn%place) /= prefix) cycle
+          call add(prefix//'worn_volume_pin', real_text(sum(worn%volume(:, of_pin))), 'm3')
+          call add(prefix//'worn_volume_bore', real_text(sum(worn%volume(:, of_bore))), 'm3')
+          call add(prefix//'max_wear_depth_pin', real_text(maxval(worn%depth(:, of_pin))), 'm')
+          call add(prefix//'max_wear_depth_bore', real_text(maxval(worn%depth(:, of_bore))), 'm')
+        end associate
+      end do
+    end subroutine add_wear
 
     !> Rows of the contacts of a pin or of a corner of the skirt.
     subroutine add_contacts(prefix, contacts, time, max_penetration)

@@ -78,6 +78,10 @@ module summary_quantities
     quantity_t('contacts_beyond_validity', '1', &
       'contacts that at some instant were deeper than their elastic force is valid for'), &
     quantity_t('friction_work', 'J', 'work of the friction on the bodies; negative: energy lost'), &
+    quantity_t('worn_volume_pin', 'm3', 'volume worn from the pin (group wear)'), &
+    quantity_t('worn_volume_bore', 'm3', 'volume worn from the bore'), &
+    quantity_t('max_wear_depth_pin', 'm', 'largest mean depth of a bin of NAME.wear.csv on the pin'), &
+    quantity_t('max_wear_depth_bore', 'm', 'the same on the bore'), &
     quantity_t('film_energy_lost', 'J', &
       'energy that the film took from the bodies; negative: it gave energy, as an oscillating film may'), &
     quantity_t('max_film_pressure', 'Pa', 'largest pressure in the film'), &

@@ -16,6 +16,7 @@ module clearance_joint
   use film_law, only: film_law_t, film_motion_t
   use film_transition, only: film_transition_t
   use asperities, only: asperities_t
+  use archard_wear, only: wear_law_t
   use mixed_film, only: mixed_forces, mixed_derivatives
   use elastic_film, only: elastic_film_t, n_film_states
   use joint_motion, only: joint_motion_t, most_joint_states, find_polar, find_speeds, find_sliding
@@ -54,6 +55,7 @@ module clearance_joint
     type(asperities_t), allocatable :: asperities   !! contact of rough surfaces in parallel with the film; without contact law
     type(film_transition_t), allocatable :: transition   !! film and contact share the load near the wall
     type(elastic_film_t), allocatable :: elastic    !! film between elastic walls; without contact law
+    type(wear_law_t), allocatable :: wear            !! wear of pin and bore is counted
     type(slice_t) :: film_states            !! indices of the film's own eccentricity in the state
     type(coordinates_t) :: at               !! indices of the eccentricity in the state
     integer :: n_friction_states = 0        !! number of states of the friction law

@@ -5,6 +5,8 @@ module joint_columns
   use chain_motion, only: piston_pin, name_prefix
   use joint_motion, only: joint_motion_t
   use clearance_joint, only: clearance_joint_t, joint_loads_t, phase_contact
+  use contact_arc, only: sliding_load
+  use archard_wear, only: of_pin, of_bore
   use film_figures, only: film_figures_t, film_figures_of, film_moment
   implicit none
   private
@@ -55,6 +57,7 @@ contains
         shear_moment)
       call put_film_figures(joint, motion, loads, row)
     end if
+    if (allocated(joint%wear)) call put_wear(joint, motion, loads, row)
     row%place = ''
   end subroutine put_joint_columns
 
@@ -68,6 +71,19 @@ contains
     call row%put('sliding_speed[m/s]', motion%sliding_speed, &
       'velocity of the pin surface relative to the bearing along the same tangent')
   end subroutine put_friction
+
+  !> Put the volumes that wear in a second.
+  pure subroutine put_wear(joint, motion, loads, row)
+    type(clearance_joint_t), intent(in) :: joint
+    type(joint_motion_t), intent(in) :: motion
+    type(joint_loads_t), intent(in) :: loads
+    type(trace_row_t), intent(inout) :: row
+    real(dp) :: load
+    load = 0
+    if (row%wants(2)) load = sliding_load(joint, motion, loads)
+    call row%put('pin_wear_rate[m3/s]', joint%wear%rate(of_pin)*load, 'volume that wears from the pin in a second')
+    call row%put('bore_wear_rate[m3/s]', joint%wear%rate(of_bore)*load, 'volume that wears from the bore in a second')
+  end subroutine put_wear
 
   !> Put the columns of an elastic film: its own eccentricity, the deflection of its walls and their elastic energy.
   pure subroutine put_elastic_film(joint, motion, row)

@@ -20,6 +20,7 @@ module case_definition
   use oil_viscosity, only: oil_t
   use elastic_film, only: elastic_film_t
   use asperities, only: asperities_t
+  use archard_wear, only: wear_law_t
   use elastic_rod, only: elastic_rod_t
   use elastic_crankshaft, only: elastic_crankshaft_t
   use gas_law, only: gas_law_t
@@ -69,6 +70,7 @@ module case_definition
     type(oil_t) :: oil
     type(elastic_film_t) :: elastic
     type(asperities_t), allocatable :: asperities
+    type(wear_law_t), allocatable :: wear
   contains
     procedure :: parameters => joint_parameters
     procedure :: has_clearance

@@ -53,6 +53,7 @@ contains
     call visit_friction(joint%friction, joint%reports_friction_work, place, list)
     call visit_film(joint%film, joint%transition, joint%oil, joint%elastic, joint%reports_film, place, list)
     call visit_asperities(joint%asperities, place, list)
+    call visit_wear(joint%wear, place, list)
   end subroutine visit_joint
 
   !> Remove laws that were given for all joints from an ideal joint, if the other joint has clearance.
@@ -64,6 +65,7 @@ contains
     if (allocated(joint%friction)) deallocate (joint%friction)
     if (allocated(joint%film)) deallocate (joint%film)
     if (allocated(joint%asperities)) deallocate (joint%asperities)
+    if (allocated(joint%wear)) deallocate (joint%wear)
   end subroutine drop_laws
 
   subroutine visit_contact(law, place, list)
@@ -156,6 +158,19 @@ contains
     if (allocated(asperities)) deallocate (asperities)
     if (list%is_present) allocate (asperities, source=described)
   end subroutine visit_asperities
+
+  subroutine visit_wear(wear, place, list)
+    type(wear_law_t), allocatable, intent(inout) :: wear
+    character(len=*), intent(in) :: place
+    class(parameter_list_t), intent(inout) :: list
+    type(wear_law_t) :: described
+    call list%group('wear', &
+      'Wear of pin and bore, with a file NAME.wear.csv. Without this group wear is not counted', .true., place)
+    call described%parameters(list)
+    if (.not. list%sets) return
+    if (allocated(wear)) deallocate (wear)
+    if (list%is_present) allocate (wear, source=described)
+  end subroutine visit_wear
 
   subroutine visit_guide(guide, list)
     type(guide_case_t), allocatable, intent(inout) :: guide

@@ -22,6 +22,7 @@ module gudgeon_recorder
   use trace_sink, only: trace_sink_t, trace_event_t
   use run_figures, only: run_figures_t, elastic_figures_t
   use film_snapshots, only: film_snapshots_t
+  use wear_record, only: wear_profile_t
   use gudgeon_archive, only: archive_t
   implicit none
   private
@@ -62,6 +63,7 @@ module gudgeon_recorder
     procedure :: finish
     procedure :: exchange => exchange_recorder
     procedure :: take_archive
+    procedure :: wear
     procedure, private :: write_row
   end type recorder_t
 
@@ -166,6 +168,7 @@ contains
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
     real(dp), intent(inout) :: t_end   !! on entry: end of the part of the last step that is final
+    integer :: i
     call self%periods%follow(method, scene, t_end)
     if (self%periods%has_ended) then
       t_end = self%periods%t
@@ -180,6 +183,9 @@ contains
     end if
     if (self%periods%window_after < 0 .or. self%first_sample <= self%periods%window_start) return
     self%first_sample = self%periods%window_start
+    do i = 1, self%n_pins
+      if (allocated(self%pins(i)%wear)) call self%pins(i)%wear%begin_at(self%periods%window_start)
+    end do
     if (allocated(self%cycles)) call self%cycles%count_from(self%periods%window_after)
   end subroutine watch_periods
 
@@ -458,6 +464,18 @@ contains
     type(archive_t), intent(in) :: archive
     call self%sink%take_archive(archive)
   end subroutine take_archive
+
+  !> The worn surfaces of the joints whose wear is counted.
+  function wear(self, scene) result(worn)
+    class(recorder_t), intent(in) :: self
+    type(scene_t), intent(in) :: scene
+    type(wear_profile_t), allocatable :: worn(:)
+    integer :: i
+    allocate (worn(0))
+    do i = 1, self%n_pins
+      if (allocated(self%pins(i)%wear)) worn = [worn, self%pins(i)%wear%profile(scene)]
+    end do
+  end function wear
 
   !> Write a row at a time at which nothing else is recorded.
   subroutine write_row(self, scene, t, y)

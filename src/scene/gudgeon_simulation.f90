@@ -19,6 +19,7 @@ module gudgeon_simulation
   use gudgeon_recorder, only: recorder_t
   use run_figures, only: run_figures_t
   use film_snapshots, only: film_field_t
+  use wear_record, only: wear_profile_t
   use trace_sink, only: trace_sink_t
   use gudgeon_constants, only: two_pi, degree
   use gudgeon_archive, only: archive_t
@@ -32,6 +33,7 @@ module gudgeon_simulation
     type(step_statistics_t) :: statistics
     type(run_figures_t) :: figures
     type(film_field_t), allocatable :: films(:)  !! pressure fields, if the case asks for them
+    type(wear_profile_t), allocatable :: wear(:) !! worn surfaces, if the case asks for them
     real(dp), allocatable :: time_with(:, :)  !! method auto: time with Adams and with Radau, for each mode, (2, 0:highest mode) [s]
     logical :: can_go_on = .false.  !! the run was stopped from outside or by a limit, and its state was given to the sink
     logical :: energy_is_poor = .false.          !! the run is done, but the user must be told of its energy residual
@@ -125,6 +127,7 @@ contains
     report%statistics = method%totals()
     if (allocated(method%time_with)) report%time_with = method%time_with
     report%figures = recorder%figures
+    report%wear = recorder%wear(scene)
     if (allocated(recorder%films)) report%films = recorder%films%fields(scene)
     report%can_go_on = any(status == [integration_interrupted, step_limit_reached, evaluation_limit_reached, &
       revolution_budget_spent]) .and. .not. has_come_to_its_end

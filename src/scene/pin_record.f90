@@ -6,6 +6,7 @@ module pin_record
   use gudgeon_scene, only: scene_t, evaluation_t, phase_contact, event_contact_begins
   use step_peaks, only: peak_watch_t, of_pin_force, of_penetration, of_normal_force, n_peaks
   use cycle_watch, only: cycle_watch_t
+  use wear_record, only: wear_record_t
   use trace_sink, only: trace_event_t
   use film_figures, only: film_figures_t, film_figures_of
   use run_figures, only: run_figures_t
@@ -19,6 +20,7 @@ module pin_record
     type(trace_event_t), private :: contact    !! present or last contact
     logical, private :: reports_film = .false.
     real(dp), private :: film_time = 0         !! time up to which the results of its film have been integrated [s]
+    type(wear_record_t), allocatable :: wear   !! not allocated: wear is not counted
   contains
     procedure, non_overridable :: prepare
     procedure, non_overridable :: search
@@ -40,6 +42,10 @@ contains
     self%contact%pin = pin
     if (self%joint == 0) return
     self%reports_film = scene%joints(self%joint)%reports_film
+    if (allocated(scene%joints(self%joint)%wear)) then
+      allocate (self%wear)
+      call self%wear%prepare(self%joint, scene)
+    end if
     if (.not. allocated(scene%joints(self%joint)%contact)) return
     associate (geometry => scene%joints(self%joint)%contact%geometry)
       self%validity_limit = geometry%fastest_impact()
@@ -84,6 +90,10 @@ contains
     figures%peak_evaluations = figures%peak_evaluations + (self%evaluations - before)
     call put_values(self, touches, largest, figures, cycles)
     if (self%reports_film) call sum_film(self, method, scene, t, now, figures)
+    if (.not. allocated(self%wear)) return
+    before = self%wear%evaluations
+    call self%wear%follow(method, scene, t)
+    figures%evaluations = figures%evaluations + (self%wear%evaluations - before)
   end subroutine search
 
   !> Integrate the power, the side flow and the pressure of the film up to t, with Gauss's rule of three points.
@@ -181,5 +191,6 @@ contains
     call self%contact%exchange(archive)
     call self%peak_watch_t%exchange(archive)
     call archive%exchange(self%film_time)
+    if (allocated(self%wear)) call self%wear%exchange(archive)
   end subroutine exchange
 end module pin_record

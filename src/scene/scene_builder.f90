@@ -222,7 +222,8 @@ contains
     if (allocated(wanted%film) .and. wanted%can_touch() .and. wanted%transition%is_weighted()) &
       allocate (joint%transition, source=wanted%transition)
     if (allocated(wanted%asperities)) allocate (joint%asperities, source=wanted%asperities)
-    joint%reports_friction_work = wanted%reports_friction_work
+    if (allocated(wanted%wear)) allocate (joint%wear, source=wanted%wear)
+    joint%reports_friction_work = wanted%reports_friction_work .or. allocated(wanted%wear)
     joint%reports_film = wanted%reports_film .and. allocated(wanted%film)
   end subroutine build_joint
 

@@ -1,0 +1,86 @@
+!> The arc on which pin and bore of a joint press on each other, and the pressure along it, for the wear of their surfaces.
+module contact_arc
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: pi
+  use joint_motion, only: joint_motion_t
+  use clearance_joint, only: clearance_joint_t, joint_loads_t, phase_contact
+  implicit none
+  private
+  public :: contact_arc_t, arc_of, sliding_load
+
+  integer, parameter :: least_cells = 32
+
+  !> The arc, divided into cells. Angles are measured from the line of centres.
+  type :: contact_arc_t
+    integer :: n = 0                         !! number of cells
+    real(dp), allocatable :: edges(:)        !! of the cells, increasing, (0:n) [rad]
+    real(dp), allocatable :: loads(:)        !! Int p R L dtheta over each cell, over the normal force [-]
+  end type contact_arc_t
+
+contains
+
+  !> The arc of a joint in contact, in cells that are not much wider than `width` [rad]. A geometry of contact along a line, or at a
+  !> point, has no cells.
+  !>
+  !> With theta = a sin s the cells have equal ranges of s: the pressure falls like a root at the ends of the arc, and the midpoint
+  !> rule converges fast in s.
+  pure subroutine arc_of(joint, motion, width, arc)
+    type(clearance_joint_t), intent(in) :: joint
+    type(joint_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: width
+    type(contact_arc_t), intent(inout) :: arc
+    real(dp) :: half_angle, step, s
+    integer :: i
+    arc%n = 0
+    half_angle = half_angle_of(joint, motion)
+    if (.not. half_angle > 0) return
+    arc%n = max(least_cells, ceiling(2*half_angle/width))
+    if (allocated(arc%edges)) deallocate (arc%edges, arc%loads)
+    allocate (arc%edges(0:arc%n), arc%loads(arc%n))
+    step = pi/arc%n
+    arc%edges(0) = -half_angle
+    do i = 1, arc%n
+      s = (i - 0.5_dp)*step - pi/2
+      arc%edges(i) = half_angle*sin(s + step/2)
+      arc%loads(i) = pressure_of(joint, motion, half_angle, half_angle*sin(s))*half_angle*cos(s)*step
+    end do
+  end subroutine arc_of
+
+  !> Int p R L dtheta |v| of a joint: the force that presses on the surfaces, summed without regard to its direction, times the
+  !> sliding speed [W]. Times the wear rate of a surface it is the volume that wears in a second. On a wide arc it is larger than the
+  !> normal force times the speed.
+  pure real(dp) function sliding_load(joint, motion, loads)
+    type(clearance_joint_t), intent(in) :: joint
+    type(joint_motion_t), intent(in) :: motion
+    type(joint_loads_t), intent(in) :: loads
+    type(contact_arc_t) :: arc
+    sliding_load = abs(loads%normal_force*motion%sliding_speed)
+    if (.not. sliding_load > 0) return
+    call arc_of(joint, motion, pi, arc)
+    if (arc%n > 0) sliding_load = sliding_load*sum(arc%loads)
+  end function sliding_load
+
+  !> Half-angle of the arc [rad]; 0 if the geometry of the contact does not say it.
+  pure real(dp) function half_angle_of(joint, motion) result(half_angle)
+    type(clearance_joint_t), intent(in) :: joint
+    type(joint_motion_t), intent(in) :: motion
+    half_angle = 0
+    if (allocated(joint%asperities)) then
+      half_angle = joint%asperities%half_angle(motion%distance)
+    else if (joint%phase == phase_contact) then
+      if (motion%penetration > 0) half_angle = joint%contact%geometry%half_angle(motion%penetration)
+    end if
+  end function half_angle_of
+
+  !> p R L over the normal force at an angle inside the arc [1/rad].
+  pure real(dp) function pressure_of(joint, motion, half_angle, angle) result(pressure)
+    type(clearance_joint_t), intent(in) :: joint
+    type(joint_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: half_angle, angle
+    if (allocated(joint%asperities)) then
+      pressure = joint%asperities%pressure(motion%distance, angle)/joint%asperities%force(motion%distance)
+    else
+      pressure = joint%contact%geometry%pressure(half_angle, angle)
+    end if
+  end function pressure_of
+end module contact_arc

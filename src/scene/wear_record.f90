@@ -1,0 +1,222 @@
+!> Counts the wear of pin and bore of a joint during a run. The motion does not depend on it.
+module wear_record
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: pi
+  use gudgeon_archive, only: archive_t
+  use ode_method, only: ode_method_t
+  use chain_motion, only: crank_pin, piston_pin
+  use archard_wear, only: worn_surface_t, of_pin, of_bore
+  use contact_arc, only: contact_arc_t, arc_of
+  use clearance_joint, only: phase_contact
+  use gudgeon_scene, only: scene_t, evaluation_t
+  implicit none
+  private
+  public :: wear_record_t, wear_profile_t
+
+  !> The worn surfaces of a joint at the end of a run. Arrays have one element, or column, for the pin and one for the bore.
+  type :: wear_profile_t
+    integer :: place = 0                       !! pin of the chain
+    real(dp), allocatable :: depth(:, :)       !! mean depth of wear in each bin [m]
+    real(dp), allocatable :: volume(:, :)      !! volume worn from each bin [m^3]
+  end type wear_profile_t
+
+  !> Gauss's rule with three points inside Kronrod's with seven, on [-1, 1].
+  integer, parameter :: n_nodes = 7
+  real(dp), parameter :: nodes(n_nodes) = [-0.96049126870802028342_dp, -0.77459666924148337704_dp, -0.43424374934680255800_dp, &
+    0.0_dp, 0.43424374934680255800_dp, 0.77459666924148337704_dp, 0.96049126870802028342_dp]
+  real(dp), parameter :: weights(n_nodes) = [0.10465622602646726519_dp, 0.26848808986833344073_dp, 0.40139741477596222291_dp, &
+    0.45091653865847414235_dp, 0.40139741477596222291_dp, 0.26848808986833344073_dp, 0.10465622602646726519_dp]
+  real(dp), parameter :: gauss(n_nodes) = [0.0_dp, 5.0_dp, 0.0_dp, 8.0_dp, 0.0_dp, 5.0_dp, 0.0_dp]/9
+
+  !> What the nodes of one interval need to be distributed over the surfaces.
+  type :: samples_t
+    type(evaluation_t) :: now(n_nodes)
+    real(dp) :: load(n_nodes)                  !! normal force times sliding speed [W]
+    real(dp) :: angle(n_nodes, 2)              !! of the line of centres, from marks on pin and bore, without jumps [rad]
+  end type samples_t
+
+  type :: wear_record_t
+    integer :: joint = 0                       !! index of the scene's joint
+    integer :: evaluations = 0                 !! number of evaluations of the scene so far
+    real(dp), private :: time = 0              !! time up to which wear has been counted [s]
+    real(dp), private :: total = 0             !! integral of normal force times sliding speed [N m]
+    type(worn_surface_t), private :: surface(2)
+  contains
+    procedure :: prepare
+    procedure :: follow
+    procedure :: begin_at
+    procedure :: profile
+    procedure :: exchange
+  end type wear_record_t
+
+contains
+
+  subroutine prepare(self, joint, scene)
+    class(wear_record_t), intent(inout) :: self
+    integer, intent(in) :: joint               !! index of a joint with wear
+    type(scene_t), intent(in) :: scene
+    self%joint = joint
+    call self%surface(of_pin)%prepare(scene%joints(joint)%wear%bins)
+    call self%surface(of_bore)%prepare(scene%joints(joint)%wear%bins)
+  end subroutine prepare
+
+  !> Forget the wear before a time [s].
+  subroutine begin_at(self, t)
+    class(wear_record_t), intent(inout) :: self
+    real(dp), intent(in) :: t
+    integer :: i
+    self%time = t
+    self%total = 0
+    do i = 1, size(self%surface)
+      self%surface(i)%load_path = 0
+    end do
+  end subroutine begin_at
+
+  !> Count the wear up to t, in the last step of the method and in one phase of the joint. An interval is halved until the rules of
+  !> three and seven points agree within the tolerance of the run, relative to the sum so far, and until the line of centres turns
+  !> by at most two bins.
+  subroutine follow(self, method, scene, t)
+    class(wear_record_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t
+    real(dp), parameter :: shortest = 1.0_dp/4096   !! of an interval, over the time since the last call
+    type(samples_t) :: samples
+    real(dp) :: done, part, span, sums(2)
+    span = t - self%time
+    if (may_touch(self, scene) .and. span > 0) then
+      done = 0
+      part = 1
+      do while (done < 1)
+        call take_samples(self, method, scene, self%time + done*span, part*span, samples)
+        sums = 0.5_dp*part*span*[dot_product(weights, samples%load), dot_product(gauss, samples%load)]
+        if (part > shortest .and. (abs(sums(1) - sums(2)) > method%settings%tolerance*(self%total + sums(1)) .or. &
+            (sums(1) > 0 .and. sweep(samples) > 2*self%surface(of_bore)%width()))) then
+          part = 0.5_dp*part
+        else
+          if (sums(1) > 0) call distribute(self, scene, 0.5_dp*part*span, samples)
+          self%total = self%total + sums(1)
+          done = done + part
+          part = min(2*part, 1 - done)
+        end if
+      end do
+    end if
+    self%time = t
+  end subroutine follow
+
+  !> Whether the surfaces may touch in the present phase.
+  pure logical function may_touch(self, scene)
+    type(wear_record_t), intent(in) :: self
+    type(scene_t), intent(in) :: scene
+    associate (joint => scene%joints(self%joint))
+      may_touch = joint%phase == phase_contact .or. allocated(joint%asperities)
+    end associate
+  end function may_touch
+
+  !> Evaluate the scene at the nodes of an interval.
+  subroutine take_samples(self, method, scene, t, span, samples)
+    type(wear_record_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, span   !! beginning and length of the interval [s]
+    type(samples_t), intent(inout) :: samples
+    real(dp) :: y(scene%n), time
+    logical :: inside
+    integer :: i, k
+    k = self%joint
+    do i = 1, n_nodes
+      time = t + 0.5_dp*(1 + nodes(i))*span
+      call method%interpolate(time, y)
+      call scene%evaluate(time, y, samples%now(i), inside)
+      samples%load(i) = 0
+      associate (now => samples%now(i))
+        if (inside) samples%load(i) = abs(now%joint(k)%normal_force*now%relative(k)%sliding_speed)
+        samples%angle(i, :) = atan2(now%relative(k)%normal(2), now%relative(k)%normal(1)) - turned(scene, k, now)
+      end associate
+      if (i > 1) samples%angle(i, :) = samples%angle(i - 1, :) &
+        + modulo(samples%angle(i, :) - samples%angle(i - 1, :) + pi, 2*pi) - pi
+    end do
+    self%evaluations = self%evaluations + n_nodes
+  end subroutine take_samples
+
+  !> Angles by which pin and bore of a joint have turned, from x to y [rad].
+  pure function turned(scene, joint, now) result(angles)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: joint
+    type(evaluation_t), intent(in) :: now
+    real(dp) :: angles(2)
+    if (scene%joints(joint)%place == crank_pin) then
+      angles(of_pin) = now%motion%crank_angle
+      angles(of_bore) = scene%chain%rod_end_angle(now%motion, crank_pin)
+    else
+      angles(of_pin) = scene%chain%rod_end_angle(now%motion, piston_pin)
+      angles(of_bore) = 0
+      if (scene%joints(joint)%bearing_turns) angles(of_bore) = now%motion%tilting%tilt
+    end if
+  end function turned
+
+  !> Largest angle that the line of centres passes over on a surface [rad].
+  pure real(dp) function sweep(samples)
+    type(samples_t), intent(in) :: samples
+    sweep = maxval(maxval(samples%angle, 1) - minval(samples%angle, 1))
+  end function sweep
+
+  !> Distribute the load path of an interval over the surfaces: along the arc of contact, or where surfaces touch along a line evenly
+  !> over the angle that it passes over.
+  subroutine distribute(self, scene, half_span, samples)
+    type(wear_record_t), intent(inout) :: self
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: half_span   !! half of the interval [s]
+    type(samples_t), intent(in) :: samples
+    type(contact_arc_t) :: arc
+    real(dp) :: amount, on_line, overhang(2)
+    integer :: i, j, k
+    on_line = 0
+    do i = 1, n_nodes
+      amount = half_span*weights(i)*samples%load(i)
+      if (.not. amount > 0) cycle
+      call arc_of(scene%joints(self%joint), samples%now(i)%relative(self%joint), self%surface(of_bore)%width(), arc)
+      if (arc%n == 0) on_line = on_line + amount
+      do j = 1, arc%n
+        do k = 1, size(self%surface)
+          call self%surface(k)%add(samples%angle(i, k) + arc%edges(j - 1), samples%angle(i, k) + arc%edges(j), amount*arc%loads(j))
+        end do
+      end do
+    end do
+    if (.not. on_line > 0) return
+    overhang = 0.5_dp*(1/nodes(n_nodes) - 1)*(samples%angle(n_nodes, :) - samples%angle(1, :))
+    do k = 1, size(self%surface)
+      call self%surface(k)%add(samples%angle(1, k) - overhang(k), samples%angle(n_nodes, k) + overhang(k), on_line)
+    end do
+  end subroutine distribute
+
+  !> The worn surfaces so far.
+  function profile(self, scene) result(worn)
+    class(wear_record_t), intent(in) :: self
+    type(scene_t), intent(in) :: scene
+    type(wear_profile_t) :: worn
+    real(dp) :: radius
+    integer :: k
+    associate (joint => scene%joints(self%joint), n => size(self%surface(1)%load_path))
+      worn%place = joint%place
+      allocate (worn%depth(n, 2), worn%volume(n, 2))
+      do k = 1, size(self%surface)
+        radius = merge(joint%pin_radius, joint%bearing%radius, k == of_pin)
+        worn%volume(:, k) = joint%wear%rate(k)*self%surface(k)%load_path
+        worn%depth(:, k) = worn%volume(:, k)/(radius*joint%bearing%length*self%surface(k)%width())
+      end do
+    end associate
+  end function profile
+
+  !> Write the wear so far to an archive, or read it from it.
+  subroutine exchange(self, archive)
+    class(wear_record_t), intent(inout) :: self
+    type(archive_t), intent(inout) :: archive
+    integer :: k
+    call archive%exchange(self%evaluations)
+    call archive%exchange(self%time, self%total)
+    do k = 1, size(self%surface)
+      call self%surface(k)%exchange(archive)
+    end do
+  end subroutine exchange
+end module wear_record
