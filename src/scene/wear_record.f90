@@ -82,7 +82,9 @@ contains
     real(dp), intent(in) :: t
     real(dp), parameter :: shortest = 1.0_dp/4096   !! of an interval, over the time since the last call
     type(samples_t) :: samples
+    real(dp), parameter :: finest = 1e-8_dp         !! least tolerance of the sum
     real(dp) :: done, part, span, sums(2)
+    logical :: is_rough
     span = t - self%time
     if (may_touch(self, scene) .and. span > 0) then
       done = 0
@@ -90,8 +92,10 @@ contains
       do while (done < 1)
         call take_samples(self, method, scene, self%time + done*span, part*span, samples)
         sums = 0.5_dp*part*span*[dot_product(weights, samples%load), dot_product(gauss, samples%load)]
-        if (part > shortest .and. (abs(sums(1) - sums(2)) > method%settings%tolerance*(self%total + sums(1)) .or. &
-            (sums(1) > 0 .and. sweep(samples) > 2*self%surface(of_bore)%width()))) then
+        is_rough = sums(1) > 0 .and. part > shortest
+        if (is_rough) is_rough = sweep(samples) > 2*self%surface(of_bore)%width() .or. &
+          sums(1)*(10*abs(sums(1) - sums(2))/sums(1))**1.5_dp > max(method%settings%tolerance, finest)*(self%total + sums(1))
+        if (is_rough) then
           part = 0.5_dp*part
         else
           if (sums(1) > 0) call distribute(self, scene, 0.5_dp*part*span, samples)
