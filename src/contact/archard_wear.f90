@@ -15,6 +15,10 @@ module archard_wear
   type, extends(has_parameters_t) :: wear_law_t
     real(dp) :: rate(2) = 0   !! k of pin and bore, K/H of Archard's law [m^2/N]
     integer :: bins = 0       !! number of equal arcs into which each surface is divided
+    character(len=:), allocatable :: bore      !! 'round', or 'worn': the depth of wear changes the contact
+    integer :: cycles_per_update = 1           !! turns of the crank between two changes of the bore's shape
+    real(dp) :: extrapolation = 1              !! each of these spans stands for so many
+    real(dp) :: greatest_step_ratio = 0        !! upper limit of the depth added at once, over the clearance
   contains
     procedure :: parameters
   end type wear_law_t
@@ -38,6 +42,16 @@ contains
     call list%add('rate', self%rate, 'specific wear rates of pin and bore: volume per normal force and sliding path', &
       'm^2/N', '>= 0 and <= 1e-6', default='0.0', example='1.0e-15')
     call list%add('bins', self%bins, 'number of arcs of each surface in NAME.wear.csv', '>= 4 and <= 36000', '360')
+    call list%word('bore', self%bore, 'round, worn', 'round', &
+      'round: wear is only counted; worn: the worn bore acts in the contact (geometry = ''winkler'')')
+    call list%add('cycles_per_update', self%cycles_per_update, 'crank revolutions between changes of a worn bore', &
+      '>= 1 and <= 1000000', '1')
+    call list%add('extrapolation', self%extrapolation, &
+      'factor by which the wear between two changes is multiplied, as if it had lasted so much longer', &
+      range='>= 1', default='1.0')
+    call list%add('greatest_step_ratio', self%greatest_step_ratio, &
+      'largest change of depth over the clearance; also half of its limit over the mean penetration. Reduces extrapolation', &
+      range='> 0 and <= 1', default='0.05')
   end subroutine parameters
 
   !> Begin with a surface that has not worn.

@@ -23,6 +23,7 @@ module contact_geometry
     procedure :: elastic_energy => integral_of_force
     procedure, nopass :: needs_length => needs_it
     procedure :: bearing_conflict => fits_every_bearing
+    procedure :: foundation => no_foundation
     procedure :: half_angle => line_contact
     procedure :: pressure => no_pressure
     procedure :: put_columns => no_columns
@@ -112,6 +113,14 @@ contains
     key = ''
     wanted = ''
   end subroutine fits_every_bearing
+
+  !> Stiffness k Rb L of a foundation of springs [N/m^2]; 0, the default, if the geometry is another one.
+  pure real(dp) function no_foundation(self) result(stiffness)
+    class(contact_geometry_t), intent(in) :: self
+    associate (unused => self)
+    end associate
+    stiffness = 0
+  end function no_foundation
 
   !> Half-angle of the arc on which pin and bore touch [rad]; 0, the default, if the geometry does not say it: the surfaces touch
   !> along a line.

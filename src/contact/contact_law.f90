@@ -26,6 +26,7 @@ module contact_law
     procedure :: prepare
     procedure, non_overridable :: prepare_geometry
     procedure, non_overridable :: normal_force
+    procedure, non_overridable :: damped_by
     procedure, non_overridable :: normal_force_slopes
     procedure :: damped_force
     procedure :: damped_force_slopes
@@ -79,14 +80,20 @@ contains
     real(dp), value, intent(in) :: penetration, penetration_rate, impact_speed
     real(dp) :: force
     force = 0
-    if (.not. penetration > 0) return
-    force = self%geometry%elastic_force(penetration)
-    if (self%has_own_damping) then
-      force = self%damped_force(force, penetration, penetration_rate)
-    else
-      force = force*bracket(self, penetration_rate, impact_speed)
-    end if
+    if (penetration > 0) &
+      force = self%damped_by(self%geometry%elastic_force(penetration), penetration, penetration_rate, impact_speed)
   end function any_normal_force
+
+  !> The normal force for a given elastic force [N], > 0; other arguments as for `normal_force`.
+  pure real(dp) function damped_by(self, elastic_force, penetration, penetration_rate, impact_speed) result(force)
+    class(contact_law_t), intent(in) :: self
+    real(dp), intent(in) :: elastic_force, penetration, penetration_rate, impact_speed
+    if (self%has_own_damping) then
+      force = self%damped_force(elastic_force, penetration, penetration_rate)
+    else
+      force = elastic_force*bracket(self, penetration_rate, impact_speed)
+    end if
+  end function damped_by
 
   !> 1 + chi delta_dot/delta_dot_minus, within its limits.
   pure real(dp) function bracket(self, penetration_rate, impact_speed)

@@ -23,6 +23,7 @@ module winkler
     procedure :: elastic_force
     procedure :: slope
     procedure :: elastic_energy
+    procedure :: foundation
     procedure :: half_angle
     procedure :: pressure
   end type winkler_t
@@ -132,6 +133,11 @@ contains
     end if
     energy = energy*self%bedding*self%clearance**2
   end function elastic_energy
+
+  pure real(dp) function foundation(self) result(stiffness)
+    class(winkler_t), intent(in) :: self
+    stiffness = self%bedding
+  end function foundation
 
   !> a with cos a = c/(c + delta).
   pure real(dp) function half_angle(self, penetration)

@@ -8,6 +8,8 @@ module case_rules
   use case_schema, only: find_group
   use measured_pressure, only: measured_pressure_periods
   use case_values, only: case_values_t
+  use archard_wear, only: of_bore
+  use friction_law, only: friction_law_t
   use film_snapshots, only: read_times
   use body_rules, only: check_guide, check_elastic, bore_reach
   implicit none
@@ -211,7 +213,35 @@ contains
       call forbid(.not. (joint%can_touch() .or. allocated(joint%asperities)), wear_group, 'rate', &
         'needs surfaces that touch: the group contact without elastic_film, or asperities')
       call values%demand(joint%bearing_length > 0, group, 'bearing_length', 'with wear', error)
+      if (.not. allocated(error)) call check_worn_bore(joint, wear_group, turns=group /= 'joint' .or. c%has_loose_guide())
     end subroutine check_wear
+
+    !> Check that a bore whose shape changes belongs to a dry joint on a foundation, in a piston that does not tilt.
+    subroutine check_worn_bore(joint, group, turns)
+      type(joint_case_t), intent(in) :: joint
+      character(len=*), intent(in) :: group   !! group of the wear
+      logical, intent(in) :: turns            !! the bore turns
+      integer, parameter :: least_bins = 36
+      class(friction_law_t), allocatable :: friction
+      if (joint%wear%bore == 'round') then
+        call forbid(joint%wear%extrapolation > 1, group, 'extrapolation', 'is for bore = ''worn'' alone')
+        call forbid(joint%wear%cycles_per_update > 1, group, 'cycles_per_update', 'is for bore = ''worn'' alone')
+        return
+      end if
+      call forbid(allocated(joint%film), group, 'bore', 'must be round with lubrication: the films are those of round bores')
+      if (allocated(error)) return
+      call forbid(joint%contact%geometry%name /= 'winkler', group, 'bore', 'worn needs &contact geometry = ''winkler''')
+      call forbid(turns, group, 'bore', 'worn is for the piston pin in a piston that does not tilt')
+      call forbid(.not. joint%wear%rate(of_bore) > 0, group, 'rate', 'must be > 0 for the bore with bore = ''worn''')
+      call forbid(joint%wear%bins < least_bins, group, 'bins', 'must be >= 36 with bore = ''worn''')
+      call forbid(c%run%is_until_periodic() .or. c%run%lyapunov_revolutions > 0, group, 'bore', &
+        'worn cannot be combined with &run until = ''periodic'' or lyapunov_revolutions: the bore changes')
+      if (.not. allocated(joint%friction)) return
+      allocate (friction, source=joint%friction)
+      call friction%prepare()
+      call forbid(friction%set_valued, group, 'bore', &
+        'worn cannot be combined with a friction law in which the surfaces stick; ambrosio or lugre, for example, can')
+    end subroutine check_worn_bore
 
     !> Check that the loss of a contact is given by one key, and that its geometry is possible in its bearing.
     subroutine check_contact(joint, group, contact_group)

@@ -166,6 +166,10 @@ contains
           call add(prefix//'worn_volume_bore', real_text(sum(worn%volume(:, of_bore))), 'm3')
           call add(prefix//'max_wear_depth_pin', real_text(maxval(worn%depth(:, of_pin))), 'm')
           call add(prefix//'max_wear_depth_bore', real_text(maxval(worn%depth(:, of_bore))), 'm')
+          if (.not. worn%bore_changes) cycle
+          call add(prefix//'wear_revolutions', real_text(worn%turns), '1')
+          call add(prefix//'wear_step_over_clearance', real_text(worn%step_ratios(1)), '1')
+          call add(prefix//'wear_step_over_penetration', real_text(worn%step_ratios(2)), '1')
         end associate
       end do
     end subroutine add_wear

@@ -82,6 +82,10 @@ module summary_quantities
     quantity_t('worn_volume_bore', 'm3', 'volume worn from the bore'), &
     quantity_t('max_wear_depth_pin', 'm', 'largest mean depth of a bin of NAME.wear.csv on the pin'), &
     quantity_t('max_wear_depth_bore', 'm', 'the same on the bore'), &
+    quantity_t('wear_revolutions', '1', 'revolutions that the last shape of a worn bore stands for, with `extrapolation`'), &
+    quantity_t('wear_step_over_clearance', '1', 'largest change of its depth at once, over the clearance'), &
+    quantity_t('wear_step_over_penetration', '1', &
+      'the same over the mean penetration: a large value calls for less extrapolation or fewer `cycles_per_update`'), &
     quantity_t('film_energy_lost', 'J', &
       'energy that the film took from the bodies; negative: it gave energy, as an oscillating film may'), &
     quantity_t('max_film_pressure', 'Pa', 'largest pressure in the film'), &

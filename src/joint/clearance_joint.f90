@@ -17,6 +17,7 @@ module clearance_joint
   use film_transition, only: film_transition_t
   use asperities, only: asperities_t
   use archard_wear, only: wear_law_t
+  use worn_bore, only: worn_bore_t
   use mixed_film, only: mixed_forces, mixed_derivatives
   use elastic_film, only: elastic_film_t, n_film_states
   use joint_motion, only: joint_motion_t, most_joint_states, find_polar, find_speeds, find_sliding
@@ -56,6 +57,7 @@ module clearance_joint
     type(film_transition_t), allocatable :: transition   !! film and contact share the load near the wall
     type(elastic_film_t), allocatable :: elastic    !! film between elastic walls; without contact law
     type(wear_law_t), allocatable :: wear            !! wear of pin and bore is counted
+    type(worn_bore_t), allocatable :: worn           !! the worn shape of the bore acts in the contact
     type(slice_t) :: film_states            !! indices of the film's own eccentricity in the state
     type(coordinates_t) :: at               !! indices of the eccentricity in the state
     integer :: n_friction_states = 0        !! number of states of the friction law
@@ -312,7 +314,11 @@ contains
     type(joint_motion_t), intent(inout) :: joint
     type(joint_loads_t), intent(inout) :: own
     call find_polar(self%bearing%clearance, joint)
-    own%normal_force = self%contact%normal_force(joint%penetration, joint%penetration_rate, self%impact_speed)
+    if (allocated(self%worn)) then
+      call find_worn(self, joint, own%normal_force)
+    else
+      own%normal_force = self%contact%normal_force(joint%penetration, joint%penetration_rate, self%impact_speed)
+    end if
     own%friction_force = 0
     if (allocated(self%friction)) then
       call find_sliding(self%pin_radius, joint)
@@ -329,6 +335,26 @@ contains
       own%moment = friction*self%pin_radius
     end associate
   end subroutine find_contact
+
+  !> A journal in a worn bore: its penetration, the normal force, and the direction in which it presses, if it does.
+  pure subroutine find_worn(self, joint, normal_force)
+    class(clearance_joint_t), intent(in) :: self
+    type(joint_motion_t), intent(inout) :: joint
+    real(dp), intent(out) :: normal_force
+    real(dp) :: gradient(2), elastic(2), pressing
+    normal_force = 0
+    call self%worn%find_gap(joint%eccentricity, joint%penetration, gradient)
+    joint%penetration_rate = dot_product(gradient, joint%eccentricity_rate)
+    if (self%phase /= phase_contact) return
+    call self%worn%press(joint%eccentricity, elastic)
+    pressing = norm2(elastic)
+    if (.not. pressing > 0) return
+    joint%normal = elastic/pressing
+    associate (n => joint%normal, rate => joint%eccentricity_rate)
+      joint%tangential_rate = n(1)*rate(2) - n(2)*rate(1)
+      normal_force = self%contact%damped_by(pressing, joint%penetration, dot_product(n, rate), self%impact_speed)
+    end associate
+  end subroutine find_worn
 
   !> Weight the contact force, computed as if there were no film, and the film force with their shares of the load.
   pure subroutine share_with_film(self, motion, joint, own)
@@ -435,6 +461,7 @@ contains
     logical, intent(in) :: is_known
     type(joint_motion_t), intent(inout) :: joint
     type(joint_loads_t), intent(inout) :: own
+    real(dp) :: normal_force
     if (self%phase == phase_free .or. (self%phase == phase_contact .and. .not. allocated(self%transition))) own%film = 0
     if (self%phase /= phase_contact .and. .not. allocated(self%asperities)) then
       own%contact = 0
@@ -443,6 +470,7 @@ contains
       joint%friction_states = 0
     end if
     call find_polar(self%bearing%clearance, joint)
+    if (allocated(self%worn)) call find_worn(self, joint, normal_force)
     if (allocated(self%elastic)) call find_elastic_thickness(self, joint)
     if (.not. is_known) return
     call find_speeds(self%place, motion, joint)
@@ -461,7 +489,8 @@ contains
     call find_polar(self%bearing%clearance, joint)
     if (allocated(self%elastic)) call find_elastic_thickness(self, joint)
     normal_force = 0
-    if (self%phase /= phase_contact) return
+    if (allocated(self%worn)) call find_worn(self, joint, normal_force)
+    if (self%phase /= phase_contact .or. allocated(self%worn)) return
     normal_force = self%contact%normal_force(joint%penetration, joint%penetration_rate, self%impact_speed)
     if (allocated(self%transition)) normal_force = normal_force*self%contact_weight(joint%penetration)
   end subroutine look
@@ -517,5 +546,6 @@ contains
     call archive%exchange(self%impact_speed)
     call archive%exchange(self%sliding)
     if (allocated(self%transition)) call self%transition%exchange(archive)
+    if (allocated(self%worn)) call self%worn%exchange(archive)
   end subroutine exchange
 end module clearance_joint

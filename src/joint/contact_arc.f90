@@ -2,6 +2,7 @@
 module contact_arc
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
+  use worn_bore, only: touching_cells_t
   use joint_motion, only: joint_motion_t
   use clearance_joint, only: clearance_joint_t, joint_loads_t, phase_contact
   implicit none
@@ -13,7 +14,7 @@ module contact_arc
   !> The arc, divided into cells. Angles are measured from the line of centres.
   type :: contact_arc_t
     integer :: n = 0                         !! number of cells
-    real(dp), allocatable :: edges(:)        !! of the cells, increasing, (0:n) [rad]
+    real(dp), allocatable :: ends(:, :)      !! angles at which each cell begins and ends, (2, n) [rad]
     real(dp), allocatable :: loads(:)        !! Int p R L dtheta over each cell, over the normal force [-]
   end type contact_arc_t
 
@@ -32,23 +33,41 @@ contains
     real(dp) :: half_angle, step, s
     integer :: i
     arc%n = 0
+    if (allocated(joint%worn)) then
+      call worn_arc(joint, motion, arc)
+      return
+    end if
     half_angle = half_angle_of(joint, motion)
     if (.not. half_angle > 0) return
     arc%n = max(least_cells, ceiling(2*half_angle/width))
-    if (allocated(arc%edges)) deallocate (arc%edges, arc%loads)
-    allocate (arc%edges(0:arc%n), arc%loads(arc%n))
+    if (allocated(arc%ends)) deallocate (arc%ends, arc%loads)
+    allocate (arc%ends(2, arc%n), arc%loads(arc%n))
     step = pi/arc%n
-    arc%edges(0) = -half_angle
     do i = 1, arc%n
       s = (i - 0.5_dp)*step - pi/2
-      arc%edges(i) = half_angle*sin(s + step/2)
+      arc%ends(:, i) = half_angle*[sin(s - step/2), sin(s + step/2)]
       arc%loads(i) = pressure_of(joint, motion, half_angle, half_angle*sin(s))*half_angle*cos(s)*step
     end do
   end subroutine arc_of
 
+  !> The arcs on which a pin touches a worn bore.
+  pure subroutine worn_arc(joint, motion, arc)
+    type(clearance_joint_t), intent(in) :: joint
+    type(joint_motion_t), intent(in) :: motion
+    type(contact_arc_t), intent(inout) :: arc
+    type(touching_cells_t) :: touching
+    real(dp) :: elastic(2)
+    call joint%worn%cells(motion%eccentricity, touching)
+    arc%n = touching%n
+    if (arc%n == 0) return
+    call joint%worn%press(motion%eccentricity, elastic)
+    arc%ends = touching%ends(:, :arc%n) - atan2(elastic(2), elastic(1))
+    arc%loads = touching%loads(:arc%n)/norm2(elastic)
+  end subroutine worn_arc
+
   !> Int p R L dtheta |v| of a joint: the force that presses on the surfaces, summed without regard to its direction, times the
-  !> sliding speed [W]. Times the wear rate of a surface it is the volume that wears in a second. On a wide arc it is larger than the
-  !> normal force times the speed.
+  !> sliding speed [W]. Times the wear rate of a surface it is the volume that wears in a second. On a wide arc it is larger than
+  !> the normal force times the speed.
   pure real(dp) function sliding_load(joint, motion, loads)
     type(clearance_joint_t), intent(in) :: joint
     type(joint_motion_t), intent(in) :: motion
@@ -57,7 +76,7 @@ contains
     sliding_load = abs(loads%normal_force*motion%sliding_speed)
     if (.not. sliding_load > 0) return
     call arc_of(joint, motion, pi, arc)
-    if (arc%n > 0) sliding_load = sliding_load*sum(arc%loads)
+    if (arc%n > 0) sliding_load = sliding_load*sum(arc%loads(:arc%n))
   end function sliding_load
 
   !> Half-angle of the arc [rad]; 0 if the geometry of the contact does not say it.

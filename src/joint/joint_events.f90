@@ -36,7 +36,12 @@ contains
   pure function penetration_and_rate(joint, y) result(values)
     type(clearance_joint_t), intent(in) :: joint
     real(dp), intent(in) :: y(:)
-    real(dp) :: values(2), distance
+    real(dp) :: values(2), distance, gradient(2)
+    if (allocated(joint%worn)) then
+      call joint%worn%find_gap(y(joint%at%position:joint%at%position + 1), values(1), gradient)
+      values(2) = dot_product(gradient, y(joint%at%rate:joint%at%rate + 1))
+      return
+    end if
     associate (x => y(joint%at%position), x_rate => y(joint%at%rate), &
                across => y(joint%at%position + 1), across_rate => y(joint%at%rate + 1))
       distance = sqrt(x**2 + across**2)
@@ -47,11 +52,19 @@ contains
   end function penetration_and_rate
 
   !> Event function of the beginning or end of a contact, and its rate: (e . e - c^2)/2 [m^2] without contact, which is smooth in
-  !> every state, and its negative in contact.
+  !> every state, and its negative in contact. In a worn bore the difference of the eccentricity from the clearance is the largest
+  !> gap of its foundation, times the clearance.
   pure subroutine contact_event(joint, y, g, g_rate)
     type(clearance_joint_t), intent(in) :: joint
-    real(dp), intent(in) :: y(*)
+    real(dp), intent(in) :: y(:)
     real(dp), intent(out) :: g, g_rate
+    real(dp) :: worn(2)
+    if (allocated(joint%worn)) then
+      worn = sign(joint%bearing%clearance, merge(-1.0_dp, 1.0_dp, joint%phase == phase_contact))*penetration_and_rate(joint, y)
+      g = worn(1)
+      g_rate = worn(2)
+      return
+    end if
     call reach_event(joint, y, joint%bearing%clearance, joint%phase == phase_contact, g, g_rate)
   end subroutine contact_event
 
@@ -171,8 +184,13 @@ contains
   pure real(dp) function rough_end(joint, t, y)
     type(clearance_joint_t), intent(in) :: joint
     real(dp), intent(in) :: t, y(:)
-    real(dp) :: distance, product
+    real(dp) :: distance, product, worn(2)
     rough_end = huge(rough_end)
+    if (allocated(joint%worn)) then
+      worn = penetration_and_rate(joint, y)
+      if (worn(2) < 0 .and. worn(1) > 0) rough_end = t - worn(1)/worn(2)
+      return
+    end if
     associate (x => y(joint%at%position), x_rate => y(joint%at%rate), &
                across => y(joint%at%position + 1), across_rate => y(joint%at%rate + 1))
       product = x*x_rate + across*across_rate   ! e . e' = |e| |e|'

@@ -32,6 +32,7 @@ module gudgeon_solver
   contains
     procedure :: take_archive => ignore_archive
     procedure :: exchange => exchange_nothing
+    procedure :: event_handled => change_nothing
     procedure(step_taken), deferred :: step_taken
     procedure(event_taken), deferred :: event_taken
   end type observer_t
@@ -158,6 +159,7 @@ contains
     call observer%step_taken(method, problem, at%t)
     call observer%event_taken(problem, at%event, at%t, at%y)
     call problem%handle_event(at%event, at%t, at%y, action)
+    call observer%event_handled(problem, at%event, at%t, at%y)
     if (action == event_stop) then
       status = integration_stopped
       return
@@ -299,6 +301,17 @@ contains
     associate (unused_self => self, unused_archive => archive)
     end associate
   end subroutine ignore_archive
+
+  !> Called when the problem has handled an event. An observer may then change the discrete state of the problem, or y.
+  subroutine change_nothing(self, problem, index, t, y)
+    class(observer_t), intent(inout) :: self
+    class(ode_problem_t), intent(inout) :: problem
+    integer, intent(in) :: index
+    real(dp), intent(in) :: t
+    real(dp), intent(inout) :: y(:)
+    associate (unused_self => self, unused_problem => problem, unused_index => index, unused_t => t, unused_y => y)
+    end associate
+  end subroutine change_nothing
 
   !> Archive of an observer without state.
   subroutine exchange_nothing(self, archive)

@@ -10,7 +10,7 @@ module crank_turns
   use gudgeon_archive, only: archive_t
   implicit none
   private
-  public :: crank_turns_t, new_crank_turns, n_turn_events, all_made, turned_back, turn_patience_t
+  public :: crank_turns_t, new_crank_turns, wear_cycle_t, n_turn_events, all_made, turned_back, turn_patience_t
 
   integer, parameter :: n_turn_events = 2  !! event functions: the crank angle still to go, and the crank speed against the sense of
                                            !! the turns
@@ -42,6 +42,14 @@ module crank_turns
     procedure :: limit_end
     procedure :: exchange => exchange_patience
   end type turn_patience_t
+
+  !> Turns of the crank in either sense after which something is due again.
+  type :: wear_cycle_t
+    integer :: turns = 1           !! number of turns
+    real(dp) :: begin = 0          !! crank angle at which the present ones began [rad]
+  contains
+    procedure :: event
+  end type wear_cycle_t
 
 contains
 
@@ -103,6 +111,15 @@ contains
     type(archive_t), intent(inout) :: archive
     call archive%exchange(self%sense)
   end subroutine exchange
+
+  !> Event function of the end of the turns, and its rate.
+  pure subroutine event(self, crank_angle, crank_speed, g, g_rate)
+    class(wear_cycle_t), intent(in) :: self
+    real(dp), intent(in) :: crank_angle, crank_speed   !! [rad], [rad/s]
+    real(dp), intent(out) :: g, g_rate
+    g = (crank_angle - self%begin)**2 - (two_pi*self%turns)**2
+    g_rate = 2*(crank_angle - self%begin)*crank_speed
+  end subroutine event
 
   !> Report that the crank is `turns` turns away from its start at time t.
   pure subroutine follow(self, t, turns)

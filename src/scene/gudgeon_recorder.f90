@@ -10,7 +10,9 @@ module gudgeon_recorder
   use ode_method, only: ode_method_t, limit_stability
   use gudgeon_solver, only: observer_t
   use chain_motion, only: crank_pin, piston_pin, most_pins => n_pins
-  use gudgeon_scene, only: scene_t, evaluation_t, event_none, event_contact_begins, of_guide
+  use gudgeon_scene, only: scene_t, evaluation_t, event_none, event_contact_begins, of_guide, of_wear, &
+    phase_contact
+  use joint_events, only: penetration_and_rate
   use gudgeon_columns, only: column_list_t, row_values
   use angle_grid, only: angle_grid_t
   use crank_passage, only: find_turning
@@ -60,6 +62,7 @@ module gudgeon_recorder
     procedure :: begin
     procedure :: step_taken
     procedure :: event_taken
+    procedure :: event_handled
     procedure :: finish
     procedure :: exchange => exchange_recorder
     procedure :: take_archive
@@ -377,6 +380,37 @@ contains
         call take_corner_contact(self, problem%event_of(index)%event, problem%reported_event(index), t, now)
     end select
   end subroutine event_taken
+
+  !> Change the shape of a worn bore at the end of its cycle. If the pin does not touch the deeper bore, its contact ends.
+  subroutine event_handled(self, problem, index, t, y)
+    class(recorder_t), intent(inout) :: self
+    class(ode_problem_t), intent(inout) :: problem
+    integer, intent(in) :: index
+    real(dp), intent(in) :: t
+    real(dp), intent(inout) :: y(:)
+    real(dp) :: contact(2)
+    integer :: i, k, action
+    select type (problem)
+    class is (scene_t)
+      if (problem%event_of(index)%joint /= of_wear) return
+      do i = 1, self%n_pins
+        if (.not. allocated(self%pins(i)%wear)) cycle
+        associate (joint => problem%joints(self%pins(i)%joint))
+          if (.not. allocated(joint%worn)) cycle
+          call self%pins(i)%wear%change_bore(joint)
+          contact = penetration_and_rate(joint, y)
+          if (joint%phase /= phase_contact .or. contact(1) > 0) cycle
+        end associate
+        do k = 1, problem%n_events
+          if (problem%event_of(k)%joint /= self%pins(i)%joint) cycle
+          if (problem%reported_event(k) == event_none) cycle
+          call self%event_taken(problem, k, t, y)
+          call problem%handle_event(k, t, y, action)
+          exit
+        end do
+      end do
+    end select
+  end subroutine event_handled
 
   !> Record that a contact begins or ends at a pin at time t; `now` is evaluated before that event.
   subroutine take_contact(self, pin, kind, t, now)

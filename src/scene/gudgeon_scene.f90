@@ -15,12 +15,12 @@ module gudgeon_scene
   use sticking, only: hold_surfaces
   use piston_guide, only: piston_guide_t, guide_loads_t
   use working_gas, only: working_gas_t
-  use crank_turns, only: crank_turns_t
+  use crank_turns, only: crank_turns_t, wear_cycle_t
   implicit none
   private
   public :: scene_t, evaluation_t
   public :: phase_free, phase_film, phase_contact
-  public :: event_none, event_contact_begins, event_contact_ends, of_guide
+  public :: event_none, event_contact_begins, event_contact_ends, of_guide, of_wear
 
   !> Events reported in the trace.
   integer, parameter :: event_none = 0, event_contact_begins = 1, event_contact_ends = 2
@@ -39,11 +39,11 @@ module gudgeon_scene
     real(dp) :: power               !! of all non-conservative forces and the drive [W]
   end type evaluation_t
 
-  integer, parameter :: of_gas = 0, of_turns = -1, of_guide = -2   !! owners of events other than joints
+  integer, parameter :: of_gas = 0, of_turns = -1, of_guide = -2, of_wear = -3   !! owners of events other than joints
 
   !> The owner of an event function of the integrator.
   type :: event_owner_t
-    integer :: joint = 0            !! or of_gas, of_turns, of_guide
+    integer :: joint = 0            !! or of_gas, of_turns, of_guide, of_wear
     integer :: event = 0            !! number of the event within its owner
   end type event_owner_t
 
@@ -59,6 +59,7 @@ module gudgeon_scene
     type(piston_guide_t), allocatable :: guide   !! not allocated: the guide is ideal
     type(working_gas_t), allocatable :: gas
     type(crank_turns_t), allocatable :: turns   !! turns of a free crank that end the run
+    type(wear_cycle_t), allocatable :: wear_cycle   !! turns of the crank after which the shape of a worn bore changes
     real(dp) :: start_angle = 0     !! crank angle at t = 0 [rad]
     real(dp) :: start_speed = 0     !! crank speed at t = 0; constant if it is prescribed without run-up [rad/s]
     real(dp) :: span = 1            !! duration of the simulation [s]
@@ -555,5 +556,6 @@ contains
     if (allocated(self%guide)) call self%guide%exchange(archive)
     if (allocated(self%gas)) call self%gas%exchange(archive)
     if (allocated(self%turns)) call self%turns%exchange(archive)
+    if (allocated(self%wear_cycle)) call archive%exchange(self%wear_cycle%begin)
   end subroutine exchange
 end module gudgeon_scene

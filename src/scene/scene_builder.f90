@@ -49,6 +49,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     logical, intent(in), optional :: without_tables   !! the films compute no tables: the scene is not to be integrated
     logical :: makes_tables
+    integer :: i
 
     call assemble_scene(case, ideal_joint, scene)
     makes_tables = .true.
@@ -74,6 +75,12 @@ contains
     else if (scene%chain%drive%free_crank .and. case%integrator%crank_revolutions > 0) then
       allocate (scene%turns, source=new_crank_turns(case%integrator%crank_revolutions, scene%start_angle, scene%start_speed))
     end if
+    do i = 1, scene%n_joints
+      if (.not. allocated(scene%joints(i)%worn)) cycle
+      allocate (scene%wear_cycle)
+      scene%wear_cycle%turns = scene%joints(i)%wear%cycles_per_update
+      scene%wear_cycle%begin = scene%start_angle
+    end do
     call scene%prepare_start()
   end subroutine build_scene
 
@@ -181,6 +188,8 @@ contains
       associate (joint => scene%joints(i))
         joint%max_penetration = case%integrator%max_penetration
         if (allocated(joint%contact)) call joint%contact%prepare(joint%bearing)
+        if (allocated(joint%worn)) &
+          call joint%worn%prepare(joint%wear%bins, joint%bearing%clearance, joint%contact%geometry%foundation())
         if (allocated(joint%friction)) call joint%friction%prepare()
         if (allocated(joint%film)) call joint%film%prepare(joint%bearing, case%integrator%relative_tolerance)
         if (allocated(joint%transition)) call joint%transition%prepare(joint%bearing, joint%film%least_film_ratio)
@@ -222,7 +231,10 @@ contains
     if (allocated(wanted%film) .and. wanted%can_touch() .and. wanted%transition%is_weighted()) &
       allocate (joint%transition, source=wanted%transition)
     if (allocated(wanted%asperities)) allocate (joint%asperities, source=wanted%asperities)
-    if (allocated(wanted%wear)) allocate (joint%wear, source=wanted%wear)
+    if (allocated(wanted%wear)) then
+      allocate (joint%wear, source=wanted%wear)
+      if (joint%wear%bore == 'worn') allocate (joint%worn)
+    end if
     joint%reports_friction_work = wanted%reports_friction_work .or. allocated(wanted%wear)
     joint%reports_film = wanted%reports_film .and. allocated(wanted%film)
   end subroutine build_joint

@@ -26,6 +26,7 @@ contains
     end do
     if (allocated(scene%gas)) call number(of_gas, scene%gas%n_events)
     if (allocated(scene%turns)) call number(of_turns, n_turn_events)
+    if (allocated(scene%wear_cycle)) call number(of_wear, 1)
     if (allocated(scene%guide)) call number(of_guide, merge(n_corners, 0, scene%guide%is_loose))
 
   contains
@@ -63,6 +64,10 @@ contains
         g_rate(k + 1:k + n_turn_events))
       k = k + n_turn_events
     end if
+    if (allocated(self%wear_cycle)) then
+      k = k + 1
+      call self%wear_cycle%event(self%crank_angle(t, y), self%crank_speed(t, y), g(k), g_rate(k))
+    end if
     if (.not. allocated(self%guide)) return
     if (self%guide%is_loose) call corner_events(self%guide, y, g(k + 1:k + n_corners), g_rate(k + 1:k + n_corners))
   end procedure all_events
@@ -90,6 +95,8 @@ contains
         call self%gas%pass(event, self%crank_angle(t, y), self%crank_speed(t, y))
       else if (i == of_turns) then
         call self%turns%pass(event, self%crank_angle(t, y), action)
+      else if (i == of_wear) then
+        self%wear_cycle%begin = self%crank_angle(t, y)
       else if (i == of_guide) then
         if (contact_is_rough(self%guide) .and. .not. self%guide%touches(event)) self%entry_time = t
         call change_contact(self%guide, event, y)

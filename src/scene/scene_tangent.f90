@@ -22,6 +22,7 @@ contains
 
     has_closed_form = self%chain%is_loose(piston_pin) .and. .not. (self%chain%is_loose(crank_pin) .or. allocated(self%guide) &
       .or. allocated(self%chain%elastic))
+    if (has_closed_form) has_closed_form = .not. allocated(self%joints(1)%worn)
     if (has_closed_form) then
       call self%evaluate(t, y, now, has_closed_form)
       if (has_closed_form) has_closed_form = .not. now%joint(1)%sticks

@@ -7,7 +7,7 @@ module wear_record
   use chain_motion, only: crank_pin, piston_pin
   use archard_wear, only: worn_surface_t, of_pin, of_bore
   use contact_arc, only: contact_arc_t, arc_of
-  use clearance_joint, only: phase_contact
+  use clearance_joint, only: clearance_joint_t, phase_contact
   use gudgeon_scene, only: scene_t, evaluation_t
   implicit none
   private
@@ -18,6 +18,9 @@ module wear_record
     integer :: place = 0                       !! pin of the chain
     real(dp), allocatable :: depth(:, :)       !! mean depth of wear in each bin [m]
     real(dp), allocatable :: volume(:, :)      !! volume worn from each bin [m^3]
+    logical :: bore_changes = .false.          !! the following numbers belong to a bore whose shape changes
+    real(dp) :: turns = 0                      !! turns of the crank that its last shape stands for
+    real(dp) :: step_ratios(2) = 0             !! largest change of depth over the clearance, and over the mean penetration
   end type wear_profile_t
 
   !> Gauss's rule with three points inside Kronrod's with seven, on [-1, 1].
@@ -39,12 +42,17 @@ module wear_record
     integer :: joint = 0                       !! index of the scene's joint
     integer :: evaluations = 0                 !! number of evaluations of the scene so far
     real(dp), private :: time = 0              !! time up to which wear has been counted [s]
-    real(dp), private :: total = 0             !! integral of normal force times sliding speed [N m]
-    type(worn_surface_t), private :: surface(2)
+    real(dp), private :: total = 0             !! integral of normal force times sliding speed since the bore last changed [N m]
+    real(dp), private :: depth_sum = 0         !! the same of their product with the penetration [N m^2]
+    type(worn_surface_t), private :: surface(2)    !! since the last change of the bore
+    type(worn_surface_t), private :: earlier(2)    !! before it, extrapolated
+    real(dp), private :: turns = 0             !! turns of the crank that `earlier` stands for
+    real(dp), private :: step_ratios(2) = 0    !! largest change of depth over the clearance, and over the mean penetration
   contains
     procedure :: prepare
     procedure :: follow
     procedure :: begin_at
+    procedure :: change_bore
     procedure :: profile
     procedure :: exchange
   end type wear_record_t
@@ -55,9 +63,12 @@ contains
     class(wear_record_t), intent(inout) :: self
     integer, intent(in) :: joint               !! index of a joint with wear
     type(scene_t), intent(in) :: scene
+    integer :: k
     self%joint = joint
-    call self%surface(of_pin)%prepare(scene%joints(joint)%wear%bins)
-    call self%surface(of_bore)%prepare(scene%joints(joint)%wear%bins)
+    do k = 1, size(self%surface)
+      call self%surface(k)%prepare(scene%joints(joint)%wear%bins)
+      call self%earlier(k)%prepare(scene%joints(joint)%wear%bins)
+    end do
   end subroutine prepare
 
   !> Forget the wear before a time [s].
@@ -69,8 +80,34 @@ contains
     self%total = 0
     do i = 1, size(self%surface)
       self%surface(i)%load_path = 0
+      self%earlier(i)%load_path = 0
     end do
   end subroutine begin_at
+
+  !> Change the shape of the bore of a joint by the wear since the last change, multiplied by the extrapolation. This is reduced if
+  !> the change of depth would exceed the largest ratio to the clearance, or twice that ratio to the mean penetration, weighted by
+  !> the load; wear that has happened always counts.
+  subroutine change_bore(self, joint)
+    class(wear_record_t), intent(inout) :: self
+    type(clearance_joint_t), intent(inout) :: joint
+    real(dp) :: factor, by_load, change, lengths(2)
+    integer :: k
+    by_load = joint%wear%rate(of_bore)/(joint%bearing%radius*joint%bearing%length*self%surface(of_bore)%width())
+    change = by_load*maxval(self%surface(of_bore)%load_path)
+    lengths = joint%bearing%clearance
+    if (self%total > 0) lengths(2) = self%depth_sum/self%total
+    factor = joint%wear%extrapolation
+    if (change > 0) factor = max(1.0_dp, min(factor, minval([1, 2]*joint%wear%greatest_step_ratio*lengths/change)))
+    if (change > 0) self%step_ratios = max(self%step_ratios, factor*change/lengths)
+    do k = 1, size(self%surface)
+      self%earlier(k)%load_path = self%earlier(k)%load_path + factor*self%surface(k)%load_path
+      self%surface(k)%load_path = 0
+    end do
+    self%turns = self%turns + factor*joint%wear%cycles_per_update
+    self%total = 0
+    self%depth_sum = 0
+    joint%worn%depth = by_load*self%earlier(of_bore)%load_path
+  end subroutine change_bore
 
   !> Count the wear up to t, in the last step of the method and in one phase of the joint. An interval is halved until the rules of
   !> three and seven points agree within the tolerance of the run, relative to the sum so far, and until the line of centres turns
@@ -165,8 +202,8 @@ contains
     sweep = maxval(maxval(samples%angle, 1) - minval(samples%angle, 1))
   end function sweep
 
-  !> Distribute the load path of an interval over the surfaces: along the arc of contact, or where surfaces touch along a line evenly
-  !> over the angle that it passes over.
+  !> Distribute the load path of an interval over the surfaces: along the arc of contact, or where surfaces touch along a line
+  !> evenly over the angle that it passes over.
   subroutine distribute(self, scene, half_span, samples)
     type(wear_record_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
@@ -179,11 +216,12 @@ contains
     do i = 1, n_nodes
       amount = half_span*weights(i)*samples%load(i)
       if (.not. amount > 0) cycle
+      self%depth_sum = self%depth_sum + amount*samples%now(i)%relative(self%joint)%penetration
       call arc_of(scene%joints(self%joint), samples%now(i)%relative(self%joint), self%surface(of_bore)%width(), arc)
       if (arc%n == 0) on_line = on_line + amount
       do j = 1, arc%n
         do k = 1, size(self%surface)
-          call self%surface(k)%add(samples%angle(i, k) + arc%edges(j - 1), samples%angle(i, k) + arc%edges(j), amount*arc%loads(j))
+          call self%surface(k)%add(samples%angle(i, k) + arc%ends(1, j), samples%angle(i, k) + arc%ends(2, j), amount*arc%loads(j))
         end do
       end do
     end do
@@ -203,10 +241,13 @@ contains
     integer :: k
     associate (joint => scene%joints(self%joint), n => size(self%surface(1)%load_path))
       worn%place = joint%place
+      worn%bore_changes = allocated(joint%worn)
+      worn%turns = self%turns
+      worn%step_ratios = self%step_ratios
       allocate (worn%depth(n, 2), worn%volume(n, 2))
       do k = 1, size(self%surface)
         radius = merge(joint%pin_radius, joint%bearing%radius, k == of_pin)
-        worn%volume(:, k) = joint%wear%rate(k)*self%surface(k)%load_path
+        worn%volume(:, k) = joint%wear%rate(k)*(self%earlier(k)%load_path + self%surface(k)%load_path)
         worn%depth(:, k) = worn%volume(:, k)/(radius*joint%bearing%length*self%surface(k)%width())
       end do
     end associate
@@ -218,9 +259,11 @@ contains
     type(archive_t), intent(inout) :: archive
     integer :: k
     call archive%exchange(self%evaluations)
-    call archive%exchange(self%time, self%total)
+    call archive%exchange(self%time, self%total, self%depth_sum, self%turns)
+    call archive%exchange(self%step_ratios)
     do k = 1, size(self%surface)
       call self%surface(k)%exchange(archive)
+      call self%earlier(k)%exchange(archive)
     end do
   end subroutine exchange
 end module wear_record
