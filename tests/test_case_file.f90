@@ -201,7 +201,7 @@ contains
   subroutine test_names(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: groups = ' (allowed: case, mechanism, drive, initial, joint, contact, friction, '// &
-      'lubrication, asperities, guide, elastic_rod, crankshaft, combustion, cylinder_pressure, run, integrator, output)'
+      'lubrication, asperities, wear, guide, elastic_rod, crankshaft, combustion, cylinder_pressure, run, integrator, output)'
     call refused(check, '&jiont /', 'x.nml:1: &jiont: unknown group; did you mean joint?'//groups)
     call refused(check, '&joint /'//n//'&joint /', 'x.nml:2: &joint: this group is given twice')
     call refused(check, '&joint'//n//'clearnce=1 /', 'x.nml:2: &joint clearnce: unknown key; did you mean clearance?'//joint_keys)
@@ -622,7 +622,7 @@ contains
       '&friction law=''coulomb'' coefficient=0.3 /'//n//'&drive kind=''constant_speed'' /'
     character(len=*), parameter :: long = 'joint.bearing_length=0.015'
     character(len=*), parameter :: unknown = ' (allowed: case, mechanism, drive, initial, joint, contact, friction, '// &
-      'lubrication, asperities, guide, elastic_rod, crankshaft, combustion, cylinder_pressure, run, integrator, output)'
+      'lubrication, asperities, wear, guide, elastic_rod, crankshaft, combustion, cylinder_pressure, run, integrator, output)'
     type(case_t) :: c
     type(error_t), allocatable :: error
     character(len=:), allocatable :: resolved
