@@ -63,6 +63,8 @@ contains
     call split(check, 'cases/flores/ideal.nml', 'revolutions=1', 'adams', 'guide.coefficient=0.1')
     call split(check, 'cases/joints/crank_pin.nml', 'revolutions=0.2', 'adams', 'crank_pin.joint.clearance=5e-5')
     call split(check, 'cases/joints/both_pins_lubricated.nml', 'revolutions=0.2', 'auto', 'mechanism.gravity_angle_deg=30')
+    call split(check, 'cases/wear/flores.nml', 'revolutions=0.2', 'auto', 'wear.bins=36')
+    call split(check, 'cases/wear/worn_bore.nml', 'revolutions=1.02', 'adams', 'initial.crank_speed=1000')
     call split(check, 'cases/flores/ideal.nml', 'revolutions=4', 'adams', 'integrator.max_evaluations_per_revolution=200', .true.)
   end subroutine run_test_resume
 

@@ -26,7 +26,7 @@ module reference_pages
     film = 'lubrication.viscosity=0.0117 '
 
   !> Kinds of scenes that together have every column.
-  type(scene_kind_t), parameter :: kinds(14) = [ &
+  type(scene_kind_t), parameter :: kinds(15) = [ &
     scene_kind_t('Every scene', ''), &
     scene_kind_t('Joint with clearance (the last three columns only with `&contact`)', play//contact), &
     scene_kind_t('Contact with `geometry = ''conformal''`', play//contact//'contact.geometry=conformal'), &
@@ -38,6 +38,7 @@ module reference_pages
       'lubrication.transition=weighted lubrication.transition_depth=1e-6'), &
     scene_kind_t('Elastic walls (`elastic_film`)', play//film//contact//'lubrication.elastic_film=T'), &
     scene_kind_t('Asperities', play//film//'asperities.roughness=0.4e-6'), &
+    scene_kind_t('Wear', play//contact//'wear.rate=1e-15,1e-15'), &
     scene_kind_t('Crank pin with clearance', 'crank_pin.joint.kind=clearance crank_pin.joint.clearance=2e-5 '// &
       'crank_pin.joint.bearing_radius=0.02 crank_pin.contact.law=hertz'), &
     scene_kind_t('Guide (`kind = ''friction''` has the first column alone)', 'guide.kind=clearance '// &
