@@ -7,7 +7,7 @@
     scripts/report.py sim_IV --cycles crank_speed guide_force
 
 The page is one file and needs no network. It shows the pressure around the pin in a film of finite length if the run has written
-it (&output film_times = 'from:to:count'). Traces are searched in results/ of the current folder, then in results/ of the
+it (&output film_times = 'from:to:count'), and the worn surfaces of a run with &wear. Traces are searched in results/ of the current folder, then in results/ of the
 checkout. If the result of a shipped case or of a case file is missing, the case is run with the release build.
 """
 
@@ -23,6 +23,7 @@ from gudgeon_plots import language  # noqa: E402
 from gudgeon_plots.film_pressure import fields_of  # noqa: E402
 from gudgeon_plots.report_page import page  # noqa: E402
 from gudgeon_plots.results import MissingResult, Results  # noqa: E402
+from gudgeon_plots.wear_pictures import surfaces_of  # noqa: E402
 
 
 def folder_of(given: Path, name: str) -> Path:
@@ -57,8 +58,9 @@ def main() -> int:
         if not run.case:
             raise MissingResult(f"{name}.resolved.nml is missing beside the trace")
         twin = results[f"{name}.ideal"] if results.path(f"{name}.ideal").exists() else None
-        pressures = directory / f"{name}.film.csv"
-        text = page(run, twin, fields_of(pressures) if pressures.exists() else None, language.current, options.cycles)
+        pressures, worn = directory / f"{name}.film.csv", directory / f"{name}.wear.csv"
+        text = page(run, twin, fields_of(pressures) if pressures.exists() else None, language.current, options.cycles,
+                    surfaces_of(worn) if worn.exists() else None)
         language.current.warn("report.py")
     except MissingResult as problem:
         print(f"report.py: {problem}", file=sys.stderr)

@@ -370,4 +370,17 @@ TEXTS = {
     "film, piston pin": "filme, pino do pistão",
     "film, crank pin": "filme, pino da manivela",
     "the crank stops or": "a manivela para ou",
+    # wear
+    "pin": "pino",
+    "bore": "furo",
+    "{}: piston pin": "{}: pino do pistão",
+    "{}: crank pin": "{}: pino da manivela",
+    "depth of wear [{}]": "profundidade do desgaste [{}]",
+    "angle on the surface, from x towards y [°]": "ângulo na superfície, de x para y [°]",
+    "Flores, 0.5 mm, 5000 rpm, friction 0.05: 2 revolutions": "Flores, 0,5 mm, 5000 rpm, atrito 0,05: 2 revoluções",
+    "Soft liner, 0.1 mm, 100 rad/s: 8000 revolutions": "Casquilho macio, 0,1 mm, 100 rad/s: 8000 revoluções",
+    "Wear of pin and bore": "Desgaste de pino e furo",
+    "piston pin": "pino do pistão",
+    "crank pin": "pino da manivela",
+    "Depth around each surface, exaggerated, and over the angle on it": "Profundidade em torno de cada superfície, exagerada, e pelo ângulo nela",
 }

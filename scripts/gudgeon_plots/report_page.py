@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 from plotly.offline import get_plotlyjs
 
-from . import film_pressure, report_cycles
+from . import film_pressure, report_cycles, wear_pictures
 from .certified import certified_until
 from .language import Language
 from .names import prefixed
@@ -335,9 +335,10 @@ def page(
     fields: list[pd.DataFrame] | None = None,
     language: Language | None = None,
     cycle_columns: list[str] | None = None,
+    worn: list[tuple[str, pd.DataFrame]] | None = None,
 ) -> str:
     """The HTML text of the page. `fields`: the pressures of a NAME.film.csv; `cycle_columns`: columns whose cycles and orders are
-    shown."""
+    shown; `worn`: the worn surfaces of a NAME.wear.csv."""
     say = (language or Language()).say
     columns = with_sizes(run)
     if ideal is not None:
@@ -423,6 +424,7 @@ def page(
         "script": (PAGE / "page.js").read_text(encoding="utf-8"),
         "warnings": "".join(f'<p class="warning">{html.escape(text)}</p>' for text in said)
         or f'<p class="fine">{html.escape(say("No warnings."))}</p>',
+        "wear": wear_section(worn, language or Language()) if worn else "",
         "cycles": report_cycles.section(run, cycle_columns, language),
         "summary": f"<table>{summary(False)}</table>",
         "program": f"<table>{summary(True)}</table>",
@@ -442,6 +444,14 @@ def page(
     text = re.sub(r"\[\[(.+?)\]\]", lambda found: html.escape(say(found[1])), text)
     head, *fields = text.split("{{")  # each field once, so that inserted texts are not searched for fields
     return head + "".join(parts[name] + rest for name, rest in (field.split("}}", 1) for field in fields))
+
+
+def wear_section(worn: list[tuple[str, pd.DataFrame]], language: Language) -> str:
+    """The section on worn surfaces as HTML."""
+    heading = language.say("Wear of pin and bore")
+    drawing = wear_pictures.draw(worn, [wear_pictures.JOINTS[joint] for joint, _ in worn])
+    said = "Depth around each surface, exaggerated, and over the angle on it"
+    return f'<section id="wear"><h2>{html.escape(heading)}</h2>{report_cycles.picture(drawing, said, language)}</section>'
 
 
 def first_moment(columns: dict[str, np.ndarray]) -> float:

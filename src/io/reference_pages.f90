@@ -9,7 +9,7 @@ module reference_pages
   use gudgeon_columns, only: choose_columns
   use trace_row, only: column_list_t, name_length
   use text_tools, only: replaced
-  use summary_quantities, only: quantity_t, quantities_of_runs, event_columns
+  use summary_quantities, only: quantity_t, quantities_of_runs, event_columns, wear_columns
   implicit none
   private
   public :: keys_reference, results_reference
@@ -115,6 +115,7 @@ contains
       call add_columns(kinds(i)%title, list, seen, text)
     end do
     text = text//'## Columns of NAME.events.csv'//newline//newline//quantity_table(event_columns)//newline// &
+      '## Columns of NAME.wear.csv'//newline//newline//quantity_table(wear_columns)//newline// &
       '## Quantities of NAME.summary.csv'//newline//newline//quantity_table(quantities_of_runs)
   end function results_reference
 
@@ -124,7 +125,7 @@ contains
     type(column_list_t), intent(out) :: list
     type(error_t), allocatable, intent(out) :: error
     character(len=*), parameter :: rigid_and_dry = 'joint.kind=ideal contact=none friction=none lubrication=none guide=none '// &
-      'elastic_rod=none crankshaft=none combustion=none output.columns=standard output.ideal_twin=F output.film_times='
+      'wear=none elastic_rod=none crankshaft=none combustion=none output.columns=standard output.ideal_twin=F output.film_times='
     character(len=:), allocatable :: changes
     character(len=60), allocatable :: overrides(:)
     type(case_t) :: case

@@ -1,9 +1,9 @@
-!> Descriptions of all quantities of NAME.summary.csv and all columns of NAME.events.csv, for the manual. A test compares the
+!> Descriptions of all quantities of NAME.summary.csv and all columns of NAME.events.csv and NAME.wear.csv, for the manual. A test compares the
 !> summaries of all shipped cases with this table.
 module summary_quantities
   implicit none
   private
-  public :: quantity_t, quantities_of_runs, event_columns
+  public :: quantity_t, quantities_of_runs, event_columns, wear_columns
 
   !> A quantity. In its name N stands for a number and PHASE for the phases of the joints. Quantities of the crank pin have the
   !> prefix `crank_pin_`, those of the corners of the skirt `guide_1_` to `guide_4_`.
@@ -142,4 +142,13 @@ module summary_quantities
     quantity_t('max_penetration', 'm', 'its deepest penetration (contact_ends only)'), &
     quantity_t('max_normal_force', 'N', 'its largest contact force (contact_ends only)'), &
     quantity_t('joint', '', '`piston_pin`, `crank_pin` or a corner of the skirt, `guide_1` to `guide_4`')]
+
+  !> Columns of NAME.wear.csv, in their order.
+  type(quantity_t), parameter :: wear_columns(*) = [ &
+    quantity_t('joint', '', '`piston_pin` or `crank_pin`'), &
+    quantity_t('angle', 'deg', 'middle of the bin, from x towards y in the frame of the body when its own angle is 0'), &
+    quantity_t('pin_depth', 'm', 'mean depth worn from this bin of the pin'), &
+    quantity_t('bore_depth', 'm', 'mean depth worn from this bin of the bore'), &
+    quantity_t('pin_volume', 'm3', 'volume worn from this bin of the pin'), &
+    quantity_t('bore_volume', 'm3', 'volume worn from this bin of the bore')]
 end module summary_quantities
