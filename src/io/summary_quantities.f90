@@ -1,5 +1,5 @@
-!> Descriptions of all quantities of NAME.summary.csv and all columns of NAME.events.csv and NAME.wear.csv, for the manual. A test compares the
-!> summaries of all shipped cases with this table.
+!> Descriptions of all quantities of NAME.summary.csv and of all columns of NAME.events.csv and NAME.wear.csv, for the
+!> manual. A test compares the summaries of all shipped cases with this table.
 module summary_quantities
   implicit none
   private
