@@ -79,6 +79,22 @@ for quantity in 'min_film_thickness m' 'max_penetration m' 'max_pin_force N'; do
       "$(field "$work/single/both.summary.csv" "$pin${quantity% *}")" ]
   done
 done
+
+# wear: columns of the worn surfaces, where a run may have any
+cp cases/wear/flores.nml "$work/rubbing.nml"
+study worn <<'END'
+&study case = 'rubbing.nml' /
+&parameter key = 'joint.clearance', values = 4e-4, 5e-4 /
+END
+run sweep -o "$work/worn" "$work/worn.nml"
+run -o "$work/worn" -s joint.clearance=5e-4 "$work/rubbing.nml"
+for quantity in "worn_volume_pin m3" "worn_volume_bore m3" "max_wear_depth_pin m" "max_wear_depth_bore m"; do
+  check "a run has the results of the case: ${quantity% *}" [ "$(named "$work/worn/worn.runs.csv" 2 "${quantity% *}[${quantity#* }]")" = \
+    "$(field "$work/worn/rubbing.summary.csv" "${quantity% *}")" ]
+done
+check "the two runs wear differently" [ "$(named "$work/worn/worn.runs.csv" 1 'worn_volume_bore[m3]')" != \
+  "$(named "$work/worn/worn.runs.csv" 2 'worn_volume_bore[m3]')" ]
+
 check "the two pins have different forces" [ "$(named "$work/pins/pins.runs.csv" 2 'mean_pin_force[N]')" != \
   "$(named "$work/pins/pins.runs.csv" 2 'crank_pin_mean_pin_force[N]')" ]
 # the integral of the force against a trace with close rows

@@ -10,6 +10,7 @@ module study_rows
   use cycle_watch, only: cycle_watch_t
   use gudgeon_simulation, only: run_report_t
   use gudgeon_summary, only: relative_residual
+  use archard_wear, only: of_pin, of_bore
   use number_text, only: number_writer_t
   use row_text, only: row_text_t
   implicit none
@@ -25,6 +26,7 @@ module study_rows
     logical :: has_strobes = .false.     !! the study has strobes
     logical :: has_crank_pin = .false.   !! the study has columns of the crank pin
     logical :: has_guide = .false.       !! the study has columns of the piston in its bore
+    logical :: has_wear = .false.        !! the study has columns of wear
     logical :: has_motion = .false.      !! the study has columns of the period or the Lyapunov exponent
     type(number_writer_t) :: numbers
   contains
@@ -71,6 +73,7 @@ contains
     self%has_strobes = has_strobes
     self%has_crank_pin = base%crank_pin%has_clearance() .or. any(index(keys, crank_pin_place//'.') == 1)
     self%has_guide = base%has_loose_guide() .or. any(keys == 'guide.kind')
+    self%has_wear = allocated(base%joint%wear) .or. allocated(base%crank_pin%wear) .or. any(index(keys, 'wear.') > 0)
     self%has_motion = base%run%is_until_periodic() .or. base%run%lyapunov_revolutions > 0 .or. &
       any(keys == 'run.until') .or. any(keys == 'run.lyapunov_revolutions')
   end subroutine choose
@@ -152,8 +155,37 @@ contains
       call row%put('lyapunov_exponent[1/revolution]', report%exponent%mean, is_done .and. report%exponent%is_known)
       call row%put('lyapunov_exponent_error[1/revolution]', report%exponent%error, is_done .and. report%exponent%is_known)
     end if
+    if (row%has_wear) call put_wear(row, report, piston_pin, '', is_done)
+    if (row%has_wear .and. row%has_crank_pin) call put_wear(row, report, crank_pin, crank_pin_prefix, is_done)
     call row%end_row()
   end subroutine put_run
+
+  !> Append the columns of the worn surfaces of one joint: of the whole run, also of the revolutions that are not counted.
+  subroutine put_wear(row, report, pin, prefix, is_done)
+    class(study_row_t), intent(inout) :: row
+    type(run_report_t), intent(in) :: report
+    integer, intent(in) :: pin
+    character(len=*), intent(in) :: prefix
+    logical, intent(in) :: is_done
+    real(dp) :: volume(2), depth(2)
+    logical :: is_there
+    integer :: i
+    is_there = .false.
+    volume = 0
+    depth = 0
+    if (allocated(report%wear)) then
+      do i = 1, size(report%wear)
+        if (report%wear(i)%place /= pin) cycle
+        is_there = is_done
+        volume = sum(report%wear(i)%volume, 1)
+        depth = maxval(report%wear(i)%depth, 1)
+      end do
+    end if
+    call row%put(prefix//'worn_volume_pin[m3]', volume(of_pin), is_there)
+    call row%put(prefix//'worn_volume_bore[m3]', volume(of_bore), is_there)
+    call row%put(prefix//'max_wear_depth_pin[m]', depth(of_pin), is_there)
+    call row%put(prefix//'max_wear_depth_bore[m]', depth(of_bore), is_there)
+  end subroutine put_wear
 
   !> Append a row for each revolution counted.
   subroutine put_cycles(rows, run, watch, case)
