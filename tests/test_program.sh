@@ -182,6 +182,10 @@ run -o "$work/plain" -s integrator.method=auto -s output.ideal_twin=F cases/flor
 check "a certificate does not change the run" cmp -s "$work/plain/lubricated_400cP.csv" "$work/certified/lubricated_400cP.csv"
 run -q -o "$work/certified" -s integrator.method=adams -s output.ideal_twin=F cases/flores/lubricated_400cP.nml
 check "another run removes the certificate" [ ! -e "$work/certified/lubricated_400cP.certificate.csv" ]
+run -o "$work/certified" --certify -s integrator.revolutions=0.5 cases/wear/flores.nml
+check "a certificate states the error of the worn volume" [ "$(awk -F, '{ value[$1] = $2 }
+  END { ratio = value["worn_volume_bore_difference"] / value["worn_volume_bore"]; print (ratio > 1e-9 && ratio < 1e-3) }' \
+  "$work/certified/flores.summary.csv")" = 1 ]
 run sweep --certify cases/studies/map_I.nml
 check "--certify is refused for sweeps, status $status" [ "$status" = 2 ]
 

@@ -11,7 +11,7 @@ module certificate
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
   use gudgeon_errors, only: error_t
-  use case_definition, only: case_t
+  use case_definition, only: case_t, joint_case_t
   use gudgeon_columns, only: column_list_t, choose_columns
   use gudgeon_simulation, only: run_report_t
   use trace_sink, only: trace_event_t
@@ -191,13 +191,20 @@ contains
     !> Differences between the results of the runs.
     subroutine compare_figures()
       certificate%has_figure = [.true., case%joint%has_clearance(), case%joint%has_clearance(), case%crank_pin%has_clearance(), &
-        case%crank_pin%has_clearance(), case%crank_pin%has_clearance(), own%figures%time > 0, .false.]
+        case%crank_pin%has_clearance(), case%crank_pin%has_clearance(), own%figures%time > 0, has_wear(case%joint), &
+        has_wear(case%joint), has_wear(case%crank_pin), has_wear(case%crank_pin), .false.]
       if (allocated(own%cycles)) certificate%has_figure(loss_figure) = min(own%cycles%statistics%cycles, &
         closer_run%cycles%statistics%cycles) > 0
       certificate%figure = figures_of(own)
       certificate%figure_difference = max(abs(figures_of(closer_run) - certificate%figure), &
         abs(figures_of(other_run) - certificate%figure))
     end subroutine compare_figures
+
+    !> Whether the wear of a joint over the whole run is counted.
+    pure logical function has_wear(joint)
+      type(joint_case_t), intent(in) :: joint
+      has_wear = allocated(joint%wear) .and. joint%has_clearance() .and. case%output%window == 'all'
+    end function has_wear
   end subroutine make_certificate
 
   !> The case in the form in which all three runs carry it out: all columns, rows of its own, and the end of the run.

@@ -35,7 +35,8 @@ contains
     type(certificate_t), intent(in) :: certificate
     character(len=:), allocatable :: text
     character(len=8), parameter :: units(n_statistics) = [character(len=8) :: 'N', '1', '1', 'J']
-    character(len=5), parameter :: figure_units(n_figures) = [character(len=5) :: 'N', '1', 'm', 'N', '1', 'm', 'rad/s', 'J']
+    character(len=5), parameter :: figure_units(n_figures) = [character(len=5) :: 'N', '1', 'm', 'N', '1', 'm', 'rad/s', &
+      'm3', 'm3', 'm3', 'm3', 'J']
     integer :: i
     text = ''
     if (.not. certificate%is_made) then

@@ -13,20 +13,23 @@ module run_witness
   use row_store, only: row_store_t
   use run_figures, only: run_figures_t
   use trace_sink, only: trace_event_t
+  use wear_record, only: wear_profile_t
   implicit none
   private
   public :: witness_t, run, has_coarse_table, means_of, figures_of, n_statistics, statistic_names, &
-    n_figures, figure_names, loss_figure
+    n_figures, figure_names, wear_figures, loss_figure
 
   integer, parameter :: n_statistics = 4
   character(len=*), parameter :: statistic_names(n_statistics) = [character(len=23) :: 'mean_pin_force', 'contact_time_fraction', &
     'impacts_per_revolution', 'loss_per_revolution']
 
-  !> Results of the whole run, with their names in the summary; the last one is a mean over whole revolutions.
-  integer, parameter :: n_figures = 8, loss_figure = 8
+  !> Results of the whole run, with their names in the summary; wear is in four of them, and the last one is a mean over whole
+  !> revolutions.
+  integer, parameter :: n_figures = 12, wear_figures = 8, loss_figure = 12
   character(len=*), parameter :: figure_names(n_figures) = [character(len=31) :: 'max_pin_force', 'contact_time_fraction', &
     'min_film_thickness', 'crank_pin_max_pin_force', 'crank_pin_contact_time_fraction', 'crank_pin_min_film_thickness', &
-    'mean_crank_speed', 'loss_per_revolution']
+    'mean_crank_speed', 'worn_volume_pin', 'worn_volume_bore', 'crank_pin_worn_volume_pin', 'crank_pin_worn_volume_bore', &
+    'loss_per_revolution']
 
   !> One run.
   type :: witness_t
@@ -34,6 +37,7 @@ module run_witness
     type(trace_event_t), allocatable :: impact(:)      !! contacts that begin
     type(cycle_watch_t), allocatable :: cycles
     type(run_figures_t) :: figures
+    real(dp) :: worn(4) = 0                            !! volumes of pin and bore, at the piston pin and at the crank pin [m^3]
     logical :: is_done = .false.
   end type witness_t
 
@@ -64,6 +68,7 @@ contains
     end if
     witness%is_done = .not. allocated(failure)
     witness%figures = report%figures
+    if (allocated(report%wear)) call take_wear(report%wear, witness%worn)
     call sink%hand_over(size(list%id), witness%values, event)
     witness%impact = pack(event, event%kind == event_contact_begins)
     if (.not. sink%wants_to_stop) return
@@ -71,6 +76,16 @@ contains
     call fail(error, 'interrupted before it was certified', status_integration)
     !$omp end critical (texts)
   end subroutine run
+
+  pure subroutine take_wear(wear, worn)
+    type(wear_profile_t), intent(in) :: wear(:)
+    real(dp), intent(inout) :: worn(:)
+    integer :: i, first
+    do i = 1, size(wear)
+      first = merge(1, 3, wear(i)%place == piston_pin)
+      worn(first:first + 1) = sum(wear(i)%volume, 1)
+    end do
+  end subroutine take_wear
 
   !> Whether a tighter tolerance would give a finer table of a film of the case.
   logical function has_coarse_table(case, tolerance)
@@ -102,6 +117,7 @@ contains
       values(:7) = [piston%max_force, piston%contact_time/f%time, piston%min_film_thickness, crank%max_force, &
         crank%contact_time/f%time, crank%min_film_thickness, f%crank_travel/f%time]
     end associate
+    values(wear_figures:wear_figures + 3) = witness%worn
     if (.not. allocated(witness%cycles)) return
     associate (s => witness%cycles%statistics)
       if (s%cycles > 0) values(loss_figure) = s%total%dissipated_energy/s%cycles

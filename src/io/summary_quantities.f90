@@ -119,6 +119,8 @@ module summary_quantities
     quantity_t('contact_time_fraction_difference', '1', 'the same of `contact_time_fraction`'), &
     quantity_t('min_film_thickness_difference', 'm', 'the same of `min_film_thickness`'), &
     quantity_t('mean_crank_speed_difference', 'rad/s', 'the same of `mean_crank_speed`'), &
+    quantity_t('worn_volume_pin_difference', 'm3', 'the same of `worn_volume_pin`'), &
+    quantity_t('worn_volume_bore_difference', 'm3', 'the same of `worn_volume_bore`'), &
     quantity_t('loss_per_revolution', 'J', 'energy lost at the joints in a revolution, mean of the whole revolutions'), &
     quantity_t('loss_per_revolution_difference', 'J', 'its largest difference in the two closer runs'), &
     quantity_t('beyond_revolutions', '1', 'whole revolutions after `certified_until`'), &
