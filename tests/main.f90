@@ -49,6 +49,7 @@ program gudgeon_tests
   use test_guide, only: run_test_guide
   use test_joint, only: run_test_joint
   use test_loose_piston, only: run_test_loose_piston
+  use test_lost_force, only: run_test_lost_force
   use test_number_text, only: run_test_number_text
   use test_number_writer, only: run_test_number_writer
   use test_oscillating_film, only: run_test_oscillating_film
@@ -128,6 +129,7 @@ program gudgeon_tests
   call run('guide', run_test_guide)
   call run('joint', run_test_joint)
   call run('loose_piston', run_test_loose_piston)
+  call run('lost_force', run_test_lost_force)
   call run('number_text', run_test_number_text)
   call run('number_writer', run_test_number_writer)
   call run('oscillating_film', run_test_oscillating_film)

@@ -151,9 +151,9 @@ contains
     call try('time[s]'//n)
     call try(repeat(achar(0), 5000))
     call check%that(accepted == 0, 'other files are refused')
-    call try(of_version(3))
-    call check%that(accepted == 0, 'another version of the format is refused')
     call try(of_version(4))
+    call check%that(accepted == 0, 'another version of the format is refused')
+    call try(of_version(5))
     call check%that(accepted == 1, 'the present version of the format is accepted')
     call remove_file(saved%path, status)
 

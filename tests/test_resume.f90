@@ -63,6 +63,9 @@ contains
     call split(check, 'cases/flores/ideal.nml', 'revolutions=1', 'adams', 'guide.coefficient=0.1')
     call split(check, 'cases/joints/crank_pin.nml', 'revolutions=0.2', 'adams', 'crank_pin.joint.clearance=5e-5')
     call split(check, 'cases/joints/both_pins_lubricated.nml', 'revolutions=0.2', 'auto', 'mechanism.gravity_angle_deg=30')
+    call split(check, 'cases/contact/pereira_impact.nml', 'revolutions=0.05', 'radau', 'initial.crank_angle_deg=203.7479')
+    call split(check, 'cases/joints/piston_slap.nml', 'revolutions=0.05', 'adams', 'guide.contact_law=impact', &
+      more=[character(len=long) :: 'guide.damping=4e4', 'guide.full_damping_depth=4e-6'])
     call split(check, 'cases/wear/flores.nml', 'revolutions=0.2', 'auto', 'wear.bins=36')
     call split(check, 'cases/wear/worn_bore.nml', 'revolutions=1.02', 'adams', 'initial.crank_speed=1000')
     call split(check, 'cases/film/weighted.nml', 'revolutions=0.4', 'radau', 'wear.rate=1e-15,1e-15')
@@ -70,10 +73,11 @@ contains
   end subroutine run_test_resume
 
   !> One scene: uninterrupted, stopped and continued after every step, and after every few steps.
-  subroutine split(check, file, revolutions, method, change, ideal_joint, from_rest)
+  subroutine split(check, file, revolutions, method, change, ideal_joint, from_rest, more)
     class(checks_t), intent(inout) :: check
     character(len=*), intent(in) :: file, revolutions, method, change
     logical, intent(in), optional :: ideal_joint, from_rest
+    character(len=*), intent(in), optional :: more(:)
     type(case_t) :: case
     type(column_list_t) :: list
     type(error_t), allocatable :: error
@@ -91,6 +95,7 @@ contains
     overrides(4:) = 'integrator.max_penetration=1e-8'
     if (present(from_rest)) overrides(5:) = [character(len=long) :: 'initial.crank_speed=0', 'integrator.end_time=1', &
                                              'output.interval=1e-4']
+    if (present(more)) overrides(5:4 + size(more)) = more
     call read_case(file, overrides, case, error)
     if (.not. allocated(error)) call choose_columns(case, ideal, list, error)
     what = file//', '//method//', '//change//': '

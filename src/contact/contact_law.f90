@@ -21,6 +21,7 @@ module contact_law
     real(dp) :: dissipation = 0                !! a [s/m], >= 0
     real(dp) :: least_impact_speed = 1e-5_dp   !! slower impacts are damped as if they had this speed [m/s], > 0
     logical :: has_own_damping = .false.
+    logical :: may_lose_force = .false.        !! `damped_force` becomes negative where its force would pull; then none acts
     real(dp), private :: three_halves = 0      !! K [N/m^1.5] if f is K delta^1.5 and is damped by chi; otherwise 0
   contains
     procedure :: prepare
@@ -30,6 +31,7 @@ module contact_law
     procedure, non_overridable :: normal_force_slopes
     procedure :: damped_force
     procedure :: damped_force_slopes
+    procedure :: find_share
   end type contact_law_t
 
 contains
@@ -90,6 +92,7 @@ contains
     real(dp), intent(in) :: elastic_force, penetration, penetration_rate, impact_speed
     if (self%has_own_damping) then
       force = self%damped_force(elastic_force, penetration, penetration_rate)
+      if (self%may_lose_force) force = max(0.0_dp, force)
     else
       force = elastic_force*bracket(self, penetration_rate, impact_speed)
     end if
@@ -126,7 +129,22 @@ contains
     end associate
   end subroutine normal_force_slopes
 
-  !> The normal force [N] of a law with `has_own_damping`; never negative.
+  !> The damped over the elastic force of a law that may lose its force, without the limit 0, and its rate along the motion [1/s].
+  !> It is 1 at the beginning and the end of a contact, where its rate may have no limit. Without contact it exceeds 1 and increases
+  !> with the distance, so that a search sees it rise. Other laws do not override this.
+  pure subroutine find_share(self, penetration, penetration_rate, penetration_acceleration, share, share_rate)
+    class(contact_law_t), intent(in) :: self
+    real(dp), intent(in) :: penetration, penetration_rate   !! [m], [m/s]
+    real(dp), intent(in) :: penetration_acceleration        !! [m/s^2]
+    real(dp), intent(out) :: share, share_rate
+    associate (unused => self, unused_depth => penetration, unused_rate => penetration_rate, &
+               unused_acceleration => penetration_acceleration)
+    end associate
+    share = 1
+    share_rate = 0
+  end subroutine find_share
+
+  !> The normal force [N] of a law with `has_own_damping`; negative only if the law `may_lose_force`.
   pure function damped_force(self, elastic_force, penetration, penetration_rate) result(force)
     class(contact_law_t), intent(in) :: self
     real(dp), value, intent(in) :: elastic_force      !! [N], > 0
@@ -138,7 +156,7 @@ contains
     force = elastic_force*max(0.0_dp, 1 + self%dissipation*penetration_rate)
   end function damped_force
 
-  !> Derivatives of `damped_force`, where it is positive, with respect to the penetration [N/m] and its rate [N s/m].
+  !> Derivatives of `damped_force` with respect to the penetration [N/m] and its rate [N s/m].
   pure subroutine damped_force_slopes(self, penetration, penetration_rate, stiffness, damping)
     class(contact_law_t), intent(in) :: self
     real(dp), intent(in) :: penetration, penetration_rate

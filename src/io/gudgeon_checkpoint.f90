@@ -20,7 +20,7 @@ module gudgeon_checkpoint
   public :: checkpoint_t, file_mark_t, continuation_t, restart_hint
 
   character(len=*), parameter :: newline = achar(10), title = 'gudgeon checkpoint'//newline
-  integer, parameter :: format_version = 4
+  integer, parameter :: format_version = 5
   character(len=*), parameter :: restart_hint = '; without --resume the run starts from the beginning'
 
   integer, parameter :: buffer_size = 65536   !! [bytes]; fits into the processor's cache

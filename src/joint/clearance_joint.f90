@@ -69,6 +69,7 @@ module clearance_joint
     integer :: phase = phase_free
     integer :: sliding = 0                  !! set-valued friction: sign of the sliding speed, 0 while the surfaces stick
     real(dp) :: impact_speed = 0            !! penetration rate at the beginning of the present contact [m/s]
+    logical :: force_is_lost = .false.      !! in contact, but the damper cancels the elastic force: none acts
     real(dp) :: max_penetration = 0  !! largest penetration at the end of the step in which a contact begins, for contact entry by
                                      !! step rejection [m]
     real(dp) :: start_eccentricity(2) = 0   !! initial value [m]
@@ -319,6 +320,7 @@ contains
     else
       own%normal_force = self%contact%normal_force(joint%penetration, joint%penetration_rate, self%impact_speed)
     end if
+    if (self%force_is_lost) own%normal_force = 0
     own%friction_force = 0
     if (allocated(self%friction)) then
       call find_sliding(self%pin_radius, joint)
@@ -352,7 +354,8 @@ contains
     joint%normal = elastic/pressing
     associate (n => joint%normal, rate => joint%eccentricity_rate)
       joint%tangential_rate = n(1)*rate(2) - n(2)*rate(1)
-      normal_force = self%contact%damped_by(pressing, joint%penetration, dot_product(n, rate), self%impact_speed)
+      if (.not. self%force_is_lost) &
+        normal_force = self%contact%damped_by(pressing, joint%penetration, dot_product(n, rate), self%impact_speed)
     end associate
   end subroutine find_worn
 
@@ -491,7 +494,8 @@ contains
     normal_force = 0
     if (allocated(self%worn)) call find_worn(self, joint, normal_force)
     if (self%phase /= phase_contact .or. allocated(self%worn)) return
-    normal_force = self%contact%normal_force(joint%penetration, joint%penetration_rate, self%impact_speed)
+    if (.not. self%force_is_lost) &
+      normal_force = self%contact%normal_force(joint%penetration, joint%penetration_rate, self%impact_speed)
     if (allocated(self%transition)) normal_force = normal_force*self%contact_weight(joint%penetration)
   end subroutine look
 
@@ -545,6 +549,7 @@ contains
     call archive%exchange(self%phase)
     call archive%exchange(self%impact_speed)
     call archive%exchange(self%sliding)
+    call archive%exchange(self%force_is_lost)
     if (allocated(self%transition)) call self%transition%exchange(archive)
     if (allocated(self%worn)) call self%worn%exchange(archive)
   end subroutine exchange

@@ -1,14 +1,25 @@
-!> Events of a piston with clearance in its bore: contacts of the corners of its skirt begin and end.
+!> Events of a piston with clearance in its bore: contacts of the corners of its skirt begin and end, and lose and regain
+!> their forces.
 module guide_events
   use gudgeon_kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t
   use piston_guide, only: piston_guide_t, corner_t, n_corners
   implicit none
   private
-  public :: corner_events, change_contact, begin_corner_contact, contact_is_rough, rough_corner_end, &
-    inward_acceleration
+  public :: n_guide_events, corner_events, corner_force_events, corner_share, change_contact, begin_corner_contact, &
+    contact_is_rough, rough_corner_end, inward_acceleration
 
 contains
+
+  !> Number of events: of the contacts of the corners and, if the damper of the contact law may cancel the elastic force, of their
+  !> forces.
+  pure integer function n_guide_events(guide)
+    type(piston_guide_t), intent(in) :: guide
+    n_guide_events = 0
+    if (.not. guide%is_loose) return
+    n_guide_events = n_corners
+    if (guide%contact%may_lose_force) n_guide_events = 2*n_corners
+  end function n_guide_events
 
   !> Event functions and their rates: the penetration of a corner [m] while it is not in contact, and minus the penetration while it
   !> is.
@@ -22,6 +33,36 @@ contains
     g_rate = merge(-corner%depth_rate, corner%depth_rate, guide%touches)
   end subroutine corner_events
 
+  !> Event functions of a law whose damper may cancel the elastic force: a contact loses its force, or the force acts again.
+  pure subroutine corner_force_events(guide, corner, motion, accelerations, g, g_rate)
+    type(piston_guide_t), intent(in) :: guide
+    type(corner_t), intent(in) :: corner(n_corners)
+    type(motion_t), intent(in) :: motion
+    type(accelerations_t), intent(in) :: accelerations
+    real(dp), intent(out) :: g(n_corners), g_rate(n_corners)
+    integer :: i
+    do i = 1, n_corners
+      call corner_share(guide, i, corner(i), motion, accelerations, g(i), g_rate(i))
+      if (guide%force_is_lost(i)) cycle
+      g(i) = -g(i)
+      g_rate(i) = -g_rate(i)
+    end do
+  end subroutine corner_force_events
+
+  !> The damped over the elastic force of corner i, without the limit 0, and its rate [1/s]; 1 and 0 without contact.
+  pure subroutine corner_share(guide, i, corner, motion, accelerations, share, share_rate)
+    type(piston_guide_t), intent(in) :: guide
+    integer, intent(in) :: i
+    type(corner_t), intent(in) :: corner
+    type(motion_t), intent(in) :: motion
+    type(accelerations_t), intent(in) :: accelerations
+    real(dp), intent(out) :: share, share_rate
+    share = 1
+    share_rate = 0
+    if (guide%touches(i)) call guide%contact%find_share(corner%depth, corner%depth_rate, &
+      inward_acceleration(i, corner, motion, accelerations), share, share_rate)
+  end subroutine corner_share
+
   !> Change the state of corner i: its contact ends, or a new contact begins.
   pure subroutine change_contact(guide, i, y)
     type(piston_guide_t), intent(inout) :: guide
@@ -30,6 +71,7 @@ contains
     type(corner_t) :: corner(n_corners)
     if (guide%touches(i)) then
       guide%touches(i) = .false.
+      guide%force_is_lost(i) = .false.
     else
       call guide%look(y, corner)
       call begin_corner_contact(guide, i, corner(i)%depth_rate)
@@ -42,6 +84,7 @@ contains
     integer, intent(in) :: i
     real(dp), intent(in) :: rate
     guide%touches(i) = .true.
+    guide%force_is_lost(i) = .false.
     guide%impact_speed(i) = max(rate, 0.0_dp)
   end subroutine begin_corner_contact
 

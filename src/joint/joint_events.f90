@@ -4,16 +4,19 @@ module joint_events
   use ode_problem, only: step_admitted, step_too_deep
   use chain_motion, only: accelerations_t
   use clearance_joint, only: clearance_joint_t, joint_loads_t, phase_contact
-  use joint_motion, only: joint_motion_t, sliding_acceleration
+  use joint_motion, only: joint_motion_t, sliding_acceleration, outward_acceleration
   implicit none
   private
-  public :: n_events, may_stick, contact_changes, sliding_changes, film_held_changes, film_gone_changes
-  public :: contact_event, sliding_event, judge_entry, rough_end, begin_contact, end_contact, choose_sliding
+  public :: n_events, may_stick, may_lose_force
+  public :: contact_changes, sliding_changes, film_held_changes, film_gone_changes, force_changes
+  public :: contact_event, sliding_event, force_event, force_share
+  public :: judge_entry, rough_end, begin_contact, end_contact, choose_sliding
   public :: penetration_and_rate, transition_events, pass_kink
 
   !> The events of a joint, in this order. A joint without contact law has no events. The second event exists only for set-valued
-  !> friction, the last two only for joints in which film and contact share the load: there the forces have kinks.
-  integer, parameter :: contact_changes = 1, sliding_changes = 2, film_held_changes = 3, film_gone_changes = 4
+  !> friction, the next two only for joints in which film and contact share the load, the last one only for a contact law whose
+  !> damper may cancel the elastic force: there the forces have kinks.
+  integer, parameter :: contact_changes = 1, sliding_changes = 2, film_held_changes = 3, film_gone_changes = 4, force_changes = 5
 
 contains
 
@@ -23,6 +26,7 @@ contains
     if (allocated(joint%contact)) n_events = contact_changes
     if (may_stick(joint)) n_events = sliding_changes
     if (allocated(joint%transition)) n_events = film_gone_changes
+    if (may_lose_force(joint)) n_events = force_changes
   end function n_events
 
   !> Whether the joint has set-valued friction.
@@ -31,6 +35,13 @@ contains
     may_stick = .false.
     if (allocated(joint%friction)) may_stick = joint%friction%set_valued
   end function may_stick
+
+  !> Whether the damper of the contact law may cancel the elastic force.
+  pure logical function may_lose_force(joint)
+    type(clearance_joint_t), intent(in) :: joint
+    may_lose_force = .false.
+    if (allocated(joint%contact)) may_lose_force = joint%contact%may_lose_force
+  end function may_lose_force
 
   !> Penetration [m] and its rate [m/s].
   pure function penetration_and_rate(joint, y) result(values)
@@ -127,6 +138,53 @@ contains
     end if
   end subroutine sliding_event
 
+  !> Event function of a law whose damper may cancel the elastic force: the contact loses its force, or the force acts again.
+  pure subroutine force_event(joint, motion, accelerations, g, g_rate)
+    type(clearance_joint_t), intent(in) :: joint
+    type(joint_motion_t), intent(in) :: motion
+    type(accelerations_t), intent(in) :: accelerations
+    real(dp), intent(out) :: g, g_rate
+    call force_share(joint, motion, accelerations, g, g_rate)
+    if (joint%force_is_lost) return
+    g = -g
+    g_rate = -g_rate
+  end subroutine force_event
+
+  !> The damped over the elastic force, without the limit 0, and its rate [1/s]. In a worn bore the rate is a difference over a
+  !> short part of the motion.
+  pure subroutine force_share(joint, motion, accelerations, share, share_rate)
+    type(clearance_joint_t), intent(in) :: joint
+    type(joint_motion_t), intent(in) :: motion
+    type(accelerations_t), intent(in) :: accelerations
+    real(dp), intent(out) :: share, share_rate
+    real(dp) :: onwards
+    if (.not. (allocated(joint%worn) .and. motion%penetration > 0)) then
+      call joint%contact%find_share(motion%penetration, motion%penetration_rate, &
+        outward_acceleration(joint%place, motion, accelerations), share, share_rate)
+      return
+    end if
+    associate (e => motion%eccentricity, rate => motion%eccentricity_rate)
+      share = share_in_worn_bore(joint, e, rate)
+      share_rate = 0
+      if (.not. norm2(rate) > 0) return
+      onwards = 1e-6_dp*motion%penetration/norm2(rate)
+      share_rate = (share_in_worn_bore(joint, e + onwards*rate, rate + onwards*accelerations%pin(:, joint%place)) - share)/onwards
+    end associate
+  end subroutine force_share
+
+  !> The share in a worn bore; 1 without contact.
+  pure real(dp) function share_in_worn_bore(joint, e, rate) result(share)
+    type(clearance_joint_t), intent(in) :: joint
+    real(dp), intent(in) :: e(2), rate(2)   !! eccentricity and its rate [m], [m/s]
+    real(dp) :: elastic(2), pressing, penetration, gradient(2)
+    share = 1
+    call joint%worn%press(e, elastic)
+    pressing = norm2(elastic)
+    call joint%worn%find_gap(e, penetration, gradient)
+    if (pressing > 0 .and. penetration > 0) &
+      share = joint%contact%damped_force(pressing, penetration, dot_product(elastic, rate)/pressing)/pressing
+  end function share_in_worn_bore
+
   !> Largest friction force of a set-valued law while the surfaces stick [N].
   pure real(dp) function sticking_limit(joint, normal_force)
     type(clearance_joint_t), intent(in) :: joint
@@ -206,11 +264,13 @@ contains
     real(dp), intent(in) :: rate
     joint%phase = phase_contact
     joint%impact_speed = max(rate, 0.0_dp)
+    joint%force_is_lost = .false.
   end subroutine begin_contact
 
   pure subroutine end_contact(joint)
     type(clearance_joint_t), intent(inout) :: joint
     joint%phase = joint%phase_apart()
+    joint%force_is_lost = .false.
   end subroutine end_contact
 
   !> Choose the state of set-valued friction from an evaluation in which the surfaces are assumed to stick. A nonzero sliding speed

@@ -40,7 +40,9 @@ contains
     integer :: i
     ratio = 0
     if (allocated(self%friction)) call find_friction_slopes(self, joint, ratio, friction_slopes)
-    full%normal_force = self%contact%normal_force(joint%penetration, joint%penetration_rate, self%impact_speed)
+    full%normal_force = 0
+    if (.not. self%force_is_lost) &
+      full%normal_force = self%contact%normal_force(joint%penetration, joint%penetration_rate, self%impact_speed)
     full%friction_force = ratio*full%normal_force
     call contact_slopes(self, joint, full, derivatives)
     if (self%transition%film_is_gone) return
@@ -66,7 +68,10 @@ contains
     integer :: i
 
     associate (n => joint%normal)
-      call self%contact%normal_force_slopes(joint%penetration, joint%penetration_rate, self%impact_speed, stiffness, damping)
+      stiffness = 0
+      damping = 0
+      if (.not. self%force_is_lost) &
+        call self%contact%normal_force_slopes(joint%penetration, joint%penetration_rate, self%impact_speed, stiffness, damping)
       ratio = 0
       ratio_slope = 0
       if (allocated(self%friction)) then

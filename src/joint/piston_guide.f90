@@ -51,6 +51,7 @@ module piston_guide
     real(dp) :: height(2) = 0             !! top and bottom of the skirt, measured from the centre of mass along the piston [m]
     type(coordinates_t) :: offset, tilt   !! their indices in the state
     logical :: touches(n_corners) = .false.
+    logical :: force_is_lost(n_corners) = .false.   !! in contact, but the damper cancels the elastic force: none acts
     real(dp) :: impact_speed(n_corners) = 0   !! penetration rate at the beginning of the present contact [m/s]
     real(dp) :: start(2) = 0              !! offset [m] and tilt [rad] at t = 0
     real(dp) :: start_rate(2) = 0         !! [m/s], [rad/s]
@@ -163,7 +164,8 @@ contains
     integer, intent(in) :: i
     type(corner_t), intent(in) :: corner
     normal_force = 0
-    if (guide%touches(i)) normal_force = guide%contact%normal_force(corner%depth, corner%depth_rate, guide%impact_speed(i))
+    if (guide%touches(i) .and. .not. guide%force_is_lost(i)) &
+      normal_force = guide%contact%normal_force(corner%depth, corner%depth_rate, guide%impact_speed(i))
   end function normal_force
 
   !> Whether the position of the piston is admissible: no corner penetrates the wall by more than the piston's radius, and the tilt
@@ -243,6 +245,7 @@ contains
     do i = 1, n_corners
       call archive%exchange(self%touches(i))
       call archive%exchange(self%impact_speed(i))
+      call archive%exchange(self%force_is_lost(i))
     end do
   end subroutine exchange
 end module piston_guide

@@ -12,7 +12,7 @@ module ode_problem
   public :: step_admitted, step_too_deep
   public :: event_continue, event_stop, max_events
 
-  integer, parameter :: max_events = 16   !! largest number of event functions
+  integer, parameter :: max_events = 24   !! largest number of event functions
 
   !> Verdicts of `judge_step`.
   integer, parameter :: step_admitted = 0   !! the step is accepted

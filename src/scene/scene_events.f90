@@ -1,11 +1,12 @@
 !> The events of a scene. Each event belongs to a joint, to the gas, to the guide or to the turns of the crank.
 submodule (gudgeon_scene) scene_events
   use ode_problem, only: step_admitted, event_continue
-  use joint_events, only: n_events, may_stick, contact_changes, sliding_changes, film_held_changes, film_gone_changes, &
-    contact_event, sliding_event, transition_events, judge_entry, rough_end, begin_contact, end_contact, pass_kink, choose_sliding
+  use joint_events, only: n_events, may_stick, may_lose_force, contact_changes, sliding_changes, film_held_changes, &
+    film_gone_changes, force_changes, contact_event, sliding_event, force_event, force_share, transition_events, judge_entry, &
+    rough_end, begin_contact, end_contact, pass_kink, choose_sliding
   use joint_motion, only: outward_acceleration
-  use guide_events, only: corner_events, change_contact, begin_corner_contact, contact_is_rough, rough_corner_end, &
-    inward_acceleration
+  use guide_events, only: n_guide_events, corner_events, corner_force_events, corner_share, change_contact, &
+    begin_corner_contact, contact_is_rough, rough_corner_end, inward_acceleration
   use piston_guide, only: corner_t, n_corners
   use crank_turns, only: n_turn_events
   implicit none
@@ -27,7 +28,7 @@ contains
     if (allocated(scene%gas)) call number(of_gas, scene%gas%n_events)
     if (allocated(scene%turns)) call number(of_turns, n_turn_events)
     if (allocated(scene%wear_cycle)) call number(of_wear, 1)
-    if (allocated(scene%guide)) call number(of_guide, merge(n_corners, 0, scene%guide%is_loose))
+    if (allocated(scene%guide)) call number(of_guide, n_guide_events(scene%guide))
 
   contains
 
@@ -50,8 +51,9 @@ contains
       if (n >= contact_changes) call contact_event(self%joints(i), y, g(k + contact_changes), g_rate(k + contact_changes))
       if (n >= sliding_changes) &
         call find_sliding_event(self, t, y, i, g(k + sliding_changes), g_rate(k + sliding_changes))
-      if (n >= film_gone_changes) call transition_events(self%joints(i), y, g(k + film_held_changes:k + film_gone_changes), &
-        g_rate(k + film_held_changes:k + film_gone_changes))
+      if (allocated(self%joints(i)%transition)) call transition_events(self%joints(i), y, &
+        g(k + film_held_changes:k + film_gone_changes), g_rate(k + film_held_changes:k + film_gone_changes))
+      if (n >= force_changes) call find_force_event(self, t, y, i, g(k + 1:k + n), g_rate(k + 1:k + n))
       k = k + n
     end do
     if (allocated(self%gas)) then
@@ -69,7 +71,9 @@ contains
       call self%wear_cycle%event(self%crank_angle(t, y), self%crank_speed(t, y), g(k), g_rate(k))
     end if
     if (.not. allocated(self%guide)) return
-    if (self%guide%is_loose) call corner_events(self%guide, y, g(k + 1:k + n_corners), g_rate(k + 1:k + n_corners))
+    n = n_guide_events(self%guide)
+    if (n >= n_corners) call corner_events(self%guide, y, g(k + 1:k + n_corners), g_rate(k + 1:k + n_corners))
+    if (n > n_corners) call find_corner_force_events(self, t, y, g(k + n_corners + 1:k + n), g_rate(k + n_corners + 1:k + n))
   end procedure all_events
 
   !> Event function of set-valued friction, which depends on the accelerations.
@@ -87,6 +91,41 @@ contains
     if (inside) call sliding_event(scene%joints(i), now%relative(i), now%joint(i), now%accelerations, g, g_rate)
   end subroutine find_sliding_event
 
+  !> The event function of a contact whose force may be lost, which depends on the accelerations, among those of joint i. A joint
+  !> without weighted transition does not have the two before it.
+  pure subroutine find_force_event(scene, t, y, i, g, g_rate)
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(:)
+    integer, intent(in) :: i
+    real(dp), intent(inout) :: g(:), g_rate(:)
+    type(evaluation_t) :: now
+    logical :: inside
+    if (.not. allocated(scene%joints(i)%transition)) then
+      g(film_held_changes:film_gone_changes) = -1
+      g_rate(film_held_changes:film_gone_changes) = 0
+    end if
+    g(force_changes) = -1
+    g_rate(force_changes) = 0
+    if (scene%joints(i)%phase /= phase_contact) return
+    call scene%evaluate(t, y, now, inside)
+    if (inside) &
+      call force_event(scene%joints(i), now%relative(i), now%accelerations, g(force_changes), g_rate(force_changes))
+  end subroutine find_force_event
+
+  !> Event functions of corners whose forces may be lost.
+  pure subroutine find_corner_force_events(scene, t, y, g, g_rate)
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: g(n_corners), g_rate(n_corners)
+    type(evaluation_t) :: now
+    logical :: inside
+    g = -1
+    g_rate = 0
+    if (.not. any(scene%guide%touches)) return
+    call scene%evaluate(t, y, now, inside)
+    if (inside) call corner_force_events(scene%guide, now%guide%corner, now%motion, now%accelerations, g, g_rate)
+  end subroutine find_corner_force_events
+
   module procedure handle_event
     real(dp) :: contact(2)
     action = event_continue
@@ -97,6 +136,8 @@ contains
         call self%turns%pass(event, self%crank_angle(t, y), action)
       else if (i == of_wear) then
         self%wear_cycle%begin = self%crank_angle(t, y)
+      else if (i == of_guide .and. event > n_corners) then
+        self%guide%force_is_lost(event - n_corners) = .not. self%guide%force_is_lost(event - n_corners)
       else if (i == of_guide) then
         if (contact_is_rough(self%guide) .and. .not. self%guide%touches(event)) self%entry_time = t
         call change_contact(self%guide, event, y)
@@ -116,6 +157,8 @@ contains
           call find_sliding_direction(self, i, t, y, .false.)
         case (film_held_changes, film_gone_changes)
           call pass_kink(self%joints(i), event)
+        case (force_changes)
+          self%joints(i)%force_is_lost = .not. self%joints(i)%force_is_lost
         end select
       end if
     end associate
@@ -154,7 +197,8 @@ contains
     reported_event = event_none
     associate (i => self%event_of(index)%joint)
       if (i == of_guide) then
-        reported_event = merge(event_contact_ends, event_contact_begins, self%guide%touches(self%event_of(index)%event))
+        if (self%event_of(index)%event <= n_corners) &
+          reported_event = merge(event_contact_ends, event_contact_begins, self%guide%touches(self%event_of(index)%event))
         return
       end if
       if (i <= 0 .or. self%event_of(index)%event /= contact_changes) return
@@ -209,12 +253,41 @@ contains
       if (self%joints(i)%phase == phase_contact) call decide_at_wall(self, i, y)
       if (allocated(self%joints(i)%transition)) call decide_at_kink(self, i, y)
     end do
+    call find_lost_forces(self, y)
     self%smooth_in_root = .not. self%entry_time < 0
     self%mode = mode_of(self)
     do i = 1, self%n_joints
       if (self%joints(i)%phase == phase_contact) call find_sliding_direction(self, i, 0.0_dp, y, .true.)
     end do
   end procedure prepare_start
+
+  !> Find the contacts that have no force at t = 0, since their pins or corners move out too fast.
+  subroutine find_lost_forces(scene, y)
+    class(scene_t), intent(inout) :: scene
+    real(dp), intent(in) :: y(:)
+    type(evaluation_t) :: now
+    real(dp) :: share, share_rate
+    logical :: inside, has_corners, touches(most_joints)
+    integer :: i
+    has_corners = .false.
+    if (allocated(scene%guide)) has_corners = n_guide_events(scene%guide) > n_corners
+    do i = 1, scene%n_joints
+      touches(i) = may_lose_force(scene%joints(i)) .and. scene%joints(i)%phase == phase_contact
+    end do
+    if (.not. (has_corners .or. any(touches(:scene%n_joints)))) return
+    call scene%evaluate(0.0_dp, y, now, inside)
+    if (.not. inside) return
+    do i = 1, scene%n_joints
+      if (.not. touches(i)) cycle
+      call force_share(scene%joints(i), now%relative(i), now%accelerations, share, share_rate)
+      scene%joints(i)%force_is_lost = share < 0
+    end do
+    if (.not. has_corners) return
+    do i = 1, n_corners
+      call corner_share(scene%guide, i, now%guide%corner(i), now%motion, now%accelerations, share, share_rate)
+      scene%guide%force_is_lost(i) = share < 0
+    end do
+  end subroutine find_lost_forces
 
   !> Start of a pin at the wall, within rounding: if it moves away from the wall or, at rest, is drawn away from it, there is no
   !> contact. The start is then moved by a few units of rounding to the side of the wall that is decided on: otherwise the event
