@@ -96,7 +96,13 @@ contains
   subroutine test_refusals(check)
     class(checks_t), intent(inout) :: check
     character(len=1) :: none(0)
+    character(len=*), parameter :: stands_alone = &
+      '--template and --reference are not combined with other options or with files'//hint
     call refused(check, none, 'no case file given'//hint)
+    call refused(check, [character(len=16) :: '--template', '-s', 'mechanism.gravity=0'], stands_alone)
+    call refused(check, [character(len=16) :: '-q', 'sweep', '--template'], stands_alone)
+    call refused(check, [character(len=16) :: '--template', 'a.nml'], stands_alone)
+    call refused(check, [character(len=16) :: '--reference', 'case', '-o', 'r'], stands_alone)
     call refused(check, ['--chekc'], '--chekc: unknown option; did you mean --check?'//hint)
     call refused(check, ['--xyzzy'], '--xyzzy: unknown option'//hint)
     call refused(check, ['-x'], '-x: unknown option'//hint)

@@ -505,6 +505,8 @@ check "a sweep with the film removed has impacts" [ "$(awk -F, 'NR > 1 && $8 > 0
 run --fresh cases/sim_I.nml
 check "--fresh is refused for cases" [ "$status" = 2 ]
 refused "rows beyond the study" 3 "the study has 12 runs" --rows 5:20 "$work/grid.nml"
+refused "an override of a varied key" 2 "--set Joint. clearance=3e-5: the study varies joint.clearance" \
+  -s "Joint. clearance=3e-5" "$work/grid.nml"
 refused "rows backwards" 2 "A:B" --rows 5:4 "$work/grid.nml"
 run sweep --check "$work/grid.nml"
 check "--check counts the runs" [ "$status" = 0 -a "$(cat "$work/out")" = "$work/grid.nml: correct, 12 runs" ]

@@ -9,7 +9,7 @@ module command_line
 
   !> The contents of the command line.
   type :: command_line_t
-    integer, private :: override_count = 0, case_count = 0
+    integer, private :: override_count = 0, case_count = 0, option_count = 0
     character(len=:), allocatable :: out          !! folder for results
     character(len=:), allocatable :: overrides(:) !! GROUP.KEY=VALUE or GROUP=none in the given order, padded with blanks
     character(len=:), allocatable :: accuracy     !! draft, standard, reference, or empty: as in the case file
@@ -80,7 +80,12 @@ contains
     end do
     call shorten(line%overrides, line%override_count)
     call shorten(line%cases, line%case_count)
-    if (allocated(error) .or. line%help .or. line%version .or. line%template .or. line%reference /= '') return
+    if (allocated(error) .or. line%help .or. line%version) return
+    if (line%template .or. line%reference /= '') then
+      if (line%option_count > 1 .or. size(line%cases) > 0) &
+        call refuse('--template and --reference are not combined with other options or with files')
+      return
+    end if
     if (size(line%cases) == 0) then
       call refuse('no '//trim(merge('study', 'case ', line%sweep))//' file given')
     else if (line%sweep .and. line%certify) then
@@ -160,6 +165,7 @@ contains
       character(len=*), intent(in) :: name, value
       character(len=:), allocatable :: wanted
       integer :: status
+      line%option_count = line%option_count + 1
       select case (name)
       case ('out')
         line%out = value

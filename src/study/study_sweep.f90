@@ -1,8 +1,8 @@
 !> A study that has been read and checked, with the data shared by its threads while it runs.
 module study_sweep
   use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, fail, status_case_file, status_integration
-  use text_tools, only: printable, integer_text
+  use gudgeon_errors, only: error_t, fail, status_command_line, status_case_file, status_integration
+  use text_tools, only: printable, integer_text, lowercase
   use gudgeon_checksum, only: checksum_t
   use gudgeon_version, only: program_version
   use gudgeon_columns, only: column_list_t, choose_columns
@@ -76,6 +76,8 @@ contains
       if (sweep%is_drawn) study%runs = most_checked
       call new_design(study, values%values(values%place_of('output', 'digits'))%whole, design, error)
       if (allocated(error)) return
+      call refuse_varied(options%overrides, values, design%keys, error)
+      if (allocated(error)) return
       at = printable(path, 200)//': '
       if (study%table /= '') at = printable(study%table, 200)//':1: '
       call sweep%base%prepare(values, study%case, design%keys, at, error)
@@ -113,6 +115,28 @@ contains
       sweep%has_strobes = study%strobe_columns /= ''
     end associate
   end subroutine read_sweep
+
+  !> Refuse overrides of keys that the study varies, which would have no effect.
+  subroutine refuse_varied(overrides, values, keys, error)
+    character(len=*), intent(in) :: overrides(:), keys(:)
+    type(case_values_t), intent(in) :: values
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: name
+    integer :: i, k, dot, place
+    do i = 1, size(overrides)
+      name = lowercase(overrides(i)(:index(overrides(i), '=') - 1))
+      dot = index(name, '.', back=.true.)
+      place = 0
+      if (dot > 0) place = values%place_of(trim(adjustl(name(:dot - 1))), trim(adjustl(name(dot + 1:))))
+      if (place == 0) cycle   ! a group is removed
+      associate (key => values%keys(place))
+        name = trim(key%group)//'.'//trim(key%name)
+      end associate
+      if (.not. any([(lowercase(trim(keys(k))) == name, k=1, size(keys))])) cycle
+      call fail(error, '--set '//printable(trim(overrides(i)), 60)//': the study varies '//name, status_command_line)
+      return
+    end do
+  end subroutine refuse_varied
 
   !> Check that every text of a table or list is a value of its key.
   subroutine check_values(sweep, error)
