@@ -42,7 +42,7 @@ contains
     real(dp), parameter :: depths(5) = c*[1e-4_dp, 1e-3_dp, 1e-2_dp, 0.1_dp, 1.0_dp]
     type(worn_bore_t) :: bore
     type(winkler_t) :: round
-    real(dp) :: e(2), force(2), gap, gradient(2)
+    real(dp) :: e(2), force(2), total, gap, gradient(2)
     integer :: i, k
     round%given_modulus = modulus
     call round%prepare(bearing_t(radius, length, c, 0.2_dp))
@@ -50,7 +50,7 @@ contains
     do i = 1, size(depths)
       do k = 1, 7
         e = (c + depths(i))*[cos(0.9_dp*k), sin(0.9_dp*k)]
-        call bore%press(e, force)
+        call bore%press(e, force, total)
         call bore%find_gap(e, gap, gradient)
         call check%relative(norm2(force), round%elastic_force(depths(i)), 3e-6_dp, 'force in a round bore')
         if (i > 2) call check%relative(norm2(force), round%elastic_force(depths(i)), 4e-8_dp, 'force at a deeper penetration')
@@ -61,7 +61,7 @@ contains
       end do
     end do
     e = 0.999_dp*c*[0.6_dp, 0.8_dp]
-    call bore%press(e, force)
+    call bore%press(e, force, total)
     call bore%find_gap(e, gap, gradient)
     call check%close_to(norm2(force), 0.0_dp, 0.0_dp, 'no force inside the clearance')
     call check%close_to(gap, -0.001_dp*c, 4e-9_dp*c, 'gap inside the clearance')
@@ -73,13 +73,13 @@ contains
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: small = 1e-9_dp
     type(worn_bore_t) :: bore
-    real(dp) :: e(2), force(2), numeric(2)
+    real(dp) :: e(2), force(2), total, numeric(2)
     integer :: k, i
     bore = new_bore(360)
     bore%depth = [(c*(0.2_dp*(1 + sin(3*two_pi*i/360)) + 0.1_dp*(1 + cos(8*two_pi*i/360))), i=1, 360)]
     do k = 1, 9
       e = 1.5_dp*c*[cos(0.7_dp*k), sin(0.7_dp*k)]
-      call bore%press(e, force)
+      call bore%press(e, force, total)
       do i = 1, 2
         numeric(i) = (energy_of(bore, e + small*unit(i)) - energy_of(bore, e - small*unit(i)))/(2*small)
       end do
@@ -120,12 +120,12 @@ contains
     class(checks_t), intent(inout) :: check
     type(worn_bore_t) :: bore
     type(touching_cells_t) :: touching
-    real(dp) :: e(2), force(2), middles(3), from_cells
+    real(dp) :: e(2), force(2), total, middles(3), from_cells
     integer :: i
     bore = new_bore(360)
     bore%depth = [(0.5_dp*c*exp(-((i - 180.5_dp)/10)**2), i=1, 360)]
     e = [-1.1_dp*c, 0.0_dp]
-    call bore%press(e, force)
+    call bore%press(e, force, total)
     call bore%cells(e, touching)
     from_cells = 0
     middles = 0
@@ -138,6 +138,7 @@ contains
     end do
     call check%that(middles(1) < 1 .and. all(middles(2:) > 5), 'the pin touches on two arcs')
     call check%relative(from_cells, -force(1), 1e-5_dp, 'the cells carry the force')
+    call check%relative(sum(touching%loads(:touching%n)), total, 1e-12_dp, 'the sum of their loads')
     call check%close_to(force(2)/force(1), 0.0_dp, 1e-12_dp, 'the force of symmetric arcs')
   end subroutine touches_on_two_arcs
 
@@ -179,7 +180,7 @@ contains
     type(worn_bore_t), intent(in) :: bore
     real(dp), intent(in) :: load, rate
     real(dp), intent(out) :: e
-    real(dp) :: growth(size(bore%depth)), low, high, force(2)
+    real(dp) :: growth(size(bore%depth)), low, high, force(2), total
     type(touching_cells_t) :: touching
     type(worn_surface_t) :: surface
     integer :: i
@@ -187,7 +188,7 @@ contains
     high = 3*c
     do i = 1, 60
       e = 0.5_dp*(low + high)
-      call bore%press([-e, 0.0_dp], force)
+      call bore%press([-e, 0.0_dp], force, total)
       if (-force(1) > load) then
         high = e
       else
@@ -238,11 +239,12 @@ contains
     call check%that(trace%report%wear(1)%turns < 1e9_dp, 'extrapolation is reduced')
   end subroutine steps_are_limited
 
+  !> How wear is distributed over the bins depends slightly on the steps, hence twice the tolerance of other joints.
   subroutine methods_agree_when_worn(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
     call methods_agree(check, file, [character(len=40) :: 'integrator.revolutions=1.1', 'wear.rate=0.0,1e-9', &
-      'wear.extrapolation=1'], c, 'a worn bore', trace)
+      'wear.extrapolation=1'], 2*c, 'a worn bore', trace)
     if (.not. allocated(trace%report%wear)) return
     call check%that(maxval(trace%report%wear(1)%depth(:, of_bore)) > 1e-6_dp, 'the bore is worn deeper than it is pressed')
   end subroutine methods_agree_when_worn

@@ -41,7 +41,7 @@ contains
     class(parameter_list_t), intent(inout) :: list
     call list%add('rate', self%rate, 'specific wear rates of pin and bore: volume per normal force and sliding path', &
       'm^2/N', '>= 0 and <= 1e-6', default='0.0', example='1.0e-15')
-    call list%add('bins', self%bins, 'number of arcs of each surface in NAME.wear.csv', '>= 4 and <= 36000', '360')
+    call list%add('bins', self%bins, 'number of arcs of each surface in NAME.wear.csv', '>= 4 and <= 3600', '360')
     call list%word('bore', self%bore, 'round, worn', 'round', &
       'round: wear is only counted; worn: the worn bore acts in the contact (geometry = ''winkler'')')
     call list%add('cycles_per_update', self%cycles_per_update, 'crank revolutions between changes of a worn bore', &

@@ -26,6 +26,7 @@ module winkler
     procedure :: foundation
     procedure :: half_angle
     procedure :: pressure
+    procedure :: total_pressure
   end type winkler_t
 
 contains
@@ -154,4 +155,17 @@ contains
     end associate
     pressure = 2*sin(0.5_dp*(half_angle + angle))*sin(0.5_dp*(half_angle - angle))/(half_angle - 0.5_dp*sin(2*half_angle))
   end function pressure
+
+  !> 2 (sin a - a cos a)/(a - sin a cos a); for small a both differences lose digits, and the first terms of the series are exact.
+  pure real(dp) function total_pressure(self, half_angle)
+    class(winkler_t), intent(in) :: self
+    real(dp), intent(in) :: half_angle
+    associate (unused => self, a => half_angle)
+      if (a < 0.01_dp) then
+        total_pressure = 1 + a**2/10
+      else
+        total_pressure = 2*(sin(a) - a*cos(a))/(a - sin(a)*cos(a))
+      end if
+    end associate
+  end function total_pressure
 end module winkler

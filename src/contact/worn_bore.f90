@@ -65,15 +65,17 @@ contains
     end do
   end subroutine prepare
 
-  !> Elastic force with which the pin presses on the bore [N]; 0 if they do not touch.
-  pure subroutine press(self, eccentricity, force)
+  !> Elastic force with which the pin presses on the bore, and the same summed without regard to its direction [N]; 0 if they do not
+  !> touch.
+  pure subroutine press(self, eccentricity, force, total)
     class(worn_bore_t), intent(in) :: self
     real(dp), intent(in) :: eccentricity(2)   !! of the pin in the bore [m]
-    real(dp), intent(out) :: force(2)
+    real(dp), intent(out) :: force(2), total
     type(piece_t) :: piece
-    real(dp) :: s, gap, width
+    real(dp) :: s, gap, width, moments(3)
     integer :: i, j, k, m, first, last
     force = 0
+    total = 0
     width = two_pi/size(self%depth)
     call find_range(self, eccentricity, first, last)
     do k = first, last
@@ -81,15 +83,26 @@ contains
       piece = piece_of(self, i, eccentricity)
       associate (length => piece%ends(2) - piece%ends(1))
         if (.not. length > 0) cycle
-        j = bin_of(self, k + 1)
-        do m = 1, 3
-          s = piece%ends(1) + gauss_points(m)*length
-          gap = gauss_weights(m)*length*gap_at(piece, s)
-          force = force + gap*((1 - s)*self%middle(:, i) + s*self%middle(:, j) + 0.5_dp*s*(1 - s)*width**2*self%edge(:, i))
-        end do
+        if (length < 1) then
+          moments = 0   ! Int gap, Int gap s, Int gap s (1 - s) over the part that is compressed
+          do m = 1, 3
+            s = piece%ends(1) + gauss_points(m)*length
+            gap = gauss_weights(m)*length*gap_at(piece, s)
+            moments = moments + gap*[1.0_dp, s, s*(1 - s)]
+          end do
+        else
+          associate (start => piece%start, rise => piece%rise, bend => piece%bend)
+            moments = [start + rise/2 + bend/6, start/2 + rise/3 + bend/12, start/6 + rise/12 + bend/30]
+          end associate
+        end if
       end associate
+      j = bin_of(self, k + 1)
+      total = total + moments(1)
+      force = force + (moments(1) - moments(2))*self%middle(:, i) + moments(2)*self%middle(:, j) &
+        + 0.5_dp*width**2*moments(3)*self%edge(:, i)
     end do
     force = self%bedding*width*force
+    total = self%bedding*width*total
   end subroutine press
 
   !> Largest gap e . u - c - w [m], negative where the pin does not touch the bore, and its gradient.

@@ -31,6 +31,7 @@ module asperities
     procedure :: integrated_force
     procedure :: half_angle
     procedure :: pressure
+    procedure :: total_pressure
     procedure :: mean_gap
     procedure :: friction_force
   end type asperities_t
@@ -167,6 +168,26 @@ contains
     real(dp), intent(in) :: distance, angle
     pressure = self%scale*pressure_at(self, distance, angle)
   end function pressure
+
+  !> Integral of the pressure along the arc, times radius and length of the bore, over the force; 1 without contact. By the
+  !> trapezoidal rule, as the force.
+  pure real(dp) function total_pressure(self, distance)
+    class(asperities_t), intent(in) :: self
+    real(dp), intent(in) :: distance   !! [m]
+    integer, parameter :: points = 40
+    real(dp) :: last, angle, values(2), here
+    integer :: i
+    total_pressure = 1
+    last = self%half_angle(distance)
+    if (.not. last > 0) return
+    values = 0
+    do i = 0, points
+      angle = last*i/points
+      here = merge(0.5_dp, 1.0_dp, i == 0 .or. i == points)*pressure_at(self, distance, angle)
+      values = values + here*[1.0_dp, cos(angle)]
+    end do
+    if (values(2) > 0) total_pressure = values(1)/values(2)
+  end function total_pressure
 
   !> p/(K' E*) at an angle from the line of centres.
   pure real(dp) function pressure_at(self, distance, angle)

@@ -343,12 +343,12 @@ contains
     class(clearance_joint_t), intent(in) :: self
     type(joint_motion_t), intent(inout) :: joint
     real(dp), intent(out) :: normal_force
-    real(dp) :: gradient(2), elastic(2), pressing
+    real(dp) :: gradient(2), elastic(2), pressing, unused
     normal_force = 0
     call self%worn%find_gap(joint%eccentricity, joint%penetration, gradient)
     joint%penetration_rate = dot_product(gradient, joint%eccentricity_rate)
     if (self%phase /= phase_contact) return
-    call self%worn%press(joint%eccentricity, elastic)
+    call self%worn%press(joint%eccentricity, elastic, unused)
     pressing = norm2(elastic)
     if (.not. pressing > 0) return
     joint%normal = elastic/pressing

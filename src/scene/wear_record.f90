@@ -6,7 +6,7 @@ module wear_record
   use ode_method, only: ode_method_t
   use chain_motion, only: crank_pin, piston_pin
   use archard_wear, only: worn_surface_t, of_pin, of_bore
-  use contact_arc, only: contact_arc_t, arc_of
+  use contact_arc, only: contact_arc_t, arc_of, sliding_load
   use clearance_joint, only: clearance_joint_t, phase_contact
   use gudgeon_scene, only: scene_t, evaluation_t
   implicit none
@@ -34,7 +34,7 @@ module wear_record
   !> What the nodes of one interval need to be distributed over the surfaces.
   type :: samples_t
     type(evaluation_t) :: now(n_nodes)
-    real(dp) :: load(n_nodes)                  !! normal force times sliding speed [W]
+    real(dp) :: load(n_nodes)                  !! pressing force times sliding speed [W]
     real(dp) :: angle(n_nodes, 2)              !! of the line of centres, from marks on pin and bore, without jumps [rad]
   end type samples_t
 
@@ -42,7 +42,7 @@ module wear_record
     integer :: joint = 0                       !! index of the scene's joint
     integer :: evaluations = 0                 !! number of evaluations of the scene so far
     real(dp), private :: time = 0              !! time up to which wear has been counted [s]
-    real(dp), private :: total = 0             !! integral of normal force times sliding speed since the bore last changed [N m]
+    real(dp), private :: total = 0             !! integral of pressing force times sliding speed since the bore last changed [N m]
     real(dp), private :: depth_sum = 0         !! the same of their product with the penetration [N m^2]
     type(worn_surface_t), private :: surface(2)    !! since the last change of the bore
     type(worn_surface_t), private :: earlier(2)    !! before it, extrapolated
@@ -111,7 +111,7 @@ contains
 
   !> Count the wear up to t, in the last step of the method and in one phase of the joint. An interval is halved until the rules of
   !> three and seven points agree within the tolerance of the run, relative to the sum so far, and until the line of centres turns
-  !> by at most two bins.
+  !> by at most a bin.
   subroutine follow(self, method, scene, t)
     class(wear_record_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
@@ -130,12 +130,12 @@ contains
         call take_samples(self, method, scene, self%time + done*span, part*span, samples)
         sums = 0.5_dp*part*span*[dot_product(weights, samples%load), dot_product(gauss, samples%load)]
         is_rough = sums(1) > 0 .and. part > shortest
-        if (is_rough) is_rough = sweep(samples) > 2*self%surface(of_bore)%width() .or. &
+        if (is_rough) is_rough = sweep(samples) > self%surface(of_bore)%width() .or. &
           sums(1)*(10*abs(sums(1) - sums(2))/sums(1))**1.5_dp > max(method%settings%tolerance, finest)*(self%total + sums(1))
         if (is_rough) then
           part = 0.5_dp*part
         else
-          if (sums(1) > 0) call distribute(self, scene, 0.5_dp*part*span, samples)
+          if (sums(1) > 0) call distribute(self, scene, sums(1), samples)
           self%total = self%total + sums(1)
           done = done + part
           part = min(2*part, 1 - done)
@@ -171,7 +171,7 @@ contains
       call scene%evaluate(time, y, samples%now(i), inside)
       samples%load(i) = 0
       associate (now => samples%now(i))
-        if (inside) samples%load(i) = abs(now%joint(k)%normal_force*now%relative(k)%sliding_speed)
+        if (inside) samples%load(i) = sliding_load(scene%joints(k), now%relative(k), now%joint(k))
         samples%angle(i, :) = atan2(now%relative(k)%normal(2), now%relative(k)%normal(1)) - turned(scene, k, now)
       end associate
       if (i > 1) samples%angle(i, :) = samples%angle(i - 1, :) &
@@ -202,26 +202,29 @@ contains
     sweep = maxval(maxval(samples%angle, 1) - minval(samples%angle, 1))
   end function sweep
 
-  !> Distribute the load path of an interval over the surfaces: along the arc of contact, or where surfaces touch along a line
-  !> evenly over the angle that it passes over.
-  subroutine distribute(self, scene, half_span, samples)
+  !> Distribute the load path of an interval over the surfaces: along the arcs of contact at the points of Gauss's rule, or where
+  !> surfaces touch along a line evenly over the angle that it passes over.
+  subroutine distribute(self, scene, total, samples)
     type(wear_record_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: half_span   !! half of the interval [s]
+    real(dp), intent(in) :: total   !! [N m]
     type(samples_t), intent(in) :: samples
     type(contact_arc_t) :: arc
-    real(dp) :: amount, on_line, overhang(2)
+    real(dp) :: shares(n_nodes), on_line, overhang(2)
     integer :: i, j, k
+    shares = gauss*samples%load
+    if (.not. sum(shares) > 0) shares = weights*samples%load
+    shares = total/sum(shares)*shares
     on_line = 0
     do i = 1, n_nodes
-      amount = half_span*weights(i)*samples%load(i)
-      if (.not. amount > 0) cycle
-      self%depth_sum = self%depth_sum + amount*samples%now(i)%relative(self%joint)%penetration
+      if (.not. shares(i) > 0) cycle
+      self%depth_sum = self%depth_sum + shares(i)*samples%now(i)%relative(self%joint)%penetration
       call arc_of(scene%joints(self%joint), samples%now(i)%relative(self%joint), self%surface(of_bore)%width(), arc)
-      if (arc%n == 0) on_line = on_line + amount
-      do j = 1, arc%n
-        do k = 1, size(self%surface)
-          call self%surface(k)%add(samples%angle(i, k) + arc%ends(1, j), samples%angle(i, k) + arc%ends(2, j), amount*arc%loads(j))
+      if (arc%n == 0) on_line = on_line + shares(i)
+      if (arc%n > 0) arc%loads(:arc%n) = shares(i)/sum(arc%loads(:arc%n))*arc%loads(:arc%n)
+      do k = 1, size(self%surface)
+        do j = 1, arc%n
+          call self%surface(k)%add(samples%angle(i, k) + arc%ends(1, j), samples%angle(i, k) + arc%ends(2, j), arc%loads(j))
         end do
       end do
     end do
