@@ -99,7 +99,7 @@ contains
     character(len=*), parameter :: stands_alone = &
       '--template and --reference are not combined with other options or with files'//hint
     call refused(check, none, 'no case file given'//hint)
-    call refused(check, [character(len=16) :: '--template', '-s', 'mechanism.gravity=0'], stands_alone)
+    call refused(check, [character(len=16) :: '--template', '-s', 'drive=none'], stands_alone)
     call refused(check, [character(len=16) :: '-q', 'sweep', '--template'], stands_alone)
     call refused(check, [character(len=16) :: '--template', 'a.nml'], stands_alone)
     call refused(check, [character(len=16) :: '--reference', 'case', '-o', 'r'], stands_alone)
