@@ -176,9 +176,9 @@ contains
   pure real(dp) function share_in_worn_bore(joint, e, rate) result(share)
     type(clearance_joint_t), intent(in) :: joint
     real(dp), intent(in) :: e(2), rate(2)   !! eccentricity and its rate [m], [m/s]
-    real(dp) :: elastic(2), pressing, penetration, gradient(2)
+    real(dp) :: elastic(2), unused, pressing, penetration, gradient(2)
     share = 1
-    call joint%worn%press(e, elastic)
+    call joint%worn%press(e, elastic, unused)
     pressing = norm2(elastic)
     call joint%worn%find_gap(e, penetration, gradient)
     if (pressing > 0 .and. penetration > 0) &

@@ -161,6 +161,7 @@ contains
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, span   !! beginning and length of the interval [s]
     type(samples_t), intent(inout) :: samples
+    real(dp), parameter :: negligible = 1e-200_dp   !! [W]; avoids divisions of rounding
     real(dp) :: y(scene%n), time
     logical :: inside
     integer :: i, k
@@ -170,12 +171,15 @@ contains
       call method%interpolate(time, y)
       call scene%evaluate(time, y, samples%now(i), inside)
       samples%load(i) = 0
-      associate (now => samples%now(i))
-        if (inside) samples%load(i) = sliding_load(scene%joints(k), now%relative(k), now%joint(k))
-        samples%angle(i, :) = atan2(now%relative(k)%normal(2), now%relative(k)%normal(1)) - turned(scene, k, now)
+      samples%angle(i, :) = 0
+      if (i > 1) samples%angle(i, :) = samples%angle(i - 1, :)
+      if (.not. inside) cycle
+      associate (now => samples%now(i), before => samples%angle(i, :))
+        samples%load(i) = sliding_load(scene%joints(k), now%relative(k), now%joint(k))
+        if (samples%load(i) < negligible) samples%load(i) = 0
+        samples%angle(i, :) = before + modulo(atan2(now%relative(k)%normal(2), now%relative(k)%normal(1)) &
+          - turned(scene, k, now) - before + pi, 2*pi) - pi
       end associate
-      if (i > 1) samples%angle(i, :) = samples%angle(i - 1, :) &
-        + modulo(samples%angle(i, :) - samples%angle(i - 1, :) + pi, 2*pi) - pi
     end do
     self%evaluations = self%evaluations + n_nodes
   end subroutine take_samples
