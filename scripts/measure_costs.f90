@@ -25,9 +25,10 @@ program measure_costs
   implicit none
 
   integer, parameter :: n_states = 64, blocks = 31, calls = 6400, steps_in_block = 2000
-  integer, parameter :: name_length = 28, n_scenes = 32, n_quantities = 8
+  integer, parameter :: name_length = 28, n_scenes = 34, n_quantities = 8
   character(len=name_length), parameter :: scenes(n_scenes) = [character(len=name_length) :: 'ideal', 'ideal+gas', 'free', &
-    'free+gas', 'contact_hertz', 'contact', 'contact_johnson', 'contact_conformal', 'contact+quadrature', 'contact+ambrosio', &
+    'free+gas', 'contact_hertz', 'contact', 'contact_johnson', 'contact_conformal', 'contact_wear', &
+    'contact_conformal_wear', 'contact+quadrature', 'contact+ambrosio', &
     'contact+coulomb', 'contact+brown_mcphee', 'contact+stribeck', 'contact+lugre', 'contact+elasto_plastic', &
     'closed_form', 'closed_form+quadrature', 'closed_form+gas', 'as_printed', 'half_film', 'oscillating', &
     'oscillating_as_printed', 'finite_short', 'finite_table', 'finite_mixed', 'closed_form+rod_0_1', 'closed_form+rod_0_4', &
@@ -73,7 +74,7 @@ contains
       'lubrication.table_points=17', 'lubrication.film_points=32']
     character(len=*), parameter :: friction(3) = [character(len=40) :: &
       'friction.transition_speed=1e-3', 'friction.stribeck_speed=1e-2', 'friction.bristle_stiffness=2e4']
-    character(len=40) :: law, friction_law, at_rest
+    character(len=40) :: law, friction_law, at_rest, wear
     logical :: dry
 
     law = 'contact.law=lankarani_nikravesh'
@@ -88,17 +89,19 @@ contains
     if (index(name, 'conformal') > 0) law = 'contact.geometry=conformal'
     if (index(name, 'finite') == 1) law = 'lubrication.variant=table'
     if (index(name, 'short') > 0) law = 'lubrication.variant=short'
+    wear = 'wear=none'
+    if (index(name, 'wear') > 0) wear = 'wear.rate=1e-15,1e-15'
     dry = index(name, 'contact') == 1
     if (dry .and. along_case(quantity)) then
       call read_case('cases/flores/friction_050.nml', [character(len=40) :: law, friction_law, at_rest, friction, &
-        'joint.bearing_length=0.04'], case, error)
+        'joint.bearing_length=0.04', wear], case, error)
     else if (index(name, 'finite') == 1) then
       call read_case('cases/film/sim_IV_'//trim(merge('mixed ', 'finite', index(name, 'mixed') > 0))//'.nml', &
         [character(len=40) :: law, small_table], case, error)
     else if (index(name, 'oscillating') == 1) then
       call read_case('cases/sim_IV.nml', [law, oscillating], case, error)
     else
-      call read_case('cases/sim_IV.nml', [law, friction_law, at_rest, friction, member(name)], case, error)
+      call read_case('cases/sim_IV.nml', [law, friction_law, at_rest, friction, member(name), wear], case, error)
     end if
     if (allocated(error)) error stop 'measure_costs: run it from the top of the checkout'
     if (index(name, '+gas') == 0 .and. allocated(case%combustion)) deallocate (case%combustion)

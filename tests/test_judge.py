@@ -46,6 +46,10 @@ OIL = {f"lubrication.{key}": value for key, value in {"viscosity": "0", "viscosi
 TIGHT_CRANK_PIN = {"crank_pin.joint.kind": "'clearance'", **{f"crank_pin.joint.{key}": value for key, value in
                    {"clearance": "1e-7", "bearing_radius": "0.02", "bearing_length": "0.02"}.items()}}
 
+WEAR = {"wear.rate": "1e-15, 3e-14"}
+LENGTH = {"joint.bearing_length": "0.02"}
+LENGTHS = {**LENGTH, "crank_pin.joint.bearing_length": "0.03"}
+
 #: Runs by name: case, and settings that keep the run short. Together they contain every law and both joints.
 SCENES = {
     "dry": ("flores/friction_050", {"integrator.revolutions": "0.3"}),
@@ -55,9 +59,9 @@ SCENES = {
                                                "friction.transition_speed": "0.2"}),
     "stribeck": ("friction/brown_mcphee", {"integrator.revolutions": "0.15", "friction.law": "stribeck", "friction.stribeck_speed": "0.3",
                                            "friction.transition_speed": "0.1"}),
-    "conformal": ("contact/conformal_exact", {"integrator.revolutions": "0.15"}),
+    "conformal": ("contact/conformal_exact", {"integrator.revolutions": "0.15", **WEAR}),
     "johnson": ("contact/johnson_gonthier", {"integrator.revolutions": "0.15"}),
-    "liner": ("contact/liner_carvalho_martins", {"integrator.revolutions": "0.15"}),
+    "liner": ("contact/liner_carvalho_martins", {"integrator.revolutions": "0.15", **WEAR}),
     "pereira": ("contact/pereira_impact", {"integrator.revolutions": "0.15"}),
     "dissipation": ("contact/hunt_crossley", {"integrator.revolutions": "0.15", "contact.dissipation": "0.4"}),
     "lugre": ("friction/lugre", {"integrator.revolutions": "0.15"}),
@@ -86,14 +90,14 @@ SCENES = {
     "full": ("film/sim_II_finite", {"integrator.revolutions": "0.5", **SMALL_TABLE, "lubrication.cavitation": "none"}),
     "direct": ("film/sim_II_finite", {"integrator.revolutions": "0.02", "integrator.relative_tolerance": "1e-4", "lubrication.variant": "direct",
                                       "lubrication.film_points": "32"}),
-    "rough": ("film/sim_IV_mixed", {"integrator.revolutions": "1.2", "initial.crank_angle_deg": "170", "lubrication.variant": "short"}),
+    "rough": ("film/sim_IV_mixed", {"integrator.revolutions": "1.2", "initial.crank_angle_deg": "170", "lubrication.variant": "short", **WEAR}),
     "warm": ("sim_I", {"integrator.method": "'auto'", "integrator.revolutions": "0.2", **OIL}),
     # a hot oil, whose density is a fifth less than that at 15 degrees, and which is so thin that its inertia matters
     "inertia": ("sim_V_oscillating", {"integrator.method": "'auto'", "integrator.revolutions": "0.3", **OIL, "lubrication.kinematic_viscosity": "0",
                                       "lubrication.temperature": "624", "lubrication.known_viscosities": "1e-6, 2.7e-7"}),
-    "both": ("joints/both_pins", {"integrator.revolutions": "0.2", "drive.kind": "'free'", "mechanism.gravity_angle_deg": "25"}),
+    "both": ("joints/both_pins", {"integrator.revolutions": "0.2", "drive.kind": "'free'", "mechanism.gravity_angle_deg": "25", **WEAR, **LENGTHS}),
     "crank": ("joints/crank_pin", {"integrator.revolutions": "0.2", "integrator.relative_tolerance": "1e-7"}),
-    "slap": ("joints/piston_slap", {"integrator.revolutions": "0.3", "mechanism.gravity_angle_deg": "25"}),
+    "slap": ("joints/piston_slap", {"integrator.revolutions": "0.3", "mechanism.gravity_angle_deg": "25", **WEAR, **LENGTH}),
     # almost without inertia of tilting: the acceleration of the centre of mass is a small difference of those of pin and tilt
     "jammed": ("joints/piston_slap", {"integrator.revolutions": "1e-4", "mechanism.gravity": "9.8", "initial.piston_tilt": "-0.04",
                                       "guide.piston_com": "-0.0104, 0.0002", "guide.piston_inertia": "5e-8", "guide.contact_law": "'exact'",
@@ -104,7 +108,9 @@ SCENES = {
     # a small tolerance, because the shortening of the rod's chord by bending contributes only about 1e-5 of the energy
     "rod": ("elastic/dry_friction", {"integrator.revolutions": "0.1", "integrator.relative_tolerance": "1e-8", "drive.kind": "'free'", "mechanism.gravity": "1000",
                                      "mechanism.gravity_angle_deg": "25"}),
-    "rods": ("joints/both_pins", {"integrator.revolutions": "0.05", "elastic_rod.section_area": "9.6e-5", "elastic_rod.section_inertia": "5.12e-10"}),
+    "rods": ("joints/both_pins", {"integrator.revolutions": "0.05", "elastic_rod.section_area": "9.6e-5", "elastic_rod.section_inertia": "5.12e-10",
+                                   **WEAR, **LENGTHS}),
+    "worn": ("wear/worn_bore", {"integrator.revolutions": "1.2", "wear.extrapolation": "1", "wear.rate": "0, 1e-11"}),
     "shaft": ("elastic/engine_crankshaft", {"integrator.revolutions": "0.3"}),
     "bent": ("flores/ideal", {"integrator.revolutions": "0.3", "elastic_rod.section_area": "9.6e-5", "elastic_rod.section_inertia": "5.12e-10",
                               "drive.kind": "'free'", "mechanism.gravity": "9.8"}),
@@ -151,7 +157,7 @@ PHASES = {**dict.fromkeys(("twisted", "thin", "sharp", "walls", "rigid", "held",
           "elasto_plastic": {0, 2}, "conformal": {0, 2}, "johnson": {0, 2},
           "liner": {0, 2}, "pereira": {0, 2}, "dissipation": {0, 2}, "film": {1}, "contact": {1, 2}, "weighted": {1, 2}, "elastic": {1},
           "inertia": {1, 2}, "compressor": {1}, "two_stroke": {1}, "measured": {1}, "ramp": {1}, "motor": {1}, "both": {0, 2}, "crank": {0}, "films": {1},
-          "slap": {0, 2}, "jammed": {0}, "guide": {0}, "ideal": {0}, "rod": {0, 2}, "rods": {0, 2}, "shaft": {1}, "bent": {0}}   # 0 free flight, 1 film, 2 contact
+          "worn": {0, 2}, "slap": {0, 2}, "jammed": {0}, "guide": {0}, "ideal": {0}, "rod": {0, 2}, "rods": {0, 2}, "shaft": {1}, "bent": {0}}   # 0 free flight, 1 film, 2 contact
 
 #: (fault, scene, column, change of (value, row), text that the verdict must contain)
 CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
@@ -183,6 +189,14 @@ CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
     ("normal force of a Pereira contact too large", "pereira", "normal_force", lambda v, i: v * (1 + 1e-5), "contact law"),
     ("normal force of a liner too small", "liner", "normal_force", lambda v, i: v * (1 - 1e-5), "contact law"),
     ("normal force with dissipation too small", "dissipation", "normal_force", lambda v, i: v * (1 - 1e-5), "contact law"),
+    ("rate of wear of a conformal contact too large", "conformal", "pin_wear_rate", lambda v, i: v * (1 + 1e-5), "rate of wear"),
+    ("rate of wear of a liner too small", "liner", "bore_wear_rate", lambda v, i: v * (1 - 1e-5), "rate of wear"),
+    ("rate of wear by asperities too large", "rough", "bore_wear_rate", lambda v, i: v * (1 + 1e-4), "rate of wear"),
+    ("rate of wear that does not give the volume", "slap", "bore_wear_rate", lambda v, i: v * 1.001, "bore is not the integral of its rate"),
+    ("rate of wear at the crank pin too large", "both", "crank_pin_pin_wear_rate", lambda v, i: v * (1 + 1e-5), "crank pin: rate of wear"),
+    ("wear without contact", "both", "pin_wear_rate", lambda v, i: v or 1e-30, "rate of wear"),
+    ("wear where the pin does not touch the bore", "both", "eccentricity_y", lambda v, i: -v, "pin is worn at other places"),
+    ("wear of a worn bore too small", "worn", "bore_wear_rate", lambda v, i: v * 0.9, "bore is not the integral of its rate"),
     ("bristle deflection too large", "lugre", "bristle", lambda v, i: v * (1 + 1e-4), "friction law"),
     ("bristle deflection in free flight", "lugre", "bristle", lambda v, i: v or 1e-12, "no bristles bent"),
     ("bristle deflection twice too large", "elasto_plastic", "bristle", lambda v, i: 2 * v, "bristles bent by static friction"),
@@ -369,6 +383,16 @@ MUTANTS = [
     ("shear of the oscillating film one percent too large", "oscillating_film.f90", "along*(real(response%shear) -",
      "along*(1.01_dp*real(response%shear) -",
      "contact", "film law"),
+    ("wear at the crank pin in the wrong direction", "wear_record.f90", "angles(of_bore) = scene%chain%rod_end_angle(now%motion, crank_pin)",
+     "angles(of_bore) = -scene%chain%rod_end_angle(now%motion, crank_pin)", "both", "crank_pin_bore is worn at other places"),
+    ("wear in a piston that tilts without the tilt", "wear_record.f90", "angles(of_bore) = now%motion%tilting%tilt",
+     "angles(of_bore) = -50*now%motion%tilting%tilt", "slap", "bore is worn at other places"),
+    ("wear along lines of contact too large", "wear_record.f90", "on_line = on_line + amount", "on_line = on_line + 1.001_dp*amount",
+     "both", "is not the integral of its rate"),
+    ("wear on arcs of contact counted by the normal force alone", "contact_arc.f90", "sliding_load*sum(arc%loads(:arc%n))", "sliding_load",
+     "conformal", "rate of wear"),
+    ("depth of wear of the pin with the radius of the bore", "wear_record.f90", "merge(joint%pin_radius, joint%bearing%radius, k == of_pin)",
+     "joint%bearing%radius", "both", "are not those of the summary"),
     ("density of asperities wrong", "asperities.f90", "self%density_product**2*sqrt", "self%density_product**2*1.001_dp*sqrt",
      "rough", "asperities"),
     ("transition speed of the boundary friction halved", "asperities.f90", "*tanh(sliding_speed/self%transition_speed)",

@@ -52,6 +52,21 @@ def judge(folder: Path, name: str, slack: float) -> None:
             judge_pin(name, prefix, summary, rows, slack)
         if joint in loose:
             judge_contacts(name, prefix, summary, rows, [event for event in events if event["joint"] == joint])
+    has_wear = any("wear_rate" in column for column in rows[0])
+    check(has_wear == (folder / f"{name}.wear.csv").exists(), f"{name}: file of the worn surfaces")
+    if has_wear:
+        judge_wear(name, summary, table(folder / f"{name}.wear.csv"))
+
+
+def judge_wear(name: str, summary: dict[str, str], bins: list[dict[str, str]]) -> None:
+    """Check volumes and depths of the worn surfaces, one row for each bin."""
+    for joint in {row["joint"] for row in bins}:
+        for surface in ("pin", "bore"):
+            volume, depth = (float(summary[f"{PREFIXES[joint]}{quantity}_{surface}"]) for quantity in ("worn_volume", "max_wear_depth"))
+            rows = [row for row in bins if row["joint"] == joint]
+            total, deepest = math.fsum(float(row[f"{surface}_volume[m3]"]) for row in rows), max(float(row[f"{surface}_depth[m]"]) for row in rows)
+            check(abs(total - volume) <= 1e-8 * volume, f"{name}: worn_volume_{surface} {volume!r} is not the sum {total!r} of its bins")
+            check(depth == deepest, f"{name}: max_wear_depth_{surface} {depth!r} is not that of the bins, {deepest!r}")
 
 
 def judge_pin(name: str, prefix: str, summary: dict[str, str], rows: list[dict[str, str]], slack: float) -> None:
@@ -105,7 +120,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", type=Path)
     gudgeon = Gudgeon(parser.parse_args().program or program_built())
-    files = [file for folder in (".", "flores", "joints", "wiebe") for file in sorted((ROOT / "cases" / folder).glob("*.nml"))]
+    files = [file for folder in (".", "flores", "joints", "wear", "wiebe") for file in sorted((ROOT / "cases" / folder).glob("*.nml"))]
     with tempfile.TemporaryDirectory() as work:
         for method, slack, options in (("auto", 1e-9, ()), ("auto", 4e-16, ("--set", "output.digits=17")), ("adams", 1e-9, ())):
             chosen = [file for file in files if method == "auto" or file.stem not in LONG]

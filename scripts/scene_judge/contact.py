@@ -82,15 +82,39 @@ class Geometry:
         the arc, and the force that results from the pressures with the given peak."""
         b = math.tan(half_angle / 2)
         x = 2 * b**2 * (b**2 + 1) / (2 - math.log(b**2 + 1) - 2 * b**4)
+        result, _ = self.over_arc(half_angle)
+        return x, peak * self.bore * self.length * result / self.persson(b, 0.0)
 
-        def pressure(angle: float) -> float:
-            y, rest = math.tan(angle / 2), math.sqrt(max(0.0, b**2 - math.tan(angle / 2)**2))
-            near = 2 * math.atanh(rest / math.sqrt(b**2 + 1)) / (2 * math.pi * b**2 * (b**2 + 1))
-            return 2 * rest / (math.pi * math.sqrt(b**2 + 1) * (1 + y**2)) + near
+    @staticmethod
+    def persson(b: float, angle: float) -> float:
+        """Pressure of a pin in a bore at an angle from the line of centres, by Persson (1964), times R L/F; b = tan(a/2)."""
+        y, rest = math.tan(angle / 2), math.sqrt(max(0.0, b**2 - math.tan(angle / 2)**2))
+        near = 2 * math.atanh(rest / math.sqrt(b**2 + 1)) / (2 * math.pi * b**2 * (b**2 + 1))
+        return 2 * rest / (math.pi * math.sqrt(b**2 + 1) * (1 + y**2)) + near
+
+    def over_arc(self, half_angle: float) -> tuple[float, float]:
+        """Integrals over the arc of Persson's pressure times the cosine of the angle, and of the pressure."""
+        b = math.tan(half_angle / 2)
         # the angle is half_angle sin(s), because the pressure goes to zero like a square root
         steps = [math.pi / 2 * i / 256 for i in range(257)]
-        shape = [pressure(half_angle * math.sin(s)) * math.cos(half_angle * math.sin(s)) * math.cos(s) for s in steps]
-        return x, 2 * peak * self.bore * self.length * half_angle * simpson(shape, math.pi / 512) / pressure(0.0)
+        shape = [self.persson(b, half_angle * math.sin(s)) * math.cos(s) for s in steps]
+        along = [one * math.cos(half_angle * math.sin(s)) for one, s in zip(shape, steps)]
+        return 2 * half_angle * simpson(along, math.pi / 512), 2 * half_angle * simpson(shape, math.pi / 512)
+
+    def pressing(self, depth: float, half_angle: float) -> float:
+        """The forces that press on the surfaces, added without regard to their direction, over the normal force. Geometries without an
+        arc touch along a line."""
+        if depth <= 0:
+            return 1.0
+        if self.name == "conformal" and half_angle > 0:
+            result, whole = self.over_arc(half_angle)
+            return whole / result
+        if self.name == "winkler":
+            half = math.atan2(math.sqrt(depth * (2 * self.clearance + depth)), self.clearance)
+            angles = [half * i / 128 for i in range(129)]
+            springs = [depth - 2 * (self.clearance + depth) * math.sin(a / 2)**2 for a in angles]
+            return simpson(springs, 1.0) / simpson([one * math.cos(a) for one, a in zip(springs, angles)], 1.0)
+        return 1.0
 
 
 class Contact:

@@ -286,16 +286,22 @@ class Asperities:
 
     def force(self, size: float, h: float) -> float:
         """Towards the middle [N], at the eccentricity `size`, h = c - size."""
+        return self.forces(size, h)[0]
+
+    def forces(self, size: float, h: float) -> Vector:
+        """That force, and the sum of the pressing forces without regard to their direction."""
         reach = (4.0 if self.is_fit else 8.0) * self.roughness
         if h >= reach:
-            return 0.0
+            return 0.0, 0.0
         last = math.pi if reach - h >= 2 * size else 2 * math.asin(math.sqrt((reach - h) / (2 * size)))
         points = 400
-        total = 0.0
+        along = whole = 0.0
         for i in range(points):
             theta = last * (i + 0.5) / points
-            total += math.cos(theta) * self.pressure((h + 2 * size * math.sin(0.5 * theta)**2) / self.roughness)
-        return 2 * self.scale * total * last / points
+            one = self.pressure((h + 2 * size * math.sin(0.5 * theta)**2) / self.roughness)
+            along += math.cos(theta) * one
+            whole += one
+        return tuple(2 * self.scale * total * last / points for total in (along, whole))
 
     def pressure(self, h: float) -> float:
         if self.is_fit:

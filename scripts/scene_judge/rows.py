@@ -22,6 +22,7 @@ INTEGRATED = 1500  # number of rows in which a film is judged if its pressure is
 SOLVED = 8         # the same if its pressure is solved for
 LEAST_GAP = 1e-4   # smallest film thickness over the clearance in the table of a film
 OSCILLATING = 2e-5  # allowed relative error of the oscillating film's averages
+WORN = 3e-6        # allowed relative error of the sum of the forces that press on an arc, of which the program adds 32
 ASPERITIES = 1e-5  # allowed relative error of the series of F52 and of the spline through the forces
 CLEAR = 0.01       # largest relative uncertainty of a force, from the film's velocity between rows
 MOVING = 2e-4, 2000  # allowed error of a rate in rows between two steps, relative and in tolerances: there the positions of the film
@@ -89,6 +90,8 @@ class RowChecks:
         self.contact = Contact(run) if self.has_joint and run.text("contact.law") else None
         self.friction = Friction(run) if self.has_joint and run.text("friction.law") else None
         self.elastic = self.run.case.get("lubrication.elastic_film", [False])[0]
+        self.wears = self.has_joint and "wear.rate" in run.case
+        self.worn_bore = self.wears and run.text("wear.bore") == "worn"   # no law of a round bore
         self.weighted = self.contact is not None and run.text("lubrication.transition") == "weighted"
         self.drive = Drive(run) if joint == "piston_pin" and "crankshaft.flywheel_inertia" not in run.case else None
         self.gas = gas_of(run) if joint == "piston_pin" else None
@@ -163,9 +166,13 @@ class RowChecks:
         e = get["eccentricity_x"], get["eccentricity_y"]
         size = math.hypot(*e)
         thinnest = math.hypot(get["film_eccentricity_x"], get["film_eccentricity_y"]) if self.elastic else size
-        self.take("film thickness", abs(c - thinnest - get["film_thickness"]), 1e-14 * (c + size), t)
         self.take("eccentricity ratio", abs(size / c - get["eccentricity_ratio"]), 1e-14 * (1 + size / c), t)
+        if self.worn_bore:
+            return
+        self.take("film thickness", abs(c - thinnest - get["film_thickness"]), 1e-14 * (c + size), t)
         phase = get["phase"]
+        if self.wears:
+            self.check_wear(row, size, phase, t)
         n = (e[0] / size, e[1] / size) if size > 0 else (1.0, 0.0)
         give = ROUNDING * row.speed_size
         if phase != CONTACT and self.friction and self.friction.has_bristles:
@@ -228,6 +235,20 @@ class RowChecks:
         want = geometry.load(depth)
         self.take("contact half-angle", abs(x - want), (LAW + 2 * blur) * want, t)
         self.take("peak pressure", abs(force - normal), (LAW + 2 * blur) * normal + 1e-300, t)
+
+    def check_wear(self, row: Row, size: float, phase: float, t: float) -> None:
+        """Check the volumes that wear in a second."""
+        get, load, share, least = row.get, 0.0, WORN, 0.0
+        depth = -get["film_thickness"]
+        if phase == CONTACT and self.contact and get["normal_force"] > 0:
+            load = get["normal_force"] * self.contact.geometry.pressing(depth, get.get("contact_half_angle", 0.0))
+            share += 1e-14 * self.run.number("joint.clearance") / depth   # on a narrow arc the program's pressure is a quotient of differences
+        elif phase == FILM and self.asperities and get["asperity_force"] > 0:
+            along, whole = self.asperities.forces(size, -depth)
+            load, share, least = get["asperity_force"] * (whole / along if along > 0 else 1.0), ASPERITIES, 1e-6 * self.asperities.scale * ASPERITIES
+        speed = abs(get["sliding_speed"])
+        for name, rate in zip(("pin_wear_rate", "bore_wear_rate"), self.run.pair("wear.rate")):
+            self.take("rate of wear", abs(get[name] - rate * load * speed), (share * load + least) * rate * speed + 1e-300, t)
 
     def check_film(self, row: Row, n: tuple[float, float], give: float, i: int) -> None:
         get, t = row.get, row.get["time"]

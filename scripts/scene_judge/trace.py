@@ -15,7 +15,8 @@ Columns = dict[str, list[float]]  # columns of a trace: 'crank_angle' -> values
 
 @dataclasses.dataclass
 class Run:
-    """The result of one run of the program: exit status, message, resolved case, columns, contact events and summary."""
+    """The result of one run of the program: exit status, message, resolved case, columns, contact events, summary and
+    worn surfaces."""
 
     status: int
     message: str
@@ -23,6 +24,7 @@ class Run:
     columns: Columns = dataclasses.field(default_factory=dict)
     events: list[dict[str, str]] = dataclasses.field(default_factory=list)
     summary: dict[str, str] = dataclasses.field(default_factory=dict)
+    worn: list[dict[str, str]] = dataclasses.field(default_factory=list)
 
     def number(self, key: str, default: float = 0.0) -> float:
         """A value of the case; `default` if its group is absent."""
@@ -62,7 +64,7 @@ class Run:
         columns = self.columns
         if joint != "piston_pin":
             columns = columns | {name.removeprefix(f"{joint}_"): column for name, column in columns.items() if name.startswith(f"{joint}_")}
-        return dataclasses.replace(self, case=case, columns=columns,
+        return dataclasses.replace(self, case=case, columns=columns, worn=[row for row in self.worn if row["joint"] == joint],
                                    events=[event for event in self.events if event.get("joint", "piston_pin") == joint])
 
 
@@ -113,10 +115,10 @@ def read_run(folder: Path, name: str, status: int = 0, message: str = "") -> Run
     run.columns = read_columns(folder / f"{name}.csv")
     with (folder / f"{name}.summary.csv").open(newline="") as lines:
         run.summary = {row[0]: row[1] for row in csv.reader(lines)}
-    events = folder / f"{name}.events.csv"
-    if events.exists():
-        with events.open(newline="") as lines:
-            run.events = list(csv.DictReader(lines))
+    for end, rows in ((".events.csv", run.events), (".wear.csv", run.worn)):
+        if (folder / f"{name}{end}").exists():
+            with (folder / f"{name}{end}").open(newline="") as lines:
+                rows.extend(csv.DictReader(lines))
     return run
 
 

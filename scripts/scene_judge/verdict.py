@@ -12,6 +12,7 @@ from .moving_films import moving_film_drift
 from .reruns import Comparison, Reruns
 from .rows import RowChecks
 from .trace import Run, merged, run_case
+from .wear import judge_wear
 
 MOST_STEPS = 60_000       # largest number of steps for which rows are written at every step, besides the grid
 CLOSER = 5     # factor for the number of rows if a fault is found
@@ -78,6 +79,10 @@ def judge_files(run: Run, resolved: bool = True) -> Verdict:
     checks = judge_rows(run, verdict)
     if resolved:
         judge_energy(checks, verdict)
+        made, faults, notes = judge_wear(checks)
+        verdict.checks += made
+        verdict.faults += faults
+        verdict.notes += notes
     else:
         verdict.notes.append("integrals not judged: too many steps for a row at each, and contacts between the rows of the grid")
     return verdict
