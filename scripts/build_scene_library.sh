@@ -1,11 +1,12 @@
 #!/bin/sh
 # Builds a library of scenes that C and Python can call (scripts/scene_library/scene_library.f90, optimised like the program) and
 # prints the path of the library. Its objects must be position-independent, so they have their own build folder,
-# build/scene_library.
+# build/scene_library. Without -fno-semantic-interposition the compiler would not include procedures of one module in another: every
+# procedure of a library can be replaced when it is loaded.
 cd "$(dirname "$0")/.." || exit 1
 . scripts/setup.sh || exit 1
 folder=build/scene_library
-flags="-O3 -flto=auto -fno-ipa-modref -fno-tree-vectorize --param max-inline-insns-auto=150 -fPIC"
+flags="-O3 -flto=auto -fno-ipa-modref -fno-tree-vectorize --param max-inline-insns-auto=150 -fPIC -fno-semantic-interposition"
 mkdir -p "$folder" || exit 1
 if [ "$(cat "$folder/flags" 2>/dev/null)" != "$flags" ]; then   # objects made with other flags must not be linked too
   rm -rf "$folder/build" && printf '%s\n' "$flags" >"$folder/flags" || exit 1

@@ -45,18 +45,18 @@ contains
       a = strong(order, :)
       b = matmul(a, x)
       factors = a
-      call decompose(factors, pivot, singular)
-      call solve(factors, pivot, b)
+      call decompose(n, factors, pivot, singular)
+      call solve(n, factors, pivot, b)
       worst = max(worst, maxval(abs(b - x)))
       complex_a = cmplx(a, 0.5_dp*transpose(strong), dp)
       complex_x = cmplx(x, 1.0_dp, dp)
       complex_b = matmul(complex_a, complex_x)
       real_part = real(complex_a)
       imaginary_part = aimag(complex_a)
-      call decompose(real_part, imaginary_part, pivot, singular)
+      call decompose(n, real_part, imaginary_part, pivot, singular)
       b = real(complex_b)
       y = aimag(complex_b)
-      call solve(real_part, imaginary_part, pivot, b, y)
+      call solve(n, real_part, imaginary_part, pivot, b, y)
       complex_worst = max(complex_worst, maxval(abs(cmplx(b, y, dp) - complex_x)))
     end do
     call check%close_to(worst, 0.0_dp, 1e-13_dp, 'permuted real systems')
@@ -79,10 +79,10 @@ contains
       b = matmul(a, x)
       real_part = real(a)
       imaginary_part = aimag(a)
-      call decompose(real_part, imaginary_part, pivot, singular)
+      call decompose(3, real_part, imaginary_part, pivot, singular)
       u = real(b)
       v = aimag(b)
-      call solve(real_part, imaginary_part, pivot, u, v)
+      call solve(3, real_part, imaginary_part, pivot, u, v)
       worst = max(worst, maxval(abs(cmplx(u, v, dp) - x)))
     end do
     call check%close_to(worst, 0.0_dp, 1e-14_dp, 'three complex unknowns')
@@ -94,7 +94,7 @@ contains
     integer :: pivot(3)
     logical :: singular
     a = 1
-    call decompose(a, pivot, singular)
+    call decompose(3, a, pivot, singular)
     call check%that(singular, 'a matrix of ones is singular')
   end subroutine finds_singular_matrices
 end module test_small_lu

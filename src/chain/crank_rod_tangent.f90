@@ -1,5 +1,5 @@
 !> Derivatives of the equations of motion of crank with rod and piston with respect to the state, for implicit integration: the
-!> tangent of `follow_rod` and of `accelerate_crank_rod`, one direction at a time.
+!> tangent of `follow_rod` and of `accelerate_crank_rod`.
 module crank_rod_tangent
   use gudgeon_kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, piston_pin
@@ -7,73 +7,57 @@ module crank_rod_tangent
   use chain_loads, only: loads_t
   implicit none
   private
-  public :: motion_change_t, load_change_t, motion_change, acceleration_change
-
-  !> A small change of the motion, per unit change of the state.
-  type :: motion_change_t
-    real(dp) :: crank_angle = 0, rod_angle = 0
-    real(dp) :: crank_speed = 0, rod_speed = 0
-  end type motion_change_t
-
-  !> A small change of the loads.
-  type :: load_change_t
-    real(dp) :: force(2) = 0    !! on the piston pin
-    real(dp) :: moment = 0      !! on the piston pin
-    real(dp) :: axial_force = 0   !! on the piston along -x
-  end type load_change_t
+  public :: rod_slopes, acceleration_slopes
 
 contains
 
-  !> Change of the motion for changes of q, q', e_y, e_y' (e_x and e_x' change the piston's motion only).
-  pure type(motion_change_t) function motion_change(bodies, motion, crank_angle, crank_speed, e_y, e_y_rate) result(change)
+  !> Derivatives of A and A' with respect to q and e_y. Those of A are also the derivatives of A' with respect to q' and e_y'.
+  pure subroutine rod_slopes(bodies, motion, angle, speed)
     type(bodies_t), intent(in) :: bodies
     type(motion_t), intent(in) :: motion
-    real(dp), intent(in) :: crank_angle, crank_speed, e_y, e_y_rate
-    associate (r => bodies%crank%length, arm => bodies%rod%length*motion%cos_rod)
-      change%crank_angle = crank_angle
-      change%crank_speed = crank_speed
-      change%rod_angle = (r*motion%cos_crank*crank_angle - e_y)/arm
-      change%rod_speed = (r*(motion%cos_crank*crank_speed - motion%sin_crank*motion%crank_speed*crank_angle) - e_y_rate)/arm &
-        + motion%rod_speed*(motion%sin_rod/motion%cos_rod)*change%rod_angle
+    real(dp), intent(out) :: angle(2), speed(2)
+    associate (r => bodies%crank%length)
+      angle = [r*motion%cos_crank, -1.0_dp]/(bodies%rod%length*motion%cos_rod)
+      speed = motion%rod_speed*(motion%sin_rod/motion%cos_rod)*angle
+      speed(1) = speed(1) - r*motion%sin_crank*motion%crank_speed/(bodies%rod%length*motion%cos_rod)
     end associate
-  end function motion_change
+  end subroutine rod_slopes
 
-  !> Changes of q'', e_x'', e_y'' for a change of the motion and of the loads.
-  pure function acceleration_change(bodies, drive, loads, motion, accelerations, change, load_change) result(a)
+  !> Derivatives of q'', e_x'' and e_y'' with respect to q, A, q' and A', as if these were independent, and to force and moment on
+  !> the piston pin.
+  pure subroutine acceleration_slopes(bodies, drive, loads, motion, accelerations, by_motion, by_loads)
     type(bodies_t), intent(in) :: bodies
     type(drive_t), intent(in) :: drive
     type(loads_t), intent(in) :: loads
     type(motion_t), intent(in) :: motion
     type(accelerations_t), intent(in) :: accelerations
-    type(motion_change_t), intent(in) :: change
-    type(load_change_t), intent(in) :: load_change
-    real(dp) :: a(3)
-    real(dp) :: m11, m12, m22, slope, sum_angle, on_crank, on_rod, crank, rod, weight_c, weight_r(2)
+    real(dp), intent(out) :: by_motion(3, 4), by_loads(3, 3)
+    real(dp) :: m12, slope, on_crank(7), on_rod(7), per_determinant, per_rod_term, changes(3, 7), crank, rod
+    integer :: i
 
     call bodies%coupling(motion, m12, slope)
-    m11 = bodies%crank_term
-    m22 = bodies%rod_term
-    weight_c = bodies%crank_weight(1)*motion%cos_crank - bodies%crank_weight(2)*motion%sin_crank
-    weight_r = bodies%rod_weight
-    sum_angle = change%crank_angle + change%rod_angle
-    associate (f => loads%force(:, piston_pin), df => load_change%force, r => bodies%crank%length, l => bodies%rod%length, &
+    associate (f => loads%force(:, piston_pin), r => bodies%crank%length, l => bodies%rod%length, m22 => bodies%rod_term, &
                sq => motion%sin_crank, cq => motion%cos_crank, sa => motion%sin_rod, ca => motion%cos_rod, &
-               qd => motion%crank_speed, ad => motion%rod_speed)
-      on_crank = weight_c*change%crank_angle + m12*sum_angle*ad**2 - 2*slope*ad*change%rod_speed &
-        - drive%damping*change%crank_speed + r*(df(2)*cq - df(1)*sq - (f(2)*sq + f(1)*cq)*change%crank_angle) &
-        - slope*sum_angle*accelerations%rod
-      on_rod = (weight_r(1)*ca + weight_r(2)*sa)*change%rod_angle + m12*sum_angle*qd**2 - 2*slope*qd*change%crank_speed &
-        - load_change%moment - l*(df(1)*sa + df(2)*ca + (f(1)*ca - f(2)*sa)*change%rod_angle) &
-        - slope*sum_angle*accelerations%crank
-      crank = 0
-      if (drive%free_crank) crank = (on_crank*m22 - on_rod*m12)/(m11*m22 - m12**2)
-      rod = (on_rod - m12*crank)/m22
-      a(1) = crank
-      a(2) = r*(sq*qd**2 - cq*accelerations%crank)*change%crank_angle - 2*r*cq*qd*change%crank_speed - r*sq*crank &
-        + l*(sa*ad**2 - ca*accelerations%rod)*change%rod_angle - 2*l*ca*ad*change%rod_speed - l*sa*rod &
-        + (load_change%axial_force + df(1))/bodies%piston%mass
-      a(3) = -r*(cq*qd**2 + sq*accelerations%crank)*change%crank_angle - 2*r*sq*qd*change%crank_speed + r*cq*crank &
-        + l*(ca*ad**2 + sa*accelerations%rod)*change%rod_angle + 2*l*sa*ad*change%rod_speed - l*ca*rod
+               qd => motion%crank_speed, ad => motion%rod_speed, qdd => accelerations%crank, add => accelerations%rod)
+      ! the right-hand sides of the equations for q'' and A'', and the changes of e_x'' and e_y'' for given q'' and A''
+      on_crank(2) = m12*ad**2 - slope*add
+      on_rod(1) = m12*qd**2 - slope*qdd
+      on_crank(1) = on_crank(2) + bodies%crank_weight(1)*cq - bodies%crank_weight(2)*sq - r*(f(2)*sq + f(1)*cq)
+      on_rod(2) = on_rod(1) + bodies%rod_weight(1)*ca + bodies%rod_weight(2)*sa - l*(f(1)*ca - f(2)*sa)
+      on_crank(3:) = [-drive%damping, -2*slope*ad, -r*sq, r*cq, 0.0_dp]
+      on_rod(3:) = [-2*slope*qd, 0.0_dp, -l*sa, -l*ca, -1.0_dp]
+      changes(2, :) = [r*(sq*qd**2 - cq*qdd), l*(sa*ad**2 - ca*add), -2*r*cq*qd, -2*l*ca*ad, bodies%per_piston_mass, 0.0_dp, 0.0_dp]
+      changes(3, :) = [-r*(cq*qd**2 + sq*qdd), l*(ca*ad**2 + sa*add), -2*r*sq*qd, 2*l*sa*ad, 0.0_dp, 0.0_dp, 0.0_dp]
+      per_determinant = 0
+      if (drive%free_crank) per_determinant = 1/(bodies%inertia_product - m12**2)
+      per_rod_term = 1/m22
+      do i = 1, 7
+        crank = (on_crank(i)*m22 - on_rod(i)*m12)*per_determinant
+        rod = (on_rod(i) - m12*crank)*per_rod_term
+        changes(:, i) = [crank, changes(2, i) - r*sq*crank - l*sa*rod, changes(3, i) + r*cq*crank - l*ca*rod]
+      end do
     end associate
-  end function acceleration_change
+    by_motion = changes(:, :4)
+    by_loads = changes(:, 5:)
+  end subroutine acceleration_slopes
 end module crank_rod_tangent

@@ -62,11 +62,11 @@ contains
     end do
     a(n + 3, n - 3:n + 3) = jump
     a(n + 4, n - 2:n + 4) = jump
-    call decompose(a, pivot, singular)
+    call decompose(size(x), a, pivot, singular)
     do i = 1, size(values, 2)
       x = 0
       x(3:n + 2) = values(:, i)
-      call solve(a, pivot, x)
+      call solve(size(x), a, pivot, x)
       c(:, i) = x
     end do
   end function through_values
@@ -96,11 +96,11 @@ contains
       a(1, 1) = 1
       a(n, n) = 1
     end if
-    call decompose(a, pivot, singular)
+    call decompose(size(x), a, pivot, singular)
     do i = 1, size(values, 2)
       x = values(:, i)
       if (parity < 0) x([1, n]) = 0
-      call solve(a, pivot, x)
+      call solve(size(x), a, pivot, x)
       do k = 1 - before, n + after
         c(k, i) = merge(parity, 1, k < 1 .or. k > n)*x(mirrored(k))
       end do

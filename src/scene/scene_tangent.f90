@@ -4,7 +4,7 @@ submodule (gudgeon_scene) scene_tangent
   use chain_motion, only: crank_pin
   use chain_bodies, only: drive_t
   use joint_motion, only: most_joint_states
-  use crank_rod_tangent, only: motion_change_t, load_change_t, motion_change, acceleration_change
+  use crank_rod_tangent, only: rod_slopes, acceleration_slopes
   implicit none
 
 contains
@@ -12,13 +12,11 @@ contains
   module procedure jacobian
     type(evaluation_t) :: now
     type(drive_t) :: drive
-    type(motion_change_t) :: change
-    type(load_change_t) :: load_change
-    real(dp) :: force(3, 5), direction(6), loads(3), a(3)
+    real(dp) :: force(3, 5), by_motion(3, 4), by_loads(3, 3), rod_angle(2), rod_speed(2)
     real(dp) :: by_states(3, most_joint_states), of_rates(most_joint_states, 5 + most_joint_states)
-    real(dp) :: rates(most_joint_states)
+    real(dp) :: slope(3 + most_joint_states, 6 + most_joint_states)   !! of all rates, with respect to q, e, q', e' and the states
     logical :: has_closed_form
-    integer :: i, skip, m, n
+    integer :: skip, n
 
     has_closed_form = self%chain%is_loose(piston_pin) .and. .not. (self%chain%is_loose(crank_pin) .or. allocated(self%guide) &
       .or. allocated(self%chain%elastic))
@@ -32,38 +30,42 @@ contains
       return
     end if
     call self%joints(1)%slopes(self%chain%bodies, now%motion, now%relative(1), now%joint(1), force)
-    skip = merge(0, 1, self%chain%drive%free_crank)   ! a prescribed crank angle is not an unknown
-    m = 3 - skip
-    n = self%joints(1)%n_states()
-    if (n > 0) call self%joints(1)%state_slopes(self%chain%bodies, now%motion, now%relative(1), now%joint(1), by_states, of_rates)
     drive = self%chain%drive
     if (allocated(self%chain%varying)) drive%damping = drive%damping - self%chain%varying%torque_slope(now%motion%crank_speed)
-    associate (bodies => self%chain%bodies)
-      do i = 1 + skip, 6
-        if (i == 4 .and. skip == 1) cycle
-        direction = 0
-        direction(i) = 1   ! of q, e_x, e_y, q', e_x', e_y'
-        change = motion_change(bodies, now%motion, direction(1), direction(4), direction(3), direction(6))
-        loads = matmul(force(:, 1:2), direction(2:3)) + matmul(force(:, 3:4), direction(5:6)) - force(:, 5)*change%rod_speed
-        load_change = load_change_t(loads(1:2), loads(3))
-        if (allocated(self%gas) .and. i == 1) load_change%axial_force = self%gas%force_slope(now%motion%crank_angle)
-        a = acceleration_change(bodies, drive, now%loads, now%motion, now%accelerations, change, load_change)
-        if (n > 0) rates = matmul(of_rates(:, 1:2), direction(2:3)) + matmul(of_rates(:, 3:4), direction(5:6)) &
-          - of_rates(:, 5)*change%rod_speed
-        if (i <= 3) then
-          a_p(:m, i - skip) = a(1 + skip:3)
-          a_p(m + 1:, i - skip) = rates(:n)
-        else
-          a_v(:m, i - 3 - skip) = a(1 + skip:3)
-          a_v(m + 1:, i - 3 - skip) = rates(:n)
-        end if
-      end do
-      do i = 1, n
-        a = acceleration_change(bodies, drive, now%loads, now%motion, now%accelerations, motion_change_t(), &
-          load_change_t(by_states(1:2, i), by_states(3, i)))
-        a_v(:m, m + i) = a(1 + skip:3)
-        a_v(m + 1:, m + i) = of_rates(:n, 5 + i)
-      end do
-    end associate
+    call rod_slopes(self%chain%bodies, now%motion, rod_angle, rod_speed)
+    call acceleration_slopes(self%chain%bodies, drive, now%loads, now%motion, now%accelerations, by_motion, by_loads)
+    call follow_state(3, matmul(by_loads, force), by_motion, rod_angle, rod_speed, slope(:3, :6))
+    if (allocated(self%gas)) &
+      slope(2, 1) = slope(2, 1) + self%chain%bodies%per_piston_mass*self%gas%force_slope(now%motion%crank_angle)
+    n = self%joints(1)%n_states()
+    if (n > 0) then
+      call self%joints(1)%state_slopes(self%chain%bodies, now%motion, now%relative(1), now%joint(1), by_states, of_rates)
+      slope(:3, 7:) = matmul(by_loads, by_states)
+      by_motion = 0
+      call follow_state(n, of_rates(:n, :5), by_motion, rod_angle, rod_speed, slope(4:3 + n, :6))
+      slope(4:, 7:) = of_rates(:, 6:)
+    end if
+    skip = merge(0, 1, self%chain%drive%free_crank)   ! a prescribed crank angle is not an unknown
+    a_p = slope(1 + skip:3 + n, 1 + skip:3)
+    a_v = slope(1 + skip:3 + n, 4 + skip:6 + n)
   end procedure jacobian
+
+  !> Total derivatives of n quantities with respect to q, e and their rates, from those due to e, e' and A' through the joint, and
+  !> to q, A, q' and A' otherwise.
+  pure subroutine follow_state(n, by_joint, by_motion, rod_angle, rod_speed, total)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: by_joint(:, :), by_motion(3, 4), rod_angle(2), rod_speed(2)
+    real(dp), intent(out) :: total(:, :)
+    real(dp) :: by_rod_speed
+    integer :: i
+    do i = 1, n
+      by_rod_speed = by_motion(i, 4) - by_joint(i, 5)   ! the journal turns with -A'
+      total(i, 1) = by_motion(i, 1) + by_motion(i, 2)*rod_angle(1) + by_rod_speed*rod_speed(1)
+      total(i, 2) = by_joint(i, 1)
+      total(i, 3) = by_joint(i, 2) + by_motion(i, 2)*rod_angle(2) + by_rod_speed*rod_speed(2)
+      total(i, 4) = by_motion(i, 3) + by_rod_speed*rod_angle(1)
+      total(i, 5) = by_joint(i, 3)
+      total(i, 6) = by_joint(i, 4) + by_rod_speed*rod_angle(2)
+    end do
+  end subroutine follow_state
 end submodule scene_tangent

@@ -117,7 +117,7 @@ module collocation
 
     !> y(:, i) = factor sum_j matrix(i, j) x(:, j) over the stages, for the first `rows` rows.
     pure module subroutine combine(rows, stages, factor, matrix, x, first_x, y, first_y)
-      integer, intent(in) :: rows, stages, first_x, first_y
+      integer, value :: rows, stages, first_x, first_y
       real(dp), intent(in) :: factor, matrix(stages, stages), x(first_x, *)
       real(dp), intent(inout) :: y(first_y, *)
     end subroutine combine
@@ -148,7 +148,8 @@ contains
       self%a_p(k, m), self%a_v(k, k), self%e1(k, k), self%e2(k, k, 2*most_pairs), self%pivot1(k), &
       self%pivot2(k, most_pairs), self%inverse_weight(n))
     self%z = 0
-    self%z_new = 0   ! the first evaluation adds the increments of quadratures, which it computes
+    self%z_new = 0     ! quadratures are computed at the end of a step only
+    self%y_stage = 0
     self%w = 0    ! columns beyond the stages in use are included in halvings
     self%dw = 0
   end subroutine prepare
@@ -263,7 +264,7 @@ contains
           error(m + j) = error(m + j) + self%a_p(j, i)*error(i)
         end do
       end do
-      call solve(self%e1, self%pivot1, error(m + 1:m + k))
+      call solve(k, self%e1, self%pivot1, error(m + 1:m + k))
       do i = 1, m
         error(i) = error(i) + (self%h/formula%gamma)*error(m + i)
       end do

@@ -1,4 +1,5 @@
-!> Newton's method for the stages of a Radau step.
+!> Newton's method for the stages of a Radau step. The usual numbers of unknowns and stages are passed as constants and by value, so
+!> that the compiler writes out the loops over them.
 submodule (collocation) collocation_newton
   use small_lu, only: decompose
   implicit none
@@ -8,48 +9,53 @@ submodule (collocation) collocation_newton
 contains
 
   module procedure decompose_matrices
-    real(dp) :: x, y, per_x, per_y
-    integer :: i, j, l, k, m
+    if (self%k == 3 .and. self%m == 3) then
+      call decompose_for(self, 3, 3, singular)
+    else if (self%k == 2 .and. self%m == 2) then
+      call decompose_for(self, 2, 2, singular)
+    else
+      call decompose_for(self, self%k, self%m, singular)
+    end if
+  end procedure decompose_matrices
 
-    k = self%k
-    m = self%m
-    do i = 1, k
-      self%step_weight(i) = self%inverse_weight(m + i)
-      if (i <= m) self%step_weight(i) = max(self%step_weight(i), self%h*self%inverse_weight(i))
+  !> The same for given numbers of unknowns and positions.
+  pure subroutine decompose_for(self, k, m, singular)
+    type(collocation_t), intent(inout) :: self
+    integer, value :: k, m
+    logical, intent(out) :: singular
+    integer :: j
+    do j = 1, k
+      self%step_weight(j) = self%inverse_weight(m + j)
+      if (j <= m) self%step_weight(j) = max(self%step_weight(j), self%h*self%inverse_weight(j))
     end do
-    associate (formula => self%formula(self%level), h => self%h)
-      x = formula%gamma/h
-      per_x = h/formula%gamma
-      do l = 1, k
-        do i = 1, k
-          self%e1(i, l) = -self%a_v(i, l)
-          if (l <= m) self%e1(i, l) = self%e1(i, l) - per_x*self%a_p(i, l)
-        end do
-        self%e1(l, l) = self%e1(l, l) + x
-      end do
-      call decompose(self%e1, self%pivot1, singular)
-      if (singular) return
+    associate (formula => self%formula(self%level), h => self%h, e2 => self%e2)
+      call newton_matrix(k, m, formula%gamma/h, 0.0_dp, self%a_p, self%a_v, self%e1, e2)
+      call decompose(k, self%e1, self%pivot1, singular)
       do j = 1, formula%stages/2
-        x = formula%alpha(j)/h   ! the shift is x - i y
-        y = formula%beta(j)/h
-        per_x = formula%alpha(j)*h/(formula%alpha(j)**2 + formula%beta(j)**2)
-        per_y = formula%beta(j)*h/(formula%alpha(j)**2 + formula%beta(j)**2)
-        do l = 1, k
-          do i = 1, k
-            self%e2(i, l, 2*j - 1) = -self%a_v(i, l)
-            self%e2(i, l, 2*j) = 0
-            if (l > m) cycle
-            self%e2(i, l, 2*j - 1) = self%e2(i, l, 2*j - 1) - per_x*self%a_p(i, l)
-            self%e2(i, l, 2*j) = -per_y*self%a_p(i, l)
-          end do
-          self%e2(l, l, 2*j - 1) = self%e2(l, l, 2*j - 1) + x
-          self%e2(l, l, 2*j) = self%e2(l, l, 2*j) - y
-        end do
-        call decompose(self%e2(:, :, 2*j - 1), self%e2(:, :, 2*j), self%pivot2(:, j), singular)
         if (singular) return
+        call newton_matrix(k, m, formula%alpha(j)/h, formula%beta(j)/h, self%a_p, self%a_v, e2(:, :, 2*j - 1), e2(:, :, 2*j))
+        call decompose(k, e2(:, :, 2*j - 1), e2(:, :, 2*j), self%pivot2(:, j), singular)
       end do
     end associate
-  end procedure decompose_matrices
+  end subroutine decompose_for
+
+  !> Real and imaginary part of g - a_v - a_p/g for the eigenvalue g = x - i y.
+  pure subroutine newton_matrix(k, m, x, y, a_p, a_v, real_part, imaginary_part)
+    integer, value :: k, m
+    real(dp), intent(in) :: x, y, a_p(k, m), a_v(k, k)
+    real(dp), intent(out) :: real_part(k, k), imaginary_part(k, k)
+    real(dp) :: per_square
+    integer :: i
+    per_square = 1/(x**2 + y**2)
+    real_part(:, :m) = -a_v(:, :m) - (x*per_square)*a_p
+    imaginary_part(:, :m) = -(y*per_square)*a_p
+    real_part(:, m + 1:) = -a_v(:, m + 1:)
+    imaginary_part(:, m + 1:) = 0
+    do i = 1, k
+      real_part(i, i) = real_part(i, i) + x
+      imaginary_part(i, i) = imaginary_part(i, i) - y
+    end do
+  end subroutine newton_matrix
 
   module procedure iterate
     real(dp) :: change, defect, last_defect, last_change, ratio, last_ratio, rest
@@ -82,7 +88,8 @@ contains
       last_change = change
       last_defect = defect
       if (rest <= self%goal) then
-        call expand_stages(self, .true.)
+        call expand_stages(self)
+        call integrate_quadratures(self)
         outcome = newton_converged
         return
       end if
@@ -107,28 +114,50 @@ contains
   subroutine newton_step(self, change, defect)
     class(collocation_t), intent(inout) :: self
     real(dp), intent(out) :: change, defect
-    integer :: j, m, k, s
+    associate (k => self%k, m => self%m, s => self%formula(self%level)%stages)
+      if (k == 3 .and. s == 3) then
+        call step_for(self, 3, 3, change, defect)
+      else if (k == 3 .and. s == 5) then
+        call step_for(self, 3, 5, change, defect)
+      else if (k == 2 .and. s == 3) then
+        call step_for(self, 2, 3, change, defect)
+      else
+        call step_for(self, k, s, change, defect)
+      end if
+    end associate
+  end subroutine newton_step
 
-    m = self%m
-    k = self%k
-    s = self%formula(self%level)%stages
+  !> The same for given numbers of unknowns and stages.
+  subroutine step_for(self, k, s, change, defect)
+    type(collocation_t), intent(inout) :: self
+    integer, value :: k, s
+    real(dp), intent(out) :: change, defect
+    integer :: j
+
     associate (formula => self%formula(self%level), h => self%h)
-      call combine(k, s, 1.0_dp, formula%t_inverse, self%f_stage(m + 1, 1), size(self%f_stage, 1), self%dw, k)
+      call combine(k, s, 1.0_dp, formula%t_inverse, self%f_stage(self%m + 1, 1), self%n, self%dw, k)
       call subtract_shifted(k, s, formula%gamma/h, formula%alpha, formula%beta, 1/h, self%w, self%dw)
       defect = h*mean_size(k, s, self%step_weight, self%dw)
-      call solve(self%e1, self%pivot1, self%dw(:, 1))
+      call solve(k, self%e1, self%pivot1, self%dw(:, 1))
       do j = 1, s/2
-        call solve(self%e2(:, :, 2*j - 1), self%e2(:, :, 2*j), self%pivot2(:, j), self%dw(:, 2*j), self%dw(:, 2*j + 1))
+        call solve(k, self%e2(:, :, 2*j - 1), self%e2(:, :, 2*j), self%pivot2(:, j), self%dw(:, 2*j), self%dw(:, 2*j + 1))
       end do
     end associate
     change = mean_size(k, s, self%step_weight, self%dw)
-    if (change < farthest) self%w(:, :s) = self%w(:, :s) + self%dw(:, :s)
-  end subroutine newton_step
+    if (change < farthest) call add(k*s, self%dw, self%w)
+  end subroutine step_for
+
+  pure subroutine add(n, x, y)
+    integer, value :: n
+    real(dp), intent(in) :: x(n)
+    real(dp), intent(inout) :: y(n)
+    y = y + x
+  end subroutine add
 
   !> Subtract the terms with w from the right-hand sides: the real eigenvalue times the first column, the complex ones times pairs
   !> of columns, as (alpha - i beta) (w + i w').
   pure subroutine subtract_shifted(k, s, gamma, alpha, beta, factor, w, dw)
-    integer, intent(in) :: k, s
+    integer, value :: k, s
     real(dp), intent(in) :: gamma, alpha(*), beta(*), factor, w(k, s)
     real(dp), intent(inout) :: dw(k, s)
     real(dp) :: x, y
@@ -148,7 +177,7 @@ contains
 
   !> Root mean square of the weighted components at all stages; `farthest` if one of them is larger.
   pure real(dp) function mean_size(k, s, weight, x)
-    integer, intent(in) :: k, s
+    integer, value :: k, s
     real(dp), intent(in) :: weight(k), x(k, s)
     real(dp) :: total, part
     integer :: i, j
@@ -164,38 +193,53 @@ contains
     mean_size = sqrt(total/(s*max(k, 1)))
   end function mean_size
 
-  !> Increments of all components at the stages: rates from w, positions by collocation, quadratures from the last evaluation.
-  subroutine expand_stages(self, with_quadratures)
+  !> States at the stages of self%w and their increments: rates and first-order states from w, positions by collocation.
+  !> Quadratures at the stages are not needed.
+  subroutine expand_stages(self)
     class(collocation_t), intent(inout) :: self
-    logical, intent(in) :: with_quadratures
-    integer :: n, m, k
-
-    n = self%n
-    m = self%m
-    k = self%k
-    associate (formula => self%formula(self%level), h => self%h, s => self%formula(self%level)%stages, z => self%z_new)
-      call combine(k, s, 1.0_dp, formula%t, self%w, k, z(m + 1, 1), n)
-      call combine(m, s, h, formula%a, z(m + 1, 1), n, z, n)
-      call add_drift(n, m, s, h, formula%c, self%base, z)
-      if (with_quadratures .and. n > m + k) &
-        call combine(n - m - k, s, h, formula%a, self%f_stage(m + k + 1, 1), size(self%f_stage, 1), z(m + k + 1, 1), n)
+    associate (k => self%k, m => self%m, s => self%formula(self%level)%stages)
+      if (k == 3 .and. m == 3 .and. s == 3) then
+        call expand_for(self, 3, 3, 3)
+      else if (k == 3 .and. m == 3 .and. s == 5) then
+        call expand_for(self, 3, 3, 5)
+      else if (k == 2 .and. m == 2 .and. s == 3) then
+        call expand_for(self, 2, 2, 3)
+      else
+        call expand_for(self, k, m, s)
+      end if
     end associate
   end subroutine expand_stages
 
-  !> Add the effect of the initial rates on the positions.
-  pure subroutine add_drift(n, m, s, h, c, base, z)
-    integer, intent(in) :: n, m, s
-    real(dp), intent(in) :: h, c(s), base(n)
-    real(dp), intent(inout) :: z(n, s)
-    real(dp) :: time
-    integer :: i, j
+  !> The same for given numbers of unknowns, positions and stages.
+  subroutine expand_for(self, k, m, s)
+    type(collocation_t), intent(inout) :: self
+    integer, value :: k, m, s
+    associate (formula => self%formula(self%level), n => self%n, z => self%z_new, y => self%y_stage)
+      call combine(k, s, 1.0_dp, formula%t, self%w, k, z(m + 1, 1), n)
+      call add_base(k, s, n, self%base(m + 1), z(m + 1, 1), y(m + 1, 1))
+      call combine(m, s, self%h, formula%a, y(m + 1, 1), n, z, n)
+      call add_base(m, s, n, self%base, z, y)
+    end associate
+  end subroutine expand_for
+
+  pure subroutine add_base(rows, s, n, base, z, y)
+    integer, value :: rows, s, n
+    real(dp), intent(in) :: base(rows), z(n, *)
+    real(dp), intent(inout) :: y(n, *)
+    integer :: i
     do i = 1, s
-      time = h*c(i)
-      do j = 1, m
-        z(j, i) = z(j, i) + time*base(m + j)
-      end do
+      y(:rows, i) = base + z(:rows, i)
     end do
-  end subroutine add_drift
+  end subroutine add_base
+
+  !> Increments of the quadratures, from the last evaluation.
+  subroutine integrate_quadratures(self)
+    class(collocation_t), intent(inout) :: self
+    associate (s => self%formula(self%level)%stages, n => self%n, first => self%m + self%k + 1)
+      if (first <= n) call combine(n - first + 1, s, self%h, self%formula(self%level)%a, self%f_stage(first, 1), n, &
+        self%z_new(first, 1), n)
+    end associate
+  end subroutine integrate_quadratures
 
   module procedure settle_quadratures
     real(dp), parameter :: most_rest = 0.03_dp
@@ -209,58 +253,37 @@ contains
     end do
     if (rest <= most_rest**2) return
     call evaluate_stages(self, problem, inside)
-    if (inside) call expand_stages(self, .true.)
+    if (inside) call integrate_quadratures(self)
   end procedure settle_quadratures
 
   module procedure combine
-    real(dp) :: total
-    integer :: i, j, r
     select case (stages)
     case (3)
-      call combine_3(rows, factor, matrix, x, first_x, y, first_y)
+      call combine_for(3, rows, factor, matrix, x, first_x, y, first_y)
     case (5)
-      call combine_5(rows, factor, matrix, x, first_x, y, first_y)
+      call combine_for(5, rows, factor, matrix, x, first_x, y, first_y)
     case default
-      do i = 1, stages
-        do r = 1, rows
-          total = 0
-          do j = 1, stages
-            total = total + matrix(i, j)*x(r, j)
-          end do
-          y(r, i) = factor*total
-        end do
-      end do
+      call combine_for(stages, rows, factor, matrix, x, first_x, y, first_y)
     end select
   end procedure combine
 
-  !> The three usual numbers of stages, without loops over the stages.
-  pure subroutine combine_3(rows, factor, m, x, first_x, y, first_y)
-    integer, intent(in) :: rows, first_x, first_y
-    real(dp), intent(in) :: factor, m(3, 3), x(first_x, *)
+  !> The same for a given number of stages.
+  pure subroutine combine_for(stages, rows, factor, matrix, x, first_x, y, first_y)
+    integer, value :: stages, rows, first_x, first_y
+    real(dp), intent(in) :: factor, matrix(stages, stages), x(first_x, *)
     real(dp), intent(inout) :: y(first_y, *)
-    integer :: i, r
+    real(dp) :: total
+    integer :: i, j, r
     do r = 1, rows
-      associate (a => x(r, 1), b => x(r, 2), c => x(r, 3))
-        do i = 1, 3
-          y(r, i) = factor*(m(i, 1)*a + m(i, 2)*b + m(i, 3)*c)
+      do i = 1, stages
+        total = matrix(i, 1)*x(r, 1)
+        do j = 2, stages
+          total = total + matrix(i, j)*x(r, j)
         end do
-      end associate
+        y(r, i) = factor*total
+      end do
     end do
-  end subroutine combine_3
-
-  pure subroutine combine_5(rows, factor, m, x, first_x, y, first_y)
-    integer, intent(in) :: rows, first_x, first_y
-    real(dp), intent(in) :: factor, m(5, 5), x(first_x, *)
-    real(dp), intent(inout) :: y(first_y, *)
-    integer :: i, r
-    do r = 1, rows
-      associate (a => x(r, 1), b => x(r, 2), c => x(r, 3), d => x(r, 4), e => x(r, 5))
-        do i = 1, 5
-          y(r, i) = factor*(m(i, 1)*a + m(i, 2)*b + m(i, 3)*c + m(i, 4)*d + m(i, 5)*e)
-        end do
-      end associate
-    end do
-  end subroutine combine_5
+  end subroutine combine_for
 
   !> Right-hand sides at the stages of self%w. The states of all stages are computed before the first evaluation, so that
   !> evaluations do not depend on each other.
@@ -268,25 +291,27 @@ contains
     class(collocation_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
     logical, intent(out) :: inside
-    integer :: i, s
-    s = self%formula(self%level)%stages
-    call expand_stages(self, .false.)
-    call add_base(self%n, s, self%base, self%z_new, self%y_stage)
-    inside = .true.
-    do i = 1, s
-      self%evaluations = self%evaluations + 1
-      call problem%derivatives(self%t + self%formula(self%level)%c(i)*self%h, self%y_stage(:, i), self%f_stage(:, i), inside)
-      if (.not. inside) return
-    end do
+    integer :: done
+    call expand_stages(self)
+    associate (formula => self%formula(self%level))
+      call evaluate(problem, self%n, formula%stages, self%t, self%h, formula%c, self%y_stage, self%f_stage, done, inside)
+    end associate
+    self%evaluations = self%evaluations + done
   end subroutine evaluate_stages
 
-  pure subroutine add_base(n, s, base, z, y)
-    integer, intent(in) :: n, s
-    real(dp), intent(in) :: base(n), z(n, s)
-    real(dp), intent(out) :: y(n, s)
-    integer :: i
-    do i = 1, s
-      y(:, i) = base + z(:, i)
+  !> Right-hand sides at the first stages, `done` in number, up to one that is not inside the model.
+  subroutine evaluate(problem, n, stages, t, h, c, y, f, done, inside)
+    class(ode_problem_t), intent(in) :: problem
+    integer, intent(in) :: n, stages
+    real(dp), intent(in) :: t, h, c(stages), y(n, stages)
+    real(dp), intent(inout) :: f(n, stages)
+    integer, intent(out) :: done
+    logical, intent(out) :: inside
+    inside = .true.
+    do done = 1, stages
+      call problem%derivatives(t + c(done)*h, y(:, done), f(:, done), inside)
+      if (.not. inside) return
     end do
-  end subroutine add_base
+    done = stages
+  end subroutine evaluate
 end submodule collocation_newton

@@ -4,61 +4,48 @@ submodule (collocation) collocation_polynomial
 contains
 
   module procedure polynomial
-    real(dp) :: weights(0:most_stages)
-    integer :: j
-    call lagrange(self, self%stages_done, x, weights)
-    change = 0
-    do j = 1, self%stages_done
-      change = change + weights(j)*self%z(:, j)
-    end do
+    call interpolate(self%n, self%stages_done, self%formula(self%stages_done/2)%c, self%per_node(:, self%stages_done/2), x, &
+      0.0_dp, self%z, self%n, change)
   end procedure polynomial
 
   module procedure guess_stages
-    real(dp) :: weights(0:most_stages)
-    real(dp) :: begin
-    integer :: i, j, l, s, m, k
+    real(dp) :: at_begin
+    integer :: i
 
-    begin = merge(1.0_dp, 0.0_dp, ahead)
-    m = self%m
-    k = self%k
-    s = self%formula(self%level)%stages
-    do i = 1, s
-      call lagrange(self, self%stages_done, begin + self%formula(self%level)%c(i)*self%h/self%h_done, weights)
-      if (ahead) weights(self%stages_done) = weights(self%stages_done) - 1
-      do l = 1, k
-        self%rates(l, i) = 0
-        do j = 1, self%stages_done
-          self%rates(l, i) = self%rates(l, i) + weights(j)*self%z(m + l, j)
-        end do
+    at_begin = merge(1.0_dp, 0.0_dp, ahead)
+    associate (formula => self%formula(self%level), done => self%stages_done)
+      do i = 1, formula%stages
+        call interpolate(self%k, done, self%formula(done/2)%c, self%per_node(:, done/2), &
+          at_begin + formula%c(i)*self%h/self%h_done, at_begin, self%z(self%m + 1, 1), self%n, self%rates(:, i))
       end do
-    end do
-    call combine(k, s, 1.0_dp, self%formula(self%level)%t_inverse, self%rates, k, self%w, k)
+      call combine(self%k, formula%stages, 1.0_dp, formula%t_inverse, self%rates, self%k, self%w, self%k)
+    end associate
   end procedure guess_stages
 
-  !> Lagrange polynomials at x over the nodes 0, c_1, ..., c_s of a formula: products of the distances before and after each node,
-  !> divided by those at the node itself, computed by `prepare`.
-  pure subroutine lagrange(self, stages, x, weights)
-    class(collocation_t), intent(in) :: self
-    integer, intent(in) :: stages
-    real(dp), intent(in) :: x
-    real(dp), intent(out) :: weights(0:)
-    real(dp) :: distance(0:most_stages), product
-    integer :: i
-    associate (formula => self%formula(stages/2))
-      distance(0) = x
+  !> Polynomials through 0 at 0 and the columns of z at the nodes, at x, less `last` times the last column. The Lagrange polynomials
+  !> are products of the distances before and after each node, divided by those at the node itself, computed by `prepare`.
+  pure subroutine interpolate(rows, stages, node, per_node, x, last, z, first_z, y)
+    integer, value :: rows, stages, first_z
+    real(dp), intent(in) :: node(stages), per_node(0:stages), x, last, z(first_z, *)
+    real(dp), intent(out) :: y(rows)
+    real(dp) :: weights(most_stages), product
+    integer :: i, r
+    product = x
+    do i = 1, stages
+      weights(i) = product*per_node(i)
+      product = product*(x - node(i))
+    end do
+    product = 1
+    do i = stages, 1, -1
+      weights(i) = weights(i)*product
+      product = product*(x - node(i))
+    end do
+    weights(stages) = weights(stages) - last
+    do r = 1, rows
+      y(r) = 0
       do i = 1, stages
-        distance(i) = x - formula%c(i)
+        y(r) = y(r) + weights(i)*z(r, i)
       end do
-      product = 1
-      do i = 0, stages
-        weights(i) = product*self%per_node(i, stages/2)
-        product = product*distance(i)
-      end do
-      product = 1
-      do i = stages, 0, -1
-        weights(i) = weights(i)*product
-        product = product*distance(i)
-      end do
-    end associate
-  end subroutine lagrange
+    end do
+  end subroutine interpolate
 end submodule collocation_polynomial

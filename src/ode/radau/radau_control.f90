@@ -7,13 +7,16 @@ contains
   module procedure weigh
     real(dp) :: factor, weight
     integer :: i
-    factor = inner_tolerance(self)/self%nominal_tolerance()
+    factor = self%inner_tolerance(self%stages%level)/self%nominal_tolerance()
+    self%weighted = 0
     do i = 1, size(self%y)
       weight = factor*(self%settings%relative(i)*abs(self%y(i)) + self%settings%absolute(i))
       self%stages%inverse_weight(i) = 0
-      if (weight > 0) self%stages%inverse_weight(i) = 1/weight
+      if (.not. weight > 0) cycle
+      self%stages%inverse_weight(i) = 1/weight
+      self%weighted = self%weighted + 1
     end do
-    self%weighted = max(1, count(self%stages%inverse_weight > 0))
+    self%weighted = max(1, self%weighted)
   end procedure weigh
 
   module procedure scaled_norm
@@ -21,14 +24,11 @@ contains
   end procedure scaled_norm
 
   module procedure set_out
-    real(dp) :: tolerance, s
     self%stages%t = t
     self%stages%base = y
     self%stages%h = h
-    s = self%stages%stages()
-    tolerance = inner_tolerance(self)
-    self%stages%rounding = 10*epsilon(1.0_dp)/tolerance
-    self%stages%goal = max(self%stages%rounding, min(0.1_dp, 6*tolerance**(2*s/(s + 1) - 1)))
+    self%stages%rounding = 10*epsilon(1.0_dp)/self%inner_tolerance(self%stages%level)
+    self%stages%goal = max(self%stages%rounding, self%newton_goal(self%stages%level))
   end procedure set_out
 
   module procedure collect

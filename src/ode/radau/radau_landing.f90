@@ -16,7 +16,7 @@ contains
     self%stages%level = self%stages%stages_done/2
     call set_out(self, self%t_old, self%y_old, t - self%t_old)
     self%stages%goal = min(self%stages%goal, max(self%stages%rounding, & ! 3 % of the tolerance itself
-      0.03_dp*self%nominal_tolerance()/inner_tolerance(self)))
+      0.03_dp*self%nominal_tolerance()/self%inner_tolerance(self%stages%level)))
     do try = 1, 3
       call renew_jacobian(self, problem, try)
       call self%stages%solve_stages(problem, merge(guess_within, guess_none, try < 3), outcome)

@@ -1,7 +1,7 @@
 !> LU decomposition with partial pivoting of the small dense matrices of an implicit step, real and complex.
 !>
 !> Complex numbers are stored as pairs of reals: library divisions, and products that check for NaN, would cost more than the
-!> arithmetic. Substitution of order 3, for one joint with clearance, is written without loops.
+!> arithmetic.
 module small_lu
   use gudgeon_kinds, only: dp
   implicit none
@@ -21,13 +21,13 @@ module small_lu
 
 contains
 
-  pure subroutine decompose_real(a, pivot, singular)
-    real(dp), intent(inout), contiguous :: a(:, :)
-    integer, intent(out), contiguous :: pivot(:)
+  pure subroutine decompose_real(n, a, pivot, singular)
+    integer, value :: n
+    real(dp), intent(inout) :: a(n, n)
+    integer, intent(out) :: pivot(n)
     logical, intent(out) :: singular
     real(dp) :: swap
-    integer :: i, j, l, n, p
-    n = size(a, 1)
+    integer :: i, j, l, p
     singular = .true.
     do j = 1, n
       p = j
@@ -54,14 +54,14 @@ contains
     singular = .false.
   end subroutine decompose_real
 
-  pure subroutine solve_real(a, pivot, b)
-    real(dp), intent(in), contiguous :: a(:, :)
-    integer, intent(in), contiguous :: pivot(:)
-    real(dp), intent(inout), contiguous :: b(:)
-    integer :: i, j, n
-    n = size(b)
+  pure subroutine solve_real(n, a, pivot, b)
+    integer, value :: n
+    real(dp), intent(in) :: a(n, n)
+    integer, intent(in) :: pivot(n)
+    real(dp), intent(inout) :: b(n)
+    integer :: i, j
     do i = 1, n - 1
-      call swap_elements(b, i, pivot(i))
+      call swap_elements(n, b, i, pivot(i))
       do j = i + 1, n
         b(j) = b(j) - a(j, i)*b(i)
       end do
@@ -74,22 +74,22 @@ contains
     end do
   end subroutine solve_real
 
-  pure subroutine swap_elements(x, i, j)
-    real(dp), intent(inout), contiguous :: x(:)
-    integer, intent(in) :: i, j
+  pure subroutine swap_elements(n, x, i, j)
+    integer, value :: n, i, j
+    real(dp), intent(inout) :: x(n)
     real(dp) :: swap
     swap = x(j)
     x(j) = x(i)
     x(i) = swap
   end subroutine swap_elements
 
-  pure subroutine decompose_complex(a, b, pivot, singular)
-    real(dp), intent(inout), contiguous :: a(:, :), b(:, :)   !! real and imaginary parts
-    integer, intent(out), contiguous :: pivot(:)
+  pure subroutine decompose_complex(n, a, b, pivot, singular)
+    integer, value :: n
+    real(dp), intent(inout) :: a(n, n), b(n, n)   !! real and imaginary parts
+    integer, intent(out) :: pivot(n)
     logical, intent(out) :: singular
     real(dp) :: swap, real_part
-    integer :: i, j, l, n, p
-    n = size(a, 1)
+    integer :: i, j, l, p
     singular = .true.
     do j = 1, n
       p = j
@@ -134,20 +134,16 @@ contains
     y = -y*per_square
   end subroutine invert
 
-  pure subroutine solve_complex(a, b, pivot, x, y)
-    real(dp), intent(in), contiguous :: a(:, :), b(:, :)
-    integer, intent(in), contiguous :: pivot(:)
-    real(dp), intent(inout), contiguous :: x(:), y(:)         !! real and imaginary parts
+  pure subroutine solve_complex(n, a, b, pivot, x, y)
+    integer, value :: n
+    real(dp), intent(in) :: a(n, n), b(n, n)
+    integer, intent(in) :: pivot(n)
+    real(dp), intent(inout) :: x(n), y(n)         !! real and imaginary parts
     real(dp) :: real_part
-    integer :: i, j, n
-    n = size(x)
-    if (n == 3) then
-      call solve_three(a, b, pivot, x, y)
-      return
-    end if
+    integer :: i, j
     do i = 1, n - 1
-      call swap_elements(x, i, pivot(i))
-      call swap_elements(y, i, pivot(i))
+      call swap_elements(n, x, i, pivot(i))
+      call swap_elements(n, y, i, pivot(i))
       do j = i + 1, n
         x(j) = x(j) - (a(j, i)*x(i) - b(j, i)*y(i))
         y(j) = y(j) - (a(j, i)*y(i) + b(j, i)*x(i))
@@ -163,34 +159,4 @@ contains
       end do
     end do
   end subroutine solve_complex
-
-  !> Substitution for three complex unknowns.
-  pure subroutine solve_three(a, b, pivot, x, y)
-    real(dp), intent(in) :: a(3, 3), b(3, 3)
-    integer, intent(in) :: pivot(3)
-    real(dp), intent(inout), contiguous :: x(:), y(:)
-    real(dp) :: u(3), v(3)
-    call swap_elements(x, 1, pivot(1))
-    call swap_elements(y, 1, pivot(1))
-    x(2) = x(2) - (a(2, 1)*x(1) - b(2, 1)*y(1))
-    y(2) = y(2) - (a(2, 1)*y(1) + b(2, 1)*x(1))
-    x(3) = x(3) - (a(3, 1)*x(1) - b(3, 1)*y(1))
-    y(3) = y(3) - (a(3, 1)*y(1) + b(3, 1)*x(1))
-    call swap_elements(x, 2, pivot(2))
-    call swap_elements(y, 2, pivot(2))
-    u = x
-    v = y
-    u(3) = u(3) - (a(3, 2)*u(2) - b(3, 2)*v(2))
-    v(3) = v(3) - (a(3, 2)*v(2) + b(3, 2)*u(2))
-    x(3) = u(3)*a(3, 3) - v(3)*b(3, 3)
-    y(3) = u(3)*b(3, 3) + v(3)*a(3, 3)
-    u(2) = u(2) - (a(2, 3)*x(3) - b(2, 3)*y(3))
-    v(2) = v(2) - (a(2, 3)*y(3) + b(2, 3)*x(3))
-    x(2) = u(2)*a(2, 2) - v(2)*b(2, 2)
-    y(2) = u(2)*b(2, 2) + v(2)*a(2, 2)
-    u(1) = u(1) - (a(1, 2)*x(2) - b(1, 2)*y(2)) - (a(1, 3)*x(3) - b(1, 3)*y(3))
-    v(1) = v(1) - (a(1, 2)*y(2) + b(1, 2)*x(2)) - (a(1, 3)*y(3) + b(1, 3)*x(3))
-    x(1) = u(1)*a(1, 1) - v(1)*b(1, 1)
-    y(1) = u(1)*b(1, 1) + v(1)*a(1, 1)
-  end subroutine solve_three
 end module small_lu
