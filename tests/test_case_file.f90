@@ -513,7 +513,8 @@ contains
     character(len=12), parameter :: wrong(*) = [character(len=12) :: '1e-3 2e-3', ',1e-3', '1e-3,', '1e-3,,2e-3', '1-3', &
       '2e-3,1e-3', '0:1e-3:3:7', '0:1e-3:3 4', '0:1e-3:3,', '0::3', '0:1e-3:2.5', '0:1e-3:1', '1e-3:0:3', '-1e-3', &
       '1..e-3', '1e', '.', '2*1e-3']
-    character(len=12), parameter :: right(*) = [character(len=12) :: '0', '.5e-3 , 1D-3', '+1.e-3', '0:1e-3:3', '0 : 1e-3 : 3']
+    character(len=12), parameter :: right(*) = [character(len=12) :: '0', '.5e-3 , 1D-3', '+1.e-3', '0:1e-3:3', '0 : 1e-3 : 3', &
+      '1q-3']
     integer :: i
     do i = 1, size(wrong)
       call refused_on(check, filmed, [character(len=32) :: length, key//wrong(i)], message//trim(wrong(i))// &

@@ -5,7 +5,7 @@ module case_loader
   use gudgeon_parameters, only: parameter_list_t, has_parameters_t, law_t, key_t, word_kind
   use case_definition, only: case_t, visit_case
   use case_schema, only: find_group, find_key, is_listed
-  use value_reader, only: set_to_default
+  use value_reader, only: set_to_default, read_times
   use case_values, only: case_values_t
   use case_curves, only: provide_curves
   implicit none
@@ -45,6 +45,7 @@ contains
         values%groups%is_law))
     end if
     call visit_case(into, loader)
+    call read_times(into%output%film_times, into%output%snapshot_times)
     if (allocated(loader%error)) then
       call move_alloc(loader%error, error)
     else

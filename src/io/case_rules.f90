@@ -10,7 +10,6 @@ module case_rules
   use case_values, only: case_values_t
   use archard_wear, only: of_bore
   use friction_law, only: friction_law_t
-  use film_snapshots, only: read_times
   use body_rules, only: check_guide, check_elastic, bore_reach
   implicit none
   private
@@ -324,18 +323,16 @@ contains
 
     !> Check that pressure fields are requested only of films with a pressure.
     subroutine check_film_times()
-      real(dp), allocatable :: times(:)
       logical :: has_film
       if (c%output%film_times == '') return
-      call read_times(c%output%film_times, times)
       has_film = .false.
       if (allocated(c%joint%film)) has_film = c%joint%film%gives_pressure()
       if (allocated(c%crank_pin%film)) has_film = has_film .or. c%crank_pin%film%gives_pressure()
-      call forbid(.not. allocated(times), 'output', 'film_times', &
+      call forbid(.not. allocated(c%output%snapshot_times), 'output', 'film_times', &
         'must be times >= 0 in rising order with commas, or from:to:count')
       call forbid(.not. has_film, 'output', 'film_times', 'needs a film with a pressure: pinkus_sternlicht or finite_bearing')
       if (allocated(error)) return
-      if (times(size(times)) > known_end()*(1 + rounding)) call forbid(.true., 'output', 'film_times', &
+      if (maxval(c%output%snapshot_times) > known_end()*(1 + rounding)) call forbid(.true., 'output', 'film_times', &
         'must not be after the end of the run at '//short_text(known_end())//' s')
     end subroutine check_film_times
 

@@ -9,10 +9,11 @@ module value_reader
   implicit none
   private
   public :: value_t, set_to_default, convert, find_decimal_comma, is_default, unit_of, most_reals
-  public :: read_real, read_integer, is_within
+  public :: read_real, read_times, read_integer, is_within
 
   integer, parameter :: most_reals = 2   !! longest array of reals in the schema
   integer, parameter :: longest_text = 4000
+  integer, parameter :: most_times = 10000   !! longest list of times
   character(len=*), parameter :: digits = '0123456789'
   integer, parameter :: largest_exponent = 30   !! reals are 0 or between 1e-30 and 1e30 in magnitude, so that products stay finite
   character(len=*), parameter :: out_of_reach = 'must be 0 or of a size from 1e-30 to 1e30'
@@ -163,6 +164,56 @@ contains
     read (mantissa, *, iostat=iostat) value
     if (iostat /= 0) wanted = 'must be a number'
   end subroutine read_real
+
+  !> Read times from a text: numbers separated by commas, in rising order, or first:last:count. Not allocated if the text is
+  !> neither.
+  pure subroutine read_times(text, times)
+    character(len=*), intent(in) :: text
+    real(dp), allocatable, intent(out) :: times(:)
+    real(dp) :: numbers(most_times)
+    logical :: all_read
+    integer :: n, count, i
+    if (scan(text, ':') > 0) then
+      call read_numbers(text, ':', numbers, n, all_read)
+      if (.not. all_read .or. n /= 3) return
+      if (.not. (numbers(1) >= 0 .and. numbers(2) > numbers(1))) return
+      if (.not. (numbers(3) >= 2 .and. numbers(3) <= most_times)) return
+      count = nint(numbers(3))
+      if (abs(numbers(3) - count) > 0) return
+      times = [(numbers(1) + (numbers(2) - numbers(1))*(i - 1)/(count - 1), i=1, count)]
+      return
+    end if
+    call read_numbers(text, ',', numbers, n, all_read)
+    if (.not. all_read) return
+    if (any(numbers(:n) < 0) .or. any(numbers(2:n) <= numbers(:n - 1))) return
+    times = numbers(:n)
+  end subroutine read_times
+
+  !> Read the numbers of a text that a character separates, as many as `numbers` can hold.
+  pure subroutine read_numbers(text, separator, numbers, n, all_read)
+    character(len=*), intent(in) :: text
+    character, intent(in) :: separator
+    real(dp), intent(out) :: numbers(:)
+    integer, intent(out) :: n
+    logical, intent(out) :: all_read   !! each part of the text is one number, and there are not too many
+    character(len=:), allocatable :: part, wanted
+    integer :: first, after
+    n = 0
+    numbers = 0
+    all_read = .false.
+    first = 1
+    do while (first <= len(text) + 1)
+      after = index(text(first:), separator) + first - 1
+      if (after < first) after = len(text) + 1
+      part = trim(adjustl(text(first:after - 1)))
+      if (n == size(numbers)) return
+      n = n + 1
+      call read_real(part, numbers(n), wanted)
+      if (allocated(wanted)) return
+      first = after + 1
+    end do
+    all_read = .true.
+  end subroutine read_numbers
 
   pure subroutine read_integer(text, value, wanted)
     character(len=*), intent(in) :: text

@@ -95,8 +95,8 @@ module case_definition
     real(dp) :: angle_origin_deg = 0
     real(dp) :: interval = 0, start_time = 0   !! interval is used instead of samples_per_revolution if it is > 0
     character(len=:), allocatable :: columns   !! 'standard' or column names without units, separated by commas
-    character(len=:), allocatable :: film_times  !! times at which pressure fields are written, in the format of `read_times`; may
-                                                 !! be empty
+    character(len=:), allocatable :: film_times  !! times at which pressure fields are written, as the case gives them; may be empty
+    real(dp), allocatable :: snapshot_times(:)   !! the same as numbers, increasing [s]; not allocated if there are none
     integer :: digits = 0                      !! significant digits of the numbers in traces
     logical :: every_step = .false., ideal_twin = .false.
     character(len=:), allocatable :: window    !! 'all' or 'last_period'

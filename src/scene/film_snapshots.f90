@@ -9,9 +9,7 @@ module film_snapshots
   use film_figures, only: acting_film
   implicit none
   private
-  public :: film_snapshots_t, film_field_t, read_times
-
-  integer, parameter :: most_times = 10000
+  public :: film_snapshots_t, film_field_t
 
   !> Pressure over one half of a bearing. The other half is its mirror image.
   type :: film_field_t
@@ -39,81 +37,12 @@ module film_snapshots
 
 contains
 
-  !> Read times from a text: numbers separated by commas, in rising order, or first:last:count. Not allocated if the text is
-  !> neither.
-  pure subroutine read_times(text, times)
-    character(len=*), intent(in) :: text
-    real(dp), allocatable, intent(out) :: times(:)
-    real(dp) :: numbers(most_times)
-    logical :: all_read
-    integer :: n, count, i
-    if (scan(text, ':') > 0) then
-      call read_numbers(text, ':', numbers, n, all_read)
-      if (.not. all_read .or. n /= 3) return
-      if (.not. (numbers(1) >= 0 .and. numbers(2) > numbers(1))) return
-      if (.not. (numbers(3) >= 2 .and. numbers(3) <= most_times)) return
-      count = nint(numbers(3))
-      if (abs(numbers(3) - count) > 0) return
-      times = [(numbers(1) + (numbers(2) - numbers(1))*(i - 1)/(count - 1), i=1, count)]
-      return
-    end if
-    call read_numbers(text, ',', numbers, n, all_read)
-    if (.not. all_read) return
-    if (any(numbers(:n) < 0) .or. any(numbers(2:n) <= numbers(:n - 1))) return
-    times = numbers(:n)
-  end subroutine read_times
-
-  !> Read the numbers of a text that a character separates, as many as `numbers` can hold.
-  pure subroutine read_numbers(text, separator, numbers, n, all_read)
-    character(len=*), intent(in) :: text
-    character, intent(in) :: separator
-    real(dp), intent(out) :: numbers(:)
-    integer, intent(out) :: n
-    logical, intent(out) :: all_read   !! each part of the text is one number, and there are not too many
-    character(len=:), allocatable :: part
-    integer :: first, after, status
-    n = 0
-    numbers = 0
-    all_read = .false.
-    first = 1
-    do while (first <= len(text) + 1)
-      after = index(text(first:), separator) + first - 1
-      if (after < first) after = len(text) + 1
-      part = trim(adjustl(text(first:after - 1)))
-      if (n == size(numbers) .or. .not. is_number(part)) return
-      n = n + 1
-      read (part, *, iostat=status) numbers(n)
-      if (status /= 0 .or. .not. abs(numbers(n)) < huge(1.0_dp)) return
-      first = after + 1
-    end do
-    all_read = .true.
-  end subroutine read_numbers
-
-  !> Whether a text is one number: digits with at most one point, and behind a letter e or d at most one whole exponent. (A Fortran
-  !> `read` also takes 1-2 for 0.01, and the first of two numbers.)
-  pure logical function is_number(text)
-    character(len=*), intent(in) :: text
-    integer :: letter, first, exponent
-    character(len=*), parameter :: digits = '0123456789'
-    letter = scan(text//'e', 'eEdD')
-    first = 1
-    if (scan(text, '+-') == 1) first = 2
-    exponent = letter + 1
-    if (exponent <= len(text)) then
-      if (scan(text(exponent:exponent), '+-') == 1) exponent = exponent + 1
-    end if
-    is_number = verify(text(first:letter - 1), digits//'.') == 0 .and. scan(text(first:letter - 1), digits) > 0 .and. &
-      index(text(:letter - 1), '.') == index(text(:letter - 1), '.', back=.true.)
-    if (letter <= len(text)) is_number = is_number .and. exponent <= len(text) .and. verify(text(exponent:), digits) == 0
-  end function is_number
-
   !> Prepare for a scene that is ready to run.
-  subroutine prepare(self, text, scene)
+  subroutine prepare(self, times, scene)
     class(film_snapshots_t), intent(inout) :: self
-    character(len=*), intent(in) :: text   !! in the format of `read_times`; empty: no snapshots
+    real(dp), intent(in) :: times(:)   !! requested times, increasing [s]
     type(scene_t), intent(in) :: scene
-    if (text /= '') call read_times(text, self%times)
-    if (.not. allocated(self%times)) allocate (self%times(0))
+    self%times = times
     allocate (self%kept(10, size(self%times)*scene%n_joints), source=0.0_dp)
   end subroutine prepare
 

@@ -99,7 +99,7 @@ contains
     call recorder%prepare(scene)
     if (case%output%film_times /= '' .and. .not. ideal_joint) then
       allocate (recorder%films)
-      call recorder%films%prepare(case%output%film_times, scene)
+      call recorder%films%prepare(case%output%snapshot_times, scene)
     end if
     if (.not. present(archive)) call recorder%begin(scene, y)
     call integrate(scene, method, t, y, recorder%end_time, case%integrator%max_steps, recorder, status, archive)
