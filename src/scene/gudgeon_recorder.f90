@@ -12,7 +12,7 @@ module gudgeon_recorder
   use chain_motion, only: crank_pin, piston_pin, most_pins => n_pins
   use gudgeon_scene, only: scene_t, evaluation_t, event_none, event_contact_begins, of_guide, of_wear, &
     phase_contact
-  use joint_events, only: penetration_and_rate
+  use joint_events, only: penetration_and_rate, may_lose_force, force_share
   use gudgeon_columns, only: column_list_t, row_values
   use angle_grid, only: angle_grid_t
   use crank_passage, only: find_turning
@@ -381,14 +381,17 @@ contains
     end select
   end subroutine event_taken
 
-  !> Change the shape of a worn bore at the end of its cycle. If the pin does not touch the deeper bore, its contact ends.
+  !> Change the shape of a worn bore at the end of its cycle. If the pin does not touch the deeper bore, its contact ends; a
+  !> contact law whose force may be lost may lose it, or act again.
   subroutine event_handled(self, problem, index, t, y)
     class(recorder_t), intent(inout) :: self
     class(ode_problem_t), intent(inout) :: problem
     integer, intent(in) :: index
     real(dp), intent(in) :: t
     real(dp), intent(inout) :: y(:)
-    real(dp) :: contact(2)
+    type(evaluation_t) :: now
+    real(dp) :: contact(2), share, share_rate
+    logical :: inside
     integer :: i, k, action
     select type (problem)
     class is (scene_t)
@@ -398,8 +401,14 @@ contains
         associate (joint => problem%joints(self%pins(i)%joint))
           if (.not. allocated(joint%worn)) cycle
           call self%pins(i)%wear%change_bore(joint)
+          if (joint%phase /= phase_contact) cycle
           contact = penetration_and_rate(joint, y)
-          if (joint%phase /= phase_contact .or. contact(1) > 0) cycle
+          if (contact(1) > 0 .and. may_lose_force(joint)) then
+            call look_at(self, problem, t, y, now, inside)
+            if (inside) call force_share(joint, now%relative(self%pins(i)%joint), now%accelerations, share, share_rate)
+            if (inside) joint%force_is_lost = share < 0
+          end if
+          if (contact(1) > 0) cycle
         end associate
         do k = 1, problem%n_events
           if (problem%event_of(k)%joint /= self%pins(i)%joint) cycle
