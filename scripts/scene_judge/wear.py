@@ -58,8 +58,11 @@ def worn(joint: RowChecks, whole: RowChecks, prefix: str) -> tuple[list[str], fl
         if not rate:
             continue
         volume = float(run.summary[f"{prefix}worn_volume_{surface}"])
-        found = integral(run.columns[f"{surface}_wear_rate"], stencil)
-        size, bound = max(volume, found.value[-1], 1e-300), SAFETY * max(found.bound)
+        rates = run.columns[f"{surface}_wear_rate"]
+        found = integral(rates, stencil)
+        # where the sliding reverses or a contact begins or ends, the rate is not smooth
+        kinks = sum((rates[i - 1] + rates[i]) * (run.times[i] - run.times[i - 1]) for i in range(1, len(keys)) if keys[i] != keys[i - 1])
+        size, bound = max(volume, found.value[-1], 1e-300), SAFETY * max(found.bound) + kinks
         blurred = max(blurred, bound / size)
         if bound > BLURRED * size:
             continue
