@@ -19,7 +19,7 @@ module certificate
     loss_figure
   implicit none
   private
-  public :: certificate_t, make_certificate
+  public :: certificate_t, make_certificate, is_state
 
   real(dp), parameter :: limit = 1e-3_dp              !! error of a certified state, over its range
   real(dp), parameter :: margin = 2.5_dp  !! factor for the error of the closer run (at worst half as large) and for errors between
