@@ -125,21 +125,19 @@ contains
     x = 2*b**2*(b**2 + 1)/(2 - log(b**2 + 1) - 2*b**4)
   end function load_of_arc
 
-  !> b = tan(a/2) for a load, by bisection; at most sqrt(x).
+  !> b = tan(a/2) for a load, by Newton's method for b^2, in which the difference of both sides is convex: from the right all
+  !> iterates stay there.
   pure real(dp) function arc_of_load(x) result(b)
     real(dp), intent(in) :: x
-    real(dp) :: low, high
+    real(dp) :: u, change
     integer :: i
-    low = 0
-    high = min(1.0_dp, sqrt(x))
+    u = min(1.0_dp, x)
     do i = 1, 60
-      b = (low + high)/2
-      if (2*b**2*(b**2 + 1) > x*(2 - log(b**2 + 1) - 2*b**4)) then
-        high = b
-      else
-        low = b
-      end if
+      change = (2*u*(u + 1) - x*(2 - log(u + 1) - 2*u**2))/(4*u + 2 + x*(1/(u + 1) + 4*u))
+      u = u - change
+      if (change <= epsilon(u)*u) exit
     end do
+    b = sqrt(u)
   end function arc_of_load
 
   !> Half-angle of the contact.

@@ -15,14 +15,13 @@ module contact_arc
   type :: contact_arc_t
     integer :: n = 0                         !! number of cells
     real(dp), allocatable :: ends(:, :)      !! angles at which each cell begins and ends, (2, n) [rad]
-    real(dp), allocatable :: loads(:)        !! Int p R L dtheta over each cell, over the normal force [-]
+    real(dp), allocatable :: loads(:)        !! Int p R L dtheta over each cell, relative to that of the others
   end type contact_arc_t
 
 contains
 
   !> The arc of a joint in contact, in cells that are not much wider than `width` [rad]. A geometry of contact along a line, or at a
-  !> point, has no cells. With theta = a sin s the cells have equal ranges of s, and the pressure is that in their middle; the sum
-  !> of the loads is exact.
+  !> point, has no cells. With theta = a sin s the cells have equal ranges of s, and the pressure is that in their middle.
   pure subroutine arc_of(joint, motion, width, arc)
     type(clearance_joint_t), intent(in) :: joint
     type(joint_motion_t), intent(in) :: motion
@@ -53,7 +52,6 @@ contains
         arc%loads(i) = arc%loads(i)*joint%contact%geometry%pressure(half_angle, half_angle*sin(s))
       end if
     end do
-    arc%loads(:arc%n) = pressing_ratio(joint, motion)/sum(arc%loads(:arc%n))*arc%loads(:arc%n)
   end subroutine arc_of
 
   !> Make room for the cells of an arc.
@@ -79,7 +77,7 @@ contains
     call make_room(arc)
     call joint%worn%press(motion%eccentricity, elastic, unused)
     arc%ends(:, :arc%n) = touching%ends(:, :arc%n) - atan2(elastic(2), elastic(1))
-    arc%loads(:arc%n) = touching%loads(:arc%n)/norm2(elastic)
+    arc%loads(:arc%n) = touching%loads(:arc%n)
   end subroutine worn_arc
 
   !> Int p R L dtheta |v| of a joint: the force that presses on the surfaces, summed without regard to its direction, times the

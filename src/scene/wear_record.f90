@@ -111,7 +111,7 @@ contains
 
   !> Count the wear up to t, in the last step of the method and in one phase of the joint. An interval is halved until the rules of
   !> three and seven points agree within the tolerance of the run, relative to the sum so far, and until the line of centres turns
-  !> by at most a bin.
+  !> by at most two bins, or one if the worn bore acts.
   subroutine follow(self, method, scene, t)
     class(wear_record_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
@@ -120,9 +120,10 @@ contains
     real(dp), parameter :: shortest = 1.0_dp/4096   !! of an interval, over the time since the last call
     type(samples_t) :: samples
     real(dp), parameter :: finest = 1e-8_dp         !! least tolerance of the sum
-    real(dp) :: done, part, span, sums(2)
+    real(dp) :: done, part, span, sums(2), widest
     logical :: is_rough
     span = t - self%time
+    widest = merge(1, 2, allocated(scene%joints(self%joint)%worn))*self%surface(of_bore)%width()
     if (may_touch(self, scene) .and. span > 0) then
       done = 0
       part = 1
@@ -130,7 +131,7 @@ contains
         call take_samples(self, method, scene, self%time + done*span, part*span, samples)
         sums = 0.5_dp*part*span*[dot_product(weights, samples%load), dot_product(gauss, samples%load)]
         is_rough = sums(1) > 0 .and. part > shortest
-        if (is_rough) is_rough = sweep(samples) > self%surface(of_bore)%width() .or. &
+        if (is_rough) is_rough = sweep(samples) > widest .or. &
           sums(1)*(10*abs(sums(1) - sums(2))/sums(1))**1.5_dp > max(method%settings%tolerance, finest)*(self%total + sums(1))
         if (is_rough) then
           part = 0.5_dp*part
