@@ -96,20 +96,7 @@ def elastic_methods() -> list[Row]:
             for case in cases for tolerance in ("1e-6", "1e-9") for method in ("adams", "radau", "auto")]
 
 
-def wear() -> list[Row]:
-    arcs = ("integrator.revolutions=1", "wear.rate=1e-14,1e-14")
-    cases = {"wear/flores": ("integrator.revolutions=1",), "contact/conformal_exact": arcs}
-    return [Row(f"`{case}`, {tolerance}{without}", case, (*values, f"integrator.relative_tolerance={tolerance}", *more))
-            for case, values in cases.items() for tolerance in ("1e-4", "1e-6", "1e-8", "1e-10", "1e-12")
-            for without, more in (("", ()), (", without wear", ("wear=none",)))]
-
-
 TABLES = {
-    "wear": Table("Worn volume by tolerance, and its cost", (
-        ("volume of the pin [1e-15 m3]", "worn_volume_pin", 1e15, ".6f"), ("deepest bin of the bore [nm]", "max_wear_depth_bore", 1e9, ".4f"),
-        WORK, ("evaluations for summary and rows", "trace_evaluations", 1, ".0f")), wear(),
-        "One revolution, wear rate 1e-14 m2/N. Pin and bore of `wear/flores` touch along a line, those of `conformal_exact` on an arc. An independent "
-        "program has 361.0935 for `wear/flores`."),
     "simulations": Table("The simulations of chapter 6", (CONTACTS, SHARE, FILM, FORCE, SPEED, RESIDUAL, WORK),
                          of_cases(*SIMULATIONS, *FINITE, "film/sim_IV_mixed"),
                          "A negative film thickness is a penetration. With the Pinkus-Sternlicht film there is no contact. The "

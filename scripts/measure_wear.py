@@ -30,7 +30,9 @@ ROUND = ("wear.bore=round", "wear.extrapolation=1")
 #: Scenes with wear: title, case, settings. The motion of each is not chaotic over the time simulated.
 SCENES = (
     ("line: `wear/flores`, half a revolution", "wear/flores", ("integrator.revolutions=0.5",)),
-    ("arc: `wear/worn_bore`, counted in a round bore, half a revolution", "wear/worn_bore", (*ROUND, "integrator.revolutions=0.5")),
+    ("conformal arc: `contact/conformal_exact`, half a revolution", "contact/conformal_exact",
+     ("wear.rate=1e-14,1e-14", "integrator.revolutions=0.5")),
+    ("arc in a liner: `wear/worn_bore`, counted in a round bore, half a revolution", "wear/worn_bore", (*ROUND, "integrator.revolutions=0.5")),
     ("asperities: `film/sim_IV_mixed`, thin oil, one revolution", "film/sim_IV_mixed",
      ("lubrication.variant=short", "lubrication.viscosity=0.002", "wear.rate=1e-16,1e-16", "integrator.revolutions=1")),
 )
