@@ -82,27 +82,33 @@ contains
     call liner%prepare(bearing)
     do i = 1, 8
       a = 0.18_dp*i
-      call check%relative(resultant(bore, a), 1.0_dp, 1e-9_dp, 'pressure of a conformal contact')
-      call check%relative(resultant(liner, a), 1.0_dp, 1e-9_dp, 'pressure of a liner')
+      call check%relative(integral_over_arc(bore, a, .true.), 1.0_dp, 1e-9_dp, 'pressure of a conformal contact')
+      call check%relative(integral_over_arc(liner, a, .true.), 1.0_dp, 1e-9_dp, 'pressure of a liner')
       call check%that(bore%pressure(a, 0.0_dp) > bore%pressure(a, 0.5_dp*a), 'the pressure falls along the arc')
+    end do
+    do i = 0, 20
+      a = 1.45_dp*0.4_dp**i
+      call check%relative(bore%total_pressure(a), integral_over_arc(bore, a, .false.), 1e-12_dp, 'total pressure, conformal')
+      call check%relative(liner%total_pressure(a), integral_over_arc(liner, a, .false.), 1e-12_dp, 'total pressure, liner')
     end do
     call check%relative(liner%half_angle(1e-4_dp), pi/3, 1e-14_dp, 'half-angle of a liner')
     call check%close_to(cylinder%half_angle(1e-6_dp) + sphere%half_angle(1e-6_dp), 0.0_dp, 0.0_dp, 'half-angles of lines')
   end subroutine pressures_carry_the_load
 
-  !> Int p cos theta dtheta over the arc, by the midpoint rule in s with theta = a sin s.
-  real(dp) function resultant(geometry, a) result(total)
+  !> Int p dtheta over the arc by the midpoint rule in s with theta = a sin s, or `along` the line of centres Int p cos theta dtheta.
+  real(dp) function integral_over_arc(geometry, a, along) result(total)
     class(contact_geometry_t), intent(in) :: geometry
     real(dp), intent(in) :: a
+    logical, intent(in) :: along
     integer, parameter :: n = 4000
     real(dp) :: s
     integer :: i
     total = 0
     do i = 1, n
       s = pi*((i - 0.5_dp)/n - 0.5_dp)
-      total = total + geometry%pressure(a, a*sin(s))*cos(a*sin(s))*a*cos(s)*pi/n
+      total = total + geometry%pressure(a, a*sin(s))*merge(cos(a*sin(s)), 1.0_dp, along)*a*cos(s)*pi/n
     end do
-  end function resultant
+  end function integral_over_arc
 
   subroutine asperities_carry_the_load(check)
     class(checks_t), intent(inout) :: check

@@ -29,6 +29,7 @@ module conformal
     procedure :: slope
     procedure :: half_angle
     procedure :: pressure
+    procedure :: total_pressure
     procedure :: put_columns
   end type conformal_t
 
@@ -160,6 +161,18 @@ contains
     r = sqrt(max(0.0_dp, (b - y)*(b + y)))
     pressure = (2*r/(sqrt(b**2 + 1)*(1 + y**2)) + asinh(r/sqrt(1 + y**2))/(b**2*(b**2 + 1)))/pi
   end function pressure
+
+  !> Int p Rb L/F dtheta = [2 b^4 + ln(1 + b^2)]/[b^2 (1 + b^2)], b = tan(a/2): the integral of Persson's pressure. For small arcs
+  !> ln(1 + u) = 2 artanh[u/(2 + u)] keeps its digits.
+  pure real(dp) function total_pressure(self, half_angle)
+    class(conformal_t), intent(in) :: self
+    real(dp), intent(in) :: half_angle
+    real(dp) :: u
+    associate (unused => self)
+    end associate
+    u = tan(0.5_dp*half_angle)**2
+    total_pressure = 2*(u + atanh(u/(2 + u))/u)/(1 + u)
+  end function total_pressure
 
   !> Put the half-angle of the contact into a row, which follows from the penetration, and the pressure in its middle, which follows
   !> from the normal force.

@@ -87,24 +87,29 @@ contains
     end associate
   end function tangent
 
-  !> k Rb L c [D a + (a - sin a)]; for small a the difference a - sin a is computed from its series.
+  !> k Rb L c [D a + (a - sin a)].
   pure function elastic_force(self, penetration) result(force)
     class(winkler_t), intent(in) :: self
     real(dp), value, intent(in) :: penetration
-    real(dp) :: force, a, difference, term
-    integer :: k
+    real(dp) :: force, a
     a = atan(tangent(self, penetration))
-    difference = a - sin(a)
-    if (a < 0.6_dp) then
-      term = a**3/6
-      difference = term
-      do k = 2, 8
-        term = -term*a**2/((2*k)*(2*k + 1))
-        difference = difference + term
-      end do
-    end if
-    force = self%bedding*(penetration*a + self%clearance*difference)
+    force = self%bedding*(penetration*a + self%clearance*excess_over_sine(a))
   end function elastic_force
+
+  !> x - sin x, for small x from its series.
+  pure real(dp) function excess_over_sine(x) result(excess)
+    real(dp), intent(in) :: x
+    real(dp) :: term
+    integer :: k
+    excess = x - sin(x)
+    if (.not. x < 0.6_dp) return
+    term = x**3/6
+    excess = term
+    do k = 2, 8
+      term = -term*x**2/((2*k)*(2*k + 1))
+      excess = excess + term
+    end do
+  end function excess_over_sine
 
   !> Stiffness k Rb L (a + sin a cos a).
   pure function slope(self, penetration, force)
@@ -153,19 +158,15 @@ contains
     real(dp), intent(in) :: half_angle, angle
     associate (unused => self)
     end associate
-    pressure = 2*sin(0.5_dp*(half_angle + angle))*sin(0.5_dp*(half_angle - angle))/(half_angle - 0.5_dp*sin(2*half_angle))
+    pressure = 4*sin(0.5_dp*(half_angle + angle))*sin(0.5_dp*(half_angle - angle))/excess_over_sine(2*half_angle)
   end function pressure
 
-  !> 2 (sin a - a cos a)/(a - sin a cos a); for small a both differences lose digits, and the first terms of the series are exact.
+  !> 2 (sin a - a cos a)/(a - sin a cos a), with sin a - a cos a = 2 a sin^2(a/2) - (a - sin a).
   pure real(dp) function total_pressure(self, half_angle)
     class(winkler_t), intent(in) :: self
     real(dp), intent(in) :: half_angle
     associate (unused => self, a => half_angle)
-      if (a < 0.01_dp) then
-        total_pressure = 1 + a**2/10
-      else
-        total_pressure = 2*(sin(a) - a*cos(a))/(a - sin(a)*cos(a))
-      end if
+      total_pressure = 4*(2*a*sin(0.5_dp*a)**2 - excess_over_sine(a))/excess_over_sine(2*a)
     end associate
   end function total_pressure
 end module winkler

@@ -40,10 +40,10 @@ contains
     n = self%joints(1)%n_states()
     if (n > 0) then
       call self%joints(1)%state_slopes(self%chain%bodies, now%motion, now%relative(1), now%joint(1), by_states, of_rates)
-      slope(:3, 7:) = matmul(by_loads, by_states)
+      slope(:3, 7:6 + n) = matmul(by_loads, by_states(:, :n))
       by_motion = 0
       call follow_state(n, of_rates(:n, :5), by_motion, rod_angle, rod_speed, slope(4:3 + n, :6))
-      slope(4:, 7:) = of_rates(:, 6:)
+      slope(4:3 + n, 7:6 + n) = of_rates(:n, 6:5 + n)
     end if
     skip = merge(0, 1, self%chain%drive%free_crank)   ! a prescribed crank angle is not an unknown
     a_p = slope(1 + skip:3 + n, 1 + skip:3)

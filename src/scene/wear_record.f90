@@ -78,6 +78,7 @@ contains
     integer :: i
     self%time = t
     self%total = 0
+    self%depth_sum = 0
     do i = 1, size(self%surface)
       self%surface(i)%load_path = 0
       self%earlier(i)%load_path = 0
