@@ -259,8 +259,8 @@ class Row:
     def noise(self) -> float:
         """Rounding that any force of the row may contain: the last digits of weights, inertial forces and the gas force [N]."""
         b = self.bodies
-        speeds = (b.crank_length + b.rod_length) * (self.turn**2 + self.rod_turn**2)
-        size = sum(b.mass) * (abs(b.gravity) + speeds) + abs(self.gas) + math.hypot(*self.force)
+        inertial = (b.crank_length + b.rod_length) * (self.turn**2 + self.rod_turn**2 + abs(self.turn_rate) + abs(self.rod_turn_rate))
+        size = sum(b.mass) * (abs(b.gravity) + inertial) + abs(self.gas) + math.hypot(*self.force)
         if b.elastic:
             size += sum(k * abs(x) for k, x in zip(b.elastic.stiffness, self.shape_state[1:]))
             size += sum(b.mass) * sum(map(abs, self.shape_second[1:]))
