@@ -125,8 +125,10 @@ def worst_drift(run: Run, rates: dict[str, str], stencil: list[list[Stencil]], f
 def bristle_drift(checks: RowChecks, pieces: list[list[int]]) -> tuple[float, float, str]:
     """The same for the deflection of bristles, integrated from the first row of each piece, divided by ten times the break-away
     deflection. Where sliding reverses, the rate has a kink, and rows within such a step have errors of about 5e-4 at a tolerance of
-    1e-6. Rows so far apart that the deflection relaxes by more than a quarter from one to the next are not judged."""
+    1e-6. Rows so far apart that the deflection relaxes by more than a quarter from one to the next are not judged, nor those between
+    which the bodies, of half the mass of the lightest one or more, may vibrate on the bristles by more than a quarter of a radian."""
     columns, friction = checks.run.columns, checks.friction
+    springs = friction.stiffness / (0.5 * min(checks.bodies.mass[1:]))   # per normal force
     z = columns["bristle"]
     touching = [phase == CONTACT for phase in columns["phase"]]
     rate = [friction.bristle_rate(v, bent) if on else 0.0 for v, bent, on in zip(columns["sliding_speed"], z, touching)]
@@ -135,8 +137,9 @@ def bristle_drift(checks: RowChecks, pieces: list[list[int]]) -> tuple[float, fl
     for rows in pieces:
         first = rows[0]
         for before, i in zip(rows, rows[1:]) if touching[first] else ():
-            v = max(map(abs, columns["sliding_speed"][before:i + 1]))
-            if friction.stiffness * v / friction.steady(v) * (checks.run.times[i] - checks.run.times[before]) > 0.25:
+            v, load = (max(map(abs, columns[name][before:i + 1])) for name in ("sliding_speed", "normal_force"))
+            apart = checks.run.times[i] - checks.run.times[before]
+            if friction.stiffness * v / friction.steady(v) * apart > 0.25 or math.sqrt(springs * load) * apart > RESOLVED:
                 first = i
             bound = SAFETY * (found.bound[i] - found.bound[first])
             beyond = (abs(z[i] - z[first] - found.value[i] + found.value[first]) - bound) / size
