@@ -34,9 +34,6 @@ import pandas as pd  # noqa: E402
 from gudgeon_plots.measured import FOLDER, write_table  # noqa: E402
 from gudgeon_plots.program import release_program  # noqa: E402
 
-STATES = ("crank_angle", "rod_angle", "piston_position", "crank_speed", "rod_speed", "piston_velocity", "eccentricity_x", "eccentricity_y",
-          "eccentricity_rate_x", "eccentricity_rate_y", "film_eccentricity_x", "film_eccentricity_y", "piston_offset", "piston_tilt",
-          "piston_offset_rate", "piston_tilt_rate", "rod_stretch", "rod_mid_deflection", "crankshaft_twist", "flywheel_speed")
 WORDS = """Certified and true time up to which no coordinate or speed is off by more than 1e-3 of its range; the time up to which two runs at 1e-13,
 by `auto` and by Radau, agree within 1e-5 of the range, so that the truth is known; the end of the run; the error that the certificate
 states, and the true one, up to the certified time; digits; impacts matched. The runs at 1e-13 end a quarter beyond the certified time:
@@ -66,12 +63,15 @@ def arguments() -> argparse.Namespace:
     return options
 
 
-def run(program: Path, case: Path, out: Path, settings: list[str], limit: float, *more: str) -> tuple[pd.DataFrame, dict[str, str]]:
-    """Trace of the time and the states, and summary, of a run; of one that takes too long the rows that it had."""
+def run(
+    program: Path, case: Path, out: Path, settings: list[str], limit: float, states: list[str] | None = None
+) -> tuple[pd.DataFrame, dict[str, str]]:
+    """Trace of the time and the states, and summary, of a run; of one that takes too long the rows that it had. Without names of
+    states the run is certified, and they are those of its certificate."""
     trace, summary = out / f"{case.stem}.csv", out / f"{case.stem}.summary.csv"
     for left in (trace, summary):
         left.unlink(missing_ok=True)
-    words = [str(program), "-q", "-o", str(out), *more]
+    words = [str(program), "-q", "-o", str(out)] + (["--certify"] if states is None else [])
     for setting in settings:
         words += ["--set", setting]
     running = subprocess.Popen([*words, str(case)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -83,7 +83,9 @@ def run(program: Path, case: Path, out: Path, settings: list[str], limit: float,
             running.wait()
     if not (trace.exists() and summary.exists()):
         return pd.DataFrame(), {}
-    rows = pd.read_csv(trace, usecols=lambda name: name == "time[s]" or is_state(name))
+    if states is None:
+        states = certified_states(out / f"{case.stem}.certificate.csv")
+    rows = pd.read_csv(trace, usecols=["time[s]", *states])
     trace.unlink()
     return rows, pd.read_csv(summary, index_col=0, dtype=str)["value"].to_dict()
 
@@ -97,16 +99,19 @@ def processor_time(process: int) -> float:
     return seconds
 
 
-def is_state(column: str) -> bool:
-    """Whether a column is a coordinate or a speed."""
-    return column.split("[")[0].removeprefix("crank_pin_") in STATES
+def certified_states(certificate: Path) -> list[str]:
+    """Columns that are coordinates or speeds; none without a certificate."""
+    if not certificate.exists():
+        return []
+    columns = pd.read_csv(certificate, index_col="column")
+    return list(columns.index[columns["is_state"] == "yes"])
 
 
 def state_errors(a: pd.DataFrame, b: pd.DataFrame, ranges: pd.Series) -> np.ndarray:
     """Largest difference of any coordinate or speed in each row, over its range."""
     rows = min(len(a), len(b))
     errors = np.zeros(rows)
-    for name in filter(is_state, a.columns):
+    for name in a.columns.drop("time[s]"):
         if ranges[name] > 0:
             errors = np.maximum(errors, np.abs(a[name].to_numpy()[:rows] - b[name].to_numpy()[:rows]) / ranges[name])
     return errors
@@ -133,7 +138,7 @@ def row_settings(case: Path, options: argparse.Namespace) -> list[str]:
 def judge(program: Path, case: Path, options: argparse.Namespace, out: Path) -> tuple[str, str | None]:
     """A row of the table and what is wrong (an empty text: nothing); None for what is wrong where nothing could be compared."""
     settings = row_settings(case, options)
-    plain, claim = run(program, case, out, settings, 4 * options.timeout, "--certify")
+    plain, claim = run(program, case, out, settings, 4 * options.timeout)
     name = f"{case.stem:32s}"
     if claim.get("status") != "done":
         return f"{name} has no run in time", None
@@ -143,8 +148,9 @@ def judge(program: Path, case: Path, options: argparse.Namespace, out: Path) -> 
     tight = [*settings, "integrator.relative_tolerance=1e-13", "integrator.absolute_tolerance=0"]
     if BEYOND * until < end:
         tight.append(f"integrator.end_time={max(BEYOND * until, plain['time[s]'][10]):.9g}")
-    truth, _ = run(program, case, out, [*tight, "integrator.method=auto"], options.timeout)
-    check, _ = run(program, case, out, [*tight, "integrator.method=radau"], options.timeout)
+    states = list(plain.columns.drop("time[s]"))
+    truth, _ = run(program, case, out, [*tight, "integrator.method=auto"], options.timeout, states)
+    check, _ = run(program, case, out, [*tight, "integrator.method=radau"], options.timeout, states)
     if truth.empty or check.empty:
         return f"{name} has no run at 1e-13 in time", None
     ranges = plain.max() - plain.min()

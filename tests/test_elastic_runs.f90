@@ -27,6 +27,7 @@ contains
     call every_joint_and_law(check)
     call a_folded_rod_leaves_the_model(check)
     call summary_and_twin(check)
+    call peaks_between_rows(check)
     call cases_that_cannot_be(check)
     call crankshaft_swings(check)
     call a_stiff_crankshaft_is_rigid(check)
@@ -216,6 +217,36 @@ contains
     twin = run_case(dry, span, .true.)
     call check%that(column(twin, 'rod_mode_1[m]') == 0, 'the ideal twin has no column of a mode')
   end subroutine summary_and_twin
+
+  !> The largest values of elastic members do not depend on the rows, and are those of close rows.
+  subroutine peaks_between_rows(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: names(3) = [character(len=21) :: 'rod_mid_deflection[m]', 'rod_stretch[m]', &
+      'crankshaft_twist[rad]']
+    character(len=*), parameter :: files(2) = [character(len=40) :: 'cases/elastic/engine_rod.nml', &
+      'cases/elastic/engine_crankshaft.nml']
+    character(len=long), parameter :: rows(2) = [character(len=long) :: 'output.samples_per_revolution=20', &
+      'output.samples_per_revolution=20000']
+    type(trace_t) :: far, near
+    real(dp) :: largest(4), those_of_near(4), in_rows
+    integer :: i, k
+    do i = 1, size(files)
+      far = run_case(trim(files(i)), [character(len=long) :: rows(1), 'integrator.revolutions=0.5'])
+      near = run_case(trim(files(i)), [character(len=long) :: rows(2), 'integrator.revolutions=0.5'])
+      associate (f => far%report%figures%elastic, n => near%report%figures%elastic)
+        largest = [f%mid_deflection, f%stretch, f%twist, f%strain_energy]
+        those_of_near = [n%mid_deflection, n%stretch, n%twist, n%strain_energy]
+      end associate
+      do k = 1, size(largest)
+        call check%relative(largest(k), those_of_near(k), 1e-10_dp, 'largest values of elastic members do not depend on rows')
+      end do
+      do k = 1, size(names)
+        if (column(near, names(k)) == 0) cycle
+        in_rows = maxval(abs(near%values(column(near, names(k)), :)))
+        call check%close_to(largest(k)/in_rows, 1 + 5e-6_dp, 5e-6_dp, 'largest '//trim(names(k))//' against close rows')
+      end do
+    end do
+  end subroutine peaks_between_rows
 
   !> The value of a quantity of a summary.
   real(dp) function number_of(table, quantity)

@@ -178,6 +178,9 @@ check "the line of a certified run states the digits" grep -q 'done; [0-9.]* dig
 check "the summary of a certified run has the certified time" grep -q '^certified_until,2.4.*E-02,s$' "$work/certified/lubricated_400cP.summary.csv"
 check "the certificate has the error of every column" [ "$(wc -l <"$work/certified/lubricated_400cP.certificate.csv")" = \
   "$(head -n 1 "$work/certified/lubricated_400cP.csv" | tr , '\n' | grep -vc phase | awk '{ print $1 + 1 }')" ]
+check "the certificate says which columns are coordinates or speeds" [ "$(awk -F, '$NF == "yes" { print $1 }' \
+  "$work/certified/lubricated_400cP.certificate.csv" | head -n 8 | tr '\n' ' ')" = "crank_angle[rad] rod_angle[rad] piston_position[m] \
+crank_speed[rad/s] rod_speed[rad/s] piston_velocity[m/s] eccentricity_x[m] eccentricity_y[m] " ]
 run -o "$work/plain" -s integrator.method=auto -s output.ideal_twin=F cases/flores/lubricated_400cP.nml
 check "a certificate does not change the run" cmp -s "$work/plain/lubricated_400cP.csv" "$work/certified/lubricated_400cP.csv"
 run -q -o "$work/certified" -s integrator.method=adams -s output.ideal_twin=F cases/flores/lubricated_400cP.nml

@@ -507,6 +507,14 @@ check "--fresh is refused for cases" [ "$status" = 2 ]
 refused "rows beyond the study" 3 "the study has 12 runs" --rows 5:20 "$work/grid.nml"
 refused "an override of a varied key" 2 "--set Joint. clearance=3e-5: the study varies joint.clearance" \
   -s "Joint. clearance=3e-5" "$work/grid.nml"
+study tolerances <<'END'
+&study case = 'base.nml' /
+&parameter key = 'Integrator.relative_tolerance', values = 1e-4, 1e-5 /
+END
+refused "an accuracy level beside a varied tolerance" 2 "--accuracy draft: the study varies integrator.relative_tolerance" \
+  -a draft "$work/tolerances.nml"
+run sweep -q -a draft -s integrator.revolutions=1 -o "$work/level" "$work/ends.nml"
+check "an accuracy level for a study that varies other keys" [ "$status" = 0 ]
 refused "rows backwards" 2 "A:B" --rows 5:4 "$work/grid.nml"
 run sweep --check "$work/grid.nml"
 check "--check counts the runs" [ "$status" = 0 -a "$(cat "$work/out")" = "$work/grid.nml: correct, 12 runs" ]

@@ -24,7 +24,8 @@ contains
         do i = 1, rod%n_bending + rod%n_axial
           call row%put(shape_name(rod, i)//'[m]', motion%shape(i), shape_meaning(rod, i))
         end do
-        call row%put('rod_mid_deflection[m]', rod%mid_deflection(motion), 'bending deflection of the rod midway between its pins')
+        call row%put('rod_mid_deflection[m]', rod%mid_deflection(motion%shape), &
+          'bending deflection of the rod midway between its pins')
         call row%put('rod_strain_energy[J]', rod%strain_energy(motion), 'elastic energy stored in the rod')
         if (row%is_naming .or. row%wants(2*(rod%n_bending + rod%n_axial))) then
           do i = 1, rod%n_bending + rod%n_axial

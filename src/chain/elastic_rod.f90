@@ -278,14 +278,15 @@ contains
     axial_frequency = 1/sqrt(largest)
   end function axial_frequency
 
-  !> Deflection perpendicular to the chord half way between the pins [m], positive towards +y in a rod that points along +x.
-  pure real(dp) function mid_deflection(self, motion)
+  !> Deflection perpendicular to the chord half way between the pins [m], positive towards +y in a rod that points along +x, from
+  !> the amplitudes of the shapes [m]; its rate [m/s] from theirs.
+  pure real(dp) function mid_deflection(self, shape)
     class(elastic_rod_t), intent(in) :: self
-    type(motion_t), intent(in) :: motion
+    real(dp), intent(in) :: shape(:)
     integer :: k
     mid_deflection = 0
     do k = 1, self%n_bending, 2
-      mid_deflection = mid_deflection + motion%shape(k)*(-1)**(k/2)
+      mid_deflection = mid_deflection + shape(k)*(-1)**(k/2)
     end do
   end function mid_deflection
 

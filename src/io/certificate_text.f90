@@ -1,7 +1,7 @@
 !> Text forms of a certificate: NAME.certificate.csv, rows of the summary, and a part of the line for the user.
 module certificate_text
   use gudgeon_kinds, only: dp
-  use certificate, only: certificate_t
+  use certificate, only: certificate_t, is_state
   use run_witness, only: statistic_names, n_statistics, figure_names, n_figures, loss_figure
   use gudgeon_columns, only: column_name
   use number_text, only: real_text, short_text
@@ -15,18 +15,19 @@ module certificate_text
 contains
 
   !> NAME.certificate.csv: for each column its range over the run, and for the certified part its largest error, its
-  !> root-mean-square error, and the largest error relative to the range.
+  !> root-mean-square error, and the largest error relative to the range; and whether it is a coordinate or speed, by whose errors
+  !> the certified part is found.
   function certificate_table(certificate) result(text)
     type(certificate_t), intent(in) :: certificate
     character(len=:), allocatable :: text
     integer :: i
-    text = 'column,range,largest_error,rms_error,relative_error'//newline
+    text = 'column,range,largest_error,rms_error,relative_error,is_state'//newline
     do i = 1, size(certificate%list%id)
       if (index(column_name(certificate%list, i), 'phase[') > 0) cycle   ! not a quantity with a unit
       text = text//column_name(certificate%list, i)//','//real_text(certificate%range(i))//','//real_text(certificate%error(i))// &
         ','//real_text(certificate%rms(i))//','
       if (certificate%range(i) > 0) text = text//real_text(certificate%error(i)/certificate%range(i))
-      text = text//newline
+      text = text//','//trim(merge('yes', 'no ', is_state(column_name(certificate%list, i))))//newline
     end do
   end function certificate_table
 

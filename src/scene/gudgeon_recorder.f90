@@ -22,7 +22,8 @@ module gudgeon_recorder
   use pin_record, only: pin_record_t
   use guide_record, only: guide_record_t
   use trace_sink, only: trace_sink_t, trace_event_t
-  use run_figures, only: run_figures_t, elastic_figures_t
+  use elastic_record, only: elastic_record_t
+  use run_figures, only: run_figures_t
   use film_snapshots, only: film_snapshots_t
   use wear_record, only: wear_profile_t
   use gudgeon_archive, only: archive_t
@@ -56,6 +57,7 @@ module gudgeon_recorder
     integer, private :: n_pins = 1                 !! number of pins that have a record
     type(pin_record_t), private :: pins(most_pins)
     type(guide_record_t), private :: guide         !! record of a piston with clearance in its bore
+    type(elastic_record_t), private :: elastic     !! record of elastic members
     real(dp), allocatable, private :: y(:), values(:)
   contains
     procedure :: prepare
@@ -82,13 +84,7 @@ contains
       call self%pins(2)%prepare(crank_pin, scene)
     end if
     call self%guide%prepare(scene)
-    if (allocated(scene%chain%elastic)) then
-      if (scene%chain%has_elastic_rod()) then
-        self%figures%elastic%bending_frequency = scene%chain%elastic%rod%bending_frequency()
-        self%figures%elastic%axial_frequency = scene%chain%elastic%rod%axial_frequency(scene%chain%bodies%piston%mass)
-      end if
-      if (scene%chain%has_crankshaft()) self%figures%elastic%twist_frequency = scene%twist_frequency()
-    end if
+    call self%elastic%prepare(scene, self%figures%elastic)
     allocate (self%y(scene%n), self%values(size(self%list%id)))
     self%keeps_archives = self%sink%keeps_archives .and. .not. allocated(self%cycles)   ! the revolution counts cannot be archived
     if (self%periods%is_on) call self%periods%begin(scene)
@@ -109,6 +105,7 @@ contains
       self%initial_energy = scene%chain%energy(now%motion)
       self%start_angle = now%motion%crank_angle
     end if
+    if (inside) call self%elastic%begin(scene, 0.0_dp, now)
     if (allocated(self%cycles)) then
       call self%cycles%begin(scene, y, self%initial_energy)
       call self%guide%begin_revolution()
@@ -278,6 +275,7 @@ contains
       call self%pins(i)%search(method, scene, t, now, self%figures, self%cycles)
     end do
     call self%guide%search(method, scene, t, now, self%figures)
+    call self%elastic%search(method, scene, t, now, self%figures%elastic)
   end subroutine search_peaks
 
   !> Check the number of evaluations in the present revolution. A revolution that takes longer than the first would have taken is
@@ -305,25 +303,8 @@ contains
     logical, intent(out) :: inside
     self%figures%evaluations = self%figures%evaluations + 1
     call scene%evaluate(t, y, now, inside)
-    if (inside .and. allocated(scene%chain%elastic)) call take_elastic(self%figures%elastic, scene, now)
+    if (inside) call self%elastic%take_values(scene, now, self%figures%elastic)
   end subroutine look_at
-
-  !> Update the largest values of the elastic members.
-  pure subroutine take_elastic(figures, scene, now)
-    type(elastic_figures_t), intent(inout) :: figures
-    type(scene_t), intent(in) :: scene
-    type(evaluation_t), intent(in) :: now
-    associate (f => figures, m => now%motion)
-      if (scene%chain%has_elastic_rod()) then
-        associate (rod => scene%chain%elastic%rod)
-          f%mid_deflection = max(f%mid_deflection, abs(rod%mid_deflection(m)))
-          if (rod%n_axial > 0) f%stretch = max(f%stretch, abs(m%shape(rod%n_bending + 1)))
-          f%strain_energy = max(f%strain_energy, rod%strain_energy(m))
-        end associate
-      end if
-      if (scene%chain%has_crankshaft()) f%twist = max(f%twist, abs(m%flywheel_angle - m%crank_angle))
-    end associate
-  end subroutine take_elastic
 
   !> Record an accepted point at which the scene has been evaluated, and write a row if one is due.
   subroutine take_point(self, scene, t, y, now, inside, has_row)
@@ -490,6 +471,7 @@ contains
       call self%pins(i)%exchange(archive)
     end do
     call self%guide%exchange(archive)
+    call self%elastic%exchange(archive)
     if (allocated(self%films)) call self%films%exchange(archive)
     call archive%exchange(self%initial_energy, self%start_angle)
     call archive%exchange(self%next_row)

@@ -34,7 +34,7 @@ module run_figures
     real(dp) :: max_force = 0                 !! normal to the wall [N]
   end type corner_figures_t
 
-  !> Results of the elastic members: largest values at steps and rows.
+  !> Results of the elastic members.
   type :: elastic_figures_t
     real(dp) :: mid_deflection = 0            !! deflection of the rod at mid-length, perpendicular to its chord [m]
     real(dp) :: stretch = 0                   !! largest magnitude of the change of the rod's length [m]

@@ -76,7 +76,7 @@ contains
       if (sweep%is_drawn) study%runs = most_checked
       call new_design(study, values%values(values%place_of('output', 'digits'))%whole, design, error)
       if (allocated(error)) return
-      call refuse_varied(options%overrides, values, design%keys, error)
+      call refuse_varied(with_preset(options%accuracy, options%overrides), options, values, design%keys, error)
       if (allocated(error)) return
       at = printable(path, 200)//': '
       if (study%table /= '') at = printable(study%table, 200)//':1: '
@@ -116,15 +116,17 @@ contains
     end associate
   end subroutine read_sweep
 
-  !> Refuse overrides of keys that the study varies, which would have no effect.
-  subroutine refuse_varied(overrides, values, keys, error)
-    character(len=*), intent(in) :: overrides(:), keys(:)
+  !> Refuse overrides and accuracy levels that set a key which the study varies: they would have no effect on it.
+  subroutine refuse_varied(settings, options, values, keys, error)
+    character(len=*), intent(in) :: settings(:)   !! those of the accuracy level, followed by the overrides
+    type(command_line_t), intent(in) :: options
     type(case_values_t), intent(in) :: values
+    character(len=*), intent(in) :: keys(:)
     type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: name
+    character(len=:), allocatable :: said, name
     integer :: i, k, dot, place
-    do i = 1, size(overrides)
-      name = lowercase(overrides(i)(:index(overrides(i), '=') - 1))
+    do i = 1, size(settings)
+      name = lowercase(settings(i)(:index(settings(i), '=') - 1))
       dot = index(name, '.', back=.true.)
       place = 0
       if (dot > 0) place = values%place_of(trim(adjustl(name(:dot - 1))), trim(adjustl(name(dot + 1:))))
@@ -133,7 +135,9 @@ contains
         name = trim(key%group)//'.'//trim(key%name)
       end associate
       if (.not. any([(lowercase(trim(keys(k))) == name, k=1, size(keys))])) cycle
-      call fail(error, '--set '//printable(trim(overrides(i)), 60)//': the study varies '//name, status_command_line)
+      said = '--accuracy '//options%accuracy
+      if (i > size(settings) - size(options%overrides)) said = '--set '//printable(trim(settings(i)), 60)
+      call fail(error, said//': the study varies '//name, status_command_line)
       return
     end do
   end subroutine refuse_varied
