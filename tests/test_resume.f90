@@ -69,6 +69,15 @@ contains
     call split(check, 'cases/wear/flores.nml', 'revolutions=0.2', 'auto', 'wear.bins=36')
     call split(check, 'cases/wear/worn_bore.nml', 'revolutions=1.02', 'adams', 'initial.crank_speed=1000')
     call split(check, 'cases/film/weighted.nml', 'revolutions=0.4', 'radau', 'wear.rate=1e-15,1e-15')
+    call split(check, 'cases/film/sim_IV_mixed.nml', 'revolutions=0.1', 'auto', 'lubrication.variant=short')
+    call split(check, 'cases/elastic/engine_rod.nml', 'revolutions=0.05', 'radau', 'elastic_rod.axial_shapes=1')
+    call split(check, 'cases/elastic/dry_friction.nml', 'revolutions=0.01', 'auto', 'elastic_rod.transverse_modes=2')
+    call split(check, 'cases/elastic/engine_crankshaft.nml', 'revolutions=0.1', 'auto', 'crankshaft.torsional_damping=1')
+    call split(check, 'cases/gas/compressor.nml', 'revolutions=1.2', 'auto', 'drive.kind=constant_speed')
+    call split(check, 'cases/gas/compressor.nml', 'revolutions=1.2', 'adams', 'drive.kind=free', .true.)
+    call split(check, 'cases/gas/two_stroke.nml', 'revolutions=1.2', 'adams', 'drive.kind=constant_speed', .true.)
+    call split(check, 'cases/gas/measured.nml', 'revolutions=0.3', 'auto', 'drive.kind=constant_speed')
+    call split(check, 'cases/joints/guide_friction.nml', 'revolutions=0.3', 'auto', 'guide.coefficient=0.1')
     call split(check, 'cases/flores/ideal.nml', 'revolutions=4', 'adams', 'integrator.max_evaluations_per_revolution=200', .true.)
   end subroutine run_test_resume
 

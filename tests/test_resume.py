@@ -27,7 +27,7 @@ from test_faults import ROOT, Gudgeon, assertions, check, program_built
 CASES = ROOT / "cases"
 SHORT = ("--set", "integrator.revolutions=0.5", "--set", "integrator.method=auto", "--set", "output.ideal_twin=F")
 RESULTS = (".csv", ".events.csv", ".summary.csv", ".resolved.nml", ".ideal.csv", ".ideal.summary.csv")
-FREE = ("wall_time,", "  max_steps =")   # lines that may differ: a run that is done keeps its limit of steps
+FREE = ("wall_time,", "  max_steps =", "  max_evaluations =")   # lines that may differ: a run that is done keeps its limits
 
 
 def contents(path: Path) -> list[bytes]:
@@ -46,8 +46,9 @@ def leftovers(folder: Path) -> list[str]:
 
 
 def stopped_by_limits(gudgeon: Gudgeon, work: Path) -> None:
-    """Every simulation, in a batch, stopped repeatedly by an increasing limit."""
-    files = sorted(CASES.glob("sim_*.nml")) + sorted((CASES / "flores").glob("*.nml")) + sorted((CASES / "joints").glob("*.nml"))
+    """Every case that can be shortened to half a revolution, in a batch, stopped repeatedly by an increasing limit."""
+    files = [file for file in sorted(CASES.glob("*.nml")) + sorted(CASES.glob("*/*.nml"))
+             if file.parent.name != "studies" and not file.stem.startswith(("spheres_", "motor"))]
     whole, parts = work / "whole", work / "parts"
     status, _, err = gudgeon.run(*SHORT, "-o", whole, *files)
     check(status == 0, f"uninterrupted runs: {status} {err}")
@@ -185,6 +186,9 @@ def beginnings(gudgeon: Gudgeon, work: Path) -> None:
     check("sim_I.checkpoint" not in leftovers(work / "b"), "with --checkpoint 0 there is no checkpoint")
     gudgeon.run(*limit, "-o", work / "b", *words)
     check("sim_I.checkpoint" in leftovers(work / "b"), "otherwise there is a checkpoint")
+    status, _, err = gudgeon.run("--resume", "-o", work / "b", *words)
+    resolved = [(work / folder / "sim_I.resolved.nml").read_text() for folder in ("a", "b")]
+    check(status == 0 and resolved[0] == resolved[1], f"the resolved case of a resumed run has its own limits: {status} {err}")
     status, out, _ = gudgeon.run("-o", work / "b", *words)
     check(status == 0 and not leftovers(work / "b"), "a finished run leaves no checkpoint")
     (work / "b" / "sim_I.ideal.csv").unlink()

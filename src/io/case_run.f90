@@ -175,7 +175,7 @@ contains
   subroutine close_files(self, files)
     class(case_run_t), intent(inout) :: self
     type(trace_files_t), intent(inout) :: files
-    type(error_t), allocatable :: film_error
+    type(error_t), allocatable :: file_error
     logical :: is_whole
     integer :: folder_status
     call files%file%synchronise()
@@ -183,13 +183,17 @@ contains
     if (any(files%file%has_failed())) is_whole = .false.
     if (is_whole) call files%file%conclude()
     !$omp critical (texts)
+    if (self%start%goes_on .and. .not. self%is_twin) then   ! its limits may be others than those of the stopped run
+      call write_text(self%base//'.resolved.nml', self%start%checkpoint%case_text, file_error)
+      call keep_first(file_error, self%error)
+    end if
     if (allocated(self%report%films)) then
-      call write_film_file(self%base//'.film.csv', self%report%films, film_error)
-      call keep_first(film_error, self%error)
+      call write_film_file(self%base//'.film.csv', self%report%films, file_error)
+      call keep_first(file_error, self%error)
     end if
     if (allocated(self%report%wear)) then
-      if (size(self%report%wear) > 0) call write_wear_file(self%base//'.wear.csv', self%report%wear, film_error)
-      call keep_first(film_error, self%error)
+      if (size(self%report%wear) > 0) call write_wear_file(self%base//'.wear.csv', self%report%wear, file_error)
+      call keep_first(file_error, self%error)
     end if
     call put_summary(self, files)
     !$omp end critical (texts)

@@ -161,7 +161,7 @@ contains
   end subroutine not_begun
 
   !> Make the folder for the results, lock the results, look for results that can be continued, remove those of other runs, and
-  !> begin the file of the resolved case.
+  !> begin the file of the resolved case, unless the run continues.
   subroutine take_place(self, options)
     class(case_job_t), intent(inout) :: self
     type(command_line_t), intent(in) :: options
@@ -181,7 +181,7 @@ contains
         printable(self%path, 200)//': no checkpoint in '//printable(options%out, 200)//': starts from the beginning')
     end if
     if (.not. allocated(self%error)) call make_room(self)
-    if (allocated(self%error) .or. self%run%start%is_done) return
+    if (allocated(self%error) .or. self%run%start%is_done .or. self%run%start%goes_on) return
     call self%resolved%open(self%run%base//'.resolved.nml', self%error, whole_only=.true.)
     call self%resolved%put(self%run%start%checkpoint%case_text)
   end subroutine take_place

@@ -179,6 +179,7 @@ contains
       call fail(error, printable(stopped%path, 200)//': written by another build of gudgeon, or on another kind of '// &
                 'processor: the rounding may differ'//restart_hint, status_case_file)
     else
+      stopped%case_text = self%checkpoint%case_text   ! limits may differ; those of the continuation count
       self%checkpoint = stopped
     end if
   end subroutine look_for
