@@ -1,0 +1,309 @@
+#!/usr/bin/env python3
+"""The gas of whole runs, from the columns of their traces: the balance of heat of engines, the balance of mass, the opening points
+and the work of the valves of compressors, and the work that the crank receives.
+
+    .venv/bin/python tests/test_gas.py [--program PATH]        (after scripts/setup.sh --python)
+
+Volumes, integrals and roots are those of NumPy and SciPy; no formula of the program is used. Ends with the line "N passed,
+N failed".
+"""
+from __future__ import annotations
+
+import argparse
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+TOP = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(TOP / "scripts"))
+sys.path.insert(0, str(TOP / "tests"))
+
+from gudgeon_plots.environment import use_virtual_environment  # noqa: E402
+
+use_virtual_environment(more=("scipy",))
+
+import f90nml  # noqa: E402
+import numpy as np  # noqa: E402
+import pandas as pd  # noqa: E402
+from assertions import Assertions  # noqa: E402
+from scipy.integrate import cumulative_simpson, quad  # noqa: E402
+from scipy.optimize import brentq  # noqa: E402
+
+from gudgeon_plots.program import release_program  # noqa: E402
+
+assertions = Assertions()
+check = assertions.check
+GAS = TOP / "cases" / "gas"
+#: Rows at every tenth of a degree of a crank at constant speed, with ideal joints, in all digits.
+CLOSE = ("joint.kind=ideal", "contact=none", "friction=none", "lubrication=none", "output.ideal_twin=F", "output.digits=17",
+         "output.sampling=crank_angle", "output.samples_per_revolution=3600", "integrator.method=adams",
+         "integrator.relative_tolerance=1e-11")
+HELD = ("drive.kind=constant_speed", "drive.damping=0")
+
+
+@dataclass
+class Run:
+    """A trace, the case as run, and the cylinder from its dimensions."""
+
+    rows: pd.DataFrame
+    case: dict
+
+    @property
+    def gas(self) -> dict:
+        return self.case.get("combustion") or self.case["cylinder_pressure"]
+
+    @property
+    def area(self) -> float:
+        return np.pi / 4 * self.gas["bore"] ** 2
+
+    def lift(self, q: np.ndarray | float) -> np.ndarray | float:
+        """Distance of the piston from its top position [m]: the pins of an ideal rod are one rod's length apart."""
+        crank, rod = self.case["mechanism"]["crank_length"], self.case["mechanism"]["rod_length"]
+        return crank + rod - crank * np.cos(q) - np.sqrt(rod**2 - (crank * np.sin(q)) ** 2)
+
+    @property
+    def dead(self) -> float:
+        """Smallest volume [m^3]."""
+        swept = self.area * 2 * self.case["mechanism"]["crank_length"]
+        return swept * self.gas["dead_space"] if self.gas.get("cycle") == "compressor" else swept / (self.gas["compression_ratio"] - 1)
+
+    def volume(self, q: np.ndarray | float) -> np.ndarray | float:
+        return self.dead + self.area * self.lift(q)
+
+    def swept(self, q: np.ndarray) -> np.ndarray:
+        """Change of the volume with the crank angle [m^3/rad]."""
+        crank, rod = self.case["mechanism"]["crank_length"], self.case["mechanism"]["rod_length"]
+        return self.area * crank * np.sin(q) * (1 + crank * np.cos(q) / np.sqrt(rod**2 - (crank * np.sin(q)) ** 2))
+
+    def column(self, name: str) -> np.ndarray:
+        return self.rows[name].to_numpy()
+
+
+def run(program: Path, case: Path, *settings: str, name: str = "") -> Run:
+    with tempfile.TemporaryDirectory() as folder:
+        words = [str(program), "-q", "-o", folder]
+        for setting in settings:
+            words += ["--set", setting]
+        made = subprocess.run([*words, str(case)], capture_output=True, text=True, check=False)
+        check(made.returncode == 0, f"{case.stem} {name} is run", made.stderr)
+        out = Path(folder) / case.stem
+        return Run(pd.read_csv(f"{out}.csv"), f90nml.read(f"{out}.resolved.nml").todict())
+
+
+def worst(differences: np.ndarray) -> float:
+    return float(np.max(np.abs(differences)))
+
+
+def balance_of_heat(program: Path, case: Path, name: str, *settings: str) -> None:
+    """First law for the closed cylinder: the change of internal energy p V/(gamma - 1) plus the work on the piston is the heat that
+    Wiebe's function has released by then. Cycle after cycle."""
+    r = run(program, case, *CLOSE, *HELD, *settings, name=name)
+    gas, q, p = r.gas, r.column("crank_angle[rad]"), r.column("cylinder_pressure[Pa]")
+    check(worst(r.column("cylinder_volume[m3]") / r.volume(q) - 1) < 1e-12, f"{name}: volume of the cylinder")
+    force = (p - gas["crankcase_pressure"]) * r.area
+    check(worst(r.column("gas_force[N]") - force) < 1e-12 * worst(force), f"{name}: force of the gas")
+    two_strokes = gas["cycle"] == "two_stroke"
+    half_closed = gas["port_opens_deg"] if two_strokes else 180.0
+    period = 360.0 if two_strokes else 720.0
+    degrees = np.rad2deg(q)
+    way = np.sign(r.column("crank_speed[rad/s]")[0])
+    cycles = 0
+    for k in range(-5, 6):
+        centre = 360.0 + k * period
+        bounds = centre - 360.0 + np.array([360 - half_closed, gas["start_deg"], gas["start_deg"] + gas["duration_deg"], 360 + half_closed])
+        if bounds[0] < degrees.min() - 1e-6 or bounds[-1] > degrees.max() + 1e-6:
+            continue
+        cycles += 1
+        work, balance, released_last = 0.0, [], 0.0
+        first = None
+        for low, high in zip(bounds[:-1], bounds[1:]):   # the pressure has a kink at each bound
+            inside = (degrees >= low - 1e-7) & (degrees <= high + 1e-7)
+            order = np.argsort(degrees[inside])
+            angle, pressure = q[inside][order], p[inside][order].copy()
+            if low == bounds[0]:
+                first = gas["intake_pressure"] * r.volume(angle[0]) / (gas["heat_capacity_ratio"] - 1)
+            if high == bounds[-1]:   # the row where the cylinder opens may have the pressure after it
+                angle, pressure = angle[:-1], pressure[:-1]
+            done = work + cumulative_simpson(pressure * r.swept(angle), x=angle, initial=0.0)
+            inner = pressure * r.volume(angle) / (gas["heat_capacity_ratio"] - 1)
+            z = np.clip((np.rad2deg(angle) - bounds[1]) / gas["duration_deg"], 0, 1)
+            released = gas["heat"] * (1 - np.exp(-gas["wiebe_efficiency"] * z ** gas["wiebe_form"]))
+            balance.append(worst(inner - first + done - released))
+            released_last = released[-1]
+            work = done[-1]
+        check(max(balance) < 1e-7 * max(gas["heat"], first), f"{name}: heat released, work and internal energy",
+              f"{max(balance):.3g} J of {gas['heat']} J")
+        check(abs(released_last - gas["heat"] * (1 - np.exp(-gas["wiebe_efficiency"]))) < 1e-9 * max(gas["heat"], 1),
+              f"{name}: all heat is released before the cylinder opens")
+    check(cycles >= 2, f"{name}: closed cycles in the trace", f"{cycles}, crank turns {way:+.0f}")
+    opened = np.abs((degrees - 360 + period / 2) % period - period / 2) > half_closed + 1e-6
+    check(np.all(p[opened] == gas["intake_pressure"]), f"{name}: intake pressure in the open cylinder")
+    check(opened.sum() > 100, f"{name}: rows with an open cylinder")
+
+
+def expected_compressor(r: Run) -> dict[str, float]:
+    """Volumes at which the valves open, from p V^n alone, and the dead volume and the largest one."""
+    gas = r.gas
+    ratio = gas["discharge_pressure"] / gas["suction_pressure"]
+    largest = r.volume(np.pi)
+    return {"least": r.dead, "largest": largest, "discharge": largest * ratio ** (-1 / gas["polytropic_exponent"]),
+            "suction": r.dead * ratio ** (1 / gas["polytropic_exponent"])}
+
+
+def valves(program: Path, name: str, *settings: str) -> None:
+    """Balance of mass, opening points and work of a compressor. Along p V^n the temperature of the gas is a function of its pressure
+    alone, so the mass in the cylinder is proportional to p^(1/n) V."""
+    r = run(program, GAS / "compressor.nml", *CLOSE, *HELD, *settings, name=name)
+    gas, q, p, v = r.gas, r.column("crank_angle[rad]"), r.column("cylinder_pressure[Pa]"), r.column("cylinder_volume[m3]")
+    check(worst(v / r.volume(q) - 1) < 1e-12, f"{name}: volume of the cylinder")
+    want = expected_compressor(r)
+    low, high, n = gas["suction_pressure"], gas["discharge_pressure"], gas["polytropic_exponent"]
+    mass = (p / low) ** (1 / n) * v / want["largest"]   # over that of the full cylinder at the suction pressure
+    way = np.sign(r.column("crank_speed[rad/s]")[0])
+    turns = int(round(abs(q[-1] - q[0]) / (2 * np.pi)))
+    check(turns >= 2, f"{name}: revolutions in the trace")
+    delivering, sucking = p == high, p == low
+    closed = ~(delivering | sucking)
+    inwards = np.append(np.diff(v) < 0, False)
+    if want["discharge"] <= want["least"]:   # the discharge pressure is not reached
+        check(not delivering.any() and worst(mass - 1) < 1e-11, f"{name}: a constant mass where no valve opens")
+        return
+    rows_in = closed & inwards
+    rows_out = closed & ~inwards
+    check(worst(mass[rows_in] - 1) < 1e-10, f"{name}: the full cylinder is compressed without loss of mass")
+    kept = (high / low) ** (1 / n) * want["least"] / want["largest"]
+    check(worst(mass[rows_out][1:-1] / kept - 1) < 1e-10, f"{name}: the rest in the dead space expands without loss of mass")
+    check(np.all(np.diff(mass[delivering])[np.diff(np.flatnonzero(delivering)) == 1] < 0), f"{name}: gas only leaves through the discharge valve")
+    check(np.all(np.diff(mass[sucking])[np.diff(np.flatnonzero(sucking)) == 1] > 0), f"{name}: gas only enters through the suction valve")
+    # masses that leave and enter in each revolution, from the volumes swept while a valve is open
+    q_discharge = brentq(lambda x: r.volume(x) - want["discharge"], np.pi, 2 * np.pi, xtol=1e-15)
+    q_suction = brentq(lambda x: r.volume(x) - want["suction"], 0, np.pi, xtol=1e-15)
+    left = (high / low) ** (1 / n) * (want["discharge"] - want["least"]) / want["largest"]
+    entered = (want["largest"] - want["suction"]) / want["largest"]
+    check(abs(left - entered) < 1e-12 and abs(1 - kept - left) < 1e-12, f"{name}: as much gas leaves as enters")
+    # each opening lies between the two rows around it
+    spacing = 2 * np.pi / 3600
+    for what, is_open, at in (("discharge", delivering, q_discharge), ("suction", sucking, q_suction)):
+        begins = np.flatnonzero(is_open[1:] & ~is_open[:-1]) + 1
+        check(abs(len(begins) - turns) <= 1, f"{name}: the {what} valve opens once in a revolution")
+        angle = np.mod(way * q[begins], 2 * np.pi)   # volumes are symmetric: backwards the mirrored angles
+        check(np.all((angle >= at - 1e-9) & (angle <= at + spacing + 1e-9)), f"{name}: crank angle at which the {what} valve opens",
+              f"{np.rad2deg(angle)} instead of {np.rad2deg(at)}")
+        ends = np.flatnonzero(~is_open[1:] & is_open[:-1])
+        centre = 2 * np.pi if what == "discharge" else np.pi
+        check(worst(np.mod(way * q[ends] - centre + np.pi, 2 * np.pi) - np.pi) < 1e-9, f"{name}: the {what} valve closes at the dead centre")
+    # indicated work of one revolution: from the trace, and by quadrature of the four processes
+    last = slice(len(q) - 3601, len(q))   # backwards the volumes are those of the mirrored angles
+    work = work_of_turn(r, way * q[last], p[last], {q_discharge: high, q_suction: low})
+    exact = (low * (want["largest"] - want["suction"]) - high * (want["discharge"] - want["least"])
+             + quad(lambda x: high * (want["least"] / x) ** n, want["least"], want["suction"], epsabs=0, epsrel=1e-12)[0]
+             - quad(lambda x: low * (want["largest"] / x) ** n, want["discharge"], want["largest"], epsabs=0, epsrel=1e-12)[0])
+    check(abs(work / exact - 1) < 1e-7, f"{name}: work of the gas in a revolution", f"{work} instead of {exact} J")
+
+
+def work_of_turn(r: Run, q: np.ndarray, p: np.ndarray, openings: dict[float, float]) -> float:
+    """Integral of p dV over rows of increasing angle: Simpson's rule between dead centres and the rows around the opening of a valve,
+    for which the pressure is given; the trapezium of p over V from these rows to it."""
+    work = 0.0
+    first = {int(np.flatnonzero(np.diff(np.floor((q - at) / (2 * np.pi))))[0]): (at, pressure) for at, pressure in openings.items()}
+    centres = [i for i in range(len(q)) if abs(np.sin(q[i])) < 1e-6]
+    bounds = sorted({0, len(q) - 1, *centres, *first, *(i + 1 for i in first)})
+    for low, high in zip(bounds[:-1], bounds[1:]):
+        some = slice(low, high + 1)
+        if low in first:
+            at, pressure = first[low]
+            work += 0.5 * (p[low] + pressure) * (r.volume(at) - r.volume(q[low]))
+            work += 0.5 * (p[high] + pressure) * (r.volume(q[high]) - r.volume(at))
+        else:
+            work += cumulative_simpson(p[some] * r.swept(q[some]), x=q[some], initial=0.0)[-1]
+    return float(work)
+
+
+def crank_receives_the_work(program: Path, case: Path, name: str, *settings: str) -> None:
+    """A crank with a free drive: what energy the bodies gain is the work of the gas on the piston (and nothing else acts)."""
+    r = run(program, case, *CLOSE, "drive.kind=free", "drive.damping=0", "drive.torque=0", "mechanism.crank_inertia=2",
+            "mechanism.gravity=0", "combustion.crankcase_pressure=90000", *settings, name=name)
+    energy, force, x = r.column("energy[J]"), r.column("gas_force[N]"), r.column("piston_position[m]")
+    m = r.case["mechanism"]
+    # energy of the three bodies from positions, speeds and Koenig's theorem, rod's centre by its two components
+    q, a = r.column("crank_angle[rad]"), r.column("rod_angle[rad]")
+    qd, ad, xd = r.column("crank_speed[rad/s]"), r.column("rod_speed[rad/s]"), r.column("piston_velocity[m/s]")
+    along, across = m["rod_com"]
+    vx = -m["crank_length"] * np.sin(q) * qd - along * np.sin(a) * ad + across * np.cos(a) * ad
+    vy = m["crank_length"] * np.cos(q) * qd - along * np.cos(a) * ad - across * np.sin(a) * ad
+    kinetic = 0.5 * (m["crank_inertia"] * qd**2 + m["rod_mass"] * (vx**2 + vy**2) + m["rod_inertia"] * ad**2 + m["piston_mass"] * xd**2)
+    check(worst(energy - kinetic) < 1e-11 * worst(energy), f"{name}: kinetic energy of crank, rod and piston")
+    gained = energy - energy[0]
+    work = -np.concatenate(([0.0], np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(x))))   # the gas presses towards -x
+    check(worst(gained - work) < 2e-4 * worst(work), f"{name}: the bodies gain the work of the gas",
+          f"{worst(gained - work):.3g} of {worst(work):.4g} J")
+    check(worst(r.column("energy_residual[J]")) < 1e-8 * worst(energy), f"{name}: energy residual")
+
+
+def pressure_of_the_angle(program: Path) -> None:
+    """A crank that turns back in the middle of the cycle: the pressure of an engine and of a table is a function of the angle."""
+    case = TOP / "cases" / "sim_IV.nml"
+    forwards = run(program, case, *CLOSE, *HELD, "initial.crank_angle_deg=180", "initial.crank_speed=100",
+                   "integrator.revolutions=1", name="forwards")
+    known_q, known_p = forwards.column("crank_angle[rad]"), forwards.column("cylinder_pressure[Pa]")
+    closed = ("joint.kind=ideal", "contact=none", "friction=none", "lubrication=none", "output.ideal_twin=F", "output.digits=17",
+              "drive.damping=0", "mechanism.gravity=0", "integrator.relative_tolerance=1e-11", "output.interval=2e-5",
+              "integrator.revolutions=0", "integrator.end_time=0.08")
+    for start, speed in ((200, 60), (500, -120)):
+        r = run(program, case, *closed, f"initial.crank_angle_deg={start}", f"initial.crank_speed={speed}", name="turning back")
+        q, p, turn = r.column("crank_angle[rad]"), r.column("cylinder_pressure[Pa]"), r.column("crank_speed[rad/s]")
+        check(turn.min() < 0 < turn.max(), "a crank that turns back in the closed cylinder", f"from {start} degrees")
+        inside = (q > known_q[0]) & (q < known_q[-2])
+        wanted = np.interp(q[inside], known_q, known_p)
+        check(inside.sum() > 500 and worst(p[inside] / wanted - 1) < 2e-4, "a crank that turns back: pressure at its angle",
+              f"{worst(p[inside] / wanted - 1):.3g}, {inside.sum()} rows")
+
+
+def measured_pressure(program: Path) -> None:
+    """The table of a measured pressure: its values at its angles, between them nothing outside of its neighbours, every period."""
+    case = GAS / "measured.nml"
+    table = pd.read_csv(GAS / "indicator.csv", comment="#")
+    angles, bar = table.iloc[:, 0].to_numpy(float), table.iloc[:, 1].to_numpy(float)
+    for offset in (0, 123):
+        r = run(program, case, *CLOSE, *HELD, f"cylinder_pressure.offset_deg={offset}", "integrator.revolutions=5",
+                "output.samples_per_revolution=1440", name=f"offset {offset}")
+        degrees = np.rad2deg(r.column("crank_angle[rad]"))
+        p = r.column("cylinder_pressure[Pa]") / 1e5
+        place = np.mod(degrees - offset + 1e-9, 720) - 1e-9
+        at = np.searchsorted(angles, place + 1e-7, side="right") - 1
+        on_point = np.abs(place - angles[at]) < 1e-7
+        following = bar[(at + 1) % len(bar)]
+        check(on_point.sum() > 1500 and worst(p[on_point] / bar[at[on_point]] - 1) < 1e-6, "a measured pressure at the angles of its table")
+        lowest, highest = np.minimum(bar[at], following), np.maximum(bar[at], following)
+        check(np.all((p >= lowest * (1 - 1e-9) - 1e-12) & (p <= highest * (1 + 1e-9))), "a measured pressure is between its neighbours")
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", type=Path)
+    program = parser.parse_args().program or release_program()
+    engine, two_stroke = TOP / "cases" / "sim_IV.nml", GAS / "two_stroke.nml"
+    balance_of_heat(program, engine, "four strokes", "integrator.revolutions=5")
+    balance_of_heat(program, engine, "four strokes backwards", "integrator.revolutions=5", "initial.crank_speed=-250")
+    balance_of_heat(program, engine, "other numbers", "integrator.revolutions=5", "combustion.wiebe_form=2", "combustion.wiebe_efficiency=6.9",
+                    "combustion.heat_capacity_ratio=1.3", "combustion.start_deg=355", "combustion.duration_deg=100",
+                    "combustion.intake_pressure=80000", "combustion.crankcase_pressure=120000")
+    balance_of_heat(program, engine, "compression alone", "integrator.revolutions=5", "combustion.heat=0")
+    balance_of_heat(program, two_stroke, "two strokes", "integrator.revolutions=4")
+    balance_of_heat(program, two_stroke, "two strokes backwards", "integrator.revolutions=4", "initial.crank_speed=-628.3")
+    for name, *settings in (("compressor",), ("compressor backwards", "initial.crank_speed=-157"),
+                            ("isothermal compressor", "combustion.polytropic_exponent=1", "combustion.dead_space=0.2"),
+                            ("compressor of one bar more", "combustion.discharge_pressure=2e5", "combustion.polytropic_exponent=1.4"),
+                            ("compressor that never opens", "combustion.discharge_pressure=9e6")):
+        valves(program, name, "integrator.revolutions=3", *settings)
+    crank_receives_the_work(program, engine, "engine with a free crank", "integrator.crank_revolutions=4")
+    crank_receives_the_work(program, GAS / "compressor.nml", "compressor with a free crank", "integrator.crank_revolutions=2")
+    pressure_of_the_angle(program)
+    measured_pressure(program)
+    return assertions.report()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
