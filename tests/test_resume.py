@@ -296,6 +296,23 @@ def results_of_others(gudgeon: Gudgeon, work: Path) -> None:
         path.write_text(text[:at] + ("0" if text[at] != "0" else "1") + text[at + 1:])
     for end in (".summary.csv", ".ideal.summary.csv"):
         taken_up(f"sim_I{end} of another run", f"sim_I{end}", of_another, end.startswith(".ideal"))
+    # files that only some runs have, and a certificate that is wanted later
+    for case, more, end in ((file, ("--set", "output.film_times=0.001"), ".film.csv"), (CASES / "wear" / "flores.nml", (), ".wear.csv"),
+                            (file, ("--certify",), ".certificate.csv")):
+        said = (*words[:-1], *more, "-o", work / f"with{end}", case)
+        result = work / f"with{end}" / (case.stem + end)
+        check(gudgeon.run(*said)[0] == 0 and result.exists(), f"a run with {end}")
+        check("done already" in gudgeon.run("--resume", *said)[1], f"a run with {end} is done")
+        before = result.read_bytes()
+        result.unlink()
+        status, out, err = gudgeon.run("--resume", *said)
+        check(status == 0 and "done already" not in out and result.exists() and result.read_bytes() == before,
+              f"without its {end} it is run again: {status} {out}{err}")
+    status, out, err = gudgeon.run("--resume", "--certify", "-o", whole, *words)
+    check(status == 0 and "digits to" in out and (whole / "sim_I.certificate.csv").exists(),
+          f"a run that is done and has no certificate gets one: {status} {out}{err}")
+    shutil.rmtree(whole)
+    gudgeon.run("-o", whole, *words)
     # a scene without contacts and without an ideal twin removes the files of a scene that had them
     plain = work / "sim_I.nml"
     shutil.copy(CASES / "flores" / "ideal.nml", plain)

@@ -15,9 +15,10 @@ module case_run
   use certificate, only: certificate_t, make_certificate
   use certificate_text, only: certificate_table, certificate_summary, certificate_clause
   use gudgeon_archive, only: archive_t
-  use gudgeon_summary, only: summary_table, summary_line
+  use gudgeon_summary, only: summary_table, summary_line, summary_value
   use stability_advice, only: advice
-  use gudgeon_posix, only: synchronise_folder, remove_file, error_text
+  use gudgeon_posix, only: synchronise_folder, remove_file, error_text, file_length
+  use text_file, only: read_whole
   use text_tools, only: printable
   implicit none
   private
@@ -79,11 +80,13 @@ contains
     end associate
   end subroutine prepare
 
-  !> Look for an earlier, incomplete run of the same case. Errors: see `look_for` of continuation_t.
+  !> Look for an earlier, incomplete run of the same case. A run that lacks a result which is wanted now, such as a certificate, is
+  !> not done. Errors: see `look_for` of continuation_t.
   subroutine look_for_earlier(self, error)
     class(case_run_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
     call self%start%look_for(self%base, self%case%file, .not. self%is_twin, has_events(self), error)
+    self%start%is_done = self%start%is_done .and. has_other_results(self)
     if (self%start%is_done) self%line = self%case%file//': done already; '//self%base//'.csv'
   end subroutine look_for_earlier
 
@@ -262,6 +265,24 @@ contains
     class(case_run_t), intent(in) :: self
     has_events = self%case%has_contact() .and. .not. self%is_twin
   end function has_events
+
+  !> Whether the results of a completed run include the files that only some runs have, besides the events.
+  logical function has_other_results(self)
+    class(case_run_t), intent(in) :: self
+    character(len=:), allocatable :: table
+    integer :: status
+    has_other_results = .true.
+    if (self%is_twin) return
+    if (self%case%output%film_times /= '') has_other_results = file_length(self%base//'.film.csv') >= 0
+    if (allocated(self%case%joint%wear) .or. allocated(self%case%crank_pin%wear)) &
+      has_other_results = has_other_results .and. file_length(self%base//'.wear.csv') >= 0
+    if (.not. self%certifies) return
+    call read_whole(self%base//'.summary.csv', table, status)
+    if (status /= 0) table = ''
+    if (summary_value(table, 'certificate') /= '') return   ! no certificate can be made
+    has_other_results = has_other_results .and. summary_value(table, 'certified_until') /= '' &
+      .and. file_length(self%base//'.certificate.csv') >= 0
+  end function has_other_results
 
   !> Add to the message of a run that was stopped how it can be continued.
   subroutine tell_how_to_go_on(files, error)
