@@ -513,6 +513,28 @@ study tolerances <<'END'
 END
 refused "an accuracy level beside a varied tolerance" 2 "--accuracy draft: the study varies integrator.relative_tolerance" \
   -a draft "$work/tolerances.nml"
+study films <<'END'
+&study case = 'base.nml' /
+&parameter key = 'lubrication.viscosity', values = 0.01, 0.02 /
+END
+refused "the removal of a varied group" 2 "--set Lubrication=none: the study varies lubrication.viscosity" \
+  -s Lubrication=none "$work/films.nml"
+study contacts <<'END'
+&study case = 'base.nml' /
+&parameter key = 'contact.restitution', values = 0.5, 0.6 /
+END
+run sweep --check -s contact=none -s contact.law=hunt_crossley "$work/contacts.nml"
+check "a group that is removed and given anew may be varied" [ "$status" = 0 ]
+refused "an interval of checkpoints" 2 "--checkpoint is for cases" --checkpoint 5 "$work/films.nml"
+printf 'joint.clearance\n1e-5\n' >"$work/own.runs.csv"
+echo "&study case = 'base.nml', table = 'own.runs.csv' /" >"$work/own.nml"
+for fresh in "" --fresh; do
+  run sweep $fresh -o "$work" "$work/own.nml"
+  check "a table that the results would replace is refused" [ "$status" = 2 -a "$(cat "$work/own.runs.csv" | head -n 1)" = joint.clearance ]
+  check "with its key and file" grep -q "own.nml: &study table: .*own.runs.csv would be replaced by the results" "$work/err"
+done
+run sweep -q -o "$work/elsewhere" "$work/own.nml"
+check "in another folder it is read" [ "$status" = 0 ]
 run sweep -q -a draft -s integrator.revolutions=1 -o "$work/level" "$work/ends.nml"
 check "an accuracy level for a study that varies other keys" [ "$status" = 0 ]
 refused "rows backwards" 2 "A:B" --rows 5:4 "$work/grid.nml"

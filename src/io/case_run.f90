@@ -86,7 +86,7 @@ contains
     class(case_run_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
     call self%start%look_for(self%base, self%case%file, .not. self%is_twin, has_events(self), error)
-    self%start%is_done = self%start%is_done .and. has_other_results(self)
+    if (self%start%is_done) self%start%is_done = has_other_results(self)
     if (self%start%is_done) self%line = self%case%file//': done already; '//self%base//'.csv'
   end subroutine look_for_earlier
 
@@ -273,15 +273,21 @@ contains
     integer :: status
     has_other_results = .true.
     if (self%is_twin) return
-    if (self%case%output%film_times /= '') has_other_results = file_length(self%base//'.film.csv') >= 0
-    if (allocated(self%case%joint%wear) .or. allocated(self%case%crank_pin%wear)) &
-      has_other_results = has_other_results .and. file_length(self%base//'.wear.csv') >= 0
+    if (self%case%output%film_times /= '') call demand('.film.csv')
+    if (allocated(self%case%joint%wear) .or. allocated(self%case%crank_pin%wear)) call demand('.wear.csv')
     if (.not. self%certifies) return
     call read_whole(self%base//'.summary.csv', table, status)
     if (status /= 0) table = ''
     if (summary_value(table, 'certificate') /= '') return   ! no certificate can be made
-    has_other_results = has_other_results .and. summary_value(table, 'certified_until') /= '' &
-      .and. file_length(self%base//'.certificate.csv') >= 0
+    call demand('.certificate.csv')
+    if (summary_value(table, 'certified_until') == '') has_other_results = .false.
+
+  contains
+
+    subroutine demand(suffix)
+      character(len=*), intent(in) :: suffix
+      if (file_length(self%base//suffix) < 0) has_other_results = .false.
+    end subroutine demand
   end function has_other_results
 
   !> Add to the message of a run that was stopped how it can be continued.

@@ -10,6 +10,7 @@ module command_line
   !> The contents of the command line.
   type :: command_line_t
     integer, private :: override_count = 0, case_count = 0, option_count = 0
+    logical, private :: has_interval = .false.    !! the interval of checkpoints is given
     character(len=:), allocatable :: out          !! folder for results
     character(len=:), allocatable :: overrides(:) !! GROUP.KEY=VALUE or GROUP=none in the given order, padded with blanks
     character(len=:), allocatable :: accuracy     !! draft, standard, reference, or empty: as in the case file
@@ -94,6 +95,8 @@ contains
       call refuse('--fresh and --rows are for gudgeon sweep')
     else if (line%sweep .and. line%resume) then
       call refuse('--resume is for cases; a stopped sweep continues without it')
+    else if (line%sweep .and. line%has_interval) then
+      call refuse('--checkpoint is for cases; a sweep keeps every run that has ended')
     else
       call check_names()
     end if
@@ -185,6 +188,7 @@ contains
         line%progress = value
         if (all(value /= ['auto  ', 'always', 'never '])) wanted = 'must be auto, always or never'
       case ('checkpoint')
+        line%has_interval = .true.
         line%checkpoint_interval = -1
         if (value /= '' .and. value /= '.' .and. verify(value, '0123456789.') == 0 .and. len(value) < 10) &
           read (value, *, iostat=status) line%checkpoint_interval
@@ -215,9 +219,10 @@ contains
       if (allocated(wanted)) call refuse('--'//trim(name)//' '//printable(value, 60)//': '//wanted)
     end subroutine take
 
-    !> Check that no two cases would write files of the same name: a/x.nml and b/x.nml, or x.nml and x.ideal.nml.
+    !> Check that no two cases would write files of the same name: a/x.nml and b/x.nml, or x.nml and x.ideal.nml, x.film.nml, ...
     subroutine check_names()
-      character(len=8), parameter :: suffixes(4) = ['        ', '.ideal  ', '.events ', '.summary']
+      character(len=12), parameter :: suffixes(7) = [character(len=12) :: '', '.ideal', '.events', '.summary', '.film', '.wear', &
+        '.certificate']
       character(len=:), allocatable :: one, other
       integer :: first, second
       do first = 1, size(line%cases)

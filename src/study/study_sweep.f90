@@ -20,6 +20,7 @@ module study_sweep
   use random_numbers, only: random_numbers_t
   use row_file, only: row_file_t
   use case_lock, only: case_lock_t
+  use gudgeon_posix, only: absolute_path
   implicit none
   private
   public :: sweep_t, read_sweep, check_rows, study_checksum, file_cycles, file_strobes, file_runs
@@ -112,11 +113,40 @@ contains
         call choose_columns(case, .false., sweep%strobe_list, error)
         if (allocated(error)) error%message = at//'strobe_columns: '//error%message
       end if
+      if (.not. allocated(error)) call keep_inputs(sweep, error)
       sweep%has_strobes = study%strobe_columns /= ''
     end associate
   end subroutine read_sweep
 
-  !> Refuse overrides and accuracy levels that set a key which the study varies: they would have no effect on it.
+  !> Check that the results do not replace a file that the study reads, such as the table x.runs.csv of the study x.nml.
+  subroutine keep_inputs(sweep, error)
+    type(sweep_t), intent(in) :: sweep
+    type(error_t), allocatable, intent(out) :: error
+    character(len=*), parameter :: suffixes(*) = [character(len=11) :: '.runs.csv', '.cycles.csv', '.strobe.csv', '.study.nml']
+    character(len=:), allocatable :: written
+    integer :: i
+    do i = 1, size(suffixes)
+      written = absolute_path(sweep%path//trim(suffixes(i)))
+      call refuse('&study case', absolute_path(sweep%study%case))
+      call refuse('&study table', absolute_path(sweep%study%table))
+      associate (case => sweep%base%case)
+        if (allocated(case%drive%table%path)) call refuse('&drive torque_table', case%drive%table%path)
+        if (allocated(case%measured)) call refuse('&cylinder_pressure table', case%measured%curve%path)
+      end associate
+    end do
+
+  contains
+
+    subroutine refuse(key, path)
+      character(len=*), intent(in) :: key, path
+      if (path /= written .or. allocated(error)) return
+      call fail(error, printable(sweep%study%file, 200)//': '//key//': '//printable(sweep%path, 200)//trim(suffixes(i))// &
+        ' would be replaced by the results: give another folder with --out, or that file another name', status_command_line)
+    end subroutine refuse
+  end subroutine keep_inputs
+
+  !> Refuse overrides and accuracy levels that set a key which the study varies, or remove its group: they would have no effect on
+  !> it.
   subroutine refuse_varied(settings, options, values, keys, error)
     character(len=*), intent(in) :: settings(:)   !! those of the accuracy level, followed by the overrides
     type(command_line_t), intent(in) :: options
@@ -130,7 +160,11 @@ contains
       dot = index(name, '.', back=.true.)
       place = 0
       if (dot > 0) place = values%place_of(trim(adjustl(name(:dot - 1))), trim(adjustl(name(dot + 1:))))
-      if (place == 0) cycle   ! a group is removed
+      if (dot == 0) then   ! a group is removed
+        call refuse_removed(trim(adjustl(name)))
+        if (allocated(error)) return
+      end if
+      if (place == 0) cycle
       associate (key => values%keys(place))
         name = trim(key%group)//'.'//trim(key%name)
       end associate
@@ -140,6 +174,21 @@ contains
       call fail(error, said//': the study varies '//name, status_command_line)
       return
     end do
+
+  contains
+
+    !> Refuse the removal of a group with a varied key, unless a later override begins the group again.
+    subroutine refuse_removed(group)
+      character(len=*), intent(in) :: group
+      do k = i + 1, size(settings)
+        if (index(lowercase(adjustl(settings(k))), group//'.') == 1) return
+      end do
+      do k = 1, size(keys)
+        if (index(lowercase(keys(k)), group//'.') /= 1) cycle
+        call fail(error, '--set '//printable(trim(settings(i)), 60)//': the study varies '//trim(keys(k)), status_command_line)
+        return
+      end do
+    end subroutine refuse_removed
   end subroutine refuse_varied
 
   !> Check that every text of a table or list is a value of its key.
