@@ -36,6 +36,8 @@ module auto_method
     procedure :: start
     procedure :: step
     procedure :: interpolate
+    procedure :: may_improve
+    procedure :: improve
     procedure :: land_on
     procedure :: withdraw
     procedure :: count_time
@@ -204,6 +206,21 @@ contains
       call self%adams_t%interpolate(t, y)
     end if
   end subroutine interpolate
+
+  pure logical function may_improve(self, t)
+    class(auto_t), intent(in) :: self
+    real(dp), intent(in) :: t
+    may_improve = .false.
+    if (self%stiff) may_improve = self%radau%may_improve(t)
+  end function may_improve
+
+  pure subroutine improve(self, t, f, y, is_better)
+    class(auto_t), intent(inout) :: self
+    real(dp), intent(in) :: t, f(:)
+    real(dp), intent(inout) :: y(:)
+    logical, intent(out) :: is_better
+    call self%radau%improve(t, f, y, is_better)
+  end subroutine improve
 
   subroutine land_on(self, problem, t, y, landed)
     class(auto_t), intent(inout) :: self

@@ -90,6 +90,8 @@ module ode_method
     procedure(start), deferred :: start
     procedure(step), deferred :: step
     procedure(interpolate), deferred :: interpolate
+    procedure :: may_improve => never
+    procedure :: improve => leave_as_it_is
     procedure :: land_on
     procedure :: withdraw => start_again
     procedure, non_overridable :: difference
@@ -144,6 +146,28 @@ contains
     nominal_tolerance = self%settings%tolerance
     if (.not. nominal_tolerance > 0) nominal_tolerance = maxval(self%settings%relative)
   end function nominal_tolerance
+
+  !> Improve a state inside the last step, found by `interpolate`, where f is the right-hand side. Methods whose steps are more
+  !> accurate than their interpolant do so where it makes a difference, and set `is_better`; the default does not.
+  pure subroutine leave_as_it_is(self, t, f, y, is_better)
+    class(ode_method_t), intent(inout) :: self
+    real(dp), intent(in) :: t
+    real(dp), intent(in) :: f(:)         !! (n)
+    real(dp), intent(inout) :: y(:)      !! (n)
+    logical, intent(out) :: is_better
+    associate (unused_self => self, unused_time => t, unused_rates => f, unused_state => y)
+    end associate
+    is_better = .false.
+  end subroutine leave_as_it_is
+
+  !> Whether `improve` may improve a state at this time. The default is no.
+  pure logical function never(self, t)
+    class(ode_method_t), intent(in) :: self
+    real(dp), intent(in) :: t
+    associate (unused_self => self, unused_time => t)
+    end associate
+    never = .false.
+  end function never
 
   !> State at a time inside the last step at which the integration is to be restarted. Methods with steps more accurate than their
   !> interpolant repeat the step up to that time, and `landed` is false where they cannot; the default interpolates.

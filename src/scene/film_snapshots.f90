@@ -6,6 +6,7 @@ module film_snapshots
   use film_law, only: film_motion_t
   use ode_method, only: ode_method_t
   use gudgeon_scene, only: scene_t, evaluation_t
+  use inside_step, only: look_inside
   use film_figures, only: acting_film
   implicit none
   private
@@ -47,11 +48,12 @@ contains
   end subroutine prepare
 
   !> Store the motions at the requested times in the last step of the method, up to t_to.
-  subroutine take(self, method, scene, t_to)
+  subroutine take(self, method, scene, t_to, evaluations)
     class(film_snapshots_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t_to
+    integer, intent(inout) :: evaluations   !! of the scene so far, increased by those made here
     type(evaluation_t) :: now
     type(film_motion_t) :: seen
     real(dp) :: y(scene%n), share
@@ -59,8 +61,7 @@ contains
     integer :: i
     do while (self%next <= size(self%times))
       if (self%times(self%next) > t_to) exit
-      call method%interpolate(self%times(self%next), y)
-      call scene%evaluate(self%times(self%next), y, now, inside)
+      call look_inside(scene, method, self%times(self%next), y, now, inside, evaluations)
       do i = 1, merge(scene%n_joints, 0, inside)
         if (.not. allocated(scene%joints(i)%film)) cycle
         if (.not. scene%joints(i)%film%gives_pressure()) cycle

@@ -12,6 +12,7 @@ module gudgeon_recorder
   use chain_motion, only: crank_pin, piston_pin, most_pins => n_pins
   use gudgeon_scene, only: scene_t, evaluation_t, event_none, event_contact_begins, of_guide, of_wear, &
     phase_contact
+  use inside_step, only: look_inside
   use joint_events, only: penetration_and_rate, may_lose_force, force_share
   use gudgeon_columns, only: column_list_t, row_values
   use angle_grid, only: angle_grid_t
@@ -142,7 +143,7 @@ contains
       call self%patience%limit_end(t_end)
       if (self%periods%is_on) call watch_periods(self, method, problem, t_end)
       if (.not. self%every_step .and. size(self%values) > 0) call put_samples(self, method, problem, t_end)
-      if (allocated(self%films)) call self%films%take(method, problem, t_end)
+      if (allocated(self%films)) call self%films%take(method, problem, t_end, self%figures%evaluations)
       if (t_end < method%t) then
         call method%interpolate(t_end, self%y)
         call take_end(self, method, problem, t_end, self%y)
@@ -203,8 +204,7 @@ contains
       do
         t = self%first_sample + self%next_row*self%interval
         if (t > t_to .or. t > self%end_time*(1 + 4*epsilon(t))) exit
-        call method%interpolate(t, self%y)
-        call self%write_row(scene, t, self%y)
+        call put_sample(self, method, scene, t)
         self%next_row = self%next_row + 1
       end do
       return
@@ -216,12 +216,26 @@ contains
       do
         call self%angles%next_passage(method, scene, t_from, ends(part), t, self%y, is_found)
         if (.not. is_found) exit
-        if (t >= self%first_sample) call self%write_row(scene, t, self%y)
+        if (t >= self%first_sample) call put_sample(self, method, scene, t)
         t_from = t
       end do
       t_from = ends(part)
     end do
   end subroutine put_samples
+
+  !> Write the row of a time inside the last step.
+  subroutine put_sample(self, method, scene, t)
+    class(recorder_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t
+    type(evaluation_t) :: now
+    logical :: inside
+    call look_inside(scene, method, t, self%y, now, inside, self%figures%evaluations)
+    if (.not. inside) return
+    if (allocated(scene%chain%elastic)) call take_elastic(self%figures%elastic, scene, now)
+    call take_row(self, scene, t, self%y, now)
+  end subroutine put_sample
 
   !> Report the progress of the run to the sink. If the run ends after a number of turns, its end is estimated from the mean speed
   !> so far.
@@ -509,16 +523,24 @@ contains
     real(dp), intent(in) :: t, y(scene%n)
     type(evaluation_t) :: now
     logical :: inside
-    integer :: i
     if (size(self%values) == 0) return
     call look_at(self, scene, t, y, now, inside)
-    if (.not. inside) return
+    if (inside) call take_row(self, scene, t, y, now)
+  end subroutine write_row
+
+  !> Account for the values of an evaluation and write its row.
+  subroutine take_row(self, scene, t, y, now)
+    class(recorder_t), intent(inout) :: self
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(scene%n)
+    type(evaluation_t), intent(in) :: now
+    integer :: i
     do i = 1, self%n_pins   ! without revolution counts: those must not depend on whether rows are written
       call self%pins(i)%take_values(scene, now, self%figures)
     end do
     call self%guide%take_values(scene, now, self%figures)
     call put_row(self, scene, t, y, now)
-  end subroutine write_row
+  end subroutine take_row
 
   subroutine put_row(self, scene, t, y, now)
     class(recorder_t), intent(inout) :: self

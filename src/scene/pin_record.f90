@@ -4,6 +4,7 @@ module pin_record
   use gudgeon_archive, only: archive_t
   use ode_method, only: ode_method_t
   use gudgeon_scene, only: scene_t, evaluation_t, phase_contact, event_contact_begins
+  use inside_step, only: look_inside
   use step_peaks, only: peak_watch_t, of_pin_force, of_penetration, of_normal_force, n_peaks
   use cycle_watch, only: cycle_watch_t
   use wear_record, only: wear_record_t
@@ -105,7 +106,7 @@ contains
     type(evaluation_t), intent(in) :: now
     type(run_figures_t), intent(inout) :: figures
     real(dp), parameter :: place(3) = 0.5_dp + sqrt(0.15_dp)*[-1, 0, 1], weight(3) = [5, 8, 5]/18.0_dp
-    type(evaluation_t) :: inside_step
+    type(evaluation_t) :: halfway
     type(film_figures_t) :: film
     real(dp) :: y(size(method%y)), span
     logical :: inside
@@ -113,11 +114,9 @@ contains
     span = t - self%film_time
     associate (f => figures%pin(self%pin), joint => scene%joints(self%joint), k => self%joint)
       do i = 1, merge(3, 0, span > 0)
-        call method%interpolate(self%film_time + place(i)*span, y)
-        call scene%evaluate(self%film_time + place(i)*span, y, inside_step, inside)
-        figures%evaluations = figures%evaluations + 1
+        call look_inside(scene, method, self%film_time + place(i)*span, y, halfway, inside, figures%evaluations)
         if (.not. inside) cycle
-        film = film_figures_of(joint, inside_step%relative(k), inside_step%joint(k))
+        film = film_figures_of(joint, halfway%relative(k), halfway%joint(k))
         f%film_energy_lost = f%film_energy_lost + weight(i)*span*film%power
         f%film_volume = f%film_volume + weight(i)*span*film%side_flow
         f%max_film_pressure = max(f%max_film_pressure, film%max_pressure)

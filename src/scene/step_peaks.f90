@@ -12,6 +12,7 @@ module step_peaks
   use chain_loads, only: force_size
   use joint_motion, only: joint_motion_t
   use gudgeon_scene, only: scene_t, evaluation_t, phase_free, phase_contact
+  use inside_step, only: look_inside
   use peak_search, only: sample_t, peak_search_t, may_peak
   implicit none
   private
@@ -264,13 +265,12 @@ contains
     type(joint_motion_t) :: motion
     real(dp) :: normal_force, y(size(method%y))
     logical :: inside
-    call method%interpolate(t, y)
     if (quantity == of_pin_force) then
-      self%evaluations = self%evaluations + 1
-      call scene%evaluate(t, y, now, inside)
+      call look_inside(scene, method, t, y, now, inside, self%evaluations)
       value = no_peak
       if (inside) value = force_size(now%loads%force(:, self%pin))
     else
+      call method%interpolate(t, y)
       call scene%joints(self%joint)%look(y, motion, normal_force)
       value = merge(motion%penetration, normal_force, quantity == of_penetration)
     end if

@@ -58,6 +58,8 @@ module collocation
     real(dp), allocatable, private :: w(:, :), dw(:, :), rates(:, :)   !! (k, most_stages)
     real(dp), allocatable, private :: f_stage(:, :) !! right-hand side at the stages, (n, most_stages)
     real(dp), allocatable, private :: y_stage(:, :) !! (n, most_stages)
+    real(dp), private :: tau = 0                    !! time constant of the matrix in e1 after a step; 0: it belongs to the step
+    real(dp), allocatable, private :: defect(:), correction(:)   !! in `improve`, (m + k)
     real(dp), allocatable, private :: step_weight(:) !! weights of a Newton step, including its effect on the positions, (k)
     real(dp), allocatable, private :: e1(:, :)      !! real matrix, (k, k)
     real(dp), allocatable, private :: e2(:, :, :)   !! complex matrices, real and imaginary parts alternating, (k, k, 2 pairs)
@@ -70,6 +72,7 @@ module collocation
     procedure :: keep
     procedure :: filtered_error
     procedure :: polynomial
+    procedure :: improve
     procedure :: fastest_rate
     procedure :: exchange
   end type collocation_t
@@ -81,6 +84,29 @@ module collocation
       real(dp), intent(in) :: x
       real(dp), intent(out) :: change(:)   !! (n)
     end subroutine polynomial
+
+    !> Rate of change of the first components of y along it, per step.
+    pure module subroutine polynomial_slope(self, x, slope)
+      class(collocation_t), intent(in) :: self
+      real(dp), intent(in) :: x
+      real(dp), intent(out) :: slope(:)
+    end subroutine polynomial_slope
+
+    !> Improve a state y of this polynomial u between the ends of the step, where f is the right-hand side. Between its nodes u'
+    !> differs from f(u) by d, and the error e of u obeys e' = J e + d. Its stiff part follows d at once, e = -J^-1 d. The other part
+    !> is the integral of d, which nearly vanishes from node to node; it remains. Both are
+    !>
+    !>     e = (I - F) F tau d,   F = (I - tau J)^-1,   tau = min(x h, h/gamma),
+    !>
+    !> with the Jacobian of the step. Positions, whose errors matter little, remain. So does the whole state if the error of a
+    !> position would exceed the inner tolerance: then J does not describe the defect.
+    pure module subroutine improve(self, x, f, y, is_better)
+      class(collocation_t), intent(inout) :: self
+      real(dp), intent(in) :: x
+      real(dp), intent(in) :: f(:)         !! (n)
+      real(dp), intent(inout) :: y(:)      !! (n)
+      logical, intent(out) :: is_better
+    end subroutine improve
 
     !> Compute and factorise the matrices of Newton's equations for the present step size.
     pure module subroutine decompose_matrices(self, singular)
@@ -142,11 +168,13 @@ contains
       self%per_node(:, i) = inverse_node_products(self%formula(i))
     end do
     if (allocated(self%z)) deallocate (self%z, self%z_new, self%w, self%dw, self%rates, self%f_stage, self%y_stage, &
-      self%step_weight, self%base, self%a_p, self%a_v, self%e1, self%e2, self%pivot1, self%pivot2, self%inverse_weight)
+      self%step_weight, self%base, self%a_p, self%a_v, self%e1, self%e2, self%pivot1, self%pivot2, self%inverse_weight, &
+      self%defect, self%correction)
     allocate (self%z(n, most_stages), self%z_new(n, most_stages), self%w(k, most_stages), self%dw(k, most_stages), &
       self%rates(k, most_stages), self%f_stage(n, most_stages), self%y_stage(n, most_stages), self%step_weight(k), self%base(n), &
       self%a_p(k, m), self%a_v(k, k), self%e1(k, k), self%e2(k, k, 2*most_pairs), self%pivot1(k), &
-      self%pivot2(k, most_pairs), self%inverse_weight(n))
+      self%pivot2(k, most_pairs), self%inverse_weight(n), self%defect(m + k), self%correction(m + k))
+    self%tau = 0
     self%z = 0
     self%z_new = 0     ! quadratures are computed at the end of a step only
     self%y_stage = 0
@@ -209,6 +237,7 @@ contains
     self%z(:, :s) = self%z_new(:, :s)
     self%stages_done = s
     self%h_done = self%h
+    self%tau = 0
   end subroutine keep
 
   !> An upper bound of the rate of the fastest mode of the last Jacobian: the row-sum norm of a_v and the square root of that of

@@ -8,6 +8,37 @@ contains
       0.0_dp, self%z, self%n, change)
   end procedure polynomial
 
+  !> With the products P of the distances before a node and Q of those behind it, (P Q)' = P' Q + P Q'.
+  module procedure polynomial_slope
+    real(dp) :: weights(most_stages), before(most_stages), before_slope(most_stages), product, product_slope, total
+    integer :: i, r, s
+    s = self%stages_done
+    associate (node => self%formula(s/2)%c, per_node => self%per_node(1:, s/2))
+      product = x
+      product_slope = 1
+      do i = 1, s
+        before(i) = product
+        before_slope(i) = product_slope
+        product_slope = product_slope*(x - node(i)) + product
+        product = product*(x - node(i))
+      end do
+      product = 1
+      product_slope = 0
+      do i = s, 1, -1
+        weights(i) = (before_slope(i)*product + before(i)*product_slope)*per_node(i)
+        product_slope = product_slope*(x - node(i)) + product
+        product = product*(x - node(i))
+      end do
+    end associate
+    do r = 1, size(slope)
+      total = weights(1)*self%z(r, 1)
+      do i = 2, s
+        total = total + weights(i)*self%z(r, i)
+      end do
+      slope(r) = total
+    end do
+  end procedure polynomial_slope
+
   module procedure guess_stages
     real(dp) :: at_begin
     integer :: i

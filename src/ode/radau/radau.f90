@@ -47,6 +47,8 @@ module radau
     procedure :: start
     procedure :: step
     procedure :: interpolate
+    procedure :: may_improve
+    procedure :: improve
     procedure :: land_on
     procedure :: withdraw
     procedure :: exchange
@@ -312,4 +314,19 @@ contains
     call self%stages%polynomial((t - self%t_old)/(self%t - self%t_old), y)
     y = self%y_old + y
   end subroutine interpolate
+
+  pure logical function may_improve(self, t)
+    class(radau_t), intent(in) :: self
+    real(dp), intent(in) :: t
+    may_improve = self%stages%stages_done > 0 .and. t > self%t_old .and. t < self%t
+  end function may_improve
+
+  !> See `improve` of collocation_t.
+  pure subroutine improve(self, t, f, y, is_better)
+    class(radau_t), intent(inout) :: self
+    real(dp), intent(in) :: t, f(:)
+    real(dp), intent(inout) :: y(:)
+    logical, intent(out) :: is_better
+    call self%stages%improve((t - self%t_old)/(self%t - self%t_old), f, y, is_better)
+  end subroutine improve
 end module radau
