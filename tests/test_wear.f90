@@ -95,7 +95,8 @@ contains
     call check%close_to(cylinder%half_angle(1e-6_dp) + sphere%half_angle(1e-6_dp), 0.0_dp, 0.0_dp, 'half-angles of lines')
   end subroutine pressures_carry_the_load
 
-  !> Int p dtheta over the arc by the midpoint rule in s with theta = a sin s, or `along` the line of centres Int p cos theta dtheta.
+  !> Int p dtheta over the arc by the midpoint rule in s with theta = a sin s, or `along` the line of centres Int p cos theta
+  !> dtheta.
   real(dp) function integral_over_arc(geometry, a, along) result(total)
     class(contact_geometry_t), intent(in) :: geometry
     real(dp), intent(in) :: a

@@ -233,7 +233,7 @@ contains
     logical :: inside
     call look_inside(scene, method, t, self%y, now, inside, self%figures%evaluations)
     if (.not. inside) return
-    if (allocated(scene%chain%elastic)) call take_elastic(self%figures%elastic, scene, now)
+    call self%elastic%take_values(scene, now, self%figures%elastic)
     call take_row(self, scene, t, self%y, now)
   end subroutine put_sample
 

@@ -93,8 +93,8 @@ module collocation
     end subroutine polynomial_slope
 
     !> Improve a state y of this polynomial u between the ends of the step, where f is the right-hand side. Between its nodes u'
-    !> differs from f(u) by d, and the error e of u obeys e' = J e + d. Its stiff part follows d at once, e = -J^-1 d. The other part
-    !> is the integral of d, which nearly vanishes from node to node; it remains. Both are
+    !> differs from f(u) by d, and the error e of u obeys e' = J e + d. Its stiff part follows d at once, e = -J^-1 d. The other
+    !> part is the integral of d, which nearly vanishes from node to node; it remains. Both are
     !>
     !>     e = (I - F) F tau d,   F = (I - tau J)^-1,   tau = min(x h, h/gamma),
     !>
