@@ -28,6 +28,7 @@ import pandas as pd  # noqa: E402
 
 from gudgeon_plots import cycle_pictures, figures, language  # noqa: E402
 from gudgeon_plots.cycles import orders, whole_cycles, work  # noqa: E402
+from gudgeon_plots.limits import number  # noqa: E402
 from gudgeon_plots.report_cycles import COLUMNS, chosen  # noqa: E402
 from gudgeon_plots.results import MissingResult, Results  # noqa: E402
 
@@ -37,10 +38,10 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("case", metavar="NAME", help="name of a case, its file or its trace")
     parser.add_argument("--columns", nargs="+", metavar="COLUMN",
                         help=f"columns to analyse, without units (default: {' '.join(COLUMNS)}, those that vary)")
-    parser.add_argument("--settle", type=float, metavar="REVOLUTIONS",
+    parser.add_argument("--settle", type=number(0), metavar="REVOLUTIONS",
                         help="revolutions that are left out at the start (default: half of the run)")
-    parser.add_argument("--cycles", type=int, metavar="N", help="analyse only the last N cycles")
-    parser.add_argument("--highest", type=float, default=20.0, metavar="ORDER", help="highest order in the picture (default: 20)")
+    parser.add_argument("--cycles", type=number(1, whole=True), metavar="N", help="analyse only the last N cycles")
+    parser.add_argument("--highest", type=number(0, itself=False), default=20.0, metavar="ORDER", help="highest order in the picture (default: 20)")
     parser.add_argument("--results", type=Path, metavar="DIR", help="folder of the traces (default: results, or that of the trace)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="folder for the files (default: beside the trace)")
     parser.add_argument("--format", action="append", choices=("png", "svg", "pdf"), help="repeatable (default: png)")
@@ -51,7 +52,7 @@ def arguments() -> argparse.Namespace:
 def main() -> int:
     try:
         return analyse(arguments())
-    except MissingResult as problem:
+    except (MissingResult, OSError) as problem:
         print(f"orders.py: {problem}", file=sys.stderr)
         return 1
 

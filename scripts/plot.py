@@ -23,6 +23,7 @@ use_virtual_environment()
 
 from gudgeon_plots import compare, figures, language, readme_picture  # noqa: E402
 from gudgeon_plots.figure_map import Figure, read_figures  # noqa: E402
+from gudgeon_plots.limits import number  # noqa: E402
 from gudgeon_plots.quantities import QUANTITIES  # noqa: E402
 from gudgeon_plots.results import FineResults, ManyCycles, MissingResult, Results, WindowResults  # noqa: E402
 
@@ -55,12 +56,14 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--columns", nargs="+", metavar="NAME", help="columns to compare, without units")
     parser.add_argument(
         "--agreement",
-        type=float,
-        default=compare.AGREEMENT,
+        type=number(0, itself=False),
         metavar="SHARE",
-        help="two runs agree as long as they differ by less than this share of the range (default: %(default)s)",
+        help=f"two runs agree as long as they differ by less than this share of the range (default: {compare.AGREEMENT:g})",
     )
-    return parser.parse_args()
+    options = parser.parse_args()
+    if not options.compare and (options.columns or options.agreement):
+        parser.error("--columns and --agreement are for --compare")
+    return options
 
 
 def draw_figures(wanted: list[Figure], own: Results, out: Path, formats: list[str]) -> int:
@@ -99,7 +102,7 @@ def main() -> int:
         return 0
     try:
         if options.compare:
-            return compare.compare_files(*options.compare, options.columns, options.agreement, out, formats)
+            return compare.compare_files(*options.compare, options.columns, options.agreement or compare.AGREEMENT, out, formats)
         results = Results(options.results, run_missing=not options.no_run, rerun=options.rerun)
         if options.readme:
             print(*readme_picture.write(results, TOP / "data" / "readme.png"))
@@ -116,7 +119,7 @@ def main() -> int:
         language.current.warn("plot.py")
         print(f"{len(wanted) - failed} of {len(wanted)} figures in {time.monotonic() - started:.0f} s, in {out}")
         return 1 if failed else 0
-    except MissingResult as problem:
+    except (MissingResult, OSError) as problem:
         print(f"plot.py: {problem}", file=sys.stderr)
         return 1
 

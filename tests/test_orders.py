@@ -183,12 +183,27 @@ def refusals() -> None:
     for columns, words in (
         ({"time": np.arange(200.0), "crank_angle": angle}, "turns back"),
         ({"time": np.arange(200.0), "crank_angle": np.linspace(0, 5, 200)}, "no whole cycle"),
+        ({"time": np.arange(200.0), "crank_angle": np.linspace(0, 200 * TURN / 30, 200)}, "29.8 rows in a revolution are too few, 36 are needed"),
     ):
         try:
             whole_cycles(made(columns))
             check(False, f"refused: {words}")
         except MissingResult as problem:
             check(words in str(problem), f"refused: {words}", str(problem))
+    portuguese = Language("pt")
+    few = section(made({"time": np.arange(200.0), "crank_angle": np.linspace(0, 200 * TURN / 30, 200)}), None, portuguese)
+    check("são necessárias" in few and portuguese.unknown <= {"made"}, "a run with few rows, in Portuguese", few)
+    trace = TOP / "data" / "sim_I.csv"
+    for status, words, said in ((2, ("orders.py", trace, "--settle", "nan"), "nan: must be a number >= 0"),
+                                (2, ("orders.py", trace, "--cycles", "0"), "0: must be a whole number >= 1"),
+                                (2, ("orders.py", trace, "--highest", "0"), "0: must be a number > 0"),
+                                (2, ("plot.py", "--compare", trace, trace, "--agreement", "-1"), "-1: must be a number > 0"),
+                                (2, ("plot.py", "--figure", "6.7", "--columns", "crank_speed"), "are for --compare"),
+                                (1, ("plot.py", "--compare", trace, trace, "--out", trace / "x"), "plot.py: "),
+                                (1, ("orders.py", trace, "--out", trace / "x"), "orders.py: ")):
+        outcome = subprocess.run([sys.executable, TOP / "scripts" / words[0], *words[1:]], capture_output=True, text=True, check=False)
+        check(outcome.returncode == status and said in outcome.stderr and "Traceback" not in outcome.stderr,
+              f"{' '.join(str(word) for word in words[:1] + words[-2:])} is refused", outcome.stderr)
 
 
 def main() -> int:

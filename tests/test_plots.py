@@ -1012,6 +1012,14 @@ class Reading(unittest.TestCase):
                         read(path)
             few = load_run(path)
             self.assertEqual(list(few["a"]), [1])
+            for cells in ("0,x", "0,1\n1,nan", "0,1\n1", "0,inf"):
+                path.write_text(f"time[s],a\n{cells}\n")
+                with self.assertRaisesRegex(MissingResult, "x.csv: column a: not a number in each row"):
+                    load_run(path)
+            with self.assertRaisesRegex(MissingResult, "x and x share no column that varies"):
+                path.write_text("time[s],a\n0,1\n1,2\n")
+                compare.compare_files(path, path, None, 0.01, Path(work), ["png"])
+            path.write_text("time[s],a\n0,1\n")
             with self.assertRaisesRegex(MissingResult, "x: the trace has no column pin_force_x"):
                 few["pin_force_x"]
             for text in ("time[s],a\n0,1\n", "run,status\n1,done\n2,&output start_time = .05: must be (s)\n", "&study case='x'"):

@@ -150,6 +150,8 @@ def compare_files(a: Path, b: Path, columns: list[str] | None, agreement: float,
             raise MissingResult(f"{path}: no such file")
     left, right = load_run(a), load_run(b)
     wanted = columns or shared_columns(left, right)
+    if not wanted:
+        raise MissingResult(f"{left.name} and {right.name} share no column that varies, of {' '.join(COLUMNS)}; choose --columns")
     found = agree(left, right, wanted, agreement)
     print(report(found, agreement))
     stem = f"compare_{left.name}_{right.name}"

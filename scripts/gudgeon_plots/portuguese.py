@@ -340,6 +340,7 @@ TEXTS = {
     "The run is certified up to {} ms: beyond, shaded in the plots, single values are not reliable, and only means over revolutions are meaningful (beyond_..., in the summary).": "A simulação está certificada até {} ms: além disso, sombreado nos gráficos, não se pode confiar em valores isolados, e só contam médias de revoluções (beyond_..., no resumo).",
     "Settled cycles": "Ciclos em regime",
     "None: {} turns back, so there are no cycles.": "Nenhum: a manivela para ou volta, e não há ciclos.",
+    "None: {} rows in a revolution are too few, {} are needed.": "Nenhum: {} linhas por revolução são poucas, {} são necessárias.",
     "None: no whole cycle of {} revolutions after {} revolutions.": "Nenhum: nenhum ciclo inteiro de {} revoluções após {} revoluções.",
     "None: no column changes.": "Nenhum: nenhuma coluna varia.",
     "None: the second half of the run has a single whole cycle, which does not show whether the motion has settled.": "Nenhum: um só ciclo inteiro na segunda metade da simulação não diz se o movimento está em regime.",

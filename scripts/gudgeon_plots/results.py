@@ -158,6 +158,9 @@ def load_run(path: Path) -> Run:
     trace, units = read_table(path, "time")
     if trace.empty:
         raise MissingResult(f"{path}: contains no rows")
+    for column in trace:
+        if not (pd.api.types.is_numeric_dtype(trace[column]) and np.isfinite(trace[column]).all()):
+            raise MissingResult(f"{path}: column {column}: not a number in each row")
     ideal = name.endswith(".ideal")
 
     def beside(suffix: str) -> Path:
