@@ -37,6 +37,7 @@ def main() -> int:
     runs, shapes = [], []
     try:
         program = options.program or release_program()
+        options.out.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(prefix="elastic") as scratch:
             def run(*settings: str) -> Run:
                 out = Path(scratch) / "_".join(("run", *settings))
@@ -46,8 +47,8 @@ def main() -> int:
             runs = [run(*settings) for *_, settings in elastic_pictures.RODS]
             if options.table:
                 shapes = [run(f"elastic_rod.axial_shapes={number}") for number in elastic_pictures.AXIAL_SHAPES]
-    except (MissingResult, subprocess.CalledProcessError) as failure:
-        print(failure, file=sys.stderr)
+    except (MissingResult, OSError, subprocess.CalledProcessError) as failure:
+        print(f"plot_elastic.py: {failure}", file=sys.stderr)
         return 1
     table = elastic_pictures.describe_first_impacts(runs)
     print(table)

@@ -5,7 +5,7 @@
     scripts/plot_film.py RESULTS/sim_I_finite.film.csv                    draw the pressures of a run with &output film_times
     scripts/plot_film.py --simulations                                    thickness and force in simulations I to VI, three films
 
-Pictures are written to results/figures. The pressures are computed by the release build of the program.
+The pressures are computed by the release build of the program.
 """
 
 import argparse
@@ -41,6 +41,8 @@ def arguments() -> argparse.Namespace:
     options = parser.parse_args()
     if options.source and options.source.suffix == ".nml" and not options.at:
         parser.error("a case needs --at")
+    if not (options.source and options.source.suffix == ".nml") and (options.at or options.set):
+        parser.error("--at and --set are for a case, which is then run")
     return options
 
 
@@ -58,7 +60,8 @@ def fields_file(options: argparse.Namespace) -> Path:
 
 def main() -> int:
     options = arguments()
-    out = options.out or options.results / "figures"
+    folder = options.source.parent if options.source and options.source.suffix != ".nml" else options.results
+    out = options.out or folder / "figures"
     formats = options.format or ["png"]
     try:
         if options.simulations:

@@ -37,14 +37,15 @@ def main() -> int:
     runs = []
     try:
         program = options.program or release_program()
+        options.out.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(prefix="members") as scratch:
             for i, (_, settings) in enumerate(elastic_pictures.MEMBERS):
                 out = Path(scratch) / str(i)
                 words = [word for setting in (*elastic_pictures.MEMBER_RUN, *settings) for word in ("--set", setting)]
                 subprocess.run([program, "-q", "-o", out, *words, CASE], check=True)
                 runs.append(load_run(out / f"{CASE.stem}.csv"))
-    except (MissingResult, subprocess.CalledProcessError) as failure:
-        print(failure, file=sys.stderr)
+    except (MissingResult, OSError, subprocess.CalledProcessError) as failure:
+        print(f"plot_members.py: {failure}", file=sys.stderr)
         return 1
     table = elastic_pictures.describe_members(runs)
     print(table)

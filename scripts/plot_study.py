@@ -20,6 +20,7 @@ use_virtual_environment(more=("f90nml",))
 
 import f90nml  # noqa: E402
 import numpy as np  # noqa: E402
+import pandas as pd  # noqa: E402
 
 from gudgeon_plots import contact_study, figures, language, study_pictures  # noqa: E402
 from gudgeon_plots.results import MissingResult  # noqa: E402
@@ -40,8 +41,8 @@ def arguments() -> argparse.Namespace:
     parser.add_argument(
         "--picture", action="append", choices=tuple(PICTURES), help="picture of the shipped studies; repeatable"
     )
-    parser.add_argument("--columns", nargs="+", default=list(COLUMNS), metavar="COLUMN",
-                        help="columns to draw, without their units")
+    parser.add_argument("--columns", nargs="+", metavar="COLUMN",
+                        help=f"columns of a given study to draw, without their units (default: {' '.join(COLUMNS)})")
     parser.add_argument(
         "--results", type=Path, default=TOP / "results" / "studies", metavar="DIR", help="(default: results/studies)"
     )
@@ -49,7 +50,12 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--numbers", action="store_true", help="only print the numbers of the shipped studies, in Markdown")
     language.add_option(parser)
     parser.add_argument("--format", action="append", choices=("png", "svg", "pdf"), help="repeatable (default: png)")
-    return parser.parse_args()
+    options = parser.parse_args()
+    if options.columns and not options.runs:
+        parser.error("--columns is for studies whose NAME.runs.csv is given")
+    if options.numbers and options.runs:
+        parser.error("--numbers is for the shipped studies alone")
+    return options
 
 
 def read(results: Path, name: str) -> Runs:
@@ -102,6 +108,8 @@ def any_study(path: Path, columns: list[str]) -> dict[str, figures.Drawing]:
     parameters = names[1 : names.index("status")]
     if unknown := [column for column in columns if column not in names]:
         raise MissingResult(f"{path}: no column {' '.join(unknown)}; the columns are {' '.join(names)}")
+    if words := [column for column in columns if not pd.api.types.is_numeric_dtype(runs.table[column])]:
+        raise MissingResult(f"{path}: {' '.join(words)}: contains words, no numbers that can be drawn")
     stem = path.name.removesuffix(".runs.csv")
     study = path.with_name(f"{stem}.study.nml")
     settings = f90nml.read(study)["study"] if study.exists() else {}
@@ -124,7 +132,7 @@ def main() -> int:
     formats = options.format or ["png"]
     try:
         for path in options.runs:
-            for stem, drawing in any_study(path, options.columns).items():
+            for stem, drawing in any_study(path, options.columns or list(COLUMNS)).items():
                 print(*figures.save(drawing, options.out or path.parent, stem, formats))
         for name in options.picture or ([] if options.runs else PICTURES):
             drawing, lines = PICTURES[name](options.results)

@@ -10,6 +10,7 @@ import contextlib
 import io
 import math
 import re
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -1026,6 +1027,27 @@ class Reading(unittest.TestCase):
                 path.write_text(text)
                 with self.assertRaisesRegex(MissingResult, "x.csv: "):
                     study.read_study(path)
+
+    def test_wrong_options_are_refused_in_one_line(self) -> None:
+        with tempfile.TemporaryDirectory() as work:
+            there = Path(work)
+            (there / "x.runs.csv").write_text("run,joint.clearance,status,impacts[-]\n1,1e-5,done,1\n2,2e-5,done,2\n")
+            (there / "x.wear.csv").write_text("joint,angle[deg],pin_depth[m],bore_depth[m]\npiston_pin,0,x,1\n")
+            (there / "x.film.csv").write_text("time[s],joint,place,angle[deg],pressure[Pa],film_thickness[m]\n0,piston_pin,0,0,,1\n")
+            for status, words, said in (
+                (1, ("plot_study.py", there / "x.runs.csv", "--columns", "status"), "status: contains words, no numbers"),
+                (2, ("plot_study.py", there / "x.runs.csv", "--numbers"), "--numbers is for the shipped studies alone"),
+                (2, ("plot_study.py", "--columns", "impacts"), "--columns is for studies"),
+                (1, ("plot_wear.py", there / "x.wear.csv"), "column pin_depth: not a number in each row"),
+                (1, ("plot_film.py", there / "x.film.csv"), "column pressure: not a number in each row"),
+                (2, ("plot_film.py", there / "x.film.csv", "--at", "0.01"), "--at and --set are for a case"),
+                (1, ("plot_members.py", "--out", there / "x.runs.csv", "--program", "/bin/true"), "plot_members.py: "),
+                (1, ("plot_elastic.py", "--out", there / "x.runs.csv", "--program", "/bin/true"), "plot_elastic.py: "),
+            ):
+                outcome = subprocess.run([sys.executable, TOP / "scripts" / words[0], *words[1:]], capture_output=True, text=True, check=False)
+                self.assertEqual(outcome.returncode, status, f"{words}: {outcome.stderr}")
+                self.assertIn(said, outcome.stderr)
+                self.assertNotIn("Traceback", outcome.stderr)
 
     def test_a_contact_that_outlasts_the_run(self) -> None:
         time = np.linspace(0, 1, 11)

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from .results import MissingResult, Run, read_table
+from .results import MissingResult, Run, demand_numbers, read_table
 
 FILM_PHASE = 1
 
@@ -121,6 +121,7 @@ def fields_of(path: Path) -> list[pd.DataFrame]:
     if not path.exists():
         raise MissingResult(f"no pressure fields {path}")
     table = read_table(path, "time", "joint", "place", "angle", "pressure", "film_thickness")[0]
+    demand_numbers(path, table, ["time", "angle", "pressure", "film_thickness"])
     return [field for _, field in table[table["joint"] == "piston_pin"].groupby("time", sort=True)]
 
 

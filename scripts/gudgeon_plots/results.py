@@ -106,6 +106,13 @@ def read_table(path: Path, *needed: str) -> tuple[pd.DataFrame, dict[str, str]]:
     return table, units
 
 
+def demand_numbers(path: Path, table: pd.DataFrame, columns: Iterable[str]) -> None:
+    """Raises MissingResult if one of these columns has a cell that is no finite number."""
+    for column in columns:
+        if not (pd.api.types.is_numeric_dtype(table[column]) and np.isfinite(table[column]).all()):
+            raise MissingResult(f"{path}: column {column}: not a number in each row")
+
+
 def read_summary(path: Path) -> dict[str, tuple[str, str]]:
     """quantity -> (value, unit)."""
     with path.open(newline="", encoding="utf-8") as file:
@@ -158,9 +165,7 @@ def load_run(path: Path) -> Run:
     trace, units = read_table(path, "time")
     if trace.empty:
         raise MissingResult(f"{path}: contains no rows")
-    for column in trace:
-        if not (pd.api.types.is_numeric_dtype(trace[column]) and np.isfinite(trace[column]).all()):
-            raise MissingResult(f"{path}: column {column}: not a number in each row")
+    demand_numbers(path, trace, trace.columns)
     ideal = name.endswith(".ideal")
 
     def beside(suffix: str) -> Path:

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure as Drawing
 
 from . import figures
 from .names import prefixed
-from .results import read_table
+from .results import demand_numbers, read_table
 from .style import BLUE, VERMILION, WIDTH
 
 #: Surface, label, colour.
@@ -24,6 +24,7 @@ JOINTS = {"piston_pin": "piston pin", "crank_pin": "crank pin"}
 def surfaces_of(path: Path) -> list[tuple[str, pd.DataFrame]]:
     """The joints of a file NAME.wear.csv, with their rows. Joints that have not worn are left out."""
     table, _ = read_table(path, "joint", "angle", *(f"{surface}_depth" for surface, *_ in SURFACES))
+    demand_numbers(path, table, ["angle", *(f"{surface}_depth" for surface, *_ in SURFACES)])
     return [(joint, rows) for joint, rows in table.groupby("joint", sort=False)
             if max(rows["pin_depth"].max(), rows["bore_depth"].max()) > 0]
 
