@@ -19,7 +19,7 @@ build() {
   # shellcheck disable=SC2086  # options or nothing
   said=$(fpm $profile ${folder:+--directory scripts} --runner echo "$@" 2>&1) &&
     found=$folder$(printf '%s\n' "$said" | grep "^build/.*/${1:-gudgeon}\$" | tail -n 1) &&
-    [ -x "$found" ]
+    [ -f "$found" ] && [ -x "$found" ]
 }
 
 build "$@" && echo "$found" && exit 0

@@ -31,6 +31,7 @@ import subprocess  # noqa: E402
 import numpy as np  # noqa: E402
 import pandas as pd  # noqa: E402
 
+from gudgeon_plots.limits import number  # noqa: E402
 from gudgeon_plots.measured import FOLDER, write_table  # noqa: E402
 from gudgeon_plots.program import release_program  # noqa: E402
 
@@ -44,6 +45,7 @@ takes too long (`--timeout`): the claim is checked up to there.
 LIMIT = 1e-3
 KNOWN = 1e-5
 BEYOND = 1.25  # the runs at 1e-13 continue to this multiple of the certified time
+REFUSED = (2, 3)  # exit statuses of a wrong command line or case
 CLOSER_ROWS = 20  # as close as those of a case that gives their distance
 
 
@@ -51,12 +53,15 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("cases", nargs="*", type=Path, metavar="CASE.nml")
     parser.add_argument("--set", action="append", default=[], metavar="GROUP.KEY=VALUE", help="as of the program")
-    parser.add_argument("--rows", type=int, default=4000, help="rows in a revolution (default: 4000)")
-    parser.add_argument("--timeout", type=float, default=120.0, metavar="S", help="of processor time, for one run (default: 120)")
-    parser.add_argument("--until", type=float, metavar="S", help="simulated time of the runs, where shorter than the case's")
+    parser.add_argument("--rows", type=number(20, whole=True), default=4000, help="rows in a revolution (default: 4000)")
+    parser.add_argument("--timeout", type=number(0, itself=False), default=120.0, metavar="S", help="of processor time, for one run (default: 120)")
+    parser.add_argument("--until", type=number(0, itself=False), metavar="S", help="simulated time of the runs, where shorter than the case's")
     parser.add_argument("--write", action="store_true", help="put the rows into data/measured/certificates.md")
     parser.add_argument("--program", type=Path, help="(default: the fast build)")
     options = parser.parse_args()
+    for case in options.cases:
+        if not case.is_file() or "&mechanism" not in case.read_text(encoding="utf-8"):
+            parser.error(f"{case}: not a case file")
     if not options.cases:
         options.cases = sorted(TOP.glob("cases/*.nml")) + sorted(TOP.glob("cases/*/*.nml"))
         options.cases = [case for case in options.cases if "&mechanism" in case.read_text(encoding="utf-8")]
@@ -74,13 +79,16 @@ def run(
     words = [str(program), "-q", "-o", str(out)] + (["--certify"] if states is None else [])
     for setting in settings:
         words += ["--set", setting]
-    running = subprocess.Popen([*words, str(case)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    running = subprocess.Popen([*words, str(case)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     while running.poll() is None:
         with contextlib.suppress(subprocess.TimeoutExpired):
             running.wait(0.5)
         if processor_time(running.pid) > limit:
             running.send_signal(signal.SIGINT)
             running.wait()
+    said = running.communicate()[1].strip()
+    if running.returncode in REFUSED:
+        sys.exit(f"check_certificates.py: {said}")
     if not (trace.exists() and summary.exists()):
         return pd.DataFrame(), {}
     if states is None:

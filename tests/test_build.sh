@@ -59,9 +59,10 @@ mkdir "$work/build/gfortran_left"
 program=$(cd "$work" && PATH="$work/bin:$PATH" scripts/build.sh)
 check "a build that failed is repeated, $program" [ "$program" = build/gfortran_new/app/gudgeon ]
 check "a build that failed is repeated once" [ "$(wc -l <"$work/calls")" = 2 ]
+check "a program that does not exist" [ "$(cd "$work" && PATH="$work/bin:$PATH" scripts/build.sh nothing 2>/dev/null; echo $?)" = 1 ]
 sed -i 's/\[ -e build.gfortran_left \]/true/' "$work/bin/fpm"
 program=$(cd "$work" && PATH="$work/bin:$PATH" scripts/build.sh 2>"$work/err")
-check "a build that fails again is not repeated" [ "$program" = "" -a "$(wc -l <"$work/calls")" = 4 ]
+check "a build that fails again is not repeated" [ "$program" = "" -a "$(wc -l <"$work/calls")" = 5 ]
 check "a build that fails has a message" grep -q "build: cannot build gudgeon" "$work/err"
 
 echo "$passed passed, $failed failed"

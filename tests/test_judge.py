@@ -537,6 +537,19 @@ def test_quadrature() -> None:
           f"{found.value[-1]} +- {found.bound[-1]}, 4.5 expected")
 
 
+def test_options(program: Path) -> None:
+    """Wrong options end with exit status 2 and a message, and nothing is counted as passed."""
+    case = ROOT / "cases" / "sim_I.nml"
+    for words, said in ((("judge", case, "--set", "bad"), "--set bad: must have the form GROUP.KEY=VALUE"),
+                        (("extremes", "--scenes", "0"), "--scenes 0: must be >= 1"),
+                        (("extremes", "--scenes", "3", "--again", "99"), "--again 99: the scenes are 0 to 2"),
+                        (("check_certificates.py", ROOT / "cases" / "studies" / "map_I.nml"), "map_I.nml: not a case file"),
+                        (("check_certificates.py", case, "--rows", "0"), "0: must be a whole number >= 20")):
+        outcome = subprocess.run([ROOT / "scripts" / words[0], *words[1:], "--program", program], capture_output=True, text=True, check=False)
+        check(outcome.returncode == 2 and said in outcome.stderr and "passed" not in outcome.stdout,
+              f"{words[0]} {words[-2]} {words[-1]} is refused", f"{outcome.returncode} {outcome.stdout}{outcome.stderr}")
+
+
 class Mutants:
     """Copies of the program with one wrong line each. The whole program is compiled once. For each copy only the changed file is
     compiled, and linked before the library; this is valid because the lines are in procedures: its module file must stay the same."""
@@ -619,6 +632,7 @@ def main() -> int:
             test_mutants(Path(folder), options.mutants, options.jobs)
         else:
             test_quadrature()
+            test_options(program)
             test_judge(program, Path(folder), options.jobs)
     return assertions.report()
 
