@@ -199,6 +199,8 @@ def refusals() -> None:
                                 (2, ("orders.py", trace, "--highest", "0"), "0: must be a number > 0"),
                                 (2, ("plot.py", "--compare", trace, trace, "--agreement", "-1"), "-1: must be a number > 0"),
                                 (2, ("plot.py", "--figure", "6.7", "--columns", "crank_speed"), "are for --compare"),
+                                (2, ("check_certificates.py", TOP / "cases" / "studies" / "map_I.nml"), "map_I.nml: not a case file"),
+                                (2, ("check_certificates.py", TOP / "cases" / "sim_I.nml", "--rows", "0"), "0: must be a whole number >= 20"),
                                 (1, ("plot.py", "--compare", trace, trace, "--out", trace / "x"), "plot.py: "),
                                 (1, ("orders.py", trace, "--out", trace / "x"), "orders.py: ")):
         outcome = subprocess.run([sys.executable, TOP / "scripts" / words[0], *words[1:]], capture_output=True, text=True, check=False)
