@@ -82,7 +82,6 @@ module gudgeon_scene
     procedure, non_overridable :: place_journals
     procedure, non_overridable :: find_loads
     procedure :: derivatives
-    procedure, non_overridable :: find_rates
     procedure :: evaluate
     procedure :: jacobian
     procedure :: initial_state
@@ -190,16 +189,9 @@ contains
     real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: inside
     type(evaluation_t) :: now
-    call find_accelerations(self, self%n_joints, self%joints, t, y, now, inside)
-    if (inside) call self%find_rates(now, dydt)
-  end subroutine derivatives
-
-  !> The right-hand side, from an evaluation.
-  pure subroutine find_rates(self, now, dydt)
-    class(scene_t), intent(in) :: self
-    type(evaluation_t), intent(in) :: now
-    real(dp), intent(inout) :: dydt(self%n)
     integer :: i
+    call find_accelerations(self, self%n_joints, self%joints, t, y, now, inside)
+    if (.not. inside) return
     if (self%crank_moves) then
       dydt(self%crank%position) = now%motion%crank_speed
       dydt(self%crank%rate) = now%accelerations%crank
@@ -217,7 +209,7 @@ contains
     if (self%measures_loss) dydt(self%measures%last) = -sum(now%joint(:self%n_joints)%power)
     dydt(self%measures%first) = force_size(now%loads%force(:, piston_pin))
     if (self%joint_of_pin(crank_pin) > 0) dydt(self%measures%first + 1) = force_size(now%loads%force(:, crank_pin))
-  end subroutine find_rates
+  end subroutine derivatives
 
   !> Rates of the states of the joints.
   pure subroutine put_rates(n, joints, now, dydt)

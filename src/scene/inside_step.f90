@@ -23,19 +23,21 @@ contains
     real(dp) :: better(scene%n), rates(scene%n)
     logical :: is_better
     call method%interpolate(t, y)
+    if (method%may_improve(t)) then
+      call scene%derivatives(t, y, rates, inside)
+      evaluations = evaluations + 1
+      if (inside) then
+        better = y
+        call method%improve(t, rates, better, is_better)
+        if (is_better) call scene%evaluate(t, better, now, inside)
+        if (is_better .and. inside) then
+          evaluations = evaluations + 1
+          y = better
+          return
+        end if
+      end if
+    end if
     call scene%evaluate(t, y, now, inside)
     evaluations = evaluations + 1
-    if (.not. (inside .and. method%may_improve(t))) return
-    call scene%find_rates(now, rates)
-    better = y
-    call method%improve(t, rates, better, is_better)
-    if (.not. is_better) return
-    call scene%evaluate(t, better, now, inside)
-    evaluations = evaluations + 1
-    if (inside) then
-      y = better
-    else
-      call scene%evaluate(t, y, now, inside)
-    end if
   end subroutine look_inside
 end module inside_step
