@@ -279,8 +279,8 @@ contains
       end if
       if (self%may_stick) then
         now%accelerations%rod_end = -now%accelerations%rod
-        call hold_surfaces(self%chain, joints, motion, now%relative, now%joint, now%loads, now%accelerations, now%crank_moment, &
-          now%power)
+        if (any(now%joint(:n)%sticks)) call hold_surfaces(self%chain, joints, motion, now%relative, now%joint, now%loads, &
+          now%accelerations, now%crank_moment, now%power)
       end if
       now%power = (now%crank_moment - drive%damping*motion%crank_speed)*motion%crank_speed + now%power
       if (.not. allocated(self%gas)) return
