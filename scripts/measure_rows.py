@@ -9,15 +9,21 @@ Each case runs by the methods radau and auto at three tolerances. Its rows are c
 """
 from __future__ import annotations
 
-import csv
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-from gudgeon_plots.measured import write_table
+from gudgeon_plots.environment import TOP, use_virtual_environment
 
-TOP = Path(__file__).resolve().parent.parent
+use_virtual_environment()
+
+import numpy as np  # noqa: E402
+
+from gudgeon_plots.measured import write_table  # noqa: E402
+from gudgeon_plots.program import release_program  # noqa: E402
+from gudgeon_plots.results import MissingResult, Run, load_run  # noqa: E402
+
 CASES = ("sim_I", "sim_II", "sim_III", "sim_IV", "sim_V", "flores/lubricated_400cP", "film/sim_I_finite", "film/elastic",
          "joints/both_pins_lubricated", "friction/lugre")
 METHODS = ("radau", "auto")
@@ -29,27 +35,18 @@ KINDS = {"coordinates": ("crank_angle", "rod_angle", "piston_position", "eccentr
          "forces and accelerations": ("rod_acceleration", "piston_acceleration", "pin_force_x", "pin_force_y", "guide_force")}
 
 
-def columns_of(program: Path, case: str, method: str, tolerance: float) -> dict[str, list[float]]:
-    """The columns of a trace, without units."""
+def run_of(program: Path, case: str, method: str, tolerance: float) -> Run:
+    """A run of a case, without its ideal twin."""
     with tempfile.TemporaryDirectory() as folder:
         words = [program, "-q", "-j", "1", "-o", folder, "-s", "output.ideal_twin=F", "-s", "output.digits=15",
                  "-s", f"integrator.method={method}", "-s", f"integrator.relative_tolerance={tolerance!r}", TOP / "cases" / f"{case}.nml"]
-        told = subprocess.run(words, capture_output=True, text=True, check=False)
-        if told.returncode != 0:
-            raise SystemExit(f"measure_rows: {case} by {method} at {tolerance:g}: {told.stderr.strip()}")
-        with (Path(folder) / f"{Path(case).name}.csv").open(newline="") as lines:
-            head, *rows = csv.reader(lines)
-    return {name.split("[")[0]: [float(row[k]) for row in rows] for k, name in enumerate(head)}
+        subprocess.run(words, check=True)
+        return load_run(Path(folder) / f"{Path(case).name}.csv")
 
 
-def largest_error(run: dict[str, list[float]], exact: dict[str, list[float]], names: tuple[str, ...]) -> float:
+def largest_error(run: Run, exact: Run, names: tuple[str, ...]) -> float:
     """Largest error of some columns, each over its range."""
-    errors = [0.0]
-    for name in names:
-        if name in exact and max(exact[name]) > min(exact[name]):
-            span = max(exact[name]) - min(exact[name])
-            errors.append(max(abs(a - b) for a, b in zip(run[name], exact[name], strict=True)) / span)
-    return max(errors)
+    return max(np.max(np.abs(run[name] - exact[name])) / np.ptp(exact[name]) for name in names if name in exact and np.ptp(exact[name]) > 0)
 
 
 def main() -> int:
@@ -57,17 +54,21 @@ def main() -> int:
     if len(sys.argv) > 1:
         print(__doc__, file=sys.stderr)
         return 2
-    program = TOP / subprocess.run([TOP / "scripts" / "build.sh"], capture_output=True, text=True, check=True).stdout.strip()
     lines = ["Largest errors in the rows of a trace, over the range of each column, by `radau` and by `auto`, against Radau at 1e-11. Films of finite",
              "length have a finer table at tighter tolerances, whose error is included.", "",
              "| case | tolerance | " + " | ".join(f"{kind}: {method}" for kind in KINDS for method in METHODS) + " |",
              "|---|---|" + "---|" * (len(KINDS) * len(METHODS))]
-    for case in CASES:
-        exact = columns_of(program, case, "radau", REFERENCE)
-        for tolerance in TOLERANCES:
-            runs = [columns_of(program, case, method, tolerance) for method in METHODS]
-            cells = [f"{largest_error(run, exact, names):.1e}" for names in KINDS.values() for run in runs]
-            lines.append(f"| `{case}` | {tolerance:.0e} | " + " | ".join(cells) + " |")
+    try:
+        program = release_program()
+        for case in CASES:
+            exact = run_of(program, case, "radau", REFERENCE)
+            for tolerance in TOLERANCES:
+                runs = [run_of(program, case, method, tolerance) for method in METHODS]
+                cells = [f"{largest_error(run, exact, names):.1e}" for names in KINDS.values() for run in runs]
+                lines.append(f"| `{case}` | {tolerance:.0e} | " + " | ".join(cells) + " |")
+    except (MissingResult, subprocess.CalledProcessError) as failure:
+        print(f"measure_rows.py: {failure}", file=sys.stderr)
+        return 1
     print(write_table("rows", "Accuracy of rows inside the steps", "scripts/measure_rows.py", "\n".join(lines) + "\n"))
     return 0
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Tests of scripts/orders.py: orders of known sums of sines, work of known cycles, losses against the energy balance of a run.
+"""Tests of scripts/orders.py: orders of known sums of sines, work of known cycles, losses against the energy balance of a run; and of
+what it and other scripts that analyse runs refuse.
 
     .venv/bin/python tests/test_orders.py        (after scripts/setup.sh --python; runs three cases)
 

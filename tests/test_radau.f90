@@ -457,7 +457,7 @@ contains
     end do
   end subroutine states_inside_steps
 
-  !> Largest errors of y and y' inside the steps, as interpolated and improved.
+  !> Largest errors of y and y' inside the steps, as interpolated and improved; 0 as interpolated if the integration fails.
   subroutine worst_inside(rate, tolerance, largest, improved)
     real(dp), intent(in) :: rate, tolerance
     real(dp), intent(out) :: largest(2), improved(2)
@@ -476,7 +476,10 @@ contains
     improved = 0
     do while (method%t < 10)
       call method%step(problem, status)
-      if (status /= step_done) return
+      if (status /= step_done) then
+        largest = 0
+        return
+      end if
       do i = 1, 19
         t = method%t_old + i*(method%t - method%t_old)/20
         call method%interpolate(t, y)

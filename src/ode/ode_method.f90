@@ -147,8 +147,8 @@ contains
     if (.not. nominal_tolerance > 0) nominal_tolerance = maxval(self%settings%relative)
   end function nominal_tolerance
 
-  !> Improve a state inside the last step, found by `interpolate`, where f is the right-hand side. Methods whose steps are more
-  !> accurate than their interpolant do so where it makes a difference, and set `is_better`; the default does not.
+  !> Improve a state inside the last step, found by `interpolate`, where f is the right-hand side. `is_better` is false if y remains
+  !> as it is. Methods whose steps are more accurate than their interpolant override this; the default changes nothing.
   pure subroutine leave_as_it_is(self, t, f, y, is_better)
     class(ode_method_t), intent(inout) :: self
     real(dp), intent(in) :: t

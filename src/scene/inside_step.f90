@@ -23,19 +23,18 @@ contains
     real(dp) :: better(scene%n), rates(scene%n)
     logical :: is_better
     call method%interpolate(t, y)
+    is_better = .false.
     if (method%may_improve(t)) then
       call scene%derivatives(t, y, rates, inside)
       evaluations = evaluations + 1
-      if (inside) then
-        better = y
-        call method%improve(t, rates, better, is_better)
-        if (is_better) call scene%evaluate(t, better, now, inside)
-        if (is_better .and. inside) then
-          evaluations = evaluations + 1
-          y = better
-          return
-        end if
-      end if
+      better = y
+      if (inside) call method%improve(t, rates, better, is_better)
+    end if
+    if (is_better) then
+      call scene%evaluate(t, better, now, inside)
+      evaluations = evaluations + 1
+      if (inside) y = better
+      if (inside) return
     end if
     call scene%evaluate(t, y, now, inside)
     evaluations = evaluations + 1

@@ -108,6 +108,15 @@ module collocation
       logical, intent(out) :: is_better
     end subroutine improve
 
+    !> Replace x by (I - tau J)^-1 x, from the decomposed matrix 1/tau - a_v - tau a_p.
+    pure module subroutine filter(k, m, tau, per_tau, a_p, matrix, pivot, x)
+      integer, value :: k, m
+      real(dp), intent(in) :: tau, per_tau   !! and 1/tau
+      real(dp), intent(in) :: a_p(k, m), matrix(k, k)
+      integer, intent(in) :: pivot(k)
+      real(dp), intent(inout) :: x(m + k)
+    end subroutine filter
+
     !> Compute and factorise the matrices of Newton's equations for the present step size.
     pure module subroutine decompose_matrices(self, singular)
       class(collocation_t), intent(inout) :: self
@@ -279,24 +288,13 @@ contains
     class(collocation_t), intent(in) :: self
     real(dp), intent(in) :: f_0(:)
     real(dp), intent(out), contiguous :: error(:)   !! (n)
-    integer :: i, j, m, k
-    m = self%m
-    k = self%k
+    integer :: i
     associate (formula => self%formula(self%level))
       error = (self%h/formula%gamma)*f_0(:self%n)
       do i = 1, formula%stages
         error = error + formula%e(i)*self%z_new(:, i)
       end do
-      do j = 1, k
-        error(m + j) = (formula%gamma/self%h)*error(m + j)
-        do i = 1, m
-          error(m + j) = error(m + j) + self%a_p(j, i)*error(i)
-        end do
-      end do
-      call solve(k, self%e1, self%pivot1, error(m + 1:m + k))
-      do i = 1, m
-        error(i) = error(i) + (self%h/formula%gamma)*error(m + i)
-      end do
+      call filter(self%k, self%m, self%h/formula%gamma, formula%gamma/self%h, self%a_p, self%e1, self%pivot1, error)
     end associate
   end subroutine filtered_error
 end module collocation

@@ -62,7 +62,7 @@ contains
     logical :: singular
     is_better = .false.
     tau = self%h_done*min(x, 1/self%formula(self%stages_done/2)%gamma)
-    associate (n => self%m + self%k, d => self%defect, e => self%correction, weight => self%inverse_weight)
+    associate (n => self%m + self%k, d => self%defect, e => self%correction)
       if (abs(tau - self%tau) > 0) then
         call newton_matrix(self%k, self%m, 1/tau, 0.0_dp, self%a_p, self%a_v, self%e1, self%e2)
         call decompose(self%k, self%e1, self%pivot1, singular)
@@ -71,31 +71,24 @@ contains
       end if
       call polynomial_slope(self, x, d)
       d(:) = tau*(d/self%h_done - f(:n))
-      call filter(self%k, self%m, tau, self%a_p, self%e1, self%pivot1, d)
+      call filter(self%k, self%m, tau, 1/tau, self%a_p, self%e1, self%pivot1, d)
       e(:) = d
-      call filter(self%k, self%m, tau, self%a_p, self%e1, self%pivot1, e)
+      call filter(self%k, self%m, tau, 1/tau, self%a_p, self%e1, self%pivot1, e)
       e(:) = d - e
-      is_better = all(abs(e(:self%m)*weight(:self%m)) < 1)
+      is_better = all(abs(e(:self%m)*self%inverse_weight(:self%m)) < 1)
       if (is_better) y(self%m + 1:n) = y(self%m + 1:n) - e(self%m + 1:)
     end associate
   end procedure improve
 
-  !> F x, from the decomposed matrix 1/tau - a_v - tau a_p.
-  pure subroutine filter(k, m, tau, a_p, matrix, pivot, x)
-    integer, value :: k, m
-    real(dp), intent(in) :: tau, a_p(k, m), matrix(k, k)
-    integer, intent(in) :: pivot(k)
-    real(dp), intent(inout) :: x(m + k)
+  module procedure filter
     integer :: i
-    do i = m + 1, m + k
-      x(i) = x(i)/tau
-    end do
+    x(m + 1:) = per_tau*x(m + 1:)
     do i = 1, m
       x(m + 1:) = x(m + 1:) + a_p(:, i)*x(i)
     end do
     call solve(k, matrix, pivot, x(m + 1:))
     x(:m) = x(:m) + tau*x(m + 1:2*m)
-  end subroutine filter
+  end procedure filter
 
   module procedure iterate
     real(dp) :: change, defect, last_defect, last_change, ratio, last_ratio, rest
