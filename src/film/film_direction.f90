@@ -20,22 +20,38 @@ contains
     real(dp), intent(in) :: n(2), eps, b                   !! for this motion [-, -, 1/s]; eps > 0
     real(dp), intent(in) :: radial(0:3), tangential(0:3)   !! [N]; with respect to eps [N], to B and T [N s]
     real(dp) :: derivatives(3, 5)
-    real(dp) :: tangential_rate, changes(3, 5), turn(5)
-    integer :: i
+    real(dp) :: tangential_rate, per_clearance, per_eccentricity
+    real(dp), dimension(2) :: along_n, along_t, by_n, by_t   !! components along n and t
     associate (v => motion%eccentricity_rate, c => film%clearance)
-      tangential_rate = (n(1)*v(2) - n(2)*v(1))/c
-      turn = [-n(2), n(1), 0.0_dp, 0.0_dp, 0.0_dp]/(eps*c)   ! of the direction of n
-      changes(1, :) = [n(1), n(2), 0.0_dp, 0.0_dp, 0.0_dp]/c
-      changes(2, :) = turn*tangential_rate + [0.0_dp, 0.0_dp, n(1), n(2), 0.0_dp]/c
-      changes(3, :) = -0.5_dp*changes(1, :)*motion%pin_speed - turn*b + [0.0_dp, 0.0_dp, -n(2)/c, n(1)/c, -0.5_dp*eps]
+      per_clearance = 1/c
+      per_eccentricity = 1/(eps*c)
+      tangential_rate = (n(1)*v(2) - n(2)*v(1))*per_clearance
     end associate
-    do i = 1, 5
-      associate (f_r => dot_product(radial(1:), changes(:, i)) - tangential(0)*turn(i), &
-                 f_t => dot_product(tangential(1:), changes(:, i)) + radial(0)*turn(i))
-        derivatives(:, i) = [f_r*n(1) - f_t*n(2), f_r*n(2) + f_t*n(1), 0.0_dp]
-      end associate
-    end do
+    ! an eccentricity along n changes eps and T, one along t turns n, with it the force, and changes B and T
+    along_n = [radial(1), tangential(1)]*per_clearance - (0.5_dp*motion%pin_speed*per_clearance)*[radial(3), tangential(3)]
+    along_t = (tangential_rate*[radial(2), tangential(2)] - b*[radial(3), tangential(3)] + [-tangential(0), radial(0)]) &
+      *per_eccentricity
+    call turn(along_n, by_n)
+    call turn(along_t, by_t)
+    derivatives(:2, 1) = by_n*n(1) - by_t*n(2)
+    derivatives(:2, 2) = by_n*n(2) + by_t*n(1)
+    call turn([radial(2), tangential(2)]*per_clearance, by_n)
+    call turn([radial(3), tangential(3)]*per_clearance, by_t)
+    derivatives(:2, 3) = by_n*n(1) - by_t*n(2)
+    derivatives(:2, 4) = by_n*n(2) + by_t*n(1)
+    derivatives(:2, 5) = (-0.5_dp*eps*film%clearance)*by_t
+    derivatives(3, :) = 0
     if (film%film_moment) derivatives(3, :) = film%shear_moment_slopes(motion, &
       [radial(0)*n(1) - tangential(0)*n(2), radial(0)*n(2) + tangential(0)*n(1)], derivatives)
+
+  contains
+
+    !> The components in x and y of a vector given by those along n and t.
+    pure subroutine turn(polar, components)
+      real(dp), intent(in) :: polar(2)
+      real(dp), intent(out) :: components(2)
+      components(1) = polar(1)*n(1) - polar(2)*n(2)
+      components(2) = polar(1)*n(2) + polar(2)*n(1)
+    end subroutine turn
   end function derivatives_in_components
 end module film_direction

@@ -288,11 +288,15 @@ contains
     class(collocation_t), intent(in) :: self
     real(dp), intent(in) :: f_0(:)
     real(dp), intent(out), contiguous :: error(:)   !! (n)
-    integer :: i
+    real(dp) :: total
+    integer :: i, r
     associate (formula => self%formula(self%level))
-      error = (self%h/formula%gamma)*f_0(:self%n)
-      do i = 1, formula%stages
-        error = error + formula%e(i)*self%z_new(:, i)
+      do r = 1, self%n
+        total = (self%h/formula%gamma)*f_0(r)
+        do i = 1, formula%stages
+          total = total + formula%e(i)*self%z_new(r, i)
+        end do
+        error(r) = total
       end do
       call filter(self%k, self%m, self%h/formula%gamma, formula%gamma/self%h, self%a_p, self%e1, self%pivot1, error)
     end associate

@@ -116,7 +116,9 @@ contains
         last_ratio = ratio
         if (self%contraction >= 0.99_dp) return
         rest = change*self%contraction/(1 - self%contraction)
-        if (rest*self%contraction**(most_iterations - 1 - iteration) > self%goal) return
+        if (rest > self%goal) then
+          if (rest*self%contraction**(most_iterations - 1 - iteration) > self%goal) return
+        end if
       end if
       last_change = change
       last_defect = defect

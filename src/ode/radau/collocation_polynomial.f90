@@ -59,7 +59,7 @@ contains
     integer, value :: rows, stages, first_z
     real(dp), intent(in) :: node(stages), per_node(0:stages), x, last, z(first_z, *)
     real(dp), intent(out) :: y(rows)
-    real(dp) :: weights(most_stages), product
+    real(dp) :: weights(most_stages), product, total
     integer :: i, r
     product = x
     do i = 1, stages
@@ -73,10 +73,11 @@ contains
     end do
     weights(stages) = weights(stages) - last
     do r = 1, rows
-      y(r) = 0
-      do i = 1, stages
-        y(r) = y(r) + weights(i)*z(r, i)
+      total = weights(1)*z(r, 1)
+      do i = 2, stages
+        total = total + weights(i)*z(r, i)
       end do
+      y(r) = total
     end do
   end subroutine interpolate
 end submodule collocation_polynomial

@@ -287,11 +287,9 @@ contains
     s = self%stages%stages()
     self%t_old = self%t
     self%t = self%t + self%h
-    if (abs(self%t - self%settings%stop_time) <= 4*spacing(self%t)) self%t = self%settings%stop_time
-    self%y_old = self%y
-    self%y = self%y_new
-    self%f_old(:) = self%f
-    self%f = self%f_new
+    if (abs(self%t - self%settings%stop_time) <= 4*epsilon(1.0_dp)*abs(self%t)) self%t = self%settings%stop_time
+    call rotate(self%y_old, self%y, self%y_new)
+    call rotate(self%f_old, self%f, self%f_new)
     call self%stages%keep()
     self%order = s
     self%fresh_jacobian = .false.
@@ -301,6 +299,16 @@ contains
       count%smallest_step = min(count%smallest_step, self%h)
     end associate
   end subroutine accept
+
+  !> Move the second array to the first, the third to the second and the first to the third, without copies of their elements.
+  pure subroutine rotate(first, second, third)
+    real(dp), allocatable, intent(inout) :: first(:), second(:), third(:)
+    real(dp), allocatable :: oldest(:)
+    call move_alloc(first, oldest)
+    call move_alloc(second, first)
+    call move_alloc(third, second)
+    call move_alloc(oldest, third)
+  end subroutine rotate
 
   !> The collocation polynomial of the last step.
   pure subroutine interpolate(self, t, y)

@@ -84,9 +84,20 @@ contains
     integer :: s
     s = self%stages%stages()
     margin = safety*min(1.0_dp, (2*most_iterations + 1.0_dp)/(2*most_iterations + self%stages%iterations))
-    step_factor = margin*max(error, 1e-30_dp)**(-1.0_dp/(s + 1))
+    step_factor = margin/root(max(error, 1e-30_dp), s + 1)
     step_factor = min(largest_growth, max(1/largest_cut, step_factor))
   end function step_factor
+
+  !> x**(1/n); for n = 4 by square roots, which cost less than a power.
+  pure real(dp) function root(x, n)
+    real(dp), intent(in) :: x
+    integer, intent(in) :: n
+    if (n == 4) then
+      root = sqrt(sqrt(x))
+    else
+      root = x**(1.0_dp/n)
+    end if
+  end function root
 
   module procedure choose_step
     real(dp) :: factor, predicted
@@ -95,7 +106,7 @@ contains
     s = self%stages%stages()
     factor = step_factor(self, error)
     if (.not. self%first .and. error > 0) then
-      predicted = safety*(self%h/self%h_last)*(self%error_done/error**2)**(1.0_dp/(s + 1))
+      predicted = safety*(self%h/self%h_last)*root(self%error_done/error**2, s + 1)
       factor = min(factor, max(1/largest_cut, predicted))
     end if
     if (self%failed) factor = min(factor, 1.0_dp)
