@@ -132,8 +132,10 @@ contains
     integer, intent(inout), optional :: whole
     logical, intent(inout), optional :: switch
     character(len=:), allocatable, intent(inout), optional :: text
+    integer :: place
     if (.not. self%sets) return
-    associate (value => self%values%values(self%place_of(trim(key%name))))
+    place = self%place_of(trim(key%name))
+    associate (value => self%values%values(place))
       if (present(reals)) reals = value%reals(:size(reals))
       if (present(whole)) whole = value%whole
       if (present(switch)) then

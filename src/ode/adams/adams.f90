@@ -245,7 +245,7 @@ contains
     integer, intent(out) :: outcome
     real(dp), intent(out) :: fraction   !! fraction of the step to be tried next, if the problem refused it
     real(dp) :: squares(3), time_rate
-    integer :: k, verdict
+    integer :: k, k_before, verdict
     logical :: inside
 
     fraction = 0.5_dp
@@ -254,9 +254,10 @@ contains
     call problem%derivatives(t_new, self%predicted, self%f_predicted, inside)
     if (.not. inside) return
     k = self%k
+    k_before = max(k - 1, 1)
     time_rate = merge(2*x_new, 1.0_dp, self%rooted)
     call correct(self%n, self%h*self%coefficients%g(k + 1), time_rate, self%f_predicted, self%phi(:, 1), self%phi(:, k), &
-      self%phi(:, max(k - 1, 1)), self%inverse_weight, self%predicted, self%y_new, self%carry_new, squares)
+      self%phi(:, k_before), self%inverse_weight, self%predicted, self%y_new, self%carry_new, squares)
     call estimate_errors(self, squares, errors)
     if (.not. errors%step <= 1 .and. .not. self%settings%fixed_step > 0) then   ! a NaN is an error too
       outcome = try_error
