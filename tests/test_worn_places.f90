@@ -315,10 +315,7 @@ contains
     type(trace_t), intent(in) :: trace
     integer, intent(in) :: place
     type(wear_profile_t) :: worn
-    integer :: i
-    do i = 1, size(trace%report%wear)
-      if (trace%report%wear(i)%place == place) worn = trace%report%wear(i)
-    end do
+    worn = trace%report%wear(findloc(trace%report%wear%place, place, dim=1))
   end function worn_at
 
   !> Integral of a column over rows at equal times, and from the last row to the end of the run.
