@@ -11,7 +11,7 @@ module test_run_figures
   use gudgeon_errors, only: error_t
   use peak_search, only: peak_search_t, sample_t
   use gudgeon_simulation, only: simulate, run_report_t
-  use collecting_sink, only: collecting_sink_t, trace_t, run_case, column
+  use collecting_sink, only: collecting_sink_t, trace_t, run_case, column, values_of
   implicit none
   private
   public :: run_test_run_figures
@@ -225,9 +225,9 @@ contains
         associate (t => rows%values(1, :), e => plain%event(j))
           if (e%pin /= pin .or. e%kind /= 2) cycle
           if (count(t > e%time - e%duration .and. t < e%time) < 100) cycle
-          call is_peak_of(check, e%max_penetration, pack(-rows%values(column(rows, prefix//'film_thickness[m]'), :), &
+          call is_peak_of(check, e%max_penetration, pack(-values_of(rows, prefix//'film_thickness[m]'), &
             t > e%time - e%duration .and. t < e%time), rounding, name//prefix//': penetration in a contact')
-          call is_peak_of(check, e%max_normal_force, pack(rows%values(column(rows, prefix//'normal_force[N]'), :), &
+          call is_peak_of(check, e%max_normal_force, pack(values_of(rows, prefix//'normal_force[N]'), &
             t > e%time - e%duration .and. t < e%time), rounding, name//prefix//': normal force in a contact')
         end associate
       end do
@@ -289,7 +289,7 @@ contains
             call is_peak_of(check, c%max_force, pack(force_in_rows(rows, pin), turned >= k - 1 .and. turned <= k), rounding, &
               trim(files(i))//prefix//': force on the pin in a revolution')
             if (column(rows, prefix//'film_thickness[m]') == 0) cycle
-            call is_peak_of(check, -c%min_film_thickness, pack(-rows%values(column(rows, prefix//'film_thickness[m]'), :), &
+            call is_peak_of(check, -c%min_film_thickness, pack(-values_of(rows, prefix//'film_thickness[m]'), &
               turned >= k - 1 .and. turned <= k), rounding, trim(files(i))//prefix//': film thickness in a revolution')
             call check%close_to(c%max_penetration, max(0.0_dp, -c%min_film_thickness), 0.0_dp, prefix//'penetration')
           end associate
