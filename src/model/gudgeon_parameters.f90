@@ -51,6 +51,7 @@ module gudgeon_parameters
     procedure, non_overridable :: word
     procedure, non_overridable :: text
     procedure, non_overridable :: make_optional
+    procedure, non_overridable :: is_absent
   end type parameter_list_t
 
   type, abstract :: has_parameters_t
@@ -212,6 +213,12 @@ contains
     character(len=*), intent(in) :: amount
     self%amount = amount
   end subroutine make_optional
+
+  !> Whether the case that this visitor sets does not have the present group.
+  pure logical function is_absent(self)
+    class(parameter_list_t), intent(in) :: self
+    is_absent = self%sets .and. .not. self%is_present
+  end function is_absent
 
   pure type(key_t) function described(name, kind, says, unit, range, default, example) result(key)
     character(len=*), intent(in) :: name, says

@@ -10,6 +10,9 @@ submodule (case_definition) case_groups
 contains
 
   module procedure visit_case
+    type(elastic_rod_t) :: rod
+    type(elastic_crankshaft_t) :: crankshaft
+    type(measured_pressure_t) :: measured
     call list%group('case', 'All values are in SI units; angles are in degrees only where the key ends in _deg', .false.)
     call list%text('title', case%title, 'title of the case, for pictures and pages', '')
     call list%group('mechanism', &
@@ -27,10 +30,24 @@ contains
       call drop_laws(case%crank_pin, case%joint)
     end if
     call visit_guide(case%guide, list)
-    call visit_elastic_rod(case%elastic_rod, list)
-    call visit_crankshaft(case%crankshaft, list)
-    call visit_gas(case%combustion, list)
-    call visit_measured(case%measured, list)
+    call list%group('elastic_rod', 'Elastic connecting rod. Without this group the rod is rigid', .true.)
+    call rod%parameters(list)
+    if (list%sets) case%elastic_rod = rod
+    if (list%is_absent()) deallocate (case%elastic_rod)
+    call list%group('crankshaft', 'Elastic crankshaft with a driven flywheel. Without this group the crankshaft is rigid', .true.)
+    call crankshaft%parameters(list)
+    if (list%sets) case%crankshaft = crankshaft
+    if (list%is_absent()) deallocate (case%crankshaft)
+    call list%group('combustion', &
+      'Gas pressure on the piston, of an engine or a compressor. Without this group there is none', .true.)
+    call list%choice('cycle', 'four_stroke', 'working cycle; compressor: without combustion')
+    call offer_gas_cycles(list)
+    if (list%sets) call take_gas(list%chosen, case%combustion)
+    call list%group('cylinder_pressure', 'Measured gas pressure on the piston, from a table', .true., instead_of='combustion')
+    if (list%sets .and. allocated(case%measured)) measured = case%measured   ! its table has been read
+    call measured%parameters(list)
+    if (list%sets) case%measured = measured
+    if (list%is_absent()) deallocate (case%measured)
     call list%group('run', 'When the run ends. until = ''periodic'' replaces the end given in &integrator', .false.)
     call case%run%parameters(list)
     call list%group('integrator', &
@@ -46,14 +63,24 @@ contains
     character(len=*), intent(in) :: place
     logical, intent(in) :: another_has_clearance
     class(parameter_list_t), intent(inout) :: list
+    type(asperities_t) :: asperities
+    type(wear_law_t) :: wear
     call list%group('joint', 'Joint of rod and piston (piston pin)', .false., place)
     call joint%parameters(list)
     if (list%sets .and. another_has_clearance .and. .not. joint%has_clearance()) return
     call visit_contact(joint%contact, place, list)
     call visit_friction(joint%friction, joint%reports_friction_work, place, list)
     call visit_film(joint%film, joint%transition, joint%oil, joint%elastic, joint%reports_film, place, list)
-    call visit_asperities(joint%asperities, place, list)
-    call visit_wear(joint%wear, place, list)
+    call list%group('asperities', 'Contact of rough surfaces through the film. Without this group surfaces are smooth', .true., &
+      place, instead_of='contact')
+    call asperities%parameters(list)
+    if (list%sets) joint%asperities = asperities
+    if (list%is_absent()) deallocate (joint%asperities)
+    call list%group('wear', &
+      'Wear of pin and bore, with a file NAME.wear.csv. Without this group wear is not counted', .true., place)
+    call wear%parameters(list)
+    if (list%sets) joint%wear = wear
+    if (list%is_absent()) deallocate (joint%wear)
   end subroutine visit_joint
 
   !> Remove laws that were given for all joints from an ideal joint, if the other joint has clearance.
@@ -137,40 +164,30 @@ contains
     call list%add('report', reports, &
       'write energy loss, largest pressure and mean side flow of the film into the summary', '.false.')
     call offer_film_laws(list)
-    if (.not. list%sets) return
-    if (allocated(law)) deallocate (law)
-    if (.not. allocated(list%chosen)) return
-    select type (chosen => list%chosen)
+    if (list%sets) call take_film(list%chosen, law)
+  end subroutine visit_film
+
+  !> Take the film law that a case names, if it names one.
+  subroutine take_film(chosen, law)
+    class(law_t), allocatable, intent(in) :: chosen
+    class(film_law_t), allocatable, intent(out) :: law
+    if (.not. allocated(chosen)) return
+    select type (chosen)
     class is (film_law_t)
       allocate (law, source=chosen)
     end select
-  end subroutine visit_film
+  end subroutine take_film
 
-  subroutine visit_asperities(asperities, place, list)
-    type(asperities_t), allocatable, intent(inout) :: asperities
-    character(len=*), intent(in) :: place
-    class(parameter_list_t), intent(inout) :: list
-    type(asperities_t) :: described
-    call list%group('asperities', 'Contact of rough surfaces through the film. Without this group surfaces are smooth', .true., &
-      place, instead_of='contact')
-    call described%parameters(list)
-    if (.not. list%sets) return
-    if (allocated(asperities)) deallocate (asperities)
-    if (list%is_present) allocate (asperities, source=described)
-  end subroutine visit_asperities
-
-  subroutine visit_wear(wear, place, list)
-    type(wear_law_t), allocatable, intent(inout) :: wear
-    character(len=*), intent(in) :: place
-    class(parameter_list_t), intent(inout) :: list
-    type(wear_law_t) :: described
-    call list%group('wear', &
-      'Wear of pin and bore, with a file NAME.wear.csv. Without this group wear is not counted', .true., place)
-    call described%parameters(list)
-    if (.not. list%sets) return
-    if (allocated(wear)) deallocate (wear)
-    if (list%is_present) allocate (wear, source=described)
-  end subroutine visit_wear
+  !> Take the working cycle that a case names, if it names one.
+  subroutine take_gas(chosen, law)
+    class(law_t), allocatable, intent(in) :: chosen
+    class(gas_law_t), allocatable, intent(out) :: law
+    if (.not. allocated(chosen)) return
+    select type (chosen)
+    class is (gas_law_t)
+      allocate (law, source=chosen)
+    end select
+  end subroutine take_gas
 
   subroutine visit_guide(guide, list)
     type(guide_case_t), allocatable, intent(inout) :: guide
@@ -186,61 +203,7 @@ contains
     call list%choice('contact_law', 'exact', 'energy loss of an impact of the skirt, for kind = ''clearance''')
     call offer_contact_laws(list)
     call take_contact(list%chosen, described%contact)
-    if (.not. list%sets) return
-    if (allocated(guide)) deallocate (guide)
-    if (list%is_present) allocate (guide, source=described)
+    if (list%sets) guide = described
+    if (list%is_absent()) deallocate (guide)
   end subroutine visit_guide
-
-  subroutine visit_elastic_rod(rod, list)
-    type(elastic_rod_t), allocatable, intent(inout) :: rod
-    class(parameter_list_t), intent(inout) :: list
-    type(elastic_rod_t) :: described
-    call list%group('elastic_rod', 'Elastic connecting rod. Without this group the rod is rigid', .true.)
-    call described%parameters(list)
-    if (.not. list%sets) return
-    if (allocated(rod)) deallocate (rod)
-    if (list%is_present) allocate (rod, source=described)
-  end subroutine visit_elastic_rod
-
-  subroutine visit_crankshaft(crankshaft, list)
-    type(elastic_crankshaft_t), allocatable, intent(inout) :: crankshaft
-    class(parameter_list_t), intent(inout) :: list
-    type(elastic_crankshaft_t) :: described
-    call list%group('crankshaft', 'Elastic crankshaft with a driven flywheel. Without this group the crankshaft is rigid', &
-      .true.)
-    call described%parameters(list)
-    if (.not. list%sets) return
-    if (allocated(crankshaft)) deallocate (crankshaft)
-    if (list%is_present) allocate (crankshaft, source=described)
-  end subroutine visit_crankshaft
-
-  subroutine visit_gas(gas, list)
-    class(gas_law_t), allocatable, intent(inout) :: gas
-    class(parameter_list_t), intent(inout) :: list
-    call list%group('combustion', &
-      'Gas pressure on the piston, of an engine or a compressor. Without this group there is none', .true.)
-    call list%choice('cycle', 'four_stroke', 'working cycle; compressor: without combustion')
-    call offer_gas_cycles(list)
-    if (.not. list%sets) return
-    if (allocated(gas)) deallocate (gas)
-    if (.not. allocated(list%chosen)) return
-    select type (chosen => list%chosen)
-    class is (gas_law_t)
-      allocate (gas, source=chosen)
-    end select
-  end subroutine visit_gas
-
-  !> Visit a measured pressure. If its table has been read before, it is kept.
-  subroutine visit_measured(gas, list)
-    type(measured_pressure_t), allocatable, intent(inout) :: gas
-    class(parameter_list_t), intent(inout) :: list
-    type(measured_pressure_t) :: described
-    call list%group('cylinder_pressure', 'Measured gas pressure on the piston, from a table', .true., &
-      instead_of='combustion')
-    if (list%sets .and. allocated(gas)) described = gas
-    call described%parameters(list)
-    if (.not. list%sets) return
-    if (allocated(gas)) deallocate (gas)
-    if (list%is_present) allocate (gas, source=described)
-  end subroutine visit_measured
 end submodule case_groups
