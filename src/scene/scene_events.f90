@@ -45,15 +45,20 @@ contains
 
   module procedure all_events
     integer :: i, k, n
+    logical :: needs_forces
+    needs_forces = .false.
     k = 0
     do i = 1, self%n_joints
       n = n_events(self%joints(i))
       if (n >= contact_changes) call contact_event(self%joints(i), y, g(k + contact_changes), g_rate(k + contact_changes))
-      if (n >= sliding_changes) &
-        call find_sliding_event(self, t, y, i, g(k + sliding_changes), g_rate(k + sliding_changes))
+      if (n >= sliding_changes) then
+        g(k + sliding_changes:k + n) = -1
+        g_rate(k + sliding_changes:k + n) = 0
+        if (self%joints(i)%phase == phase_contact) needs_forces = may_stick(self%joints(i)) .or. may_lose_force(self%joints(i)) &
+          .or. needs_forces
+      end if
       if (allocated(self%joints(i)%transition)) call transition_events(self%joints(i), y, &
         g(k + film_held_changes:k + film_gone_changes), g_rate(k + film_held_changes:k + film_gone_changes))
-      if (n >= force_changes) call find_force_event(self, t, y, i, g(k + 1:k + n), g_rate(k + 1:k + n))
       k = k + n
     end do
     if (allocated(self%gas)) then
@@ -70,61 +75,47 @@ contains
       k = k + 1
       call self%wear_cycle%event(self%crank_angle(t, y), self%crank_speed(t, y), g(k), g_rate(k))
     end if
-    if (.not. allocated(self%guide)) return
-    n = n_guide_events(self%guide)
-    if (n >= n_corners) call corner_events(self%guide, y, g(k + 1:k + n_corners), g_rate(k + 1:k + n_corners))
-    if (n > n_corners) call find_corner_force_events(self, t, y, g(k + n_corners + 1:k + n), g_rate(k + n_corners + 1:k + n))
+    if (allocated(self%guide)) then
+      n = n_guide_events(self%guide)
+      if (n >= n_corners) call corner_events(self%guide, y, g(k + 1:k + n_corners), g_rate(k + 1:k + n_corners))
+      g(k + n_corners + 1:k + n) = -1
+      g_rate(k + n_corners + 1:k + n) = 0
+      needs_forces = needs_forces .or. corners_may_lose_force(self)
+    end if
+    if (needs_forces) call find_force_events(self, t, y, g, g_rate)
   end procedure all_events
 
-  !> Event function of set-valued friction, which depends on the accelerations.
-  pure subroutine find_sliding_event(scene, t, y, i, g, g_rate)
+  !> The event functions that depend on the accelerations: those of set-valued friction and of contacts whose forces may be lost.
+  pure subroutine find_force_events(scene, t, y, g, g_rate)
     class(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
-    integer, intent(in) :: i
-    real(dp), intent(out) :: g, g_rate
+    real(dp), intent(inout) :: g(:), g_rate(:)   !! those of all events
     type(evaluation_t) :: now
     logical :: inside
-    g = -1
-    g_rate = 0
-    if (scene%joints(i)%phase /= phase_contact .or. .not. may_stick(scene%joints(i))) return
+    integer :: i, k
     call scene%evaluate(t, y, now, inside)
-    if (inside) call sliding_event(scene%joints(i), now%relative(i), now%joint(i), now%accelerations, g, g_rate)
-  end subroutine find_sliding_event
+    if (.not. inside) return
+    k = 0
+    do i = 1, scene%n_joints
+      associate (joint => scene%joints(i), sliding => k + sliding_changes, force => k + force_changes)
+        if (joint%phase == phase_contact .and. may_stick(joint)) &
+          call sliding_event(joint, now%relative(i), now%joint(i), now%accelerations, g(sliding), g_rate(sliding))
+        if (joint%phase == phase_contact .and. may_lose_force(joint)) &
+          call force_event(joint, now%relative(i), now%accelerations, g(force), g_rate(force))
+        k = k + n_events(joint)
+      end associate
+    end do
+    if (.not. allocated(scene%guide)) return
+    k = scene%n_events - n_corners
+    if (corners_may_lose_force(scene)) &
+      call corner_force_events(scene%guide, now%guide%corner, now%motion, now%accelerations, g(k + 1:), g_rate(k + 1:))
+  end subroutine find_force_events
 
-  !> The event function of a contact whose force may be lost, which depends on the accelerations, among those of joint i. A joint
-  !> without weighted transition does not have the two before it.
-  pure subroutine find_force_event(scene, t, y, i, g, g_rate)
+  !> Whether the forces of corners of the skirt in contact may be lost.
+  pure logical function corners_may_lose_force(scene)
     class(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: t, y(:)
-    integer, intent(in) :: i
-    real(dp), intent(inout) :: g(:), g_rate(:)
-    type(evaluation_t) :: now
-    logical :: inside
-    if (.not. allocated(scene%joints(i)%transition)) then
-      g(film_held_changes:film_gone_changes) = -1
-      g_rate(film_held_changes:film_gone_changes) = 0
-    end if
-    g(force_changes) = -1
-    g_rate(force_changes) = 0
-    if (scene%joints(i)%phase /= phase_contact) return
-    call scene%evaluate(t, y, now, inside)
-    if (inside) &
-      call force_event(scene%joints(i), now%relative(i), now%accelerations, g(force_changes), g_rate(force_changes))
-  end subroutine find_force_event
-
-  !> Event functions of corners whose forces may be lost.
-  pure subroutine find_corner_force_events(scene, t, y, g, g_rate)
-    class(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: t, y(:)
-    real(dp), intent(out) :: g(n_corners), g_rate(n_corners)
-    type(evaluation_t) :: now
-    logical :: inside
-    g = -1
-    g_rate = 0
-    if (.not. any(scene%guide%touches)) return
-    call scene%evaluate(t, y, now, inside)
-    if (inside) call corner_force_events(scene%guide, now%guide%corner, now%motion, now%accelerations, g, g_rate)
-  end subroutine find_corner_force_events
+    corners_may_lose_force = n_guide_events(scene%guide) > n_corners .and. any(scene%guide%touches)
+  end function corners_may_lose_force
 
   module procedure handle_event
     real(dp) :: contact(2)
