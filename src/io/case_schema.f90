@@ -198,12 +198,7 @@ contains
     class(schema_t), intent(inout) :: self
     type(key_t), intent(in) :: key
     character(len=*), intent(in) :: group
-    type(key_t), allocatable :: larger(:)
-    if (self%n_keys == size(self%keys)) then
-      allocate (larger(2*self%n_keys))
-      larger(:self%n_keys) = self%keys
-      call move_alloc(larger, self%keys)
-    end if
+    if (self%n_keys == size(self%keys)) self%keys = [self%keys, self%keys]   ! more room
     self%n_keys = self%n_keys + 1
     self%keys(self%n_keys) = key
     self%keys(self%n_keys)%group = group

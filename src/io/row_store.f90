@@ -38,13 +38,8 @@ contains
   subroutine take_row(self, values)
     class(row_store_t), intent(inout) :: self
     real(dp), intent(in), contiguous :: values(:)
-    real(dp), allocatable :: larger(:, :)
     if (.not. allocated(self%values)) allocate (self%values(size(values), 1000))
-    if (self%rows == size(self%values, 2)) then
-      allocate (larger(size(values), 2*self%rows))
-      larger(:, :self%rows) = self%values
-      call move_alloc(larger, self%values)
-    end if
+    if (self%rows == size(self%values, 2)) self%values = reshape(self%values, [size(values), 2*self%rows], pad=[0.0_dp])
     self%rows = self%rows + 1
     self%values(:, self%rows) = values
   end subroutine take_row
@@ -52,13 +47,8 @@ contains
   subroutine take_event(self, event)
     class(row_store_t), intent(inout) :: self
     type(trace_event_t), intent(in) :: event
-    type(trace_event_t), allocatable :: larger(:)
     if (.not. allocated(self%event)) allocate (self%event(100))
-    if (self%events == size(self%event)) then
-      allocate (larger(2*self%events))
-      larger(:self%events) = self%event
-      call move_alloc(larger, self%event)
-    end if
+    if (self%events == size(self%event)) self%event = [self%event, self%event]   ! more room
     self%events = self%events + 1
     self%event(self%events) = event
   end subroutine take_event

@@ -247,7 +247,6 @@ contains
     class(cycle_watch_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
-    type(cycle_t), allocatable :: more(:)
     real(dp) :: force_integral(n_pins), loss
     force_integral = scene%force_integrals(self%y)
     loss = scene%joint_loss(t, self%y)
@@ -260,11 +259,7 @@ contains
       call self%statistics%add(self%present)
       if (self%keeps_cycles) then
         associate (n => self%statistics%cycles)
-          if (n > size(self%cycles)) then
-            allocate (more(2*n))
-            more(:n - 1) = self%cycles
-            call move_alloc(more, self%cycles)
-          end if
+          if (n > size(self%cycles)) self%cycles = [self%cycles, self%cycles]   ! more room
           self%cycles(n) = self%present
         end associate
       end if
@@ -280,18 +275,14 @@ contains
     class(cycle_watch_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
-    real(dp), allocatable :: more(:, :)
     type(evaluation_t) :: now
     logical :: inside
     self%passed = self%passed + 1
     if (self%passed <= self%uncounted) return
     if (self%most_strobes > 0 .and. self%strobes >= self%most_strobes) return
     self%strobes = self%strobes + 1
-    if (self%strobes > size(self%strobe_values, 2)) then
-      allocate (more(size(self%strobe_values, 1), 2*self%strobes))
-      more(:, :self%strobes - 1) = self%strobe_values
-      call move_alloc(more, self%strobe_values)
-    end if
+    if (self%strobes > size(self%strobe_values, 2)) self%strobe_values = reshape(self%strobe_values, &
+      [size(self%strobe_values, 1), 2*self%strobes], pad=[0.0_dp])   ! more room
     call scene%evaluate(t, y, now, inside)
     call row_values(self%strobe_list, scene, t, now, scene%work(y), self%initial_energy, self%strobe_values(:, self%strobes))
   end subroutine strobe
