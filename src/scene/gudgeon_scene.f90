@@ -297,22 +297,10 @@ contains
     if (self%crank_moves) then
       call turn_crank(motion, y(self%crank%position), y(self%crank%rate))
     else
-      call hold_crank(self, t, motion)
+      call turn_crank(motion, crank_angle(self, t, y), crank_speed(self, t, y))
+      if (self%runs_up) motion%held_acceleration = self%chain%varying%acceleration(t)
     end if
   end subroutine read_crank
-
-  !> Set angle and speed of a crank with prescribed speed.
-  pure subroutine hold_crank(self, t, motion)
-    class(scene_t), intent(in) :: self
-    real(dp), intent(in) :: t
-    type(motion_t), intent(inout) :: motion
-    if (self%runs_up) then
-      call turn_crank(motion, self%start_angle + self%chain%varying%turned(t), self%chain%varying%speed(t))
-      motion%held_acceleration = self%chain%varying%acceleration(t)
-    else
-      call turn_crank(motion, self%start_angle + self%start_speed*t, self%start_speed)
-    end if
-  end subroutine hold_crank
 
   !> Set the eccentricities of the joints, also in the motion of the chain. `inside` is false if one is not admissible.
   pure subroutine place_journals(self, n, joints, y, now, inside)
