@@ -100,7 +100,7 @@ contains
       if (case%has_loose_guide()) then
         do corner = 1, n_corners
           associate (c => f%corner(corner), prefix => corner_names(corner)//'_')
-            call add_contacts(prefix, c%contacts, c%contact_time, c%max_penetration)
+            call add_contacts(prefix, c)
             call add(prefix//'max_force', peak(c%max_force), 'N')
           end associate
         end do
@@ -142,7 +142,7 @@ contains
         end if
       end if
       call add(prefix//'min_film_thickness', peak(pin%min_film_thickness), 'm')
-      call add_contacts(prefix, pin%contacts, pin%contact_time, pin%max_penetration)
+      call add_contacts(prefix, pin)
       call add(prefix//'max_entry_penetration', real_text(pin%max_entry_penetration), 'm')
       call add(prefix//'impacts_beyond_validity', integer_text(pin%impacts_beyond_validity), '1')
       call add(prefix//'contacts_beyond_validity', integer_text(pin%contacts_beyond_validity), '1')
@@ -175,13 +175,12 @@ contains
     end subroutine add_wear
 
     !> Rows of the contacts of a pin or of a corner of the skirt.
-    subroutine add_contacts(prefix, contacts, time, max_penetration)
+    subroutine add_contacts(prefix, at)
       character(len=*), intent(in) :: prefix
-      integer, intent(in) :: contacts
-      real(dp), intent(in) :: time, max_penetration
-      call add(prefix//'contacts', integer_text(contacts), '1')
-      if (report%figures%time > 0) call add(prefix//'contact_time_fraction', real_text(time/report%figures%time), '1')
-      call add(prefix//'max_penetration', peak(max_penetration), 'm')
+      type(pin_figures_t), intent(in) :: at
+      call add(prefix//'contacts', integer_text(at%contacts), '1')
+      if (report%figures%time > 0) call add(prefix//'contact_time_fraction', real_text(at%contact_time/report%figures%time), '1')
+      call add(prefix//'max_penetration', peak(at%max_penetration), 'm')
     end subroutine add_contacts
 
     !> Rows of elastic members. The summary of the ideal twin says that they are rigid.

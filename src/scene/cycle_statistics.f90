@@ -4,10 +4,13 @@ module cycle_statistics
   use chain_motion, only: n_pins
   implicit none
   private
-  public :: cycle_t, cycle_statistics_t
+  public :: cycle_t, cycle_statistics_t, skirt
 
-  !> Results of one revolution at one pin. Those of contact and film are 0 at a pin without clearance; an ideal crank pin has no
-  !> results. Peaks are searched also between the accepted points of the integration.
+  integer, parameter :: skirt = n_pins + 1   !! the last place of contacts, after the pins: the skirt of a piston in its bore
+
+  !> Results of one revolution at one place. Those of contact and film are 0 at a pin without clearance; an ideal crank pin has no
+  !> results. Those of the skirt are over all corners, without film and integral. Peaks are searched also between the accepted
+  !> points of the integration.
   type :: pin_cycle_t
     real(dp) :: min_film_thickness = huge(1.0_dp)     !! c - |e| [m]
     real(dp) :: max_penetration = 0                   !! [m]
@@ -17,29 +20,19 @@ module cycle_statistics
     real(dp) :: force_integral = 0                    !! integral of the magnitude of the force over time [N s]
   end type pin_cycle_t
 
-  !> Results of one revolution for a piston with clearance in its bore, over all corners of its skirt.
-  type :: skirt_cycle_t
-    real(dp) :: contact_time = 0                      !! time during which at least one corner touches [s]
-    integer :: impacts = 0                            !! number of contacts that began
-    real(dp) :: max_penetration = 0                   !! of any corner [m]
-    real(dp) :: max_force = 0                         !! on any corner [N]
-  end type skirt_cycle_t
-
   !> Results of one revolution.
   type :: cycle_t
     real(dp) :: duration = 0                          !! [s]
     real(dp) :: dissipated_energy = 0                 !! energy taken from the bodies by the joints [J]
-    type(pin_cycle_t) :: pin(n_pins)
-    type(skirt_cycle_t) :: skirt
+    type(pin_cycle_t) :: pin(skirt)
   end type cycle_t
 
   !> Sums and extremes over the revolutions.
   type :: cycle_statistics_t
     integer :: cycles = 0
     type(cycle_t) :: total                            !! sums of times, counts and energies; extremes of the other quantities
-    !> Sums of extremes, for means over the revolutions: the smallest film thickness [m] and the largest force [N] at each pin, and
-    !> the largest force on a corner of the skirt [N].
-    real(dp) :: film_sum(n_pins) = 0, force_sum(n_pins) = 0, skirt_force_sum = 0
+    !> Sums of extremes, for means over the revolutions: the smallest film thickness [m] and the largest force [N] at each place.
+    real(dp) :: film_sum(skirt) = 0, force_sum(skirt) = 0
   contains
     procedure :: add
   end type cycle_statistics_t
@@ -61,13 +54,6 @@ contains
       total%max_force = max(total%max_force, one%max_force)
       total%force_integral = total%force_integral + one%force_integral
     end associate
-    associate (total => self%total%skirt, one => cycle%skirt)
-      total%contact_time = total%contact_time + one%contact_time
-      total%impacts = total%impacts + one%impacts
-      total%max_penetration = max(total%max_penetration, one%max_penetration)
-      total%max_force = max(total%max_force, one%max_force)
-    end associate
-    self%skirt_force_sum = self%skirt_force_sum + cycle%skirt%max_force
     where (cycle%pin%min_film_thickness < huge(1.0_dp)) self%film_sum = self%film_sum + cycle%pin%min_film_thickness
     self%force_sum = self%force_sum + cycle%pin%max_force
   end subroutine add

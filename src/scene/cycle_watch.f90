@@ -12,7 +12,7 @@ module cycle_watch
   use crank_passage, only: find_passage
   use step_peaks, only: n_peaks, of_pin_force, of_penetration
   use gudgeon_columns, only: column_list_t, row_values
-  use cycle_statistics, only: cycle_t, cycle_statistics_t
+  use cycle_statistics, only: cycle_t, cycle_statistics_t, skirt
   implicit none
   private
   public :: cycle_watch_t
@@ -51,7 +51,6 @@ module cycle_watch
     procedure :: take_peaks
     procedure :: take_point
     procedure :: take_impact
-    procedure :: take_slap
     procedure :: take_skirt
     procedure :: finish
   end type cycle_watch_t
@@ -169,30 +168,24 @@ contains
       end associate
     end do
     if (allocated(scene%guide)) then
-      if (any(scene%guide%touches)) self%present%skirt%contact_time = self%present%skirt%contact_time + (t - self%t)
+      if (any(scene%guide%touches)) self%present%pin(skirt)%contact_time = self%present%pin(skirt)%contact_time + (t - self%t)
     end if
     self%t = t
   end subroutine take_point
 
-  !> Count a contact that begins at a pin.
+  !> Count a contact that begins at a pin or at a corner of the skirt.
   pure subroutine take_impact(self, pin)
     class(cycle_watch_t), intent(inout) :: self
     integer, intent(in) :: pin
     self%present%pin(pin)%impacts = self%present%pin(pin)%impacts + 1
   end subroutine take_impact
 
-  !> Count a contact of a corner of the skirt that begins.
-  pure subroutine take_slap(self)
-    class(cycle_watch_t), intent(inout) :: self
-    self%present%skirt%impacts = self%present%skirt%impacts + 1
-  end subroutine take_slap
-
   !> Account for the largest penetration and force of the corners of the skirt in the present revolution.
   pure subroutine take_skirt(self, penetration, force)
     class(cycle_watch_t), intent(inout) :: self
     real(dp), intent(in) :: penetration, force   !! [m], [N]
-    self%present%skirt%max_penetration = penetration
-    self%present%skirt%max_force = force
+    self%present%pin(skirt)%max_penetration = penetration
+    self%present%pin(skirt)%max_force = force
   end subroutine take_skirt
 
   !> End the run at (t, y). A revolution that is complete except for rounding is ended too.
@@ -252,7 +245,7 @@ contains
     loss = scene%joint_loss(t, self%y)
     call self%take_point(scene, t)
     self%present%duration = t - self%cycle_start
-    self%present%pin%force_integral = force_integral - self%force_integral
+    self%present%pin(:n_pins)%force_integral = force_integral - self%force_integral
     self%present%dissipated_energy = loss - self%loss
     self%ended = self%ended + 1
     if (self%ended > self%uncounted) then

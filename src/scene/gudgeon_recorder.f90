@@ -19,6 +19,7 @@ module gudgeon_recorder
   use crank_passage, only: find_turning
   use crank_turns, only: turn_patience_t
   use period_watch, only: period_watch_t
+  use cycle_statistics, only: skirt
   use cycle_watch, only: cycle_watch_t
   use pin_record, only: pin_record_t
   use guide_record, only: guide_record_t
@@ -437,7 +438,7 @@ contains
     type(evaluation_t), intent(in) :: now
     type(trace_event_t) :: event
     call self%guide%take_contact(i, kind, t, now, self%figures, event)
-    if (allocated(self%cycles) .and. kind == event_contact_begins) call self%cycles%take_slap()
+    if (allocated(self%cycles) .and. kind == event_contact_begins) call self%cycles%take_impact(skirt)
     call self%sink%take_event(event)
   end subroutine take_corner_contact
 

@@ -8,7 +8,8 @@ module run_figures
   private
   public :: run_figures_t, pin_figures_t, elastic_figures_t
 
-  !> Results at one pin. A pin without clearance has only a force; an ideal crank pin has no results.
+  !> Results at one pin, or at one corner of the skirt of a piston with clearance in its bore. A pin without clearance has only a
+  !> force, an ideal crank pin has no results; a corner has contacts, their time, and the largest penetration and normal force.
   type :: pin_figures_t
     integer :: contacts = 0                   !! number of contacts that began
     integer :: impacts_beyond_validity = 0    !! number of impacts faster than the contact law is valid for
@@ -26,14 +27,6 @@ module run_figures
     procedure :: exchange => exchange_pin
   end type pin_figures_t
 
-  !> Results at one corner of the skirt, for a piston with clearance in its bore.
-  type :: corner_figures_t
-    integer :: contacts = 0                   !! number of contacts that began
-    real(dp) :: contact_time = 0              !! [s]
-    real(dp) :: max_penetration = 0           !! [m]
-    real(dp) :: max_force = 0                 !! normal to the wall [N]
-  end type corner_figures_t
-
   !> Results of the elastic members.
   type :: elastic_figures_t
     real(dp) :: mid_deflection = 0            !! deflection of the rod at mid-length, perpendicular to its chord [m]
@@ -47,7 +40,7 @@ module run_figures
 
   type :: run_figures_t
     type(pin_figures_t) :: pin(n_pins)        !! crank_pin, piston_pin
-    type(corner_figures_t) :: corner(n_corners)
+    type(pin_figures_t) :: corner(n_corners)
     type(elastic_figures_t) :: elastic
     integer :: evaluations = 0                !! number of evaluations of the scene for rows, events and these results
     integer :: peak_evaluations = 0           !! number of those evaluations that search peaks between accepted points

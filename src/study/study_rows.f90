@@ -6,7 +6,7 @@ module study_rows
   use chain_motion, only: crank_pin, piston_pin
   use case_definition, only: case_t, crank_pin_place
   use gudgeon_columns, only: column_list_t, column_name
-  use cycle_statistics, only: cycle_t, cycle_statistics_t
+  use cycle_statistics, only: cycle_t, cycle_statistics_t, skirt
   use cycle_watch, only: cycle_watch_t
   use gudgeon_simulation, only: run_report_t
   use gudgeon_summary, only: relative_residual
@@ -240,12 +240,12 @@ contains
     if (row%has_crank_pin) call put_pin(row, s, crank_pin_prefix, crank_pin, is_loose, is_loose, with_means)
     if (.not. row%has_guide) return
     is_loose = is_there .and. case%has_loose_guide()
-    associate (total => s%total%skirt)
+    associate (total => s%total%pin(skirt))
       call row%put('guide_contact_time_fraction[-]', total%contact_time/s%total%duration, is_loose)
       call put_impacts(row, 'guide_', total%impacts, s%cycles, is_loose, with_means)
       call row%put('guide_max_penetration[m]', total%max_penetration, is_loose)
       call row%put('guide_max_force[N]', total%max_force, is_loose)
-      if (with_means) call row%put('guide_max_force_mean[N]', s%skirt_force_sum/s%cycles, is_loose)
+      if (with_means) call row%put('guide_max_force_mean[N]', s%force_sum(skirt)/s%cycles, is_loose)
     end associate
   end subroutine put_further_joints
 
