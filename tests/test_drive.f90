@@ -28,6 +28,7 @@ contains
     call ramp_with_play(check, ['piston_pin'], 0)
     call ramp_with_play(check, ['crank_pin '], 1)
     call ramp_with_play(check, ['both      '], 2)
+    call beginning_of_a_slow_ramp(check)
     call ramp_with_elastic_rod(check)
     call ramp_with_crankshaft(check)
     call loose_joints_on_a_ramp_of_the_shaft(check)
@@ -114,6 +115,27 @@ contains
       'energy of a ramp is the work of the drive: '//place(1))
     call check%that(maxval(trace%values(column(trace, 'crank_acceleration[rad/s2]'), :)) > 1e4_dp, 'the crank is accelerated')
   end subroutine ramp_with_play
+
+  !> A run that ends in the first hundredth of a run-up keeps the energy that it reaches, 4e-9 J, not only a small part of that of
+  !> the full speed; so does its ideal twin.
+  subroutine beginning_of_a_slow_ramp(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    integer :: i, twin
+    character(len=long), parameter :: settings(6) = [character(len=long) :: 'drive.ramp_time=50', 'drive.ramp_from=0', &
+      'integrator.revolutions=0', 'integrator.end_time=0.5', 'output.interval=1e-2', 'integrator.method=auto']
+    character(len=*), parameter :: tolerances(3) = ['1e-4 ', '1e-6 ', '1e-10']
+    do i = 1, size(tolerances)
+      do twin = 0, 1
+        trace = run_case('cases/flores/dry_0100um.nml', [settings, [character(len=long) :: &
+          'integrator.relative_tolerance='//tolerances(i)]], twin == 1)
+        call check%equal_text(outcome(trace), 'done', 'beginning of a slow ramp: '//tolerances(i))
+        if (allocated(trace%error)) cycle
+        call check%that(trace%report%figures%max_energy_residual < 1e-5_dp*trace%report%figures%max_energy, &
+          'energy at the beginning of a slow ramp is the work of the drive: '//tolerances(i))
+      end do
+    end do
+  end subroutine beginning_of_a_slow_ramp
 
   !> With an elastic rod, with ideal pins and with clearance: the moment accelerates the crank against the force at the crank pin
   !> that follows from Newton's law of the rod, and its work agrees with the energy.

@@ -506,10 +506,16 @@ contains
     work = y(self%work_at)
   end function work
 
-  !> Natural size of the crank speed [rad/s]: the starting speed; from rest, one radian in the time simulated.
+  !> Natural size of the crank speed [rad/s]: the starting speed; from rest, one radian in the time simulated. If a run ends during
+  !> its run-up, the largest speed that it reaches.
   pure real(dp) function speed_scale(self)
     class(scene_t), intent(in) :: self
     speed_scale = abs(self%start_speed)
+    if (self%runs_up) then
+      associate (drive => self%chain%varying)
+        if (self%span < drive%ramp_time) speed_scale = max(abs(drive%first_speed), abs(drive%speed(self%span)))
+      end associate
+    end if
     if (.not. speed_scale > 0) speed_scale = 1/self%span
   end function speed_scale
 
