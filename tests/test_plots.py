@@ -1032,10 +1032,13 @@ class Reading(unittest.TestCase):
         with tempfile.TemporaryDirectory() as work:
             there = Path(work)
             (there / "x.runs.csv").write_text("run,joint.clearance,status,impacts[-]\n1,1e-5,done,1\n2,2e-5,done,2\n")
+            (there / "failed.runs.csv").write_text("run,joint.clearance,status,impacts[-]\n1,1e-5,too deep,\n2,2e-5,too long,\n3,3e-5,too deep,\n")
             (there / "x.wear.csv").write_text("joint,angle[deg],pin_depth[m],bore_depth[m]\npiston_pin,0,x,1\n")
             (there / "x.film.csv").write_text("time[s],joint,place,angle[deg],pressure[Pa],film_thickness[m]\n0,piston_pin,0,0,,1\n")
             for status, words, said in (
                 (1, ("plot_study.py", there / "x.runs.csv", "--columns", "status"), "status: contains words, no numbers"),
+                (1, ("plot_study.py", there / "failed.runs.csv", "--columns", "impacts"),
+                 "failed.runs.csv: no results, all 3 runs failed (2: too deep; 1: too long)\n"),
                 (2, ("plot_study.py", there / "x.runs.csv", "--numbers"), "--numbers is for the shipped studies alone"),
                 (2, ("plot_study.py", "--columns", "impacts"), "--columns is for studies"),
                 (1, ("plot_wear.py", there / "x.wear.csv"), "column pin_depth: not a number in each row"),

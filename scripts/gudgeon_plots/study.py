@@ -128,6 +128,9 @@ def _as_written(cell: object) -> object:
 
 
 def warn_of_failures(name: str, runs: Runs) -> None:
-    """Print a line on standard error for each reason for which runs failed."""
+    """Print a line on standard error for each reason for which runs failed; if no run is done, raise an error with the reasons."""
+    if not runs.done.any():
+        reasons = "; ".join(f"{count}: {reason}" for reason, count in runs.failures().items())
+        raise MissingResult(f"{name}: no results, all {len(runs.table)} runs failed ({reasons})")
     for reason, count in runs.failures().items():
         print(f"{name}: {count} of {len(runs.table)} runs failed: {reason}", file=sys.stderr)
